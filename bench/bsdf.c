@@ -1,6 +1,8 @@
-/* bench/bsdf.c: nanoseconds per evaluation and per sample of each BSDF, by instruction set. Batches are compared with
- * the same code run one lane at a time (compiled without vectors); each line ends in the ratio. Usage: bench_bsdf
- * [lanes] (default 512). Each number is the best of several rounds. */
+/* bench/bsdf.c: nanoseconds per evaluation and per sample of each BSDF, by instruction set.
+ * Batches are compared with the same code run one lane at a time (compiled without vectors);
+ * each line ends in the ratio. Usage: bench_bsdf [lanes] (default 512). Each number is the best
+ * of several rounds.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +40,8 @@ static void direction(Arrays *a, int first, uint32_t i) {
 }
 
 /* One pass of lanes [first, first + n). what: 1 evaluation, 2 sample */
-static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t first, uint32_t n) {
+static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t first,
+                 uint32_t n) {
 #define IN(j) (a->in[j] + first)
 #define OUT(j) (a->out[j] + first)
   vlBsdfParams p = {.reflectance = {IN(0), IN(1), IN(2), IN(3)},
@@ -49,21 +52,29 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
                     .eta_s = IN(14),
                     .coat = a->coat + first,
                     .seed = a->flags + first};
-  for (int j = 0; j < VL_BSDF_ROWS; j++) p.own[j] = a->own[j] + first;
-  vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)}, out = {OUT(0), OUT(1), OUT(2)};
-  float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)}, *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
-  if (what & 1) k->eval(kind, n, &p, wo, wi, value, OUT(7));
-  if (what & 2) k->sample(kind, n, &p, wo, IN(21), IN(22), IN(23), out, weight, OUT(12), a->flags + first, OUT(13));
+  for (int j = 0; j < VL_BSDF_ROWS; j++)
+    p.own[j] = a->own[j] + first;
+  vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)},
+                   out = {OUT(0), OUT(1), OUT(2)};
+  float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)},
+        *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
+  if (what & 1)
+    k->eval(kind, n, &p, wo, wi, value, OUT(7));
+  if (what & 2)
+    k->sample(kind, n, &p, wo, IN(21), IN(22), IN(23), out, weight, OUT(12), a->flags + first,
+              OUT(13));
 }
 
 /* Nanoseconds per lane, best of several rounds. */
-static double cost(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t n, uint32_t step) {
+static double cost(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t n,
+                   uint32_t step) {
   double best = 1e30;
   for (int round = 0; round < ROUNDS; round++) {
     uint32_t turns = (step == 1 ? 40000u : 400000u) / n;
     double start = seconds();
     for (uint32_t t = 0; t < turns; t++)
-      for (uint32_t i = 0; i < n; i += step) pass(k, kind, what, a, i, step);
+      for (uint32_t i = 0; i < n; i += step)
+        pass(k, kind, what, a, i, step);
     double time = (seconds() - start) * 1e9 / ((double)turns * n);
     best = time < best ? time : best;
   }
@@ -77,18 +88,22 @@ int main(int argc, char **argv) {
   vlContextDef def = vl_default_context_def();
   vlContext *context;
   vlCoatTable *coat, *rough;
-  if (!a || vl_context_create(&def, &context)) return 1;
+  if (!a || vl_context_create(&def, &context))
+    return 1;
   if (vl_coat_build(context, 1.5f, 0.01f, 10, 0.1f, 0.1f, &coat) ||
       vl_coat_build(context, 1.5f, 0.01f, 10, 0, 0.5f, &rough))
     return 1;
   for (uint32_t i = 0; i < n; i++) {
-    for (int j = 0; j < 24; j++) a->in[j][i] = number();
-    for (int c = 0; c < 4; c++) a->in[4 + c][i] += 0.2f, a->in[8 + c][i] *= 5;
+    for (int j = 0; j < 24; j++)
+      a->in[j][i] = number();
+    for (int c = 0; c < 4; c++)
+      a->in[4 + c][i] += 0.2f, a->in[8 + c][i] *= 5;
     a->in[12][i] = a->in[13][i] = 0.1f;
     a->in[14][i] = 1.5f;
     a->coat[i] = coat;
     a->own[VL_P_F90][i] = a->own[VL_P_THIN][i] = a->own[VL_P_COAT_Z][i] = 1.0f;
-    for (int c = 0; c < 4; c++) a->own[VL_P_F0 + c][i] = 0.04f;
+    for (int c = 0; c < 4; c++)
+      a->own[VL_P_F0 + c][i] = 0.04f;
     a->own[VL_P_METALLIC][i] = a->in[8][i] / 5;
     direction(a, 15, i);
     direction(a, 18, i);
@@ -109,14 +124,20 @@ int main(int argc, char **argv) {
               {"hair", VL_BSDF_HAIR, coat}};
   static const char *const sets[] = {
       [VL_ISA_BASE] = "base", [VL_ISA_V2] = "v2", [VL_ISA_V3] = "v3", [VL_ISA_V4] = "v4"};
-  printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, lowest set without vectors\n", n);
+  printf(
+      "ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, lowest set without "
+      "vectors\n",
+      n);
   printf("%-18s %-8s %8s", "", "", "one");
   vlIsa lowest = VL_ISA_AUTO, best = vl_isa_best();
-  if (vl_isa_choose(VL_ISA_BASE, &lowest) != VL_OK) return 1;
-  for (int isa = (int)lowest; isa <= (int)best; isa++) printf("%9s", sets[isa]);
+  if (vl_isa_choose(VL_ISA_BASE, &lowest) != VL_OK)
+    return 1;
+  for (int isa = (int)lowest; isa <= (int)best; isa++)
+    printf("%9s", sets[isa]);
   printf("%10s\n", "ratio");
   for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
-    for (uint32_t i = 0; i < n; i++) a->coat[i] = rows[r].coat;
+    for (uint32_t i = 0; i < n; i++)
+      a->coat[i] = rows[r].coat;
     for (int what = 1; what <= 3; what++) {
       const char *names[] = {"eval", "sample", "both"};
       double one = cost(&vl_bsdf_kernel_table_scalar, rows[r].kind, what, a, n, 1), last = one;

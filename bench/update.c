@@ -1,7 +1,8 @@
-/* bench/update.c: times of changes to a scene (velo/edit.h): building the world anew, and with the previous one. The
- * scene has a million triangles outside of groups and 1000 instances of a small mesh. Also the time from a request to
- * cancel until a render returns, and from a new render until its first coarse image while another one runs.
- * Usage: bench_update [SCENE.pbrt]. Times are medians, in milliseconds; CPU times of the whole process in brackets. */
+/* bench/update.c: times of changes to a scene (velo/edit.h): building the world anew, and with
+ * the previous one. The scene has a million triangles outside of groups and 1000 instances of a
+ * small mesh. Also the time from a request to cancel until a render returns, and from a new
+ * render until its first coarse image while another one runs. Usage: bench_update [SCENE.pbrt].
+ * Times are medians, in milliseconds; CPU times of the whole process in brackets. */
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -29,7 +30,8 @@ static double cpu(void) {
 }
 
 static void check(vlResult result, const vlError *error) {
-  if (result == VL_OK) return;
+  if (result == VL_OK)
+    return;
   fprintf(stderr, "bench_update: %s: %s\n", vl_result_name(result), error->message);
   exit(1);
 }
@@ -38,13 +40,16 @@ static void add_sheet(vlScene *scene, vlGroupId group, uint32_t side, float size
   size_t vertices = (size_t)(side + 1) * (side + 1), faces = 2 * (size_t)side * side;
   float *p = malloc(3 * vertices * sizeof *p);
   uint32_t *f = malloc(3 * faces * sizeof *f), *to = f;
-  if (!p || !f) exit(1);
+  if (!p || !f)
+    exit(1);
   for (uint32_t i = 0; i <= side; i++)
     for (uint32_t j = 0; j <= side; j++) {
       uint32_t v = i * (side + 1) + j;
       float x = (float)j / (float)side - 0.5f, z = (float)i / (float)side - 0.5f;
-      p[3 * v] = size * x, p[3 * v + 1] = 0.03f * size * sinf(40 * x) * cosf(33 * z), p[3 * v + 2] = size * z;
-      if (i == side || j == side) continue;
+      p[3 * v] = size * x, p[3 * v + 1] = 0.03f * size * sinf(40 * x) * cosf(33 * z),
+            p[3 * v + 2] = size * z;
+      if (i == side || j == side)
+        continue;
       const uint32_t quad[6] = {v, v + 1, v + side + 1, v + 1, v + side + 2, v + side + 1};
       memcpy(to, quad, sizeof quad);
       to += 6;
@@ -87,7 +92,8 @@ static void make_scene(vlScene *scene) {
 }
 
 /* Builds ROUNDS times, after the change `edit` each time. */
-static vlWorld *time_edits(vlScene *scene, vlWorld *world, const char *name, void (*edit)(vlScene *, int)) {
+static vlWorld *time_edits(vlScene *scene, vlWorld *world, const char *name,
+                           void (*edit)(vlScene *, int)) {
   double t[ROUNDS], c[ROUNDS];
   vlError error;
   for (int k = 0; k < ROUNDS; k++) {
@@ -156,7 +162,8 @@ static void time_renders(vlContext *context, vlScene *scene, const vlWorld *worl
   double stop[ROUNDS], first[ROUNDS];
   for (int k = 0; k < ROUNDS; k++) {
     pthread_t thread;
-    if (pthread_create(&thread, NULL, run, &r) != 0) exit(1);
+    if (pthread_create(&thread, NULL, run, &r) != 0)
+      exit(1);
     nanosleep(&(struct timespec){0, 100000000 + 7000000 * k}, NULL);
     double start = wall();
     vl_film_clear(c.film);
@@ -170,9 +177,11 @@ static void time_renders(vlContext *context, vlScene *scene, const vlWorld *worl
     vl_film_clear(r.film);
   }
   double usual = median(stop, ROUNDS); /* sorts */
-  printf("%-44s %8.2f ms  (slowest %.2f)\n", "from the request to cancel to the return", usual, stop[ROUNDS - 1]);
+  printf("%-44s %8.2f ms  (slowest %.2f)\n", "from the request to cancel to the return", usual,
+         stop[ROUNDS - 1]);
   usual = median(first, ROUNDS);
-  printf("%-44s %8.2f ms  (slowest %.2f)\n", "an image of 1/8 while another render runs", usual, first[ROUNDS - 1]);
+  printf("%-44s %8.2f ms  (slowest %.2f)\n", "an image of 1/8 while another render runs", usual,
+         first[ROUNDS - 1]);
   vl_cancel_destroy(cancel);
   vl_film_destroy(r.film);
   vl_film_destroy(c.film);
@@ -195,7 +204,8 @@ int main(int argc, char **argv) {
   printf("%-44s %8.2f ms  [%.2f]\n", "first build", wall() - start, cpu() - used);
   world = time_edits(scene, world, "nothing has changed", change_nothing);
   world = time_edits(scene, world, "a material", change_material);
-  if (argc < 2) world = time_edits(scene, world, "1000 instances moved", move_all);
+  if (argc < 2)
+    world = time_edits(scene, world, "1000 instances moved", move_all);
   time_renders(context, scene, world);
   vl_world_destroy(world);
   vl_scene_destroy(scene);

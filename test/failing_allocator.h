@@ -1,9 +1,9 @@
 /* test/failing_allocator.h: an allocator that counts the blocks held and whose n-th call fails.
  *     failAllocator state = {.fail_at = n};             n counts from 1; 0: no call fails
  *     def.allocator = fail_allocator(&state);
- * fail_everywhere runs a test for n = 1, 2, ... until no call fails. Each run with a failure must return
- * VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so the code after it runs with partly built
- * data. Include cmocka.h first. */
+ * fail_everywhere runs a test for n = 1, 2, ... until no call fails. Each run with a failure
+ * must return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so the code
+ * after it runs with partly built data. Include cmocka.h first. */
 #ifndef TEST_FAILING_ALLOCATOR_H
 #define TEST_FAILING_ALLOCATOR_H
 
@@ -20,22 +20,26 @@ typedef struct failAllocator {
 } failAllocator;
 
 static inline bool fail_now(failAllocator *state) {
-  if (atomic_fetch_add(&state->calls, 1) + 1 != state->fail_at) return false;
+  if (atomic_fetch_add(&state->calls, 1) + 1 != state->fail_at)
+    return false;
   atomic_store(&state->refused, true);
   return true;
 }
 
 static inline void *fail_allocate(void *user, size_t size) {
   failAllocator *state = user;
-  if (fail_now(state)) return NULL;
+  if (fail_now(state))
+    return NULL;
   void *block = malloc(size);
-  if (block) atomic_fetch_add(&state->blocks, 1);
+  if (block)
+    atomic_fetch_add(&state->blocks, 1);
   return block;
 }
 
 static inline void fail_release(void *user, void *block) {
   failAllocator *state = user;
-  if (block) atomic_fetch_sub(&state->blocks, 1);
+  if (block)
+    atomic_fetch_sub(&state->blocks, 1);
   free(block);
 }
 
@@ -48,9 +52,10 @@ static inline vlAllocator fail_allocator(failAllocator *state) {
   return (vlAllocator){state, fail_allocate, fail_release};
 }
 
-/* Runs the body once per allocation, with a context of one thread, and makes that allocation fail. At least `least`
- * runs are needed until one without a failure. */
-static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *user), void *user, long least) {
+/* Runs the body once per allocation, with a context of one thread, and makes that allocation
+ * fail. At least `least` runs are needed until one without a failure. */
+static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *user), void *user,
+                                   long least) {
   for (long n = 1;; n++) {
     failAllocator state = {.fail_at = n};
     vlContextDef def = vl_default_context_def();
@@ -63,11 +68,14 @@ static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *us
       vl_context_destroy(context);
     }
     vlResult wanted = state.refused ? VL_ERROR_MEMORY : VL_OK;
-    if (state.blocks != 0) print_message("failing at call %ld leaks\n", n);
-    if (result != wanted) print_message("failing at call %ld gives %s\n", n, vl_result_name(result));
+    if (state.blocks != 0)
+      print_message("failing at call %ld leaks\n", n);
+    if (result != wanted)
+      print_message("failing at call %ld gives %s\n", n, vl_result_name(result));
     assert_int_equal(state.blocks, 0);
     assert_int_equal(result, wanted);
-    if (state.refused) continue;
+    if (state.refused)
+      continue;
     assert_true(n > least);
     return;
   }

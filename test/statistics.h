@@ -1,14 +1,14 @@
-/* statistics.h: statistical tests of sampling routines: random numbers with fixed seeds, chi-square tests with the
- * regularised incomplete gamma function, histograms over the unit square and over the sphere against a numerically
- * integrated pdf.
+/* statistics.h: statistical tests of sampling routines: random numbers with fixed seeds,
+ * chi-square tests with the regularised incomplete gamma function, histograms over the unit
+ * square and over the sphere against a numerically integrated pdf.
  *
  *   statSphere hist = stat_sphere_new(32, 64);
  *   for (each try) sample(...) ? stat_sphere_add(hist, x, y, z) : stat_sphere_reject(hist);
  *   statResult r = stat_sphere_test(hist, my_pdf, &my_data, 0.0);   // also frees hist
  *   assert_true(stat_accept(r, tests));   // tests: number of such tests in the program
  *
- * The pdf is per solid angle. A sampler may reject when its pdf integrates to the accepted share: rejected tries are a
- * cell of their own. Everything is static inline. */
+ * The pdf is per solid angle. A sampler may reject when its pdf integrates to the accepted
+ * share: rejected tries are a cell of their own. Everything is static inline. */
 #ifndef TEST_STATISTICS_H
 #define TEST_STATISTICS_H
 
@@ -19,7 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- random numbers: splitmix64 (Steele et al. 2014) ------------------------------------------------------------- */
+/* ---- random numbers: splitmix64 (Steele et al. 2014)
+ * ------------------------------------------------------------- */
 
 typedef struct statRng {
   uint64_t state;
@@ -30,8 +31,8 @@ static inline uint64_t stat_bits(statRng *rng) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
 }
-/* The state advances by a constant, so seeds are hashed: otherwise adjacent seeds would give the same stream, shifted
- * by one. */
+/* The state advances by a constant, so seeds are hashed: otherwise adjacent seeds would give
+ * the same stream, shifted by one. */
 static inline statRng stat_rng(uint64_t seed) {
   statRng hash = {seed ^ 0x632be59bd9b4e019u};
   stat_bits(&hash);
@@ -47,19 +48,24 @@ static inline double stat_double(statRng *rng) {
 }
 /* Uniform on the sphere. */
 static inline void stat_direction(statRng *rng, double d[3]) {
-  double z = 1.0 - 2.0 * stat_double(rng), phi = 6.283185307179586 * stat_double(rng), r = sqrt(fmax(0.0, 1.0 - z * z));
+  double z = 1.0 - 2.0 * stat_double(rng), phi = 6.283185307179586 * stat_double(rng),
+         r = sqrt(fmax(0.0, 1.0 - z * z));
   d[0] = r * cos(phi), d[1] = r * sin(phi), d[2] = z;
 }
 
-/* ---- the chi-square distribution --------------------------------------------------------------------------------- */
+/* ---- the chi-square distribution
+ * --------------------------------------------------------------------------------- */
 
-/* Q(a, x) = Gamma(a, x) / Gamma(a): series below x = a + 1, Lentz's continued fraction above (DLMF 8.7.1, 8.9.2). */
+/* Q(a, x) = Gamma(a, x) / Gamma(a): series below x = a + 1, Lentz's continued fraction above
+ * (DLMF 8.7.1, 8.9.2). */
 static inline double stat_gamma_q(double a, double x) {
-  if (x <= 0.0) return 1.0;
+  if (x <= 0.0)
+    return 1.0;
   double log_front = a * log(x) - x - lgamma(a);
   if (x < a + 1.0) {
     double term = 1.0 / a, sum = term;
-    for (int k = 1; k < 10000 && term > sum * 1e-16; k++) sum += term *= x / (a + k);
+    for (int k = 1; k < 10000 && term > sum * 1e-16; k++)
+      sum += term *= x / (a + k);
     double p = exp(log_front) * sum;
     return p > 1.0 ? 0.0 : 1.0 - p;
   }
@@ -70,10 +76,12 @@ static inline double stat_gamma_q(double a, double x) {
     d = an * d + b;
     d = 1.0 / (fabs(d) < 1e-300 ? 1e-300 : d);
     c = b + an / c;
-    if (fabs(c) < 1e-300) c = 1e-300;
+    if (fabs(c) < 1e-300)
+      c = 1e-300;
     double delta = c * d;
     h *= delta;
-    if (fabs(delta - 1.0) < 1e-15) break;
+    if (fabs(delta - 1.0) < 1e-15)
+      break;
   }
   return exp(log_front) * h;
 }
@@ -83,19 +91,23 @@ static inline double stat_chi2_q(double statistic, double freedom) {
 }
 
 typedef struct statResult {
-  double p;         /* probability of a deviation at least as large if observed and expected agree */
+  double p; /* probability of a deviation at least as large if observed and expected agree */
   double statistic; /* chi-square */
   double freedom;   /* degrees of freedom after pooling */
   double integral;  /* of the pdf over the domain (histogram tests); otherwise 1 */
 } statResult;
 
-/* The probability that any of `tests` independent tests rejects a correct sampler is 1 % (Sidak). */
+/* The probability that any of `tests` independent tests rejects a correct sampler is 1 %
+ * (Sidak).
+ */
 static inline bool stat_accept(statResult r, unsigned tests) {
   double level = 1.0 - pow(0.99, 1.0 / (tests ? tests : 1));
   bool ok = r.p > level;
   if (!ok)
-    fprintf(stderr, "chi2: p = %g (needs > %g), statistic %g, %g degrees of freedom, pdf integrates to %g\n", r.p,
-            level, r.statistic, r.freedom, r.integral);
+    fprintf(stderr,
+            "chi2: p = %g (needs > %g), statistic %g, %g degrees of freedom, pdf integrates to "
+            "%g\n",
+            r.p, level, r.statistic, r.freedom, r.integral);
   return ok;
 }
 
@@ -106,9 +118,10 @@ static inline int stat_cell_order(const void *a, const void *b) {
   double x = ((const statCell *)a)->expected, y = ((const statCell *)b)->expected;
   return x < y ? -1 : x > y;
 }
-/* Chi-square test. Cells are sorted (in place); those that expect fewer than 5 are pooled. A rest that expects fewer
- * than 5 is left out, unless its count is far too large: then p = 0. `constraints` is subtracted from the number of
- * cells: 1 when both columns have the same sum by construction. */
+/* Chi-square test. Cells are sorted (in place); those that expect fewer than 5 are pooled. A
+ * rest that expects fewer than 5 is left out, unless its count is far too large: then p = 0.
+ * `constraints` is subtracted from the number of cells: 1 when both columns have the same sum
+ * by construction. */
 static inline statResult stat_chi2(statCell *cells, size_t count, unsigned constraints) {
   statResult r = {.p = 1.0, .integral = 1.0};
   qsort(cells, count, sizeof *cells, stat_cell_order);
@@ -118,13 +131,16 @@ static inline statResult stat_chi2(statCell *cells, size_t count, unsigned const
   double mean = 0; /* of the cells with a positive expectation */
   size_t some = 0;
   for (size_t i = 0; i < count; i++)
-    if (cells[i].expected > 1e-6) mean += cells[i].expected, some++;
+    if (cells[i].expected > 1e-6)
+      mean += cells[i].expected, some++;
   mean = some ? mean / (double)some : 0;
   for (size_t i = 0; i < count; i++) {
-    if (!(cells[i].expected >= 0.0) || cells[i].expected > 1e300) return (statResult){.p = 0.0, .integral = NAN};
+    if (!(cells[i].expected >= 0.0) || cells[i].expected > 1e300)
+      return (statResult){.p = 0.0, .integral = NAN};
     pool.observed += cells[i].observed;
     pool.expected += cells[i].expected;
-    /* samples where the pdf is zero; a few are tolerated, since the integration may miss a thin region */
+    /* samples where the pdf is zero; a few are tolerated, since the integration may miss a thin
+     * region */
     bool empty = cells[i].expected <= 1e-6 && cells[i].observed > 3.0 + 0.02 * mean;
     impossible = impossible || empty;
     if (pool.expected >= 5.0) {
@@ -134,7 +150,8 @@ static inline statResult stat_chi2(statCell *cells, size_t count, unsigned const
       pool = (statCell){0, 0};
     }
   }
-  if (pool.observed > pool.expected + 6.0 * sqrt(pool.expected) + 6.0) impossible = true;
+  if (pool.observed > pool.expected + 6.0 * sqrt(pool.expected) + 6.0)
+    impossible = true;
   r.freedom = (double)used - constraints;
   r.p = impossible ? 0.0 : stat_chi2_q(r.statistic, r.freedom);
   return r;
@@ -142,9 +159,11 @@ static inline statResult stat_chi2(statCell *cells, size_t count, unsigned const
 /* Tests counts that should all be equal. */
 static inline statResult stat_chi2_uniform(const uint32_t *counts, size_t count) {
   double sum = 0;
-  for (size_t i = 0; i < count; i++) sum += counts[i];
+  for (size_t i = 0; i < count; i++)
+    sum += counts[i];
   statCell *cells = malloc(count * sizeof *cells);
-  for (size_t i = 0; i < count; i++) cells[i] = (statCell){counts[i], sum / (double)count};
+  for (size_t i = 0; i < count; i++)
+    cells[i] = (statCell){counts[i], sum / (double)count};
   statResult r = stat_chi2(cells, count, 1);
   free(cells);
   return r;
@@ -152,7 +171,8 @@ static inline statResult stat_chi2_uniform(const uint32_t *counts, size_t count)
 /* Pearson's correlation of two columns. */
 static inline double stat_correlation(const float *a, const float *b, size_t n) {
   double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-  for (size_t i = 0; i < n; i++) sa += a[i], sb += b[i];
+  for (size_t i = 0; i < n; i++)
+    sa += a[i], sb += b[i];
   sa /= (double)n, sb /= (double)n;
   for (size_t i = 0; i < n; i++) {
     double x = a[i] - sa, y = b[i] - sb;
@@ -161,25 +181,36 @@ static inline double stat_correlation(const float *a, const float *b, size_t n) 
   return saa > 0 && sbb > 0 ? sab / sqrt(saa * sbb) : 0.0;
 }
 
-/* ---- densities over a rectangle ---------------------------------------------------------------------------------- */
+/* ---- densities over a rectangle
+ * ---------------------------------------------------------------------------------- */
 
 typedef double statDensity(void *user, double x, double y);
 
-static inline double stat_gauss_cell(statDensity *f, void *user, double x0, double x1, double y0, double y1) {
-  static const double node[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
-  static const double weight[4] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
-  double cx = 0.5 * (x0 + x1), cy = 0.5 * (y0 + y1), hx = 0.5 * (x1 - x0), hy = 0.5 * (y1 - y0), sum = 0;
+static inline double stat_gauss_cell(statDensity *f, void *user, double x0, double x1,
+                                     double y0, double y1) {
+  static const double node[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                 0.8611363115940526};
+  static const double weight[4] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                   0.3478548451374538};
+  double cx = 0.5 * (x0 + x1), cy = 0.5 * (y0 + y1), hx = 0.5 * (x1 - x0), hy = 0.5 * (y1 - y0),
+         sum = 0;
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) sum += weight[i] * weight[j] * f(user, cx + hx * node[i], cy + hy * node[j]);
+    for (int j = 0; j < 4; j++)
+      sum += weight[i] * weight[j] * f(user, cx + hx * node[i], cy + hy * node[j]);
   return sum * hx * hy;
 }
-/* Integral over the rectangle; subdivided into four while that changes it by more than `tolerance`. */
-static inline double stat_integrate(statDensity *f, void *user, double x0, double x1, double y0, double y1,
-                                    double whole, double tolerance, int depth) {
+/* Integral over the rectangle; subdivided into four while that changes it by more than
+ * `tolerance`.
+ */
+static inline double stat_integrate(statDensity *f, void *user, double x0, double x1, double y0,
+                                    double y1, double whole, double tolerance, int depth) {
   double mx = 0.5 * (x0 + x1), my = 0.5 * (y0 + y1);
-  double a = stat_gauss_cell(f, user, x0, mx, y0, my), b = stat_gauss_cell(f, user, mx, x1, y0, my);
-  double c = stat_gauss_cell(f, user, x0, mx, my, y1), d = stat_gauss_cell(f, user, mx, x1, my, y1);
-  if (depth <= 0 || fabs(a + b + c + d - whole) <= tolerance) return a + b + c + d;
+  double a = stat_gauss_cell(f, user, x0, mx, y0, my),
+         b = stat_gauss_cell(f, user, mx, x1, y0, my);
+  double c = stat_gauss_cell(f, user, x0, mx, my, y1),
+         d = stat_gauss_cell(f, user, mx, x1, my, y1);
+  if (depth <= 0 || fabs(a + b + c + d - whole) <= tolerance)
+    return a + b + c + d;
   return stat_integrate(f, user, x0, mx, y0, my, a, 0.5 * tolerance, depth - 1) +
          stat_integrate(f, user, mx, x1, y0, my, b, 0.5 * tolerance, depth - 1) +
          stat_integrate(f, user, x0, mx, my, y1, c, 0.5 * tolerance, depth - 1) +
@@ -193,7 +224,8 @@ typedef struct statGrid {
   double tries, rejected;
   double counts[]; /* nx * ny, x fastest */
 } statGrid;
-static inline statGrid *stat_grid_new(uint32_t nx, uint32_t ny, double x0, double x1, double y0, double y1) {
+static inline statGrid *stat_grid_new(uint32_t nx, uint32_t ny, double x0, double x1, double y0,
+                                      double y1) {
   statGrid *g = calloc(1, sizeof *g + sizeof(double) * nx * ny);
   g->nx = nx, g->ny = ny, g->x0 = x0, g->x1 = x1, g->y0 = y0, g->y1 = y1;
   return g;
@@ -206,14 +238,17 @@ static inline void stat_grid_add(statGrid *g, double x, double y) {
     stat_grid_reject(g);
     return;
   }
-  uint32_t i = (uint32_t)((x - g->x0) / (g->x1 - g->x0) * g->nx), j = (uint32_t)((y - g->y0) / (g->y1 - g->y0) * g->ny);
+  uint32_t i = (uint32_t)((x - g->x0) / (g->x1 - g->x0) * g->nx),
+           j = (uint32_t)((y - g->y0) / (g->y1 - g->y0) * g->ny);
   i = i < g->nx ? i : g->nx - 1, j = j < g->ny ? j : g->ny - 1;
   g->tries++;
   g->counts[(size_t)j * g->nx + i]++;
 }
-/* Tests and frees the grid. tolerance: of the integral over one cell; 0: 1e-7 (deep subdivision for sharp densities).
+/* Tests and frees the grid. tolerance: of the integral over one cell; 0: 1e-7 (deep subdivision
+ * for sharp densities).
  */
-static inline statResult stat_grid_test(statGrid *g, statDensity *density, void *user, double tolerance) {
+static inline statResult stat_grid_test(statGrid *g, statDensity *density, void *user,
+                                        double tolerance) {
   size_t n = (size_t)g->nx * g->ny;
   statCell *cells = malloc((n + 1) * sizeof *cells);
   double sx = (g->x1 - g->x0) / g->nx, sy = (g->y1 - g->y0) / g->ny, integral = 0;
@@ -225,7 +260,9 @@ static inline statResult stat_grid_test(statGrid *g, statDensity *density, void 
     integral += mass;
     cells[k] = (statCell){g->counts[k], mass * g->tries};
   }
-  double rest = (1.0 - integral) * g->tries; /* expected number of rejected tries; not negative except for rounding */
+  double rest =
+      (1.0 - integral) *
+      g->tries; /* expected number of rejected tries; not negative except for rounding */
   cells[n] = (statCell){g->rejected, rest > 0 || !(rest > -1e-3 * g->tries) ? rest : 0.0};
   statResult r = stat_chi2(cells, n + 1, 1);
   r.integral = integral;
@@ -234,7 +271,8 @@ static inline statResult stat_grid_test(statGrid *g, statDensity *density, void 
   return r;
 }
 
-/* ---- densities over the sphere ----------------------------------------------------------------------------------- */
+/* ---- densities over the sphere
+ * ----------------------------------------------------------------------------------- */
 
 /* pdf per solid angle at unit direction d. */
 typedef double statSpherePdf(void *user, const double d[3]);
@@ -243,7 +281,8 @@ typedef struct statSphere {
   statGrid *grid; /* x: phi in [0, 2 pi], y: theta in [0, pi], theta from +z */
 } statSphere;
 static inline statSphere stat_sphere_new(uint32_t n_theta, uint32_t n_phi) {
-  return (statSphere){stat_grid_new(n_phi, n_theta, 0.0, 6.283185307179586477, 0.0, 3.141592653589793238)};
+  return (statSphere){
+      stat_grid_new(n_phi, n_theta, 0.0, 6.283185307179586477, 0.0, 3.141592653589793238)};
 }
 static inline void stat_sphere_reject(statSphere s) {
   stat_grid_reject(s.grid);
@@ -262,8 +301,10 @@ static inline double stat_sphere_density(void *user, double phi, double theta) {
   double s = sin(theta), d[3] = {s * cos(phi), s * sin(phi), cos(theta)};
   return u->pdf(u->user, d) * s;
 }
-/* Tests and frees the histogram. tolerance as above. result.integral is the pdf's integral over the sphere. */
-static inline statResult stat_sphere_test(statSphere s, statSpherePdf *pdf, void *user, double tolerance) {
+/* Tests and frees the histogram. tolerance as above. result.integral is the pdf's integral over
+ * the sphere. */
+static inline statResult stat_sphere_test(statSphere s, statSpherePdf *pdf, void *user,
+                                          double tolerance) {
   statSphereUser u = {pdf, user};
   return stat_grid_test(s.grid, stat_sphere_density, &u, tolerance);
 }

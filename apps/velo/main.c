@@ -18,28 +18,34 @@ extern const char velo_commit[];
 
 /* Commands of two words ("image diff") come last. */
 static const Command *const commands[] = {
-    &render_command,         &view_command,           &scene_info_command,       &scene_check_command,
-    &scene_convert_command,  &scene_upgrade_command,  &scene_kinds_command,      &scene_verify_command,
-    &image_info_command,     &image_diff_command,     &image_convert_command,    &image_check_command,
-    &image_denoise_command,  &camera_project_command, &camera_unproject_command, &camera_info_command,
-    &camera_convert_command, &camera_verify_command,  &camera_vanishing_command, &camera_paths_command,
-    &camera_draw_command,    &film_info_command,      &film_merge_command,       &film_develop_command};
+    &render_command,           &view_command,           &scene_info_command,
+    &scene_check_command,      &scene_convert_command,  &scene_upgrade_command,
+    &scene_kinds_command,      &scene_verify_command,   &image_info_command,
+    &image_diff_command,       &image_convert_command,  &image_check_command,
+    &image_denoise_command,    &camera_project_command, &camera_unproject_command,
+    &camera_info_command,      &camera_convert_command, &camera_verify_command,
+    &camera_vanishing_command, &camera_paths_command,   &camera_draw_command,
+    &film_info_command,        &film_merge_command,     &film_develop_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
   printf("velo, a photorealistic renderer\n\nusage: velo COMMAND ...\n\n");
-  for (int i = 0; i < COMMANDS; i++) printf("  %-16s  %s\n", commands[i]->name, commands[i]->summary);
+  for (int i = 0; i < COMMANDS; i++)
+    printf("  %-16s  %s\n", commands[i]->name, commands[i]->summary);
   printf("  %-16s  %s\n", "help COMMAND", "print the options of a command");
   printf("  %-16s  %s\n\n", "--version", "print the version");
   options_print_exit_statuses();
 }
 
-/* Returns the number of words of argv that name the command, or 0 if they name another command. */
+/* Returns the number of words of argv that name the command, or 0 if they name another command.
+ */
 static int name_words(const Command *command, int argc, char **argv) {
   const char *space = strchr(command->name, ' ');
-  if (!space) return argc >= 1 && strcmp(argv[0], command->name) == 0 ? 1 : 0;
+  if (!space)
+    return argc >= 1 && strcmp(argv[0], command->name) == 0 ? 1 : 0;
   size_t n = (size_t)(space - command->name);
-  return argc >= 2 && strlen(argv[0]) == n && strncmp(argv[0], command->name, n) == 0 && strcmp(argv[1], space + 1) == 0
+  return argc >= 2 && strlen(argv[0]) == n && strncmp(argv[0], command->name, n) == 0 &&
+                 strcmp(argv[1], space + 1) == 0
              ? 2
              : 0;
 }
@@ -56,7 +62,8 @@ static bool is_family(const char *word, const char *names[COMMANDS], int *count)
 
 static const Command *find_command(int argc, char **argv, int *words) {
   for (int i = 0; i < COMMANDS; i++)
-    if ((*words = name_words(commands[i], argc, argv))) return commands[i];
+    if ((*words = name_words(commands[i], argc, argv)))
+      return commands[i];
   return NULL;
 }
 
@@ -65,7 +72,8 @@ static bool is_second_word(const char *word, char *list, size_t size) {
   list[0] = 0;
   for (int i = 0; i < COMMANDS; i++) {
     const char *space = strchr(commands[i]->name, ' ');
-    if (!space || strcmp(space + 1, word) != 0) continue;
+    if (!space || strcmp(space + 1, word) != 0)
+      continue;
     size_t n = strlen(list);
     snprintf(list + n, size - n, "%s\"velo %s\"", n ? " or " : "", commands[i]->name);
   }
@@ -75,15 +83,18 @@ static bool is_second_word(const char *word, char *list, size_t size) {
 /* The command for a file without one (velo model.glb); null: the word is no file's name. */
 static const char *command_for_file(const char *word) {
   static const char *const kinds[][2] = {
-      {".pbrt", "render"},    {".pbrt.gz", "render"}, {".gltf", "render"},      {".glb", "render"},
-      {".obj", "render"},     {".ply", "render"},     {".stl", "render"},       {".off", "render"},
-      {".film", "film info"}, {".exr", "image info"}, {".png", "image info"},   {".jpg", "image info"},
-      {".hdr", "image info"}, {".pfm", "image info"}, {".obj.gz", "render"},    {".ply.gz", "render"},
-      {".stl.gz", "render"},  {".off.gz", "render"},  {".yaml", "camera info"}, {".json", "camera info"}};
+      {".pbrt", "render"},      {".pbrt.gz", "render"},  {".gltf", "render"},
+      {".glb", "render"},       {".obj", "render"},      {".ply", "render"},
+      {".stl", "render"},       {".off", "render"},      {".film", "film info"},
+      {".exr", "image info"},   {".png", "image info"},  {".jpg", "image info"},
+      {".hdr", "image info"},   {".pfm", "image info"},  {".obj.gz", "render"},
+      {".ply.gz", "render"},    {".stl.gz", "render"},   {".off.gz", "render"},
+      {".yaml", "camera info"}, {".json", "camera info"}};
   const size_t length = strlen(word);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     const size_t n = strlen(kinds[i][0]);
-    if (length > n && strcasecmp(word + length - n, kinds[i][0]) == 0) return kinds[i][1];
+    if (length > n && strcasecmp(word + length - n, kinds[i][0]) == 0)
+      return kinds[i][1];
   }
   return NULL;
 }
@@ -93,7 +104,8 @@ static int unknown_command(int argc, char **argv) {
   char whole[200];
   int count;
   if (command_for_file(argv[0]))
-    return report_usage("a command comes first; did you mean \"velo %s %s\"?", command_for_file(argv[0]), argv[0]);
+    return report_usage("a command comes first; did you mean \"velo %s %s\"?",
+                        command_for_file(argv[0]), argv[0]);
   if (is_second_word(argv[0], whole, sizeof whole))
     return report_usage("unknown command \"%s\"; did you mean %s?", argv[0], whole);
   if (is_family(argv[0], names, &count)) {
@@ -102,14 +114,17 @@ static int unknown_command(int argc, char **argv) {
       size_t n = strlen(list);
       snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
     }
-    if (argc < 2) return report_usage("%s: which of %s?", argv[0], list);
+    if (argc < 2)
+      return report_usage("%s: which of %s?", argv[0], list);
     const char *near = did_you_mean("", argv[1], names, count);
-    if (*near) return report_usage("%s: unknown command \"%s\"%s", argv[0], argv[1], near);
+    if (*near)
+      return report_usage("%s: unknown command \"%s\"%s", argv[0], argv[1], near);
     return report_usage("%s: unknown command \"%s\"; there are %s", argv[0], argv[1], list);
   }
   char first_words[COMMANDS][40];
   for (int i = 0; i < COMMANDS; i++) {
-    snprintf(first_words[i], sizeof first_words[i], "%.*s", (int)strcspn(commands[i]->name, " "), commands[i]->name);
+    snprintf(first_words[i], sizeof first_words[i], "%.*s",
+             (int)strcspn(commands[i]->name, " "), commands[i]->name);
     names[i] = first_words[i];
   }
   names[COMMANDS] = "help";
@@ -124,11 +139,14 @@ static int unknown_command(int argc, char **argv) {
 enum { HELP_ALL, HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
 
 static const Option help_options[] = {
-    {HELP_ALL, 0, "all", OPTION_FLAG, NULL, "print all options, where the page of COMMAND has the most used only"},
-    {HELP_MAN, 0, "man", OPTION_FLAG, NULL, "print the manual page of COMMAND, or of velo, in the format of man(7)"},
-    {HELP_COMPLETION, 0, "completion", OPTION_CHOICE, "SHELL", "print the completion script of a shell:", 0, 0,
-     shell_choices},
-    {HELP_COMMANDS, 0, "commands", OPTION_FLAG, NULL, "print the names of all commands, one per line"},
+    {HELP_ALL, 0, "all", OPTION_FLAG, NULL,
+     "print all options, where the page of COMMAND has the most used only"},
+    {HELP_MAN, 0, "man", OPTION_FLAG, NULL,
+     "print the manual page of COMMAND, or of velo, in the format of man(7)"},
+    {HELP_COMPLETION, 0, "completion", OPTION_CHOICE, "SHELL",
+     "print the completion script of a shell:", 0, 0, shell_choices},
+    {HELP_COMMANDS, 0, "commands", OPTION_FLAG, NULL,
+     "print the names of all commands, one per line"},
     {0}};
 
 static const Command help_command = {
@@ -136,10 +154,17 @@ static const Command help_command = {
     .usage = "[COMMAND] [options]",
     .summary = "print the options of a command",
     .text =
-        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options in sections\n"
-        "(of render the most used ones, --all prints all), and examples. For image, scene, camera or film, prints "
+        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options "
+        "in "
+        "sections\n"
+        "(of render the most used ones, --all prints all), and examples. For image, scene, "
+        "camera "
+        "or film, prints "
         "this for each command of that group.",
-    .examples = "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man render | man -l -",
+    .examples =
+        "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man "
+        "render | "
+        "man -l -",
     .options = help_options,
     .max_operands = MAX_OPERANDS,
 };
@@ -149,16 +174,20 @@ static int print_help(int argc, char **argv, bool all) {
   int words, count;
   const char *names[COMMANDS];
   const Command *command = find_command(argc, argv, &words);
-  if (!command && argc == 1 && strcmp(argv[0], "help") == 0) command = &help_command;
+  if (!command && argc == 1 && strcmp(argv[0], "help") == 0)
+    command = &help_command;
   if (command) {
     options_print_help(command, all);
   } else if (argc == 0) {
     print_overview();
   } else if (argc == 1 && is_family(argv[0], names, &count)) {
     for (int i = 0; i < COMMANDS; i++) {
-      if (strncmp(commands[i]->name, argv[0], strlen(argv[0])) != 0) continue;
-      if (count-- < (int)(sizeof names / sizeof *names)) options_print_help(commands[i], all);
-      if (count) printf("\n");
+      if (strncmp(commands[i]->name, argv[0], strlen(argv[0])) != 0)
+        continue;
+      if (count-- < (int)(sizeof names / sizeof *names))
+        options_print_help(commands[i], all);
+      if (count)
+        printf("\n");
     }
   } else {
     return unknown_command(argc, argv);
@@ -170,7 +199,8 @@ static int print_help(int argc, char **argv, bool all) {
 static int help(int argc, char **argv) {
   static Arguments arguments;
   int status = options_parse(&help_command, argc, argv, &arguments);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   argc = arguments.operand_count; /* the operands now come first in argv */
   const OptionValue *v = arguments.values;
   if (v[HELP_MAN].given + v[HELP_COMPLETION].given + v[HELP_COMMANDS].given > 1)
@@ -183,14 +213,17 @@ static int help(int argc, char **argv) {
   if (v[HELP_COMPLETION].given) {
     completion_print((Shell)v[HELP_COMPLETION].integer, all, COMMANDS + 1, &help_command);
   } else if (v[HELP_COMMANDS].given) {
-    for (int i = 0; i <= COMMANDS; i++) puts(all[i]->name);
+    for (int i = 0; i <= COMMANDS; i++)
+      puts(all[i]->name);
   } else if (v[HELP_MAN].given && argc == 0) {
     manual_print_program(all, COMMANDS + 1);
   } else if (v[HELP_MAN].given) {
     int words;
-    const Command *command =
-        argc == 1 && strcmp(argv[0], "help") == 0 ? &help_command : find_command(argc, argv, &words);
-    if (!command) return unknown_command(argc, argv);
+    const Command *command = argc == 1 && strcmp(argv[0], "help") == 0
+                                 ? &help_command
+                                 : find_command(argc, argv, &words);
+    if (!command)
+      return unknown_command(argc, argv);
     manual_print_command(command);
   } else {
     return print_help(argc, argv, v[HELP_ALL].given);
@@ -202,7 +235,8 @@ static int help(int argc, char **argv) {
 static int print_version(void) {
   const vlVersion *version = vl_version();
   printf("velo %s\n", version->text);
-  if (velo_commit[0]) printf("commit            %s\n", velo_commit);
+  if (velo_commit[0])
+    printf("commit            %s\n", velo_commit);
   printf("compiler          %s\n", version->compiler);
   printf("instruction sets  %s", version->instruction_sets);
   vlContextDef def = vl_default_context_def();
@@ -215,7 +249,8 @@ static int print_version(void) {
   printf("\nlibraries         ");
   const vlLibrary *library;
   for (uint32_t i = 0; (library = vl_version_library(i)); i++)
-    printf("%s%s%s%s", i ? ", " : "", library->name, library->version[0] ? " " : "", library->version);
+    printf("%s%s%s%s", i ? ", " : "", library->name, library->version[0] ? " " : "",
+           library->version);
   putchar('\n');
   return STATUS_OK;
 }
@@ -229,21 +264,26 @@ static int run(int argc, char **argv) {
   if (strcmp(first, "--version") == 0) {
     return print_version();
   }
-  if (strcmp(first, "help") == 0) return help(argc - 2, argv + 2);
-  if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) return help(argc - 2, argv + 2);
+  if (strcmp(first, "help") == 0)
+    return help(argc - 2, argv + 2);
+  if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0)
+    return help(argc - 2, argv + 2);
   int words;
   const Command *command = find_command(argc - 1, argv + 1, &words);
   if (!command && argc == 3 && (strcmp(argv[2], "--help") == 0 || strcmp(argv[2], "-h") == 0))
     return print_help(1, argv + 1, false);
-  if (!command) return unknown_command(argc - 1, argv + 1);
+  if (!command)
+    return unknown_command(argc - 1, argv + 1);
   static Arguments arguments;
   int status = options_parse(command, argc - 1 - words, argv + 1 + words, &arguments);
   return status >= 0 ? status : command->run(command, &arguments);
 }
 
-/* std::set_terminate of the C++ library that Embree loads; null without one. Embree's scheduler throws an exception
- * that it does not catch when an allocation fails; that would end the process without a message of velo. */
-extern void *set_terminate(void (*handler)(void)) __asm__("_ZSt13set_terminatePFvvE") __attribute__((weak));
+/* std::set_terminate of the C++ library that Embree loads; null without one. Embree's scheduler
+ * throws an exception that it does not catch when an allocation fails; that would end the
+ * process without a message of velo. */
+extern void *set_terminate(void (*handler)(void)) __asm__("_ZSt13set_terminatePFvvE")
+    __attribute__((weak));
 
 static void on_terminate(void) {
   static const char text[] = "velo: out of memory in a library (Embree)\n";
@@ -252,16 +292,21 @@ static void on_terminate(void) {
 }
 
 int main(int argc, char **argv) {
-  /* Opens /dev/null for each standard descriptor that is closed, so that no output file gets descriptor 0, 1 or 2 and
-   * receives messages. Printing to a closed stdout still fails, since its replacement is read-only. */
+  /* Opens /dev/null for each standard descriptor that is closed, so that no output file gets
+   * descriptor 0, 1 or 2 and receives messages. Printing to a closed stdout still fails, since
+   * its replacement is read-only. */
   for (int fd = 0; fd <= 2; fd++)
-    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == 1 ? O_RDONLY : O_RDWR) < 0) return STATUS_IO;
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == 1 ? O_RDONLY : O_RDWR) < 0)
+      return STATUS_IO;
   signal(SIGPIPE, SIG_IGN); /* a closed pipe must not end a render */
-  signal(SIGXFSZ, SIG_IGN); /* a file that exceeds its size limit is an error like a full disk */
+  signal(SIGXFSZ,
+         SIG_IGN); /* a file that exceeds its size limit is an error like a full disk */
   signals_install();
-  if (set_terminate) set_terminate(on_terminate);
+  if (set_terminate)
+    set_terminate(on_terminate);
   bool json = false;
-  for (int i = 1; i < argc; i++) json |= strcmp(argv[i], "--log-json") == 0;
+  for (int i = 1; i < argc; i++)
+    json |= strcmp(argv[i], "--log-json") == 0;
   report_setup(json, REPORT_NORMAL);
   int status = run(argc, argv);
   return status == STATUS_OK ? report_stdout(status) : status;

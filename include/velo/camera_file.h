@@ -1,7 +1,8 @@
 /** @file
- * velo/camera_file.h: reads and writes the camera files of other tools. docs/camera-files.md gives each dialect's
- * contents, axes and pixel origin. Reading converts them to velo's conventions: x right, y down, z forward, the first
- * pixel's centre at (0.5, 0.5). If a dialect cannot hold a field, writing fails with an error that names the field. */
+ * velo/camera_file.h: reads and writes the camera files of other tools. docs/camera-files.md
+ * gives each dialect's contents, axes and pixel origin. Reading converts them to velo's
+ * conventions: x right, y down, z forward, the first pixel's centre at (0.5, 0.5). If a dialect
+ * cannot hold a field, writing fails with an error that names the field. */
 #ifndef VELO_CAMERA_FILE_H
 #define VELO_CAMERA_FILE_H
 
@@ -13,23 +14,29 @@ extern "C" {
 
 /** File formats for cameras. */
 typedef enum vlCameraDialect {
-  VL_CAMERA_DIALECT_AUTO,       /**< reading: by content and name; writing: by the suffix, where that is unambiguous */
-  VL_CAMERA_DIALECT_VELO,       /**< JSON; holds everything, exactly */
-  VL_CAMERA_DIALECT_OPENCV,     /**< YAML, JSON or XML, also FileStorage's */
-  VL_CAMERA_DIALECT_ROS,        /**< camera_info YAML, or .ini */
-  VL_CAMERA_DIALECT_COLMAP,     /**< a folder with the files cameras and images (.txt or .bin), or one of these files */
-  VL_CAMERA_DIALECT_NERF,       /**< transforms.json */
-  VL_CAMERA_DIALECT_KALIBR,     /**< camchain YAML */
-  VL_CAMERA_DIALECT_BLENDER,    /**< JSON of Blender's own property names */
-  VL_CAMERA_DIALECT_PBRT,       /**< write only: Transform and Camera statements; scenes are read by vl_scene_load */
-  VL_CAMERA_DIALECT_GLTF,       /**< a node with a camera; .glb is read too */
-  VL_CAMERA_DIALECT_OPENGL,     /**< projection and view matrix and their conventions, as JSON or YAML */
-  VL_CAMERA_DIALECT_VULKAN,     /**< as OPENGL, with Vulkan's conventions */
-  VL_CAMERA_DIALECT_D3D,        /**< as OPENGL, with Direct3D's conventions */
-  VL_CAMERA_DIALECT_MITSUBA,    /**< a sensor in Mitsuba 3's XML */
-  VL_CAMERA_DIALECT_USD,        /**< a Camera in USD's text form, .usda */
-  VL_CAMERA_DIALECT_EXR,        /**< the header of an image rendered by the program velo; only that program reads it */
-  VL_CAMERA_DIALECT_EUROC,      /**< sensor.yaml of the EuRoC datasets */
+  VL_CAMERA_DIALECT_AUTO, /**< reading: by content and name; writing: by the suffix, where that
+                             is unambiguous */
+  VL_CAMERA_DIALECT_VELO, /**< JSON; holds everything, exactly */
+  VL_CAMERA_DIALECT_OPENCV,  /**< YAML, JSON or XML, also FileStorage's */
+  VL_CAMERA_DIALECT_ROS,     /**< camera_info YAML, or .ini */
+  VL_CAMERA_DIALECT_COLMAP,  /**< a folder with the files cameras and images (.txt or .bin), or
+                                one  of these files */
+  VL_CAMERA_DIALECT_NERF,    /**< transforms.json */
+  VL_CAMERA_DIALECT_KALIBR,  /**< camchain YAML */
+  VL_CAMERA_DIALECT_BLENDER, /**< JSON of Blender's own property names */
+  VL_CAMERA_DIALECT_PBRT,   /**< write only: Transform and Camera statements; scenes are read by
+                               vl_scene_load */
+  VL_CAMERA_DIALECT_GLTF,   /**< a node with a camera; .glb is read too */
+  VL_CAMERA_DIALECT_OPENGL, /**< projection and view matrix and their conventions, as JSON or
+                             * YAML
+                             */
+  VL_CAMERA_DIALECT_VULKAN, /**< as OPENGL, with Vulkan's conventions */
+  VL_CAMERA_DIALECT_D3D,    /**< as OPENGL, with Direct3D's conventions */
+  VL_CAMERA_DIALECT_MITSUBA, /**< a sensor in Mitsuba 3's XML */
+  VL_CAMERA_DIALECT_USD,     /**< a Camera in USD's text form, .usda */
+  VL_CAMERA_DIALECT_EXR,     /**< the header of an image rendered by the program velo; only that
+                                program     reads it */
+  VL_CAMERA_DIALECT_EUROC,   /**< sensor.yaml of the EuRoC datasets */
   VL_CAMERA_DIALECT_CAMODOCAL,  /**< camodocal's and VINS's YAML */
   VL_CAMERA_DIALECT_BASALT,     /**< Basalt's calibration JSON */
   VL_CAMERA_DIALECT_ORBSLAM,    /**< ORB-SLAM's settings, YAML */
@@ -76,13 +83,14 @@ VL_API const char *vl_camera_dialect_name(vlCameraDialect dialect);
 typedef struct vlCameraFileDef {
   uint32_t cookie;
   vlCameraDialect dialect; /**< default VL_CAMERA_DIALECT_AUTO */
-  const char *frame; /**< the camera or pose to read from a file with several: its name, or its number from 0; null: the
-                        first */
-  const char *const *drop; /**< names of fields that writing may drop if the dialect cannot hold them */
-  uint32_t drop_count;     /**< length of drop */
-  uint32_t width,
-      height; /**< image size, pixels, for files that have none; 0: the size of the images that the file names, if they
-                 exist; else 720 rows for files with an aspect ratio (glTF, USD), an error for others */
+  const char *frame; /**< the camera or pose to read from a file with several: its name, or its
+                        number from 0; null: the first */
+  const char *const
+      *drop; /**< names of fields that writing may drop if the dialect cannot hold them */
+  uint32_t drop_count;    /**< length of drop */
+  uint32_t width, height; /**< image size, pixels, for files that have none; 0: the size of the
+                             images that the file names, if they exist; else 720 rows for files
+                             with an aspect ratio (glTF, USD), an error for others */
 } vlCameraFileDef;
 
 /** The default def. */
@@ -97,17 +105,20 @@ typedef struct vlCameraRecord {
   char name[256];          /**< name of the camera or its image; may be empty */
 } vlCameraRecord;
 
-/** Reads one camera. def may be null: the default. The result is a description; vl_camera_make checks its numbers.
- * Errors: MISSING, IO, MEMORY; SCENE: the contents are wrong, and the message names the field; UNSUPPORTED: the camera
- * is valid, but velo does not have its model. */
-VL_API vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def, vlCameraRecord *record,
-                               vlError *error);
-/** Writes one camera; the file is written whole or not at all. def may be null: the default. Errors: ARGUMENT, IO,
- * MEMORY; UNSUPPORTED: the dialect cannot hold a field that the camera has; the message names it. */
-VL_API vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def,
-                                const vlCameraRecord *record, vlError *error);
-/** Whether vl_camera_write would write several files into a folder, which `path` or its folder is, and not a file of
- * that name. dialect: VL_CAMERA_DIALECT_AUTO: that of the name. */
+/** Reads one camera. def may be null: the default. The result is a description; vl_camera_make
+ * checks its numbers. Errors: MISSING, IO, MEMORY; SCENE: the contents are wrong, and the
+ * message names the field; UNSUPPORTED: the camera is valid, but velo does not have its model.
+ */
+VL_API vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def,
+                               vlCameraRecord *record, vlError *error);
+/** Writes one camera; the file is written whole or not at all. def may be null: the default.
+ * Errors: ARGUMENT, IO, MEMORY; UNSUPPORTED: the dialect cannot hold a field that the camera
+ * has; the message names it. */
+VL_API vlResult vl_camera_write(vlContext *context, const char *path,
+                                const vlCameraFileDef *def, const vlCameraRecord *record,
+                                vlError *error);
+/** Whether vl_camera_write would write several files into a folder, which `path` or its folder
+ * is, and not a file of that name. dialect: VL_CAMERA_DIALECT_AUTO: that of the name. */
 VL_API bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect);
 
 #ifdef __cplusplus

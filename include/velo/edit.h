@@ -1,13 +1,15 @@
 /** @file
- * velo/edit.h: changes to a scene between two builds. A program changes some objects, builds again with
- * vlBuildDef.previous and renders the new world, which shares all that has not changed with the previous one.
+ * velo/edit.h: changes to a scene between two builds. A program changes some objects, builds
+ * again with vlBuildDef.previous and renders the new world, which shares all that has not
+ * changed with the previous one.
  *
- * Rules for all calls that change a scene: the checks are those of the vl_scene_add_* call of the object. After an
- * error the scene is unchanged, and vl_scene_result does not report the error. Worlds that were built before do not
- * change. Errors: ARGUMENT (no such id, the scene has an error, a def without cookie), SCENE, MEMORY.
+ * Rules for all calls that change a scene: the checks are those of the vl_scene_add_* call of
+ * the object. After an error the scene is unchanged, and vl_scene_result does not report the
+ * error. Worlds that were built before do not change. Errors: ARGUMENT (no such id, the scene
+ * has an error, a def without cookie), SCENE, MEMORY.
  *
- * The numbers of a shape (its mesh, its transform, its media) cannot be changed, since worlds share them: hide it, and
- * add another one, also to a group that has instances. */
+ * The numbers of a shape (its mesh, its transform, its media) cannot be changed, since worlds
+ * share them: hide it, and add another one, also to a group that has instances. */
 #ifndef VELO_EDIT_H
 #define VELO_EDIT_H
 
@@ -18,9 +20,11 @@
 extern "C" {
 #endif
 
-/** The def of an object, with defaults in the members that its kind does not use; null if there is no such id. It and
- * what it points at belong to the scene and are valid until the scene is changed. To change an object: copy its def,
- * change the copy, pass it to the vl_scene_set_* call. */
+/** The def of an object, with defaults in the members that its kind does not use; null if there
+ * is no such id. It and what it points at belong to the scene and are valid until the scene is
+ * changed. To change an object: copy its def, change the copy, pass it to the vl_scene_set_*
+ * call.
+ */
 VL_API const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id);
 /** As vl_scene_texture. */
 VL_API const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id);
@@ -35,60 +39,73 @@ VL_API const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id);
 
 /** An instance of a scene. */
 typedef struct vlInstanceInfo {
-  vlGroupId group;             /**< what it places */
-  double world_from_group[16]; /**< its pose; of a moving instance: the pose at its first time */
-  bool moves;                  /**< it has several poses */
-  uint32_t keys;               /**< number of poses of a moving instance; 0: it is at rest */
-  const double *times;         /**< their times in seconds, ascending; null: it is at rest */
-  /** 16 numbers of each pose, world_from_group; null: it is at rest. Between the times it moves as
-   * vl_scene_add_moving_instance says. */
+  vlGroupId group; /**< what it places */
+  double
+      world_from_group[16]; /**< its pose; of a moving instance: the pose at its first time */
+  bool moves;               /**< it has several poses */
+  uint32_t keys;            /**< number of poses of a moving instance; 0: it is at rest */
+  const double *times;      /**< their times in seconds, ascending; null: it is at rest */
+  /** 16 numbers of each pose, world_from_group; null: it is at rest. Between the times it moves
+   * as vl_scene_add_moving_instance says. */
   const double *poses;
   bool shown;      /**< it is in the worlds that are built from now on */
   vlSource source; /**< where the file describes it */
   vlLabel label;   /**< what the file calls it */
 } vlInstanceInfo;
-/** Fills *info; its strings and arrays belong to the scene and are valid until the scene is changed. ARGUMENT: there is
- * no such instance, or it was removed. */
+/** Fills *info; its strings and arrays belong to the scene and are valid until the scene is
+ * changed. ARGUMENT: there is no such instance, or it was removed. */
 VL_API vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info);
 
-/** Replaces a texture. Its inputs must have lower ids than its own; it stays a float or a colour texture. */
-VL_API vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error);
+/** Replaces a texture. Its inputs must have lower ids than its own; it stays a float or a
+ * colour texture. */
+VL_API vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
+                                     vlError *error);
 /** Replaces a material. The parts of a mix must have lower ids than its own. */
-VL_API vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def, vlError *error);
+VL_API vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
+                                      vlError *error);
 /** Replaces an emission. */
-VL_API vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def, vlError *error);
+VL_API vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
+                                      vlError *error);
 /** Replaces a light. */
-VL_API vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error);
+VL_API vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def,
+                                   vlError *error);
 /** Replaces a medium. */
-VL_API vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error);
+VL_API vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def,
+                                    vlError *error);
 /** Shows or hides a light; lights are shown at first. */
 VL_API vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error);
 
 /** Gives a shape another material; index 0: the default material. */
-VL_API vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material, vlError *error);
+VL_API vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,
+                                            vlError *error);
 /** Gives a shape another emission; index 0: none. */
-VL_API vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission, vlError *error);
-/** Shows or hides a shape, also in all instances of its group; shapes are shown at first. Ids of objects do not
- * change. */
+VL_API vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission,
+                                            vlError *error);
+/** Shows or hides a shape, also in all instances of its group; shapes are shown at first. Ids
+ * of objects do not change. */
 VL_API vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error);
 
 /** Moves an instance, which is then at rest. */
-VL_API vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id, const double world_from_group[16],
-                                      vlError *error);
-/** Shows or hides an instance; instances are shown at first. Hidden instances have no id.instance: the ids of those
- * after them are lower by 1. */
-VL_API vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown, vlError *error);
+VL_API vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id,
+                                      const double world_from_group[16], vlError *error);
+/** Shows or hides an instance; instances are shown at first. Hidden instances have no
+ * id.instance: the ids of those after them are lower by 1. */
+VL_API vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown,
+                                       vlError *error);
 /** Removes an instance for good; its id is not given again. */
 VL_API vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error);
 
-/** Moves, turns and scales everything that the scene describes, so that a camera that is moved in the same way
- * (vl_camera_move with world_from_scene times its pose, which also scales its lens) sees the same image: shapes,
- * instances, lights, portals, media, textures. Lengths are scaled, coefficients of media and of subsurface materials
- * are divided by the scale, intensities and powers are multiplied by its square. The scene's own camera and the lengths
- * in vlSceneDefs stay. world_from_scene: a rotation, a uniform scale above 0 and a translation. If it scales, float
- * textures are added for the heights of bump maps. Errors: ARGUMENT: it is another matrix, or as above;
- * MEMORY: the scene is changed in part, and vl_scene_result reports it. */
-VL_API vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], vlError *error);
+/** Moves, turns and scales everything that the scene describes, so that a camera that is moved
+ * in the same way (vl_camera_move with world_from_scene times its pose, which also scales its
+ * lens) sees the same image: shapes, instances, lights, portals, media, textures. Lengths are
+ * scaled, coefficients of media and of subsurface materials are divided by the scale,
+ * intensities and powers are multiplied by its square. The scene's own camera and the lengths
+ * in vlSceneDefs stay. world_from_scene: a rotation, a uniform scale above 0 and a translation.
+ * If it scales, float textures are added for the heights of bump maps. Errors: ARGUMENT: it is
+ * another matrix, or as above; MEMORY: the scene is changed in part, and vl_scene_result
+ * reports it. */
+VL_API vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16],
+                                   vlError *error);
 
 #ifdef __cplusplus
 }

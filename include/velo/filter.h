@@ -9,7 +9,8 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of pixel filter. velo/schema.h describes the kinds and their parameters. */
+/** X(NAME, name) for each kind of pixel filter. velo/schema.h describes the kinds and their
+ * parameters. */
 #define VL_PIXEL_FILTER_KINDS(X) \
   X(BOX, box)                    \
   X(TRIANGLE, triangle)          \

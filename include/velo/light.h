@@ -1,5 +1,6 @@
 /** @file
- * velo/light.h: lights: their kinds, the def with their parameters, and the emission of shapes. */
+ * velo/light.h: lights: their kinds, the def with their parameters, and the emission of shapes.
+ */
 #ifndef VELO_LIGHT_H
 #define VELO_LIGHT_H
 
@@ -10,28 +11,31 @@
 extern "C" {
 #endif
 
-/** Emission of surfaces. The emitted radiance is scale * L in units in which a spectrum L with Y = 1 has luminance 1.
- * As in pbrt (SpectrumToPhotometric, book 12.1), named, blackbody and sampled spectra are first divided by their own Y.
+/** Emission of surfaces. The emitted radiance is scale * L in units in which a spectrum L with
+ * Y = 1 has luminance 1. As in pbrt (SpectrumToPhotometric, book 12.1), named, blackbody and
+ * sampled spectra are first divided by their own Y.
  */
 struct vlEmissionDef {
   uint32_t cookie;
   vlSource source;     /**< where the file describes it */
   vlSpectrum radiance; /**< L */
   float scale;         /**< factor on radiance */
-  double power;        /**< total power, watts (pbrt's "power"); it determines the scale; VL_UNSET: not used */
+  double power; /**< total power, watts (pbrt's "power"); it determines the scale; VL_UNSET: not
+                   used */
   bool two_sided;      /**< true: both sides emit light; false: only the side of the normal */
   const char *image;   /**< path of an emission image over uv; null: none; or */
-  vlTextureId
-      texture; /**< a colour texture of kind VL_TEXTURE_IMAGE: emits its value times scale; radiance is ignored */
+  vlTextureId texture; /**< a colour texture of kind VL_TEXTURE_IMAGE: emits its value times
+                          scale; radiance is ignored */
 };
 /** The default def. */
 VL_API vlEmissionDef vl_default_emission_def(void);
 /** Adds an emission, which any number of shapes may use. Returns index 0 on error. */
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
 
-/** X(NAME, name) for each kind of light. velo/schema.h describes the kinds and their parameters. A goniometric light's
- * image is an equal-area octahedral square (pbrt book 3.8.3) with the light's y axis as its axis. A projection light's
- * image is its intensity, projected along the light's z axis with y up. */
+/** X(NAME, name) for each kind of light. velo/schema.h describes the kinds and their
+ * parameters. A goniometric light's image is an equal-area octahedral square (pbrt book 3.8.3)
+ * with the light's y axis as its axis. A projection light's image is its intensity, projected
+ * along the light's z axis with y up. */
 #define VL_LIGHT_KINDS(X)     \
   X(POINT, point)             \
   X(SPOT, spot)               \
@@ -52,25 +56,27 @@ struct vlLightDef {
   vlLightKind kind; /**< which fields below are read */
   vlSpectrum color; /**< intensity (point, spot, ...) or radiance (distant, infinite) */
   float scale;      /**< factor on color or image */
-  double power; /**< lights that emit from a point: total power, watts; it determines the scale; VL_UNSET: not used */
-  double illuminance;          /**< distant, infinite: illuminance, lux; it determines the scale; VL_UNSET: not used */
+  double power; /**< lights that emit from a point: total power, watts; it determines the scale;
+                   VL_UNSET: not used */
+  double illuminance; /**< distant, infinite: illuminance, lux; it determines the scale;
+                         VL_UNSET: not used */
   double world_from_light[16]; /**< light space to world space */
-  float from[3], to[3]; /**< light space. Point: its position is `from`; spot, distant: emits in the direction from
-                           `from` to `to` */
-  float cone_angle,
-      cone_delta; /**< spot: angle between the cone's axis and its edge, and width of the falloff inside it; radians */
-  bool cone_squared; /**< true: the falloff is t^2, t linear in the cosine, as in glTF; false: pbrt's smooth step 3t^2 -
-                        2t^3 */
-  const char *path;  /**< path of the image; infinite: a square equal-area octahedral map (pbrt book 3.8.3); null:
-                        uniform light */
+  float from[3], to[3]; /**< light space. Point: its position is `from`; spot, distant: emits in
+                           the direction from `from` to `to` */
+  float cone_angle, cone_delta; /**< spot: angle between the cone's axis and its edge, and width
+                                   of the falloff inside it; radians */
+  bool cone_squared; /**< true: the falloff is t^2, t linear in the cosine, as in glTF; false:
+                        pbrt's smooth step 3t^2 -    2t^3 */
+  const char *path;  /**< path of the image; infinite: a square equal-area octahedral map (pbrt
+                        book 3.8.3); null:     uniform light */
   const vlImage *image; /**< the image in memory, in place of path; copied */
-  vlColorSpace space;   /**< colour space of an image that names none; an image replaces color, and its values are
-                           multiplied by scale */
+  vlColorSpace space;   /**< colour space of an image that names none; an image replaces color,
+                           and   its values are   multiplied by scale */
   vlMediumId medium;    /**< the medium around the light */
-  float fov;            /**< projection: radians across the image's smaller side; default pi/2 */
-  /** Infinite with an image: the light enters only through the rectangle `portal` in the world, in directions to the
-   * side that (last - first) x (second - first) points to. A point from which the portal is not seen in such a
-   * direction gets no light. */
+  float fov; /**< projection: radians across the image's smaller side; default pi/2 */
+  /** Infinite with an image: the light enters only through the rectangle `portal` in the world,
+   * in directions to the side that (last - first) x (second - first) points to. A point from
+   * which the portal is not seen in such a direction gets no light. */
   bool has_portal;
   float portal[4][3]; /**< the four corners, in order around the rectangle, world space */
 };

@@ -1,6 +1,6 @@
 /** @file
- * velo/load.h: scene files read into a scene, and what is added to a scene that lacks a camera, a light
- * or a ground. */
+ * velo/load.h: scene files read into a scene, and what is added to a scene that lacks a camera,
+ * a light or a ground. */
 #ifndef VELO_LOAD_H
 #define VELO_LOAD_H
 
@@ -13,40 +13,47 @@ extern "C" {
 /** How to read a scene file. */
 typedef struct vlLoadDef {
   uint32_t cookie;
-  bool permissive;         /**< true: features that are not supported cause warnings, and normals and uvs that are not
-                              finite, normals that are zero and, in pbrt files, missing images are repaired, with a warning
-                              that counts them; false: they are errors (zero normals are not) */
-  bool strict;             /**< glTF, OBJ: true: a missing image is an error; false: a warning, and the material does
-                              without it */
-  const char *search_path; /**< pbrt, glTF, OBJ: further folders, separated by ':', in which files are looked for; null:
-                              none */
-  double time;             /**< glTF: time of the animations, seconds; unset: the scene without animation */
-  double time_close;     /**< glTF: time when the shutter closes, seconds, later than `time`; for motion blur; unset: no
-                            motion */
-  const char *scene;     /**< glTF: name of the scene, or its number from 0; null: the file's default */
-  const char *animation; /**< glTF: name of the animation, or its number from 0; null: the first */
-  const char *variant;   /**< glTF: name of a material variant; null: the file's default */
-  const char *camera;    /**< glTF: name of the camera, or its number from 0; null: the first */
+  bool permissive; /**< true: features that are not supported cause warnings, and normals and
+                      uvs that are not finite, normals that are zero and, in pbrt files, missing
+                      images are repaired, with a warning that counts them; false: they are
+                      errors (zero normals are not) */
+  bool strict;     /**< glTF, OBJ: true: a missing image is an error; false: a warning, and the
+                      material     does without it */
+  const char *search_path; /**< pbrt, glTF, OBJ: further folders, separated by ':', in which
+                              files are looked for; null: none */
+  double time; /**< glTF: time of the animations, seconds; unset: the scene without animation */
+  double time_close; /**< glTF: time when the shutter closes, seconds, later than `time`; for
+                        motion blur; unset: no motion */
+  const char
+      *scene; /**< glTF: name of the scene, or its number from 0; null: the file's default */
+  const char
+      *animation; /**< glTF: name of the animation, or its number from 0; null: the first */
+  const char *variant; /**< glTF: name of a material variant; null: the file's default */
+  const char *camera;  /**< glTF: name of the camera, or its number from 0; null: the first */
   const vlCancel *cancel; /**< stops the load; the scene must then be destroyed; default null */
   vlStepFn *progress;     /**< default null */
   void *progress_user;    /**< passed to progress */
 } vlLoadDef;
 /** The default def. */
 VL_API vlLoadDef vl_default_load_def(void);
-/** Adds the contents of a file to the scene. The suffix selects the format: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off
- * or one of these but glTF's with .gz. Relative paths in the file are relative to its folder. def may be null. Errors:
- * SCENE, MISSING, IO, MEMORY, UNSUPPORTED (valid, but not supported; the message says what). */
-VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+/** Adds the contents of a file to the scene. The suffix selects the format: .pbrt, .gltf, .glb,
+ * .obj, .ply, .stl, .off or one of these but glTF's with .gz. Relative paths in the file are
+ * relative to its folder. def may be null. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED
+ * (valid, but not supported; the message says what). */
+VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def,
+                              vlError *error);
 
-/** As vl_scene_load, for a pbrt scene in memory. name: the file's name in messages, required; relative paths are
- * relative to its folder, which need not contain a file of this name. data is copied. */
-VL_API vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size,
-                                     const vlLoadDef *def, vlError *error);
+/** As vl_scene_load, for a pbrt scene in memory. name: the file's name in messages, required;
+ * relative paths are relative to its folder, which need not contain a file of this name. data
+ * is copied. */
+VL_API vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data,
+                                     size_t size, const vlLoadDef *def, vlError *error);
 
 /** The environment (light from all directions) that vl_scene_complete adds. */
 typedef enum vlEnvironmentKind {
-  VL_ENVIRONMENT_AUTO,   /**< STUDIO if vlSceneDefs.light_missing, else none. If the scene has other lights, its
-                            strength is such that a surface gets 0.3 times as much light from it as from them */
+  VL_ENVIRONMENT_AUTO,   /**< STUDIO if vlSceneDefs.light_missing, else none. If the scene has
+                            other   lights, its   strength is such that a surface gets 0.3 times
+                            as   much light   from it as from them */
   VL_ENVIRONMENT_NONE,   /**< none is added */
   VL_ENVIRONMENT_STUDIO, /**< neutral: soft lights above and in front in a grey room */
   VL_ENVIRONMENT_SKY,    /**< a clear sky and the sun */
@@ -55,36 +62,41 @@ typedef enum vlEnvironmentKind {
 } vlEnvironmentKind;
 /** From where the added camera looks. */
 typedef enum vlFraming {
-  VL_FRAMING_AUTO,   /**< CORNER; flat models nearly along their normal; the middle of a shell that contains nothing */
+  VL_FRAMING_AUTO,   /**< CORNER; flat models nearly along their normal; the middle of a shell
+                        that   contains nothing */
   VL_FRAMING_CORNER, /**< from the front, slightly from the right and from above */
   VL_FRAMING_FRONT   /**< straight from the front */
 } vlFraming;
 /** What to add to a scene that lacks a camera, a light or a ground. */
 typedef struct vlCompleteDef {
   uint32_t cookie;
-  uint32_t width, height;        /**< image size in pixels, for framing and for files without a size; 0: the film's */
+  uint32_t width, height; /**< image size in pixels, for framing and for files without a size;
+                             0: the film's */
   vlEnvironmentKind environment; /**< default AUTO */
-  const char *path; /**< FILE: path of an image, either twice as wide as high (longitude and latitude; its centre is in
-                       the direction -front) or square (equal-area octahedral) */
-  double rotation;  /**< rotation of the environment about `up`, radians, counter-clockwise as seen from above */
-  float strength;   /**< factor on the environment's radiance */
+  const char
+      *path; /**< FILE: path of an image, either twice as wide as high (longitude and latitude;
+                its centre is in the direction -front) or square (equal-area octahedral) */
+  double rotation; /**< rotation of the environment about `up`, radians, counter-clockwise as
+                      seen from above */
+  float strength;  /**< factor on the environment's radiance */
   double up[3], front[3]; /**< directions in world space; default +y and +z, as in glTF */
   bool ground;            /**< adds a wide grey disk under everything */
   bool reframe;           /**< replaces the file's camera by one that frames the scene */
   vlFraming framing;      /**< where the added camera stands */
-  /** With the added camera and the studio: a ground of the studio's colour under the model, which catches its shadows
-   * and becomes transparent away from it. It is a backdrop (vlShapeDef.backdrop). Default false. */
+  /** With the added camera and the studio: a ground of the studio's colour under the model,
+   * which catches its shadows and becomes transparent away from it. It is a backdrop
+   * (vlShapeDef.backdrop). Default false. */
   bool backdrop;
-  /** With the added camera: of a closed model (a room whose walls hide it, a dome around it) the faces between the
-   * camera and the middle are left out; a note gives their number. The camera of a dome frames what the dome contains.
-   * Default false. */
+  /** With the added camera: of a closed model (a room whose walls hide it, a dome around it)
+   * the faces between the camera and the middle are left out; a note gives their number. The
+   * camera of a dome frames what the dome contains. Default false. */
   bool open_walls;
 } vlCompleteDef;
 /** The default def. */
 VL_API vlCompleteDef vl_default_complete_def(void);
-/** Adds what is missing (vlSceneDefs.camera_missing, light_missing) or requested. The new camera looks at the whole
- * scene (vlFraming). What is chosen is logged (VL_LOG_DEBUG). def may be null. Errors: as vl_scene_result; MISSING, IO
- * (path). */
+/** Adds what is missing (vlSceneDefs.camera_missing, light_missing) or requested. The new
+ * camera looks at the whole scene (vlFraming). What is chosen is logged (VL_LOG_DEBUG). def may
+ * be null. Errors: as vl_scene_result; MISSING, IO (path). */
 VL_API vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *def, vlError *error);
 
 #ifdef __cplusplus

@@ -9,20 +9,23 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of material. velo/schema.h describes the kinds and their parameters. */
-#define VL_MATERIAL_KINDS(X)                                                                             \
-  X(DIFFUSE, diffuse)                                                                                    \
-  X(COATED_DIFFUSE, coated_diffuse)                                                                      \
-  X(CONDUCTOR, conductor)                                                                                \
-  X(DIELECTRIC, dielectric)                                                                              \
-  X(THIN_DIELECTRIC, thin_dielectric)                                                                    \
-  X(MIX, mix)                                                                                            \
-  X(PRINCIPLED, principled) /* layered: glTF's metallic-roughness with its extensions */                 \
-  X(DIFFUSE_TRANSMISSION, diffuse_transmission)                                                          \
-  X(COATED_CONDUCTOR, coated_conductor)                                                                  \
-  X(HAIR, hair)                                                                                          \
-  X(MEASURED, measured)     /* a BRDF from a file */                                                     \
-  X(SUBSURFACE, subsurface) /* a solid that scatters light inside: VL_TRACER_VOLPATH only; else glass */ \
+/** X(NAME, name) for each kind of material. velo/schema.h describes the kinds and their
+ * parameters.
+ */
+#define VL_MATERIAL_KINDS(X)                                                                 \
+  X(DIFFUSE, diffuse)                                                                        \
+  X(COATED_DIFFUSE, coated_diffuse)                                                          \
+  X(CONDUCTOR, conductor)                                                                    \
+  X(DIELECTRIC, dielectric)                                                                  \
+  X(THIN_DIELECTRIC, thin_dielectric)                                                        \
+  X(MIX, mix)                                                                                \
+  X(PRINCIPLED, principled) /* layered: glTF's metallic-roughness with its extensions */     \
+  X(DIFFUSE_TRANSMISSION, diffuse_transmission)                                              \
+  X(COATED_CONDUCTOR, coated_conductor)                                                      \
+  X(HAIR, hair)                                                                              \
+  X(MEASURED, measured) /* a BRDF from a file */                                             \
+  X(SUBSURFACE,                                                                              \
+    subsurface) /* a solid that scatters light inside: VL_TRACER_VOLPATH only; else glass */ \
   X(INTERFACE, interface)
 /** The kinds of materials: VL_MATERIAL_DIFFUSE and so on, from VL_MATERIAL_KINDS. */
 typedef enum vlMaterialKind {
@@ -34,37 +37,44 @@ typedef enum vlMaterialKind {
 /** Traits of kinds of materials (vlKindRow.traits). */
 enum {
   VL_MATERIAL_OPAQUE = 1, /**< transmits no light */
-  VL_MATERIAL_METAL = 2,  /**< a conductor: its colour is the colour of its specular reflection, and it has no albedo */
+  VL_MATERIAL_METAL = 2,  /**< a conductor: its colour is the colour of its specular reflection,
+                             and  it has no albedo */
   VL_MATERIAL_ROUGH = 4,  /**< has a microfacet distribution with an alpha */
   VL_MATERIAL_REFRACTS = 8, /**< a closed shape of this material refracts light */
   VL_MATERIAL_ABSENT = 16   /**< not a visible surface; it only separates media */
 };
 
-/** The principled material: glTF 2.0's metallic-roughness with its KHR_materials extensions; docs/principled.md has the
- * formulas. Its base colour is vlMaterialDef.reflectance. Its index of refraction is vlMaterialDef.eta, one number; 0
- * means infinite, that is full reflection. The defaults are those of glTF's extensions: all layers other than metallic,
- * roughness and specular are off. */
+/** The principled material: glTF 2.0's metallic-roughness with its KHR_materials extensions;
+ * docs/principled.md has the formulas. Its base colour is vlMaterialDef.reflectance. Its index
+ * of refraction is vlMaterialDef.eta, one number; 0 means infinite, that is full reflection.
+ * The defaults are those of glTF's extensions: all layers other than metallic, roughness and
+ * specular are off. */
 typedef struct vlPrincipledDef {
-  vlFloatInput metallic;            /**< 0 to 1; default 1 */
-  vlFloatInput roughness;           /**< 0 to 1, alpha = roughness^2; default 1 */
-  vlFloatInput anisotropy;          /**< strength, 0 to 1: alpha along the tangent is mix(alpha, 1, strength^2) */
+  vlFloatInput metallic;  /**< 0 to 1; default 1 */
+  vlFloatInput roughness; /**< 0 to 1, alpha = roughness^2; default 1 */
+  vlFloatInput
+      anisotropy; /**< strength, 0 to 1: alpha along the tangent is mix(alpha, 1, strength^2) */
   vlFloatInput anisotropy_rotation; /**< radians from the tangent towards the bitangent */
   vlFloatInput specular;            /**< factor on the dielectric's reflection; default 1 */
-  vlSpectrumInput specular_color;   /**< factor on the dielectric's reflection at normal incidence; default 1 */
-  vlFloatInput transmission;        /**< share of the base that transmits light instead of scattering it */
-  bool thin_walled; /**< a thin sheet, which does not refract; default true (as in glTF without thickness) */
+  vlSpectrumInput specular_color;   /**< factor on the dielectric's reflection at normal
+                                       incidence; default 1 */
+  vlFloatInput
+      transmission; /**< share of the base that transmits light instead of scattering it */
+  bool thin_walled; /**< a thin sheet, which does not refract; default true (as in glTF without
+                       thickness) */
   float dispersion; /**< 20 / Abbe number; ignored if thin_walled */
-  vlFloatInput diffuse_transmission;          /**< share of the diffuse light that is transmitted to the other side */
-  vlSpectrumInput diffuse_transmission_color; /**< factor on the diffusely transmitted light */
-  vlFloatInput clearcoat,
-      clearcoat_roughness;      /**< coverage of the clear coat, 0 to 1; its roughness, the square root of its alpha */
-  vlSpectrumInput sheen_color;  /**< albedo of the sheen; 0: none */
+  vlFloatInput diffuse_transmission; /**< share of the diffuse light that is transmitted to the
+                                        other side */
+  vlSpectrumInput diffuse_transmission_color;  /**< factor on the diffusely transmitted light */
+  vlFloatInput clearcoat, clearcoat_roughness; /**< coverage of the clear coat, 0 to 1; its
+                                                  roughness, the square root of its alpha */
+  vlSpectrumInput sheen_color;                 /**< albedo of the sheen; 0: none */
   vlFloatInput sheen_roughness; /**< roughness of the sheen, the square root of its alpha */
   vlFloatInput iridescence;     /**< coverage of the thin film, 0 to 1 */
   float iridescence_ior;        /**< index of refraction of the film; default 1.3 */
   vlFloatInput iridescence_thickness; /**< thickness of the film, nm */
-  /** Tangent-space normal maps of the base and of the clear coat: linear colour textures (VL_TEXTURE_IMAGE, not
-   * clamped); index 0: none. */
+  /** Tangent-space normal maps of the base and of the clear coat: linear colour textures
+   * (VL_TEXTURE_IMAGE, not clamped); index 0: none. */
   vlTextureId normal, clearcoat_normal;
   float normal_scale, clearcoat_normal_scale; /**< factors on x and y of the normal maps */
 } vlPrincipledDef;
@@ -77,65 +87,77 @@ typedef enum vlHairColor {
 } vlHairColor;
 /** Hair (pbrt book 9.9). For curves, whose parameter v runs across the hair. */
 typedef struct vlHairDef {
-  vlHairColor color;                   /**< how the colour is given; default VL_HAIR_MELANIN, with eumelanin 1.3 */
+  vlHairColor
+      color; /**< how the colour is given; default VL_HAIR_MELANIN, with eumelanin 1.3 */
   vlSpectrumInput sigma_a;             /**< VL_HAIR_SIGMA_A: absorption coefficient */
   vlFloatInput eumelanin, pheomelanin; /**< VL_HAIR_MELANIN: concentrations */
   vlFloatInput eta;                    /**< index of refraction; default 1.55 */
-  vlFloatInput beta_m, beta_n;         /**< longitudinal and azimuthal roughness, 0 to 1; default 0.3 */
-  vlFloatInput alpha;                  /**< tilt of the scales, degrees; default 2 */
+  vlFloatInput beta_m, beta_n; /**< longitudinal and azimuthal roughness, 0 to 1; default 0.3 */
+  vlFloatInput alpha;          /**< tilt of the scales, degrees; default 2 */
 } vlHairDef;
 
-/** A solid that scatters light below a smooth or rough dielectric surface (pbrt book, 3rd edition, 11.4). It is given
- * in one of two ways: by sigma_a and sigma_s (per unit of length, times vlMaterialDef.scale); or by the reflectance of
- * a thick piece (vlMaterialDef.reflectance) and the mean free path (times vlMaterialDef.scale). vlMaterialDef.eta (one
- * number, 0.5 to 2.5) and vlMaterialDef.g are read, too. */
+/** A solid that scatters light below a smooth or rough dielectric surface (pbrt book, 3rd
+ * edition, 11.4). It is given in one of two ways: by sigma_a and sigma_s (per unit of length,
+ * times vlMaterialDef.scale); or by the reflectance of a thick piece
+ * (vlMaterialDef.reflectance) and the mean free path (times vlMaterialDef.scale).
+ * vlMaterialDef.eta (one number, 0.5 to 2.5) and vlMaterialDef.g are read, too. */
 typedef struct vlSubsurfaceDef {
-  bool from_reflectance; /**< true: given by reflectance and mfp; false: by sigma_a and sigma_s */
-  vlSpectrumInput sigma_a,
-      sigma_s;         /**< absorption and scattering coefficients; default: those of whole milk, per millimetre */
-  vlSpectrumInput mfp; /**< mean free path, scene units; default 1 */
+  bool from_reflectance; /**< true: given by reflectance and mfp; false: by sigma_a and sigma_s
+                          */
+  vlSpectrumInput sigma_a, sigma_s; /**< absorption and scattering coefficients; default: those
+                                       of whole milk, per millimetre */
+  vlSpectrumInput mfp;              /**< mean free path, scene units; default 1 */
 } vlSubsurfaceDef;
 
-/** A material: how a surface scatters light. One struct holds the parameters of all kinds; the defaults of a kind are
- * pbrt-v4's. */
+/** A material: how a surface scatters light. One struct holds the parameters of all kinds; the
+ * defaults of a kind are pbrt-v4's. */
 struct vlMaterialDef {
   uint32_t cookie;
-  const char *name;    /**< for messages and ids; may be null */
-  const char *place;   /**< index in a file without lines: materials[2]; may be null */
-  vlSource source;     /**< where the file describes it */
-  vlMaterialKind kind; /**< which fields below are read */
-  vlSpectrumInput
-      reflectance;      /**< reflectance: diffuse, coated diffuse, diffuse transmission; metals with use_reflectance */
-  bool use_reflectance; /**< metals: eta and k are computed from reflectance */
-  vlFloatInput u_roughness,
-      v_roughness;      /**< roughness of the surface; coated conductor: of the metal; coated diffuse: of the coat */
-  bool remap_roughness; /**< true: alpha = sqrt(roughness) (pbrt book 9.6); false: alpha = roughness */
-  vlSpectrumInput eta,
-      k; /**< index of refraction. Metals: eta and k; dielectrics and the coat of coated diffuse: eta, untextured */
-  vlFloatInput thickness, g;   /**< coat: its thickness (coated diffuse: untextured) and its medium's mean cosine.
-                                  Subsurface: g, untextured */
+  const char *name;            /**< for messages and ids; may be null */
+  const char *place;           /**< index in a file without lines: materials[2]; may be null */
+  vlSource source;             /**< where the file describes it */
+  vlMaterialKind kind;         /**< which fields below are read */
+  vlSpectrumInput reflectance; /**< reflectance: diffuse, coated diffuse, diffuse transmission;
+                                  metals with use_reflectance */
+  bool use_reflectance;        /**< metals: eta and k are computed from reflectance */
+  vlFloatInput u_roughness, v_roughness; /**< roughness of the surface; coated conductor: of the
+                                            metal; coated diffuse: of the coat */
+  bool remap_roughness;   /**< true: alpha = sqrt(roughness) (pbrt book 9.6); false: alpha =
+                           * roughness
+                           */
+  vlSpectrumInput eta, k; /**< index of refraction. Metals: eta and k; dielectrics and the coat
+                             of coated diffuse: eta, untextured */
+  vlFloatInput thickness, g;   /**< coat: its thickness (coated diffuse: untextured) and its
+                                  medium's   mean cosine. Subsurface: g, untextured */
   vlSpectrumInput albedo;      /**< albedo of the coat's medium; 0: the medium only absorbs */
-  uint32_t max_depth, samples; /**< coat: largest number of bounces inside it; number of random walks per evaluation */
+  uint32_t max_depth, samples; /**< coat: largest number of bounces inside it; number of random
+                                  walks per evaluation */
   vlFloatInput amount;         /**< mix: share of the second material */
   vlMaterialId materials[2];   /**< mix: the two materials */
   vlFloatInput displacement;   /**< bump map: height in scene units; texture index 0: none */
   const char *normal_map;      /**< path of a linear tangent-space normal map; null: none */
   vlPrincipledDef principled;  /**< parameters of the principled material */
   vlSpectrumInput transmittance; /**< diffuse transmission: its transmittance */
-  float scale; /**< diffuse transmission: factor on reflectance and transmittance; subsurface: see vlSubsurfaceDef */
-  vlFloatInput coat_u_roughness, coat_v_roughness; /**< coated conductor: roughness of the coat */
-  vlSpectrumInput coat_eta;                        /**< coated conductor: index of refraction of the coat; untextured */
-  vlHairDef hair;                                  /**< parameters of hair */
-  const char *measured; /**< measured: path of a spectral file of the RGL material database (Dupuy and Jakob 2018) */
+  float scale; /**< diffuse transmission: factor on reflectance and transmittance; subsurface:
+                  see vlSubsurfaceDef */
+  vlFloatInput coat_u_roughness,
+      coat_v_roughness; /**< coated conductor: roughness of the coat */
+  vlSpectrumInput
+      coat_eta;         /**< coated conductor: index of refraction of the coat; untextured */
+  vlHairDef hair;       /**< parameters of hair */
+  const char *measured; /**< measured: path of a spectral file of the RGL material database
+                           (Dupuy and Jakob 2018) */
   vlSubsurfaceDef subsurface; /**< parameters of the subsurface material */
-  /** Coated diffuse, if its medium only absorbs and is not textured: true makes a rough coat conserve energy, and
-   * max_depth is not read. Otherwise, as in pbrt, a rough coat loses the light that scatters more than once between its
-   * microfacets: 40 % at alpha 0.4 over a white base. */
+  /** Coated diffuse, if its medium only absorbs and is not textured: true makes a rough coat
+   * conserve energy, and max_depth is not read. Otherwise, as in pbrt, a rough coat loses the
+   * light that scatters more than once between its microfacets: 40 % at alpha 0.4 over a white
+   * base. */
   bool conserve_energy;
 };
 /** The default def of a kind. */
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
-/** Adds a material. Its textures and materials must have been added before. Returns index 0 on error. */
+/** Adds a material. Its textures and materials must have been added before. Returns index 0 on
+ * error. */
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);
 
 #ifdef __cplusplus

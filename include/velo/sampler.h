@@ -9,7 +9,8 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each sampler. velo/schema.h has descriptions and the names in pbrt files. */
+/** X(NAME, name) for each sampler. velo/schema.h has descriptions and the names in pbrt files.
+ */
 #define VL_SAMPLER_KINDS(X)         \
   X(INDEPENDENT, independent)       \
   X(REGULAR, regular)               \
@@ -20,8 +21,8 @@ extern "C" {
   X(HALTON, halton)                 \
   X(SOBOL, sobol)                   \
   X(ZSOBOL, zsobol)
-/** Sample generators (src/trace/sampler/sampler.h): those of the lecture and the low-discrepancy samplers of pbrt
- * book 8.6-8.7.
+/** Sample generators (src/trace/sampler/sampler.h): those of the lecture and the
+ * low-discrepancy samplers of pbrt book 8.6-8.7.
  */
 typedef enum vlSamplerKind {
 #define VL_KIND(NAME, name) VL_SAMPLER_##NAME,

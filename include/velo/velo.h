@@ -1,6 +1,6 @@
 /** @file
- * velo/velo.h: includes every public header. A program loads a scene, builds the world, makes the camera, renders,
- * develops the film and writes the image. */
+ * velo/velo.h: includes every public header. A program loads a scene, builds the world, makes
+ * the camera, renders, develops the film and writes the image. */
 #ifndef VELO_VELO_H
 #define VELO_VELO_H
 

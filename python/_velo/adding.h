@@ -1,11 +1,20 @@
-/* _velo/adding.h: a def under construction from keywords: of an object that is added (scene_add.c) or changed
- * (scene_edit.c). */
+/* _velo/adding.h: a def under construction from keywords: of an object that is added
+ * (scene_add.c) or changed (scene_edit.c). */
 #ifndef VELO_PYTHON_ADDING_H
 #define VELO_PYTHON_ADDING_H
 
 #include "module.h"
 
-typedef enum Family { TEXTURES, MATERIALS, MEDIA, EMISSION, LIGHTS, SHAPES, GROUPS, INSTANCES } Family;
+typedef enum Family {
+  TEXTURES,
+  MATERIALS,
+  MEDIA,
+  EMISSION,
+  LIGHTS,
+  SHAPES,
+  GROUPS,
+  INSTANCES
+} Family;
 extern const char *const family_names[]; /* ends with null */
 
 typedef union Def {
@@ -29,10 +38,11 @@ typedef struct Adding {
 /* The default def of a kind. spectrum: of a texture. */
 void default_def(Family family, int kind, bool spectrum, Def *def);
 /* Sets the keywords in the def. False: an exception is set. */
-bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing, PyObject *keywords, bool spectrum,
-             Def *def);
+bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
+             PyObject *keywords, bool spectrum, Def *def);
 /* The index of a handle of this family; false with an exception. None is index 0. */
-bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what, uint32_t *index);
+bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what,
+                 uint32_t *index);
 PyObject *new_handle(Scene *scene, Family family, uint32_t index);
 
 #endif

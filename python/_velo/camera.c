@@ -4,11 +4,15 @@
 
 #include "module.h"
 
-/* ---- making ------------------------------------------------------------------------------------------------------ */
+/* ---- making
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-static PyObject *camera_wrap(const vlCameraDef *def, const vlCamera *compiled, const char *warning, PyObject *keep) {
+static PyObject *camera_wrap(const vlCameraDef *def, const vlCamera *compiled,
+                             const char *warning, PyObject *keep) {
   Camera *self = make_object(TYPE_CAMERA);
-  if (!self) return NULL;
+  if (!self)
+    return NULL;
   self->def = *def;
   self->camera = *compiled;
   Py_XINCREF(keep);
@@ -22,8 +26,10 @@ PyObject *camera_object(const vlCameraDef *def, PyObject *keep) {
   const char *warning = NULL;
   vlError error = {0};
   vlResult done = vl_camera_make(def, &compiled, &warning, &error);
-  if (!own_check(def->own ? def->own->user : NULL)) return NULL;
-  if (done != VL_OK) return raise_result(done, &error);
+  if (!own_check(def->own ? def->own->user : NULL))
+    return NULL;
+  if (done != VL_OK)
+    return raise_result(done, &error);
   return camera_wrap(def, &compiled, warning, keep);
 }
 
@@ -39,11 +45,13 @@ static void camera_dealloc(Camera *self) {
   X(view_distance) \
   X(zoom)          \
   X(pixel_size)    \
-  X(focal_mm) X(sensor_width_mm) X(fx) X(fy) X(screen_min_x) X(screen_max_x) X(screen_min_y) X(screen_max_y)
+  X(focal_mm)      \
+  X(sensor_width_mm) X(fx) X(fy) X(screen_min_x) X(screen_max_x) X(screen_min_y) X(screen_max_y)
 
 static bool names_focal(const char *name) {
-#define SAME(field) \
-  if (strcmp(name, #field) == 0) return true;
+#define SAME(field)              \
+  if (strcmp(name, #field) == 0) \
+    return true;
   FOCAL(SAME)
 #undef SAME
   return strcmp(name, "K") == 0 || strcmp(name, "focallength") == 0 || strcmp(name, "d") == 0;
@@ -51,7 +59,8 @@ static bool names_focal(const char *name) {
 
 static bool set_k(vlCameraDef *def, PyObject *value) {
   double k[9];
-  if (!numbers_copy(value, "K", 9, k)) return false;
+  if (!numbers_copy(value, "K", 9, k))
+    return false;
   if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     return raise_value("K", value, "[fx skew cx; 0 fy cy; 0 0 1]"), false;
   def->fx = k[0], def->skew = k[1], def->cx = k[2], def->fy = k[4], def->cy = k[5];
@@ -60,7 +69,8 @@ static bool set_k(vlCameraDef *def, PyObject *value) {
 
 static bool set_coefficients(vlCameraDef *def, PyObject *value) {
   Numbers n;
-  if (!numbers_read(value, 'd', "distortion_coefficients", &n)) return false;
+  if (!numbers_read(value, 'd', "distortion_coefficients", &n))
+    return false;
   bool fine = n.count <= 14 && n.dimensions <= 1;
   if (fine) {
     memcpy(def->distortion_coefficients, n.data, n.count * sizeof(double));
@@ -74,21 +84,27 @@ static bool set_coefficients(vlCameraDef *def, PyObject *value) {
 
 static bool set_shutter(vlCameraDef *def, PyObject *value) {
   Numbers n;
-  if (!numbers_read(value, 'd', "shutter", &n)) return false;
+  if (!numbers_read(value, 'd', "shutter", &n))
+    return false;
   bool fine = n.dimensions == 2 && n.shape[1] == 2 && n.shape[0] <= VL_SHUTTER_POINTS;
-  if (!fine) raise_value("shutter", value, "a list of at most %d pairs of time and opening", VL_SHUTTER_POINTS);
+  if (!fine)
+    raise_value("shutter", value, "a list of at most %d pairs of time and opening",
+                VL_SHUTTER_POINTS);
   const double *pairs = n.data;
   for (size_t i = 0; fine && i < n.shape[0]; i++)
     def->shutter_at[i] = pairs[2 * i], def->shutter_value[i] = pairs[2 * i + 1];
-  if (fine) def->shutter_points = (uint32_t)n.shape[0];
+  if (fine)
+    def->shutter_points = (uint32_t)n.shape[0];
   numbers_release(&n);
   return fine;
 }
 
 /* colmap: (model, parameters) */
 static bool set_colmap(vlCameraDef *def, PyObject *keep, PyObject *value) {
-  if (sequence_size(value, "colmap", 2, 2) < 0) return false;
-  PyObject *model = PySequence_GetItem(value, 0), *parameters = model ? PySequence_GetItem(value, 1) : NULL;
+  if (sequence_size(value, "colmap", 2, 2) < 0)
+    return false;
+  PyObject *model = PySequence_GetItem(value, 0),
+           *parameters = model ? PySequence_GetItem(value, 1) : NULL;
   Numbers n = {0};
   const char *name = parameters ? keep_text(keep, model, "colmap's model") : NULL;
   bool fine = name && numbers_read(parameters, 'd', "colmap", &n);
@@ -117,15 +133,19 @@ static int set_special(vlCameraDef *def, PyObject *keep, const char *name, PyObj
     fine = numbers_copy(value, name, 16, other.world_from_camera);
     vlError error = {0};
     vlResult done = fine ? vl_camera_make(&other, &inverse, NULL, &error) : VL_OK;
-    if (done != VL_OK) return raise_result(done, &error), -1;
-    if (fine) memcpy(def->world_from_camera, inverse.camera_from_world, sizeof inverse.camera_from_world);
+    if (done != VL_OK)
+      return raise_result(done, &error), -1;
+    if (fine)
+      memcpy(def->world_from_camera, inverse.camera_from_world,
+             sizeof inverse.camera_from_world);
   } else if (strcmp(name, "world_from_camera_close") == 0) {
     def->has_matrix_close = true;
     fine = numbers_copy(value, name, 16, def->world_from_camera_close);
   } else if (strcmp(name, "own") == 0) {
     Own *own = value == Py_None ? NULL : own_read(value, VL_OWN_CAMERA, name);
     fine = value == Py_None || (own && keep_object(keep, value));
-    if (fine) def->own = own ? &own->camera : NULL;
+    if (fine)
+      def->own = own ? &own->camera : NULL;
   } else if (strcmp(name, "pose_times") == 0) {
     fine = numbers_copy(value, name, 2, def->pose_times);
   } else if (strcmp(name, "focus_pixel") == 0) {
@@ -133,8 +153,10 @@ static int set_special(vlCameraDef *def, PyObject *keep, const char *name, PyObj
   } else if (strcmp(name, "shape") == 0) {
     Numbers n;
     fine = numbers_read(value, 'd', name, &n);
-    if (fine && (n.count < 1 || n.count > 2)) fine = raise_value(name, value, "one or two numbers") != NULL;
-    for (size_t i = 0; fine && i < n.count; i++) def->shape[i] = ((const double *)n.data)[i];
+    if (fine && (n.count < 1 || n.count > 2))
+      fine = raise_value(name, value, "one or two numbers") != NULL;
+    for (size_t i = 0; fine && i < n.count; i++)
+      def->shape[i] = ((const double *)n.data)[i];
     numbers_release(&n);
   } else if (strcmp(name, "distortion_coefficients") == 0) {
     fine = set_coefficients(def, value);
@@ -168,34 +190,42 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
   const Target target = {(char *)def, keep, NULL, false};
   while (PyDict_Next(keywords, &position, &name, &value)) {
     const char *text = keep_text(keep, name, "a keyword");
-    if (!text) return false;
+    if (!text)
+      return false;
     if (names_focal(text) && !focal) {
 #define UNSET(field) def->field = VL_UNSET;
       FOCAL(UNSET)
 #undef UNSET
       focal = true;
     }
-    if (strcmp(text, "eye") == 0 || strcmp(text, "lookat") == 0 || strcmp(text, "up") == 0) def->has_matrix = false;
+    if (strcmp(text, "eye") == 0 || strcmp(text, "lookat") == 0 || strcmp(text, "up") == 0)
+      def->has_matrix = false;
     int special = set_special(def, keep, text, value);
-    if (special < 0) return false;
-    if (special) continue;
+    if (special < 0)
+      return false;
+    if (special)
+      continue;
     const vlParameter *row = vl_setting(VL_SETTING_CAMERA, text);
     const vlKindFamily *family = row ? NULL : vl_kind_family_find("cameras");
     for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
       row = find_parameter(family->rows[k]->parameters, family->rows[k]->parameter_count, text);
-      if (row && row->type == VL_PARAMETER_BLOCK) row = NULL;
+      if (row && row->type == VL_PARAMETER_BLOCK)
+        row = NULL;
     }
     if (!row) {
       PyObject *names = PyList_New(0);
       for (int i = 0; names && special_names[i]; i++) {
         PyObject *word = PyUnicode_FromString(special_names[i]);
-        if (!word || PyList_Append(names, word) < 0) Py_CLEAR(names);
+        if (!word || PyList_Append(names, word) < 0)
+          Py_CLEAR(names);
         Py_XDECREF(word);
       }
-      if (names && !append_settings(names, VL_SETTING_CAMERA)) Py_CLEAR(names);
+      if (names && !append_settings(names, VL_SETTING_CAMERA))
+        Py_CLEAR(names);
       return raise_unknown("keyword of a camera", text, names);
     }
-    if (!set_parameter(&target, row, value)) return false;
+    if (!set_parameter(&target, row, value))
+      return false;
   }
   return true;
 }
@@ -205,12 +235,14 @@ static PyObject *camera_new(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *width, *height, *keywords;
   uint32_t size[2];
-  if (!PyArg_ParseTuple(arguments, "OOO!:camera_new", &width, &height, &PyDict_Type, &keywords) ||
+  if (!PyArg_ParseTuple(arguments, "OOO!:camera_new", &width, &height, &PyDict_Type,
+                        &keywords) ||
       !read_size(width, height, MOST_PIXELS, size))
     return NULL;
   vlCameraDef def = vl_default_camera_def(size[0], size[1]);
   PyObject *keep = PyList_New(0);
-  PyObject *result = keep && set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
+  PyObject *result =
+      keep && set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
   Py_XDECREF(keep);
   return result;
 }
@@ -219,17 +251,22 @@ static PyObject *camera_new(PyObject *module, PyObject *arguments) {
 static PyObject *camera_replace(Camera *self, PyObject *keywords) {
   vlCameraDef def = self->def;
   PyObject *keep = PyList_New(0);
-  if (!keep || (self->keep && !keep_object(keep, self->keep)) || !PyDict_Check(keywords)) return Py_XDECREF(keep), NULL;
+  if (!keep || (self->keep && !keep_object(keep, self->keep)) || !PyDict_Check(keywords))
+    return Py_XDECREF(keep), NULL;
   PyObject *result = set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
   Py_XDECREF(keep);
   return result;
 }
 
-/* ---- changes of the compiled camera ------------------------------------------------------------------------------ */
+/* ---- changes of the compiled camera
+ * ------------------------------------------------------------------------------ */
 
-static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made, const vlError *error) {
-  if (!own_check(own_of_camera(&self->camera))) return NULL;
-  if (done != VL_OK) return raise_result(done, error);
+static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made,
+                               const vlError *error) {
+  if (!own_check(own_of_camera(&self->camera)))
+    return NULL;
+  if (done != VL_OK)
+    return raise_result(done, error);
   vlCameraDef def = self->def;
   def.width = made->width, def.height = made->height;
   def.has_matrix = true;
@@ -245,7 +282,8 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
 #define UNSET(field) def->field = VL_UNSET;
     FOCAL(UNSET)
 #undef UNSET
-    def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy, def->skew = made->skew;
+    def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy,
+    def->skew = made->skew;
   }
   return result;
 }
@@ -253,7 +291,8 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
 static PyObject *camera_resize(Camera *self, PyObject *arguments) {
   PyObject *width, *height;
   uint32_t size[2];
-  if (!PyArg_ParseTuple(arguments, "OO:_resize", &width, &height) || !read_size(width, height, MOST_PIXELS, size))
+  if (!PyArg_ParseTuple(arguments, "OO:_resize", &width, &height) ||
+      !read_size(width, height, MOST_PIXELS, size))
     return NULL;
   if (size[0] == self->camera.width && size[1] == self->camera.height)
     return Py_INCREF((PyObject *)self), (PyObject *)self;
@@ -263,14 +302,16 @@ static PyObject *camera_resize(Camera *self, PyObject *arguments) {
 }
 static PyObject *camera_coarse(Camera *self, PyObject *number) {
   uint32_t factor;
-  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor)) return NULL;
+  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor))
+    return NULL;
   vlCamera made;
   vlResult done = vl_camera_coarse(&self->camera, factor, &made);
   return with_pixels(self, done, &made);
 }
 static PyObject *camera_move(Camera *self, PyObject *matrix) {
   double m[16];
-  if (!numbers_copy(matrix, "world_from_camera", 16, m)) return NULL;
+  if (!numbers_copy(matrix, "world_from_camera", 16, m))
+    return NULL;
   vlCamera made;
   vlError error = {0};
   vlResult done = vl_camera_move(&self->camera, m, &made, &error);
@@ -278,7 +319,8 @@ static PyObject *camera_move(Camera *self, PyObject *matrix) {
 }
 static PyObject *camera_at(Camera *self, PyObject *time) {
   double seconds;
-  if (!read_finite(time, "time", &seconds)) return NULL;
+  if (!read_finite(time, "time", &seconds))
+    return NULL;
   vlCamera made;
   vlResult done = vl_camera_at(&self->camera, seconds, &made);
   return with_compiled(self, done, &made, NULL);
@@ -288,15 +330,20 @@ static PyObject *camera_stereo(Camera *self, PyObject *unused) {
   vlCamera eyes[2];
   vlError error = {0};
   vlResult done = vl_camera_stereo(&self->def, &eyes[0], &eyes[1], NULL, &error);
-  if (done != VL_OK) return raise_result(done, &error);
-  return Py_BuildValue("(NN)", with_compiled(self, VL_OK, &eyes[0], NULL), with_compiled(self, VL_OK, &eyes[1], NULL));
+  if (done != VL_OK)
+    return raise_result(done, &error);
+  return Py_BuildValue("(NN)", with_compiled(self, VL_OK, &eyes[0], NULL),
+                       with_compiled(self, VL_OK, &eyes[1], NULL));
 }
 
-/* ---- projection of arrays ---------------------------------------------------------------------------------------- */
+/* ---- projection of arrays
+ * ---------------------------------------------------------------------------------------- */
 
 static bool read_rows(PyObject *object, const char *what, size_t columns, Numbers *n) {
-  if (!numbers_read_any(object, 'd', what, n)) return false;
-  if (n->count % columns == 0 && (n->dimensions == 0 || n->shape[n->dimensions - 1] == columns)) return true;
+  if (!numbers_read_any(object, 'd', what, n))
+    return false;
+  if (n->count % columns == 0 && (n->dimensions == 0 || n->shape[n->dimensions - 1] == columns))
+    return true;
   numbers_release(n);
   return raise_usage("%s: an array of rows of %zu numbers", what, columns), false;
 }
@@ -304,7 +351,8 @@ static bool read_rows(PyObject *object, const char *what, size_t columns, Number
 /* _project(points): pixels, z, valid as bytearrays. */
 static PyObject *camera_project(Camera *self, PyObject *points) {
   Numbers n;
-  if (!read_rows(points, "points", 3, &n)) return NULL;
+  if (!read_rows(points, "points", 3, &n))
+    return NULL;
   size_t count = n.count / 3;
   void *data[3] = {NULL, NULL, NULL};
   PyObject *pixels = make_bytes(count * 16, &data[0]), *z = make_bytes(count * 8, &data[1]),
@@ -316,7 +364,8 @@ static PyObject *camera_project(Camera *self, PyObject *points) {
   }
   numbers_release(&n);
   PyObject *result = Py_BuildValue("(NNN)", pixels, z, valid);
-  if (own_check(own_of_camera(&self->camera))) return result;
+  if (own_check(own_of_camera(&self->camera)))
+    return result;
   Py_XDECREF(result);
   return NULL;
 }
@@ -324,11 +373,12 @@ static PyObject *camera_project(Camera *self, PyObject *points) {
 /* _unproject(pixels): origins, directions, valid as bytearrays. */
 static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
   Numbers n;
-  if (!read_rows(pixels, "pixels", 2, &n)) return NULL;
+  if (!read_rows(pixels, "pixels", 2, &n))
+    return NULL;
   size_t count = n.count / 2;
   void *data[3] = {NULL, NULL, NULL};
-  PyObject *origins = make_bytes(count * 24, &data[0]), *directions = make_bytes(count * 24, &data[1]),
-           *valid = make_bytes(count, &data[2]);
+  PyObject *origins = make_bytes(count * 24, &data[0]),
+           *directions = make_bytes(count * 24, &data[1]), *valid = make_bytes(count, &data[2]);
   if (origins && directions && valid) {
     PyThreadState *thread = PyEval_SaveThread();
     vl_camera_unproject_batch(&self->camera, count, n.data, data[0], data[1], data[2]);
@@ -336,7 +386,8 @@ static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
   }
   numbers_release(&n);
   PyObject *result = Py_BuildValue("(NNN)", origins, directions, valid);
-  if (own_check(own_of_camera(&self->camera))) return result;
+  if (own_check(own_of_camera(&self->camera)))
+    return result;
   Py_XDECREF(result);
   return NULL;
 }
@@ -344,18 +395,21 @@ static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
 static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
   PyObject *point[2];
   double x, y;
-  if (!PyArg_ParseTuple(arguments, "OO:solid_angle", &point[0], &point[1]) || !read_finite(point[0], "x", &x) ||
-      !read_finite(point[1], "y", &y))
+  if (!PyArg_ParseTuple(arguments, "OO:solid_angle", &point[0], &point[1]) ||
+      !read_finite(point[0], "x", &x) || !read_finite(point[1], "y", &y))
     return NULL;
   double angle = vl_camera_solid_angle(&self->camera, x, y);
   return own_check(own_of_camera(&self->camera)) ? PyFloat_FromDouble(angle) : NULL;
 }
 
-/* ---- members ----------------------------------------------------------------------------------------------------- */
+/* ---- members
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static PyObject *numbers_tuple(const double *values, int count) {
   PyObject *tuple = PyTuple_New(count);
-  for (int i = 0; tuple && i < count; i++) PyTuple_SetItem(tuple, i, PyFloat_FromDouble(values[i]));
+  for (int i = 0; tuple && i < count; i++)
+    PyTuple_SetItem(tuple, i, PyFloat_FromDouble(values[i]));
   return tuple;
 }
 static PyObject *camera_k(Camera *self, void *unused) {
@@ -401,35 +455,43 @@ static PyObject *camera_get(Camera *self, PyObject *name) {
     result = get_parameter((const char *)&self->def, row);
   } else if (text) {
     PyObject *names = PyList_New(0);
-    if (names && !append_settings(names, VL_SETTING_CAMERA)) Py_CLEAR(names);
+    if (names && !append_settings(names, VL_SETTING_CAMERA))
+      Py_CLEAR(names);
     raise_unknown("parameter of a camera", text, names);
   }
   Py_XDECREF(keep);
   return result;
 }
 
-/* ---- camera files ------------------------------------------------------------------------------------------------ */
+/* ---- camera files
+ * ------------------------------------------------------------------------------------------------
+ */
 
-static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, PyObject *frame, PyObject *drop,
-                     const char **drops) {
+static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, PyObject *frame,
+                     PyObject *drop, const char **drops) {
   const char *known[VL_CAMERA_DIALECT_COUNT + 1] = {0};
-  for (int i = 0; i < VL_CAMERA_DIALECT_COUNT; i++) known[i] = vl_camera_dialect_name((vlCameraDialect)i);
+  for (int i = 0; i < VL_CAMERA_DIALECT_COUNT; i++)
+    known[i] = vl_camera_dialect_name((vlCameraDialect)i);
   if (dialect != Py_None) {
     int found = find_choice(known, "dialect", dialect);
-    if (found < 0) return false;
+    if (found < 0)
+      return false;
     def->dialect = (vlCameraDialect)found;
   }
   if (frame != Py_None) {
     bool number = PyLong_Check(frame) && !PyBool_Check(frame);
     int64_t index;
-    if (number && !read_whole(frame, "frame", 0, UINT32_MAX, &index)) return false;
+    if (number && !read_whole(frame, "frame", 0, UINT32_MAX, &index))
+      return false;
     PyObject *text = number ? PyObject_Str(frame) : (Py_INCREF(frame), frame);
     def->frame = text ? keep_text(keep, text, "frame") : NULL;
     Py_XDECREF(text);
-    if (!def->frame) return false;
+    if (!def->frame)
+      return false;
   }
   Py_ssize_t count = drop == Py_None ? 0 : sequence_size(drop, "drop", 0, 32);
-  if (count < 0 || !keep_texts(keep, drop, count, "drop", drops)) return false;
+  if (count < 0 || !keep_texts(keep, drop, count, "drop", drops))
+    return false;
   def->drop = drops;
   def->drop_count = (uint32_t)count;
   return true;
@@ -441,7 +503,8 @@ static bool file_size(PyObject *width, PyObject *height, vlCameraFileDef *def) {
          read_count(height, "height", 0, MOST_PIXELS, &def->height);
 }
 
-/* camera_read(context, path, dialect, frame, width, height): camera, dialect, frames, name, size_assumed */
+/* camera_read(context, path, dialect, frame, width, height): camera, dialect, frames, name,
+ * size_assumed */
 static PyObject *camera_read(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
@@ -449,13 +512,15 @@ static PyObject *camera_read(PyObject *module, PyObject *arguments) {
   vlCameraFileDef def = vl_default_camera_file_def();
   const char *file, *drops[32];
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!OOOOO:camera_read", base_types[TYPE_CONTEXT], &context, &path, &dialect, &frame,
-                        &width, &height) ||
-      !file_size(width, height, &def) || !file_def(&def, keep, dialect, frame, Py_None, drops) ||
+      !PyArg_ParseTuple(arguments, "O!OOOOO:camera_read", base_types[TYPE_CONTEXT], &context,
+                        &path, &dialect, &frame, &width, &height) ||
+      !file_size(width, height, &def) ||
+      !file_def(&def, keep, dialect, frame, Py_None, drops) ||
       !(file = keep_path(keep, path, "path")))
     goto end;
   Call call;
-  if (!call_begin(&call, context, NULL)) goto end;
+  if (!call_begin(&call, context, NULL))
+    goto end;
   vlError error = {0};
   vlCameraRecord record;
   vlResult done = vl_camera_read(context->context, file, &def, &record, &error);
@@ -466,8 +531,9 @@ static PyObject *camera_read(PyObject *module, PyObject *arguments) {
   }
   PyObject *camera = camera_object(&record.camera, NULL);
   if (camera)
-    result = Py_BuildValue("(NsINN)", camera, vl_camera_dialect_name(record.dialect), record.frames,
-                           text_object(record.name), PyBool_FromLong(record.size_assumed));
+    result =
+        Py_BuildValue("(NsINN)", camera, vl_camera_dialect_name(record.dialect), record.frames,
+                      text_object(record.name), PyBool_FromLong(record.size_assumed));
 end:
   Py_XDECREF(keep);
   return result;
@@ -480,9 +546,10 @@ static PyObject *camera_write(Camera *self, PyObject *arguments) {
   const char *name, *file, *drops[32];
   vlCameraFileDef def = vl_default_camera_file_def();
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!OOOO:_write", base_types[TYPE_CONTEXT], &context, &path, &dialect, &text,
-                        &drop) ||
-      !(name = keep_text(keep, text, "name")) || !file_def(&def, keep, dialect, Py_None, drop, drops) ||
+      !PyArg_ParseTuple(arguments, "O!OOOO:_write", base_types[TYPE_CONTEXT], &context, &path,
+                        &dialect, &text, &drop) ||
+      !(name = keep_text(keep, text, "name")) ||
+      !file_def(&def, keep, dialect, Py_None, drop, drops) ||
       !(file = keep_path(keep, path, "path")))
     return Py_XDECREF(keep), NULL;
   vlCameraRecord record = {.camera = self->def, .frames = 1};
@@ -492,16 +559,19 @@ static PyObject *camera_write(Camera *self, PyObject *arguments) {
   }
   memcpy(record.name, name, strlen(name));
   Call call;
-  if (!call_begin(&call, context, NULL)) return Py_DECREF(keep), NULL;
+  if (!call_begin(&call, context, NULL))
+    return Py_DECREF(keep), NULL;
   vlError error = {0};
   vlResult done = vl_camera_write(context->context, file, &def, &record, &error);
   call_end(&call);
   Py_DECREF(keep);
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK)
+    return raise_result(done, &error);
   Py_RETURN_NONE;
 }
 
-/* trajectory_read(context, path, dialect, width, height): a list of (name, camera or None, matrix, time or None) */
+/* trajectory_read(context, path, dialect, width, height): a list of (name, camera or None,
+ * matrix, time or None) */
 static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
@@ -509,13 +579,15 @@ static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
   vlCameraFileDef def = vl_default_camera_file_def();
   const char *file, *drops[32];
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!OOOO:trajectory_read", base_types[TYPE_CONTEXT], &context, &path, &dialect,
-                        &width, &height) ||
-      !file_size(width, height, &def) || !file_def(&def, keep, dialect, Py_None, Py_None, drops) ||
+      !PyArg_ParseTuple(arguments, "O!OOOO:trajectory_read", base_types[TYPE_CONTEXT], &context,
+                        &path, &dialect, &width, &height) ||
+      !file_size(width, height, &def) ||
+      !file_def(&def, keep, dialect, Py_None, Py_None, drops) ||
       !(file = keep_path(keep, path, "path")))
     goto end;
   Call call;
-  if (!call_begin(&call, context, NULL)) goto end;
+  if (!call_begin(&call, context, NULL))
+    goto end;
   vlError error = {0};
   vlTrajectory *trajectory = NULL;
   vlResult done = vl_trajectory_load(context->context, file, &def, &trajectory, &error);
@@ -528,7 +600,8 @@ static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
   for (uint32_t i = 0; result && i < vl_trajectory_frames(trajectory); i++) {
     vlTrajectoryFrame frame;
     vl_trajectory_frame(trajectory, i, &frame);
-    const vlCameraRecord *record = frame.camera < 0 ? NULL : vl_trajectory_camera(trajectory, (uint32_t)frame.camera);
+    const vlCameraRecord *record =
+        frame.camera < 0 ? NULL : vl_trajectory_camera(trajectory, (uint32_t)frame.camera);
     PyObject *camera = Py_None, *time = Py_None;
     if (record) {
       vlCameraDef own = record->camera;
@@ -545,7 +618,8 @@ static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
     PyObject *entry = camera ? Py_BuildValue("(NNNN)", text_object(frame.name), camera,
                                              numbers_tuple(frame.world_from_camera, 16), time)
                              : NULL;
-    if (!entry || PyList_Append(result, entry) < 0) Py_CLEAR(result);
+    if (!entry || PyList_Append(result, entry) < 0)
+      Py_CLEAR(result);
     Py_XDECREF(entry);
   }
   vl_trajectory_destroy(trajectory);
@@ -557,14 +631,16 @@ end:
 static PyMethodDef camera_methods[] = {
     {"_replace", (PyCFunction)camera_replace, METH_O, "This camera with other parameters."},
     {"_resize", (PyCFunction)camera_resize, METH_VARARGS, "For another image size."},
-    {"_coarse", (PyCFunction)camera_coarse, METH_O, "With pixels that are this many times as wide and high."},
+    {"_coarse", (PyCFunction)camera_coarse, METH_O,
+     "With pixels that are this many times as wide and high."},
     {"_move", (PyCFunction)camera_move, METH_O, "With another pose."},
     {"_at", (PyCFunction)camera_at, METH_O, "Frozen at a time."},
     {"_stereo", (PyCFunction)camera_stereo, METH_NOARGS, "Both eyes."},
     {"_project", (PyCFunction)camera_project, METH_O, "Points to pixels."},
     {"_unproject", (PyCFunction)camera_unproject, METH_O, "Pixels to rays."},
     {"solid_angle", (PyCFunction)camera_solid_angle, METH_VARARGS,
-     "solid_angle(x, y)\n--\n\nSolid angle of the pixel around the film point (x, y), steradians."},
+     "solid_angle(x, y)\n--\n\nSolid angle of the pixel around the film point (x, y), "
+     "steradians."},
     {"_write", (PyCFunction)camera_write, METH_VARARGS, "Writes a camera file."},
     {"_get", (PyCFunction)camera_get, METH_O, "A parameter as it was given."},
     {NULL, NULL, 0, NULL},
@@ -575,9 +651,11 @@ static PyGetSetDef camera_members[] = {
     {"_camera_from_world", (getter)camera_inverse, NULL, "Its inverse.", NULL},
     {"resolution", (getter)camera_size, NULL, "Width and height, pixels.", NULL},
     {"projection", (getter)camera_projection, NULL, "Name of the projection.", NULL},
-    {"distortion_coefficients", (getter)camera_coefficients, NULL, "Coefficients of the distortion.", NULL},
+    {"distortion_coefficients", (getter)camera_coefficients, NULL,
+     "Coefficients of the distortion.", NULL},
     {"outside", (getter)camera_outside, NULL, "Share of the image without rays, 0 to 1.", NULL},
-    {"warning", (getter)camera_warning, NULL, "What is questionable about the parameters; None: nothing.", NULL},
+    {"warning", (getter)camera_warning, NULL,
+     "What is questionable about the parameters; None: nothing.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot camera_slots[] = {
@@ -587,8 +665,9 @@ static PyType_Slot camera_slots[] = {
     {Py_tp_getset, camera_members},
     {0, NULL},
 };
-PyType_Spec camera_spec = {"velo._velo.Camera", sizeof(Camera), 0,
-                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, camera_slots};
+PyType_Spec camera_spec = {
+    "velo._velo.Camera", sizeof(Camera), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, camera_slots};
 
 PyMethodDef camera_functions[] = {
     {"camera_new", camera_new, METH_VARARGS, "A camera: width, height, keywords."},

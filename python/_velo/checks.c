@@ -1,5 +1,5 @@
-/* _velo/checks.c: numbers, flags and texts of the caller, each with its name and its range. What does not fit is a
- * UsageError; nothing is wrapped, rounded or read as "not given". */
+/* _velo/checks.c: numbers, flags and texts of the caller, each with its name and its range.
+ * What does not fit is a UsageError; nothing is wrapped, rounded or read as "not given". */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -19,12 +19,14 @@ PyObject *raise_value(const char *what, PyObject *value, const char *format, ...
   va_end(arguments);
   PyErr_Clear();
   PyObject *error = call_package("wrong_value", "(ssO)", what, rule, value);
-  if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
+  if (error)
+    PyErr_SetObject((PyObject *)Py_TYPE(error), error);
   Py_XDECREF(error);
   return NULL;
 }
 
-/* Whether a conversion failed since the value is of another type or too large; other exceptions are the caller's own.
+/* Whether a conversion failed since the value is of another type or too large; other exceptions
+ * are the caller's own.
  */
 static bool unfit(void) {
   return PyErr_ExceptionMatches(PyExc_TypeError) || PyErr_ExceptionMatches(PyExc_ValueError) ||
@@ -33,30 +35,38 @@ static bool unfit(void) {
 
 int to_double(PyObject *value, double *number) {
   bool texts = PyUnicode_Check(value) || PyBytes_Check(value) || PyByteArray_Check(value);
-  if (texts || PyBool_Check(value) || PyComplex_Check(value)) return 0;
+  if (texts || PyBool_Check(value) || PyComplex_Check(value))
+    return 0;
   *number = PyFloat_AsDouble(value);
-  if (*number != -1.0 || !PyErr_Occurred()) return 1;
-  if (!unfit()) return -1;
+  if (*number != -1.0 || !PyErr_Occurred())
+    return 1;
+  if (!unfit())
+    return -1;
   PyErr_Clear();
   return 0;
 }
 
-/* A whole number of any type: 1 read, 0 not one or beyond 64 bits, -1 an exception of the caller's own. */
+/* A whole number of any type: 1 read, 0 not one or beyond 64 bits, -1 an exception of the
+ * caller's own. */
 static int to_whole(PyObject *value, double *number) {
-  if (!PyIndex_Check(value) || PyBool_Check(value)) return to_double(value, number);
+  if (!PyIndex_Check(value) || PyBool_Check(value))
+    return to_double(value, number);
   PyObject *index = PyNumber_Index(value);
   int overflow = 0;
   long long read = index ? PyLong_AsLongLongAndOverflow(index, &overflow) : -1;
   Py_XDECREF(index);
-  if (PyErr_Occurred() && !unfit()) return -1;
+  if (PyErr_Occurred() && !unfit())
+    return -1;
   *number = (double)read;
   bool fine = !PyErr_Occurred() && !overflow;
   PyErr_Clear();
   return fine;
 }
 
-/* What the caller gave, for a row. *bytes holds the text, or is null. False: an exception of the caller's own. */
-static bool to_given(const vlParameter *row, PyObject *value, vlGiven *given, PyObject **bytes) {
+/* What the caller gave, for a row. *bytes holds the text, or is null. False: an exception of
+ * the caller's own. */
+static bool to_given(const vlParameter *row, PyObject *value, vlGiven *given,
+                     PyObject **bytes) {
   *given = (vlGiven){.kind = VL_GIVEN_OTHER};
   *bytes = NULL;
   if (value == Py_None) {
@@ -66,24 +76,32 @@ static bool to_given(const vlParameter *row, PyObject *value, vlGiven *given, Py
     given->number = value == Py_True;
   } else if (PyUnicode_Check(value)) {
     *bytes = PyUnicode_AsUTF8String(value);
-    if (!*bytes) PyErr_Clear();
+    if (!*bytes)
+      PyErr_Clear();
     given->text = *bytes ? PyBytes_AsString(*bytes) : NULL;
-    if (given->text && strlen(given->text) == (size_t)PyBytes_Size(*bytes)) given->kind = VL_GIVEN_TEXT;
+    if (given->text && strlen(given->text) == (size_t)PyBytes_Size(*bytes))
+      given->kind = VL_GIVEN_TEXT;
   } else {
-    int read = row->type == VL_PARAMETER_COUNT ? to_whole(value, &given->number) : to_double(value, &given->number);
-    if (read < 0) return false;
-    bool flag = row->type == VL_PARAMETER_BOOL && (given->number == 0 || given->number == 1); /* numpy's booleans */
-    if (read) given->kind = flag ? VL_GIVEN_FLAG : VL_GIVEN_NUMBER;
+    int read = row->type == VL_PARAMETER_COUNT ? to_whole(value, &given->number)
+                                               : to_double(value, &given->number);
+    if (read < 0)
+      return false;
+    bool flag = row->type == VL_PARAMETER_BOOL &&
+                (given->number == 0 || given->number == 1); /* numpy's booleans */
+    if (read)
+      given->kind = flag ? VL_GIVEN_FLAG : VL_GIVEN_NUMBER;
   }
   return true;
 }
 
 /* factor: the value's unit (vlGiven). */
-static bool read_given(PyObject *value, const char *what, const vlParameter *row, double factor, double *number) {
+static bool read_given(PyObject *value, const char *what, const vlParameter *row, double factor,
+                       double *number) {
   char message[VL_GIVEN_MESSAGE];
   vlGiven given;
   PyObject *bytes;
-  if (!to_given(row, value, &given, &bytes)) return false;
+  if (!to_given(row, value, &given, &bytes))
+    return false;
   given.factor = factor;
   bool fine = vl_given_check(row, what, &given, number, message);
   PyObject *shown = fine ? NULL : call_package("shown", "(O)", value);
@@ -104,22 +122,27 @@ bool read_row(PyObject *value, const char *what, const vlParameter *row, double 
 }
 
 bool read_whole(PyObject *value, const char *what, int64_t low, int64_t high, int64_t *whole) {
-  const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = (double)low, .high = (double)high};
+  const vlParameter row = {
+      .type = VL_PARAMETER_COUNT, .low = (double)low, .high = (double)high};
   double number;
-  if (!read_row(value, what, &row, &number)) return false;
+  if (!read_row(value, what, &row, &number))
+    return false;
   *whole = (int64_t)number;
   return true;
 }
 
-bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high, uint32_t *count) {
+bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high,
+                uint32_t *count) {
   int64_t whole;
-  if (!read_whole(value, what, low, high, &whole)) return false;
+  if (!read_whole(value, what, low, high, &whole))
+    return false;
   *count = (uint32_t)whole;
   return true;
 }
 
 bool read_size(PyObject *width, PyObject *height, uint32_t most, uint32_t size[2]) {
-  return read_count(width, "width", 1, most, &size[0]) && read_count(height, "height", 1, most, &size[1]);
+  return read_count(width, "width", 1, most, &size[0]) &&
+         read_count(height, "height", 1, most, &size[1]);
 }
 
 bool read_finite(PyObject *value, const char *what, double *number) {
@@ -130,27 +153,34 @@ bool read_finite(PyObject *value, const char *what, double *number) {
 bool read_flag(PyObject *value, const char *what, bool *flag) {
   const vlParameter any = {.type = VL_PARAMETER_BOOL};
   double number;
-  if (!read_row(value, what, &any, &number)) return false;
+  if (!read_row(value, what, &any, &number))
+    return false;
   *flag = number != 0;
   return true;
 }
 
-/* check_value(value, what, type, low, high): the number, a bool or an int, where it fits; type: "count", "number" or
- * "flag". */
+/* check_value(value, what, type, low, high): the number, a bool or an int, where it fits; type:
+ * "count", "number" or "flag". */
 PyObject *check_value(PyObject *module, PyObject *arguments) {
-  static const vlParameterType of[] = {VL_PARAMETER_COUNT, VL_PARAMETER_DOUBLE, VL_PARAMETER_BOOL};
+  static const vlParameterType of[] = {VL_PARAMETER_COUNT, VL_PARAMETER_DOUBLE,
+                                       VL_PARAMETER_BOOL};
   static const char *const words[] = {"count", "number", "flag", NULL};
   (void)module;
   PyObject *value, *type;
   const char *what;
   double number, low, high;
-  if (!PyArg_ParseTuple(arguments, "OsOdd:check_value", &value, &what, &type, &low, &high)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OsOdd:check_value", &value, &what, &type, &low, &high))
+    return NULL;
   int found = find_choice(words, "type", type);
-  if (found < 0) return NULL;
+  if (found < 0)
+    return NULL;
   const vlParameter row = {.type = of[found], .low = low, .high = high};
-  if (!read_row(value, what, &row, &number)) return NULL;
-  if (row.type == VL_PARAMETER_BOOL) return PyBool_FromLong(number != 0);
-  return row.type == VL_PARAMETER_COUNT ? PyLong_FromDouble(number) : PyFloat_FromDouble(number);
+  if (!read_row(value, what, &row, &number))
+    return NULL;
+  if (row.type == VL_PARAMETER_BOOL)
+    return PyBool_FromLong(number != 0);
+  return row.type == VL_PARAMETER_COUNT ? PyLong_FromDouble(number)
+                                        : PyFloat_FromDouble(number);
 }
 
 /* check_choice(value, what, [words]): the index of the word. */
@@ -159,34 +189,43 @@ PyObject *check_choice(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *value, *list;
   const char *what, *words[MOST_WORDS + 1] = {NULL};
-  if (!PyArg_ParseTuple(arguments, "OsO!:check_choice", &value, &what, &PyList_Type, &list)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OsO!:check_choice", &value, &what, &PyList_Type, &list))
+    return NULL;
   Py_ssize_t count = sequence_size(list, "the list of words", 1, MOST_WORDS);
   PyObject *keep = count > 0 ? PyList_New(0) : NULL, *result = NULL;
   if (keep && keep_texts(keep, list, count, "a word", words)) {
     int found = find_choice(words, what, value);
-    if (found >= 0) result = PyLong_FromLong(found);
+    if (found >= 0)
+      result = PyLong_FromLong(found);
   }
   Py_XDECREF(keep);
   return result;
 }
 
-/* check_setting(value, what, group, name, by_unit): the value of a setting's row, where it fits; by_unit: in the row's
- * unit (degrees), not in that of the library (radians). */
+/* check_setting(value, what, group, name, by_unit): the value of a setting's row, where it
+ * fits; by_unit: in the row's unit (degrees), not in that of the library (radians). */
 PyObject *check_setting(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *value;
   const char *what, *group, *name;
   double number;
   int by_unit;
-  if (!PyArg_ParseTuple(arguments, "Osssp:check_setting", &value, &what, &group, &name, &by_unit)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "Osssp:check_setting", &value, &what, &group, &name,
+                        &by_unit))
+    return NULL;
   const vlParameter *row = NULL;
   for (int i = 0; vl_settings((vlSettingGroup)i); i++)
-    if (strcmp(vl_settings((vlSettingGroup)i)->name, group) == 0) row = vl_setting((vlSettingGroup)i, name);
-  if (!row) return raise_usage("there is no setting %s of %s", name, group);
+    if (strcmp(vl_settings((vlSettingGroup)i)->name, group) == 0)
+      row = vl_setting((vlSettingGroup)i, name);
+  if (!row)
+    return raise_usage("there is no setting %s of %s", name, group);
   double factor = by_unit && row->factor != 0 ? row->factor : 1;
-  if (!read_given(value, what, row, factor, &number)) return NULL;
-  if (row->type == VL_PARAMETER_COUNT) return PyLong_FromDouble(number);
-  if (row->type == VL_PARAMETER_FLOAT || row->type == VL_PARAMETER_DOUBLE) return PyFloat_FromDouble(number / factor);
+  if (!read_given(value, what, row, factor, &number))
+    return NULL;
+  if (row->type == VL_PARAMETER_COUNT)
+    return PyLong_FromDouble(number);
+  if (row->type == VL_PARAMETER_FLOAT || row->type == VL_PARAMETER_DOUBLE)
+    return PyFloat_FromDouble(number / factor);
   Py_INCREF(value);
   return value;
 }
@@ -196,7 +235,8 @@ PyObject *unknown_name(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *list;
   const char *thing, *name;
-  if (!PyArg_ParseTuple(arguments, "ssO!:unknown_name", &thing, &name, &PyList_Type, &list)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "ssO!:unknown_name", &thing, &name, &PyList_Type, &list))
+    return NULL;
   const size_t count = (size_t)PyList_Size(list);
   const char **names = PyMem_Malloc((count + 1) * sizeof *names);
   PyObject *keep = PyList_New(0), *result = NULL;
@@ -212,22 +252,27 @@ PyObject *unknown_name(PyObject *module, PyObject *arguments) {
 }
 
 const char *keep_text(PyObject *keep, PyObject *value, const char *what) {
-  if (!PyUnicode_Check(value)) return raise_value(what, value, "a str"), NULL;
+  if (!PyUnicode_Check(value))
+    return raise_value(what, value, "a str"), NULL;
   PyObject *bytes = PyUnicode_AsUTF8String(value);
   const char *text = bytes && keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
   bool whole = text && strlen(text) == (size_t)PyBytes_Size(bytes);
   Py_XDECREF(bytes);
-  if (whole) return text;
-  if (!text && !(PyErr_Occurred() && unfit())) return NULL;
+  if (whole)
+    return text;
+  if (!text && !(PyErr_Occurred() && unfit()))
+    return NULL;
   return raise_value(what, value, "text that UTF-8 can hold, without zeros"), NULL;
 }
 
-bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *what, const char **texts) {
+bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *what,
+                const char **texts) {
   for (Py_ssize_t i = 0; i < count; i++) {
     PyObject *item = PySequence_GetItem(values, i);
     texts[i] = item ? keep_text(keep, item, what) : NULL;
     Py_XDECREF(item);
-    if (!texts[i]) return false;
+    if (!texts[i])
+      return false;
   }
   return true;
 }
@@ -235,33 +280,42 @@ bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *
 Py_ssize_t sequence_size(PyObject *value, const char *what, Py_ssize_t low, Py_ssize_t high) {
   bool sequence = PySequence_Check(value) && !PyUnicode_Check(value) && !PyBytes_Check(value);
   Py_ssize_t size = sequence ? PySequence_Size(value) : -1;
-  if (size >= low && size <= high) return size;
-  if (sequence && size < 0 && !unfit()) return -1;
-  if (low == high) return raise_value(what, value, "a list of %zd items", low), -1;
+  if (size >= low && size <= high)
+    return size;
+  if (sequence && size < 0 && !unfit())
+    return -1;
+  if (low == high)
+    return raise_value(what, value, "a list of %zd items", low), -1;
   return raise_value(what, value, "a list of %zd to %zd items", low, high), -1;
 }
 
 const char *keep_path(PyObject *keep, PyObject *value, const char *what) {
   PyObject *bytes = NULL;
   if (!PyUnicode_FSConverter(value, &bytes)) {
-    if (unfit()) raise_value(what, value, "a path: a str or an os.PathLike");
+    if (unfit())
+      raise_value(what, value, "a path: a str or an os.PathLike");
     return NULL;
   }
   const char *text = keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
   Py_XDECREF(bytes);
-  if (text && !*text) return raise_value(what, value, "a path, not empty"), NULL;
+  if (text && !*text)
+    return raise_value(what, value, "a path, not empty"), NULL;
   return text;
 }
 
 bool check_memory(const Context *context, uint64_t bytes, const char *what) {
-  if (!context_check(context)) return false;
+  if (!context_check(context))
+    return false;
   const char *who;
   uint64_t held = vl_context_memory(context->context, NULL), most = vl_memory_limit(&who);
-  if (context->max_memory && context->max_memory < most) most = context->max_memory, who = "max_memory allows";
-  if (held + bytes <= most) return true;
+  if (context->max_memory && context->max_memory < most)
+    most = context->max_memory, who = "max_memory allows";
+  if (held + bytes <= most)
+    return true;
   char text[256];
-  PyOS_snprintf(text, sizeof text, "%s needs %.1f GB%s, and %s %.1f GB", what, (double)(held + bytes) * 1e-9,
-                held ? " with what is held" : "", who, (double)most * 1e-9);
+  PyOS_snprintf(text, sizeof text, "%s needs %.1f GB%s, and %s %.1f GB", what,
+                (double)(held + bytes) * 1e-9, held ? " with what is held" : "", who,
+                (double)most * 1e-9);
   vlError error = {0};
   PyOS_snprintf(error.message, sizeof error.message, "%s", text);
   raise_result(VL_ERROR_MEMORY, &error);

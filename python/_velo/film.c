@@ -19,16 +19,20 @@ static PyObject *film_object(Context *context, vlFilm *film, const vlFilmDef *de
 }
 
 static void film_dealloc(Film *self) {
-  if (context_is_ours(self->context)) vl_film_destroy(self->film);
+  if (context_is_ours(self->context))
+    vl_film_destroy(self->film);
   Py_XDECREF((PyObject *)self->context);
   free_object((PyObject *)self);
 }
 
 /* False with an exception: closed, or a render adds to it. */
 static bool readable(Film *self) {
-  if (!self->film) return raise_usage("the film is closed"), false;
+  if (!self->film)
+    return raise_usage("the film is closed"), false;
   if (self->busy && open_film != self)
-    return raise_usage("a render is adding to the film: read it after a pass (progress.pass_done)"), false;
+    return raise_usage(
+               "a render is adding to the film: read it after a pass (progress.pass_done)"),
+           false;
   return true;
 }
 
@@ -36,22 +40,25 @@ static PyObject *film_new(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
   Settings *settings;
-  if (!PyArg_ParseTuple(arguments, "O!O!:film_new", base_types[TYPE_CONTEXT], &context, base_types[TYPE_SETTINGS],
-                        &settings))
+  if (!PyArg_ParseTuple(arguments, "O!O!:film_new", base_types[TYPE_CONTEXT], &context,
+                        base_types[TYPE_SETTINGS], &settings))
     return NULL;
   const uint32_t *c = settings->defs.film.crop;
   char what[96]; /* the film and its developed image */
   PyOS_snprintf(what, sizeof what, "an image of %u x %u pixels", c[2] - c[0], c[3] - c[1]);
   uint64_t image = 16 * (uint64_t)(c[2] - c[0]) * (c[3] - c[1]);
-  if (!check_memory(context, vl_film_memory(&settings->defs.film) + image, what)) return NULL;
+  if (!check_memory(context, vl_film_memory(&settings->defs.film) + image, what))
+    return NULL;
   Call call;
-  if (!call_begin(&call, context, NULL)) return NULL;
+  if (!call_begin(&call, context, NULL))
+    return NULL;
   vlFilm *film = NULL;
   vlResult done = vl_film_create(context->context, &settings->defs.film, &film);
   call_end(&call);
   if (done == VL_ERROR_ARGUMENT)
     return raise_usage("film: a size, crop, filter, sensor or range of wavelengths is wrong");
-  return done == VL_OK ? film_object(context, film, &settings->defs.film) : raise_result(done, NULL);
+  return done == VL_OK ? film_object(context, film, &settings->defs.film)
+                       : raise_result(done, NULL);
 }
 
 typedef vlResult Develop(const vlFilm *, const vlDevelopDef *, vlImage **);
@@ -73,12 +80,14 @@ static PyObject *film_image(Film *self, PyObject *arguments) {
   def.exposure = (float)exposure;
   Call call;
   bool own = !self->busy;
-  if (kind < 0 || !call_begin(&call, self->context, own ? &self->busy : NULL)) return NULL;
+  if (kind < 0 || !call_begin(&call, self->context, own ? &self->busy : NULL))
+    return NULL;
   vlImage *image = NULL;
   vlResult done = functions[kind](self->film, &def, &image);
   call_end(&call);
   if (done == VL_ERROR_ARGUMENT)
-    return raise_usage(kind == 1 ? "the film was made without errors=True" : "the film was made without buckets");
+    return raise_usage(kind == 1 ? "the film was made without errors=True"
+                                 : "the film was made without buckets");
   return done == VL_OK ? image_object(self->context, image) : raise_result(done, NULL);
 }
 
@@ -93,7 +102,8 @@ static PyObject *film_write(Film *self, PyObject *path) {
   vlResult done = vl_film_write(self->film, NULL, file, &error);
   call_end(&call);
   Py_DECREF(keep);
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK)
+    return raise_result(done, &error);
   Py_RETURN_NONE;
 }
 
@@ -104,19 +114,24 @@ static PyObject *film_read(PyObject *module, PyObject *arguments) {
   PyObject *path, *flag, *keep = PyList_New(0), *result = NULL;
   bool partial;
   Call call;
-  if (!keep || !PyArg_ParseTuple(arguments, "O!OO:film_read", base_types[TYPE_CONTEXT], &context, &path, &flag) ||
+  if (!keep ||
+      !PyArg_ParseTuple(arguments, "O!OO:film_read", base_types[TYPE_CONTEXT], &context, &path,
+                        &flag) ||
       !read_flag(flag, "partial", &partial))
     goto end;
   const char *file = keep_path(keep, path, "path");
-  if (!file || !call_begin(&call, context, NULL)) goto end;
+  if (!file || !call_begin(&call, context, NULL))
+    goto end;
   vlError error = {0};
   vlFilm *film = NULL;
   vlFilmFile *header = NULL;
   vlFilmDef def = vl_default_film_def(1, 1);
   vlResult done = vl_film_file_open(context->context, file, &header, &error);
-  if (done == VL_OK) def = *vl_film_file_def(header);
+  if (done == VL_OK)
+    def = *vl_film_file_def(header);
   vl_film_file_close(header);
-  if (done == VL_OK) done = vl_film_read(context->context, file, partial, &film, &error);
+  if (done == VL_OK)
+    done = vl_film_read(context->context, file, partial, &film, &error);
   call_end(&call);
   result = done == VL_OK ? film_object(context, film, &def) : raise_result(done, &error);
 end:
@@ -133,17 +148,19 @@ static PyObject *film_merge(PyObject *module, PyObject *arguments) {
   PyObject *flag;
   bool overwrite;
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!O!OO:film_merge", base_types[TYPE_CONTEXT], &context, &PyList_Type, &paths,
-                        &output, &flag) ||
+      !PyArg_ParseTuple(arguments, "O!O!OO:film_merge", base_types[TYPE_CONTEXT], &context,
+                        &PyList_Type, &paths, &output, &flag) ||
       !read_flag(flag, "overwrite", &overwrite))
     goto fail;
   Py_ssize_t count = PyList_Size(paths);
   texts = PyMem_Malloc((size_t)(count + 1) * sizeof *texts);
   const char *file = texts ? keep_path(keep, output, "output") : NULL;
   for (Py_ssize_t i = 0; file && i < count; i++)
-    if (!(texts[i] = keep_path(keep, PyList_GetItem(paths, i), "an item of paths"))) goto fail;
+    if (!(texts[i] = keep_path(keep, PyList_GetItem(paths, i), "an item of paths")))
+      goto fail;
   Call call;
-  if (!file || !call_begin(&call, context, NULL)) goto fail;
+  if (!file || !call_begin(&call, context, NULL))
+    goto fail;
   vlError error = {0};
   vlFilmMergeDef def = vl_default_film_merge_def();
   def.overwrite = overwrite;
@@ -151,7 +168,8 @@ static PyObject *film_merge(PyObject *module, PyObject *arguments) {
   call_end(&call);
   PyMem_Free((void *)texts);
   Py_DECREF(keep);
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK)
+    return raise_result(done, &error);
   Py_RETURN_NONE;
 fail:
   PyMem_Free((void *)texts);
@@ -176,14 +194,17 @@ static PyObject *film_clear(Film *self, PyObject *unused) {
   (void)unused;
   if (!self->film || self->busy)
     return raise_usage(self->film ? "a render is adding to the film" : "the film is closed");
-  if (!context_check(self->context)) return NULL;
+  if (!context_check(self->context))
+    return NULL;
   vl_film_clear(self->film);
   Py_RETURN_NONE;
 }
 static PyObject *film_close(Film *self, PyObject *unused) {
   (void)unused;
-  if (self->busy) return raise_usage("a render is adding to the film");
-  if (context_is_ours(self->context)) vl_film_destroy(self->film);
+  if (self->busy)
+    return raise_usage("a render is adding to the film");
+  if (context_is_ours(self->context))
+    vl_film_destroy(self->film);
   self->film = NULL;
   Py_RETURN_NONE;
 }
@@ -197,8 +218,10 @@ static PyMethodDef film_methods[] = {
 };
 static PyGetSetDef film_members[] = {
     {"spp", (getter)film_spp, NULL, "Samples per pixel, of finished passes.", NULL},
-    {"resolution", (getter)film_size, NULL, "Width and height of the whole image, pixels.", NULL},
-    {"crop", (getter)film_crop, NULL, "The pixels that are rendered: x0, y0, x1, y1; x1, y1 exclusive.", NULL},
+    {"resolution", (getter)film_size, NULL, "Width and height of the whole image, pixels.",
+     NULL},
+    {"crop", (getter)film_crop, NULL,
+     "The pixels that are rendered: x0, y0, x1, y1; x1, y1 exclusive.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot film_slots[] = {
@@ -208,12 +231,14 @@ static PyType_Slot film_slots[] = {
     {Py_tp_getset, film_members},
     {0, NULL},
 };
-PyType_Spec film_spec = {"velo._velo.Film", sizeof(Film), 0,
-                         Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, film_slots};
+PyType_Spec film_spec = {
+    "velo._velo.Film", sizeof(Film), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, film_slots};
 
 PyMethodDef film_functions[] = {
     {"film_new", film_new, METH_VARARGS, "An empty film: context, settings."},
     {"film_read", film_read, METH_VARARGS, "Reads a film file: context, path, partial."},
-    {"film_merge", film_merge, METH_VARARGS, "Merges film files: context, list of paths, output, overwrite."},
+    {"film_merge", film_merge, METH_VARARGS,
+     "Merges film files: context, list of paths, output, overwrite."},
     {NULL, NULL, 0, NULL},
 };

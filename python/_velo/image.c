@@ -16,17 +16,20 @@ PyObject *image_object(Context *context, vlImage *image) {
 }
 
 static void image_dealloc(Image *self) {
-  if (context_is_ours(self->context)) vl_image_destroy(self->image);
+  if (context_is_ours(self->context))
+    vl_image_destroy(self->image);
   Py_XDECREF((PyObject *)self->context);
   free_object((PyObject *)self);
 }
 
 static vlImage *open_image(Image *self) {
-  if (!self->image) return raise_usage("the image is closed"), NULL;
+  if (!self->image)
+    return raise_usage("the image is closed"), NULL;
   return self->image;
 }
 
-/* ---- buffers: rows, columns, channels ---------------------------------------------------------------------------- */
+/* ---- buffers: rows, columns, channels
+ * ---------------------------------------------------------------------------- */
 
 static const char *const formats[] = {"B", "H", "e", "f", "I"};
 static const Py_ssize_t sizes[] = {1, 2, 2, 4, 4};
@@ -35,8 +38,8 @@ typedef struct Layout {
   Py_ssize_t shape[3], strides[3];
 } Layout;
 
-static int fill_view(PyObject *self, Image *image, uint32_t first, uint32_t count, bool flat, Py_buffer *view,
-                     int flags) {
+static int fill_view(PyObject *self, Image *image, uint32_t first, uint32_t count, bool flat,
+                     Py_buffer *view, int flags) {
   view->obj = NULL;
   vlImage *pixels = open_image(image);
   if (!pixels) {
@@ -68,7 +71,8 @@ static int fill_view(PyObject *self, Image *image, uint32_t first, uint32_t coun
   view->strides = (flags & PyBUF_STRIDES) == PyBUF_STRIDES ? layout->strides : NULL;
   view->suboffsets = NULL;
   view->internal = layout;
-  if (!(flags & PyBUF_ND)) view->ndim = 1;
+  if (!(flags & PyBUF_ND))
+    view->ndim = 1;
   Py_INCREF((PyObject *)self);
   view->obj = self;
   image->exports++;
@@ -76,14 +80,16 @@ static int fill_view(PyObject *self, Image *image, uint32_t first, uint32_t coun
 }
 
 static int image_buffer(Image *self, Py_buffer *view, int flags) {
-  return fill_view((PyObject *)self, self, 0, self->image ? vl_image_channels(self->image) : 0, false, view, flags);
+  return fill_view((PyObject *)self, self, 0, self->image ? vl_image_channels(self->image) : 0,
+                   false, view, flags);
 }
 static void image_release(Image *self, Py_buffer *view) {
   PyMem_Free(view->internal);
   self->exports--;
 }
 static int plane_buffer(Plane *self, Py_buffer *view, int flags) {
-  return fill_view((PyObject *)self, self->image, self->first, self->count, self->flat, view, flags);
+  return fill_view((PyObject *)self, self->image, self->first, self->count, self->flat, view,
+                   flags);
 }
 static void plane_release(Plane *self, Py_buffer *view) {
   PyMem_Free(view->internal);
@@ -97,18 +103,26 @@ static void plane_dealloc(Plane *self) {
 static PyObject *image_plane(Image *self, PyObject *arguments) {
   unsigned first, count;
   int flat;
-  if (!PyArg_ParseTuple(arguments, "IIp:_plane", &first, &count, &flat) || !open_image(self)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "IIp:_plane", &first, &count, &flat) || !open_image(self))
+    return NULL;
   uint32_t channels = vl_image_channels(self->image);
   if (count == 0 || first >= channels || count > channels - first || (flat && count != 1))
     return raise_usage("the image has no such channels");
   Plane *plane = make_object(TYPE_PLANE);
-  if (!plane) return NULL;
+  if (!plane)
+    return NULL;
   Py_INCREF((PyObject *)self);
-  *plane = (Plane){.ob_base = plane->ob_base, .image = self, .first = first, .count = count, .flat = flat != 0};
+  *plane = (Plane){.ob_base = plane->ob_base,
+                   .image = self,
+                   .first = first,
+                   .count = count,
+                   .flat = flat != 0};
   return (PyObject *)plane;
 }
 
-/* ---- new images -------------------------------------------------------------------------------------------------- */
+/* ---- new images
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static const char *const encodings[] = {"linear", "srgb", "gamma", NULL};
 
@@ -117,24 +131,32 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *array, *names, *encoding, *keep = NULL, *result = NULL;
   Context *context;
-  if (!PyArg_ParseTuple(arguments, "O!OOO:image_new", base_types[TYPE_CONTEXT], &context, &array, &names, &encoding))
+  if (!PyArg_ParseTuple(arguments, "O!OOO:image_new", base_types[TYPE_CONTEXT], &context,
+                        &array, &names, &encoding))
     return NULL;
   int code = find_choice(encodings, "encoding", encoding);
-  if (code < 0) return NULL;
+  if (code < 0)
+    return NULL;
   Py_buffer view;
   if (PyBytes_Check(array) || PyObject_GetBuffer(array, &view, PyBUF_FULL_RO) < 0)
     return raise_value("image", array, "an array of rows x columns x channels");
   const char *format = view.format ? view.format : "B";
-  if (*format == '<' || *format == '=' || *format == '@') format++;
+  if (*format == '<' || *format == '=' || *format == '@')
+    format++;
   int type = -1;
   for (int i = 0; i < 5; i++)
-    if (strcmp(formats[i], format) == 0) type = i;
-  if (type < 0 && strcmp(format, "L") == 0 && view.itemsize == 4) type = VL_PIXEL_U32;
+    if (strcmp(formats[i], format) == 0)
+      type = i;
+  if (type < 0 && strcmp(format, "L") == 0 && view.itemsize == 4)
+    type = VL_PIXEL_U32;
   vlImage *image = NULL;
   const char *texts[1024];
-  if (view.ndim < 2 || view.ndim > 3 || view.shape[0] < 1 || view.shape[1] < 1 || view.shape[0] > 1 << 24 ||
-      view.shape[1] > 1 << 24 || (view.ndim == 3 && (view.shape[2] < 1 || view.shape[2] > 1024))) {
-    raise_usage("an image is an array of rows x columns, or of rows x columns x channels (at most 1024)");
+  if (view.ndim < 2 || view.ndim > 3 || view.shape[0] < 1 || view.shape[1] < 1 ||
+      view.shape[0] > 1 << 24 || view.shape[1] > 1 << 24 ||
+      (view.ndim == 3 && (view.shape[2] < 1 || view.shape[2] > 1024))) {
+    raise_usage(
+        "an image is an array of rows x columns, or of rows x columns x channels (at most "
+        "1024)");
     goto end;
   }
   bool convert = type < 0;
@@ -145,10 +167,12 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
   if (names != Py_None) {
     keep = PyList_New(0);
     Py_ssize_t count = sequence_size(names, "names", def.channels, def.channels);
-    if (!keep || count < 0 || !keep_texts(keep, names, count, "names", texts)) goto end;
+    if (!keep || count < 0 || !keep_texts(keep, names, count, "names", texts))
+      goto end;
     def.names = texts;
   }
-  if (!context_check(context)) goto end;
+  if (!context_check(context))
+    goto end;
   vlResult made = vl_image_create(context->context, &def, &image);
   if (made != VL_OK) {
     raise_result(made, NULL);
@@ -156,7 +180,8 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
   }
   if (convert) {
     Numbers n;
-    if (!numbers_read_any(array, 'f', "image", &n)) goto end;
+    if (!numbers_read_any(array, 'f', "image", &n))
+      goto end;
     memcpy(vl_image_pixels(image), n.data, n.count * sizeof(float));
     numbers_release(&n);
   } else if (PyBuffer_ToContiguous(vl_image_pixels(image), &view, view.len, 'C') < 0) {
@@ -178,17 +203,23 @@ static PyObject *image_read(PyObject *module, PyObject *arguments) {
   PyObject *path, *names, *keep = PyList_New(0), *result = NULL;
   const char *texts[1024];
   Py_ssize_t count = 0;
-  if (!keep || !PyArg_ParseTuple(arguments, "O!OO:image_read", base_types[TYPE_CONTEXT], &context, &path, &names))
+  if (!keep || !PyArg_ParseTuple(arguments, "O!OO:image_read", base_types[TYPE_CONTEXT],
+                                 &context, &path, &names))
     goto end;
   const char *file = keep_path(keep, path, "path");
-  if (!file) goto end;
-  if (names != Py_None && (count = sequence_size(names, "channels", 1, 1024)) < 0) goto end;
-  if (!keep_texts(keep, names, count, "channels", texts)) goto end;
+  if (!file)
+    goto end;
+  if (names != Py_None && (count = sequence_size(names, "channels", 1, 1024)) < 0)
+    goto end;
+  if (!keep_texts(keep, names, count, "channels", texts))
+    goto end;
   Call call;
-  if (!call_begin(&call, context, NULL)) goto end;
+  if (!call_begin(&call, context, NULL))
+    goto end;
   vlError error = {0};
   vlImage *image = NULL;
-  vlResult done = count ? vl_image_read_channels(context->context, file, texts, (uint32_t)count, &image, &error)
+  vlResult done = count ? vl_image_read_channels(context->context, file, texts, (uint32_t)count,
+                                                 &image, &error)
                         : vl_image_read(context->context, file, &image, &error);
   call_end(&call);
   result = done == VL_OK ? image_object(context, image) : raise_result(done, &error);
@@ -202,7 +233,8 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *images, *path, *keywords, *keep = PyList_New(0);
   const vlImage *list[64];
-  if (!keep || !PyArg_ParseTuple(arguments, "O!OO!:image_write", &PyList_Type, &images, &path, &PyDict_Type, &keywords))
+  if (!keep || !PyArg_ParseTuple(arguments, "O!OO!:image_write", &PyList_Type, &images, &path,
+                                 &PyDict_Type, &keywords))
     return Py_XDECREF(keep), NULL;
   vlWriteDef def = vl_default_write_def();
   const Target target = {(char *)&def, keep, NULL, false};
@@ -210,7 +242,8 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
   Py_ssize_t count = PyList_Size(images);
   if (!file || !set_parameters(&target, VL_SETTING_WRITE, "option of an image file", keywords))
     return Py_DECREF(keep), NULL;
-  if (count < 1 || count > 64) return Py_DECREF(keep), raise_usage("1 to 64 images");
+  if (count < 1 || count > 64)
+    return Py_DECREF(keep), raise_usage("1 to 64 images");
   Context *context = NULL;
   for (Py_ssize_t i = 0; i < count; i++) {
     PyObject *item = PyList_GetItem(images, i);
@@ -220,17 +253,20 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
     context = ((Image *)item)->context;
   }
   Call call;
-  if (!call_begin(&call, context, NULL)) return Py_DECREF(keep), NULL;
+  if (!call_begin(&call, context, NULL))
+    return Py_DECREF(keep), NULL;
   vlError error = {0};
   vlResult done = count == 1 ? vl_image_write(list[0], file, &def, &error)
                              : vl_image_write_layers(list, (uint32_t)count, file, &def, &error);
   call_end(&call);
   Py_DECREF(keep);
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK)
+    return raise_result(done, &error);
   Py_RETURN_NONE;
 }
 
-/* ---- views and comparison ---------------------------------------------------------------------------------------- */
+/* ---- views and comparison
+ * ---------------------------------------------------------------------------------------- */
 
 static PyObject *image_view(Image *self, PyObject *arguments) {
   static const char *const views[] = {"standard", "khronos_neutral", "agx", "raw", NULL};
@@ -241,7 +277,8 @@ static PyObject *image_view(Image *self, PyObject *arguments) {
     return NULL;
   int view = find_choice(views, "view", name);
   Call call;
-  if (view < 0 || !call_begin(&call, self->context, NULL)) return NULL;
+  if (view < 0 || !call_begin(&call, self->context, NULL))
+    return NULL;
   vlImage *image = NULL;
   vlResult done = vl_image_view(self->image, (vlView)view, (float)exposure, NULL, &image);
   call_end(&call);
@@ -252,32 +289,41 @@ static PyObject *image_view(Image *self, PyObject *arguments) {
 static PyObject *image_compare(Image *self, PyObject *arguments) {
   PyObject *other;
   int wanted;
-  if (!PyArg_ParseTuple(arguments, "O!p:_compare", base_types[TYPE_IMAGE], &other, &wanted)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "O!p:_compare", base_types[TYPE_IMAGE], &other, &wanted))
+    return NULL;
   Image *reference = (Image *)other;
-  if (!open_image(self) || !open_image(reference)) return NULL;
+  if (!open_image(self) || !open_image(reference))
+    return NULL;
   Call call;
-  if (!call_begin(&call, self->context, NULL)) return NULL;
+  if (!call_begin(&call, self->context, NULL))
+    return NULL;
   vlImageDiff d;
   vlError error = {0};
   vlImage *heat = NULL;
-  vlResult done = vl_image_compare(reference->image, self->image, &d, wanted ? &heat : NULL, &error);
+  vlResult done =
+      vl_image_compare(reference->image, self->image, &d, wanted ? &heat : NULL, &error);
   call_end(&call);
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK)
+    return raise_result(done, &error);
   PyObject *map = heat ? image_object(self->context, heat) : (Py_INCREF(Py_None), Py_None);
-  if (!map) return NULL;
-  return Py_BuildValue("{s:d,s:d,s:d,s:d,s:d,s:d,s:K,s:K}N", "mse", d.mse, "rel_mse", d.rel_mse, "psnr", d.psnr, "flip",
-                       d.flip, "mean_ratio", d.mean_ratio, "max_abs", d.max_abs, "differing",
-                       (unsigned long long)d.differing, "not_finite", (unsigned long long)d.not_finite, map);
+  if (!map)
+    return NULL;
+  return Py_BuildValue("{s:d,s:d,s:d,s:d,s:d,s:d,s:K,s:K}N", "mse", d.mse, "rel_mse", d.rel_mse,
+                       "psnr", d.psnr, "flip", d.flip, "mean_ratio", d.mean_ratio, "max_abs",
+                       d.max_abs, "differing", (unsigned long long)d.differing, "not_finite",
+                       (unsigned long long)d.not_finite, map);
 }
 
 static PyObject *image_denoise(Image *self, PyObject *denoiser) {
   static const char *const denoisers[] = {"velo", "oidn", NULL};
   vlDenoiseDef def = vl_default_denoise_def();
   int kind = find_choice(denoisers, "denoiser", denoiser);
-  if (kind < 0 || !open_image(self)) return NULL;
+  if (kind < 0 || !open_image(self))
+    return NULL;
   def.denoiser = (vlDenoiser)kind;
   Call call;
-  if (!call_begin(&call, self->context, NULL)) return NULL;
+  if (!call_begin(&call, self->context, NULL))
+    return NULL;
   vlImage *clean = NULL;
   vlError error = {0};
   vlResult done = vl_denoise(self->image, &def, &clean, NULL, &error);
@@ -285,12 +331,15 @@ static PyObject *image_denoise(Image *self, PyObject *denoiser) {
   return done == VL_OK ? image_object(self->context, clean) : raise_result(done, &error);
 }
 
-/* ---- attributes -------------------------------------------------------------------------------------------------- */
+/* ---- attributes
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static PyObject *image_attributes(Image *self, void *unused) {
   static const int counts[] = {1, 1, 0, 2, 3, 9, 16, 4, 8, 1, 16, 0};
   (void)unused;
-  if (!open_image(self)) return NULL;
+  if (!open_image(self))
+    return NULL;
   PyObject *result = PyDict_New();
   for (uint32_t i = 0; result && i < vl_image_attribute_count(self->image); i++) {
     vlAttribute a;
@@ -300,13 +349,16 @@ static PyObject *image_attributes(Image *self, void *unused) {
     if (count == 0) {
       value = text_object(a.string);
     } else if (count == 1) {
-      value = a.type == VL_ATTRIBUTE_INT ? PyLong_FromLong((long)a.numbers[0]) : PyFloat_FromDouble(a.numbers[0]);
+      value = a.type == VL_ATTRIBUTE_INT ? PyLong_FromLong((long)a.numbers[0])
+                                         : PyFloat_FromDouble(a.numbers[0]);
     } else {
       value = PyTuple_New(count);
-      for (int k = 0; value && k < count; k++) PyTuple_SetItem(value, k, PyFloat_FromDouble(a.numbers[k]));
+      for (int k = 0; value && k < count; k++)
+        PyTuple_SetItem(value, k, PyFloat_FromDouble(a.numbers[k]));
     }
     PyObject *name = value ? text_object(a.name) : NULL;
-    if (!name || PyDict_SetItem(result, name, value) < 0) Py_CLEAR(result);
+    if (!name || PyDict_SetItem(result, name, value) < 0)
+      Py_CLEAR(result);
     Py_XDECREF(name);
     Py_XDECREF(value);
   }
@@ -315,12 +367,14 @@ static PyObject *image_attributes(Image *self, void *unused) {
 
 static PyObject *image_names(Image *self, void *unused) {
   (void)unused;
-  if (!open_image(self)) return NULL;
+  if (!open_image(self))
+    return NULL;
   uint32_t count = vl_image_channels(self->image);
   PyObject *names = PyTuple_New((Py_ssize_t)count);
   for (uint32_t i = 0; names && i < count; i++) {
     PyObject *name = text_object(vl_image_channel_name(self->image, i));
-    if (!name || PyTuple_SetItem(names, (Py_ssize_t)i, name) < 0) Py_CLEAR(names);
+    if (!name || PyTuple_SetItem(names, (Py_ssize_t)i, name) < 0)
+      Py_CLEAR(names);
   }
   return names;
 }
@@ -334,7 +388,8 @@ static PyObject *image_height(Image *self, void *unused) {
 }
 static PyObject *image_encoding(Image *self, void *unused) {
   (void)unused;
-  return open_image(self) ? PyUnicode_FromString(encodings[vl_image_encoding(self->image)]) : NULL;
+  return open_image(self) ? PyUnicode_FromString(encodings[vl_image_encoding(self->image)])
+                          : NULL;
 }
 
 static PyObject *image_close(Image *self, PyObject *unused) {
@@ -343,14 +398,17 @@ static PyObject *image_close(Image *self, PyObject *unused) {
     PyErr_SetString(PyExc_BufferError, "arrays share the image's memory: it cannot be closed");
     return NULL;
   }
-  if (context_is_ours(self->context)) vl_image_destroy(self->image);
+  if (context_is_ours(self->context))
+    vl_image_destroy(self->image);
   self->image = NULL;
   Py_RETURN_NONE;
 }
 
 static PyMethodDef image_methods[] = {
-    {"_plane", (PyCFunction)image_plane, METH_VARARGS, "Channels as a buffer: first, count, flat."},
-    {"_view", (PyCFunction)image_view, METH_VARARGS, "8-bit image for displays: view, exposure."},
+    {"_plane", (PyCFunction)image_plane, METH_VARARGS,
+     "Channels as a buffer: first, count, flat."},
+    {"_view", (PyCFunction)image_view, METH_VARARGS,
+     "8-bit image for displays: view, exposure."},
     {"_compare", (PyCFunction)image_compare, METH_VARARGS, "Differences from a reference."},
     {"_denoise", (PyCFunction)image_denoise, METH_O, "A denoised copy."},
     {"_close", (PyCFunction)image_close, METH_NOARGS, "Frees the pixels."},
@@ -360,8 +418,10 @@ static PyGetSetDef image_members[] = {
     {"width", (getter)image_width, NULL, "Pixels in a row.", NULL},
     {"height", (getter)image_height, NULL, "Number of rows.", NULL},
     {"_names", (getter)image_names, NULL, "Names of the channels.", NULL},
-    {"encoding", (getter)image_encoding, NULL, "Encoding of integers: linear, srgb or gamma.", NULL},
-    {"attributes", (getter)image_attributes, NULL, "Attributes by name, those of OpenEXR headers.", NULL},
+    {"encoding", (getter)image_encoding, NULL, "Encoding of integers: linear, srgb or gamma.",
+     NULL},
+    {"attributes", (getter)image_attributes, NULL,
+     "Attributes by name, those of OpenEXR headers.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot image_slots[] = {
@@ -373,21 +433,26 @@ static PyType_Slot image_slots[] = {
     {Py_bf_releasebuffer, image_release},
     {0, NULL},
 };
-PyType_Spec image_spec = {"velo._velo.Image", sizeof(Image), 0,
-                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, image_slots};
+PyType_Spec image_spec = {
+    "velo._velo.Image", sizeof(Image), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, image_slots};
 static PyType_Slot plane_slots[] = {
-    {Py_tp_doc, "Some channels of an image: a buffer of rows x columns, or of rows x columns x channels."},
+    {Py_tp_doc,
+     "Some channels of an image: a buffer of rows x columns, or of rows x columns x channels."},
     {Py_tp_dealloc, plane_dealloc},
     {Py_bf_getbuffer, plane_buffer},
     {Py_bf_releasebuffer, plane_release},
     {0, NULL},
 };
-PyType_Spec plane_spec = {"velo._velo.Plane", sizeof(Plane), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
-                          plane_slots};
+PyType_Spec plane_spec = {"velo._velo.Plane", sizeof(Plane), 0,
+                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, plane_slots};
 
 PyMethodDef image_functions[] = {
-    {"image_new", image_new, METH_VARARGS, "An image with a copy of an array: context, array, names, encoding."},
-    {"image_read", image_read, METH_VARARGS, "Reads an image file: context, path, names of channels or None."},
-    {"image_write", image_write, METH_VARARGS, "Writes images to one file: list, path, keywords."},
+    {"image_new", image_new, METH_VARARGS,
+     "An image with a copy of an array: context, array, names, encoding."},
+    {"image_read", image_read, METH_VARARGS,
+     "Reads an image file: context, path, names of channels or None."},
+    {"image_write", image_write, METH_VARARGS,
+     "Writes images to one file: list, path, keywords."},
     {NULL, NULL, 0, NULL},
 };

@@ -1,5 +1,6 @@
-/* _velo/long_call.c: calls of the library that take long. Such a call runs on a thread of its own; the thread of Python
- * waits for it, looks for signals and runs the callbacks. So Ctrl-C stops a call at once (vlCancel), whatever it does.
+/* _velo/long_call.c: calls of the library that take long. Such a call runs on a thread of its
+ * own; the thread of Python waits for it, looks for signals and runs the callbacks. So Ctrl-C
+ * stops a call at once (vlCancel), whatever it does.
  */
 #include <pthread.h>
 #include <semaphore.h>
@@ -35,7 +36,8 @@ static long running_pid;
 static bool shutting_down;
 static pthread_t shutter; /* the thread that ends the interpreter; only if shutting_down */
 
-/* ---- the thread of the call -------------------------------------------------------------------------------------- */
+/* ---- the thread of the call
+ * -------------------------------------------------------------------------------------- */
 
 static void *run_body(void *argument) {
   Waiting *w = argument;
@@ -68,7 +70,8 @@ static bool start(pthread_t *thread, Waiting *w) {
   enum { STACK = 8 << 20 };
   sigset_t all, old;
   pthread_attr_t attributes;
-  if (pthread_attr_init(&attributes) != 0) return false;
+  if (pthread_attr_init(&attributes) != 0)
+    return false;
   pthread_attr_setstacksize(&attributes, STACK);
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &old);
@@ -78,7 +81,8 @@ static bool start(pthread_t *thread, Waiting *w) {
   return started;
 }
 
-/* ---- the thread of Python ---------------------------------------------------------------------------------------- */
+/* ---- the thread of Python
+ * ---------------------------------------------------------------------------------------- */
 
 static PyObject *state_object(const Waiting *w, int question) {
   if (question == STEP) {
@@ -86,15 +90,18 @@ static PyObject *state_object(const Waiting *w, int question) {
     return call_package("Step", "(sdd)", s->name, s->fraction, s->elapsed);
   }
   const vlProgress *p = w->state;
-  return call_package("Progress", "(IIdddKKO)", p->spp_done, p->spp_total, p->elapsed, p->remaining, p->fraction,
-                      (unsigned long long)p->paths, (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False);
+  return call_package("Progress", "(IIdddKKO)", p->spp_done, p->spp_total, p->elapsed,
+                      p->remaining, p->fraction, (unsigned long long)p->paths,
+                      (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False);
 }
 
 static bool call_back(const Waiting *w, int question) {
   const Film *film = open_film;
-  if (question == PROGRESS && ((const vlProgress *)w->state)->pass_done) open_film = w->call->film;
+  if (question == PROGRESS && ((const vlProgress *)w->state)->pass_done)
+    open_film = w->call->film;
   PyObject *state = state_object(w, question);
-  PyObject *answer = state ? PyObject_CallFunctionObjArgs(w->call->callback, state, NULL) : NULL;
+  PyObject *answer =
+      state ? PyObject_CallFunctionObjArgs(w->call->callback, state, NULL) : NULL;
   bool go_on = answer && answer != Py_False;
   open_film = film;
   Py_XDECREF(answer);
@@ -108,17 +115,20 @@ static void wait(Waiting *w) {
   struct timespec until;
   clock_gettime(CLOCK_MONOTONIC, &until);
   until.tv_nsec += POLL;
-  if (until.tv_nsec >= 1000000000L) until.tv_nsec -= 1000000000L, until.tv_sec++;
+  if (until.tv_nsec >= 1000000000L)
+    until.tv_nsec -= 1000000000L, until.tv_sec++;
   sem_clockwait(&w->wake, CLOCK_MONOTONIC, &until);
 }
 
-/* Until the call is done. False: this is now another process, a child of a callback, where the call does not run. */
+/* Until the call is done. False: this is now another process, a child of a callback, where the
+ * call does not run. */
 static bool attend(Waiting *w, Call *call) {
   bool stopped = false;
   while (!atomic_load(&w->done)) {
     wait(w);
     int question = atomic_exchange(&w->question, NOTHING);
-    if (atomic_load(&w->done)) break;
+    if (atomic_load(&w->done))
+      break;
     PyEval_RestoreThread(call->thread);
     if (!stopped && !question && PyErr_CheckSignals() != 0) {
       vl_cancel_request(w->call->cancel);
@@ -126,53 +136,66 @@ static bool attend(Waiting *w, Call *call) {
     }
     if (question) {
       w->answer = !stopped && call_back(w, question);
-      if (!w->answer) stopped = true;
+      if (!w->answer)
+        stopped = true;
     }
     call->thread = PyEval_SaveThread();
-    if (running_pid != (long)getpid()) return false;
-    if (question) sem_post(&w->answered);
+    if (running_pid != (long)getpid())
+      return false;
+    if (question)
+      sem_post(&w->answered);
   }
   return true;
 }
 
 static void forget(Waiting *w) {
   Waiting **place = &running;
-  while (*place && *place != w) place = &(*place)->next;
-  if (*place) *place = w->next;
+  while (*place && *place != w)
+    place = &(*place)->next;
+  if (*place)
+    *place = w->next;
 }
 
 bool long_call_fail(const Own *own, PyObject *error) {
   bool any = false;
   for (Waiting *w = running; w; w = w->next)
     for (size_t i = 0; i < sizeof w->call->own / sizeof *w->call->own; i++) {
-      if (w->call->own[i] != own) continue;
-      if (!w->call->error) Py_INCREF(error), w->call->error = error;
+      if (w->call->own[i] != own)
+        continue;
+      if (!w->call->error)
+        Py_INCREF(error), w->call->error = error;
       vl_cancel_request(w->call->cancel);
       any = true;
       break;
     }
-  if (any) Py_DECREF(error);
+  if (any)
+    Py_DECREF(error);
   return any;
 }
 
 bool long_call_begin(LongCall *call, const Context *context, PyObject *callback) {
   *call = (LongCall){.callback = callback == Py_None ? NULL : callback};
-  if (!context_check(context)) return false;
+  if (!context_check(context))
+    return false;
   if (call->callback && !PyCallable_Check(call->callback))
     return raise_value("progress", callback, "callable, or None"), false;
   call->context = context;
   vlResult result = vl_cancel_create(context->context, &call->cancel);
-  if (result != VL_OK) raise_result(result, NULL);
+  if (result != VL_OK)
+    raise_result(result, NULL);
   return result == VL_OK;
 }
 
-/* The interpreter ends, and this is not the thread that ends it, so it never runs Python again: it waits for the end of
- * the process, as Python's own threads do. An exception would be printed, and Python aborts when a thread prints then.
+/* The interpreter ends, and this is not the thread that ends it, so it never runs Python again:
+ * it waits for the end of the process, as Python's own threads do. An exception would be
+ * printed, and Python aborts when a thread prints then.
  */
 static void wait_for_the_end(void) {
-  if (pthread_equal(pthread_self(), shutter)) return;
+  if (pthread_equal(pthread_self(), shutter))
+    return;
   Py_BEGIN_ALLOW_THREADS;
-  for (;;) pause();
+  for (;;)
+    pause();
   Py_END_ALLOW_THREADS;
 }
 
@@ -182,17 +205,22 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   Call call;
   *result = VL_ERROR_MEMORY;
   c->waiting = &w;
-  if (running_pid != (long)getpid()) running = NULL, running_pid = (long)getpid();
-  if (shutting_down) wait_for_the_end();
-  if (shutting_down) return raise_usage("the interpreter is shutting down"), false;
+  if (running_pid != (long)getpid())
+    running = NULL, running_pid = (long)getpid();
+  if (shutting_down)
+    wait_for_the_end();
+  if (shutting_down)
+    return raise_usage("the interpreter is shutting down"), false;
   w.next = running;
   running = &w;
-  if (!call_begin(&call, c->context, busy)) return forget(&w), false;
+  if (!call_begin(&call, c->context, busy))
+    return forget(&w), false;
   sem_init(&w.wake, 0, 0);
   sem_init(&w.answered, 0, 0);
   bool started = start(&thread, &w);
   bool here = !started || attend(&w, &call);
-  if (started && here) pthread_join(thread, NULL);
+  if (started && here)
+    pthread_join(thread, NULL);
   call_end(&call);
   forget(&w);
   if (!here) {
@@ -201,18 +229,22 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   }
   sem_destroy(&w.wake);
   sem_destroy(&w.answered);
-  if (shutting_down) wait_for_the_end();
+  if (shutting_down)
+    wait_for_the_end();
   *result = w.result;
   if (c->error) {
-    if (!PyErr_Occurred()) PyErr_SetObject((PyObject *)Py_TYPE(c->error), c->error);
+    if (!PyErr_Occurred())
+      PyErr_SetObject((PyObject *)Py_TYPE(c->error), c->error);
     Py_CLEAR(c->error);
   }
-  if (!started) raise_result(VL_ERROR_MEMORY, NULL);
+  if (!started)
+    raise_result(VL_ERROR_MEMORY, NULL);
   return !PyErr_Occurred();
 }
 
 void long_call_end(LongCall *call) {
-  if (context_is_ours(call->context)) vl_cancel_destroy(call->cancel);
+  if (context_is_ours(call->context))
+    vl_cancel_destroy(call->cancel);
 }
 
 /* A callback that does not return is not waited for longer than this. */
@@ -221,10 +253,12 @@ PyObject *shut_down(PyObject *module, PyObject *unused) {
   const int MOST = 5000; /* ms */
   shutter = pthread_self();
   shutting_down = true;
-  if (running_pid != (long)getpid()) running = NULL;
+  if (running_pid != (long)getpid())
+    running = NULL;
   for (int i = 0; running && i < MOST; i++) {
     const struct timespec pause = {0, 1000000};
-    for (Waiting *w = running; w; w = w->next) vl_cancel_request(w->call->cancel);
+    for (Waiting *w = running; w; w = w->next)
+      vl_cancel_request(w->call->cancel);
     PyThreadState *thread = PyEval_SaveThread();
     nanosleep(&pause, NULL);
     PyEval_RestoreThread(thread);

@@ -4,8 +4,9 @@
 #include <string.h>
 
 PyTypeObject *base_types[TYPE_COUNT], *types[TYPE_COUNT];
-static const char *const type_names[TYPE_COUNT] = {"Context", "Scene",  "World",    "Film",   "Image",
-                                                   "Plane",   "Camera", "Settings", "Handle", "Own"};
+static const char *const type_names[TYPE_COUNT] = {"Context", "Scene", "World",  "Film",
+                                                   "Image",   "Plane", "Camera", "Settings",
+                                                   "Handle",  "Own"};
 
 void *make_object(int type) {
   allocfunc allocate = (allocfunc)PyType_GetSlot(types[type], Py_tp_alloc);
@@ -28,9 +29,11 @@ static PyObject *set_type(PyObject *module, PyObject *arguments) {
   (void)module;
   const char *name;
   PyObject *type;
-  if (!PyArg_ParseTuple(arguments, "sO:set_type", &name, &type)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "sO:set_type", &name, &type))
+    return NULL;
   for (int i = 0; i < TYPE_COUNT; i++) {
-    if (strcmp(name, type_names[i]) != 0) continue;
+    if (strcmp(name, type_names[i]) != 0)
+      continue;
     if (!PyType_Check(type) || !PyType_IsSubtype((PyTypeObject *)type, base_types[i]))
       return PyErr_Format(PyExc_TypeError, "not a subclass of %s", name);
     Py_INCREF(type);
@@ -50,7 +53,8 @@ static PyObject *texts(const char *(*name)(uint32_t)) {
   PyObject *list = PyList_New(0);
   for (uint32_t i = 0; list && name(i); i++) {
     PyObject *text = PyUnicode_FromString(name(i));
-    if (!text || PyList_Append(list, text) < 0) Py_CLEAR(list);
+    if (!text || PyList_Append(list, text) < 0)
+      Py_CLEAR(list);
     Py_XDECREF(text);
   }
   return list;
@@ -74,10 +78,13 @@ static PyObject *kinds(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *name;
   const char *families[32] = {0};
-  if (!PyArg_ParseTuple(arguments, "O:kinds", &name)) return NULL;
-  for (uint32_t i = 0; i < 31 && vl_kind_family(i); i++) families[i] = vl_kind_family(i)->name;
+  if (!PyArg_ParseTuple(arguments, "O:kinds", &name))
+    return NULL;
+  for (uint32_t i = 0; i < 31 && vl_kind_family(i); i++)
+    families[i] = vl_kind_family(i)->name;
   int found = find_choice(families, "family of kinds", name);
-  if (found < 0) return NULL;
+  if (found < 0)
+    return NULL;
   const vlKindFamily *family = vl_kind_family((uint32_t)found);
   PyObject *result = PyDict_New();
   for (uint32_t k = 0; result && k < family->kind_count; k++) {
@@ -85,10 +92,12 @@ static PyObject *kinds(PyObject *module, PyObject *arguments) {
     PyObject *words = PyDict_New();
     for (uint32_t i = 0; words && i < row->parameter_count; i++) {
       const vlParameter *p = &row->parameters[i];
-      if (p->flags & VL_PARAMETER_SHORTHAND || !p->member || !p->member[0]) continue;
+      if (p->flags & VL_PARAMETER_SHORTHAND || !p->member || !p->member[0])
+        continue;
       const char *dot = strrchr(p->member, '.');
       PyObject *text = PyUnicode_FromString(p->description ? p->description : "");
-      if (!text || PyDict_SetItemString(words, dot ? dot + 1 : p->member, text) < 0) Py_CLEAR(words);
+      if (!text || PyDict_SetItemString(words, dot ? dot + 1 : p->member, text) < 0)
+        Py_CLEAR(words);
       Py_XDECREF(text);
     }
     char kind[64] = "";
@@ -96,7 +105,8 @@ static PyObject *kinds(PyObject *module, PyObject *arguments) {
       char c = family->constants[k][i];
       kind[i] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
     }
-    if (!words || PyDict_SetItemString(result, kind, words) < 0) Py_CLEAR(result);
+    if (!words || PyDict_SetItemString(result, kind, words) < 0)
+      Py_CLEAR(result);
     Py_XDECREF(words);
   }
   return result;
@@ -110,32 +120,39 @@ static PyMethodDef functions[] = {
     {"channel_names", channel_names, METH_NOARGS, "Names of ground truth channels."},
     {"kinds", kinds, METH_VARARGS, "Kinds of a family with their keywords."},
     {"check_value", check_value, METH_VARARGS, "A number, where it is one that may be given."},
-    {"check_choice", check_choice, METH_VARARGS, "The index of a word, where it is one of some."},
+    {"check_choice", check_choice, METH_VARARGS,
+     "The index of a word, where it is one of some."},
     {"check_setting", check_setting, METH_VARARGS, "The value of a setting, where it is one."},
     {"unknown_name", unknown_name, METH_VARARGS, "The message about an unknown name."},
-    {"shut_down", shut_down, METH_NOARGS, "Stops the calls of other threads; later ones are errors."},
+    {"shut_down", shut_down, METH_NOARGS,
+     "Stops the calls of other threads; later ones are errors."},
     {NULL, NULL, 0, NULL},
 };
 
 static struct PyModuleDef module_def = {PyModuleDef_HEAD_INIT, .m_name = "velo._velo",
-                                        .m_doc = "velo's library for the Python package velo.", .m_size = -1,
-                                        .m_methods = functions};
+                                        .m_doc = "velo's library for the Python package velo.",
+                                        .m_size = -1, .m_methods = functions};
 
 PyMODINIT_FUNC PyInit__velo(void) {
-  PyType_Spec *specs[TYPE_COUNT] = {&context_spec, &scene_spec,  &world_spec,    &film_spec,   &image_spec,
-                                    &plane_spec,   &camera_spec, &settings_spec, &handle_spec, &own_spec};
+  PyType_Spec *specs[TYPE_COUNT] = {&context_spec, &scene_spec, &world_spec,  &film_spec,
+                                    &image_spec,   &plane_spec, &camera_spec, &settings_spec,
+                                    &handle_spec,  &own_spec};
   PyObject *module = PyModule_Create(&module_def);
-  if (!module) return NULL;
+  if (!module)
+    return NULL;
   for (int i = 0; i < TYPE_COUNT; i++) {
     PyObject *type = PyType_FromSpec(specs[i]);
-    if (!type || PyModule_AddObjectRef(module, type_names[i], type) < 0) return NULL;
+    if (!type || PyModule_AddObjectRef(module, type_names[i], type) < 0)
+      return NULL;
     base_types[i] = (PyTypeObject *)type;
     Py_INCREF(type);
     types[i] = (PyTypeObject *)type;
   }
-  PyMethodDef *tables[] = {camera_functions, film_functions, image_functions,    render_functions,
-                           world_functions,  own_functions,  own_trace_functions};
+  PyMethodDef *tables[] = {camera_functions,   film_functions,  image_functions,
+                           render_functions,   world_functions, own_functions,
+                           own_trace_functions};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
-    if (PyModule_AddFunctions(module, tables[i]) < 0) return NULL;
+    if (PyModule_AddFunctions(module, tables[i]) < 0)
+      return NULL;
   return module;
 }

@@ -1,5 +1,6 @@
-/* _velo/module.h: what the files of the extension module share. The module uses velo's public headers and CPython's
- * stable ABI only. Its classes are thin: python/velo adds the convenient methods. */
+/* _velo/module.h: what the files of the extension module share. The module uses velo's public
+ * headers and CPython's stable ABI only. Its classes are thin: python/velo adds the convenient
+ * methods. */
 #ifndef VELO_PYTHON_MODULE_H
 #define VELO_PYTHON_MODULE_H
 
@@ -11,7 +12,9 @@
 #include <velo/setting.h>
 #include <velo/velo.h>
 
-/* ---- objects ----------------------------------------------------------------------------------------------------- */
+/* ---- objects
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Context {
   PyObject_HEAD vlContext *context;
@@ -46,7 +49,8 @@ typedef struct Image {
   Py_ssize_t exports; /* buffers in use */
 } Image;
 
-/* Channels `first` to `first + count - 1` of an image, as a buffer; flat: without the last dimension. */
+/* Channels `first` to `first + count - 1` of an image, as a buffer; flat: without the last
+ * dimension. */
 typedef struct Plane {
   PyObject_HEAD Image *image;
   uint32_t first, count;
@@ -66,7 +70,8 @@ typedef struct Settings {
   PyObject *keep; /* list */
 } Settings;
 
-/* Code of one's own: Python functions that the library's threads call. velo/own.py has the classes around it. */
+/* Code of one's own: Python functions that the library's threads call. velo/own.py has the
+ * classes around it. */
 typedef struct Own {
   PyObject_HEAD vlOwnKind kind;
   char name[VL_OWN_NAME];
@@ -84,7 +89,9 @@ typedef struct Handle {
   uint32_t index;
 } Handle;
 
-/* The classes that the module makes objects of. The Python package replaces them by its subclasses. */
+/* The classes that the module makes objects of. The Python package replaces them by its
+ * subclasses.
+ */
 enum {
   TYPE_CONTEXT,
   TYPE_SCENE,
@@ -99,8 +106,8 @@ enum {
   TYPE_COUNT
 };
 extern PyTypeObject *base_types[TYPE_COUNT], *types[TYPE_COUNT];
-extern PyType_Spec context_spec, scene_spec, world_spec, film_spec, image_spec, plane_spec, camera_spec, settings_spec,
-    handle_spec, own_spec;
+extern PyType_Spec context_spec, scene_spec, world_spec, film_spec, image_spec, plane_spec,
+    camera_spec, settings_spec, handle_spec, own_spec;
 
 /* A new object of a class, all zero; null with an exception. */
 void *make_object(int type);
@@ -108,15 +115,16 @@ void *make_object(int type);
 void free_object(PyObject *self);
 bool is_object(PyObject *object, int type);
 
-/* ---- calls of the library ---------------------------------------------------------------------------------------- */
+/* ---- calls of the library
+ * ---------------------------------------------------------------------------------------- */
 
 /* A call of the library without the GIL. */
 typedef struct Call {
   PyThreadState *thread;
   bool *busy;
 } Call;
-/* Checks that the context may be used by this process and thread, marks `busy` (may be null) and releases the GIL.
- * False: an exception is set. */
+/* Checks that the context may be used by this process and thread, marks `busy` (may be null)
+ * and releases the GIL. False: an exception is set. */
 bool call_begin(Call *call, const Context *context, bool *busy);
 void call_end(Call *call);
 /* The same check alone, for calls that keep the GIL. */
@@ -124,7 +132,8 @@ bool context_check(const Context *context);
 /* Whether the context belongs to this process, without an exception. */
 bool context_is_ours(const Context *context);
 
-/* A call that takes long: a load, a build, a render, ground truth. It runs on a thread of its own (long_call.c). */
+/* A call that takes long: a load, a build, a render, ground truth. It runs on a thread of its
+ * own (long_call.c). */
 typedef struct Waiting Waiting;
 typedef struct LongCall {
   const Context *context;
@@ -136,10 +145,11 @@ typedef struct LongCall {
   PyObject *error;   /* the first exception of these functions; null: none */
 } LongCall;
 typedef vlResult LongBody(void *user);
-/* callback: a callable, or None. False: an exception is set. True: long_call_end must follow. */
+/* callback: a callable, or None. False: an exception is set. True: long_call_end must follow.
+ */
 bool long_call_begin(LongCall *call, const Context *context, PyObject *callback);
-/* Runs body(user) without the GIL; *result is what it returns. False: an exception is set, by a signal, the callback,
- * or since the call could not run. */
+/* Runs body(user) without the GIL; *result is what it returns. False: an exception is set, by a
+ * signal, the callback, or since the call could not run. */
 bool long_call_run(LongCall *call, bool *busy, LongBody *body, void *user, vlResult *result);
 void long_call_end(LongCall *call);
 /* The callbacks for the def of a call; user is the LongCall. */
@@ -147,7 +157,8 @@ bool long_call_progress(void *user, const vlProgress *progress);
 bool long_call_step(void *user, const vlStep *step);
 /* Ends the long calls that call this code, with an exception (taken). False: there are none. */
 bool long_call_fail(const Own *own, PyObject *error);
-/* The film that this thread may read, although a render runs: inside a callback after a pass. */
+/* The film that this thread may read, although a render runs: inside a callback after a pass.
+ */
 extern _Thread_local const Film *open_film;
 /* shut_down(): stops the calls of other threads, and waits for them; later ones are errors. */
 PyObject *shut_down(PyObject *module, PyObject *unused);
@@ -158,10 +169,12 @@ PyObject *call_package(const char *name, const char *format, ...);
 PyObject *raise_result(vlResult result, const vlError *error);
 /* Sets velo.UsageError; returns null. */
 PyObject *raise_usage(const char *format, ...);
-/* Sets velo.UsageError: `what` must be ..., it is ...; returns null. The format says what it must be. */
+/* Sets velo.UsageError: `what` must be ..., it is ...; returns null. The format says what it
+ * must be. */
 PyObject *raise_value(const char *what, PyObject *value, const char *format, ...);
 
-/* ---- the caller's numbers and texts -------------------------------------------------------------------------------
+/* ---- the caller's numbers and texts
+ * -------------------------------------------------------------------------------
  */
 
 enum { MOST_PIXELS = 1 << 24 }; /* of a side of a camera's image */
@@ -170,9 +183,12 @@ enum { MOST_PIXELS = 1 << 24 }; /* of a side of a camera's image */
 PyObject *text_object(const char *text);
 /* 1: *number is read; 0: it is not a number; -1: an exception of the caller's own. */
 int to_double(PyObject *value, double *number);
-/* Each of these is false (null, -1) with an exception that names `what`, the range and the value. */
+/* Each of these is false (null, -1) with an exception that names `what`, the range and the
+ * value.
+ */
 bool read_whole(PyObject *value, const char *what, int64_t low, int64_t high, int64_t *whole);
-bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high, uint32_t *count);
+bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high,
+                uint32_t *count);
 bool read_size(PyObject *width, PyObject *height, uint32_t most, uint32_t size[2]);
 /* A value of any row of one number, a flag or a choice, in the def's unit. */
 bool read_row(PyObject *value, const char *what, const vlParameter *row, double *number);
@@ -188,12 +204,17 @@ Py_ssize_t sequence_size(PyObject *value, const char *what, Py_ssize_t low, Py_s
 /* UTF-8 text of a str, kept alive by the list. */
 const char *keep_text(PyObject *keep, PyObject *value, const char *what);
 /* keep_text for the first `count` items of a sequence. */
-bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *what, const char **texts);
+bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *what,
+                const char **texts);
 const char *keep_path(PyObject *keep, PyObject *value, const char *what);
-/* Whether this many bytes more than the context holds now may be taken; `what` is what needs them. */
+/* Whether this many bytes more than the context holds now may be taken; `what` is what needs
+ * them.
+ */
 bool check_memory(const Context *context, uint64_t bytes, const char *what);
 
-/* ---- values ------------------------------------------------------------------------------------------------------ */
+/* ---- values
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* Numbers of a buffer or of nested sequences, as doubles, floats or uint32s. */
 typedef struct Numbers {
@@ -222,22 +243,27 @@ typedef struct Target {
   const Scene *scene; /* of textures and the like; may be null */
   bool spectrum;      /* textures: which member EITHER_INPUT sets */
 } Target;
-/* The parameter with that name among `count`: its member, the member's last word, or its name in files. */
+/* The parameter with that name among `count`: its member, the member's last word, or its name
+ * in files. */
 const vlParameter *find_parameter(const vlParameter *rows, size_t count, const char *name);
 bool set_parameter(const Target *target, const vlParameter *row, PyObject *value);
 PyObject *get_parameter(const char *def, const vlParameter *row);
-/* velo.UsageError: there is no such keyword, with the nearest of names. `names` is a list, stolen. */
+/* velo.UsageError: there is no such keyword, with the nearest of names. `names` is a list,
+ * stolen.
+ */
 bool raise_unknown(const char *thing, const char *name, PyObject *names);
 /* Appends the names of rows to a list. */
 bool append_names(PyObject *list, const vlParameter *rows, size_t count);
 bool append_settings(PyObject *list, vlSettingGroup group);
-/* Index of a word in a list that ends with null, comparing letters and digits only; -1 with an exception. */
+/* Index of a word in a list that ends with null, comparing letters and digits only; -1 with an
+ * exception. */
 int find_choice(const char *const *choices, const char *what, PyObject *value);
 bool keep_object(PyObject *keep, PyObject *object); /* appends, without stealing */
 bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *spectrum, const char *what);
 
 /* Sets each item of a dict. Unknown names are UsageErrors. */
-bool set_parameters(const Target *target, vlSettingGroup group, const char *thing, PyObject *keywords);
+bool set_parameters(const Target *target, vlSettingGroup group, const char *thing,
+                    PyObject *keywords);
 
 /* Kind `name` of a family; -1 with an exception. thing: what messages call it. */
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name);
@@ -248,13 +274,16 @@ const Own *own_of_sampler(const vlRenderDef *def);
 const Own *own_of_tracer(const vlRenderDef *def);
 /* An Own of this kind from a Python value; null with an exception. */
 Own *own_read(PyObject *value, vlOwnKind kind, const char *what);
-/* Raises the exception that its function left outside of a long call, if any. False: raised. own may be null. */
+/* Raises the exception that its function left outside of a long call, if any. False: raised.
+ * own may be null. */
 bool own_check(const Own *own);
 
-/* ---- functions of the files -------------------------------------------------------------------------------------- */
+/* ---- functions of the files
+ * -------------------------------------------------------------------------------------- */
 
-PyObject *image_object(Context *context, vlImage *image); /* takes the image, also when it fails */
-bool scene_open(const Scene *self);                       /* false: an exception is set */
+PyObject *image_object(Context *context,
+                       vlImage *image); /* takes the image, also when it fails */
+bool scene_open(const Scene *self);     /* false: an exception is set */
 /* A file that is read. */
 typedef struct Loading {
   vlScene *scene;
@@ -263,7 +292,8 @@ typedef struct Loading {
   vlLoadedGroup *loaded; /* null: it is added to the scene; else as a group */
   vlError error;
 } Loading;
-bool load_file(Scene *self, Loading *loading, PyObject *callback); /* false: an exception is set */
+bool load_file(Scene *self, Loading *loading,
+               PyObject *callback); /* false: an exception is set */
 PyObject *scene_add(Scene *self, PyObject *arguments);
 PyObject *scene_load_group(Scene *self, PyObject *arguments);
 PyObject *scene_add_instance(Scene *self, PyObject *arguments);
@@ -274,7 +304,7 @@ PyObject *scene_handles(Scene *self, PyObject *family);
 PyObject *scene_mesh(Scene *self, PyObject *handle);
 PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
-extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[], world_functions[],
-    own_functions[], own_trace_functions[];
+extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[],
+    world_functions[], own_functions[], own_trace_functions[];
 
 #endif

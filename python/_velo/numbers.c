@@ -18,7 +18,9 @@ static bool store(double value, char type, const char *what, char *result) {
     memcpy(result, &single, sizeof single);
   } else {
     if (!(value >= 0 && value <= 4294967295.0) || value != (double)(uint32_t)value)
-      return raise_usage("%s: %.15g is not an index: a whole number from 0 to 4294967295", what, value), false;
+      return raise_usage("%s: %.15g is not an index: a whole number from 0 to 4294967295", what,
+                         value),
+             false;
     uint32_t whole = (uint32_t)value;
     memcpy(result, &whole, sizeof whole);
   }
@@ -27,13 +29,14 @@ static bool store(double value, char type, const char *what, char *result) {
 
 /* One item of a buffer as a double. False: the format is not one of numbers. */
 static bool load(const char *item, char format, Py_ssize_t size, double *value) {
-#define CASE(letter, Type)                          \
-  case letter: {                                    \
-    Type v;                                         \
-    if (size != (Py_ssize_t)sizeof v) return false; \
-    memcpy(&v, item, sizeof v);                     \
-    *value = (double)v;                             \
-    return true;                                    \
+#define CASE(letter, Type)            \
+  case letter: {                      \
+    Type v;                           \
+    if (size != (Py_ssize_t)sizeof v) \
+      return false;                   \
+    memcpy(&v, item, sizeof v);       \
+    *value = (double)v;               \
+    return true;                      \
   }
   switch (format) {
     CASE('d', double)
@@ -56,7 +59,8 @@ static bool load(const char *item, char format, Py_ssize_t size, double *value) 
 
 static char plain_format(const Py_buffer *view) {
   const char *format = view->format ? view->format : "B";
-  if (*format == '@' || *format == '=' || *format == '<') format++;
+  if (*format == '@' || *format == '=' || *format == '<')
+    format++;
   return format[0] && !format[1] ? format[0] : 0;
 }
 
@@ -67,15 +71,16 @@ static bool from_buffer(PyObject *object, char type, const char *what, Numbers *
     return raise_usage("%s: the buffer cannot be read", what), false;
   }
   char format = plain_format(&n->view);
-  if (n->view.ndim > 4) return raise_usage("%s has more than four dimensions", what), false;
+  if (n->view.ndim > 4)
+    return raise_usage("%s has more than four dimensions", what), false;
   n->dimensions = n->view.ndim;
   n->count = 1;
   for (int i = 0; i < n->view.ndim; i++) {
     n->shape[i] = (size_t)n->view.shape[i];
     n->count *= n->shape[i];
   }
-  bool same =
-      format == type || (type == 'I' && (format == 'L' || format == 'i') && n->view.itemsize == 4 && format != 'i');
+  bool same = format == type || (type == 'I' && (format == 'L' || format == 'i') &&
+                                 n->view.itemsize == 4 && format != 'i');
   if (same && PyBuffer_IsContiguous(&n->view, 'C')) {
     n->data = n->view.buf;
     return true;
@@ -109,21 +114,26 @@ typedef struct Growing {
   size_t count, room;
 } Growing;
 
-static bool flatten(PyObject *object, char type, const char *what, int depth, Numbers *n, Growing *g) {
+static bool flatten(PyObject *object, char type, const char *what, int depth, Numbers *n,
+                    Growing *g) {
   size_t size = item_size(type);
   if (depth > 0 && PyNumber_Check(object) && !PySequence_Check(object)) {
     double value;
     int read = to_double(object, &value);
-    if (read < 0) return false;
-    if (!read) return raise_value(what, object, "numbers"), false;
-    if (depth != n->dimensions && g->count) return raise_usage("%s: its rows differ in length", what), false;
+    if (read < 0)
+      return false;
+    if (!read)
+      return raise_value(what, object, "numbers"), false;
+    if (depth != n->dimensions && g->count)
+      return raise_usage("%s: its rows differ in length", what), false;
     n->dimensions = depth;
     if (g->count == MOST_LISTED)
       return raise_usage("%s: more than %d numbers: give an array", what, MOST_LISTED), false;
     if (g->count == g->room) {
       size_t room = g->room ? 2 * g->room : 64;
       char *more = realloc(g->data, room * size);
-      if (!more) return PyErr_NoMemory(), false;
+      if (!more)
+        return PyErr_NoMemory(), false;
       g->data = more, g->room = room;
     }
     return store(value, type, what, g->data + size * g->count++);
@@ -131,23 +141,29 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
   if (depth >= 4 || !PySequence_Check(object) || PyUnicode_Check(object))
     return raise_value(what, object, "numbers: an array or nested lists"), false;
   Py_ssize_t length = sequence_size(object, what, 0, MOST_LISTED);
-  if (length < 0) return false;
-  if (n->shape[depth] == 0) n->shape[depth] = (size_t)length;
-  if (n->shape[depth] != (size_t)length) return raise_usage("%s: its rows differ in length", what), false;
+  if (length < 0)
+    return false;
+  if (n->shape[depth] == 0)
+    n->shape[depth] = (size_t)length;
+  if (n->shape[depth] != (size_t)length)
+    return raise_usage("%s: its rows differ in length", what), false;
   for (Py_ssize_t i = 0; i < length; i++) {
     PyObject *item = PySequence_GetItem(object, i);
     bool fine = item && flatten(item, type, what, depth + 1, n, g);
     Py_XDECREF(item);
-    if (!fine) return false;
+    if (!fine)
+      return false;
   }
   return true;
 }
 
 bool numbers_read_any(PyObject *object, char type, const char *what, Numbers *n) {
   *n = (Numbers){0};
-  if (PyBytes_Check(object)) return raise_value(what, object, "numbers: an array or nested lists"), false;
+  if (PyBytes_Check(object))
+    return raise_value(what, object, "numbers: an array or nested lists"), false;
   if (PyObject_CheckBuffer(object)) {
-    if (from_buffer(object, type, what, n)) return true;
+    if (from_buffer(object, type, what, n))
+      return true;
     numbers_release(n);
     return false;
   }
@@ -156,7 +172,8 @@ bool numbers_read_any(PyObject *object, char type, const char *what, Numbers *n)
   n->owned = g.data;
   n->data = g.data;
   n->count = g.count;
-  if (!fine) numbers_release(n);
+  if (!fine)
+    numbers_release(n);
   return fine;
 }
 
@@ -165,24 +182,30 @@ static size_t first_not_finite(const Numbers *n, char type) {
   const float *singles = n->data;
   const double *doubles = n->data;
   size_t i = 0;
-  while (i < n->count && (type == 'f' ? isfinite(singles[i]) : isfinite(doubles[i]))) i++;
+  while (i < n->count && (type == 'f' ? isfinite(singles[i]) : isfinite(doubles[i])))
+    i++;
   return i;
 }
 
 bool numbers_read(PyObject *object, char type, const char *what, Numbers *n) {
-  if (!numbers_read_any(object, type, what, n)) return false;
-  if (type == 'I') return true;
+  if (!numbers_read_any(object, type, what, n))
+    return false;
+  if (type == 'I')
+    return true;
   size_t i = first_not_finite(n, type);
-  if (i == n->count) return true;
-  double value = type == 'f' ? (double)((const float *)n->data)[i] : ((const double *)n->data)[i];
-  raise_usage("%s: item %zu of %zu is %g%s; all must be finite numbers", what, i, n->count, value,
-              type == 'f' ? " as a 32-bit float" : "");
+  if (i == n->count)
+    return true;
+  double value =
+      type == 'f' ? (double)((const float *)n->data)[i] : ((const double *)n->data)[i];
+  raise_usage("%s: item %zu of %zu is %g%s; all must be finite numbers", what, i, n->count,
+              value, type == 'f' ? " as a 32-bit float" : "");
   numbers_release(n);
   return false;
 }
 
 void numbers_release(Numbers *n) {
-  if (n->view.obj) PyBuffer_Release(&n->view);
+  if (n->view.obj)
+    PyBuffer_Release(&n->view);
   n->view.obj = NULL;
   free(n->owned);
   n->owned = NULL;
@@ -190,7 +213,8 @@ void numbers_release(Numbers *n) {
 
 static bool copy(PyObject *object, char type, const char *what, size_t count, void *result) {
   Numbers n;
-  if (!numbers_read(object, type, what, &n)) return false;
+  if (!numbers_read(object, type, what, &n))
+    return false;
   bool fine = n.count == count;
   if (fine)
     memcpy(result, n.data, count * item_size(type));

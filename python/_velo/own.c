@@ -1,20 +1,24 @@
-/* _velo/own.c: code of one's own (velo/own.h): the library's threads call Python functions of velo/own.py. Each call
- * takes the GIL once. An exception ends the call of the library that needs the function, and is raised there. */
+/* _velo/own.c: code of one's own (velo/own.h): the library's threads call Python functions of
+ * velo/own.py. Each call takes the GIL once. An exception ends the call of the library that
+ * needs the function, and is raised there. */
 #include <math.h>
 #include <string.h>
 
 #include "own.h"
 
-/* ---- calls ------------------------------------------------------------------------------------------------------- */
+/* ---- calls
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static PyObject *view_of(const Column *c) {
-  if (!c->data) return Py_INCREF(Py_None), Py_None;
+  if (!c->data)
+    return Py_INCREF(Py_None), Py_None;
   return PyMemoryView_FromMemory((char *)(uintptr_t)c->data, (Py_ssize_t)(c->count * c->size),
                                  c->written ? PyBUF_WRITE : PyBUF_READ);
 }
 
-bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain, Py_ssize_t plain_count,
-              const Column *columns, Py_ssize_t column_count) {
+bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain,
+              Py_ssize_t plain_count, const Column *columns, Py_ssize_t column_count) {
   Py_ssize_t head = first ? 1 : 0;
   PyObject *arguments = PyTuple_New(head + plain_count + column_count), *result = NULL;
   bool good = arguments != NULL;
@@ -30,7 +34,8 @@ bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain, 
     PyObject *view = view_of(&columns[i]);
     good = view && PyTuple_SetItem(arguments, head + plain_count + i, view) == 0;
   }
-  if (good) result = PyObject_CallObject(function, arguments);
+  if (good)
+    result = PyObject_CallObject(function, arguments);
   Py_XDECREF(arguments);
   if (result) {
     Py_DECREF(result);
@@ -39,7 +44,8 @@ bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain, 
   PyObject *type, *value, *trace;
   PyErr_Fetch(&type, &value, &trace);
   PyErr_NormalizeException(&type, &value, &trace);
-  if (trace) PyException_SetTraceback(value, trace);
+  if (trace)
+    PyException_SetTraceback(value, trace);
   Py_XDECREF(type), Py_XDECREF(trace);
   if (!long_call_fail(own, value)) {
     if (own->error)
@@ -61,7 +67,8 @@ static void rays(void *user, const vlOwnFilmPoints *p, const vlOwnRays *r) {
     columns[i] = (Column){i < IN ? in[i] : out[i - IN], sizeof(double), p->count, i >= IN};
   const long plain[] = {p->width, p->height};
   if (!own_call(own, own->function, NULL, plain, 2, columns, IN + OUT))
-    for (uint32_t i = 0; i < p->count; i++) r->dx[i] = (double)NAN;
+    for (uint32_t i = 0; i < p->count; i++)
+      r->dx[i] = (double)NAN;
   PyGILState_Release(state);
 }
 
@@ -76,7 +83,8 @@ static void pixels(void *user, const vlOwnSpacePoints *p) {
                             {p->film_y, d, p->count, true}};
   const long plain[] = {p->width, p->height};
   if (!own_call(own, own->pixels, NULL, plain, 2, columns, sizeof columns / sizeof *columns))
-    for (uint32_t i = 0; i < p->count; i++) p->film_x[i] = (double)NAN;
+    for (uint32_t i = 0; i < p->count; i++)
+      p->film_x[i] = (double)NAN;
   PyGILState_Release(state);
 }
 
@@ -94,7 +102,9 @@ static void numbers(void *user, const vlOwnSamples *s) {
   PyGILState_Release(state);
 }
 
-/* ---- objects ----------------------------------------------------------------------------------------------------- */
+/* ---- objects
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void own_dealloc(Own *self) {
   Py_XDECREF(self->function);
@@ -109,20 +119,24 @@ static PyObject *own_new(PyObject *module, PyObject *arguments) {
   static const char *const kinds[] = {"camera", "sampler", "tracer", NULL};
   PyObject *kind, *name, *function, *other;
   int lens;
-  if (!PyArg_ParseTuple(arguments, "OOOOp:own_new", &kind, &name, &function, &other, &lens)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OOOOp:own_new", &kind, &name, &function, &other, &lens))
+    return NULL;
   int found = find_choice(kinds, "kind of own code", kind);
-  if (found < 0) return NULL;
+  if (found < 0)
+    return NULL;
   PyObject *keep = PyList_New(0);
   const char *text = keep ? keep_text(keep, name, "name") : NULL;
   bool fits = text && strlen(text) > 0 && strlen(text) < VL_OWN_NAME;
   Own *self = fits ? make_object(TYPE_OWN) : NULL;
-  if (text && !fits) raise_value("name", name, "a text of 1 to %d bytes", VL_OWN_NAME - 1);
+  if (text && !fits)
+    raise_value("name", name, "a text of 1 to %d bytes", VL_OWN_NAME - 1);
   if (self) {
     memcpy(self->name, text, strlen(text) + 1);
     self->kind = (vlOwnKind)found;
     Py_INCREF(function);
     self->function = function;
-    if (other != Py_None) Py_INCREF(other), self->pixels = other;
+    if (other != Py_None)
+      Py_INCREF(other), self->pixels = other;
     self->camera = (vlOwnCamera){self->name, rays, self->pixels ? pixels : NULL, lens, self};
     self->sampler = (vlOwnSampler){self->name, numbers, self};
     self->tracer = (vlOwnTracer){self->name, own_radiance, self};
@@ -133,7 +147,8 @@ static PyObject *own_new(PyObject *module, PyObject *arguments) {
 
 Own *own_read(PyObject *value, vlOwnKind kind, const char *what) {
   static const char *const classes[] = {"velo.OwnCamera", "velo.OwnSampler", "velo.OwnTracer"};
-  if (is_object(value, TYPE_OWN) && ((Own *)value)->kind == kind) return (Own *)value;
+  if (is_object(value, TYPE_OWN) && ((Own *)value)->kind == kind)
+    return (Own *)value;
   raise_value(what, value, "a %s", classes[kind]);
   return NULL;
 }
@@ -151,7 +166,8 @@ const Own *own_of_tracer(const vlRenderDef *def) {
 }
 
 bool own_check(const Own *own) {
-  if (!own || !own->error) return true;
+  if (!own || !own->error)
+    return true;
   Own *self = (Own *)(uintptr_t)own;
   PyErr_SetObject((PyObject *)Py_TYPE(self->error), self->error);
   Py_CLEAR(self->error);
@@ -163,8 +179,8 @@ static PyType_Slot own_slots[] = {
     {Py_tp_dealloc, own_dealloc},
     {0, NULL},
 };
-PyType_Spec own_spec = {"velo._velo.Own", sizeof(Own), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
-                        own_slots};
+PyType_Spec own_spec = {"velo._velo.Own", sizeof(Own), 0,
+                        Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, own_slots};
 
 PyMethodDef own_functions[] = {
     {"own_new", own_new, METH_VARARGS, "Code of one's own."},

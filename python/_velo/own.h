@@ -11,9 +11,10 @@ typedef struct Column {
   uint32_t count;
   bool written;
 } Column;
-/* Calls function([first,] *plain, *columns) with the GIL. False: it raised, and the calls that need it are ended. */
-bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain, Py_ssize_t plain_count,
-              const Column *columns, Py_ssize_t column_count);
+/* Calls function([first,] *plain, *columns) with the GIL. False: it raised, and the calls that
+ * need it are ended. */
+bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain,
+              Py_ssize_t plain_count, const Column *columns, Py_ssize_t column_count);
 /* vlOwnRadianceFn; user is the Own. */
 void own_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths);
 

@@ -4,7 +4,9 @@
 
 #include "module.h"
 
-/* ---- settings ---------------------------------------------------------------------------------------------------- */
+/* ---- settings
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void settings_dealloc(Settings *self) {
   Py_XDECREF(self->keep);
@@ -18,7 +20,8 @@ static const vlParameter *settings_row(const char *name) {
     const vlKindFamily *family = vl_kind_family_find(families[i]);
     for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
       row = find_parameter(family->rows[k]->parameters, family->rows[k]->parameter_count, name);
-      if (row && (row->type == VL_PARAMETER_BLOCK || row->flags & VL_PARAMETER_SHORTHAND)) row = NULL;
+      if (row && (row->type == VL_PARAMETER_BLOCK || row->flags & VL_PARAMETER_SHORTHAND))
+        row = NULL;
     }
   }
   return row;
@@ -27,14 +30,18 @@ static const vlParameter *settings_row(const char *name) {
 /* scene_settings(scene): a copy of its defs. */
 static PyObject *scene_settings(PyObject *module, PyObject *object) {
   (void)module;
-  if (!is_object(object, TYPE_SCENE)) return raise_usage("expected a Scene");
+  if (!is_object(object, TYPE_SCENE))
+    return raise_usage("expected a Scene");
   Scene *scene = (Scene *)object;
-  if (!scene_open(scene)) return NULL;
+  if (!scene_open(scene))
+    return NULL;
   Settings *self = make_object(TYPE_SETTINGS);
-  if (!self) return NULL;
+  if (!self)
+    return NULL;
   self->defs = *vl_scene_defs(scene->scene);
   self->keep = PyList_New(0);
-  if (!self->keep || !keep_object(self->keep, object)) return Py_DECREF((PyObject *)self), NULL;
+  if (!self->keep || !keep_object(self->keep, object))
+    return Py_DECREF((PyObject *)self), NULL;
   return (PyObject *)self;
 }
 
@@ -43,45 +50,56 @@ enum { MOST_SENSORS = 63 };
 static PyObject *settings_set(Settings *self, PyObject *arguments) {
   const char *name;
   PyObject *text, *value;
-  if (!PyArg_ParseTuple(arguments, "OO:set", &text, &value)) return NULL;
-  if (!(name = keep_text(self->keep, text, "a keyword"))) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OO:set", &text, &value))
+    return NULL;
+  if (!(name = keep_text(self->keep, text, "a keyword")))
+    return NULL;
   const vlParameter *row = settings_row(name);
   if (!row) {
     PyObject *names = PyList_New(0);
-    if (names && !append_settings(names, VL_SETTING_RENDER)) Py_CLEAR(names);
+    if (names && !append_settings(names, VL_SETTING_RENDER))
+      Py_CLEAR(names);
     return raise_unknown("keyword of render", name, names), NULL;
   }
   if (strcmp(row->member, "render.tracer") == 0 && is_object(value, TYPE_OWN)) {
     Own *own = own_read(value, VL_OWN_TRACER, "tracer");
-    if (!own || !keep_object(self->keep, value)) return NULL;
+    if (!own || !keep_object(self->keep, value))
+      return NULL;
     self->defs.render.own_tracer = &own->tracer;
   } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.tracer") == 0) {
     self->defs.render.own_tracer = NULL;
     int kind = find_kind(vl_kind_family_find("tracers"), "tracer", value);
-    if (kind < 0) return NULL;
+    if (kind < 0)
+      return NULL;
     self->defs.render.tracer = (vlTracer)kind;
   } else if (strcmp(row->member, "render.sampler") == 0 && is_object(value, TYPE_OWN)) {
     Own *own = own_read(value, VL_OWN_SAMPLER, "sampler");
-    if (!own || !keep_object(self->keep, value)) return NULL;
+    if (!own || !keep_object(self->keep, value))
+      return NULL;
     self->defs.render.own_sampler = &own->sampler;
   } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.sampler") == 0) {
     self->defs.render.own_sampler = NULL;
     int kind = find_kind(vl_kind_family_find("samplers"), "sampler", value);
-    if (kind < 0) return NULL;
+    if (kind < 0)
+      return NULL;
     self->defs.render.sampler = (vlSamplerKind)kind;
   } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "film.filter.kind") == 0) {
     int kind = find_kind(vl_kind_family_find("filters"), "filter", value);
-    if (kind < 0) return NULL;
+    if (kind < 0)
+      return NULL;
     self->defs.film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
   } else if (strcmp(row->member, "film.sensor") == 0 && value != Py_None) {
     const char *names[MOST_SENSORS + 1] = {0};
-    for (uint32_t i = 0; i < MOST_SENSORS && vl_sensor_name(i); i++) names[i] = vl_sensor_name(i);
+    for (uint32_t i = 0; i < MOST_SENSORS && vl_sensor_name(i); i++)
+      names[i] = vl_sensor_name(i);
     int sensor = find_choice(names, "sensor", value);
-    if (sensor < 0) return NULL;
+    if (sensor < 0)
+      return NULL;
     self->defs.film.sensor = names[sensor];
   } else {
     const Target target = {(char *)&self->defs, self->keep, NULL, false};
-    if (!set_parameter(&target, row, value)) return NULL;
+    if (!set_parameter(&target, row, value))
+      return NULL;
   }
   Py_RETURN_NONE;
 }
@@ -90,7 +108,9 @@ static PyObject *settings_get(Settings *self, PyObject *name) {
   PyObject *keep = PyList_New(0), *result = NULL;
   const char *text = keep ? keep_text(keep, name, "name") : NULL;
   const vlParameter *row = text ? settings_row(text) : NULL;
-  if (text) result = row ? get_parameter((const char *)&self->defs, row) : raise_usage("no setting %s", text);
+  if (text)
+    result = row ? get_parameter((const char *)&self->defs, row)
+                 : raise_usage("no setting %s", text);
   Py_XDECREF(keep);
   return result;
 }
@@ -98,9 +118,12 @@ static PyObject *settings_get(Settings *self, PyObject *name) {
 static PyObject *settings_size(Settings *self, PyObject *arguments) {
   PyObject *width, *height;
   double size[2];
-  if (!PyArg_ParseTuple(arguments, "OO:set_size", &width, &height)) return NULL;
-  if (!read_row(width, "resolution's width", vl_setting(VL_SETTING_PROGRAM, "width"), &size[0]) ||
-      !read_row(height, "resolution's height", vl_setting(VL_SETTING_PROGRAM, "height"), &size[1]))
+  if (!PyArg_ParseTuple(arguments, "OO:set_size", &width, &height))
+    return NULL;
+  if (!read_row(width, "resolution's width", vl_setting(VL_SETTING_PROGRAM, "width"),
+                &size[0]) ||
+      !read_row(height, "resolution's height", vl_setting(VL_SETTING_PROGRAM, "height"),
+                &size[1]))
     return NULL;
   vlFilmDef *film = &self->defs.film;
   film->width = (uint32_t)size[0];
@@ -115,10 +138,13 @@ static PyObject *settings_crop(Settings *self, PyObject *arguments) {
   const uint32_t width = self->defs.film.width, height = self->defs.film.height;
   PyObject *edges[4];
   uint32_t c[4];
-  if (!PyArg_ParseTuple(arguments, "OOOO:set_crop", &edges[0], &edges[1], &edges[2], &edges[3])) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OOOO:set_crop", &edges[0], &edges[1], &edges[2], &edges[3]))
+    return NULL;
   for (int i = 0; i < 4; i++)
-    if (!read_count(edges[i], "a number of crop", 0, i & 1 ? height : width, &c[i])) return NULL;
-  if (c[0] >= c[2] || c[1] >= c[3]) return raise_value("crop", arguments, "x0, y0, x1, y1 with x0 < x1 and y0 < y1");
+    if (!read_count(edges[i], "a number of crop", 0, i & 1 ? height : width, &c[i]))
+      return NULL;
+  if (c[0] >= c[2] || c[1] >= c[3])
+    return raise_value("crop", arguments, "x0, y0, x1, y1 with x0 < x1 and y0 < y1");
   memcpy(self->defs.film.crop, c, sizeof c);
   Py_RETURN_NONE;
 }
@@ -126,7 +152,8 @@ static PyObject *settings_crop(Settings *self, PyObject *arguments) {
 /* set_coarse(factor): the film of 1/factor of the size. */
 static PyObject *settings_coarse(Settings *self, PyObject *number) {
   uint32_t factor;
-  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor)) return NULL;
+  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor))
+    return NULL;
   self->defs.film = vl_coarse_film_def(&self->defs.film, factor);
   Py_RETURN_NONE;
 }
@@ -138,10 +165,12 @@ static PyObject *settings_get_size(Settings *self, void *unused) {
 static PyObject *settings_copy(Settings *self, PyObject *unused) {
   (void)unused;
   Settings *copy = make_object(TYPE_SETTINGS);
-  if (!copy) return NULL;
+  if (!copy)
+    return NULL;
   copy->defs = self->defs;
   copy->keep = PyList_New(0);
-  if (!copy->keep || !keep_object(copy->keep, (PyObject *)self)) return Py_DECREF((PyObject *)copy), NULL;
+  if (!copy->keep || !keep_object(copy->keep, (PyObject *)self))
+    return Py_DECREF((PyObject *)copy), NULL;
   return (PyObject *)copy;
 }
 
@@ -149,7 +178,8 @@ static PyObject *settings_copy(Settings *self, PyObject *unused) {
 static PyObject *settings_names(Settings *self, PyObject *unused) {
   (void)self, (void)unused;
   PyObject *names = PyList_New(0);
-  if (names && !append_settings(names, VL_SETTING_RENDER)) Py_CLEAR(names);
+  if (names && !append_settings(names, VL_SETTING_RENDER))
+    Py_CLEAR(names);
   return names;
 }
 
@@ -159,8 +189,10 @@ static PyMethodDef settings_methods[] = {
     {"set_size", (PyCFunction)settings_size, METH_VARARGS,
      "Width and height, pixels; the crop becomes the whole image."},
     {"set_crop", (PyCFunction)settings_crop, METH_VARARGS, "x0, y0, x1, y1, pixels."},
-    {"copy", (PyCFunction)settings_copy, METH_NOARGS, "The same settings, to be changed on their own."},
-    {"set_coarse", (PyCFunction)settings_coarse, METH_O, "The size of a coarse image of this factor."},
+    {"copy", (PyCFunction)settings_copy, METH_NOARGS,
+     "The same settings, to be changed on their own."},
+    {"set_coarse", (PyCFunction)settings_coarse, METH_O,
+     "The size of a coarse image of this factor."},
     {"names", (PyCFunction)settings_names, METH_NOARGS, "All keywords."},
     {NULL, NULL, 0, NULL},
 };
@@ -176,9 +208,12 @@ static PyType_Slot settings_slots[] = {
     {0, NULL},
 };
 PyType_Spec settings_spec = {"velo._velo.Settings", sizeof(Settings), 0,
-                             Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, settings_slots};
+                             Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
+                             settings_slots};
 
-/* ---- renders ----------------------------------------------------------------------------------------------------- */
+/* ---- renders
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Rendering {
   const vlWorld *world;
@@ -193,7 +228,8 @@ static vlResult run_render(void *user) {
   return vl_render(r->world, r->camera, r->film, &r->def, &r->stats, &r->error);
 }
 
-/* render(world, camera, film, settings, callback or None): {statistic: number}; None: the callback ended it. */
+/* render(world, camera, film, settings, callback or None): {statistic: number}; None: the
+ * callback ended it. */
 static PyObject *render(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
@@ -201,18 +237,27 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   Film *film;
   Settings *settings;
   PyObject *callback;
-  if (!PyArg_ParseTuple(arguments, "O!O!O!O!O:render", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
-                        base_types[TYPE_FILM], &film, base_types[TYPE_SETTINGS], &settings, &callback))
+  if (!PyArg_ParseTuple(arguments, "O!O!O!O!O:render", base_types[TYPE_WORLD], &world,
+                        base_types[TYPE_CAMERA], &camera, base_types[TYPE_FILM], &film,
+                        base_types[TYPE_SETTINGS], &settings, &callback))
     return NULL;
-  if (!world->world || !film->film) return raise_usage(world->world ? "the film is closed" : "the world is closed");
-  if (!check_memory(world->context, vl_render_memory(world->world, &film->def, &settings->defs.render), "the render"))
+  if (!world->world || !film->film)
+    return raise_usage(world->world ? "the film is closed" : "the world is closed");
+  if (!check_memory(world->context,
+                    vl_render_memory(world->world, &film->def, &settings->defs.render),
+                    "the render"))
     return NULL;
   LongCall call;
-  if (!long_call_begin(&call, world->context, callback)) return NULL;
+  if (!long_call_begin(&call, world->context, callback))
+    return NULL;
   call.film = film;
-  call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(&settings->defs.render);
+  call.own[0] = own_of_camera(&camera->camera),
+  call.own[1] = own_of_sampler(&settings->defs.render);
   call.own[2] = own_of_tracer(&settings->defs.render);
-  Rendering r = {.world = world->world, .camera = &camera->camera, .film = film->film, .def = settings->defs.render};
+  Rendering r = {.world = world->world,
+                 .camera = &camera->camera,
+                 .film = film->film,
+                 .def = settings->defs.render};
   r.def.cancel = call.cancel;
   r.def.progress = call.callback ? long_call_progress : NULL;
   r.def.progress_user = &call;
@@ -221,15 +266,20 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   bool fine = long_call_run(&call, &film->busy, run_render, &r, &done);
   long_call_end(&call);
   world->users--;
-  if (!fine) return NULL;
-  if (done == VL_CANCELLED) Py_RETURN_NONE;
-  if (done != VL_OK) return raise_result(done, &r.error);
+  if (!fine)
+    return NULL;
+  if (done == VL_CANCELLED)
+    Py_RETURN_NONE;
+  if (done != VL_OK)
+    return raise_result(done, &r.error);
   const vlRenderStats s = r.stats;
-  return Py_BuildValue("{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp, "paths",
-                       (unsigned long long)s.paths, "camera_rays", (unsigned long long)s.camera_rays, "bounce_rays",
-                       (unsigned long long)s.bounce_rays, "shadow_rays", (unsigned long long)s.shadow_rays,
-                       "not_finite", (unsigned long long)s.not_finite, "own_numbers", (unsigned long long)s.own_numbers,
-                       "seconds", s.seconds, "blocks", s.blocks, "noisy_blocks", s.noisy_blocks);
+  return Py_BuildValue(
+      "{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp,
+      "paths", (unsigned long long)s.paths, "camera_rays", (unsigned long long)s.camera_rays,
+      "bounce_rays", (unsigned long long)s.bounce_rays, "shadow_rays",
+      (unsigned long long)s.shadow_rays, "not_finite", (unsigned long long)s.not_finite,
+      "own_numbers", (unsigned long long)s.own_numbers, "seconds", s.seconds, "blocks",
+      s.blocks, "noisy_blocks", s.noisy_blocks);
 }
 
 typedef struct Choosing {
@@ -249,16 +299,20 @@ static PyObject *trial_list(const vlKindFamily *tracers, const vlTracerChoice *c
   PyObject *list = PyList_New(0);
   for (uint32_t i = 0; list && i < choice->count; i++) {
     const vlTracerTrial *t = &choice->trials[i];
-    PyObject *trial = Py_BuildValue("{s:s,s:I,s:d,s:d,s:d,s:d,s:d}", "tracer", tracers->rows[t->tracer]->name,
-                                    "light_paths", t->light_paths, "error", t->error, "tail", t->tail, "missing",
-                                    t->missing, "cost", t->cost, "work", t->work);
-    if (!trial || PyList_Append(list, trial) < 0) Py_CLEAR(list);
+    PyObject *trial =
+        Py_BuildValue("{s:s,s:I,s:d,s:d,s:d,s:d,s:d}", "tracer", tracers->rows[t->tracer]->name,
+                      "light_paths", t->light_paths, "error", t->error, "tail", t->tail,
+                      "missing", t->missing, "cost", t->cost, "work", t->work);
+    if (!trial || PyList_Append(list, trial) < 0)
+      Py_CLEAR(list);
     Py_XDECREF(trial);
   }
   return list;
 }
 
-/* choose_tracer(world, camera, settings, spp): ({"tracer": name, "light_paths": number}, [trials]) */
+/* choose_tracer(world, camera, settings, spp): ({"tracer": name, "light_paths": number},
+ * [trials])
+ */
 static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
@@ -266,16 +320,22 @@ static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   Settings *settings;
   PyObject *number;
   uint32_t spp;
-  if (!PyArg_ParseTuple(arguments, "O!O!O!O:choose_tracer", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA],
-                        &camera, base_types[TYPE_SETTINGS], &settings, &number) ||
+  if (!PyArg_ParseTuple(arguments, "O!O!O!O:choose_tracer", base_types[TYPE_WORLD], &world,
+                        base_types[TYPE_CAMERA], &camera, base_types[TYPE_SETTINGS], &settings,
+                        &number) ||
       !read_count(number, "spp", 1, UINT32_MAX, &spp))
     return NULL;
-  if (!world->world) return raise_usage("the world is closed");
+  if (!world->world)
+    return raise_usage("the world is closed");
   LongCall call;
-  if (!long_call_begin(&call, world->context, Py_None)) return NULL;
-  call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(&settings->defs.render);
-  Choosing c = {
-      .world = world->world, .camera = &camera->camera, .film = settings->defs.film, .def = settings->defs.render};
+  if (!long_call_begin(&call, world->context, Py_None))
+    return NULL;
+  call.own[0] = own_of_camera(&camera->camera),
+  call.own[1] = own_of_sampler(&settings->defs.render);
+  Choosing c = {.world = world->world,
+                .camera = &camera->camera,
+                .film = settings->defs.film,
+                .def = settings->defs.render};
   c.def.spp = spp, c.def.cancel = call.cancel;
   bool busy = false;
   world->users++;
@@ -283,11 +343,13 @@ static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   bool fine = long_call_run(&call, &busy, run_choice, &c, &done);
   long_call_end(&call);
   world->users--;
-  if (!fine) return NULL;
-  if (done != VL_OK) return raise_result(done, &c.error);
+  if (!fine)
+    return NULL;
+  if (done != VL_OK)
+    return raise_result(done, &c.error);
   const vlKindFamily *tracers = vl_kind_family_find("tracers");
-  return Py_BuildValue("{s:s,s:I},N", "tracer", tracers->rows[c.choice.tracer]->name, "light_paths",
-                       c.choice.light_paths, trial_list(tracers, &c.choice));
+  return Py_BuildValue("{s:s,s:I},N", "tracer", tracers->rows[c.choice.tracer]->name,
+                       "light_paths", c.choice.light_paths, trial_list(tracers, &c.choice));
 }
 
 typedef struct Truth {
@@ -304,28 +366,33 @@ static vlResult run_channels(void *user) {
 
 /* A camera of the flow channels, or None. */
 static bool other_camera(PyObject *object, const char *what, const vlCamera **camera) {
-  if (object == Py_None) return true;
-  if (!is_object(object, TYPE_CAMERA)) return raise_value(what, object, "a velo.Camera, or None"), false;
+  if (object == Py_None)
+    return true;
+  if (!is_object(object, TYPE_CAMERA))
+    return raise_value(what, object, "a velo.Camera, or None"), false;
   *camera = &((Camera *)object)->camera;
   return true;
 }
 
-/* channels(world, camera, film or None, settings, [names], keywords, forward or None, backward or None): (image of
- * floats or None, image of ids or None). */
+/* channels(world, camera, film or None, settings, [names], keywords, forward or None, backward
+ * or None): (image of floats or None, image of ids or None). */
 static PyObject *channels(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
   Camera *camera;
   Settings *settings;
   PyObject *film, *names, *keywords, *forward, *backward;
-  if (!PyArg_ParseTuple(arguments, "O!O!OO!O!O!OO:channels", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA],
-                        &camera, &film, base_types[TYPE_SETTINGS], &settings, &PyList_Type, &names, &PyDict_Type,
-                        &keywords, &forward, &backward))
+  if (!PyArg_ParseTuple(arguments, "O!O!OO!O!O!OO:channels", base_types[TYPE_WORLD], &world,
+                        base_types[TYPE_CAMERA], &camera, &film, base_types[TYPE_SETTINGS],
+                        &settings, &PyList_Type, &names, &PyDict_Type, &keywords, &forward,
+                        &backward))
     return NULL;
-  if (!world->world) return raise_usage("the world is closed");
-  Truth t = {.world = world->world,
-             .camera = &camera->camera,
-             .def = vl_default_channels_def(settings->defs.film.width, settings->defs.film.height)};
+  if (!world->world)
+    return raise_usage("the world is closed");
+  Truth t = {
+      .world = world->world,
+      .camera = &camera->camera,
+      .def = vl_default_channels_def(settings->defs.film.width, settings->defs.film.height)};
   vlChannelsDef *def = &t.def;
   memcpy(def->crop, settings->defs.film.crop, sizeof def->crop);
   def->space = settings->defs.film.space;
@@ -333,10 +400,12 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
   def->exposure = settings->defs.develop.exposure;
   def->channels = 0;
   const char *known[VL_CHANNEL_COUNT + 1] = {0};
-  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++) known[i] = vl_channel_name(i);
+  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
+    known[i] = vl_channel_name(i);
   for (Py_ssize_t i = 0; i < PyList_Size(names); i++) {
     int channel = find_choice(known, "channel", PyList_GetItem(names, i));
-    if (channel < 0) return NULL;
+    if (channel < 0)
+      return NULL;
     def->channels |= 1u << channel;
   }
   if (film != Py_None) {
@@ -345,59 +414,77 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
     def->film = ((Film *)film)->film;
     def->samples = vl_film_spp(def->film);
   }
-  if (!other_camera(forward, "forward", &def->forward) || !other_camera(backward, "backward", &def->backward))
+  if (!other_camera(forward, "forward", &def->forward) ||
+      !other_camera(backward, "backward", &def->backward))
     return NULL;
   const uint64_t width = def->crop[2] - def->crop[0], height = def->crop[3] - def->crop[1];
-  if (!check_memory(world->context, 16 * width * height * (uint64_t)PyList_Size(names), "ground truth")) return NULL;
+  if (!check_memory(world->context, 16 * width * height * (uint64_t)PyList_Size(names),
+                    "ground truth"))
+    return NULL;
   const Target target = {(char *)def, settings->keep, NULL, false};
-  if (!set_parameters(&target, VL_SETTING_CHANNELS, "keyword of channels", keywords)) return NULL;
+  if (!set_parameters(&target, VL_SETTING_CHANNELS, "keyword of channels", keywords))
+    return NULL;
   LongCall call;
-  if (!long_call_begin(&call, world->context, Py_None)) return NULL;
+  if (!long_call_begin(&call, world->context, Py_None))
+    return NULL;
   def->cancel = call.cancel;
   call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(def->render);
   call.own[2] = own_of_camera(def->forward), call.own[3] = own_of_camera(def->backward);
   world->users++;
   vlResult done;
-  bool fine = long_call_run(&call, film == Py_None ? NULL : &((Film *)film)->busy, run_channels, &t, &done);
+  bool fine = long_call_run(&call, film == Py_None ? NULL : &((Film *)film)->busy, run_channels,
+                            &t, &done);
   long_call_end(&call);
   world->users--;
-  if (!fine) return NULL;
-  if (done != VL_OK) return raise_result(done, &t.error);
+  if (!fine)
+    return NULL;
+  if (done != VL_OK)
+    return raise_result(done, &t.error);
   vlImage *floats = t.floats, *ids = t.ids;
   PyObject *images[2] = {Py_None, Py_None};
   if (floats && !(images[0] = image_object(world->context, floats))) {
     vl_image_destroy(ids);
     return NULL;
   }
-  if (ids && !(images[1] = image_object(world->context, ids))) return NULL;
+  if (ids && !(images[1] = image_object(world->context, ids)))
+    return NULL;
   PyObject *result = PyTuple_Pack(2, images[0], images[1]);
-  if (floats) Py_DECREF(images[0]);
-  if (ids) Py_DECREF(images[1]);
+  if (floats)
+    Py_DECREF(images[0]);
+  if (ids)
+    Py_DECREF(images[1]);
   return result;
 }
 
 static PyObject *box_object(const vlIdBox *b) {
   PyObject *outline = Py_None, *space = Py_None;
-  if (b->has_outline) outline = Py_BuildValue("(dddd)", b->outline[0], b->outline[1], b->outline[2], b->outline[3]);
+  if (b->has_outline)
+    outline =
+        Py_BuildValue("(dddd)", b->outline[0], b->outline[1], b->outline[2], b->outline[3]);
   if (b->has_space) {
     PyObject *matrix = PyTuple_New(16);
-    for (int i = 0; matrix && i < 16; i++) PyTuple_SetItem(matrix, i, PyFloat_FromDouble(b->world_from_box[i]));
-    space = Py_BuildValue("{s:(ddd),s:(ddd),s:N}", "low", b->low[0], b->low[1], b->low[2], "high", b->high[0],
-                          b->high[1], b->high[2], "world_from_box", matrix);
+    for (int i = 0; matrix && i < 16; i++)
+      PyTuple_SetItem(matrix, i, PyFloat_FromDouble(b->world_from_box[i]));
+    space = Py_BuildValue("{s:(ddd),s:(ddd),s:N}", "low", b->low[0], b->low[1], b->low[2],
+                          "high", b->high[0], b->high[1], b->high[2], "world_from_box", matrix);
   }
-  if (outline == Py_None) Py_INCREF(Py_None);
-  if (space == Py_None) Py_INCREF(Py_None);
-  return Py_BuildValue("{s:K,s:K,s:(IIII),s:(IIII),s:N,s:N}", "seen", (unsigned long long)b->seen, "all",
-                       (unsigned long long)b->all, "seen_box", b->seen_box[0], b->seen_box[1], b->seen_box[2],
-                       b->seen_box[3], "all_box", b->all_box[0], b->all_box[1], b->all_box[2], b->all_box[3], "outline",
-                       outline, "space", space);
+  if (outline == Py_None)
+    Py_INCREF(Py_None);
+  if (space == Py_None)
+    Py_INCREF(Py_None);
+  return Py_BuildValue("{s:K,s:K,s:(IIII),s:(IIII),s:N,s:N}", "seen",
+                       (unsigned long long)b->seen, "all", (unsigned long long)b->all,
+                       "seen_box", b->seen_box[0], b->seen_box[1], b->seen_box[2],
+                       b->seen_box[3], "all_box", b->all_box[0], b->all_box[1], b->all_box[2],
+                       b->all_box[3], "outline", outline, "space", space);
 }
 
 static PyObject *box_list(const vlIdBox *boxes, uint32_t count) {
   PyObject *list = PyList_New(0);
   for (uint32_t i = 0; list && i < count; i++) {
     PyObject *box = box_object(&boxes[i]);
-    if (!box || PyList_Append(list, box) < 0) Py_CLEAR(list);
+    if (!box || PyList_Append(list, box) < 0)
+      Py_CLEAR(list);
     Py_XDECREF(box);
   }
   return list;
@@ -415,30 +502,37 @@ static vlResult run_boxes(void *user) {
   return vl_world_boxes(b->world, b->camera, &b->def, b->objects, b->instances, &b->error);
 }
 
-/* boxes(world, camera, settings): (list of objects' boxes, list of instances' boxes), that of id 1 first. */
+/* boxes(world, camera, settings): (list of objects' boxes, list of instances' boxes), that of
+ * id 1 first. */
 static PyObject *boxes(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
   Camera *camera;
   Settings *settings;
-  if (!PyArg_ParseTuple(arguments, "O!O!O!:boxes", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
-                        base_types[TYPE_SETTINGS], &settings))
+  if (!PyArg_ParseTuple(arguments, "O!O!O!:boxes", base_types[TYPE_WORLD], &world,
+                        base_types[TYPE_CAMERA], &camera, base_types[TYPE_SETTINGS], &settings))
     return NULL;
-  if (!world->world) return raise_usage("the world is closed");
+  if (!world->world)
+    return raise_usage("the world is closed");
   uint32_t objects = vl_world_id_count(world->world, VL_ID_OBJECT),
            instances = vl_world_id_count(world->world, VL_ID_INSTANCE);
   vlIdBox *list = PyMem_Malloc(((size_t)objects + instances + 1) * sizeof *list);
-  if (!list) return PyErr_NoMemory();
-  Boxing b = {.world = world->world,
-              .camera = &camera->camera,
-              .def = vl_default_boxes_def(settings->defs.film.width, settings->defs.film.height),
-              .objects = list,
-              .instances = list + objects};
+  if (!list)
+    return PyErr_NoMemory();
+  Boxing b = {
+      .world = world->world,
+      .camera = &camera->camera,
+      .def = vl_default_boxes_def(settings->defs.film.width, settings->defs.film.height),
+      .objects = list,
+      .instances = list + objects};
   memcpy(b.def.crop, settings->defs.film.crop, sizeof b.def.crop);
-  const uint64_t pixels = (uint64_t)(b.def.crop[2] - b.def.crop[0]) * (b.def.crop[3] - b.def.crop[1]);
-  if (!check_memory(world->context, 8 * pixels, "boxes")) return PyMem_Free(list), NULL;
+  const uint64_t pixels =
+      (uint64_t)(b.def.crop[2] - b.def.crop[0]) * (b.def.crop[3] - b.def.crop[1]);
+  if (!check_memory(world->context, 8 * pixels, "boxes"))
+    return PyMem_Free(list), NULL;
   LongCall call;
-  if (!long_call_begin(&call, world->context, Py_None)) return PyMem_Free(list), NULL;
+  if (!long_call_begin(&call, world->context, Py_None))
+    return PyMem_Free(list), NULL;
   b.def.cancel = call.cancel;
   call.own[0] = own_of_camera(&camera->camera);
   world->users++;
@@ -448,7 +542,8 @@ static PyObject *boxes(PyObject *module, PyObject *arguments) {
   world->users--;
   PyObject *result = NULL;
   if (fine && done == VL_OK)
-    result = Py_BuildValue("(NN)", box_list(list, objects), box_list(list + objects, instances));
+    result =
+        Py_BuildValue("(NN)", box_list(list, objects), box_list(list + objects, instances));
   else if (fine)
     raise_result(done, &b.error);
   PyMem_Free(list);
@@ -461,17 +556,20 @@ static PyObject *autofocus(PyObject *module, PyObject *arguments) {
   Camera *camera;
   PyObject *point[2];
   double x, y, distance = 0;
-  if (!PyArg_ParseTuple(arguments, "O!O!OO:autofocus", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
-                        &point[0], &point[1]) ||
+  if (!PyArg_ParseTuple(arguments, "O!O!OO:autofocus", base_types[TYPE_WORLD], &world,
+                        base_types[TYPE_CAMERA], &camera, &point[0], &point[1]) ||
       !read_finite(point[0], "x", &x) || !read_finite(point[1], "y", &y))
     return NULL;
-  if (!world->world) return raise_usage("the world is closed");
+  if (!world->world)
+    return raise_usage("the world is closed");
   Call call;
-  if (!call_begin(&call, world->context, NULL)) return NULL;
+  if (!call_begin(&call, world->context, NULL))
+    return NULL;
   vlError error = {0};
   vlResult done = vl_autofocus(world->world, &camera->camera, x, y, &distance, &error);
   call_end(&call);
-  if (!own_check(own_of_camera(&camera->camera))) return NULL;
+  if (!own_check(own_of_camera(&camera->camera)))
+    return NULL;
   return done == VL_OK ? PyFloat_FromDouble(distance) : raise_result(done, &error);
 }
 

@@ -4,8 +4,10 @@
 #include "module.h"
 
 bool scene_open(const Scene *self) {
-  if (!self->scene) return raise_usage("the scene is closed"), false;
-  if (self->busy) return raise_usage("another thread is using the scene"), false;
+  if (!self->scene)
+    return raise_usage("the scene is closed"), false;
+  if (self->busy)
+    return raise_usage("another thread is using the scene"), false;
   return context_check(self->context);
 }
 
@@ -13,14 +15,17 @@ bool scene_open(const Scene *self) {
 static PyObject *scene_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   static char *names[] = {"context", NULL};
   Context *context;
-  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "O!:Scene", names, base_types[TYPE_CONTEXT], &context))
+  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "O!:Scene", names,
+                                   base_types[TYPE_CONTEXT], &context))
     return NULL;
   Call call;
-  if (!call_begin(&call, context, NULL)) return NULL;
+  if (!call_begin(&call, context, NULL))
+    return NULL;
   vlScene *scene = NULL;
   vlResult done = vl_scene_create(context->context, &scene);
   call_end(&call);
-  if (done != VL_OK) return raise_result(done, NULL);
+  if (done != VL_OK)
+    return raise_result(done, NULL);
   Scene *self = (Scene *)((allocfunc)PyType_GetSlot(type, Py_tp_alloc))(type, 0);
   if (!self) {
     vl_scene_destroy(scene);
@@ -30,12 +35,14 @@ static PyObject *scene_new(PyTypeObject *type, PyObject *arguments, PyObject *ke
   self->context = context;
   self->scene = scene;
   self->keep = PyList_New(0);
-  if (!self->keep) return Py_DECREF((PyObject *)self), NULL;
+  if (!self->keep)
+    return Py_DECREF((PyObject *)self), NULL;
   return (PyObject *)self;
 }
 
 static void scene_dealloc(Scene *self) {
-  if (context_is_ours(self->context)) vl_scene_destroy(self->scene);
+  if (context_is_ours(self->context))
+    vl_scene_destroy(self->scene);
   Py_XDECREF(self->keep);
   Py_XDECREF((PyObject *)self->context);
   free_object((PyObject *)self);
@@ -43,21 +50,25 @@ static void scene_dealloc(Scene *self) {
 
 static PyObject *scene_close(Scene *self, PyObject *unused) {
   (void)unused;
-  if (self->busy) return raise_usage("another thread is using the scene");
-  if (context_is_ours(self->context)) vl_scene_destroy(self->scene);
+  if (self->busy)
+    return raise_usage("another thread is using the scene");
+  if (context_is_ours(self->context))
+    vl_scene_destroy(self->scene);
   self->scene = NULL;
   Py_RETURN_NONE;
 }
 
 static vlResult run_load(void *user) {
   Loading *l = user;
-  return l->loaded ? vl_scene_load_group(l->scene, l->file, &l->def, l->name, l->loaded, &l->error)
-                   : vl_scene_load(l->scene, l->file, &l->def, &l->error);
+  return l->loaded
+             ? vl_scene_load_group(l->scene, l->file, &l->def, l->name, l->loaded, &l->error)
+             : vl_scene_load(l->scene, l->file, &l->def, &l->error);
 }
 
 bool load_file(Scene *self, Loading *l, PyObject *callback) {
   LongCall call;
-  if (!long_call_begin(&call, self->context, callback)) return false;
+  if (!long_call_begin(&call, self->context, callback))
+    return false;
   l->scene = self->scene;
   l->def.cancel = call.cancel;
   l->def.progress = call.callback ? long_call_step : NULL;
@@ -65,7 +76,8 @@ bool load_file(Scene *self, Loading *l, PyObject *callback) {
   vlResult done;
   bool fine = long_call_run(&call, &self->busy, run_load, l, &done);
   long_call_end(&call);
-  if (fine && done != VL_OK) fine = raise_result(done, &l->error) != NULL;
+  if (fine && done != VL_OK)
+    fine = raise_result(done, &l->error) != NULL;
   return fine;
 }
 
@@ -74,11 +86,15 @@ static PyObject *scene_load(Scene *self, PyObject *arguments) {
   PyObject *path, *keywords, *callback, *keep = PyList_New(0);
   Loading l = {.def = vl_default_load_def()};
   const Target target = {(char *)&l.def, keep, self, false};
-  bool fine = keep && PyArg_ParseTuple(arguments, "OO!O:_load", &path, &PyDict_Type, &keywords, &callback) &&
-              scene_open(self) && set_parameters(&target, VL_SETTING_LOAD, "keyword of load", keywords) &&
-              (l.file = keep_path(keep, path, "path")) && load_file(self, &l, callback);
+  bool fine =
+      keep &&
+      PyArg_ParseTuple(arguments, "OO!O:_load", &path, &PyDict_Type, &keywords, &callback) &&
+      scene_open(self) &&
+      set_parameters(&target, VL_SETTING_LOAD, "keyword of load", keywords) &&
+      (l.file = keep_path(keep, path, "path")) && load_file(self, &l, callback);
   Py_XDECREF(keep);
-  if (!fine) return NULL;
+  if (!fine)
+    return NULL;
   Py_RETURN_NONE;
 }
 
@@ -96,7 +112,8 @@ static PyObject *scene_complete(Scene *self, PyObject *keywords) {
   vlResult done = vl_scene_complete(self->scene, &def, &error);
   call_end(&call);
   Py_DECREF(keep);
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK)
+    return raise_result(done, &error);
   Py_RETURN_NONE;
 }
 
@@ -105,7 +122,8 @@ static void lost(void *user, const char *what, uint64_t count) {
   PyGILState_STATE state = PyGILState_Ensure();
   PyObject *number = PyLong_FromUnsignedLongLong(count);
   PyObject *text = text_object(what);
-  if (!number || !text || PyDict_SetItem(user, text, number) < 0) PyErr_WriteUnraisable(NULL);
+  if (!number || !text || PyDict_SetItem(user, text, number) < 0)
+    PyErr_WriteUnraisable(NULL);
   Py_XDECREF(text);
   Py_XDECREF(number);
   PyGILState_Release(state);
@@ -117,8 +135,8 @@ static PyObject *scene_save(Scene *self, PyObject *arguments) {
   vlSaveDef def = vl_default_save_def();
   Call call;
   if (!keep || !losses || !PyArg_ParseTuple(arguments, "OO:_save", &path, &flag) ||
-      !read_flag(flag, "strict", &strict) || !scene_open(self) || !(file = keep_path(keep, path, "path")) ||
-      !call_begin(&call, self->context, &self->busy))
+      !read_flag(flag, "strict", &strict) || !scene_open(self) ||
+      !(file = keep_path(keep, path, "path")) || !call_begin(&call, self->context, &self->busy))
     return Py_XDECREF(keep), Py_XDECREF(losses), NULL;
   def.strict = strict;
   def.lost = lost;
@@ -127,33 +145,40 @@ static PyObject *scene_save(Scene *self, PyObject *arguments) {
   vlResult done = vl_scene_save(self->scene, file, &def, &error);
   call_end(&call);
   Py_DECREF(keep);
-  if (done == VL_OK) return losses;
+  if (done == VL_OK)
+    return losses;
   Py_DECREF(losses);
   return raise_result(done, &error);
 }
 
 static PyObject *scene_info(Scene *self, void *unused) {
   (void)unused;
-  if (!scene_open(self)) return NULL;
+  if (!scene_open(self))
+    return NULL;
   vlSceneInfo i;
   vl_scene_info(self->scene, &i);
 #define COUNT(field) #field, (unsigned long long)i.field
-  return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K}", COUNT(shapes), COUNT(triangles), COUNT(vertices),
-                       COUNT(textures), COUNT(materials), COUNT(lights), COUNT(emissive_shapes), COUNT(groups),
-                       COUNT(instances), COUNT(media));
+  return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K}", COUNT(shapes),
+                       COUNT(triangles), COUNT(vertices), COUNT(textures), COUNT(materials),
+                       COUNT(lights), COUNT(emissive_shapes), COUNT(groups), COUNT(instances),
+                       COUNT(media));
 #undef COUNT
 }
 
 static PyObject *scene_camera(Scene *self, PyObject *unused) {
   (void)unused;
-  if (!scene_open(self)) return NULL;
+  if (!scene_open(self))
+    return NULL;
   return camera_object(&vl_scene_defs(self->scene)->camera, (PyObject *)self);
 }
 
 static PyObject *scene_set_camera(Scene *self, PyObject *object) {
-  if (!scene_open(self)) return NULL;
-  if (!is_object(object, TYPE_CAMERA)) return raise_value("camera", object, "a velo.Camera");
-  if (!keep_object(self->keep, object)) return NULL;
+  if (!scene_open(self))
+    return NULL;
+  if (!is_object(object, TYPE_CAMERA))
+    return raise_value("camera", object, "a velo.Camera");
+  if (!keep_object(self->keep, object))
+    return NULL;
   const Camera *camera = (const Camera *)object;
   vlSceneDefs *defs = vl_scene_defs(self->scene);
   defs->camera = camera->def;
@@ -168,17 +193,21 @@ static PyMethodDef scene_methods[] = {
     {"_load", (PyCFunction)scene_load, METH_VARARGS, "Adds the contents of a file."},
     {"_complete", (PyCFunction)scene_complete, METH_O, "Adds camera, light and ground."},
     {"_save", (PyCFunction)scene_save, METH_VARARGS, "Writes a scene file."},
-    {"_add", (PyCFunction)scene_add, METH_VARARGS, "Adds a texture, material, medium, emission, light or shape."},
+    {"_add", (PyCFunction)scene_add, METH_VARARGS,
+     "Adds a texture, material, medium, emission, light or shape."},
     {"_load_group", (PyCFunction)scene_load_group, METH_VARARGS, "Loads a file as one group."},
     {"_add_instance", (PyCFunction)scene_add_instance, METH_VARARGS, "Places a group."},
     {"_set", (PyCFunction)scene_set, METH_VARARGS, "Changes an object."},
-    {"_show", (PyCFunction)scene_show, METH_VARARGS, "Shows or hides a light, a shape or an instance."},
+    {"_show", (PyCFunction)scene_show, METH_VARARGS,
+     "Shows or hides a light, a shape or an instance."},
     {"_remove", (PyCFunction)scene_remove, METH_O, "Removes an instance."},
     {"_handles", (PyCFunction)scene_handles, METH_O, "The handles of a family."},
     {"_mesh", (PyCFunction)scene_mesh, METH_O, "The arrays of a mesh."},
-    {"_instance", (PyCFunction)scene_instance, METH_O, "An instance's group, pose, whether it moves and is shown."},
+    {"_instance", (PyCFunction)scene_instance, METH_O,
+     "An instance's group, pose, whether it moves and is shown."},
     {"_camera", (PyCFunction)scene_camera, METH_NOARGS, "The scene's camera."},
-    {"_set_camera", (PyCFunction)scene_set_camera, METH_O, "Sets the scene's camera and image size."},
+    {"_set_camera", (PyCFunction)scene_set_camera, METH_O,
+     "Sets the scene's camera and image size."},
     {"_close", (PyCFunction)scene_close, METH_NOARGS, "Frees the scene."},
     {NULL, NULL, 0, NULL},
 };
@@ -190,7 +219,8 @@ static PyObject *scene_context(Scene *self, void *unused) {
 
 static PyGetSetDef scene_members[] = {
     {"context", (getter)scene_context, NULL, "The context that it was made from.", NULL},
-    {"info", (getter)scene_info, NULL, "Counts of shapes, triangles, textures and so on.", NULL},
+    {"info", (getter)scene_info, NULL, "Counts of shapes, triangles, textures and so on.",
+     NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot scene_slots[] = {
@@ -201,4 +231,5 @@ static PyType_Slot scene_slots[] = {
     {Py_tp_getset, scene_members},
     {0, NULL},
 };
-PyType_Spec scene_spec = {"velo._velo.Scene", sizeof(Scene), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, scene_slots};
+PyType_Spec scene_spec = {"velo._velo.Scene", sizeof(Scene), 0,
+                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, scene_slots};

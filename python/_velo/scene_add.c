@@ -1,28 +1,35 @@
-/* _velo/scene_add.c: adds textures, materials, media, emissions, lights, shapes, groups and instances to a scene. */
+/* _velo/scene_add.c: adds textures, materials, media, emissions, lights, shapes, groups and
+ * instances to a scene. */
 #include <string.h>
 
 #include "adding.h"
 
 /* The numbers of an array, which live until the call ends; null with an exception. */
 static const Numbers *array(Adding *a, PyObject *value, char type, const char *what) {
-  if (a->array_count == MOST_ARRAYS) return raise_usage("too many arrays"), NULL;
+  if (a->array_count == MOST_ARRAYS)
+    return raise_usage("too many arrays"), NULL;
   Numbers *n = &a->arrays[a->array_count];
-  if (!numbers_read(value, type, what, n)) return NULL;
+  if (!numbers_read(value, type, what, n))
+    return NULL;
   a->array_count++;
   return n;
 }
 
-bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what, uint32_t *index) {
+bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what,
+                 uint32_t *index) {
   *index = 0;
-  if (value == Py_None) return true;
+  if (value == Py_None)
+    return true;
   const Handle *h = (const Handle *)value;
   if (!is_object(value, TYPE_HANDLE) || strcmp(h->family, family) != 0)
     return raise_value(what, value, "one of the scene's %s", family), false;
-  if (h->scene != scene) return raise_usage("%s is part of another scene", what), false;
+  if (h->scene != scene)
+    return raise_usage("%s is part of another scene", what), false;
   *index = h->index;
   return true;
 }
-static bool handle(const Adding *a, PyObject *value, const char *family, const char *what, uint32_t *index) {
+static bool handle(const Adding *a, PyObject *value, const char *family, const char *what,
+                   uint32_t *index) {
   return read_handle(a->scene, value, family, what, index);
 }
 
@@ -55,16 +62,19 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
   } else if (IS("data")) {
     /* an int would be a number of zeros, a list is one by one */
     PyObject *bytes = PyObject_CheckBuffer(value) ? PyBytes_FromObject(value) : NULL;
-    if (!bytes) return raise_value(name, value, "bytes"), -1;
+    if (!bytes)
+      return raise_value(name, value, "bytes"), -1;
     fine = keep_object(a->keep, bytes);
-    if (fine) d->data = PyBytes_AsString(bytes), d->data_size = (size_t)PyBytes_Size(bytes);
+    if (fine)
+      d->data = PyBytes_AsString(bytes), d->data_size = (size_t)PyBytes_Size(bytes);
     Py_DECREF(bytes);
   } else if (IS("tint")) {
     fine = floats_copy(value, name, 4, d->tint);
   } else if (IS("channel")) {
     int64_t channel;
     fine = read_whole(value, name, -1, 1023, &channel);
-    if (fine) d->channel = (int)channel;
+    if (fine)
+      d->channel = (int)channel;
   } else if (IS("texture_from_world")) {
     fine = numbers_copy(value, name, 16, d->texture_from_world);
   } else if (IS("st_from_uv")) {
@@ -73,14 +83,17 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
   } else if (IS("encoding")) {
     fine = choice(encodings, name, value, &code);
     d->encoding_given = fine;
-    if (fine) d->encoding = (vlEncoding)code;
+    if (fine)
+      d->encoding = (vlEncoding)code;
   } else if (IS("wrap_t")) {
     fine = choice(wraps, name, value, &code);
     d->wrap_t_given = fine;
-    if (fine) d->wrap_t = (vlWrap)code;
+    if (fine)
+      d->wrap_t = (vlWrap)code;
   } else if (IS("space")) {
     fine = choice(spaces, name, value, &code);
-    if (fine) d->space = (vlColorSpace)code;
+    if (fine)
+      d->space = (vlColorSpace)code;
   } else if (IS("spectrum")) {
     fine = true; /* read before */
   } else {
@@ -90,21 +103,28 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
 }
 
 static int set_material(Adding *a, vlMaterialDef *d, const char *name, PyObject *value) {
-  if (IS("name")) return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
-  if (IS("reflectance") && (d->kind == VL_MATERIAL_CONDUCTOR || d->kind == VL_MATERIAL_COATED_CONDUCTOR)) {
+  if (IS("name"))
+    return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
+  if (IS("reflectance") &&
+      (d->kind == VL_MATERIAL_CONDUCTOR || d->kind == VL_MATERIAL_COATED_CONDUCTOR)) {
     d->use_reflectance = true;
     return 0;
   }
-  if (IS("reflectance") && d->kind == VL_MATERIAL_SUBSURFACE) d->subsurface.from_reflectance = true;
-  if (IS("reflectance") && d->kind == VL_MATERIAL_HAIR) d->hair.color = VL_HAIR_REFLECTANCE;
-  if (IS("sigma_a") && d->kind == VL_MATERIAL_HAIR) d->hair.color = VL_HAIR_SIGMA_A;
+  if (IS("reflectance") && d->kind == VL_MATERIAL_SUBSURFACE)
+    d->subsurface.from_reflectance = true;
+  if (IS("reflectance") && d->kind == VL_MATERIAL_HAIR)
+    d->hair.color = VL_HAIR_REFLECTANCE;
+  if (IS("sigma_a") && d->kind == VL_MATERIAL_HAIR)
+    d->hair.color = VL_HAIR_SIGMA_A;
   if (IS("materials")) {
-    if (sequence_size(value, name, 2, 2) < 0) return -1;
+    if (sequence_size(value, name, 2, 2) < 0)
+      return -1;
     for (int i = 0; i < 2; i++) {
       PyObject *item = PySequence_GetItem(value, i);
       bool fine = item && handle(a, item, "materials", name, &d->materials[i].index);
       Py_XDECREF(item);
-      if (!fine) return -1;
+      if (!fine)
+        return -1;
     }
     return 1;
   }
@@ -122,14 +142,20 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
                {"rgb_a", offsetof(vlMediumDef, rgb_a), 3},
                {"rgb_s", offsetof(vlMediumDef, rgb_s), 3},
                {"rgb_emission", offsetof(vlMediumDef, rgb_emission), 3}};
-  if (IS("name")) return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
-  if (IS("transform") || IS("world_from_medium")) return numbers_copy(value, name, 16, d->world_from_medium) ? 1 : -1;
+  if (IS("name"))
+    return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
+  if (IS("transform") || IS("world_from_medium"))
+    return numbers_copy(value, name, 16, d->world_from_medium) ? 1 : -1;
   for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
-    if (!IS(grids[i].name) || (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID)) continue;
+    if (!IS(grids[i].name) || (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID))
+      continue;
     const Numbers *n = array(a, value, 'f', name);
-    if (!n) return -1;
+    if (!n)
+      return -1;
     if (n->dimensions != (grids[i].per == 3 ? 4 : 3) || (grids[i].per == 3 && n->shape[3] != 3))
-      return raise_usage("%s: an array of nz x ny x nx%s", name, grids[i].per == 3 ? " x 3" : ""), -1;
+      return raise_usage("%s: an array of nz x ny x nx%s", name,
+                         grids[i].per == 3 ? " x 3" : ""),
+             -1;
     if (d->nx > 1 && (d->nx != n->shape[2] || d->ny != n->shape[1] || d->nz != n->shape[0]))
       return raise_usage("%s: the grids differ in size", name), -1;
     d->nz = (uint32_t)n->shape[0], d->ny = (uint32_t)n->shape[1], d->nx = (uint32_t)n->shape[2];
@@ -141,15 +167,19 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
 
 static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value) {
   int code;
-  if (IS("image")) return image_of(value, name, &d->image) ? 1 : -1;
-  if (IS("transform") || IS("world_from_light")) return numbers_copy(value, name, 16, d->world_from_light) ? 1 : -1;
-  if (IS("medium")) return handle(a, value, "media", name, &d->medium.index) ? 1 : -1;
+  if (IS("image"))
+    return image_of(value, name, &d->image) ? 1 : -1;
+  if (IS("transform") || IS("world_from_light"))
+    return numbers_copy(value, name, 16, d->world_from_light) ? 1 : -1;
+  if (IS("medium"))
+    return handle(a, value, "media", name, &d->medium.index) ? 1 : -1;
   if (IS("portal")) {
     d->has_portal = true;
     return floats_copy(value, name, 12, &d->portal[0][0]) ? 1 : -1;
   }
   if (IS("space")) {
-    if (!choice(spaces, name, value, &code)) return -1;
+    if (!choice(spaces, name, value, &code))
+      return -1;
     d->space = (vlColorSpace)code;
     return 1;
   }
@@ -173,138 +203,197 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
                 {"centers", 'd', offsetof(vlShapeDef, centers), 3},
                 {"radii", 'f', offsetof(vlShapeDef, radii), 1},
                 {"widths", 'f', offsetof(vlShapeDef, widths), 2}};
-  if (IS("name")) return (d->label.name = keep_text(a->keep, value, name)) ? 1 : -1;
-  if (IS("transform") || IS("group_from_shape")) return numbers_copy(value, name, 16, d->group_from_shape) ? 1 : -1;
-  if (IS("material")) return handle(a, value, "materials", name, &d->material.index) ? 1 : -1;
-  if (IS("emission")) return handle(a, value, "emission", name, &d->emission.index) ? 1 : -1;
-  if (IS("group")) return handle(a, value, "groups", name, &d->group.index) ? 1 : -1;
-  if (IS("inside")) return handle(a, value, "media", name, &d->inside.index) ? 1 : -1;
-  if (IS("outside")) return handle(a, value, "media", name, &d->outside.index) ? 1 : -1;
-  if (IS("times")) return numbers_copy(value, name, 2, d->times) ? 1 : -1;
-  if (IS("reverse_orientation")) return read_flag(value, name, &d->reverse_orientation) ? 1 : -1;
-  if (IS("backdrop")) return read_flag(value, name, &d->backdrop) ? 1 : -1;
+  if (IS("name"))
+    return (d->label.name = keep_text(a->keep, value, name)) ? 1 : -1;
+  if (IS("transform") || IS("group_from_shape"))
+    return numbers_copy(value, name, 16, d->group_from_shape) ? 1 : -1;
+  if (IS("material"))
+    return handle(a, value, "materials", name, &d->material.index) ? 1 : -1;
+  if (IS("emission"))
+    return handle(a, value, "emission", name, &d->emission.index) ? 1 : -1;
+  if (IS("group"))
+    return handle(a, value, "groups", name, &d->group.index) ? 1 : -1;
+  if (IS("inside"))
+    return handle(a, value, "media", name, &d->inside.index) ? 1 : -1;
+  if (IS("outside"))
+    return handle(a, value, "media", name, &d->outside.index) ? 1 : -1;
+  if (IS("times"))
+    return numbers_copy(value, name, 2, d->times) ? 1 : -1;
+  if (IS("reverse_orientation"))
+    return read_flag(value, name, &d->reverse_orientation) ? 1 : -1;
+  if (IS("backdrop"))
+    return read_flag(value, name, &d->backdrop) ? 1 : -1;
   if (IS("indices")) {
     const Numbers *n = array(a, value, 'I', name);
     size_t per = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
-    if (!n) return -1;
-    if (n->count % per || n->count / per > 0x7fffffff) return raise_usage("indices: %zu numbers per face", per), -1;
+    if (!n)
+      return -1;
+    if (n->count % per || n->count / per > 0x7fffffff)
+      return raise_usage("indices: %zu numbers per face", per), -1;
     d->faces = (uint32_t)(n->count / per);
     d->indices = n->data;
     return 1;
   }
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    if (!IS(arrays[i].name)) continue;
+    if (!IS(arrays[i].name))
+      continue;
     const Numbers *n = array(a, value, arrays[i].type, name);
-    if (!n) return -1;
+    if (!n)
+      return -1;
     if (n->count % arrays[i].per || n->count / arrays[i].per > 0x7fffffff)
       return raise_usage("%s: %zu numbers per element", name, arrays[i].per), -1;
     memcpy((char *)d + arrays[i].offset, &n->data, sizeof n->data);
     uint32_t count = (uint32_t)(n->count / arrays[i].per);
-    if (IS("positions")) d->vertices = count;
-    if (IS("positions") && d->kind == VL_SHAPE_CURVES) d->faces = count / 4;
-    if (IS("centers")) d->faces = count;
+    if (IS("positions"))
+      d->vertices = count;
+    if (IS("positions") && d->kind == VL_SHAPE_CURVES)
+      d->faces = count / 4;
+    if (IS("centers"))
+      d->faces = count;
     return 1;
   }
   return 0;
 }
 
-/* Arrays must be as long as the others: the library reads as many numbers as there are vertices. */
+/* Arrays must be as long as the others: the library reads as many numbers as there are
+ * vertices. */
 static bool check_lengths(const vlShapeDef *d, PyObject *keywords) {
-  static const char *const names[] = {"normals",         "tangents",      "uvs",   "tangent_signs", "colors",
-                                      "positions_close", "normals_close", "radii", "widths",        NULL};
+  static const char *const names[] = {
+      "normals",         "tangents",      "uvs",   "tangent_signs", "colors",
+      "positions_close", "normals_close", "radii", "widths",        NULL};
   static const size_t pers[] = {3, 3, 2, 1, 4, 3, 3, 1, 2};
   for (int i = 0; names[i]; i++) {
     PyObject *value = PyDict_GetItemString(keywords, names[i]);
-    if (!value) continue;
+    if (!value)
+      continue;
     Numbers n;
-    if (!numbers_read(value, 'd', names[i], &n)) return false;
+    if (!numbers_read(value, 'd', names[i], &n))
+      return false;
     size_t wanted = d->vertices;
-    if (i == 7 || i == 8) wanted = d->faces;
-    if (i == 0 && d->kind == VL_SHAPE_CURVES) wanted = 2 * (size_t)d->faces;
+    if (i == 7 || i == 8)
+      wanted = d->faces;
+    if (i == 0 && d->kind == VL_SHAPE_CURVES)
+      wanted = 2 * (size_t)d->faces;
     size_t got = n.count / pers[i];
     numbers_release(&n);
-    if (got != wanted) return raise_usage("%s: %zu elements are needed, it has %zu", names[i], wanted, got), false;
+    if (got != wanted)
+      return raise_usage("%s: %zu elements are needed, it has %zu", names[i], wanted, got),
+             false;
   }
   return true;
 }
 
-/* ---- adding ------------------------------------------------------------------------------------------------------ */
+/* ---- adding
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 const char *const family_names[] = {"textures", "materials", "media",     "emission", "lights",
                                     "shapes",   "groups",    "instances", NULL};
 
 void default_def(Family family, int kind, bool spectrum, Def *def) {
   switch (family) {
-    case TEXTURES: def->texture = vl_default_texture_def((vlTextureKind)kind, spectrum); break;
-    case MATERIALS: def->material = vl_default_material_def((vlMaterialKind)kind); break;
-    case MEDIA: def->medium = vl_default_medium_def((vlMediumKind)kind); break;
-    case EMISSION: def->emission = vl_default_emission_def(); break;
-    case LIGHTS: def->light = vl_default_light_def((vlLightKind)kind); break;
-    case SHAPES: def->shape = vl_default_shape_def((vlShapeKind)kind); break;
+    case TEXTURES:
+      def->texture = vl_default_texture_def((vlTextureKind)kind, spectrum);
+      break;
+    case MATERIALS:
+      def->material = vl_default_material_def((vlMaterialKind)kind);
+      break;
+    case MEDIA:
+      def->medium = vl_default_medium_def((vlMediumKind)kind);
+      break;
+    case EMISSION:
+      def->emission = vl_default_emission_def();
+      break;
+    case LIGHTS:
+      def->light = vl_default_light_def((vlLightKind)kind);
+      break;
+    case SHAPES:
+      def->shape = vl_default_shape_def((vlShapeKind)kind);
+      break;
     case GROUPS:
-    case INSTANCES: break;
+    case INSTANCES:
+      break;
   }
 }
 
 static int set_extra(Adding *a, Family family, Def *def, const char *name, PyObject *value) {
   switch (family) {
-    case TEXTURES: return set_texture(a, &def->texture, name, value);
-    case MATERIALS: return set_material(a, &def->material, name, value);
-    case MEDIA: return set_medium(a, &def->medium, name, value);
-    case LIGHTS: return set_light(a, &def->light, name, value);
-    case SHAPES: return set_shape(a, &def->shape, name, value);
+    case TEXTURES:
+      return set_texture(a, &def->texture, name, value);
+    case MATERIALS:
+      return set_material(a, &def->material, name, value);
+    case MEDIA:
+      return set_medium(a, &def->medium, name, value);
+    case LIGHTS:
+      return set_light(a, &def->light, name, value);
+    case SHAPES:
+      return set_shape(a, &def->shape, name, value);
     case EMISSION:
     case GROUPS:
-    case INSTANCES: break;
+    case INSTANCES:
+      break;
   }
   return 0;
 }
 
 static uint32_t add(vlScene *scene, Family family, const Def *def) {
   switch (family) {
-    case TEXTURES: return vl_scene_add_texture(scene, &def->texture).index;
-    case MATERIALS: return vl_scene_add_material(scene, &def->material).index;
-    case MEDIA: return vl_scene_add_medium(scene, &def->medium).index;
-    case EMISSION: return vl_scene_add_emission(scene, &def->emission).index;
-    case LIGHTS: return vl_scene_add_light(scene, &def->light).index;
-    case SHAPES: return vl_scene_add_shape(scene, &def->shape).index;
+    case TEXTURES:
+      return vl_scene_add_texture(scene, &def->texture).index;
+    case MATERIALS:
+      return vl_scene_add_material(scene, &def->material).index;
+    case MEDIA:
+      return vl_scene_add_medium(scene, &def->medium).index;
+    case EMISSION:
+      return vl_scene_add_emission(scene, &def->emission).index;
+    case LIGHTS:
+      return vl_scene_add_light(scene, &def->light).index;
+    case SHAPES:
+      return vl_scene_add_shape(scene, &def->shape).index;
     case GROUPS:
-    case INSTANCES: break;
+    case INSTANCES:
+      break;
   }
   return 0;
 }
 
-bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing, PyObject *keywords, bool spectrum,
-             Def *def) {
+bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
+             PyObject *keywords, bool spectrum, Def *def) {
   const Target target = {(char *)def, a->keep, a->scene, spectrum};
   PyObject *name, *value;
   Py_ssize_t position = 0;
   while (PyDict_Next(keywords, &position, &name, &value)) {
     const char *text = keep_text(a->keep, name, "a keyword");
     int extra = text ? set_extra(a, family, def, text, value) : -1;
-    if (extra < 0) return false;
-    if (extra) continue;
+    if (extra < 0)
+      return false;
+    if (extra)
+      continue;
     const vlParameter *p = find_parameter(row->parameters, row->parameter_count, text);
     if (!p && family == TEXTURES && spectrum && strncmp(text, "spectrum_", 9) == 0) {
       char other[32] = "float_";
-      if (strlen(text) < 20) strcpy(other + 6, text + 9);
+      if (strlen(text) < 20)
+        strcpy(other + 6, text + 9);
       p = find_parameter(row->parameters, row->parameter_count, other);
     }
     if (!p) {
       PyObject *names = PyList_New(0);
-      if (names && !append_names(names, row->parameters, row->parameter_count)) Py_CLEAR(names);
+      if (names && !append_names(names, row->parameters, row->parameter_count))
+        Py_CLEAR(names);
       char what[96];
       PyOS_snprintf(what, sizeof what, "keyword of this %s", thing);
       return raise_unknown(what, text, names);
     }
-    if (!set_parameter(&target, p, value)) return false;
+    if (!set_parameter(&target, p, value))
+      return false;
   }
   return family != SHAPES || check_lengths(&def->shape, keywords);
 }
 
 PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
   Handle *h = make_object(TYPE_HANDLE);
-  if (!h) return NULL;
+  if (!h)
+    return NULL;
   Py_INCREF((PyObject *)scene);
   h->scene = scene;
   h->family = family_names[family];
@@ -332,23 +421,31 @@ static PyObject *add_group(Scene *self, PyObject *name) {
 
 PyObject *scene_add(Scene *self, PyObject *arguments) {
   PyObject *family_name, *kind_name, *keywords;
-  if (!PyArg_ParseTuple(arguments, "OOO!:_add", &family_name, &kind_name, &PyDict_Type, &keywords) || !scene_open(self))
+  if (!PyArg_ParseTuple(arguments, "OOO!:_add", &family_name, &kind_name, &PyDict_Type,
+                        &keywords) ||
+      !scene_open(self))
     return NULL;
   int family = find_choice(family_names, "family", family_name);
-  if (family < 0) return NULL;
-  if (family == GROUPS) return add_group(self, kind_name);
-  if (family == INSTANCES) return raise_usage("instances are added by add_instance");
+  if (family < 0)
+    return NULL;
+  if (family == GROUPS)
+    return add_group(self, kind_name);
+  if (family == INSTANCES)
+    return raise_usage("instances are added by add_instance");
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
   int kind = find_kind(kinds, kinds->thing, kind_name);
-  if (kind < 0) return NULL;
+  if (kind < 0)
+    return NULL;
   PyObject *wanted = PyDict_GetItemString(keywords, "spectrum");
   bool spectrum = family == TEXTURES && !(kinds->rows[kind]->traits & VL_TEXTURE_FLOAT_ONLY);
-  if (family == TEXTURES && wanted && !read_flag(wanted, "spectrum", &spectrum)) return NULL;
+  if (family == TEXTURES && wanted && !read_flag(wanted, "spectrum", &spectrum))
+    return NULL;
   Def def;
   default_def((Family)family, kind, spectrum, &def);
   Adding a = {.scene = self, .keep = PyList_New(0)};
   PyObject *result = NULL;
-  if (a.keep && set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
+  if (a.keep &&
+      set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
     Call call;
     if (call_begin(&call, self->context, &self->busy)) {
       uint32_t index = add(self->scene, (Family)family, &def);
@@ -356,7 +453,8 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
       result = index ? new_handle(self, (Family)family, index) : scene_error(self);
     }
   }
-  for (int i = 0; i < a.array_count; i++) numbers_release(&a.arrays[i]);
+  for (int i = 0; i < a.array_count; i++)
+    numbers_release(&a.arrays[i]);
   Py_XDECREF(a.keep);
   return result;
 }
@@ -364,24 +462,30 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
 /* _add_instance(group, matrices, times or None): handle */
 PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
   PyObject *group, *matrices, *times;
-  if (!PyArg_ParseTuple(arguments, "OOO:_add_instance", &group, &matrices, &times) || !scene_open(self)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OOO:_add_instance", &group, &matrices, &times) ||
+      !scene_open(self))
+    return NULL;
   vlGroupId id;
-  if (!read_handle(self, group, "groups", "group", &id.index)) return NULL;
+  if (!read_handle(self, group, "groups", "group", &id.index))
+    return NULL;
   Numbers poses = {0}, seconds = {0};
   bool fine = numbers_read(matrices, 'd', "transform", &poses) &&
               (times == Py_None || numbers_read(times, 'd', "times", &seconds));
   size_t keys = times == Py_None ? 1 : seconds.count;
   if (fine && (keys == 0 || keys > 65536 || poses.count != 16 * keys))
     fine =
-        raise_value("transform", matrices, "a matrix of 16 numbers, with times (at most 65536) one for each") != NULL;
+        raise_value("transform", matrices,
+                    "a matrix of 16 numbers, with times (at most 65536) one for each") != NULL;
   vlInstanceId instance = {0};
   if (fine && times == Py_None)
     instance = vl_scene_add_instance(self->scene, id, poses.data, (vlSource){0});
   else if (fine)
-    instance = vl_scene_add_moving_instance(self->scene, id, (uint32_t)keys, seconds.data, poses.data, (vlSource){0});
+    instance = vl_scene_add_moving_instance(self->scene, id, (uint32_t)keys, seconds.data,
+                                            poses.data, (vlSource){0});
   numbers_release(&poses);
   numbers_release(&seconds);
-  if (!fine) return NULL;
+  if (!fine)
+    return NULL;
   return instance.index ? new_handle(self, INSTANCES, instance.index) : scene_error(self);
 }
 
@@ -391,17 +495,22 @@ PyObject *scene_load_group(Scene *self, PyObject *arguments) {
   vlLoadedGroup loaded;
   Loading l = {.def = vl_default_load_def(), .loaded = &loaded};
   const Target target = {(char *)&l.def, keep, self, false};
-  if (!keep || !PyArg_ParseTuple(arguments, "OOO!O:_load_group", &path, &name, &PyDict_Type, &keywords, &callback) ||
-      !scene_open(self) || !set_parameters(&target, VL_SETTING_LOAD, "keyword of load_group", keywords) ||
-      !(l.file = keep_path(keep, path, "path")) || (name != Py_None && !(l.name = keep_text(keep, name, "name"))) ||
+  if (!keep ||
+      !PyArg_ParseTuple(arguments, "OOO!O:_load_group", &path, &name, &PyDict_Type, &keywords,
+                        &callback) ||
+      !scene_open(self) ||
+      !set_parameters(&target, VL_SETTING_LOAD, "keyword of load_group", keywords) ||
+      !(l.file = keep_path(keep, path, "path")) ||
+      (name != Py_None && !(l.name = keep_text(keep, name, "name"))) ||
       !load_file(self, &l, callback))
     goto end;
   PyObject *group = new_handle(self, GROUPS, loaded.group.index);
   if (group)
     result =
-        Py_BuildValue("N{s:I,s:I,s:I,s:I,s:(ddd),s:(ddd)}", group, "shapes", loaded.shapes, "first_object",
-                      loaded.first_object, "lights", loaded.lights, "emitters", loaded.emitters, "low", loaded.low[0],
-                      loaded.low[1], loaded.low[2], "high", loaded.high[0], loaded.high[1], loaded.high[2]);
+        Py_BuildValue("N{s:I,s:I,s:I,s:I,s:(ddd),s:(ddd)}", group, "shapes", loaded.shapes,
+                      "first_object", loaded.first_object, "lights", loaded.lights, "emitters",
+                      loaded.emitters, "low", loaded.low[0], loaded.low[1], loaded.low[2],
+                      "high", loaded.high[0], loaded.high[1], loaded.high[2]);
 end:
   Py_XDECREF(keep);
   return result;

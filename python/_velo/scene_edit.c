@@ -6,12 +6,16 @@
 
 /* The family of a handle of this scene; -1 with an exception. */
 static int family_of(const Scene *self, PyObject *object, uint32_t *index) {
-  if (!scene_open(self)) return -1;
-  if (!is_object(object, TYPE_HANDLE)) return raise_value("handle", object, "a velo.Handle of the scene"), -1;
+  if (!scene_open(self))
+    return -1;
+  if (!is_object(object, TYPE_HANDLE))
+    return raise_value("handle", object, "a velo.Handle of the scene"), -1;
   const Handle *h = (const Handle *)object;
-  if (h->scene != self) return raise_usage("the handle is part of another scene"), -1;
+  if (h->scene != self)
+    return raise_usage("the handle is part of another scene"), -1;
   int family = 0;
-  while (strcmp(family_names[family], h->family) != 0) family++;
+  while (strcmp(family_names[family], h->family) != 0)
+    family++;
   *index = h->index;
   return family;
 }
@@ -21,7 +25,8 @@ static bool get_def(const vlScene *scene, Family family, uint32_t index, Def *de
 #define GET(FAMILY, member, Id, function, number)                    \
   case FAMILY: {                                                     \
     const __typeof__(def->member) *d = function(scene, (Id){index}); \
-    if (d) def->member = *d, *kind = (int)(number);                  \
+    if (d)                                                           \
+      def->member = *d, *kind = (int)(number);                       \
     return d != NULL;                                                \
   }
   switch (family) {
@@ -32,29 +37,40 @@ static bool get_def(const vlScene *scene, Family family, uint32_t index, Def *de
     GET(LIGHTS, light, vlLightId, vl_scene_light, d->kind)
     GET(SHAPES, shape, vlShapeId, vl_scene_shape, d->kind)
     case GROUPS:
-    case INSTANCES: break;
+    case INSTANCES:
+      break;
   }
 #undef GET
   return false;
 }
 
 static PyObject *outcome(vlResult result, const vlError *error) {
-  if (result != VL_OK) return raise_result(result, error);
+  if (result != VL_OK)
+    return raise_result(result, error);
   Py_RETURN_NONE;
 }
 
-/* ---- changes ----------------------------------------------------------------------------------------------------- */
+/* ---- changes
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def *def, vlError *error) {
+static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def *def,
+                        vlError *error) {
   switch (family) {
-    case TEXTURES: return vl_scene_set_texture(scene, (vlTextureId){index}, &def->texture, error);
-    case MATERIALS: return vl_scene_set_material(scene, (vlMaterialId){index}, &def->material, error);
-    case EMISSION: return vl_scene_set_emission(scene, (vlEmissionId){index}, &def->emission, error);
-    case LIGHTS: return vl_scene_set_light(scene, (vlLightId){index}, &def->light, error);
-    case MEDIA: return vl_scene_set_medium(scene, (vlMediumId){index}, &def->medium, error);
+    case TEXTURES:
+      return vl_scene_set_texture(scene, (vlTextureId){index}, &def->texture, error);
+    case MATERIALS:
+      return vl_scene_set_material(scene, (vlMaterialId){index}, &def->material, error);
+    case EMISSION:
+      return vl_scene_set_emission(scene, (vlEmissionId){index}, &def->emission, error);
+    case LIGHTS:
+      return vl_scene_set_light(scene, (vlLightId){index}, &def->light, error);
+    case MEDIA:
+      return vl_scene_set_medium(scene, (vlMediumId){index}, &def->medium, error);
     case SHAPES:
     case GROUPS:
-    case INSTANCES: break;
+    case INSTANCES:
+      break;
   }
   return VL_ERROR_ARGUMENT;
 }
@@ -73,16 +89,20 @@ static PyObject *set_shape(Scene *self, uint32_t index, PyObject *keywords) {
   const vlShapeId shape = {index};
   vlError error = {0};
   vlResult result = VL_OK;
-  if (emission) result = vl_scene_set_shape_emission(self->scene, shape, e, &error);
-  if (material && result == VL_OK) result = vl_scene_set_shape_material(self->scene, shape, m, &error);
+  if (emission)
+    result = vl_scene_set_shape_emission(self->scene, shape, e, &error);
+  if (material && result == VL_OK)
+    result = vl_scene_set_shape_material(self->scene, shape, m, &error);
   return outcome(result, &error);
 }
 
 static PyObject *set_instance(Scene *self, uint32_t index, PyObject *keywords) {
   PyObject *transform = PyDict_GetItemString(keywords, "transform");
   double m[16];
-  if (!transform || PyDict_Size(keywords) != 1) return raise_usage("of an instance, transform can be changed");
-  if (!numbers_copy(transform, "transform", 16, m)) return NULL;
+  if (!transform || PyDict_Size(keywords) != 1)
+    return raise_usage("of an instance, transform can be changed");
+  if (!numbers_copy(transform, "transform", 16, m))
+    return NULL;
   vlError error = {0};
   return outcome(vl_scene_set_instance(self->scene, (vlInstanceId){index}, m, &error), &error);
 }
@@ -91,37 +111,50 @@ static PyObject *set_instance(Scene *self, uint32_t index, PyObject *keywords) {
 static void change_kind(Family family, int kind, bool spectrum, Def *def) {
   const Def old = *def;
   default_def(family, kind, spectrum, def);
-  if (family == TEXTURES) def->texture.name = old.texture.name, def->texture.source = old.texture.source;
-  if (family == MATERIALS) def->material.name = old.material.name, def->material.source = old.material.source;
-  if (family == EMISSION) def->emission.source = old.emission.source;
-  if (family == LIGHTS) def->light.source = old.light.source;
-  if (family == MEDIA) def->medium.name = old.medium.name, def->medium.source = old.medium.source;
+  if (family == TEXTURES)
+    def->texture.name = old.texture.name, def->texture.source = old.texture.source;
+  if (family == MATERIALS)
+    def->material.name = old.material.name, def->material.source = old.material.source;
+  if (family == EMISSION)
+    def->emission.source = old.emission.source;
+  if (family == LIGHTS)
+    def->light.source = old.light.source;
+  if (family == MEDIA)
+    def->medium.name = old.medium.name, def->medium.source = old.medium.source;
 }
 
 /* _set(handle, kind or None, keywords) */
 PyObject *scene_set(Scene *self, PyObject *arguments) {
   PyObject *object, *kind_name, *keywords;
   uint32_t index;
-  if (!PyArg_ParseTuple(arguments, "OOO!:_set", &object, &kind_name, &PyDict_Type, &keywords)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OOO!:_set", &object, &kind_name, &PyDict_Type, &keywords))
+    return NULL;
   int family = family_of(self, object, &index), kind = 0;
-  if (family < 0) return NULL;
+  if (family < 0)
+    return NULL;
   if (kind_name != Py_None && (family == SHAPES || family == INSTANCES))
     return raise_usage("the kind of a shape cannot be changed");
-  if (family == SHAPES) return set_shape(self, index, keywords);
-  if (family == INSTANCES) return set_instance(self, index, keywords);
-  if (family == GROUPS) return raise_usage("%s cannot be changed", family_names[family]);
+  if (family == SHAPES)
+    return set_shape(self, index, keywords);
+  if (family == INSTANCES)
+    return set_instance(self, index, keywords);
+  if (family == GROUPS)
+    return raise_usage("%s cannot be changed", family_names[family]);
   Def def;
-  if (!get_def(self->scene, (Family)family, index, &def, &kind)) return raise_usage("the scene has no such object");
+  if (!get_def(self->scene, (Family)family, index, &def, &kind))
+    return raise_usage("the scene has no such object");
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
   bool spectrum = family == TEXTURES && def.texture.spectrum;
   if (kind_name != Py_None) {
     kind = find_kind(kinds, kinds->thing, kind_name);
-    if (kind < 0) return NULL;
+    if (kind < 0)
+      return NULL;
     change_kind((Family)family, kind, spectrum, &def);
   }
   Adding a = {.scene = self, .keep = PyList_New(0)};
   PyObject *result = NULL;
-  if (a.keep && set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
+  if (a.keep &&
+      set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
     Call call;
     if (call_begin(&call, self->context, &self->busy)) {
       vlError error = {0};
@@ -130,7 +163,8 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
       result = outcome(done, &error);
     }
   }
-  for (int i = 0; i < a.array_count; i++) numbers_release(&a.arrays[i]);
+  for (int i = 0; i < a.array_count; i++)
+    numbers_release(&a.arrays[i]);
   Py_XDECREF(a.keep);
   return result;
 }
@@ -141,37 +175,53 @@ PyObject *scene_show(Scene *self, PyObject *arguments) {
   PyObject *flag;
   bool shown;
   uint32_t index;
-  if (!PyArg_ParseTuple(arguments, "OO:_show", &object, &flag) || !read_flag(flag, "shown", &shown)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OO:_show", &object, &flag) ||
+      !read_flag(flag, "shown", &shown))
+    return NULL;
   int family = family_of(self, object, &index);
-  if (family < 0) return NULL;
+  if (family < 0)
+    return NULL;
   vlError error = {0};
   switch ((Family)family) {
-    case LIGHTS: return outcome(vl_scene_show_light(self->scene, (vlLightId){index}, shown, &error), &error);
-    case SHAPES: return outcome(vl_scene_show_shape(self->scene, (vlShapeId){index}, shown, &error), &error);
-    case INSTANCES: return outcome(vl_scene_show_instance(self->scene, (vlInstanceId){index}, shown, &error), &error);
+    case LIGHTS:
+      return outcome(vl_scene_show_light(self->scene, (vlLightId){index}, shown, &error),
+                     &error);
+    case SHAPES:
+      return outcome(vl_scene_show_shape(self->scene, (vlShapeId){index}, shown, &error),
+                     &error);
+    case INSTANCES:
+      return outcome(vl_scene_show_instance(self->scene, (vlInstanceId){index}, shown, &error),
+                     &error);
     case TEXTURES:
     case MATERIALS:
     case MEDIA:
     case EMISSION:
-    case GROUPS: break;
+    case GROUPS:
+      break;
   }
-  return raise_usage("lights, shapes and instances can be hidden, not %s", family_names[family]);
+  return raise_usage("lights, shapes and instances can be hidden, not %s",
+                     family_names[family]);
 }
 
 /* _remove(handle) */
 PyObject *scene_remove(Scene *self, PyObject *object) {
   uint32_t index;
   int family = family_of(self, object, &index);
-  if (family < 0) return NULL;
-  if (family != INSTANCES) return raise_usage("instances can be removed, not %s; hide it", family_names[family]);
+  if (family < 0)
+    return NULL;
+  if (family != INSTANCES)
+    return raise_usage("instances can be removed, not %s; hide it", family_names[family]);
   vlError error = {0};
   return outcome(vl_scene_remove_instance(self->scene, (vlInstanceId){index}, &error), &error);
 }
 
-/* ---- handles ----------------------------------------------------------------------------------------------------- */
+/* ---- handles
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* Whether the scene has an object of this index; *past: it has none from this one on. */
-static bool exists(const vlScene *scene, const vlSceneInfo *info, Family family, uint32_t index, bool *past) {
+static bool exists(const vlScene *scene, const vlSceneInfo *info, Family family, uint32_t index,
+                   bool *past) {
   Def def;
   int kind;
   vlInstanceInfo instance;
@@ -179,24 +229,29 @@ static bool exists(const vlScene *scene, const vlSceneInfo *info, Family family,
     *past = index > info->instances;
     return vl_scene_instance(scene, (vlInstanceId){index}, &instance) == VL_OK;
   }
-  bool there = family == GROUPS ? index <= info->groups : get_def(scene, family, index, &def, &kind);
+  bool there =
+      family == GROUPS ? index <= info->groups : get_def(scene, family, index, &def, &kind);
   *past = !there;
   return there;
 }
 
 /* _handles(family): a list. */
 PyObject *scene_handles(Scene *self, PyObject *name) {
-  if (!scene_open(self)) return NULL;
+  if (!scene_open(self))
+    return NULL;
   int family = find_choice(family_names, "family", name);
-  if (family < 0) return NULL;
+  if (family < 0)
+    return NULL;
   vlSceneInfo info;
   vl_scene_info(self->scene, &info);
   PyObject *list = PyList_New(0);
   bool past = false;
   for (uint32_t index = 1; list && !past; index++) {
-    if (!exists(self->scene, &info, (Family)family, index, &past)) continue;
+    if (!exists(self->scene, &info, (Family)family, index, &past))
+      continue;
     PyObject *h = new_handle(self, (Family)family, index);
-    if (!h || PyList_Append(list, h) < 0) Py_CLEAR(list);
+    if (!h || PyList_Append(list, h) < 0)
+      Py_CLEAR(list);
     Py_XDECREF(h);
   }
   return list;
@@ -207,16 +262,20 @@ static void handle_dealloc(Handle *self) {
   free_object((PyObject *)self);
 }
 static PyObject *handle_repr(Handle *self) {
-  return PyUnicode_FromFormat("<velo.Handle: number %u of the scene's %s>", self->index, self->family);
+  return PyUnicode_FromFormat("<velo.Handle: number %u of the scene's %s>", self->index,
+                              self->family);
 }
 static PyObject *handle_compare(Handle *self, PyObject *object, int operation) {
-  if (!is_object(object, TYPE_HANDLE) || (operation != Py_EQ && operation != Py_NE)) Py_RETURN_NOTIMPLEMENTED;
+  if (!is_object(object, TYPE_HANDLE) || (operation != Py_EQ && operation != Py_NE))
+    Py_RETURN_NOTIMPLEMENTED;
   const Handle *other = (const Handle *)object;
-  bool same = self->scene == other->scene && self->index == other->index && strcmp(self->family, other->family) == 0;
+  bool same = self->scene == other->scene && self->index == other->index &&
+              strcmp(self->family, other->family) == 0;
   return PyBool_FromLong(same == (operation == Py_EQ));
 }
 static Py_hash_t handle_hash(Handle *self) {
-  return (Py_hash_t)(((uintptr_t)self->scene >> 4) ^ ((uintptr_t)self->index << 3) ^ (uintptr_t)self->family[0]) &
+  return (Py_hash_t)(((uintptr_t)self->scene >> 4) ^ ((uintptr_t)self->index << 3) ^
+                     (uintptr_t)self->family[0]) &
          0x7fffffff;
 }
 
@@ -234,8 +293,10 @@ static PyObject *handle_kind(Handle *self, void *unused) {
   uint32_t index;
   int family = family_of(self->scene, (PyObject *)self, &index), kind;
   Def def;
-  if (family < 0) return NULL;
-  if (!get_def(self->scene->scene, (Family)family, index, &def, &kind)) Py_RETURN_NONE;
+  if (family < 0)
+    return NULL;
+  if (!get_def(self->scene->scene, (Family)family, index, &def, &kind))
+    Py_RETURN_NONE;
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
   char lower[64] = "";
   for (size_t i = 0; kinds->constants[kind][i] && i + 1 < sizeof lower; i++) {
@@ -249,7 +310,8 @@ static PyObject *handle_name(Handle *self, void *unused) {
   (void)unused;
   uint32_t index;
   int family = family_of(self->scene, (PyObject *)self, &index), kind;
-  if (family < 0) return NULL;
+  if (family < 0)
+    return NULL;
   Def def;
   vlInstanceInfo info;
   const char *name = NULL;
@@ -259,16 +321,19 @@ static PyObject *handle_name(Handle *self, void *unused) {
            : family == MEDIA     ? def.medium.name
            : family == SHAPES    ? def.shape.label.name
                                  : NULL;
-  if (family == INSTANCES && vl_scene_instance(self->scene->scene, (vlInstanceId){index}, &info) == VL_OK)
+  if (family == INSTANCES &&
+      vl_scene_instance(self->scene->scene, (vlInstanceId){index}, &info) == VL_OK)
     name = info.label.name;
-  if (!name || !name[0]) Py_RETURN_NONE;
+  if (!name || !name[0])
+    Py_RETURN_NONE;
   return text_object(name);
 }
 
 static PyObject *copy_array(const void *data, size_t size) {
   void *to = NULL;
   PyObject *bytes = make_bytes(size, &to);
-  if (bytes && size) memcpy(to, data, size);
+  if (bytes && size)
+    memcpy(to, data, size);
   return bytes;
 }
 
@@ -276,17 +341,24 @@ static PyObject *copy_array(const void *data, size_t size) {
 PyObject *scene_mesh(Scene *self, PyObject *object) {
   uint32_t index;
   int family = family_of(self, object, &index);
-  if (family < 0) return NULL;
-  const vlShapeDef *d = family == SHAPES ? vl_scene_shape(self->scene, (vlShapeId){index}) : NULL;
-  if (!d || (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR) || !d->positions || !d->indices)
+  if (family < 0)
+    return NULL;
+  const vlShapeDef *d =
+      family == SHAPES ? vl_scene_shape(self->scene, (vlShapeId){index}) : NULL;
+  if (!d || (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR) || !d->positions ||
+      !d->indices)
     return raise_usage("this is not a mesh of triangles or bilinear patches");
   const int corners = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
   PyObject *matrix = PyTuple_New(16);
-  for (int i = 0; matrix && i < 16; i++) PyTuple_SetItem(matrix, i, PyFloat_FromDouble(d->group_from_shape[i]));
-  return matrix ? Py_BuildValue("(NNiN)", copy_array(d->positions, (size_t)d->vertices * 3 * sizeof(float)),
-                                copy_array(d->indices, (size_t)d->faces * (size_t)corners * sizeof(uint32_t)), corners,
-                                matrix)
-                : NULL;
+  for (int i = 0; matrix && i < 16; i++)
+    PyTuple_SetItem(matrix, i, PyFloat_FromDouble(d->group_from_shape[i]));
+  return matrix
+             ? Py_BuildValue("(NNiN)",
+                             copy_array(d->positions, (size_t)d->vertices * 3 * sizeof(float)),
+                             copy_array(d->indices,
+                                        (size_t)d->faces * (size_t)corners * sizeof(uint32_t)),
+                             corners, matrix)
+             : NULL;
 }
 
 /* _instance(handle): (group, 16 numbers, moves, shown) */
@@ -294,11 +366,14 @@ PyObject *scene_instance(Scene *self, PyObject *object) {
   uint32_t index;
   int family = family_of(self, object, &index);
   vlInstanceInfo info;
-  if (family < 0) return NULL;
-  if (family != INSTANCES || vl_scene_instance(self->scene, (vlInstanceId){index}, &info) != VL_OK)
+  if (family < 0)
+    return NULL;
+  if (family != INSTANCES ||
+      vl_scene_instance(self->scene, (vlInstanceId){index}, &info) != VL_OK)
     return raise_usage("this is not an instance of the scene");
   PyObject *matrix = PyTuple_New(16);
-  for (int i = 0; matrix && i < 16; i++) PyTuple_SetItem(matrix, i, PyFloat_FromDouble(info.world_from_group[i]));
+  for (int i = 0; matrix && i < 16; i++)
+    PyTuple_SetItem(matrix, i, PyFloat_FromDouble(info.world_from_group[i]));
   return matrix ? Py_BuildValue("(NNNN)", new_handle(self, GROUPS, info.group.index), matrix,
                                 PyBool_FromLong(info.moves), PyBool_FromLong(info.shown))
                 : NULL;
@@ -308,12 +383,15 @@ static PyGetSetDef handle_members[] = {
     {"index", (getter)handle_index_member, NULL, "Its number in the scene, from 1.", NULL},
     {"family", (getter)handle_family, NULL,
      "textures, materials, media, emission, lights, shapes, groups or instances.", NULL},
-    {"kind", (getter)handle_kind, NULL, "Its kind, \"principled\" for example; None: of groups and instances.", NULL},
-    {"name", (getter)handle_name, NULL, "Its name in the file, or that it was given; None: it has none.", NULL},
+    {"kind", (getter)handle_kind, NULL,
+     "Its kind, \"principled\" for example; None: of groups and instances.", NULL},
+    {"name", (getter)handle_name, NULL,
+     "Its name in the file, or that it was given; None: it has none.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot handle_slots[] = {
-    {Py_tp_doc, "A texture, material, medium, emission, light, shape, group or instance of a scene."},
+    {Py_tp_doc,
+     "A texture, material, medium, emission, light, shape, group or instance of a scene."},
     {Py_tp_dealloc, handle_dealloc},
     {Py_tp_repr, handle_repr},
     {Py_tp_richcompare, handle_compare},
@@ -322,4 +400,5 @@ static PyType_Slot handle_slots[] = {
     {0, NULL},
 };
 PyType_Spec handle_spec = {"velo._velo.Handle", sizeof(Handle), 0,
-                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, handle_slots};
+                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
+                           handle_slots};

@@ -16,25 +16,32 @@ struct vlFilmFile {
 
 vlResult vl_film_receipt(const vlFilmReader *reader, vlReceipt **receipt, vlError *error) {
   vlError own = {0};
-  vlResult result =
-      vl_receipt_parse(reader->context, reader->texts.receipt, strlen(reader->texts.receipt), receipt, &own);
-  if (result == VL_OK) return VL_OK;
-  if (result == VL_ERROR_MEMORY) return vl_fail_memory(error);
+  vlResult result = vl_receipt_parse(reader->context, reader->texts.receipt,
+                                     strlen(reader->texts.receipt), receipt, &own);
+  if (result == VL_OK)
+    return VL_OK;
+  if (result == VL_ERROR_MEMORY)
+    return vl_fail_memory(error);
   return vl_fail(error, result, "%s: film file: %s", reader->path, own.message);
 }
 
-vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **file, vlError *error) {
+vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **file,
+                           vlError *error) {
   vl_error_clear(error);
-  if (file) *file = NULL;
-  if (!context || !path || !file) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or file is null");
+  if (file)
+    *file = NULL;
+  if (!context || !path || !file)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or file is null");
   vlFilmFile *made = vl_alloc_zero(context, 1, sizeof *made);
-  if (!made) return vl_fail_memory(error);
+  if (!made)
+    return vl_fail_memory(error);
   vlResult result = vl_film_reader_open(&made->reader, context, path, error);
   if (result != VL_OK) {
     vl_free(context, made);
     return result;
   }
-  if (made->reader.texts.receipt) result = vl_film_receipt(&made->reader, &made->receipt, error);
+  if (made->reader.texts.receipt)
+    result = vl_film_receipt(&made->reader, &made->receipt, error);
   if (result != VL_OK) {
     vl_film_file_close(made);
     return result;
@@ -44,7 +51,8 @@ vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **fi
 }
 
 void vl_film_file_close(vlFilmFile *file) {
-  if (!file) return;
+  if (!file)
+    return;
   vlContext *context = file->reader.context;
   vl_receipt_destroy(file->receipt);
   vl_free(context, file->data);
@@ -65,36 +73,48 @@ const vlReceipt *vl_film_file_receipt(const vlFilmFile *file) {
 
 vlResult vl_film_file_attributes(const vlFilmFile *file, vlImage *image, vlError *error) {
   vl_error_clear(error);
-  if (!file || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or image is null");
+  if (!file || !image)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or image is null");
   const vlFilmReader *r = &file->reader;
-  return r->texts.attributes ? vl_film_attributes_set(r->path, r->texts.attributes, image, error) : VL_OK;
+  return r->texts.attributes
+             ? vl_film_attributes_set(r->path, r->texts.attributes, image, error)
+             : VL_OK;
 }
 
 static vlResult check_data(vlFilmFile *file, vlError *error) {
   vlFilmReader *r = &file->reader;
   size_t most = vl_film_most_data(&r->shape.def);
-  if (!file->data && !(file->data = vl_alloc(r->context, most))) return vl_fail_memory(error);
+  if (!file->data && !(file->data = vl_alloc(r->context, most)))
+    return vl_fail_memory(error);
   return vl_film_reader_data(r, file->data, error);
 }
 
 vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlError *error) {
   vl_error_clear(error);
-  if (block) *block = (vlFilmBlock){.range_count = 0};
-  if (!file || !block) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or block is null");
+  if (block)
+    *block = (vlFilmBlock){.range_count = 0};
+  if (!file || !block)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or block is null");
   vlFilmReader *r = &file->reader;
-  if (r->next > r->blocks) return VL_OK;
+  if (r->next > r->blocks)
+    return VL_OK;
   bool last = r->next == r->blocks;
   vlResult result = vl_film_reader_next(r, error);
-  if (result != VL_OK || last) return result;
-  if (check && (result = check_data(file, error)) != VL_OK) return result;
+  if (result != VL_OK || last)
+    return result;
+  if (check && (result = check_data(file, error)) != VL_OK)
+    return result;
   const vlFilmBlockHead *h = &r->head;
   if (h->range_count > file->capacity) {
-    vlSampleRange *more = vl_realloc_array(r->context, file->ranges, h->range_count, sizeof *more);
-    if (!more) return vl_fail_memory(error);
+    vlSampleRange *more =
+        vl_realloc_array(r->context, file->ranges, h->range_count, sizeof *more);
+    if (!more)
+      return vl_fail_memory(error);
     file->ranges = more;
     file->capacity = h->range_count;
   }
-  for (uint32_t i = 0; i < h->range_count; i++) file->ranges[i] = (vlSampleRange){r->ranges[i].first, r->ranges[i].end};
+  for (uint32_t i = 0; i < h->range_count; i++)
+    file->ranges[i] = (vlSampleRange){r->ranges[i].first, r->ranges[i].end};
   *block = (vlFilmBlock){h->x0, h->y0, h->x1, h->y1, h->range_count, file->ranges};
   return VL_OK;
 }

@@ -1,5 +1,5 @@
-/* api/load.c: vl_scene_load: chooses the importer by the name of the scene file, and reads the camera that velo
- * wrote into a glTF file. */
+/* api/load.c: vl_scene_load: chooses the importer by the name of the scene file, and reads the
+ * camera that velo wrote into a glTF file. */
 #include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -23,8 +23,10 @@ static const struct {
 } formats[] = {VL_SCENE_FORMATS(FORMAT)};
 enum { FORMATS = VL_LENGTH(formats) };
 
-/* Reads the complete camera from the extras, where velo's exporter writes it. glTF's own camera is only a pinhole. */
-static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
+/* Reads the complete camera from the extras, where velo's exporter writes it. glTF's own camera
+ * is only a pinhole. */
+static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoadDef *load,
+                                  vlError *error) {
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_GLTF;
   def.frame = load ? load->camera : NULL;
@@ -33,8 +35,9 @@ static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoad
   vl_error_clear(&inside);
   vlResult result = vl_camera_read(scene->context, path, &def, &record, &inside);
   if (result != VL_OK) {
-    vl_scene_fail(scene, result, (vlSource){inside.file[0] ? inside.file : path, inside.line, inside.column}, "%s",
-                  inside.message[0] ? inside.message : vl_result_name(result));
+    vl_scene_fail(scene, result,
+                  (vlSource){inside.file[0] ? inside.file : path, inside.line, inside.column},
+                  "%s", inside.message[0] ? inside.message : vl_result_name(result));
     return vl_scene_result(scene, error);
   }
   vlFilmDef *film = &scene->defs.film;
@@ -46,14 +49,18 @@ static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoad
   return VL_OK;
 }
 
-static vlResult check_load(const vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+static vlResult check_load(const vlScene *scene, const char *path, const vlLoadDef *def,
+                           vlError *error) {
   vl_error_clear(error);
-  if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: scene or path is null");
-  if (def && def->cookie != VL_COOKIE_LOAD) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: " VL_BAD_COOKIE);
+  if (!scene || !path)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: scene or path is null");
+  if (def && def->cookie != VL_COOKIE_LOAD)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: " VL_BAD_COOKIE);
   const double times[2] = {def ? def->time : VL_UNSET, def ? def->time_close : VL_UNSET};
   for (int i = 0; i < 2; i++)
     if (!vl_is_unset(times[i]) && !isfinite(times[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: time is %g; it must be finite", times[i]);
+      return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: time is %g; it must be finite",
+                     times[i]);
   return vl_scene_result(scene, error);
 }
 
@@ -63,11 +70,13 @@ static void start_task(vlScene *scene, vlTask *task, const vlLoadDef *def) {
   scene->task = task;
 }
 
-vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size, const vlLoadDef *def,
-                              vlError *error) {
+vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size,
+                              const vlLoadDef *def, vlError *error) {
   vlResult result = check_load(scene, name, def, error);
-  if (result != VL_OK) return result;
-  if (!data && size) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
+  if (result != VL_OK)
+    return result;
+  if (!data && size)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
   vlTask task;
   start_task(scene, &task, def);
   unsigned floats = vl_machine_set_floats();
@@ -79,26 +88,31 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
 
 vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
   vlResult checked = check_load(scene, path, def, error);
-  if (checked != VL_OK) return checked;
+  if (checked != VL_OK)
+    return checked;
   struct stat info;
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
-  Import *import =
-      readable ? NULL : vl_import_pbrt; /* a file that cannot be read goes to an importer that reports why */
+  Import *import = readable ? NULL : vl_import_pbrt; /* a file that cannot be read goes to an
+                                                        importer that reports why */
   char known[200] = "";
   for (int i = 0; i < FORMATS; i++) {
     size_t n = strlen(known);
     snprintf(known + n, sizeof known - n, "%s%s", i ? ", " : "", formats[i].suffix);
-    if (!import && vl_ends_with(path, formats[i].suffix)) import = formats[i].import;
+    if (!import && vl_ends_with(path, formats[i].suffix))
+      import = formats[i].import;
   }
   if (import) {
     vlTask task;
     start_task(scene, &task, def);
     unsigned floats = vl_machine_set_floats();
-    vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error) : import(scene, path, def, error);
+    vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error)
+                                                 : import(scene, path, def, error);
     vl_machine_restore_floats(floats);
     scene->task = NULL;
-    return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error) : result;
+    return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error)
+                                                    : result;
   }
-  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0}, "%.300s: unknown kind of scene file (known: %s)", path, known);
+  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
+                "%.300s: unknown kind of scene file (known: %s)", path, known);
   return vl_scene_result(scene, error);
 }

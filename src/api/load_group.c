@@ -14,7 +14,8 @@ typedef struct Before {
 } Before;
 
 static void turn_inside_out(vlShapeDef *d, const double pose[16]) {
-  /* Instances never flip normals, but a mirroring group_from_shape does, except those of meshes (vlShapeDef). */
+  /* Instances never flip normals, but a mirroring group_from_shape does, except those of meshes
+   * (vlShapeDef). */
   if (!vl_shape_is_mesh(d->kind) && vl_mat4_determinant3(vl_mat4_load(pose)) < 0)
     d->reverse_orientation = !d->reverse_orientation;
 }
@@ -33,11 +34,13 @@ typedef struct Loaded {
   bool reversed;
 } Loaded;
 
-/* Replaces an instance by its shapes: the first instance of a group takes the group's shapes, the others copy them. */
-static bool dissolve(vlScene *scene, size_t first_shape, const Loaded *all, size_t count, vlGroupId group,
-                     const vlSceneInstance *instance) {
+/* Replaces an instance by its shapes: the first instance of a group takes the group's shapes,
+ * the others copy them. */
+static bool dissolve(vlScene *scene, size_t first_shape, const Loaded *all, size_t count,
+                     vlGroupId group, const vlSceneInstance *instance) {
   for (size_t i = 0; i < count; i++) {
-    if (all[i].group != instance->group.index) continue;
+    if (all[i].group != instance->group.index)
+      continue;
     vlShapeDef *d = &scene->shapes.items[first_shape + i];
     if (d->group.index != group.index) {
       scene->groups.items[d->group.index - 1].shape_count--;
@@ -49,12 +52,14 @@ static bool dissolve(vlScene *scene, size_t first_shape, const Loaded *all, size
     memcpy(copy.group_from_shape, all[i].pose, sizeof copy.group_from_shape);
     copy.reverse_orientation = all[i].reversed;
     move_shape(&copy, group, instance->world_from_group);
-    if (!vl_scene_add_shape(scene, &copy).index) return false;
+    if (!vl_scene_add_shape(scene, &copy).index)
+      return false;
   }
   return true;
 }
 
-static bool gather(vlScene *scene, const Before *before, vlGroupId group, vlLoadedGroup *loaded) {
+static bool gather(vlScene *scene, const Before *before, vlGroupId group,
+                   vlLoadedGroup *loaded) {
   size_t count = scene->shapes.count - before->shapes;
   Loaded *all = vl_alloc_array(scene->context, count + 1, sizeof *all);
   if (!all) {
@@ -65,9 +70,11 @@ static bool gather(vlScene *scene, const Before *before, vlGroupId group, vlLoad
     vlShapeDef *d = &scene->shapes.items[before->shapes + i];
     all[i] = (Loaded){.group = d->group.index, .reversed = d->reverse_orientation};
     memcpy(all[i].pose, d->group_from_shape, sizeof all[i].pose);
-    if (d->emission.index) loaded->emitters++;
+    if (d->emission.index)
+      loaded->emitters++;
     d->emission.index = 0;
-    if (d->group.index) continue;
+    if (d->group.index)
+      continue;
     d->group = group;
     scene->groups.items[group.index - 1].shape_count++;
   }
@@ -82,23 +89,28 @@ static bool gather(vlScene *scene, const Before *before, vlGroupId group, vlLoad
   return fine;
 }
 
-static vlResult find_box(vlScene *scene, vlGroupId group, vlLoadedGroup *loaded, vlError *error) {
+static vlResult find_box(vlScene *scene, vlGroupId group, vlLoadedGroup *loaded,
+                         vlError *error) {
   vlExtent *boxes;
-  if (!vl_extent_groups(scene, &boxes)) return vl_scene_result(scene, error);
+  if (!vl_extent_groups(scene, &boxes))
+    return vl_scene_result(scene, error);
   memcpy(loaded->low, boxes[group.index - 1].low, sizeof loaded->low);
   memcpy(loaded->high, boxes[group.index - 1].high, sizeof loaded->high);
   vl_free(scene->context, boxes);
   return VL_OK;
 }
 
-vlResult vl_scene_load_group(vlScene *scene, const char *path, const vlLoadDef *def, const char *name,
-                             vlLoadedGroup *loaded, vlError *error) {
+vlResult vl_scene_load_group(vlScene *scene, const char *path, const vlLoadDef *def,
+                             const char *name, vlLoadedGroup *loaded, vlError *error) {
   vl_error_clear(error);
-  if (!scene || !path || !loaded) return vl_fail(error, VL_ERROR_ARGUMENT, "load group: a pointer is null");
+  if (!scene || !path || !loaded)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "load group: a pointer is null");
   memset(loaded, 0, sizeof *loaded);
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
   vlGroupId group = vl_scene_add_group(scene, name);
-  if (!group.index) return vl_scene_result(scene, error);
+  if (!group.index)
+    return vl_scene_result(scene, error);
   const Before before = {scene->shapes.count,  scene->instances.count,    scene->lights.count,
                          scene->choices.count, scene->frame_points.count, scene->defs};
   bool in_full = scene->camera_in_full;
@@ -109,8 +121,10 @@ vlResult vl_scene_load_group(vlScene *scene, const char *path, const vlLoadDef *
   scene->frame_points.count = before.points;
   loaded->lights = (uint32_t)(scene->lights.count - before.lights);
   scene->lights.count = before.lights;
-  if (result != VL_OK) return result;
-  if (!gather(scene, &before, group, loaded)) return vl_scene_result(scene, error);
+  if (result != VL_OK)
+    return result;
+  if (!gather(scene, &before, group, loaded))
+    return vl_scene_result(scene, error);
   loaded->group = group;
   loaded->shapes = scene->groups.items[group.index - 1].shape_count;
   loaded->first_object = (uint32_t)before.shapes + 1;

@@ -22,7 +22,9 @@ vlReceiptDef vl_default_receipt_def(void) {
   return (vlReceiptDef){.cookie = VL_COOKIE_RECEIPT, .focus_distance = VL_UNSET};
 }
 
-/* ---- making ------------------------------------------------------------------------------------------------------ */
+/* ---- making
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static bool put_velo(json_t *tree, const char *commit) {
   json_t *velo = json_object();
@@ -36,20 +38,25 @@ static bool put_velo(json_t *tree, const char *commit) {
   return vl_receipt_put(tree, "velo", velo);
 }
 
-/* Makes a JSON string of any bytes. If they are not UTF-8 (paths may be so), each byte above 0x7f becomes "?". */
+/* Makes a JSON string of any bytes. If they are not UTF-8 (paths may be so), each byte above
+ * 0x7f becomes "?". */
 static json_t *string_of(vlContext *context, const char *text) {
   json_t *value = json_string(text);
-  if (value) return value;
+  if (value)
+    return value;
   char *copy = vl_strdup(context, text);
   for (char *c = copy; copy && *c; c++)
-    if ((unsigned char)*c >= 0x80) *c = '?';
+    if ((unsigned char)*c >= 0x80)
+      *c = '?';
   value = copy ? json_string(copy) : NULL;
   vl_free(context, copy);
   return value;
 }
 
-static bool put_strings(vlContext *context, json_t *tree, const char *key, const char *const *strings, uint32_t count) {
-  if (!strings) return true;
+static bool put_strings(vlContext *context, json_t *tree, const char *key,
+                        const char *const *strings, uint32_t count) {
+  if (!strings)
+    return true;
   json_t *list = json_array();
   for (uint32_t i = 0; i < count; i++)
     if (!vl_receipt_put(list, NULL, string_of(context, strings[i]))) {
@@ -59,7 +66,8 @@ static bool put_strings(vlContext *context, json_t *tree, const char *key, const
   return vl_receipt_put(tree, key, list);
 }
 
-/* Returns the path relative to the scene's folder if it begins with that folder, else the whole path. */
+/* Returns the path relative to the scene's folder if it begins with that folder, else the whole
+ * path. */
 static const char *relative(const char *path, const char *scene) {
   const char *slash = scene ? strrchr(scene, '/') : NULL;
   size_t folder = slash ? (size_t)(slash + 1 - scene) : 0;
@@ -73,9 +81,10 @@ static bool put_files(vlContext *context, json_t *tree, const char *scene) {
     char digest[33];
     vl_digest_text(record->digest, digest);
     json_t *file = json_object();
-    bool good = vl_receipt_put(file, "path", string_of(context, relative(record->path, scene))) &&
-                vl_receipt_put(file, "size", json_integer((json_int_t)record->size)) &&
-                vl_receipt_put(file, "murmur3", json_string(digest));
+    bool good =
+        vl_receipt_put(file, "path", string_of(context, relative(record->path, scene))) &&
+        vl_receipt_put(file, "size", json_integer((json_int_t)record->size)) &&
+        vl_receipt_put(file, "murmur3", json_string(digest));
     if (!good) {
       json_decref(file);
       file = NULL;
@@ -88,23 +97,26 @@ static bool put_files(vlContext *context, json_t *tree, const char *scene) {
   return vl_receipt_put(tree, "files", list);
 }
 
-/* Makes the camera's tree as in velo's camera files, for the image size of its description. The film holds the size
- * of the image. */
+/* Makes the camera's tree as in velo's camera files, for the image size of its description. The
+ * film holds the size of the image. */
 static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   vlCameraRecord record = {.camera = *camera};
-  if (camera->own) record.camera.projection = VL_PROJECTION_OWN;
+  if (camera->own)
+    record.camera.projection = VL_PROJECTION_OWN;
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
   /* reads all numbers as reals, which keeps -0; the counts become integers below */
   json_error_t place;
   const size_t flags = JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES;
-  json_t *tree = text.failed ? NULL : vl_json_parse(text.text.items, text.text.count, flags, &place);
+  json_t *tree =
+      text.failed ? NULL : vl_json_parse(text.text.items, text.text.count, flags, &place);
   VL_ARRAY_FREE(context, &text.text);
   static const char *const counts[] = {"velo_camera", "width", "height", "blades"};
   bool good = tree != NULL;
   for (size_t i = 0; i < VL_LENGTH(counts) && good; i++) {
     const json_t *value = json_object_get(tree, counts[i]);
-    if (value) good = vl_receipt_put(tree, counts[i], json_integer((json_int_t)json_real_value(value)));
+    if (value)
+      good = vl_receipt_put(tree, counts[i], json_integer((json_int_t)json_real_value(value)));
   }
   if (!good) {
     json_decref(tree);
@@ -119,16 +131,19 @@ static bool put_digest(json_t *object, const char *key, const uint8_t digest[16]
   return vl_receipt_put(object, key, json_string(text));
 }
 
-/* Adds digests of what camera files cannot hold: the aperture's image and a lens of many elements; and the name of a
- * camera of one's own. */
+/* Adds digests of what camera files cannot hold: the aperture's image and a lens of many
+ * elements; and the name of a camera of one's own. */
 static bool put_optics(json_t *camera, const vlCameraDef *def) {
-  if (def->own && !vl_receipt_put(camera, "own", json_string(def->own->name))) return false;
+  if (def->own && !vl_receipt_put(camera, "own", json_string(def->own->name)))
+    return false;
   uint8_t digest[16];
   if (def->lens.aperture) {
     vl_aperture_digest(def->lens.aperture, digest);
-    if (!put_digest(camera, "aperture_digest", digest)) return false;
+    if (!put_digest(camera, "aperture_digest", digest))
+      return false;
   }
-  if (def->projection != VL_PROJECTION_OPTICS || !def->lens.optics) return true;
+  if (def->projection != VL_PROJECTION_OPTICS || !def->lens.optics)
+    return true;
   vlOpticsDef optics;
   vlLensSurface surfaces[64];
   vl_optics_def(def->lens.optics, &optics, surfaces);
@@ -144,10 +159,12 @@ static bool put_optics(json_t *camera, const vlCameraDef *def) {
   numbers[count++] = optics.film_diagonal;
   numbers[count++] = optics.unit_mm;
   vl_digest(numbers, count * sizeof *numbers, digest);
-  if (!put_digest(camera, "optics_digest", digest)) return false;
+  if (!put_digest(camera, "optics_digest", digest))
+    return false;
   if (optics.aperture) {
     vl_aperture_digest(optics.aperture, digest);
-    if (!put_digest(camera, "aperture_digest", digest)) return false;
+    if (!put_digest(camera, "aperture_digest", digest))
+      return false;
   }
   return vl_receipt_put(camera, "optics_focus", json_real(optics.focus_distance));
 }
@@ -156,8 +173,10 @@ static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def
   vlCameraDef camera = def->defs->camera;
   if (!vl_is_unset(def->focus_distance)) {
     camera.focus_distance = def->focus_distance;
-    for (int i = 0; i < 2; i++) camera.lens.focus_pixel[i] = VL_UNSET;
-    for (int i = 0; i < 3; i++) camera.lens.focus_point[i] = VL_UNSET;
+    for (int i = 0; i < 2; i++)
+      camera.lens.focus_pixel[i] = VL_UNSET;
+    for (int i = 0; i < 3; i++)
+      camera.lens.focus_point[i] = VL_UNSET;
   }
   json_t *object = camera_tree(context, &camera);
   if (!object || !put_optics(object, &camera)) {
@@ -171,7 +190,8 @@ static char *text_of(vlContext *context, const json_t *tree) {
   return vl_json_text(context, tree, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
 }
 
-static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlReceipt **receipt, vlError *error) {
+static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlReceipt **receipt,
+                           vlError *error) {
   vlReceipt *made = tree && text ? vl_alloc_zero(context, 1, sizeof *made) : NULL;
   if (!made) {
     json_decref(tree);
@@ -183,14 +203,19 @@ static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlRecei
   return VL_OK;
 }
 
-vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt **receipt, vlError *error) {
-  if (receipt) *receipt = NULL;
+vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt **receipt,
+                         vlError *error) {
+  if (receipt)
+    *receipt = NULL;
   if (!context || !def || !receipt || def->cookie != VL_COOKIE_RECEIPT || !def->defs)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "receipt: context, def, def.defs or receipt is null, or def.cookie is not that of a default def of "
-                   "this version");
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "receipt: context, def, def.defs or receipt is null, or def.cookie is not that "
+        "of a default def of "
+        "this version");
   json_t *tree = json_object();
-  bool good = vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) && put_velo(tree, def->commit) &&
+  bool good = vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) &&
+              put_velo(tree, def->commit) &&
               put_strings(context, tree, "command", def->command, def->command_count) &&
               (!def->scene || vl_receipt_put(tree, "scene", string_of(context, def->scene))) &&
               put_files(context, tree, def->scene) && put_camera(context, tree, def) &&
@@ -199,22 +224,30 @@ vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt 
   return receipt_of(context, tree, good ? text_of(context, tree) : NULL, receipt, error);
 }
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlReceipt **receipt, vlError *error) {
-  if (receipt) *receipt = NULL;
+vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size,
+                          vlReceipt **receipt, vlError *error) {
+  if (receipt)
+    *receipt = NULL;
   if (!context || !text || !receipt)
     return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: context, text or receipt is null");
   json_error_t wrong;
   json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &wrong);
-  if (!tree && vl_json_lacks_memory(&wrong)) return vl_fail_memory(error);
-  if (!tree) return vl_fail(error, VL_ERROR_SCENE, "receipt: line %d: %s", wrong.line, wrong.text);
+  if (!tree && vl_json_lacks_memory(&wrong))
+    return vl_fail_memory(error);
+  if (!tree)
+    return vl_fail(error, VL_ERROR_SCENE, "receipt: line %d: %s", wrong.line, wrong.text);
   const json_t *format = json_object_get(tree, "velo_receipt");
   bool later = json_is_integer(format) && json_integer_value(format) > VL_RECEIPT_FORMAT;
   if (!json_is_integer(format) || later || json_integer_value(format) < 1) {
     json_decref(tree);
-    return later ? vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: its format is of a later version of velo")
-                 : vl_fail(error, VL_ERROR_SCENE, "receipt: this is not a receipt: there is no \"velo_receipt\"");
+    return later ? vl_fail(error, VL_ERROR_UNSUPPORTED,
+                           "receipt: its format is of a later version of velo")
+                 : vl_fail(error, VL_ERROR_SCENE,
+                           "receipt: this is not a receipt: there is no \"velo_receipt\"");
   }
   char *copy = vl_alloc(context, size + 1);
   if (copy) {
@@ -238,19 +271,26 @@ static bool put_command_samples(json_t *command, uint32_t samples) {
   return true;
 }
 
-vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt, vlError *error) {
-  if (receipt) *receipt = NULL;
-  if (!film || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: film or receipt is null");
+vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt,
+                             vlError *error) {
+  if (receipt)
+    *receipt = NULL;
+  if (!film || !receipt)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: film or receipt is null");
   json_t *tree = json_deep_copy(film->tree), *render = json_object_get(tree, "render");
   bool good = tree && json_object_set_new(tree, "samples", json_integer(samples)) == 0 &&
-              (!json_is_object(render) || json_object_set_new(render, "spp", json_integer(samples)) == 0) &&
+              (!json_is_object(render) ||
+               json_object_set_new(render, "spp", json_integer(samples)) == 0) &&
               put_command_samples(json_object_get(tree, "command"), samples);
-  if (good) json_object_del(tree, "outputs");
-  return receipt_of(film->context, tree, good ? text_of(film->context, tree) : NULL, receipt, error);
+  if (good)
+    json_object_del(tree, "outputs");
+  return receipt_of(film->context, tree, good ? text_of(film->context, tree) : NULL, receipt,
+                    error);
 }
 
 void vl_receipt_destroy(vlReceipt *receipt) {
-  if (!receipt) return;
+  if (!receipt)
+    return;
   json_decref(receipt->tree);
   vl_free(receipt->context, receipt->text);
   vl_free(receipt->context, receipt);
@@ -275,8 +315,10 @@ const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index) {
 const char *vl_receipt_own(const vlReceipt *receipt, vlOwnKind kind) {
   static const char *const places[VL_OWN_KINDS][2] = {
       {"camera", "own"}, {"render", "own_sampler"}, {"render", "own_tracer"}};
-  if ((unsigned)kind >= VL_OWN_KINDS) return NULL;
-  return json_string_value(json_object_get(json_object_get(receipt->tree, places[kind][0]), places[kind][1]));
+  if ((unsigned)kind >= VL_OWN_KINDS)
+    return NULL;
+  return json_string_value(
+      json_object_get(json_object_get(receipt->tree, places[kind][0]), places[kind][1]));
 }
 
 /* Returns an integer from 0 to 2^32 - 1, or 0 if the value is anything else. */
@@ -286,12 +328,14 @@ static uint32_t count_of(const json_t *value) {
 }
 
 uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned) {
-  if (planned) *planned = count_of(json_object_get(json_object_get(receipt->tree, "render"), "spp"));
+  if (planned)
+    *planned = count_of(json_object_get(json_object_get(receipt->tree, "render"), "spp"));
   return count_of(json_object_get(receipt->tree, "samples"));
 }
 
 double vl_receipt_noise(const vlReceipt *receipt) {
-  const json_t *adaptive = json_object_get(json_object_get(receipt->tree, "render"), "adaptive");
+  const json_t *adaptive =
+      json_object_get(json_object_get(receipt->tree, "render"), "adaptive");
   return json_number_value(json_object_get(adaptive, "noise"));
 }
 
@@ -304,14 +348,17 @@ static int digit(char c) {
   return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : 0;
 }
 
-const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index, vlFileRecord *record) {
+const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index,
+                                    vlFileRecord *record) {
   const json_t *file = json_array_get(json_object_get(receipt->tree, "files"), index);
   const char *path = json_string_value(json_object_get(file, "path"));
   const char *digest = json_string_value(json_object_get(file, "murmur3"));
-  if (!path || !digest || strlen(digest) != 32) return NULL;
+  if (!path || !digest || strlen(digest) != 32)
+    return NULL;
   json_int_t size = json_integer_value(json_object_get(file, "size"));
   *record = (vlFileRecord){.path = path, .size = size > 0 ? (uint64_t)size : 0};
-  for (int i = 0; i < 16; i++) record->digest[i] = (uint8_t)(16 * digit(digest[2 * i]) + digit(digest[2 * i + 1]));
+  for (int i = 0; i < 16; i++)
+    record->digest[i] = (uint8_t)(16 * digit(digest[2 * i]) + digit(digest[2 * i + 1]));
   return record;
 }
 
@@ -319,32 +366,46 @@ const char *vl_receipt_version(const vlReceipt *receipt, const char **commit) {
   const json_t *velo = json_object_get(receipt->tree, "velo");
   const char *version = json_string_value(json_object_get(velo, "version"));
   const char *from = json_string_value(json_object_get(velo, "commit"));
-  if (commit) *commit = from ? from : "";
+  if (commit)
+    *commit = from ? from : "";
   return version ? version : "";
 }
 
-vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32_t size[2], uint32_t crop[4],
-                           vlError *error) {
-  const json_t *film = json_object_get(receipt->tree, "film"), *tree = json_object_get(receipt->tree, "camera");
+vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32_t size[2],
+                           uint32_t crop[4], vlError *error) {
+  const json_t *film = json_object_get(receipt->tree, "film"),
+               *tree = json_object_get(receipt->tree, "camera");
   if (!json_is_object(tree) || !json_is_object(film))
     return vl_fail(error, VL_ERROR_SCENE, "receipt: there is no camera");
   if (json_object_get(tree, "optics_digest") || json_object_get(tree, "aperture_digest"))
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: it does not hold the camera's lens, the scene does");
+    return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                   "receipt: it does not hold the camera's lens, the scene does");
   const char *own = vl_receipt_own(receipt, VL_OWN_CAMERA);
   if (own)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: it does not hold the own camera \"%s\", only its name",
+    return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                   "receipt: it does not hold the own camera \"%s\", only its name",
                    vl_short_text(own).text);
-  uint32_t window[4], whole[2] = {count_of(json_object_get(film, "width")), count_of(json_object_get(film, "height"))};
-  for (size_t i = 0; i < 4; i++) window[i] = count_of(json_array_get(json_object_get(film, "crop"), i));
-  if (!(window[0] < window[2] && window[1] < window[3] && window[2] <= whole[0] && window[3] <= whole[1]))
+  uint32_t window[4], whole[2] = {count_of(json_object_get(film, "width")),
+                                  count_of(json_object_get(film, "height"))};
+  for (size_t i = 0; i < 4; i++)
+    window[i] = count_of(json_array_get(json_object_get(film, "crop"), i));
+  if (!(window[0] < window[2] && window[1] < window[3] && window[2] <= whole[0] &&
+        window[3] <= whole[1]))
     return vl_fail(error, VL_ERROR_SCENE, "receipt: the size of its image is wrong");
   vlCameraFileDef def = vl_default_camera_file_def();
-  vlCameraFile file = {.context = receipt->context, .path = "receipt", .dialect = "velo", .def = &def, .error = error};
+  vlCameraFile file = {.context = receipt->context,
+                       .path = "receipt",
+                       .dialect = "velo",
+                       .def = &def,
+                       .error = error};
   vlCameraRecord record = {.camera = vl_default_camera_def(1, 1), .frames = 1};
   vlResult result = vl_camera_read_velo(&file, tree, &record);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   *camera = record.camera;
-  if (size) memcpy(size, whole, sizeof whole);
-  if (crop) memcpy(crop, window, sizeof window);
+  if (size)
+    memcpy(size, whole, sizeof whole);
+  if (crop)
+    memcpy(crop, window, sizeof window);
   return VL_OK;
 }

@@ -16,12 +16,15 @@ struct vlReceipt {
   char *text;
 };
 
-/* Adds a value to an object, or an element to an array (key null). Takes the reference. False: out of memory. */
+/* Adds a value to an object, or an element to an array (key null). Takes the reference. False:
+ * out of memory. */
 bool vl_receipt_put(json_t *parent, const char *key, json_t *value);
 /* Adds the settings of def to the tree. False: out of memory. */
 bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def);
 
-/* Parses the receipt of a film file; its errors name the file. reader->texts.receipt is not null. */
+/* Parses the receipt of a film file; its errors name the file. reader->texts.receipt is not
+ * null.
+ */
 vlResult vl_film_receipt(const vlFilmReader *reader, vlReceipt **receipt, vlError *error);
 
 #endif

@@ -3,18 +3,23 @@
 
 #include <string.h>
 
-bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count, size_t size, size_t more) {
-  if (more == 0) return true;
+bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count,
+                   size_t size, size_t more) {
+  if (more == 0)
+    return true;
   if (more <= *capacity - count) {
     memset((char *)*items + count * size, 0, more * size);
     return true;
   }
-  if (more > SIZE_MAX / 4 / size - count) return false;
+  if (more > SIZE_MAX / 4 / size - count)
+    return false;
   size_t wanted = count + more;
   size_t grown = *capacity + *capacity / 2 + 8;
-  if (grown < wanted) grown = wanted;
+  if (grown < wanted)
+    grown = wanted;
   void *fresh = vl_realloc_array(context, *items, grown, size);
-  if (!fresh) return false;
+  if (!fresh)
+    return false;
   memset((char *)fresh + count * size, 0, more * size);
   *items = fresh;
   *capacity = grown;

@@ -1,5 +1,6 @@
-/* base/array.h: a growable array of any type, by macros. `VL_ARRAY(T)` is the type; a zeroed array is empty.
- *     VL_ARRAY(int) a = {0};  int *p = VL_PUSH(ctx, &a);  if (p) *p = 3;  for (size_t i = 0; i < a.count; i++) ... */
+/* base/array.h: a growable array of any type, by macros. `VL_ARRAY(T)` is the type; a zeroed
+ * array is empty. VL_ARRAY(int) a = {0};  int *p = VL_PUSH(ctx, &a);  if (p) *p = 3;  for
+ * (size_t i = 0; i < a.count; i++) ... */
 #ifndef BASE_ARRAY_H
 #define BASE_ARRAY_H
 
@@ -11,17 +12,22 @@
     size_t count, capacity; \
   }
 
-/* Pointer to a new zeroed element at the end, or null if memory is exhausted (the array is then unchanged). */
-#define VL_PUSH(context, array)                                                                                        \
-  ((vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, sizeof *(array)->items, 1)) \
-       ? &(array)->items[(array)->count++]                                                                             \
+/* Pointer to a new zeroed element at the end, or null if memory is exhausted (the array is then
+ * unchanged). */
+#define VL_PUSH(context, array)                                                            \
+  ((vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, \
+                  sizeof *(array)->items, 1))                                              \
+       ? &(array)->items[(array)->count++]                                                 \
        : NULL)
 /* Reserves capacity for n more elements. False if memory is exhausted. */
-#define VL_RESERVE(context, array, n) \
-  vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, sizeof *(array)->items, (n))
-#define VL_ARRAY_FREE(context, array) \
-  (vl_free((context), (array)->items), (array)->items = NULL, (array)->count = (array)->capacity = 0)
+#define VL_RESERVE(context, array, n)                                                    \
+  vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, \
+                sizeof *(array)->items, (n))
+#define VL_ARRAY_FREE(context, array)                         \
+  (vl_free((context), (array)->items), (array)->items = NULL, \
+   (array)->count = (array)->capacity = 0)
 
-bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count, size_t size, size_t more);
+bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count,
+                   size_t size, size_t more);
 
 #endif

@@ -1,5 +1,6 @@
-/* base/confine.c: vl_confine by two means of Linux: Landlock (files by folder) and seccomp (system calls). Raw system
- * calls; the interface of Landlock is written out here, since the headers of older kernels lack parts of it. */
+/* base/confine.c: vl_confine by two means of Linux: Landlock (files by folder) and seccomp
+ * (system calls). Raw system calls; the interface of Landlock is written out here, since the
+ * headers of older kernels lack parts of it. */
 #include "velo/confine.h"
 
 #include <fcntl.h>
@@ -22,9 +23,14 @@
 #include <sys/socket.h>
 #include <sys/syscall.h>
 
-/* ---- Landlock (linux/landlock.h; Documentation/userspace-api/landlock.rst of Linux) ------------------------------ */
+/* ---- Landlock (linux/landlock.h; Documentation/userspace-api/landlock.rst of Linux)
+ * ------------------------------ */
 
-enum { CREATE_RULESET = 444, ADD_RULE = 445, RESTRICT_SELF = 446 }; /* the same on all processors */
+enum {
+  CREATE_RULESET = 444,
+  ADD_RULE = 445,
+  RESTRICT_SELF = 446
+}; /* the same on all processors */
 enum { VERSION_FLAG = 1, RULE_PATH_BENEATH = 1 };
 enum {
   FS_EXECUTE = 1 << 0,
@@ -38,8 +44,10 @@ enum {
   FS_REFER = 1 << 13,    /* version 2 */
   FS_TRUNCATE = 1 << 14, /* version 3 */
   FS_READ = FS_READ_FILE | FS_READ_DIR,
-  FS_WRITE = FS_READ | FS_WRITE_FILE | FS_REMOVE_FILE | FS_MAKE_DIR | FS_MAKE_REG | FS_REFER | FS_TRUNCATE,
-  FS_OF_FILES = FS_EXECUTE | FS_WRITE_FILE | FS_READ_FILE | FS_TRUNCATE /* those that a rule of one file may have */
+  FS_WRITE = FS_READ | FS_WRITE_FILE | FS_REMOVE_FILE | FS_MAKE_DIR | FS_MAKE_REG | FS_REFER |
+             FS_TRUNCATE,
+  FS_OF_FILES = FS_EXECUTE | FS_WRITE_FILE | FS_READ_FILE |
+                FS_TRUNCATE /* those that a rule of one file may have */
 };
 
 typedef struct Ruleset {
@@ -60,17 +68,20 @@ typedef struct Rules {
 static void allow(const Rules *rules, const char *path, uint64_t access) {
   struct stat info;
   int fd = open(path, O_PATH | O_CLOEXEC);
-  if (fd < 0) return;
+  if (fd < 0)
+    return;
   if (fstat(fd, &info) == 0) {
-    if (!S_ISDIR(info.st_mode)) access &= FS_OF_FILES;
+    if (!S_ISDIR(info.st_mode))
+      access &= FS_OF_FILES;
     const PathBeneath rule = {access & rules->handled, fd};
-    syscall(ADD_RULE, rules->ruleset, RULE_PATH_BENEATH, &rule, 0); /* refuses pipes, which are not confined */
+    syscall(ADD_RULE, rules->ruleset, RULE_PATH_BENEATH, &rule,
+            0); /* refuses pipes, which are not confined */
   }
   close(fd);
 }
 
-/* What the program itself reads: shared libraries that are loaded late, the time zone, the number of processors, memory
- * in use and its limit. */
+/* What the program itself reads: shared libraries that are loaded late, the time zone, the
+ * number of processors, memory in use and its limit. */
 static void allow_system(const Rules *rules) {
   static const char *const paths[] = {"/lib",
                                       "/lib64",
@@ -110,29 +121,37 @@ static void allow_output(const Rules *rules, const char *path) {
     allow(rules, path, FS_WRITE);
     return;
   }
-  if (!vl_follow_links(path, target, sizeof target)) return;
+  if (!vl_follow_links(path, target, sizeof target))
+    return;
   target[strcspn(target, "%")] = 0;
   target[vl_folder_length(target)] = 0;
   allow(rules, *target ? target : ".", FS_WRITE);
 }
 
-static uint32_t confine_files(const char *const *read, uint32_t read_count, const char *const *write,
-                              uint32_t write_count) {
+static uint32_t confine_files(const char *const *read, uint32_t read_count,
+                              const char *const *write, uint32_t write_count) {
   long version = syscall(CREATE_RULESET, NULL, (size_t)0, VERSION_FLAG);
-  if (version < 1) return 0;
-  Rules rules = {.handled = FS_ALL | (version >= 2 ? FS_REFER : 0) | (version >= 3 ? FS_TRUNCATE : 0)};
+  if (version < 1)
+    return 0;
+  Rules rules = {.handled =
+                     FS_ALL | (version >= 2 ? FS_REFER : 0) | (version >= 3 ? FS_TRUNCATE : 0)};
   const Ruleset def = {rules.handled};
   rules.ruleset = (int)syscall(CREATE_RULESET, &def, sizeof def, 0);
-  if (rules.ruleset < 0) return 0;
+  if (rules.ruleset < 0)
+    return 0;
   allow_system(&rules);
-  for (uint32_t i = 0; i < read_count; i++) allow(&rules, read[i], FS_READ);
-  for (uint32_t i = 0; i < write_count; i++) allow_output(&rules, write[i]);
+  for (uint32_t i = 0; i < read_count; i++)
+    allow(&rules, read[i], FS_READ);
+  for (uint32_t i = 0; i < write_count; i++)
+    allow_output(&rules, write[i]);
   bool good = syscall(RESTRICT_SELF, rules.ruleset, 0) == 0;
   close(rules.ruleset);
   return good ? (uint32_t)version : 0;
 }
 
-/* ---- seccomp ----------------------------------------------------------------------------------------------------- */
+/* ---- seccomp
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 #if defined(__x86_64__)
 #define NATIVE AUDIT_ARCH_X86_64
@@ -147,7 +166,10 @@ static uint32_t confine_files(const char *const *read, uint32_t read_count, cons
 #define RETURN(what) BPF_STMT(BPF_RET | BPF_K, what)
 #define REFUSE RETURN(SECCOMP_RET_ERRNO | EPERM)
 #define REFUSE_CALL(number) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), REFUSE
-enum { X32 = 0x40000000, IO_URING_SETUP = 425 }; /* calls of x86's x32 variant; io_uring opens sockets, too */
+enum {
+  X32 = 0x40000000,
+  IO_URING_SETUP = 425
+}; /* calls of x86's x32 variant; io_uring opens sockets, too */
 
 static bool install(struct sock_filter *program, size_t count) {
   const struct sock_fprog filter = {(unsigned short)count, program};
@@ -197,13 +219,15 @@ static bool forbid_sockets(bool local) {
 
 #endif
 
-vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *const *write, uint32_t write_count,
-                      bool sockets) {
+vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *const *write,
+                      uint32_t write_count, bool sockets) {
   vlConfined done = {0};
   struct stat info;
   bool local = false;
-  for (uint32_t i = 0; i < write_count; i++) local |= stat(write[i], &info) == 0 && S_ISSOCK(info.st_mode);
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return done; /* both means require it */
+  for (uint32_t i = 0; i < write_count; i++)
+    local |= stat(write[i], &info) == 0 && S_ISSOCK(info.st_mode);
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+    return done; /* both means require it */
   done.landlock = confine_files(read, read_count, write, write_count);
   done.files = done.landlock > 0;
   done.programs = forbid_programs();
@@ -214,8 +238,8 @@ vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *
 
 #else
 
-vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *const *write, uint32_t write_count,
-                      bool sockets) {
+vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *const *write,
+                      uint32_t write_count, bool sockets) {
   (void)read;
   (void)read_count;
   (void)write;

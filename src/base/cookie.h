@@ -1,6 +1,6 @@
-/* base/cookie.h: the cookies that vl_default_*_def() stores in a def. They reveal a def that was filled by hand or by a
- * library of another ABI version. The highest byte is 'v', the next two are the ABI version, the lowest is the def's
- * kind. */
+/* base/cookie.h: the cookies that vl_default_*_def() stores in a def. They reveal a def that
+ * was filled by hand or by a library of another ABI version. The highest byte is 'v', the next
+ * two are the ABI version, the lowest is the def's kind. */
 #ifndef BASE_COOKIE_H
 #define BASE_COOKIE_H
 

@@ -14,7 +14,8 @@ static uint64_t mix(uint64_t k) {
 /* Loads up to 8 bytes; the first byte becomes the lowest. */
 static uint64_t load(const uint8_t *bytes, size_t count) {
   uint64_t value = 0;
-  for (size_t i = 0; i < count; i++) value |= (uint64_t)bytes[i] << 8 * i;
+  for (size_t i = 0; i < count; i++)
+    value |= (uint64_t)bytes[i] << 8 * i;
   return value;
 }
 
@@ -35,8 +36,10 @@ void vl_digest(const void *data, size_t size, uint8_t digest[16]) {
     h1 = (rotate(h1 ^ scramble1(load(bytes, 8)), 27) + h2) * 5 + 0x52dce729u;
     h2 = (rotate(h2 ^ scramble2(load(bytes + 8, 8)), 31) + h1) * 5 + 0x38495ab5u;
   }
-  if (rest > 8) h2 ^= scramble2(load(bytes + 8, rest - 8));
-  if (rest > 0) h1 ^= scramble1(load(bytes, rest < 8 ? rest : 8));
+  if (rest > 8)
+    h2 ^= scramble2(load(bytes + 8, rest - 8));
+  if (rest > 0)
+    h1 ^= scramble1(load(bytes, rest < 8 ? rest : 8));
   h1 ^= size;
   h2 ^= size;
   h1 += h2;

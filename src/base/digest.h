@@ -1,6 +1,7 @@
-/* base/digest.h: a 128-bit digest of bytes, which tells whether a file changed. It is MurmurHash3_x64_128 (Austin
- * Appleby, public domain) with seed 0. Each of the two words is stored with its highest byte first, as `mmh3` prints
- * it. The digest does not protect against forged files. */
+/* base/digest.h: a 128-bit digest of bytes, which tells whether a file changed. It is
+ * MurmurHash3_x64_128 (Austin Appleby, public domain) with seed 0. Each of the two words is
+ * stored with its highest byte first, as `mmh3` prints it. The digest does not protect against
+ * forged files. */
 #ifndef BASE_DIGEST_H
 #define BASE_DIGEST_H
 

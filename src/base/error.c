@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static void set_error(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column,
-                      const char *format, va_list args) {
+static void set_error(vlError *error, vlResult code, const char *file, uint32_t line,
+                      uint32_t column, const char *format, va_list args) {
   error->code = code;
   error->line = line;
   error->column = column;
@@ -21,16 +21,18 @@ static void set_error(vlError *error, vlResult code, const char *file, uint32_t 
 vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  if (error) set_error(error, code, NULL, 0, 0, format, args);
+  if (error)
+    set_error(error, code, NULL, 0, 0, format, args);
   va_end(args);
   return code;
 }
 
-vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column, const char *format,
-                    ...) {
+vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line,
+                    uint32_t column, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  if (error) set_error(error, code, file, line, column, format, args);
+  if (error)
+    set_error(error, code, file, line, column, format, args);
   va_end(args);
   return code;
 }
@@ -40,19 +42,28 @@ vlResult vl_fail_memory(vlError *error) {
 }
 
 void vl_error_clear(vlError *error) {
-  if (error) memset(error, 0, sizeof *error);
+  if (error)
+    memset(error, 0, sizeof *error);
 }
 
 const char *vl_result_name(vlResult result) {
   switch (result) {
-    case VL_OK: return "ok";
-    case VL_ERROR_ARGUMENT: return "bad argument";
-    case VL_ERROR_MEMORY: return "out of memory";
-    case VL_ERROR_SCENE: return "scene error";
-    case VL_ERROR_MISSING: return "missing file";
-    case VL_ERROR_IO: return "input/output error";
-    case VL_ERROR_UNSUPPORTED: return "not supported";
-    case VL_CANCELLED: return "cancelled";
+    case VL_OK:
+      return "ok";
+    case VL_ERROR_ARGUMENT:
+      return "bad argument";
+    case VL_ERROR_MEMORY:
+      return "out of memory";
+    case VL_ERROR_SCENE:
+      return "scene error";
+    case VL_ERROR_MISSING:
+      return "missing file";
+    case VL_ERROR_IO:
+      return "input/output error";
+    case VL_ERROR_UNSUPPORTED:
+      return "not supported";
+    case VL_CANCELLED:
+      return "cancelled";
   }
   return "unknown result";
 }

@@ -24,7 +24,8 @@ double vl_seconds(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The name in the folder of `path` that is nearest to its last component; empty if none is near. */
+/* The name in the folder of `path` that is nearest to its last component; empty if none is
+ * near. */
 static void nearest_file(const char *path, char *result, size_t size) {
   result[0] = 0;
   char folder[4096];
@@ -32,13 +33,16 @@ static void nearest_file(const char *path, char *result, size_t size) {
   const char *name = slash ? slash + 1 : path;
   int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path)
                 : snprintf(folder, sizeof folder, ".");
-  if (n < 0 || (size_t)n >= sizeof folder) return;
+  if (n < 0 || (size_t)n >= sizeof folder)
+    return;
   DIR *directory = opendir(folder);
-  if (!directory) return;
+  if (!directory)
+    return;
   uint32_t best = (uint32_t)strlen(name) / 3 + 1;
   struct dirent *entry;
   for (int seen = 0; seen < 20000 && (entry = readdir(directory)); seen++) {
-    if (entry->d_name[0] == '.') continue;
+    if (entry->d_name[0] == '.')
+      continue;
     uint32_t d = vl_edit_distance(name, entry->d_name);
     if (d < best || (d == best && result[0] && strcmp(entry->d_name, result) < 0)) {
       best = d;
@@ -52,19 +56,24 @@ static vlResult fail_open(const char *path, int code, vlError *error) {
   if (code == ENOENT || code == ENOTDIR) {
     char near[256];
     nearest_file(path, near, sizeof near);
-    if (near[0]) return vl_fail(error, VL_ERROR_MISSING, "no such file: %s (did you mean \"%s\"?)", path, near);
+    if (near[0])
+      return vl_fail(error, VL_ERROR_MISSING, "no such file: %s (did you mean \"%s\"?)", path,
+                     near);
     return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path);
   }
   return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
 }
 
-/* Limits against decompression bombs: text compresses by a factor of 3 to 50. Output beyond both limits is refused. */
+/* Limits against decompression bombs: text compresses by a factor of 3 to 50. Output beyond
+ * both limits is refused. */
 enum { MAX_RATIO = 200, MAX_UNPACKED = 64 << 20 };
 
-static vlResult gunzip_all(vlContext *context, const char *path, char **data, size_t *size, vlError *error) {
+static vlResult gunzip_all(vlContext *context, const char *path, char **data, size_t *size,
+                           vlError *error) {
   z_stream z;
   memset(&z, 0, sizeof z);
-  if (inflateInit2(&z, 15 + 16) != Z_OK) return vl_fail_memory(error);
+  if (inflateInit2(&z, 15 + 16) != Z_OK)
+    return vl_fail_memory(error);
   size_t capacity = *size * 4 + 65536, used = 0;
   char *out = vl_alloc(context, capacity + 1);
   z.next_in = (Bytef *)*data;
@@ -94,18 +103,22 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
     uInt before_in = z.avail_in;
     status = inflate(&z, Z_NO_FLUSH);
     used += room - z.avail_out;
-    if (status == Z_STREAM_END && (z.avail_in || left)) { /* a gzip file may consist of several members */
+    if (status == Z_STREAM_END &&
+        (z.avail_in || left)) { /* a gzip file may consist of several members */
       status = inflateReset2(&z, 15 + 16);
-    } else if (status == Z_BUF_ERROR || (status == Z_OK && before_in == 0 && left == 0 && room == z.avail_out)) {
+    } else if (status == Z_BUF_ERROR ||
+               (status == Z_OK && before_in == 0 && left == 0 && room == z.avail_out)) {
       status = Z_DATA_ERROR; /* the stream ended too early */
     }
   }
   inflateEnd(&z);
   if (status != Z_STREAM_END) {
     vl_free(context, out);
-    if (status == Z_MEM_ERROR) return vl_fail_memory(error);
+    if (status == Z_MEM_ERROR)
+      return vl_fail_memory(error);
     if (status == Z_VERSION_ERROR)
-      return vl_fail(error, VL_ERROR_SCENE, "%s: unpacks to more than %d times its size", path, MAX_RATIO);
+      return vl_fail(error, VL_ERROR_SCENE, "%s: unpacks to more than %d times its size", path,
+                     MAX_RATIO);
     return vl_fail(error, VL_ERROR_SCENE, "%s: broken gzip file", path);
   }
   out[used] = 0;
@@ -115,20 +128,25 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
   return VL_OK;
 }
 
-/* Why a file is refused: it has no end, or reading it may block. Null: a regular file, or a pipe if pipes are
- * allowed. */
+/* Why a file is refused: it has no end, or reading it may block. Null: a regular file, or a
+ * pipe if pipes are allowed. */
 static const char *not_a_file(const struct stat *info, bool pipes) {
-  if (S_ISDIR(info->st_mode)) return "is a folder";
-  if (S_ISCHR(info->st_mode) || S_ISBLK(info->st_mode)) return "is a device";
-  if (S_ISSOCK(info->st_mode)) return "is a socket";
+  if (S_ISDIR(info->st_mode))
+    return "is a folder";
+  if (S_ISCHR(info->st_mode) || S_ISBLK(info->st_mode))
+    return "is a device";
+  if (S_ISSOCK(info->st_mode))
+    return "is a socket";
   return S_ISFIFO(info->st_mode) && !pipes ? "is a pipe" : NULL;
 }
 
-/* Checks the file's type before opening, since opening a pipe blocks and opening a device may have side effects; and
- * again after opening, since the name may refer to another file by then. */
+/* Checks the file's type before opening, since opening a pipe blocks and opening a device may
+ * have side effects; and again after opening, since the name may refer to another file by then.
+ */
 static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
   struct stat info;
-  if (!given && !vl_context_allows(context, path)) /* asked first: the answer is the same for a missing file */
+  if (!given && !vl_context_allows(
+                    context, path)) /* asked first: the answer is the same for a missing file */
   {
     vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path);
     return -1;
@@ -137,17 +155,22 @@ static int open_file(vlContext *context, const char *path, bool given, vlError *
     fail_open(path, errno, error);
     return -1;
   }
-  if (given) vl_sandbox_pass(vl_context_sandbox(context), path);
+  if (given)
+    vl_sandbox_pass(vl_context_sandbox(context), path);
   const char *what = not_a_file(&info, given);
   int fd = what ? -1 : open(path, O_RDONLY | O_CLOEXEC | (given ? 0 : O_NONBLOCK));
   if (!what && fd < 0) {
     fail_open(path, errno, error);
     return -1;
   }
-  if (!what && fstat(fd, &info) != 0) what = strerror(errno);
-  if (!what) what = not_a_file(&info, given);
-  if (!what) return fd;
-  if (fd >= 0) close(fd);
+  if (!what && fstat(fd, &info) != 0)
+    what = strerror(errno);
+  if (!what)
+    what = not_a_file(&info, given);
+  if (!what)
+    return fd;
+  if (fd >= 0)
+    close(fd);
   vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what);
   return -1;
 }
@@ -159,37 +182,43 @@ static bool is_lfs_pointer(const char *data, size_t size) {
 }
 
 static vlResult fail_lfs_pointer(const char *path, vlError *error) {
-  return vl_fail(error, VL_ERROR_MISSING, "%s is a Git LFS pointer, not the file itself: git lfs pull fetches it",
-                 path);
+  return vl_fail(error, VL_ERROR_MISSING,
+                 "%s is a Git LFS pointer, not the file itself: git lfs pull fetches it", path);
 }
 
-/* Turns UTF-16 with a byte order mark into UTF-8, where the text begins with ASCII (binary files may begin with the
- * mark's bytes). */
+/* Turns UTF-16 with a byte order mark into UTF-8, where the text begins with ASCII (binary
+ * files may begin with the mark's bytes). */
 static vlResult utf16_to_utf8(vlContext *context, char **data, size_t *size, vlError *error) {
   enum { LOOK = 8 };
   const unsigned char *from = (const unsigned char *)*data;
   const bool big = *size >= 2 && from[0] == 0xfe && from[1] == 0xff;
-  if (!big && !(*size >= 2 && from[0] == 0xff && from[1] == 0xfe)) return VL_OK;
+  if (!big && !(*size >= 2 && from[0] == 0xff && from[1] == 0xfe))
+    return VL_OK;
   for (size_t i = 2; i + 1 < *size && i < 2 + 2 * LOOK; i += 2)
-    if (from[i + !big] != 0 || from[i + big] == 0 || from[i + big] > 0x7e) return VL_OK;
+    if (from[i + !big] != 0 || from[i + big] == 0 || from[i + big] > 0x7e)
+      return VL_OK;
   char *to = vl_alloc_array(context, *size / 2 + 1, 3);
-  if (!to) return vl_fail_memory(error);
+  if (!to)
+    return vl_fail_memory(error);
   size_t used = 0;
   for (size_t i = 2; i + 1 < *size; i += 2) {
     uint32_t c = (uint32_t)from[i + big] | (uint32_t)from[i + !big] << 8, next = 0;
-    if (i + 3 < *size) next = (uint32_t)from[i + 2 + big] | (uint32_t)from[i + 2 + !big] << 8;
+    if (i + 3 < *size)
+      next = (uint32_t)from[i + 2 + big] | (uint32_t)from[i + 2 + !big] << 8;
     if (c >= 0xd800 && c < 0xdc00 && next >= 0xdc00 && next < 0xe000) {
       c = 0x10000 + ((c - 0xd800) << 10) + (next - 0xdc00);
       i += 2;
     }
-    if (c >= 0xd800 && c < 0xe000) c = 0xfffd; /* half of a pair */
+    if (c >= 0xd800 && c < 0xe000)
+      c = 0xfffd; /* half of a pair */
     if (c < 0x80) {
       to[used++] = (char)c;
       continue;
     }
     const int more = c < 0x800 ? 1 : c < 0x10000 ? 2 : 3; /* bytes after the first */
     to[used++] = (char)((0xf00 >> (more + 1) & 0xff) | c >> 6 * more);
-    for (int k = more - 1; k >= 0; k--) to[used++] = (char)(0x80 | (c >> 6 * k & 0x3f));
+    for (int k = more - 1; k >= 0; k--)
+      to[used++] = (char)(0x80 | (c >> 6 * k & 0x3f));
   }
   to[used] = 0;
   vl_free(context, *data);
@@ -198,18 +227,20 @@ static vlResult utf16_to_utf8(vlContext *context, char **data, size_t *size, vlE
   return VL_OK;
 }
 
-static vlResult read_file(vlContext *context, const char *path, bool given, bool gunzip, char **data, size_t *size,
-                          vlError *error) {
+static vlResult read_file(vlContext *context, const char *path, bool given, bool gunzip,
+                          char **data, size_t *size, vlError *error) {
   *data = NULL;
   *size = 0;
   vlError opening = {0};
   int fd = open_file(context, path, given, &opening);
   if (fd < 0) {
-    if (error) *error = opening;
+    if (error)
+      *error = opening;
     return opening.code;
   }
   struct stat info = {0};
-  if (fstat(fd, &info) != 0) info.st_size = 0;
+  if (fstat(fd, &info) != 0)
+    info.st_size = 0;
   if (!vl_file_input(context, path, &info, VL_OUTPUT_PLAIN)) {
     close(fd);
     return vl_fail_memory(error);
@@ -219,15 +250,18 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   vlResult result = block ? VL_OK : vl_fail_memory(error);
   while (result == VL_OK) {
     ssize_t got = read(fd, block + used, capacity - used);
-    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && errno == EINTR)
+      continue;
     if (got < 0) {
       result = vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(errno));
     } else if (got == 0) {
       break;
-    } else if ((used += (size_t)got) == capacity) { /* pipes have no size; after a full block there may be more */
+    } else if ((used += (size_t)got) ==
+               capacity) { /* pipes have no size; after a full block there may be more */
       char probe;
       ssize_t more = read(fd, &probe, 1);
-      if (more <= 0) break;
+      if (more <= 0)
+        break;
       char *grown = vl_realloc_array(context, block, capacity * 2 + 1, 1);
       if (!grown) {
         result = vl_fail_memory(error);
@@ -241,11 +275,15 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   close(fd);
   if (result == VL_OK) {
     block[used] = 0;
-    if (!vl_file_record(context, path, block, used)) result = vl_fail_memory(error);
-    if (result == VL_OK && gunzip && used >= 2 && (unsigned char)block[0] == 0x1f && (unsigned char)block[1] == 0x8b)
+    if (!vl_file_record(context, path, block, used))
+      result = vl_fail_memory(error);
+    if (result == VL_OK && gunzip && used >= 2 && (unsigned char)block[0] == 0x1f &&
+        (unsigned char)block[1] == 0x8b)
       result = gunzip_all(context, path, &block, &used, error);
-    if (result == VL_OK && gunzip) result = utf16_to_utf8(context, &block, &used, error);
-    if (result == VL_OK && is_lfs_pointer(block, used)) result = fail_lfs_pointer(path, error);
+    if (result == VL_OK && gunzip)
+      result = utf16_to_utf8(context, &block, &used, error);
+    if (result == VL_OK && is_lfs_pointer(block, used))
+      result = fail_lfs_pointer(path, error);
   }
   if (result != VL_OK) {
     vl_free(context, block);
@@ -256,24 +294,31 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   return VL_OK;
 }
 
-vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data, size_t *size, vlError *error) {
+vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data,
+                      size_t *size, vlError *error) {
   return read_file(context, path, false, gunzip, data, size, error);
 }
 
-vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, char **data, size_t *size,
-                            vlError *error) {
+vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, char **data,
+                            size_t *size, vlError *error) {
   return read_file(context, path, true, gunzip, data, size, error);
 }
 
-/* The file's bytes in anonymous pages of its own, for systems that map no file at a given address. */
+/* The file's bytes in anonymous pages of its own, for systems that map no file at a given
+ * address.
+ */
 static char *read_pages(int fd, size_t length) {
-  char *block = mmap(NULL, length + 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (block == MAP_FAILED) return block;
+  char *block =
+      mmap(NULL, length + 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (block == MAP_FAILED)
+    return block;
   for (size_t used = 0; used < length;) {
     ssize_t got = pread(fd, block + used, length - used, (off_t)used);
-    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && errno == EINTR)
+      continue;
     if (got <= 0) {
-      if (got == 0) errno = EIO; /* the file has become shorter */
+      if (got == 0)
+        errno = EIO; /* the file has become shorter */
       int code = errno;
       munmap(block, length + 1);
       errno = code;
@@ -284,30 +329,38 @@ static char *read_pages(int fd, size_t length) {
   return block;
 }
 
-vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size, vlError *error) {
+vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size,
+                     vlError *error) {
   *data = NULL;
   struct stat info;
-  if (stat(path, &info) != 0) return fail_open(path, errno, error);
-  if (!S_ISREG(info.st_mode)) return VL_OK;
+  if (stat(path, &info) != 0)
+    return fail_open(path, errno, error);
+  if (!S_ISREG(info.st_mode))
+    return VL_OK;
   int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return fail_open(path, errno, error);
-  if (fstat(fd, &info) != 0) info.st_size = 0;
+  if (fd < 0)
+    return fail_open(path, errno, error);
+  if (fstat(fd, &info) != 0)
+    info.st_size = 0;
   if (!vl_file_input(context, path, &info, VL_OUTPUT_PLAIN)) {
     close(fd);
     return vl_fail_memory(error);
   }
   size_t length = (size_t)info.st_size;
-  /* Maps zero pages first, then the file over them: a zero byte follows even if the file fills its last page. */
+  /* Maps zero pages first, then the file over them: a zero byte follows even if the file fills
+   * its last page. */
   char *block = mmap(NULL, length + 1, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   bool good = block != MAP_FAILED;
-  if (good && length && mmap(block, length, PROT_READ, MAP_PRIVATE | MAP_FIXED, fd, 0) == MAP_FAILED) {
+  if (good && length &&
+      mmap(block, length, PROT_READ, MAP_PRIVATE | MAP_FIXED, fd, 0) == MAP_FAILED) {
     munmap(block, length + 1);
     block = read_pages(fd, length);
     good = block != MAP_FAILED;
   }
   int code = errno;
   close(fd);
-  if (!good) return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
+  if (!good)
+    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
   if (is_lfs_pointer(block, length)) {
     vl_file_unmap(block, length);
     return fail_lfs_pointer(path, error);
@@ -318,5 +371,6 @@ vlResult vl_file_map(vlContext *context, const char *path, const char **data, si
 }
 
 void vl_file_unmap(const char *data, size_t size) {
-  if (data) munmap((void *)(uintptr_t)data, size + 1);
+  if (data)
+    munmap((void *)(uintptr_t)data, size + 1);
 }

@@ -1,5 +1,5 @@
-/* base/file_input.c: see file_input.h. A file is known by its device and inode, so that links and other spellings of
- * its name do not matter. */
+/* base/file_input.c: see file_input.h. A file is known by its device and inode, so that links
+ * and other spellings of its name do not matter. */
 #include "base/file_input.h"
 
 #include <stdio.h>
@@ -8,7 +8,8 @@
 #include "base/text.h"
 
 static int compare(const vlFileStamp *a, const vlFileStamp *b) {
-  if (a->device != b->device) return a->device < b->device ? -1 : 1;
+  if (a->device != b->device)
+    return a->device < b->device ? -1 : 1;
   return a->inode == b->inode ? 0 : a->inode < b->inode ? -1 : 1;
 }
 
@@ -29,15 +30,18 @@ static bool is_at(const vlFileInputs *inputs, size_t at, const vlFileStamp *stam
   return at < inputs->list.count && compare(&inputs->list.items[at].stamp, stamp) == 0;
 }
 
-static bool insert(vlContext *context, vlFileInputs *inputs, const char *path, const vlFileStamp *stamp, bool other) {
+static bool insert(vlContext *context, vlFileInputs *inputs, const char *path,
+                   const vlFileStamp *stamp, bool other) {
   size_t at = find(inputs, stamp);
   if (is_at(inputs, at, stamp)) {
     vlFileInput *known = &inputs->list.items[at];
     known->stamp = *stamp;
     known->other |= other;
-    if (vl_text_is(known->path, path)) return true;
+    if (vl_text_is(known->path, path))
+      return true;
     char *newer = vl_strdup(context, path); /* the earlier name may mean another file by now */
-    if (!newer) return false;
+    if (!newer)
+      return false;
     vl_free(context, known->path);
     known->path = newer;
     return true;
@@ -54,9 +58,11 @@ static bool insert(vlContext *context, vlFileInputs *inputs, const char *path, c
   return true;
 }
 
-bool vl_file_input(vlContext *context, const char *path, const struct stat *info, vlOutputKind kind) {
+bool vl_file_input(vlContext *context, const char *path, const struct stat *info,
+                   vlOutputKind kind) {
   vlFileInputs *inputs = vl_context_file_inputs(context);
-  if (!inputs || !S_ISREG(info->st_mode)) return true;
+  if (!inputs || !S_ISREG(info->st_mode))
+    return true;
   const vlFileStamp stamp = vl_file_stamp_of(info);
   pthread_mutex_lock(&inputs->mutex);
   bool good = insert(context, inputs, path, &stamp, kind != VL_OUTPUT_FILM);
@@ -64,11 +70,13 @@ bool vl_file_input(vlContext *context, const char *path, const struct stat *info
   return good;
 }
 
-bool vl_file_is_input(vlContext *context, const char *path, vlOutputKind kind, char *name, size_t size) {
+bool vl_file_is_input(vlContext *context, const char *path, vlOutputKind kind, char *name,
+                      size_t size) {
   vlFileInputs *inputs = context ? vl_context_file_inputs(context) : NULL;
   const vlFileStamp stamp = vl_file_stamp(path);
   bool found = false;
-  if (!inputs || !stamp.there) return false;
+  if (!inputs || !stamp.there)
+    return false;
   pthread_mutex_lock(&inputs->mutex);
   size_t at = find(inputs, &stamp);
   if (is_at(inputs, at, &stamp)) {
@@ -76,7 +84,8 @@ bool vl_file_is_input(vlContext *context, const char *path, vlOutputKind kind, c
     const vlFileStamp now = vl_file_stamp(known->path);
     /* A file system gives the inode of a removed file to a new one, which is not an input. */
     found = (known->other || kind != VL_OUTPUT_FILM) &&
-            (vl_file_stamp_same(&known->stamp, &stamp) || (now.there && compare(&now, &stamp) == 0));
+            (vl_file_stamp_same(&known->stamp, &stamp) ||
+             (now.there && compare(&now, &stamp) == 0));
     snprintf(name, size, "%s", known->path);
   }
   pthread_mutex_unlock(&inputs->mutex);
@@ -85,7 +94,9 @@ bool vl_file_is_input(vlContext *context, const char *path, vlOutputKind kind, c
 
 vlResult vl_note_input(vlContext *context, const char *path, vlOutputKind kind) {
   struct stat info;
-  if (!context || !path) return VL_ERROR_ARGUMENT;
-  if (stat(path, &info) != 0) return VL_ERROR_IO;
+  if (!context || !path)
+    return VL_ERROR_ARGUMENT;
+  if (stat(path, &info) != 0)
+    return VL_ERROR_IO;
   return vl_file_input(context, path, &info, kind) ? VL_OK : VL_ERROR_MEMORY;
 }

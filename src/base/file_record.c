@@ -17,8 +17,10 @@ static size_t find(const vlFileRecords *records, const char *path, bool *found) 
       low = middle;
       *found = true;
     }
-    if (order < 0) high = middle;
-    if (order > 0) low = middle + 1;
+    if (order < 0)
+      high = middle;
+    if (order > 0)
+      low = middle + 1;
   }
   return low;
 }
@@ -49,7 +51,8 @@ bool vl_file_record(vlContext *context, const char *path, const void *data, size
   pthread_mutex_lock(&records->mutex);
   bool on = records->on;
   pthread_mutex_unlock(&records->mutex);
-  if (!on) return true;
+  if (!on)
+    return true;
   vlFileRecord record = {.path = path, .size = size};
   vl_digest(data, size, record.digest);
   pthread_mutex_lock(&records->mutex);

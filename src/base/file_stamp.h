@@ -24,13 +24,14 @@ static inline vlFileStamp vl_file_stamp_of(const struct stat *info) {
 /* The stamp of the file at `path`, which may be null. */
 static inline vlFileStamp vl_file_stamp(const char *path) {
   struct stat info;
-  if (!path || stat(path, &info) != 0) return (vlFileStamp){0};
+  if (!path || stat(path, &info) != 0)
+    return (vlFileStamp){0};
   return vl_file_stamp_of(&info);
 }
 
 static inline bool vl_file_stamp_same(const vlFileStamp *a, const vlFileStamp *b) {
-  return a->there == b->there && a->device == b->device && a->inode == b->inode && a->size == b->size &&
-         a->seconds == b->seconds && a->nanoseconds == b->nanoseconds;
+  return a->there == b->there && a->device == b->device && a->inode == b->inode &&
+         a->size == b->size && a->seconds == b->seconds && a->nanoseconds == b->nanoseconds;
 }
 
 #endif

@@ -6,9 +6,11 @@
 
 /* Frees the blocks, of which any may be null. */
 static inline void vl_free_all(vlContext *context, void *const *blocks, size_t count) {
-  for (size_t i = 0; i < count; i++) vl_free(context, blocks[i]);
+  for (size_t i = 0; i < count; i++)
+    vl_free(context, blocks[i]);
 }
-#define VL_FREE(context, ...) \
-  vl_free_all(context, (void *const[]){__VA_ARGS__}, sizeof((void *const[]){__VA_ARGS__}) / sizeof(void *))
+#define VL_FREE(context, ...)                        \
+  vl_free_all(context, (void *const[]){__VA_ARGS__}, \
+              sizeof((void *const[]){__VA_ARGS__}) / sizeof(void *))
 
 #endif

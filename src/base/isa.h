@@ -1,20 +1,21 @@
-/* base/isa.h: instruction sets. Hot files are compiled once per set (v2, v3 and v4 on x86-64, base elsewhere); their
- * functions are reached through one constant table per room and set. */
+/* base/isa.h: instruction sets. Hot files are compiled once per set (v2, v3 and v4 on x86-64,
+ * base elsewhere); their functions are reached through one constant table per room and set. */
 #ifndef BASE_ISA_H
 #define BASE_ISA_H
 
 #include "velo/base.h"
 
-/* Chooses an instruction set. AUTO: the set that the environment variable VELO_ISA names, else the widest set that
- * the machine has. BASE: the lowest set of the library, V2 on x86-64. Error: UNSUPPORTED if the machine does not
- * have the set. */
+/* Chooses an instruction set. AUTO: the set that the environment variable VELO_ISA names, else
+ * the widest set that the machine has. BASE: the lowest set of the library, V2 on x86-64.
+ * Error: UNSUPPORTED if the machine does not have the set. */
 vlResult vl_isa_choose(vlIsa wish, vlIsa *isa);
 vlIsa vl_isa_best(void);
 
-/* Declares the kernel tables of hot files. PREFIX_kernel_table is the name within the hot file that defines the
- * table. All other files use PREFIX_kernels(isa), which returns the table of an instruction set. The build links the
- * hot files of a set into one object in which only these tables are global (CMakeLists.txt has their list). With
- * VL_LOWEST_SET_ONLY the tables of v2 are used for every set. */
+/* Declares the kernel tables of hot files. PREFIX_kernel_table is the name within the hot file
+ * that defines the table. All other files use PREFIX_kernels(isa), which returns the table of
+ * an instruction set. The build links the hot files of a set into one object in which only
+ * these tables are global (CMakeLists.txt has their list). With VL_LOWEST_SET_ONLY the tables
+ * of v2 are used for every set. */
 #if defined(__x86_64__) && defined(VL_LOWEST_SET_ONLY)
 #define VL_KERNEL_TABLE(type, prefix)                                \
   extern const type prefix##_kernel_table, prefix##_kernel_table_v2; \
@@ -40,8 +41,9 @@ vlIsa vl_isa_best(void);
   }
 #endif
 
-/* Batches are padded to VL_LANES elements, so that vector loops have no remainder. VL_SIMD before a loop over a
- * batch states that its iterations are independent. With VL_SCALAR, for benchmarks, batches are not padded. */
+/* Batches are padded to VL_LANES elements, so that vector loops have no remainder. VL_SIMD
+ * before a loop over a batch states that its iterations are independent. With VL_SCALAR, for
+ * benchmarks, batches are not padded. */
 enum { VL_LANES = 16 };
 #ifndef VL_SCALAR
 #define VL_PAD(n) (((n) + 15u) & ~15u)

@@ -9,8 +9,9 @@
 
 /* How a loop shares the workers with other loops that run at the same time. */
 typedef struct vlLoopDef {
-  int priority;                 /* while a loop of a higher priority runs, this one does one task each 50 ms */
-  const atomic_bool *cancelled; /* once it is true, the loop no longer waits for others; may be null */
+  int priority; /* while a loop of a higher priority runs, this one does one task each 50 ms */
+  const atomic_bool
+      *cancelled; /* once it is true, the loop no longer waits for others; may be null */
 } vlLoopDef;
 
 typedef struct vlPool {
@@ -25,6 +26,7 @@ typedef struct vlPool {
 
 vlResult vl_pool_start(vlPool *pool, uint32_t threads);
 void vl_pool_stop(vlPool *pool);
-void vl_pool_run(vlPool *pool, const vlLoopDef *def, uint32_t count, vlParallelFn *body, void *user);
+void vl_pool_run(vlPool *pool, const vlLoopDef *def, uint32_t count, vlParallelFn *body,
+                 void *user);
 
 #endif

@@ -1,5 +1,6 @@
-/* base/sandbox.c: see sandbox.h. A path is followed by component, as the system does it, since realpath tells a missing
- * folder outside from one that is there ("outside/folder/../../inside/file"). */
+/* base/sandbox.c: see sandbox.h. A path is followed by component, as the system does it, since
+ * realpath tells a missing folder outside from one that is there
+ * ("outside/folder/../../inside/file"). */
 #include "base/sandbox.h"
 #include "base/text.h"
 
@@ -15,59 +16,75 @@ static void *take(const vlSandbox *sandbox, size_t size) {
 }
 
 static void give_back(const vlSandbox *sandbox, void *block) {
-  if (block) sandbox->allocator.release(sandbox->allocator.user, block);
+  if (block)
+    sandbox->allocator.release(sandbox->allocator.user, block);
 }
 
 static char *copy_text(const vlSandbox *sandbox, const char *text) {
   const size_t size = strlen(text) + 1;
   char *copy = take(sandbox, size);
-  if (copy) memcpy(copy, text, size);
+  if (copy)
+    memcpy(copy, text, size);
   return copy;
 }
 
-vlResult vl_sandbox_make(vlSandbox *sandbox, const vlAllocator *allocator, const char *const *folders, uint32_t count) {
+vlResult vl_sandbox_make(vlSandbox *sandbox, const vlAllocator *allocator,
+                         const char *const *folders, uint32_t count) {
   char real[PATH_MAX];
   pthread_mutex_init(&sandbox->mutex, NULL);
   sandbox->allocator = *allocator;
-  if (!count) return VL_OK;
-  if (!(sandbox->folders = take(sandbox, count * sizeof *sandbox->folders))) return VL_ERROR_MEMORY;
+  if (!count)
+    return VL_OK;
+  if (!(sandbox->folders = take(sandbox, count * sizeof *sandbox->folders)))
+    return VL_ERROR_MEMORY;
   for (uint32_t i = 0; i < count; i++) {
-    if (!realpath(folders[i], real)) return VL_ERROR_MISSING;
-    if (!(sandbox->folders[i] = copy_text(sandbox, real))) return VL_ERROR_MEMORY;
+    if (!realpath(folders[i], real))
+      return VL_ERROR_MISSING;
+    if (!(sandbox->folders[i] = copy_text(sandbox, real)))
+      return VL_ERROR_MEMORY;
     sandbox->count++;
   }
   return VL_OK;
 }
 
 void vl_sandbox_free(vlSandbox *sandbox) {
-  for (uint32_t i = 0; i < sandbox->count; i++) give_back(sandbox, sandbox->folders[i]);
-  for (size_t i = 0; i < sandbox->passed_count; i++) give_back(sandbox, sandbox->passed[i]);
+  for (uint32_t i = 0; i < sandbox->count; i++)
+    give_back(sandbox, sandbox->folders[i]);
+  for (size_t i = 0; i < sandbox->passed_count; i++)
+    give_back(sandbox, sandbox->passed[i]);
   give_back(sandbox, sandbox->folders);
   give_back(sandbox, sandbox->passed);
   pthread_mutex_destroy(&sandbox->mutex);
 }
 
-/* Whether a path is a folder or lies in it. Compares whole components: /a/b is not beneath /a/bc. */
+/* Whether a path is a folder or lies in it. Compares whole components: /a/b is not beneath
+ * /a/bc.
+ */
 static bool is_beneath(const char *path, const char *folder) {
   size_t n = strlen(folder);
-  if (n && folder[n - 1] == '/') n--;
+  if (n && folder[n - 1] == '/')
+    n--;
   return strncmp(path, folder, n) == 0 && (path[n] == '/' || !path[n]);
 }
 
 static bool is_inside(const vlSandbox *sandbox, const char *path) {
   for (uint32_t i = 0; i < sandbox->count; i++)
-    if (is_beneath(path, sandbox->folders[i])) return true;
+    if (is_beneath(path, sandbox->folders[i]))
+      return true;
   return false;
 }
 
 /* Whether a name may lead through this folder: it is in the sandbox, or known to be there. */
 static bool is_passable(vlSandbox *sandbox, const char *folder) {
-  if (is_inside(sandbox, folder)) return true;
+  if (is_inside(sandbox, folder))
+    return true;
   for (uint32_t i = 0; i < sandbox->count; i++)
-    if (is_beneath(sandbox->folders[i], folder)) return true;
+    if (is_beneath(sandbox->folders[i], folder))
+      return true;
   bool found = false;
   pthread_mutex_lock(&sandbox->mutex);
-  for (size_t i = 0; i < sandbox->passed_count && !found; i++) found = is_beneath(sandbox->passed[i], folder);
+  for (size_t i = 0; i < sandbox->passed_count && !found; i++)
+    found = is_beneath(sandbox->passed[i], folder);
   pthread_mutex_unlock(&sandbox->mutex);
   return found;
 }
@@ -91,8 +108,10 @@ static void go_up(char *at) {
 
 static bool go_down(char *at, const char *name, size_t length) {
   size_t n = strlen(at);
-  if (n == 1) n = 0; /* "/" */
-  if (n + 1 + length >= PATH_MAX) return false;
+  if (n == 1)
+    n = 0; /* "/" */
+  if (n + 1 + length >= PATH_MAX)
+    return false;
   at[n] = '/';
   memcpy(at + n + 1, name, length);
   at[n + 1 + length] = 0;
@@ -103,7 +122,8 @@ static bool go_down(char *at, const char *name, size_t length) {
 static bool follow(Walk *walk, const char *link) {
   char rest[PATH_MAX];
   int n = snprintf(rest, sizeof rest, "%s/%s", link, walk->rest);
-  if (n < 0 || (size_t)n >= sizeof rest || ++walk->links > MOST_LINKS) return false;
+  if (n < 0 || (size_t)n >= sizeof rest || ++walk->links > MOST_LINKS)
+    return false;
   memcpy(walk->rest, rest, (size_t)n + 1);
   if (*link == '/')
     set(walk->at, "/");
@@ -119,13 +139,16 @@ static bool step(vlSandbox *sandbox, Walk *walk) {
   memcpy(name, walk->rest + skip, length);
   name[length] = 0;
   memmove(walk->rest, walk->rest + skip + length, strlen(walk->rest + skip + length) + 1);
-  if (!length || vl_text_is(name, ".")) return true;
-  if (!is_passable(sandbox, walk->at) && !is_beneath(walk->start, walk->at)) return false;
+  if (!length || vl_text_is(name, "."))
+    return true;
+  if (!is_passable(sandbox, walk->at) && !is_beneath(walk->start, walk->at))
+    return false;
   if (vl_text_is(name, "..")) {
     go_up(walk->at);
     return true;
   }
-  if (!go_down(walk->at, name, length)) return false;
+  if (!go_down(walk->at, name, length))
+    return false;
   ssize_t n = walk->missing ? -1 : readlink(walk->at, link, sizeof link - 1);
   if (n > 0) {
     link[n] = 0;
@@ -137,33 +160,42 @@ static bool step(vlSandbox *sandbox, Walk *walk) {
 
 bool vl_sandbox_allows(vlSandbox *sandbox, const char *path) {
   Walk walk = {.links = 0};
-  if (!sandbox->count) return true;
-  if (strlen(path) >= sizeof walk.rest) return false;
+  if (!sandbox->count)
+    return true;
+  if (strlen(path) >= sizeof walk.rest)
+    return false;
   set(walk.rest, path);
-  if (!getcwd(walk.start, sizeof walk.start) || *walk.start != '/') set(walk.start, "/");
+  if (!getcwd(walk.start, sizeof walk.start) || *walk.start != '/')
+    set(walk.start, "/");
   set(walk.at, *path == '/' ? "/" : walk.start);
   while (*walk.rest)
-    if (!step(sandbox, &walk)) return false;
+    if (!step(sandbox, &walk))
+      return false;
   return is_inside(sandbox, walk.at);
 }
 
 void vl_sandbox_pass(vlSandbox *sandbox, const char *path) {
   char folder[PATH_MAX], real[PATH_MAX];
-  if (!sandbox->count) return;
+  if (!sandbox->count)
+    return;
   const char *slash = strrchr(path, '/');
   int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path)
                 : snprintf(folder, sizeof folder, ".");
-  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real)) return;
+  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real))
+    return;
   pthread_mutex_lock(&sandbox->mutex);
   bool known = false;
-  for (size_t i = 0; i < sandbox->passed_count && !known; i++) known = vl_text_is(sandbox->passed[i], real);
+  for (size_t i = 0; i < sandbox->passed_count && !known; i++)
+    known = vl_text_is(sandbox->passed[i], real);
   char **grown = known ? NULL : take(sandbox, (sandbox->passed_count + 1) * sizeof *grown);
   if (grown) {
-    if (sandbox->passed) memcpy(grown, sandbox->passed, sandbox->passed_count * sizeof *grown);
+    if (sandbox->passed)
+      memcpy(grown, sandbox->passed, sandbox->passed_count * sizeof *grown);
     give_back(sandbox, sandbox->passed);
     sandbox->passed = grown;
     grown[sandbox->passed_count] = copy_text(sandbox, real);
-    if (grown[sandbox->passed_count]) sandbox->passed_count++;
+    if (grown[sandbox->passed_count])
+      sandbox->passed_count++;
   }
   pthread_mutex_unlock(&sandbox->mutex);
 }

@@ -15,7 +15,8 @@ static uint32_t min3(uint32_t a, uint32_t b, uint32_t c) {
 
 uint32_t vl_edit_distance(const char *a, const char *b) {
   size_t n = strlen(a), m = strlen(b);
-  if (n > MAX_NAME || m > MAX_NAME) return MAX_NAME;
+  if (n > MAX_NAME || m > MAX_NAME)
+    return MAX_NAME;
   uint32_t before[MAX_NAME + 1], last[MAX_NAME + 1], row[MAX_NAME + 1];
   for (size_t j = 0; j <= m; j++) {
     last[j] = (uint32_t)j;
@@ -26,8 +27,8 @@ uint32_t vl_edit_distance(const char *a, const char *b) {
     for (size_t j = 1; j <= m; j++) {
       int ca = tolower((unsigned char)a[i - 1]), cb = tolower((unsigned char)b[j - 1]);
       row[j] = min3(last[j] + 1, row[j - 1] + 1, last[j - 1] + (ca != cb));
-      if (i > 1 && j > 1 && ca == tolower((unsigned char)b[j - 2]) && cb == tolower((unsigned char)a[i - 2]) &&
-          before[j - 2] + 1 < row[j])
+      if (i > 1 && j > 1 && ca == tolower((unsigned char)b[j - 2]) &&
+          cb == tolower((unsigned char)a[i - 2]) && before[j - 2] + 1 < row[j])
         row[j] = before[j - 2] + 1;
     }
     memcpy(before, last, sizeof last);
@@ -50,10 +51,12 @@ const char *vl_nearest_name(const char *name, const char *const *names, size_t c
   return best && best_distance * 3 <= (length > 3 ? length : 3) ? best : NULL;
 }
 
-void vl_tell_names(char *text, size_t size, const char *name, const char *const *names, size_t count) {
+void vl_tell_names(char *text, size_t size, const char *name, const char *const *names,
+                   size_t count) {
   const char *near = vl_nearest_name(name, names, count);
   char list[256] = "";
-  for (size_t i = 0; i < count && !near; i++) vl_list_name(list, sizeof list, names[i]);
+  for (size_t i = 0; i < count && !near; i++)
+    vl_list_name(list, sizeof list, names[i]);
   if (near)
     snprintf(text, size, "; the nearest is \"%s\"", near);
   else
@@ -62,20 +65,24 @@ void vl_tell_names(char *text, size_t size, const char *name, const char *const 
 
 void vl_list_name(char *list, size_t size, const char *name) {
   size_t used = strlen(list), length = strlen(name);
-  if (used + 2 + length >= size) return;
+  if (used + 2 + length >= size)
+    return;
   memcpy(list + used, used ? ", " : ": ", 2);
   memcpy(list + used + 2, name, length + 1);
 }
 
-/* Number of bytes of the UTF-8 character at text; 0 if the bytes are not valid or incomplete. *code: its code point. */
+/* Number of bytes of the UTF-8 character at text; 0 if the bytes are not valid or incomplete.
+ * *code: its code point. */
 static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *code) {
   static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
   unsigned char c = text[0];
   size_t n = c < 0x80 ? 1 : c >> 5 == 6 ? 2 : c >> 4 == 14 ? 3 : c >> 3 == 30 ? 4 : 0;
-  if (n == 0 || n > length) return 0;
+  if (n == 0 || n > length)
+    return 0;
   *code = n == 1 ? c : c & (0x7fu >> n);
   for (size_t i = 1; i < n; i++) {
-    if (text[i] >> 6 != 2) return 0;
+    if (text[i] >> 6 != 2)
+      return 0;
     *code = *code << 6 | (text[i] & 0x3fu);
   }
   return *code >= least[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
@@ -84,17 +91,21 @@ static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *co
 bool vl_is_utf8(const char *text) {
   size_t length = strlen(text), n = 1;
   uint32_t code;
-  for (size_t at = 0; at < length && n; at += n) n = utf8_length((const unsigned char *)text + at, length - at, &code);
+  for (size_t at = 0; at < length && n; at += n)
+    n = utf8_length((const unsigned char *)text + at, length - at, &code);
   return n > 0;
 }
 
-/* Whether a character is a control character, has no width, or changes the direction of writing. */
+/* Whether a character is a control character, has no width, or changes the direction of
+ * writing. */
 static bool is_hidden(uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0xad || (c >= 0x200b && c <= 0x200f) ||
-         (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) || c == 0xfeff || c >= 0xe0000;
+         (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) || c == 0xfeff ||
+         c >= 0xe0000;
 }
 
-/* The first `most` characters, as far as they and the mark of what is left out fit into `size` bytes. */
+/* The first `most` characters, as far as they and the mark of what is left out fit into `size`
+ * bytes. */
 static void show(const char *text, size_t length, uint32_t most, char *result, size_t size) {
   const char *const more = "\u2026";
   const unsigned char *bytes = (const unsigned char *)text;
@@ -102,7 +113,8 @@ static void show(const char *text, size_t length, uint32_t most, char *result, s
   for (uint32_t shown = 0; at < length && shown < most; shown++) {
     uint32_t code = 0;
     size_t n = utf8_length(bytes + at, length - at, &code);
-    if (used + (n ? n : 1) + strlen(more) >= size) break;
+    if (used + (n ? n : 1) + strlen(more) >= size)
+      break;
     if (n == 0 || is_hidden(code)) {
       result[used++] = '?';
     } else {
@@ -134,10 +146,12 @@ void vl_shorten_quoted(vlError *error, const char *text) {
   char quoted[sizeof(vlArgumentText) + 2], tail[sizeof error->message];
   snprintf(quoted, sizeof quoted, "\"%s\"", vl_argument_text(text).text);
   char *at = strstr(error->message, quoted);
-  if (!at) return;
+  if (!at)
+    return;
   const size_t before = (size_t)(at - error->message) + 1;
   snprintf(tail, sizeof tail, "%s", at + strlen(quoted) - 1);
-  snprintf(error->message + before, sizeof error->message - before, "%s%s", vl_short_text(text).text, tail);
+  snprintf(error->message + before, sizeof error->message - before, "%s%s",
+           vl_short_text(text).text, tail);
 }
 
 void vl_make_printable(char *message) {
@@ -146,8 +160,10 @@ void vl_make_printable(char *message) {
     uint32_t code = 0;
     size_t n = utf8_length((const unsigned char *)message + at, length - at, &code);
     bool cut = n == 0 && length - at < 4 && (unsigned char)message[at] >= 0xc0;
-    for (size_t i = at + 1; i < length && cut; i++) cut = (unsigned char)message[i] >> 6 == 2;
-    if (cut) break;
+    for (size_t i = at + 1; i < length && cut; i++)
+      cut = (unsigned char)message[i] >> 6 == 2;
+    if (cut)
+      break;
     if (n == 0 || is_hidden(code)) {
       message[used++] = n == 1 && (code == '\n' || code == '\t') ? ' ' : '?';
     } else {
@@ -171,7 +187,8 @@ bool vl_ends_with(const char *text, const char *suffix) {
 
 bool vl_path_join(const char *base_file, const char *name, char *result, size_t size) {
   const char *slash = base_file ? strrchr(base_file, '/') : NULL;
-  int n = name[0] == '/' || !slash ? snprintf(result, size, "%s", name)
-                                   : snprintf(result, size, "%.*s/%s", (int)(slash - base_file), base_file, name);
+  int n = name[0] == '/' || !slash
+              ? snprintf(result, size, "%s", name)
+              : snprintf(result, size, "%.*s/%s", (int)(slash - base_file), base_file, name);
   return n >= 0 && (size_t)n < size;
 }

@@ -8,7 +8,8 @@
 
 #include "velo/base.h"
 
-/* In a function with the parameters (..., const char *format, ...): writes what printf would into the array `text`. */
+/* In a function with the parameters (..., const char *format, ...): writes what printf would
+ * into the array `text`. */
 #define VL_FORMAT(text, format)                       \
   do {                                                \
     va_list arguments;                                \
@@ -20,14 +21,17 @@
 /* The number of elements of an array. */
 #define VL_LENGTH(array) (sizeof(array) / sizeof *(array))
 
-/* The accepted name nearest to `name` by edit distance (case ignored), or null if none is near (more than a third of
- * the letters differ). */
+/* The accepted name nearest to `name` by edit distance (case ignored), or null if none is near
+ * (more than a third of the letters differ). */
 const char *vl_nearest_name(const char *name, const char *const *names, size_t count);
 /* Edit distance with transpositions; case ignored. */
 uint32_t vl_edit_distance(const char *a, const char *b);
-/* Writes the end of an error message: `; the nearest is "NAME"`, or, if none is near, `; known are A, B, C`. */
-void vl_tell_names(char *text, size_t size, const char *name, const char *const *names, size_t count);
-/* Appends a name to a list in an error message: ": first, second, third". A name that does not fit is omitted. */
+/* Writes the end of an error message: `; the nearest is "NAME"`, or, if none is near, `; known
+ * are A, B, C`. */
+void vl_tell_names(char *text, size_t size, const char *name, const char *const *names,
+                   size_t count);
+/* Appends a name to a list in an error message: ": first, second, third". A name that does not
+ * fit is omitted. */
 void vl_list_name(char *list, size_t size, const char *name);
 /* vl_short_text of `length` bytes, which may hold zeros. */
 vlShortText vl_short_text_of(const char *text, size_t length);
@@ -35,24 +39,28 @@ vlShortText vl_short_text_of(const char *text, size_t length);
 typedef struct vlArgumentText {
   char text[256];
 } vlArgumentText;
-/* As vl_short_text, but the first 200 characters, or fewer if they take more than 252 bytes: for what the caller has
- * written, not for text from files. */
+/* As vl_short_text, but the first 200 characters, or fewer if they take more than 252 bytes:
+ * for what the caller has written, not for text from files. */
 vlArgumentText vl_argument_text(const char *text);
-/* Where the message quotes this text as an argument, it quotes it as vl_short_text: for text from a file that was an
- * argument of a call. */
+/* Where the message quotes this text as an argument, it quotes it as vl_short_text: for text
+ * from a file that was an argument of a call. */
 void vl_shorten_quoted(vlError *error, const char *text);
-/* Replaces the same characters as vl_short_text by "?", but in a whole message and without shortening it, so names
- * of files stay complete. Removes an incomplete UTF-8 sequence at the end. */
+/* Replaces the same characters as vl_short_text by "?", but in a whole message and without
+ * shortening it, so names of files stay complete. Removes an incomplete UTF-8 sequence at the
+ * end.
+ */
 void vl_make_printable(char *message);
 bool vl_is_utf8(const char *text);
-/* Length of one of jansson's messages without its end (" near '...'"), which quotes the file. */
+/* Length of one of jansson's messages without its end (" near '...'"), which quotes the file.
+ */
 size_t vl_json_problem_length(const char *message);
 /* Whether the text is this word; false if it is null. */
 static inline bool vl_text_is(const char *text, const char *word) {
   return text && strcmp(text, word) == 0;
 }
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
-/* result = folder of the file base_file + name; name alone if it is absolute. False: it does not fit. */
+/* result = folder of the file base_file + name; name alone if it is absolute. False: it does
+ * not fit. */
 bool vl_path_join(const char *base_file, const char *name, char *result, size_t size);
 
 #endif

@@ -6,7 +6,8 @@
 
 #include "velo/base.h"
 
-/* Whether a value of a def is VL_UNSET (not given). Other NaN are wrong values. Its sign does not count. */
+/* Whether a value of a def is VL_UNSET (not given). Other NaN are wrong values. Its sign does
+ * not count. */
 static inline bool vl_is_unset(double value) {
   double unset = VL_UNSET;
   uint64_t bits;

@@ -1,4 +1,5 @@
-/* camera/aperture.c: apertures that are not round: blade polygons and images. See aperture.h. */
+/* camera/aperture.c: apertures that are not round: blade polygons and images. See aperture.h.
+ */
 #include "camera/aperture.h"
 
 #include <math.h>
@@ -14,7 +15,9 @@
 static const double pi = 3.14159265358979323846;
 enum { LARGEST = 4096, NAMED = 256 };
 
-/* ---- blades ------------------------------------------------------------------------------------------------------ */
+/* ---- blades
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   memset(blades, 0, sizeof *blades);
@@ -28,35 +31,43 @@ void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   blades->y[blades->count] = blades->y[0];
 }
 
-/* u chooses one of the equal triangles between the centre and a side; its remainder is the position along the side.
- * sqrt(v) is the height, because a triangle's area grows with the square of its height. */
-void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const float *v, float *x, float *y) {
+/* u chooses one of the equal triangles between the centre and a side; its remainder is the
+ * position along the side. sqrt(v) is the height, because a triangle's area grows with the
+ * square of its height. */
+void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const float *v,
+                      float *x, float *y) {
   for (uint32_t i = 0; i < n; i++) {
     double t = (double)u[i] * blades->count;
     uint32_t side = (uint32_t)t < blades->count ? (uint32_t)t : blades->count - 1;
     double along = t - side, height = sqrt((double)v[i]);
-    double ax = blades->x[side], ay = blades->y[side], bx = blades->x[side + 1], by = blades->y[side + 1];
+    double ax = blades->x[side], ay = blades->y[side], bx = blades->x[side + 1],
+           by = blades->y[side + 1];
     x[i] = (float)(height * (ax + along * (bx - ax)));
     y[i] = (float)(height * (ay + along * (by - ay)));
   }
 }
 
-/* ---- images ---------------------------------------------------------------------------------------------------- */
+/* ---- images
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 struct vlAperture {
   vlContext *context;
   uint32_t width, height;
-  double reach2;  /* vl_aperture_reach2 of the shape */
-  float *values;  /* scaled so that their mean is pi / 4 */
-  float *rows;    /* height + 1: share of the total light above each row's upper edge */
-  float *columns; /* height x (width + 1): share of the row's light to the left of each column */
+  double reach2; /* vl_aperture_reach2 of the shape */
+  float *values; /* scaled so that their mean is pi / 4 */
+  float *rows;   /* height + 1: share of the total light above each row's upper edge */
+  float
+      *columns; /* height x (width + 1): share of the row's light to the left of each column */
 };
 
-void vl_aperture_points(const vlAperture *a, uint32_t n, const float *u, const float *v, float *x, float *y) {
+void vl_aperture_points(const vlAperture *a, uint32_t n, const float *u, const float *v,
+                        float *x, float *y) {
   for (uint32_t i = 0; i < n; i++) {
     float dx, dy;
     uint32_t row = vl_find_cell(a->rows, a->height, v[i], &dy);
-    uint32_t column = vl_find_cell(a->columns + (size_t)row * (a->width + 1), a->width, u[i], &dx);
+    uint32_t column =
+        vl_find_cell(a->columns + (size_t)row * (a->width + 1), a->width, u[i], &dx);
     x[i] = (float)(2.0 * (column + (double)dx) / a->width - 1.0);
     y[i] = (float)(2.0 * (row + (double)dy) / a->height - 1.0);
   }
@@ -68,7 +79,8 @@ static double value_of(const vlAperture *a, int64_t x, int64_t y) {
 }
 
 double vl_aperture_value(const vlAperture *a, double x, double y) {
-  if (!(fabs(x) <= 1.0 && fabs(y) <= 1.0)) return 0.0;
+  if (!(fabs(x) <= 1.0 && fabs(y) <= 1.0))
+    return 0.0;
   double px = 0.5 * (x + 1.0) * a->width - 0.5, py = 0.5 * (y + 1.0) * a->height - 0.5;
   double fx = floor(px), fy = floor(py), sx = px - fx, sy = py - fy;
   int64_t ix = (int64_t)fx, iy = (int64_t)fy;
@@ -81,12 +93,14 @@ double vl_aperture_reach2(const vlAperture *a) {
   return a->reach2;
 }
 
-/* The bilinear support of a texel reaches to the centres of its neighbours, but not beyond the square. */
+/* The bilinear support of a texel reaches to the centres of its neighbours, but not beyond the
+ * square. */
 static double find_reach2(const vlAperture *a) {
   double most = 0;
   for (uint32_t y = 0; y < a->height; y++)
     for (uint32_t x = 0; x < a->width; x++) {
-      if (!(a->values[(size_t)y * a->width + x] > 0)) continue;
+      if (!(a->values[(size_t)y * a->width + x] > 0))
+        continue;
       double px = fmin(1, (fabs(2 * (x + 0.5) - a->width) + 2) / a->width);
       double py = fmin(1, (fabs(2 * (y + 0.5) - a->height) + 2) / a->height);
       most = fmax(most, px * px + py * py);
@@ -94,46 +108,58 @@ static double find_reach2(const vlAperture *a) {
   return most;
 }
 
-static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum, vlError *error) {
-  if (!values) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: values is null");
+static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum,
+                      vlError *error) {
+  if (!values)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: values is null");
   if (width == 0 || height == 0 || width > LARGEST || height > LARGEST)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: an image of %u x %u; each side must be 1 to %d", width, height,
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "aperture: an image of %u x %u; each side must be 1 to %d", width, height,
                    LARGEST);
   *sum = 0.0;
   for (size_t i = 0; i < (size_t)width * height; i++) {
     if (!(values[i] >= 0.0f) || isinf(values[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the image's pixel %zu, %zu is %g; it must be 0 or above",
+      return vl_fail(error, VL_ERROR_ARGUMENT,
+                     "aperture: the image's pixel %zu, %zu is %g; it must be 0 or above",
                      i % width, i / width, (double)values[i]);
     *sum += (double)values[i];
   }
-  if (!(*sum > 0.0)) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the image is black; no light would pass");
+  if (!(*sum > 0.0))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "aperture: the image is black; no light would pass");
   return VL_OK;
 }
 
-/* Computes running sums as fractions of the total. If the total is zero, all entries are 0 and are never read. */
+/* Computes running sums as fractions of the total. If the total is zero, all entries are 0 and
+ * are never read. */
 static void accumulate(const double *sums, uint32_t count, float *table) {
   double whole = 0.0, before = 0.0;
-  for (uint32_t i = 0; i < count; i++) whole += sums[i];
+  for (uint32_t i = 0; i < count; i++)
+    whole += sums[i];
   table[0] = 0.0f;
   for (uint32_t i = 0; i < count; i++) {
     before += sums[i];
     table[i + 1] = whole > 0.0 ? (float)(before / whole) : 0.0f;
   }
-  /* entries from the last non-black cell on are exactly 1, so that rounding never selects a cell behind it */
+  /* entries from the last non-black cell on are exactly 1, so that rounding never selects a
+   * cell behind it */
   for (uint32_t i = count; whole > 0.0 && i > 0; i--) {
     table[i] = 1.0f;
-    if (sums[i - 1] > 0.0) break;
+    if (sums[i - 1] > 0.0)
+      break;
   }
 }
 
-vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height, const float *values,
-                            vlAperture **aperture, vlError *error) {
+vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
+                            const float *values, vlAperture **aperture, vlError *error) {
   double sum = 0.0;
   vl_error_clear(error);
-  if (!context || !aperture) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context or aperture is null");
+  if (!context || !aperture)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context or aperture is null");
   *aperture = NULL;
   vlResult result = check(width, height, values, &sum, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   size_t cells = (size_t)width * height;
   vlAperture *a = vl_alloc_zero(context, 1, sizeof *a);
   double *sums = vl_alloc_array(context, width > height ? width : height, sizeof *sums);
@@ -149,16 +175,19 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
     return vl_fail_memory(error);
   }
   for (uint32_t row = 0; row < height; row++) {
-    for (uint32_t i = 0; i < width; i++) sums[i] = (double)values[(size_t)row * width + i];
+    for (uint32_t i = 0; i < width; i++)
+      sums[i] = (double)values[(size_t)row * width + i];
     accumulate(sums, width, a->columns + (size_t)row * (width + 1));
   }
   for (uint32_t row = 0; row < height; row++) {
     sums[row] = 0.0;
-    for (uint32_t i = 0; i < width; i++) sums[row] += (double)values[(size_t)row * width + i];
+    for (uint32_t i = 0; i < width; i++)
+      sums[row] += (double)values[(size_t)row * width + i];
   }
   accumulate(sums, height, a->rows);
   double scale = 0.25 * pi * (double)cells / sum;
-  for (size_t i = 0; i < cells; i++) a->values[i] = (float)(scale * (double)values[i]);
+  for (size_t i = 0; i < cells; i++)
+    a->values[i] = (float)(scale * (double)values[i]);
   a->reach2 = find_reach2(a);
   vl_free(context, sums);
   *aperture = a;
@@ -166,59 +195,71 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
 }
 
 void vl_aperture_destroy(vlAperture *a) {
-  if (!a) return;
+  if (!a)
+    return;
   vlContext *context = a->context;
   VL_FREE(context, a->values, a->rows, a->columns, a);
 }
 
-/* ---- pbrt's names ------------------------------------------------------------------------------------------------ */
+/* ---- pbrt's names
+ * ------------------------------------------------------------------------------------------------
+ */
 
 /* Whether the point is inside the polygon (even-odd rule). */
 static bool inside(const double (*corners)[2], int count, double x, double y) {
   bool in = false;
   for (int i = 0, k = count - 1; i < count; k = i++) {
     double ax = corners[i][0], ay = corners[i][1], bx = corners[k][0], by = corners[k][1];
-    if ((ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay)) in = !in;
+    if ((ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay))
+      in = !in;
   }
   return in;
 }
 
-/* The shapes and sizes are those of pbrt-v4; y points up here. The pentagon has radius 0.8, and one of its sides is at
- * the bottom. The star's inner corners are the intersections of its outer pentagon's diagonals; one of them is on the
- * right. */
+/* The shapes and sizes are those of pbrt-v4; y points up here. The pentagon has radius 0.8, and
+ * one of its sides is at the bottom. The star's inner corners are the intersections of its
+ * outer pentagon's diagonals; one of them is on the right. */
 static double named_value(int name, double x, double y) {
   double corners[10][2];
-  if (name == 0) return fmax(0.0, vl_precise_exp(-(x * x + y * y)) - vl_precise_exp(-1.0));
-  if (name == 1) return 1.0;
+  if (name == 0)
+    return fmax(0.0, vl_precise_exp(-(x * x + y * y)) - vl_precise_exp(-1.0));
+  if (name == 1)
+    return 1.0;
   int count = name == 2 ? 5 : 10;
   for (int i = 0; i < count; i++) {
     double angle = name == 2 ? 0.5 * pi + 0.4 * pi * i : 0.2 * pi * i;
-    double radius = name == 2 ? 0.8 : i & 1 ? 1.0 : vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
+    double radius = name == 2 ? 0.8
+                    : i & 1   ? 1.0
+                              : vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
     corners[i][0] = radius * vl_precise_cos(angle);
     corners[i][1] = radius * vl_precise_sin(angle);
   }
   return inside((const double(*)[2])corners, count, x, y) ? 1.0 : 0.0;
 }
 
-vlResult vl_aperture_create_named(vlContext *context, const char *name, vlAperture **aperture, vlError *error) {
+vlResult vl_aperture_create_named(vlContext *context, const char *name, vlAperture **aperture,
+                                  vlError *error) {
   static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
   vl_error_clear(error);
   if (!context || !name || !aperture)
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context, name or aperture is null");
   *aperture = NULL;
   int kind = 0;
-  while (kind < 4 && !vl_text_is(name, names[kind])) kind++;
+  while (kind < 4 && !vl_text_is(name, names[kind]))
+    kind++;
   if (kind == 4) {
     const char *near = vl_nearest_name(name, names, 4);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s", vl_argument_text(name).text,
-                   near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)", near ? near : "",
-                   near ? "\"?" : "");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s",
+                   vl_argument_text(name).text,
+                   near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)",
+                   near ? near : "", near ? "\"?" : "");
   }
   float *values = vl_alloc_array(context, (size_t)NAMED * NAMED, sizeof *values);
-  if (!values) return vl_fail_memory(error);
+  if (!values)
+    return vl_fail_memory(error);
   for (int i = 0; i < NAMED * NAMED; i++)
-    values[i] =
-        (float)named_value(kind, (i % NAMED + 0.5) * 2.0 / NAMED - 1.0, 1.0 - (double)(i / NAMED + 0.5) * 2.0 / NAMED);
+    values[i] = (float)named_value(kind, (i % NAMED + 0.5) * 2.0 / NAMED - 1.0,
+                                   1.0 - (double)(i / NAMED + 0.5) * 2.0 / NAMED);
   vlResult result = vl_aperture_create(context, NAMED, NAMED, values, aperture, error);
   vl_free(context, values);
   return result;
@@ -226,5 +267,6 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
 
 void vl_aperture_digest(const vlAperture *a, uint8_t digest[16]) {
   vl_digest(a->values, (size_t)a->width * a->height * sizeof *a->values, digest);
-  for (int i = 0; i < 4; i++) digest[i] ^= (uint8_t)(a->width >> 8 * i);
+  for (int i = 0; i < 4; i++)
+    digest[i] ^= (uint8_t)(a->width >> 8 * i);
 }

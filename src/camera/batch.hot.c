@@ -9,28 +9,35 @@
 #include "camera/rays.h"
 #include "camera/stages.h"
 
-/* The kinds of lens. lens_u and lens_v are random numbers for DISC, and points of the aperture for POINTS. For OPTICS,
- * rays start at d->x, d->y. */
+/* The kinds of lens. lens_u and lens_v are random numbers for DISC, and points of the aperture
+ * for POINTS. For OPTICS, rays start at d->x, d->y. */
 enum { NO_LENS, DISC, POINTS, OPTICS };
 
-/* The loop is inlined once for each projection and kind of lens; the caller passes both as constants. */
-static inline __attribute__((always_inline)) void ray_loop(const int orthographic, const int lens,
-                                                           const vlCameraCompiled *camera, uint32_t count,
-                                                           const vlCameraSamples *s, const vlCameraRays *r) {
+/* The loop is inlined once for each projection and kind of lens; the caller passes both as
+ * constants. */
+static inline __attribute__((always_inline)) void ray_loop(
+    const int orthographic, const int lens, const vlCameraCompiled *camera, uint32_t count,
+    const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
-  const float *film_x = s->film_x, *film_y = s->film_y, *lens_u = s->lens_u, *lens_v = s->lens_v, *time = s->time;
+  const float *film_x = s->film_x, *film_y = s->film_y, *lens_u = s->lens_u,
+              *lens_v = s->lens_v, *time = s->time;
   const int32_t *pixel_x = s->pixel_x, *pixel_y = s->pixel_y;
   float *ox = r->ox, *oy = r->oy, *oz = r->oz, *dx = r->dx, *dy = r->dy, *dz = r->dz;
   float *t_min = r->t_min, *t_max = r->t_max, *seconds = r->time;
-  /* the planes z = near, far as multiples of the unnormalised direction, whose depth is the same for all rays */
-  double depth = orthographic ? 1.0 : c->focal, near_t = c->near_plane / depth, far_t = c->far_plane / depth;
+  /* the planes z = near, far as multiples of the unnormalised direction, whose depth is the
+   * same for all rays */
+  double depth = orthographic ? 1.0 : c->focal, near_t = c->near_plane / depth,
+         far_t = c->far_plane / depth;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = (double)pixel_x[i] - c->cx + (double)film_x[i];
     double y = (double)pixel_y[i] - c->cy + (double)film_y[i];
-    vlCameraLocal local = orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
-    if (lens == DISC) local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
-    if (lens == POINTS) local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
+    vlCameraLocal local =
+        orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
+    if (lens == DISC)
+      local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
+    if (lens == POINTS)
+      local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     vlWorldRay w = vl_camera_place(c, local);
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -45,12 +52,12 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
 }
 
 /* Finishes the rays of a chunk from known directions, for samples from `first` on. */
-static inline __attribute__((always_inline)) void place_loop(const int lens, const int eyes,
-                                                             const vlCameraCompiled *camera, uint32_t first,
-                                                             uint32_t count, const vlDirections *d,
-                                                             const vlCameraSamples *s, const vlCameraRays *r) {
+static inline __attribute__((always_inline)) void place_loop(
+    const int lens, const int eyes, const vlCameraCompiled *camera, uint32_t first,
+    uint32_t count, const vlDirections *d, const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
-  const float *lens_u = s->lens_u + (lens == DISC ? first : 0), *lens_v = s->lens_v + (lens == DISC ? first : 0);
+  const float *lens_u = s->lens_u + (lens == DISC ? first : 0),
+              *lens_v = s->lens_v + (lens == DISC ? first : 0);
   const float *time = s->time + first;
   float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
   float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
@@ -60,17 +67,21 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal local = {0.0, 0.0, d->dx[i], d->dy[i], d->dz[i]};
-    /* Depth: dz for cameras with `ahead`, else 1 (perspective directions have z = 1, others unit length). */
+    /* Depth: dz for cameras with `ahead`, else 1 (perspective directions have z = 1, others
+     * unit length). */
     double ahead = local.dz > VL_TINY ? local.dz : VL_TINY;
     double depth = flat * ahead + (1.0 - flat);
-    if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
-    if (lens == POINTS) local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
+    if (lens == DISC)
+      local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
+    if (lens == POINTS)
+      local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     if (lens == OPTICS) {
       local.ox = d->x[i];
       local.oy = d->y[i];
     }
     vlWorldRay w = vl_camera_place(c, local);
-    if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
+    if (eyes)
+      w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -84,9 +95,10 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   }
 }
 
-/* Computes the natural vignetting of a chunk: cos^4 of the angle between the axis and the direction of the film point,
- * seen from the lens's centre. */
-static void weigh_plain(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, float *weight) {
+/* Computes the natural vignetting of a chunk: cos^4 of the angle between the axis and the
+ * direction of the film point, seen from the lens's centre. */
+static void weigh_plain(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
+                        float *weight) {
   for (uint32_t i = 0; i < count; i++) {
     double x = (double)s->pixel_x[i] - c->cx + (double)s->film_x[i];
     double y = (double)s->pixel_y[i] - c->cy + (double)s->film_y[i];
@@ -103,7 +115,8 @@ static void weigh_staged(uint32_t count, const vlDirections *d, float *weight) {
 }
 
 /* Rays of all cameras that are neither plain perspective nor orthographic. */
-static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
+                        const vlCameraRays *r) {
   const double cx = c->cx, cy = c->cy, inv_fx = c->inv_fx, inv_fy = c->inv_fy;
   vlDirections d;
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
@@ -134,18 +147,22 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
     } else {
       place_loop(NO_LENS, 0, c, first, n, &d, s, r);
     }
-    if (r->weight && c->vignetting) weigh_staged(n, &d, r->weight + first);
-    for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)d.valid[i];
+    if (r->weight && c->vignetting)
+      weigh_staged(n, &d, r->weight + first);
+    for (uint32_t i = 0; r->valid && i < n; i++)
+      r->valid[first + i] = (float)d.valid[i];
   }
 }
 
 /* Rays of a plain camera with a shaped lens. */
-static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
+                        const vlCameraRays *r) {
   float x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK];
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
     uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK, k = first;
     vl_lens_points(c, n, s->lens_u + k, s->lens_v + k, x, y);
-    vlCameraSamples samples = {s->film_x + k, s->film_y + k, s->pixel_x + k, s->pixel_y + k, x, y, s->time + k};
+    vlCameraSamples samples = {
+        s->film_x + k, s->film_y + k, s->pixel_x + k, s->pixel_y + k, x, y, s->time + k};
     vlCameraRays out = {.ox = r->ox + k,
                         .oy = r->oy + k,
                         .oz = r->oz + k,
@@ -162,7 +179,8 @@ static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
   }
 }
 
-static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
+                        const vlCameraRays *r) {
   vlDirections d;
   double seen[VL_CAMERA_CHUNK];
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
@@ -171,15 +189,19 @@ static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
       d.x[i] = (double)s->pixel_x[k] - c->cx + (double)s->film_x[k];
       d.y[i] = (double)s->pixel_y[k] - c->cy + (double)s->film_y[k];
     }
-    vl_camera_optics(c, n, s->lens_u + first, s->lens_v + first, &d, seen, r->weight ? r->weight + first : NULL);
+    vl_camera_optics(c, n, s->lens_u + first, s->lens_v + first, &d, seen,
+                     r->weight ? r->weight + first : NULL);
     place_loop(OPTICS, 0, c, first, n, &d, s, r);
-    for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)seen[i];
+    for (uint32_t i = 0; r->valid && i < n; i++)
+      r->valid[first + i] = (float)seen[i];
   }
 }
 
-/* A ray that is not finite, or whose weight is negative, stands for a sample that is left out: weight NaN. */
-static void own_place_loop(const vlCameraCompiled *camera, uint32_t count, const vlOwnRows *rows, const vlCameraRays *r,
-                           uint32_t first, float *valid, float *weight) {
+/* A ray that is not finite, or whose weight is negative, stands for a sample that is left out:
+ * weight NaN. */
+static void own_place_loop(const vlCameraCompiled *camera, uint32_t count,
+                           const vlOwnRows *rows, const vlCameraRays *r, uint32_t first,
+                           float *valid, float *weight) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
   float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
@@ -206,12 +228,14 @@ static void own_place_loop(const vlCameraCompiled *camera, uint32_t count, const
 }
 
 /* Rays of a camera of one's own. n is not padded: its functions get the samples alone. */
-static void own_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+static void own_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s,
+                     const vlCameraRays *r) {
   vlOwnRows rows;
   float valid[VL_OWN_BATCH], weight[VL_OWN_BATCH];
   for (uint32_t first = 0; first < n; first += VL_OWN_BATCH) {
     uint32_t m = n - first < VL_OWN_BATCH ? n - first : VL_OWN_BATCH, count = VL_PAD(m);
-    const float *film_x = s->film_x + first, *film_y = s->film_y + first, *time = s->time + first;
+    const float *film_x = s->film_x + first, *film_y = s->film_y + first,
+                *time = s->time + first;
     const int32_t *pixel_x = s->pixel_x + first, *pixel_y = s->pixel_y + first;
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -228,12 +252,15 @@ static void own_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSample
     }
     vl_own_rays(c, m, &rows);
     own_place_loop(c, count, &rows, r, first, valid, weight);
-    for (uint32_t i = 0; r->valid && i < count; i++) r->valid[first + i] = valid[i];
-    for (uint32_t i = 0; r->weight && i < count; i++) r->weight[first + i] = weight[i];
+    for (uint32_t i = 0; r->valid && i < count; i++)
+      r->valid[first + i] = valid[i];
+    for (uint32_t i = 0; r->weight && i < count; i++)
+      r->weight[first + i] = weight[i];
   }
 }
 
-static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s,
+                       const vlCameraRays *r) {
   uint32_t count = VL_PAD(n);
   if (c->own) {
     own_rays(c, n, s, r);
@@ -260,21 +287,28 @@ static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamp
     else
       ray_loop(0, NO_LENS, c, count, s, r);
   }
-  if (r->weight && c->vignetting) weigh_plain(c, count, s, r->weight);
-  for (uint32_t i = 0; r->valid && i < count; i++) r->valid[i] = 1.0f;
+  if (r->weight && c->vignetting)
+    weigh_plain(c, count, s, r->weight);
+  for (uint32_t i = 0; r->valid && i < count; i++)
+    r->valid[i] = 1.0f;
 }
 
 /* Time is applied last: a moving camera makes its rays in its own space. */
-static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s,
+                 const vlCameraRays *r) {
   if (c->when.moves) {
     vlCameraCompiled here = *c;
-    for (int i = 0; i < 9; i++) here.rotation[i] = i % 4 ? 0.0 : 1.0;
-    for (int i = 0; i < 3; i++) here.position[i] = 0.0;
+    for (int i = 0; i < 9; i++)
+      here.rotation[i] = i % 4 ? 0.0 : 1.0;
+    for (int i = 0; i < 3; i++)
+      here.position[i] = 0.0;
     still_rays(&here, n, s, r);
   } else {
     still_rays(c, n, s, r);
   }
-  if (c->when.timed) vl_camera_time_rays(c, VL_PAD(n), s, r);
+  if (c->when.timed)
+    vl_camera_time_rays(c, VL_PAD(n), s, r);
 }
 
-const vlCameraKernels vl_camera_kernel_table = {rays, vl_camera_unproject_chunk, vl_camera_project_chunk};
+const vlCameraKernels vl_camera_kernel_table = {rays, vl_camera_unproject_chunk,
+                                                vl_camera_project_chunk};

@@ -1,4 +1,5 @@
-/* camera/camera.c: the public functions: a camera from its def; a camera at another resolution. */
+/* camera/camera.c: the public functions: a camera from its def; a camera at another resolution.
+ */
 #include <math.h>
 #include <stdio.h>
 
@@ -65,10 +66,13 @@ static vlResult check_rows(const vlCameraDef *d, vlError *error) {
     const vlParameter *p = &rows->parameters[i];
     char name[80];
     char message[VL_GIVEN_MESSAGE];
-    if (p->flags & VL_PARAMETER_SHORTHAND) continue;
-    if (d->projection == VL_PROJECTION_OWN && p->offset == offsetof(vlCameraDef, projection)) continue;
+    if (p->flags & VL_PARAMETER_SHORTHAND)
+      continue;
+    if (d->projection == VL_PROJECTION_OWN && p->offset == offsetof(vlCameraDef, projection))
+      continue;
     snprintf(name, sizeof name, "camera: %s", vl_setting_keyword(p));
-    if (!vl_parameter_check(p, d, name, message)) return vl_fail(error, VL_ERROR_ARGUMENT, "%s", message);
+    if (!vl_parameter_check(p, d, name, message))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "%s", message);
   }
   return VL_OK;
 }
@@ -76,21 +80,27 @@ static vlResult check_rows(const vlCameraDef *d, vlError *error) {
 /* Checks what each number may be, and those that no other function compares. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
   vlResult result = check_rows(d, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (d->shutter_close < d->shutter_open)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter opens at %g and closes at %g", d->shutter_open,
-                   d->shutter_close);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter opens at %g and closes at %g",
+                   d->shutter_open, d->shutter_close);
   if (!(d->far_plane > d->near_plane))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: near plane %g and far plane %g; needed is 0 <= near < far",
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: near plane %g and far plane %g; needed is 0 <= near < far",
                    d->near_plane, d->far_plane);
   return VL_OK;
 }
 
-vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning,
+                        vlError *error) {
   vl_error_clear(error);
-  if (warning) *warning = NULL;
-  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def or camera is null");
-  if (def->cookie != VL_COOKIE_CAMERA) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: " VL_BAD_COOKIE);
+  if (warning)
+    *warning = NULL;
+  if (!def || !camera)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def or camera is null");
+  if (def->cookie != VL_COOKIE_CAMERA)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: " VL_BAD_COOKIE);
   if (def->projection == VL_PROJECTION_OWN && !def->own)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the projection OWN needs own");
   vlCameraDef own;
@@ -111,19 +121,29 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
       .far_plane = def->far_plane,
   };
   vlResult result = check_rest(def, error);
-  if (result == VL_OK) result = vl_camera_model(def, &made, error);
-  if (result == VL_OK) result = vl_camera_intrinsics(def, &made, error);
-  if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
-  if (result == VL_OK) result = vl_camera_time_part(def, &made, warning, error);
-  if (result == VL_OK) result = vl_camera_lens(def, &made, error);
-  if (result == VL_OK) result = vl_camera_own(def, &made, error);
-  if (result == VL_OK) result = vl_camera_domain(def, &made, warning, error);
-  if (result == VL_OK) result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
-  if (result == VL_OK) *camera = made;
+  if (result == VL_OK)
+    result = vl_camera_model(def, &made, error);
+  if (result == VL_OK)
+    result = vl_camera_intrinsics(def, &made, error);
+  if (result == VL_OK)
+    result = vl_camera_pose(def, &made, warning, error);
+  if (result == VL_OK)
+    result = vl_camera_time_part(def, &made, warning, error);
+  if (result == VL_OK)
+    result = vl_camera_lens(def, &made, error);
+  if (result == VL_OK)
+    result = vl_camera_own(def, &made, error);
+  if (result == VL_OK)
+    result = vl_camera_domain(def, &made, warning, error);
+  if (result == VL_OK)
+    result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
+  if (result == VL_OK)
+    *camera = made;
   return result;
 }
 
-vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height, vlCamera *result) {
+vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height,
+                          vlCamera *result) {
   if (!camera || !result || width == 0 || height == 0 || width > 1u << 24 || height > 1u << 24)
     return VL_ERROR_ARGUMENT;
   double before = camera->width < camera->height ? camera->width : camera->height;
@@ -132,7 +152,8 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
     double w = width, h = height, w0 = camera->width, h0 = camera->height;
     scale = sqrt((w * w + h * h) / (w0 * w0 + h0 * h0));
   }
-  /* projections of the whole sphere, or to a cube, are stretched: width and height keep their angular ranges */
+  /* projections of the whole sphere, or to a cube, are stretched: width and height keep their
+   * angular ranges */
   bool stretched = vl_projection_row(camera->projection)->traits & VL_PROJECTION_STRETCHED;
   double scale_x = stretched ? (double)width / camera->width : scale;
   double scale_y = stretched ? (double)height / camera->height : scale;
@@ -155,7 +176,8 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
 }
 
 vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCamera *result) {
-  if (!camera || !result || factor == 0 || factor > VL_MOST_COARSE) return VL_ERROR_ARGUMENT;
+  if (!camera || !result || factor == 0 || factor > VL_MOST_COARSE)
+    return VL_ERROR_ARGUMENT;
   vlCamera coarse = *camera;
   double scale = 1.0 / factor;
   coarse.fx *= scale;
@@ -163,11 +185,14 @@ vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCamera *res
   coarse.skew *= scale;
   coarse.cx *= scale;
   coarse.cy *= scale;
-  for (int i = 0; i < 2; i++) coarse.lens.focus_pixel[i] *= scale; /* unset values stay unset */
+  for (int i = 0; i < 2; i++)
+    coarse.lens.focus_pixel[i] *= scale; /* unset values stay unset */
   coarse.width = (camera->width + factor - 1) / factor;
   coarse.height = (camera->height + factor - 1) / factor;
-  bool down = camera->readout_direction == VL_READOUT_DOWN || camera->readout_direction == VL_READOUT_UP;
-  double rows = down ? camera->height : camera->width, coarse_rows = down ? coarse.height : coarse.width;
+  bool down = camera->readout_direction == VL_READOUT_DOWN ||
+              camera->readout_direction == VL_READOUT_UP;
+  double rows = down ? camera->height : camera->width,
+         coarse_rows = down ? coarse.height : coarse.width;
   coarse.readout *= coarse_rows * factor / rows; /* rows are read at the same speed */
   vl_camera_measure(&coarse);
   *result = coarse;

@@ -1,4 +1,5 @@
-/* camera/compile.c: converts a vlCamera (public value) to a vlCameraCompiled (input of the batches). */
+/* camera/compile.c: converts a vlCamera (public value) to a vlCameraCompiled (input of the
+ * batches). */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +11,9 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 
-/* Number of pixels by which a plane that wraps around extends beyond its edges. No filter is wider. */
+/* Number of pixels by which a plane that wraps around extends beyond its edges. No filter is
+ * wider.
+ */
 static const double overhang = 16.0;
 
 /* Returns the angle (radians) that the central pixel subtends. */
@@ -34,9 +37,11 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
   if (c->optics) {
     double width = camera->width, height = camera->height;
     c->pitch = 2.0 * c->optics->half / sqrt(width * width + height * height);
-    if (c->near_plane < c->optics->front) c->near_plane = c->optics->front;
+    if (c->near_plane < c->optics->front)
+      c->near_plane = c->optics->front;
   }
-  if (c->optics || !c->has_lens) return;
+  if (c->optics || !c->has_lens)
+    return;
   c->focus[0] = l->tilt[0] * c->inv_focus + l->hinge[0];
   c->focus[1] = l->tilt[1] * c->inv_focus + l->hinge[1];
   c->focus[2] = c->inv_focus;
@@ -44,8 +49,10 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
   c->aperture = l->aperture;
   c->lens_turn[0] = vl_precise_cos(l->rotation);
   c->lens_turn[1] = vl_precise_sin(l->rotation);
-  if (l->blades) vl_blades_make(l->blades, l->rotation, &c->blades);
-  c->shaped = l->blades || l->aperture || l->ratio != 1.0 || c->focus[0] != 0.0 || c->focus[1] != 0.0;
+  if (l->blades)
+    vl_blades_make(l->blades, l->rotation, &c->blades);
+  c->shaped =
+      l->blades || l->aperture || l->ratio != 1.0 || c->focus[0] != 0.0 || c->focus[1] != 0.0;
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
@@ -61,8 +68,8 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
       .inv_fx = 1.0 / camera->fx,
       .inv_fy = 1.0 / camera->fy,
       /* + 0.0 turns -0 into 0 */
-      .rotation = {m[0] + 0.0, m[1] + 0.0, m[2] + 0.0, m[4] + 0.0, m[5] + 0.0, m[6] + 0.0, m[8] + 0.0, m[9] + 0.0,
-                   m[10] + 0.0},
+      .rotation = {m[0] + 0.0, m[1] + 0.0, m[2] + 0.0, m[4] + 0.0, m[5] + 0.0, m[6] + 0.0,
+                   m[8] + 0.0, m[9] + 0.0, m[10] + 0.0},
       .position = {m[3] + 0.0, m[7] + 0.0, m[11] + 0.0},
       .lens_radius = camera->lens_radius,
       .inv_focus = 1.0 / camera->focus_distance,
@@ -86,18 +93,22 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   }
   c->over_x = overhang * c->inv_fx;
   c->over_y = overhang * c->inv_fy;
-  if (camera->projection == VL_PROJECTION_EQUAL_AREA) c->over_x = c->over_x > c->over_y ? c->over_x : c->over_y;
+  if (camera->projection == VL_PROJECTION_EQUAL_AREA)
+    c->over_x = c->over_x > c->over_y ? c->over_x : c->over_y;
   c->limit2 = camera->limit * camera->limit;
   c->distortion = camera->distortion;
   c->eye_circle = camera->eye_circle;
   c->own = camera->own;
-  for (int i = 0; i < 2; i++) c->own_size[i] = (uint32_t)camera->own_size[i];
+  for (int i = 0; i < 2; i++)
+    c->own_size[i] = (uint32_t)camera->own_size[i];
   c->own_from = 0.0;
   c->own_clock = 1.0;
   compile_lens(camera, c);
   vl_camera_compile_time(camera, &c->when);
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
-  double size = 1.0 / sqrt(camera->fx * camera->fy); /* a pixel's side at z = 1, or its width in camera units */
+  double size =
+      1.0 /
+      sqrt(camera->fx * camera->fy); /* a pixel's side at z = 1, or its width in camera units */
   if (perspective) {
     c->pixel_spread = (float)size;
   } else if (orthographic) {

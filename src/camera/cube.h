@@ -1,28 +1,32 @@
-/* camera/cube.h: the six faces of a cube in one image, projection and inverse: right, left, up, down, front, back (the
- * order +x -x +y -y +z -z of cube maps with y up). Each face is a perspective view of 90 degrees, one unit of the plane
- * wide. Right, left, front and back are upright; up's lower edge and down's upper edge adjoin front. The plane's origin
- * is its top left corner. Two layouts:
+/* camera/cube.h: the six faces of a cube in one image, projection and inverse: right, left, up,
+ * down, front, back (the order +x -x +y -y +z -z of cube maps with y up). Each face is a
+ * perspective view of 90 degrees, one unit of the plane wide. Right, left, front and back are
+ * upright; up's lower edge and down's upper edge adjoin front. The plane's origin is its top
+ * left corner. Two layouts:
  *
  *     0: a row, 6 x 1                        1: a cross, 4 x 3
  *        right left up down front back               up
  *                                              left front right back
  *                                                   down
  *
- * A face's view continues beyond its edge, so that filters do not mix neighbouring faces: the face is chosen by the
- * pixel and passed separately, as the number of the plane's cell: column + 8 row. */
+ * A face's view continues beyond its edge, so that filters do not mix neighbouring faces: the
+ * face is chosen by the pixel and passed separately, as the number of the plane's cell: column
+ * + 8 row.
+ */
 #ifndef CAMERA_CUBE_H
 #define CAMERA_CUBE_H
 
 #include "camera/plane.h"
 
-/* Returns the number of the cell that contains a plane point. A point far outside the layout gets a cell that belongs
- * to no face. */
+/* Returns the number of the cell that contains a plane point. A point far outside the layout
+ * gets a cell that belongs to no face. */
 static inline double vl_cube_cell(double x, double y) {
   double column = __builtin_floor(x);
   return (column >= 0.0 && column < 7.0 ? column : 7.0) + 8.0 * __builtin_floor(y);
 }
 
-static inline vlDirection vl_cube_unproject(double cross, double over, double cell, double x, double y) {
+static inline vlDirection vl_cube_unproject(double cross, double over, double cell, double x,
+                                            double y) {
   double row = __builtin_floor(0.125 * cell), column = cell - 8.0 * row;
   double middle = column < 0.5 ? 1.0 : column < 1.5 ? 4.0 : column < 2.5 ? 0.0 : 5.0;
   middle = column <= 3.0 ? middle : -1.0;
@@ -32,7 +36,12 @@ static inline vlDirection vl_cube_unproject(double cross, double over, double ce
   double a = 2.0 * (x - column) - 1.0, b = 2.0 * (y - top) - 1.0;
   double dx = face < 0.5 ? 1.0 : face < 1.5 ? -1.0 : face < 4.5 ? a : -a;
   double dy = face < 1.5 ? b : face < 2.5 ? -1.0 : face < 3.5 ? 1.0 : b;
-  double dz = face < 0.5 ? -a : face < 1.5 ? a : face < 2.5 ? b : face < 3.5 ? -b : face < 4.5 ? 1.0 : -1.0;
+  double dz = face < 0.5   ? -a
+              : face < 1.5 ? a
+              : face < 2.5 ? b
+              : face < 3.5 ? -b
+              : face < 4.5 ? 1.0
+                           : -1.0;
   double inside = b >= -1.0 - 2.0 * over && b <= 1.0 + 2.0 * over ? 1.0 : 0.0;
   return (vlDirection){dx, dy, dz, face >= 0.0 && face <= 5.0 ? inside : 0.0};
 }
@@ -40,14 +49,18 @@ static inline vlPlanePoint vl_cube_project(double cross, double x, double y, dou
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   int side = ax >= ay && ax > az, pole = !side && ay > az;
   double major = side ? ax : pole ? ay : az, k = 1.0 / vl_not_tiny(major);
-  double face = side ? (x > 0.0 ? 0.0 : 1.0) : pole ? (y < 0.0 ? 2.0 : 3.0) : z > 0.0 ? 4.0 : 5.0;
+  double face = side      ? (x > 0.0 ? 0.0 : 1.0)
+                : pole    ? (y < 0.0 ? 2.0 : 3.0)
+                : z > 0.0 ? 4.0
+                          : 5.0;
   double a = side ? (x > 0.0 ? -z : z) : pole ? x : z > 0.0 ? x : -x;
   double b = pole ? (y < 0.0 ? z : -z) : y;
   double column = side ? (x > 0.0 ? 2.0 : 0.0) : pole || z > 0.0 ? 1.0 : 3.0;
   double row = pole ? (y < 0.0 ? 0.0 : 2.0) : 1.0;
   column = cross > 0.0 ? column : face;
   row = cross > 0.0 ? row : 0.0;
-  return (vlPlanePoint){column + 0.5 * (a * k + 1.0), row + 0.5 * (b * k + 1.0), major > 0.0 ? 1.0 : 0.0};
+  return (vlPlanePoint){column + 0.5 * (a * k + 1.0), row + 0.5 * (b * k + 1.0),
+                        major > 0.0 ? 1.0 : 0.0};
 }
 
 #endif

@@ -1,7 +1,7 @@
-/* camera/cylindrical.h: the cylindrical projection and its inverse. The cylinder's axis is the camera's vertical axis.
- * x is the longitude (radians, -pi to pi); y is the tangent of the latitude and points down. Vertical lines and the
- * horizon stay straight. The plane wraps around: it extends by `over` (radians) beyond -pi and pi, so that filters see
- * no edge. */
+/* camera/cylindrical.h: the cylindrical projection and its inverse. The cylinder's axis is the
+ * camera's vertical axis. x is the longitude (radians, -pi to pi); y is the tangent of the
+ * latitude and points down. Vertical lines and the horizon stay straight. The plane wraps
+ * around: it extends by `over` (radians) beyond -pi and pi, so that filters see no edge. */
 #ifndef CAMERA_CYLINDRICAL_H
 #define CAMERA_CYLINDRICAL_H
 
@@ -16,7 +16,8 @@ static inline vlDirection vl_cylindrical_unproject(double over, double x, double
 /* The domain is all directions except straight up and straight down. */
 static inline vlPlanePoint vl_cylindrical_project(double x, double y, double z) {
   double across = vl_length2(x, z);
-  return (vlPlanePoint){vl_atan2_double(x, z), y / vl_not_tiny(across), across > 0.0 ? 1.0 : 0.0};
+  return (vlPlanePoint){vl_atan2_double(x, z), y / vl_not_tiny(across),
+                        across > 0.0 ? 1.0 : 0.0};
 }
 
 #endif

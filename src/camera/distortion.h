@@ -1,14 +1,17 @@
-/* camera/distortion.h: lens distortion: maps undistorted points of the projection's plane to distorted points, and
- * back. One form covers OpenCV's 14 coefficients (rational radial, tangential, thin prism, tilted sensor), the fisheye
- * polynomials of OpenCV and COLMAP, and COLMAP's thin prism (OpenCV documentation, "Camera Calibration and 3D
- * Reconstruction"; Brown, "Decentering distortion of lenses", 1966; Weng, Cohen, Herniou 1992; COLMAP,
+/* camera/distortion.h: lens distortion: maps undistorted points of the projection's plane to
+ * distorted points, and back. One form covers OpenCV's 14 coefficients (rational radial,
+ * tangential, thin prism, tilted sensor), the fisheye polynomials of OpenCV and COLMAP, and
+ * COLMAP's thin prism (OpenCV documentation, "Camera Calibration and 3D Reconstruction"; Brown,
+ * "Decentering distortion of lenses", 1966; Weng, Cohen, Herniou 1992; COLMAP,
  * sensor/models.h):
  *
  *     s = x^2 + y^2,  q = (1 + n0 s + n1 s^2 + n2 s^3 + n3 s^4) / (1 + d0 s + d1 s^2 + d2 s^3)
  *     u = x q + 2 p0 x y + p1 (s + 2 x^2) + t0 s + t1 s^2
- *     v = y q + p0 (s + 2 y^2) + 2 p1 x y + t2 s + t3 s^2,   then the sensor's tilt, a homography.
+ *     v = y q + p0 (s + 2 y^2) + 2 p1 x y + t2 s + t3 s^2,   then the sensor's tilt, a
+ * homography.
  *
- * Within the disc of radius vlDistortionMap.radius the Jacobian determinant is positive: the map does not fold. */
+ * Within the disc of radius vlDistortionMap.radius the Jacobian determinant is positive: the
+ * map does not fold. */
 #ifndef CAMERA_DISTORTION_H
 #define CAMERA_DISTORTION_H
 
@@ -26,7 +29,8 @@ static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double 
   double below = 1.0 + s * (d[0] + s * (d[1] + s * d[2]));
   double above1 = n[0] + s * (2.0 * n[1] + s * (3.0 * n[2] + s * (4.0 * n[3])));
   double below1 = d[0] + s * (2.0 * d[1] + s * (3.0 * d[2]));
-  double q = above / below, q1 = (above1 - q * below1) / below; /* q1: derivative of q with respect to s */
+  double q = above / below,
+         q1 = (above1 - q * below1) / below; /* q1: derivative of q with respect to s */
   double xy = x * y, tu = 2.0 * (t[0] + 2.0 * t[1] * s), tv = 2.0 * (t[2] + 2.0 * t[3] * s);
   vlDistorted r;
   r.u = x * q + 2.0 * p0 * xy + p1 * (s + 2.0 * x * x) + s * (t[0] + t[1] * s);
@@ -38,7 +42,8 @@ static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double 
   return r;
 }
 
-/* Applies the homography h; w > 0 inside its domain. At w = 1e-9 the point lies 1e9 focal lengths away. */
+/* Applies the homography h; w > 0 inside its domain. At w = 1e-9 the point lies 1e9 focal
+ * lengths away. */
 #define VL_TILT_HORIZON 1e-9
 static inline vlPlanePoint vl_tilt(const double h[9], double x, double y) {
   double w = h[6] * x + h[7] * y + h[8], k = 1.0 / vl_not_tiny(w);
@@ -55,14 +60,14 @@ static inline vlPlanePoint vl_distortion_apply(const vlDistortionMap *m, double 
   return p;
 }
 
-/* One Newton step towards the ideal point (x, y) that maps to (u, v) before the tilt; the result is kept inside the
- * disc. */
-static inline vlPlanePoint vl_distortion_step(const vlDistortionMap *m, double x, double y, double u, double v) {
+/* One Newton step towards the ideal point (x, y) that maps to (u, v) before the tilt; the
+ * result is kept inside the disc. */
+static inline vlPlanePoint vl_distortion_step(const vlDistortionMap *m, double x, double y,
+                                              double u, double v) {
   vlDistorted d = vl_distort(m, x, y);
   double det = d.ux * d.vy - d.uy * d.vx, eu = u - d.u, ev = v - d.v;
-  double k =
-      1.0 /
-      (det > 1e-12 ? det : 1e-12); /* near a fold the step is bounded; vl_distortion_check then tests the result */
+  double k = 1.0 / (det > 1e-12 ? det : 1e-12); /* near a fold the step is bounded;
+                                                   vl_distortion_check then tests the result */
   double nx = x + (d.vy * eu - d.uy * ev) * k, ny = y + (d.ux * ev - d.vx * eu) * k;
   double r = vl_length2(nx, ny), shrink = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){nx * shrink, ny * shrink, 1.0};
@@ -74,9 +79,10 @@ static inline vlPlanePoint vl_distortion_start(const vlDistortionMap *m, double 
   return (vlPlanePoint){u * k, v * k, 1.0};
 }
 
-/* Returns 1 if the iteration converged, which means that (x, y) maps to (u, v) with a relative error below 1e-12.
- * Otherwise, and for NaN, returns 0. */
-static inline double vl_distortion_check(const vlDistortionMap *m, double x, double y, double u, double v) {
+/* Returns 1 if the iteration converged, which means that (x, y) maps to (u, v) with a relative
+ * error below 1e-12. Otherwise, and for NaN, returns 0. */
+static inline double vl_distortion_check(const vlDistortionMap *m, double x, double y, double u,
+                                         double v) {
   vlDistorted d = vl_distort(m, x, y);
   double error = __builtin_fabs(d.u - u) + __builtin_fabs(d.v - v);
   double size = 1.0 + __builtin_fabs(u) + __builtin_fabs(v);

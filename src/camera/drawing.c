@@ -29,14 +29,17 @@ typedef struct Pen {
   VL_ARRAY(vlDrawingLabel) labels;
 } Pen;
 
-/* ---- primitives -------------------------------------------------------------------------------------------------- */
+/* ---- primitives
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static bool wanted(const Pen *p, vlDrawingPart part) {
   return p->def->parts >> part & 1;
 }
 
 static void line(Pen *p, vlDrawingPart part, const double a[3], const double b[3]) {
-  if (!wanted(p, part)) return;
+  if (!wanted(p, part))
+    return;
   vlDrawingLine *l = VL_PUSH(p->context, &p->lines);
   if (!l) {
     p->failed = true;
@@ -48,9 +51,10 @@ static void line(Pen *p, vlDrawingPart part, const double a[3], const double b[3
   memcpy(l->to, b, sizeof l->to);
 }
 
-static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3], const double c[3],
-                 const double d[3]) {
-  if (!wanted(p, part)) return;
+static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3],
+                 const double c[3], const double d[3]) {
+  if (!wanted(p, part))
+    return;
   vlDrawingFace *f = VL_PUSH(p->context, &p->faces);
   if (!f) {
     p->failed = true;
@@ -59,11 +63,13 @@ static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3
   f->part = part;
   f->camera = p->index;
   const double *const corners[4] = {a, b, c, d};
-  for (int i = 0; i < 4; i++) memcpy(f->corners[i], corners[i], sizeof f->corners[i]);
+  for (int i = 0; i < 4; i++)
+    memcpy(f->corners[i], corners[i], sizeof f->corners[i]);
 }
 
 static void label(Pen *p, vlDrawingPart part, const double at[3], const char *text) {
-  if (!wanted(p, part)) return;
+  if (!wanted(p, part))
+    return;
   vlDrawingLabel *l = VL_PUSH(p->context, &p->labels);
   if (!l) {
     p->failed = true;
@@ -77,11 +83,13 @@ static void label(Pen *p, vlDrawingPart part, const double at[3], const char *te
 
 /* to = from + s d */
 static void go(const double from[3], const double d[3], double s, double to[3]) {
-  for (int i = 0; i < 3; i++) to[i] = from[i] + s * d[i];
+  for (int i = 0; i < 3; i++)
+    to[i] = from[i] + s * d[i];
 }
 
 static void eye_of(const vlCamera *c, double eye[3]) {
-  for (int i = 0; i < 3; i++) eye[i] = c->world_from_camera[4 * i + 3];
+  for (int i = 0; i < 3; i++)
+    eye[i] = c->world_from_camera[4 * i + 3];
 }
 
 /* Unit camera axis i (0 right, 1 down, 2 forward) in the world. */
@@ -91,24 +99,31 @@ static void axis_of(const vlCamera *c, int i, double axis[3]) {
     axis[k] = c->world_from_camera[4 * k + i];
     length += axis[k] * axis[k];
   }
-  for (int k = 0; k < 3; k++) axis[k] /= sqrt(length);
+  for (int k = 0; k < 3; k++)
+    axis[k] /= sqrt(length);
 }
 
-/* ---- the view surface -------------------------------------------------------------------------------------------- */
+/* ---- the view surface
+ * --------------------------------------------------------------------------------------------
+ */
 
-/* The point at `depth` on the ray of film point (x, y): depth along the view direction if the surface is flat, else
- * distance from the ray's origin. Negative depth: behind the eye. */
+/* The point at `depth` on the ray of film point (x, y): depth along the view direction if the
+ * surface is flat, else distance from the ray's origin. Negative depth: behind the eye. */
 static bool at_depth(const Pen *p, double x, double y, double depth, double point[3]) {
   double o[3], d[3];
-  if (!vl_camera_unproject(p->camera, x, y, o, d)) return false;
+  if (!vl_camera_unproject(p->camera, x, y, o, d))
+    return false;
   double along = p->flat ? vl_dot3(d, p->forward) : 1.0;
-  if (!(along > 1e-6)) return false;
+  if (!(along > 1e-6))
+    return false;
   go(o, d, depth / along, point);
   return true;
 }
 
-/* A curve on the surface at `depth` between two film points; pieces without rays are left out. */
-static void curve(Pen *p, vlDrawingPart part, double x0, double y0, double x1, double y1, double depth) {
+/* A curve on the surface at `depth` between two film points; pieces without rays are left out.
+ */
+static void curve(Pen *p, vlDrawingPart part, double x0, double y0, double x1, double y1,
+                  double depth) {
   const vlCamera *c = p->camera;
   bool straight = p->flat && c->distortion.steps == 0;
   int steps = straight ? 1 : STEPS;
@@ -117,23 +132,26 @@ static void curve(Pen *p, vlDrawingPart part, double x0, double y0, double x1, d
   for (int i = 0; i <= steps; i++) {
     double t = (double)i / steps;
     bool valid = at_depth(p, x0 + t * (x1 - x0), y0 + t * (y1 - y0), depth, next);
-    if (valid && known) line(p, part, last, next);
+    if (valid && known)
+      line(p, part, last, next);
     known = valid;
     memcpy(last, next, sizeof last);
   }
 }
 
-/* The film point `share` of the way round the image circle, pulled in a little; false where the camera has no circle or
- * it lies outside of the image there. */
+/* The film point `share` of the way round the image circle, pulled in a little; false where the
+ * camera has no circle or it lies outside of the image there. */
 static bool on_circle(const vlCamera *c, double share, double xy[2]) {
-  if (!(c->limit < 1e6)) return false;
+  if (!(c->limit < 1e6))
+    return false;
   double t = 2.0 * 3.14159265358979323846 * share, r = c->limit * (1.0 - 1e-6);
   xy[0] = c->cx + c->fx * r * vl_precise_cos(t) + c->skew * r * vl_precise_sin(t);
   xy[1] = c->cy + c->fy * r * vl_precise_sin(t);
   return xy[0] >= 0 && xy[1] >= 0 && xy[0] <= c->width && xy[1] <= c->height;
 }
 
-/* The border of the image at `depth`: the window's edges, and the image circle where it is inside of them. */
+/* The border of the image at `depth`: the window's edges, and the image circle where it is
+ * inside of them. */
 static void border(Pen *p, vlDrawingPart part, double depth) {
   const vlCamera *c = p->camera;
   double w = c->width, h = c->height, a[2], b[2], u[3], v[3];
@@ -142,8 +160,11 @@ static void border(Pen *p, vlDrawingPart part, double depth) {
   curve(p, part, w, h, 0, h, depth);
   curve(p, part, 0, h, 0, 0, depth);
   for (int i = 0; i < 4 * STEPS; i++) {
-    if (!on_circle(c, (double)i / (4 * STEPS), a) || !on_circle(c, (double)(i + 1) / (4 * STEPS), b)) continue;
-    if (at_depth(p, a[0], a[1], depth, u) && at_depth(p, b[0], b[1], depth, v)) line(p, part, u, v);
+    if (!on_circle(c, (double)i / (4 * STEPS), a) ||
+        !on_circle(c, (double)(i + 1) / (4 * STEPS), b))
+      continue;
+    if (at_depth(p, a[0], a[1], depth, u) && at_depth(p, b[0], b[1], depth, v))
+      line(p, part, u, v);
   }
 }
 
@@ -151,15 +172,18 @@ static void border(Pen *p, vlDrawingPart part, double depth) {
 static bool whole_circle(const vlCamera *c) {
   double xy[2];
   for (int i = 0; i < 4; i++)
-    if (!on_circle(c, 0.25 * i, xy)) return false;
+    if (!on_circle(c, 0.25 * i, xy))
+      return false;
   return true;
 }
 
-/* Film point (i, j) of a net of n x n over the image, or over the image circle: its rings and spokes. */
+/* Film point (i, j) of a net of n x n over the image, or over the image circle: its rings and
+ * spokes. */
 static void net_point(const vlCamera *c, bool circle, int i, int j, int n, double xy[2]) {
   xy[0] = c->width * (double)i / n;
   xy[1] = c->height * (double)j / n;
-  if (!circle) return;
+  if (!circle)
+    return;
   double rim[2] = {c->cx, c->cy}, share = (double)j / n;
   on_circle(c, (double)i / n, rim);
   xy[0] = c->cx + share * (rim[0] - c->cx);
@@ -179,7 +203,8 @@ static void surface(Pen *p, vlDrawingPart part, double depth) {
         net_point(c, circle, i + (k == 1 || k == 2), j + (k >= 2), n, xy);
         valid = valid && at_depth(p, xy[0], xy[1], depth, q[k]);
       }
-      if (valid) face(p, part, q[0], q[1], q[2], q[3]);
+      if (valid)
+        face(p, part, q[0], q[1], q[2], q[3]);
     }
 }
 
@@ -188,35 +213,43 @@ static uint32_t grid_step(uint32_t size, uint32_t most) {
   static const uint32_t factors[3] = {1, 2, 5};
   for (uint64_t ten = 1;; ten *= 10)
     for (int i = 0; i < 3; i++)
-      if (size / (factors[i] * ten) <= (most ? most : 1)) return (uint32_t)(factors[i] * ten);
+      if (size / (factors[i] * ten) <= (most ? most : 1))
+        return (uint32_t)(factors[i] * ten);
 }
 
 static void grid(Pen *p, vlDrawingPart part, double depth) {
   const vlCamera *c = p->camera;
-  if (p->def->grid == 0) return;
+  if (p->def->grid == 0)
+    return;
   uint32_t step = grid_step(c->width > c->height ? c->width : c->height, p->def->grid);
-  for (uint32_t x = step; x < c->width; x += step) curve(p, part, x, 0, x, c->height, depth);
-  for (uint32_t y = step; y < c->height; y += step) curve(p, part, 0, y, c->width, y, depth);
+  for (uint32_t x = step; x < c->width; x += step)
+    curve(p, part, x, 0, x, c->height, depth);
+  for (uint32_t y = step; y < c->height; y += step)
+    curve(p, part, 0, y, c->width, y, depth);
 }
 
-/* Lines along the edges of the view volume between two depths: through the corners; of curved surfaces also through the
- * middles of the edges, and around the image circle. */
+/* Lines along the edges of the view volume between two depths: through the corners; of curved
+ * surfaces also through the middles of the edges, and around the image circle. */
 static void edges(Pen *p, vlDrawingPart part, double from, double to) {
   const vlCamera *c = p->camera;
   double a[3], b[3], xy[2];
   bool circle = on_circle(c, 0, xy) || on_circle(c, 0.25, xy);
   for (int i = 0; i < EDGES; i++) {
-    static const double square[EDGES][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
-    if (p->flat && i >= 4) break;
+    static const double square[EDGES][2] = {{0, 0},   {1, 0},   {1, 1},   {0, 1},
+                                            {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
+    if (p->flat && i >= 4)
+      break;
     if (!circle || !on_circle(c, (double)i / EDGES, xy)) {
       xy[0] = square[i][0] * c->width;
       xy[1] = square[i][1] * c->height;
     }
-    if (at_depth(p, xy[0], xy[1], from, a) && at_depth(p, xy[0], xy[1], to, b)) line(p, part, a, b);
+    if (at_depth(p, xy[0], xy[1], from, a) && at_depth(p, xy[0], xy[1], to, b))
+      line(p, part, a, b);
   }
 }
 
-/* ---- the parts of one camera ------------------------------------------------------------------------------------- */
+/* ---- the parts of one camera
+ * ------------------------------------------------------------------------------------- */
 
 static void draw_eye(Pen *p) {
   const vlCamera *c = p->camera;
@@ -230,7 +263,8 @@ static void draw_eye(Pen *p) {
     double t = 2 * 3.14159265358979323846 * i / STEPS;
     go(eye, right, c->lens_radius * vl_precise_cos(t), next);
     go(next, down, c->lens_radius * vl_precise_sin(t), next);
-    if (i) line(p, VL_DRAWING_EYE, last, next);
+    if (i)
+      line(p, VL_DRAWING_EYE, last, next);
     memcpy(last, next, sizeof last);
   }
 }
@@ -251,22 +285,27 @@ static void draw_axes(Pen *p, double length) {
 /* The plane in focus, where the corners' rays meet it. */
 static void draw_focus(Pen *p) {
   const vlCamera *c = p->camera;
-  if (!(c->lens_radius > 0) || !(c->focus_distance < 1e30) || !p->flat) return;
+  if (!(c->lens_radius > 0) || !(c->focus_distance < 1e30) || !p->flat)
+    return;
   double q[4][3];
   for (int k = 0; k < 4; k++) {
     double x = k == 1 || k == 2 ? c->width : 0, y = k >= 2 ? c->height : 0, o[3], d[3], at[3];
-    if (!vl_camera_unproject(c, x, y, o, d)) return;
+    if (!vl_camera_unproject(c, x, y, o, d))
+      return;
     const double *m = c->camera_from_world;
-    for (int i = 0; i < 3; i++) at[i] = m[4 * i] * d[0] + m[4 * i + 1] * d[1] + m[4 * i + 2] * d[2];
+    for (int i = 0; i < 3; i++)
+      at[i] = m[4 * i] * d[0] + m[4 * i + 1] * d[1] + m[4 * i + 2] * d[2];
     /* the plane in focus: f . x = 1 in camera space (compile.c) */
     double inv = 1 / c->focus_distance;
     double per = at[2] * inv + at[0] * (c->lens.tilt[0] * inv + c->lens.hinge[0]) +
                  at[1] * (c->lens.tilt[1] * inv + c->lens.hinge[1]);
-    if (!(per > 1e-9)) return;
+    if (!(per > 1e-9))
+      return;
     go(o, d, 1 / per, q[k]);
   }
   face(p, VL_DRAWING_FOCUS, q[0], q[1], q[2], q[3]);
-  for (int k = 0; k < 4; k++) line(p, VL_DRAWING_FOCUS, q[k], q[(k + 1) % 4]);
+  for (int k = 0; k < 4; k++)
+    line(p, VL_DRAWING_FOCUS, q[k], q[(k + 1) % 4]);
   label(p, VL_DRAWING_FOCUS, q[1], "focus");
 }
 
@@ -276,9 +315,12 @@ static void draw_projectors(Pen *p) {
     const double *point = def->points + 3 * i;
     double pixel[2], o[3], d[3], image[3], behind[3];
     char name[16];
-    if (!vl_camera_project(p->camera, point, pixel, NULL)) continue;
-    if (!vl_camera_unproject(p->camera, pixel[0], pixel[1], o, d)) continue;
-    if (!at_depth(p, pixel[0], pixel[1], def->plane, image)) continue;
+    if (!vl_camera_project(p->camera, point, pixel, NULL))
+      continue;
+    if (!vl_camera_unproject(p->camera, pixel[0], pixel[1], o, d))
+      continue;
+    if (!at_depth(p, pixel[0], pixel[1], def->plane, image))
+      continue;
     line(p, VL_DRAWING_PROJECTOR, point, o);
     line(p, VL_DRAWING_PROJECTOR, point, point);
     snprintf(name, sizeof name, def->point_count > 1 ? "P%u" : "P", i + 1);
@@ -288,39 +330,47 @@ static void draw_projectors(Pen *p) {
       line(p, VL_DRAWING_PROJECTOR, image, image);
       label(p, VL_DRAWING_PROJECTOR, image, name);
     }
-    if (!wanted(p, VL_DRAWING_FILM) || !at_depth(p, pixel[0], pixel[1], -def->plane, behind)) continue;
+    if (!wanted(p, VL_DRAWING_FILM) || !at_depth(p, pixel[0], pixel[1], -def->plane, behind))
+      continue;
     line(p, VL_DRAWING_PROJECTOR, o, behind);
     line(p, VL_DRAWING_PROJECTOR, behind, behind);
-    if (!wanted(p, VL_DRAWING_WINDOW)) label(p, VL_DRAWING_PROJECTOR, behind, name);
+    if (!wanted(p, VL_DRAWING_WINDOW))
+      label(p, VL_DRAWING_PROJECTOR, behind, name);
   }
 }
 
 static void draw_film(Pen *p) {
   double depth = -p->def->plane, at[3];
-  if (!wanted(p, VL_DRAWING_FILM) || p->camera->projection == VL_PROJECTION_ORTHOGRAPHIC) return;
+  if (!wanted(p, VL_DRAWING_FILM) || p->camera->projection == VL_PROJECTION_ORTHOGRAPHIC)
+    return;
   surface(p, VL_DRAWING_FILM, depth);
   border(p, VL_DRAWING_FILM, depth);
   grid(p, VL_DRAWING_GRID, depth);
   edges(p, VL_DRAWING_FILM, 0, depth);
-  if (at_depth(p, 0, p->camera->height, depth, at)) label(p, VL_DRAWING_FILM, at, "film");
+  if (at_depth(p, 0, p->camera->height, depth, at))
+    label(p, VL_DRAWING_FILM, at, "film");
 }
 
 static void draw_volume(Pen *p) {
   const vlCamera *c = p->camera;
   bool has_near = c->near_plane > 0, has_far = c->far_plane < 1e30;
   double end = has_far ? c->far_plane : p->def->reach, at[3];
-  if (!has_far && (!p->flat || end < p->def->plane)) end = p->def->plane;
+  if (!has_far && (!p->flat || end < p->def->plane))
+    end = p->def->plane;
   edges(p, VL_DRAWING_VOLUME, 0, end);
   if (has_near) {
     surface(p, VL_DRAWING_NEAR, c->near_plane);
     border(p, VL_DRAWING_NEAR, c->near_plane);
-    if (at_depth(p, 0, 0, c->near_plane, at)) label(p, VL_DRAWING_NEAR, at, "near");
+    if (at_depth(p, 0, 0, c->near_plane, at))
+      label(p, VL_DRAWING_NEAR, at, "near");
   }
   if (has_far) {
     surface(p, VL_DRAWING_FAR, end);
-    if (at_depth(p, 0, 0, end, at)) label(p, VL_DRAWING_FAR, at, "far");
+    if (at_depth(p, 0, 0, end, at))
+      label(p, VL_DRAWING_FAR, at, "far");
   }
-  if (end != p->def->plane) border(p, VL_DRAWING_FAR, end);
+  if (end != p->def->plane)
+    border(p, VL_DRAWING_FAR, end);
 }
 
 static void draw_whole(Pen *p) {
@@ -349,17 +399,24 @@ static void draw_small(Pen *p) {
   draw_eye(p);
 }
 
-/* ---- the call ---------------------------------------------------------------------------------------------------- */
+/* ---- the call
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 vlDrawingDef vl_default_drawing_def(void) {
-  return (vlDrawingDef){
-      .cookie = VL_COOKIE_DRAWING, .parts = ~(1u << VL_DRAWING_FILM), .plane = 1, .reach = 2, .grid = 16};
+  return (vlDrawingDef){.cookie = VL_COOKIE_DRAWING,
+                        .parts = ~(1u << VL_DRAWING_FILM),
+                        .plane = 1,
+                        .reach = 2,
+                        .grid = 16};
 }
 
 static bool good(const vlDrawingDef *def) {
   bool numbers = def->plane > 0 && def->plane < 1e30 && def->reach > 0 && def->reach < 1e30;
-  if (def->point_count && !def->points) return false;
-  for (uint32_t i = 0; i < 3 * def->point_count; i++) numbers = numbers && isfinite(def->points[i]);
+  if (def->point_count && !def->points)
+    return false;
+  for (uint32_t i = 0; i < 3 * def->point_count; i++)
+    numbers = numbers && isfinite(def->points[i]);
   return numbers;
 }
 
@@ -376,20 +433,25 @@ typedef struct Block {
 } Block;
 
 void vl_drawing_destroy(vlDrawing *drawing) {
-  if (!drawing) return;
+  if (!drawing)
+    return;
   Block *block = (Block *)(void *)((char *)drawing - offsetof(Block, head));
   VL_FREE(block->context, (void *)(uintptr_t)drawing->lines, (void *)(uintptr_t)drawing->faces,
           (void *)(uintptr_t)drawing->labels, block);
 }
 
-vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t count, const vlDrawingDef *def,
-                           vlDrawing **drawing, vlError *error) {
+vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t count,
+                           const vlDrawingDef *def, vlDrawing **drawing, vlError *error) {
   vl_error_clear(error);
-  if (drawing) *drawing = NULL;
+  if (drawing)
+    *drawing = NULL;
   vlDrawingDef standard = vl_default_drawing_def();
-  if (!def) def = &standard;
-  if (!context || !cameras || !count || !drawing || def->cookie != VL_COOKIE_DRAWING || !good(def))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "outline: no camera, or a number of the def that is not possible");
+  if (!def)
+    def = &standard;
+  if (!context || !cameras || !count || !drawing || def->cookie != VL_COOKIE_DRAWING ||
+      !good(def))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "outline: no camera, or a number of the def that is not possible");
   Pen p;
   memset(&p, 0, sizeof p);
   p.context = context;
@@ -397,7 +459,8 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
   for (uint32_t i = 0; i < count; i++) {
     p.camera = &cameras[i];
     p.index = i;
-    p.flat = cameras[i].projection == VL_PROJECTION_PERSPECTIVE || cameras[i].projection == VL_PROJECTION_ORTHOGRAPHIC;
+    p.flat = cameras[i].projection == VL_PROJECTION_PERSPECTIVE ||
+             cameras[i].projection == VL_PROJECTION_ORTHOGRAPHIC;
     axis_of(p.camera, 2, p.forward);
     if (count == 1) {
       draw_whole(&p);

@@ -1,7 +1,9 @@
-/* camera/equal_area.h: the equal-area projection of the whole sphere to a square, and its inverse. Each pixel covers
- * the same solid angle (Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The
- * plane is [-1, 1]^2. Its centre is straight ahead; its corners are straight back. The plane extends by `over` beyond
- * each edge, where it continues at the mirrored half of that edge, as the sphere does. So filters see no edge. */
+/* camera/equal_area.h: the equal-area projection of the whole sphere to a square, and its
+ * inverse. Each pixel covers the same solid angle (Clarberg, "Fast Equal-Area Mapping of the
+ * (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The plane is [-1, 1]^2. Its centre is
+ * straight ahead; its corners are straight back. The plane extends by `over` beyond each edge,
+ * where it continues at the mirrored half of that edge, as the sphere does. So filters see no
+ * edge. */
 #ifndef CAMERA_EQUAL_AREA_H
 #define CAMERA_EQUAL_AREA_H
 
@@ -25,12 +27,15 @@ static inline vlDirection vl_equal_area_unproject(double over, double x, double 
 }
 static inline vlPlanePoint vl_equal_area_project(double x, double y, double z) {
   double length = vl_length3(x, y, z), scale = 1.0 / vl_not_tiny(length);
-  double ax = __builtin_fabs(x) * scale, ay = __builtin_fabs(y) * scale, az = __builtin_fabs(z) * scale;
-  double r = __builtin_sqrt((ax * ax + ay * ay) / (1.0 + az)); /* sqrt(1 - |z|) without cancellation */
+  double ax = __builtin_fabs(x) * scale, ay = __builtin_fabs(y) * scale,
+         az = __builtin_fabs(z) * scale;
+  double r =
+      __builtin_sqrt((ax * ax + ay * ay) / (1.0 + az)); /* sqrt(1 - |z|) without cancellation */
   double phi = vl_atan2_double(ay, ax) * 0.63661977236758134308;
   double v = phi * r, u = r - v;
   double uu = z < 0.0 ? 1.0 - v : u, vv = z < 0.0 ? 1.0 - u : v;
-  return (vlPlanePoint){__builtin_copysign(uu, x), __builtin_copysign(vv, y), length > 0.0 ? 1.0 : 0.0};
+  return (vlPlanePoint){__builtin_copysign(uu, x), __builtin_copysign(vv, y),
+                        length > 0.0 ? 1.0 : 0.0};
 }
 
 #endif

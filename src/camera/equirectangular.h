@@ -1,7 +1,9 @@
-/* camera/equirectangular.h: the equirectangular projection and its inverse. x is the longitude and y is the latitude,
- * both in radians. The plane's centre is straight ahead. The longitude is in [-pi, pi] and the latitude in [-pi/2,
- * pi/2]; -pi/2 is up. The plane extends by `over_x` and `over_y` (radians) beyond these ranges. There it continues
- * around the sphere and over the poles, so that filters see no edge. The projection returns points within the ranges.
+/* camera/equirectangular.h: the equirectangular projection and its inverse. x is the longitude
+ * and y is the latitude, both in radians. The plane's centre is straight ahead. The longitude
+ * is in
+ * [-pi, pi] and the latitude in [-pi/2, pi/2]; -pi/2 is up. The plane extends by `over_x` and
+ * `over_y` (radians) beyond these ranges. There it continues around the sphere and over the
+ * poles, so that filters see no edge. The projection returns points within the ranges.
  */
 #ifndef CAMERA_EQUIRECTANGULAR_H
 #define CAMERA_EQUIRECTANGULAR_H
@@ -9,10 +11,12 @@
 #include "camera/plane.h"
 #include "math/approx_double.h"
 
-static inline vlDirection vl_equirectangular_unproject(double over_x, double over_y, double x, double y) {
-  int inside =
-      __builtin_fabs(x) <= 3.14159265358979323846 + over_x && __builtin_fabs(y) <= 1.57079632679489661923 + over_y;
-  vlSinCosDouble lon = vl_sincos_double(inside ? x : 0.0), lat = vl_sincos_double(inside ? y : 0.0);
+static inline vlDirection vl_equirectangular_unproject(double over_x, double over_y, double x,
+                                                       double y) {
+  int inside = __builtin_fabs(x) <= 3.14159265358979323846 + over_x &&
+               __builtin_fabs(y) <= 1.57079632679489661923 + over_y;
+  vlSinCosDouble lon = vl_sincos_double(inside ? x : 0.0),
+                 lat = vl_sincos_double(inside ? y : 0.0);
   return (vlDirection){lat.cos * lon.sin, lat.sin, lat.cos * lon.cos, inside ? 1.0 : 0.0};
 }
 static inline vlPlanePoint vl_equirectangular_project(double x, double y, double z) {

@@ -1,7 +1,8 @@
-/* camera/fisheye.h: the four classical fisheye projections, projection and inverse. They differ in the radius r of a
- * direction at angle theta from the view axis: equidistant theta, equisolid 2 sin(theta/2), stereographic 2
- * tan(theta/2), orthographic sin(theta). Each has scale 1 at the centre (Ray, Applied Photographic Optics, 3rd ed., ch.
- * 28; Miyamoto, "Fish eye lens", 1964). The focal length and the image circle decide whether the image is circular,
+/* camera/fisheye.h: the four classical fisheye projections, projection and inverse. They differ
+ * in the radius r of a direction at angle theta from the view axis: equidistant theta,
+ * equisolid 2 sin(theta/2), stereographic 2 tan(theta/2), orthographic sin(theta). Each has
+ * scale 1 at the centre (Ray, Applied Photographic Optics, 3rd ed., ch. 28; Miyamoto, "Fish eye
+ * lens", 1964). The focal length and the image circle decide whether the image is circular,
  * cropped or diagonal. */
 #ifndef CAMERA_FISHEYE_H
 #define CAMERA_FISHEYE_H
@@ -47,7 +48,8 @@ static inline vlPlanePoint vl_stereographic_project(double x, double y, double z
   double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = 2.0 * scale / vl_not_tiny(q);
-  /* q = 1 + cosine is about angle^2 / 2, so the domain ends 1e-14 radians from straight back, as in the inverse */
+  /* q = 1 + cosine is about angle^2 / 2, so the domain ends 1e-14 radians from straight back,
+   * as in the inverse */
   return (vlPlanePoint){x * k, y * k, q > 1e-29 ? 1.0 : 0.0};
 }
 

@@ -1,17 +1,19 @@
-/* camera/kinds.h: properties of each projection, one row per kind. The functions of each projection are in
- * projection.h. */
+/* camera/kinds.h: properties of each projection, one row per kind. The functions of each
+ * projection are in projection.h. */
 #ifndef CAMERA_KINDS_H
 #define CAMERA_KINDS_H
 
 #include "velo/camera.h"
 
 enum {
-  VL_PROJECTION_AHEAD =
-      1, /* sees only z > 0: near, far and focus surfaces are planes of constant z, not spheres around the eye */
-  VL_PROJECTION_FISHEYE = 2,    /* the default field of view is 180 degrees along the image's smaller side */
-  VL_PROJECTION_CIRCLE = 4,     /* the parameters image circle and max_angle are allowed */
-  VL_PROJECTION_CALIBRATED = 8, /* models a real lens: the share of pixels outside its domain is reported */
-  VL_PROJECTION_RADIAL = 16,    /* symmetric about the axis: a diagonal field of view is allowed */
+  VL_PROJECTION_AHEAD = 1, /* sees only z > 0: near, far and focus surfaces are planes of
+                              constant z, not spheres around the eye */
+  VL_PROJECTION_FISHEYE =
+      2, /* the default field of view is 180 degrees along the image's smaller side */
+  VL_PROJECTION_CIRCLE = 4, /* the parameters image circle and max_angle are allowed */
+  VL_PROJECTION_CALIBRATED =
+      8, /* models a real lens: the share of pixels outside its domain is reported */
+  VL_PROJECTION_RADIAL = 16, /* symmetric about the axis: a diagonal field of view is allowed */
   VL_PROJECTION_STRETCHED = 32, /* fills an image of any aspect ratio */
   VL_PROJECTION_NO_FOV = 64,
   VL_PROJECTION_NO_DISTORTION = 128
@@ -31,11 +33,11 @@ typedef struct vlProjectionRow {
   uint32_t count; /* number of shape numbers */
   vlShapeNumber numbers[2];
   double limit; /* radius at which the plane ends; 0: no limit */
-  /* Returns the angle of the central pixel divided by the angle of a pixel at the focal length. shape: the compiled
-   * values. Null: the ratio is 1. */
+  /* Returns the angle of the central pixel divided by the angle of a pixel at the focal length.
+   * shape: the compiled values. Null: the ratio is 1. */
   double (*spread)(const double shape[2]);
-  /* Sets the default fx, fy in pixels. Null: the default field of view along the smaller side, 90 degrees (180 for
-   * fisheyes). */
+  /* Sets the default fx, fy in pixels. Null: the default field of view along the smaller side,
+   * 90 degrees (180 for fisheyes). */
   void (*standard_focal)(const vlCameraDef *def, const vlCamera *camera, double focal[2]);
 } vlProjectionRow;
 

@@ -1,6 +1,6 @@
-/* camera/optics.h: a lens of many elements, ready for tracing. Lens space is in scene units: the film is the plane z =
- * 0, and z points forward along the lens's axis. Each function traces one ray through one surface, so that single rays
- * and batches give the same bits. */
+/* camera/optics.h: a lens of many elements, ready for tracing. Lens space is in scene units:
+ * the film is the plane z = 0, and z points forward along the lens's axis. Each function traces
+ * one ray through one surface, so that single rays and batches give the same bits. */
 #ifndef CAMERA_OPTICS_H
 #define CAMERA_OPTICS_H
 
@@ -13,19 +13,20 @@ typedef struct vlOpticsSurface {
   double z;         /* z of the surface's vertex */
   double radius;    /* the centre of curvature is at z - radius; 0 marks the stop */
   double aperture2; /* square of the aperture radius */
-  double eta;       /* refractive index on the film's side divided by that on the scene's side */
+  double eta; /* refractive index on the film's side divided by that on the scene's side */
 } vlOpticsSurface;
 
-/* Bounds of the exit pupil in the rear surface's plane, for film points of one ring around the centre, rotated to the
- * positive x axis. The box is x0..x1, -y1..y1. fill is the scale at which the box's inscribed ellipse contains the
- * pupil. If the box has a smaller area than that ellipse, fill is 0 and the box is used. */
+/* Bounds of the exit pupil in the rear surface's plane, for film points of one ring around the
+ * centre, rotated to the positive x axis. The box is x0..x1, -y1..y1. fill is the scale at
+ * which the box's inscribed ellipse contains the pupil. If the box has a smaller area than that
+ * ellipse, fill is 0 and the box is used. */
 typedef struct vlPupil {
   double x0, x1, y1, fill;
   double area; /* area of the ellipse or box; 0: no light reaches the film ring */
 } vlPupil;
 
-/* The chief ray of a film radius. It passes through the centre of the stop and leaves the lens along the line x = x0 +
- * slope z. */
+/* The chief ray of a film radius. It passes through the centre of the stop and leaves the lens
+ * along the line x = x0 + slope z. */
 typedef struct vlChief {
   double pupil; /* x at the rear surface's plane */
   double x0, slope;
@@ -38,24 +39,27 @@ struct vlOptics {
   vlOpticsDef def; /* the lens's def; its pointer to surfaces is null */
   uint32_t count;
   vlOpticsSurface surfaces[VL_MOST_SURFACES]; /* ordered from the film's side */
-  uint32_t stop;                              /* the surface through whose centre chief rays pass */
+  uint32_t stop; /* the surface through whose centre chief rays pass */
   bool has_stop;
   double rear, front; /* z of the outermost surfaces */
   double half;        /* half of the film's diagonal */
   vlPupil pupils[VL_PUPILS];
-  vlChief chiefs[VL_CHIEFS + 1]; /* chief rays at film radii chief_step * index, up to slightly beyond the corner */
+  vlChief chiefs[VL_CHIEFS + 1]; /* chief rays at film radii chief_step * index, up to slightly
+                                    beyond the corner */
   double chief_step;
   vlOpticsInfo info;
 };
 
-/* A ray in lens space; d has unit length. alive is 1, and 0 once an aperture has blocked the ray. The numbers of a
- * blocked ray are finite but meaningless. */
+/* A ray in lens space; d has unit length. alive is 1, and 0 once an aperture has blocked the
+ * ray. The numbers of a blocked ray are finite but meaningless. */
 typedef struct vlOpticsRay {
   double x, y, z, dx, dy, dz, alive;
 } vlOpticsRay;
 
-/* Propagates the ray to the stop's plane. round: whether the stop's round aperture blocks rays. */
-static inline vlOpticsRay vl_optics_stop(const vlOpticsSurface *s, const int round, vlOpticsRay r) {
+/* Propagates the ray to the stop's plane. round: whether the stop's round aperture blocks rays.
+ */
+static inline vlOpticsRay vl_optics_stop(const vlOpticsSurface *s, const int round,
+                                         vlOpticsRay r) {
   double t = (s->z - r.z) / r.dz;
   r.x += t * r.dx;
   r.y += t * r.dy;
@@ -65,9 +69,12 @@ static inline vlOpticsRay vl_optics_stop(const vlOpticsSurface *s, const int rou
   return r;
 }
 
-/* Refracts at a sphere by Snell's law. The ray goes forwards. If the sphere's centre is ahead, the ray intersects the
- * near half of the sphere; if the centre is behind, it intersects the far half. */
-static inline vlOpticsRay vl_optics_refract(const vlOpticsSurface *s, const int round, vlOpticsRay r) {
+/* Refracts at a sphere by Snell's law. The ray goes forwards. If the sphere's centre is ahead,
+ * the ray intersects the near half of the sphere; if the centre is behind, it intersects the
+ * far half.
+ */
+static inline vlOpticsRay vl_optics_refract(const vlOpticsSurface *s, const int round,
+                                            vlOpticsRay r) {
   double cz = r.z - (s->z - s->radius);
   double b = r.x * r.dx + r.y * r.dy + cz * r.dz;
   double c = r.x * r.x + r.y * r.y + cz * cz - s->radius * s->radius;
@@ -84,31 +91,36 @@ static inline vlOpticsRay vl_optics_refract(const vlOpticsSurface *s, const int 
   r.dx = s->eta * r.dx + k * nx;
   r.dy = s->eta * r.dy + k * ny;
   r.dz = s->eta * r.dz + k * nz;
-  int good = under > 0.0 && t >= 0.0 && rest > 0.0 && (!round || r.x * r.x + r.y * r.y <= s->aperture2);
+  int good = under > 0.0 && t >= 0.0 && rest > 0.0 &&
+             (!round || r.x * r.x + r.y * r.y <= s->aperture2);
   r.alive = good ? r.alive : 0.0;
   return r;
 }
 
 /* Returns the ray from the film point (x, y) to a point in the rear surface's plane. */
-static inline vlOpticsRay vl_optics_start(double x, double y, double px, double py, double rear) {
+static inline vlOpticsRay vl_optics_start(double x, double y, double px, double py,
+                                          double rear) {
   double dx = px - x, dy = py - y, inv = 1.0 / __builtin_sqrt(dx * dx + dy * dy + rear * rear);
   return (vlOpticsRay){x, y, 0.0, dx * inv, dy * inv, rear * inv, 1.0};
 }
 
-/* Rays whose dz is below this are discarded, because their origin is moved along the ray to the film's plane. */
+/* Rays whose dz is below this are discarded, because their origin is moved along the ray to the
+ * film's plane. */
 static const double vl_optics_grazing = 1e-3;
 
 /* Fills pupils and chiefs. Defined in optics_find.c. */
 void vl_optics_find_pupils(vlOptics *optics);
 void vl_optics_find_chiefs(vlOptics *optics);
-/* Computes the chief ray of a film point, in camera space, with its origin in the film's plane. Returns false if there
- * is none. x, y: the film point in scene units from the centre, right and down as in the image (the physical film is
- * rotated by 180 degrees). Defined in optics_points.c. */
+/* Computes the chief ray of a film point, in camera space, with its origin in the film's plane.
+ * Returns false if there is none. x, y: the film point in scene units from the centre, right
+ * and down as in the image (the physical film is rotated by 180 degrees). Defined in
+ * optics_points.c.
+ */
 bool vl_optics_unproject(const vlOptics *optics, double x, double y, vlCameraLocal *ray);
 /* The inverse of vl_optics_unproject: maps a point in camera space to the film point. */
 bool vl_optics_project(const vlOptics *optics, double x, double y, double z, double film[2]);
-/* Finds the chief ray of a film radius. guess: start value of x in the pupil's plane. Returns false if the ray misses a
- * surface. */
+/* Finds the chief ray of a film radius. guess: start value of x in the pupil's plane. Returns
+ * false if the ray misses a surface. */
 bool vl_optics_chief(const vlOptics *optics, double radius, double guess, vlChief *chief);
 
 #endif

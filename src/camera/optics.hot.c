@@ -1,5 +1,5 @@
-/* camera/optics.hot.c: traces film samples through a lens of many elements, one chunk and one surface at a time.
- * Compiled once per instruction set. */
+/* camera/optics.hot.c: traces film samples through a lens of many elements, one chunk and one
+ * surface at a time. Compiled once per instruction set. */
 #include "camera/optics.h"
 #include "camera/lens.h"
 #include "camera/stages.h"
@@ -23,14 +23,16 @@ static inline void store(Bundle *b, uint32_t i, vlOpticsRay r) {
   b->alive[i] = r.alive;
 }
 
-/* Rays from the film to points of the exit pupil, sampled for the film point. The weight is cos^4 of the angle times
- * the pupil's area over the square of its distance (pbrt book 5.4.6). */
-static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections *d, const float *lens_u,
-                  const float *lens_v, Bundle *b) {
+/* Rays from the film to points of the exit pupil, sampled for the film point. The weight is
+ * cos^4 of the angle times the pupil's area over the square of its distance (pbrt book 5.4.6).
+ */
+static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections *d,
+                  const float *lens_u, const float *lens_v, Bundle *b) {
   const vlOptics *o = c->optics;
   const double rings = VL_PUPILS / o->half, rear = o->rear;
   for (uint32_t i = 0; i < count; i++) {
-    double x = -c->pitch * d->x[i], y = -c->pitch * d->y[i], radius = __builtin_sqrt(x * x + y * y);
+    double x = -c->pitch * d->x[i], y = -c->pitch * d->y[i],
+           radius = __builtin_sqrt(x * x + y * y);
     double ring = radius * rings, inv = radius > 0.0 ? 1.0 / radius : 0.0;
     const vlPupil *p = &o->pupils[ring < VL_PUPILS ? (uint32_t)ring : VL_PUPILS - 1];
     vlLensPoint round = vl_lens_disk(lens_u[i], lens_v[i]);
@@ -38,7 +40,8 @@ static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections 
     double v = p->fill > 0.0 ? p->fill * (double)round.y : 2.0 * (double)lens_v[i] - 1.0;
     double along = 0.5 * (p->x0 + p->x1) + 0.5 * (p->x1 - p->x0) * u, across = p->y1 * v;
     double cosine = radius > 0.0 ? x * inv : 1.0, sine = y * inv;
-    vlOpticsRay r = vl_optics_start(x, y, cosine * along - sine * across, sine * along + cosine * across, rear);
+    vlOpticsRay r = vl_optics_start(x, y, cosine * along - sine * across,
+                                    sine * along + cosine * across, rear);
     double square = r.dz * r.dz;
     r.alive = p->area > 0.0 ? 1.0 : 0.0;
     store(b, i, r);
@@ -46,10 +49,12 @@ static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections 
   }
 }
 
-static inline __attribute__((always_inline)) void refract(const int round, const vlOpticsSurface *surface,
+static inline __attribute__((always_inline)) void refract(const int round,
+                                                          const vlOpticsSurface *surface,
                                                           uint32_t count, Bundle *b) {
   const vlOpticsSurface copy = *surface, *s = &copy;
-  VL_SIMD for (uint32_t i = 0; i < count; i++) store(b, i, vl_optics_refract(s, round, load(b, i)));
+  VL_SIMD for (uint32_t i = 0; i < count; i++)
+      store(b, i, vl_optics_refract(s, round, load(b, i)));
 }
 
 static void stop(const vlOptics *o, const vlOpticsSurface *surface, uint32_t count, Bundle *b) {
@@ -62,14 +67,16 @@ static void stop(const vlOptics *o, const vlOpticsSurface *surface, uint32_t cou
   for (uint32_t i = 0; i < count; i++) {
     vlOpticsRay r = vl_optics_stop(s, 0, load(b, i));
     /* the image is upright as seen from behind the lens; y points down in both */
-    double open = r.alive > 0.0 ? vl_aperture_value(o->def.aperture, r.x * inv, r.y * inv) : 0.0;
+    double open =
+        r.alive > 0.0 ? vl_aperture_value(o->def.aperture, r.x * inv, r.y * inv) : 0.0;
     r.alive = open > 0.0 ? r.alive : 0.0;
     b->weight[i] *= open;
     store(b, i, r);
   }
 }
 
-static void chief_rays(const vlCameraCompiled *c, uint32_t count, vlDirections *d, double *seen) {
+static void chief_rays(const vlCameraCompiled *c, uint32_t count, vlDirections *d,
+                       double *seen) {
   for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal l = {0.0, 0.0, 0.0, 0.0, 1.0};
     bool valid = vl_optics_unproject(c->optics, c->pitch * d->x[i], c->pitch * d->y[i], &l);
@@ -82,17 +89,19 @@ static void chief_rays(const vlCameraCompiled *c, uint32_t count, vlDirections *
   }
 }
 
-void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
-                      vlDirections *d, double *seen, float *weight) {
+void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *lens_u,
+                      const float *lens_v, vlDirections *d, double *seen, float *weight) {
   const vlOptics *o = c->optics;
   Bundle b;
   if (!c->has_lens) {
     chief_rays(c, count, d, seen);
-    for (uint32_t i = 0; weight && i < count; i++) weight[i] = (float)seen[i];
+    for (uint32_t i = 0; weight && i < count; i++)
+      weight[i] = (float)seen[i];
     return;
   }
   start(c, count, d, lens_u, lens_v, &b);
-  for (uint32_t i = 0; i < count; i++) seen[i] = b.alive[i];
+  for (uint32_t i = 0; i < count; i++)
+    seen[i] = b.alive[i];
   for (uint32_t k = 0; k < o->count; k++) {
     if (o->surfaces[k].radius == 0.0)
       stop(o, &o->surfaces[k], count, &b);
@@ -108,6 +117,7 @@ void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *le
     d->dy[i] = good ? b.dy[i] : 0.0;
     d->dz[i] = good ? b.dz[i] : 1.0;
     d->valid[i] = good ? 1.0 : 0.0;
-    if (weight) weight[i] = good ? (float)b.weight[i] : 0.0f;
+    if (weight)
+      weight[i] = good ? (float)b.weight[i] : 0.0f;
   }
 }

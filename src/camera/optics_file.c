@@ -1,5 +1,6 @@
-/* camera/optics_file.c: pbrt's lens files: four numbers per surface (radius of curvature, thickness, index of
- * refraction, aperture diameter; mm), from the scene's side; # starts a comment. */
+/* camera/optics_file.c: pbrt's lens files: four numbers per surface (radius of curvature,
+ * thickness, index of refraction, aperture diameter; mm), from the scene's side; # starts a
+ * comment. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,19 +20,22 @@ static bool is_blank(char c) {
 
 static void skip(Reader *r) {
   for (;; r->at++) {
-    if (*r->at == '#') r->at += strcspn(r->at, "\n");
+    if (*r->at == '#')
+      r->at += strcspn(r->at, "\n");
     if (*r->at == '\n') {
       r->line++;
       r->line_start = r->at + 1;
     }
-    if (!is_blank(*r->at)) return;
+    if (!is_blank(*r->at))
+      return;
   }
 }
 
 /* Parses a plain decimal; the whole word must match. */
 static bool number(const char *word, size_t length, double *value) {
   char text[64], *end;
-  if (length == 0 || length >= sizeof text || strspn(word, "0123456789+-.eE") < length) return false;
+  if (length == 0 || length >= sizeof text || strspn(word, "0123456789+-.eE") < length)
+    return false;
   memcpy(text, word, length);
   text[length] = 0;
   *value = strtod(text, &end);
@@ -45,45 +49,57 @@ static vlResult read(Reader *r, vlLensSurface *surfaces, uint32_t *count, vlErro
     uint32_t column = (uint32_t)(r->at - r->line_start) + 1;
     double value;
     if (!number(r->at, length, &value))
-      return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: \"%s\" is not a number",
+      return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column,
+                        "lens file: \"%s\" is not a number",
                         vl_short_text_of(r->at, length).text);
     if (n == 4 * VL_MOST_SURFACES)
-      return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: more than %d surfaces",
-                        VL_MOST_SURFACES);
+      return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column,
+                        "lens file: more than %d surfaces", VL_MOST_SURFACES);
     vlLensSurface *s = &surfaces[n / 4];
-    *(n % 4 == 0 ? &s->radius : n % 4 == 1 ? &s->thickness : n % 4 == 2 ? &s->ior : &s->aperture) = value;
+    *(n % 4 == 0   ? &s->radius
+      : n % 4 == 1 ? &s->thickness
+      : n % 4 == 2 ? &s->ior
+                   : &s->aperture) = value;
     r->at += length;
   }
   if (n == 0 || n % 4)
-    return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, 0,
-                      "lens file: %u numbers; each surface has 4: radius, thickness, ior, aperture diameter", n);
+    return vl_fail_at(
+        error, VL_ERROR_SCENE, r->path, r->line, 0,
+        "lens file: %u numbers; each surface has 4: radius, thickness, ior, aperture diameter",
+        n);
   *count = n / 4;
   return VL_OK;
 }
 
-vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef *def, vlOptics **optics,
-                        vlError *error) {
+vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef *def,
+                        vlOptics **optics, vlError *error) {
   vl_error_clear(error);
-  if (optics) *optics = NULL;
+  if (optics)
+    *optics = NULL;
   if (!context || !path || !def || !optics)
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: context, path, def or optics is null");
   char *data = NULL;
   size_t size;
   vlResult result = vl_file_read(context, path, false, &data, &size, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlLensSurface surfaces[VL_MOST_SURFACES];
   vlOpticsDef filled = *def;
   Reader r = {path, data, data, 1};
   result = read(&r, surfaces, &filled.count, error);
   if (result == VL_OK && strlen(data) != size)
-    result = vl_fail_at(error, VL_ERROR_SCENE, path, r.line, 0, "lens file: it is not a text file");
+    result =
+        vl_fail_at(error, VL_ERROR_SCENE, path, r.line, 0, "lens file: it is not a text file");
   vl_free(context, data);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   filled.surfaces = surfaces;
   vlError inner = {0};
   result = vl_optics_create(context, &filled, optics, &inner);
-  if (result == VL_ERROR_MEMORY) return vl_fail_memory(error);
-  if (result == VL_OK) return VL_OK;
+  if (result == VL_ERROR_MEMORY)
+    return vl_fail_memory(error);
+  if (result == VL_OK)
+    return VL_OK;
   /* the file gives the lens, the caller the other parameters */
   return vl_fail_at(error, VL_ERROR_SCENE, path, 0, 0, "%s", inner.message);
 }

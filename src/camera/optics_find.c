@@ -1,12 +1,12 @@
-/* camera/optics_find.c: the exit pupil bounds of a lens of many elements for each film ring, and its chief rays
- * (pbrt book 5.4.5). Computed once, when the lens is made. */
+/* camera/optics_find.c: the exit pupil bounds of a lens of many elements for each film ring,
+ * and its chief rays (pbrt book 5.4.5). Computed once, when the lens is made. */
 #include <math.h>
 #include <string.h>
 
 #include "camera/optics.h"
 
-/* Size of the grid of rays over a window of the rear plane. It covers the upper half only, since the lens is
- * rotationally symmetric. */
+/* Size of the grid of rays over a window of the rear plane. It covers the upper half only,
+ * since the lens is rotationally symmetric. */
 enum { ACROSS = 40, DOWN = 20, ZOOMS = 24 };
 
 static bool passes(const vlOptics *o, double radius, double px, double py) {
@@ -15,13 +15,16 @@ static bool passes(const vlOptics *o, double radius, double px, double py) {
     const vlOpticsSurface *s = &o->surfaces[k];
     if (s->radius == 0.0) {
       r = vl_optics_stop(s, o->def.aperture == NULL, r);
-      /* Pupils rotate with the film point's direction, but an aperture image does not. The bounds must therefore
-       * contain the circle around the image's non-black part. */
-      if (o->def.aperture && r.x * r.x + r.y * r.y > vl_aperture_reach2(o->def.aperture) * s->aperture2) return false;
+      /* Pupils rotate with the film point's direction, but an aperture image does not. The
+       * bounds must therefore contain the circle around the image's non-black part. */
+      if (o->def.aperture &&
+          r.x * r.x + r.y * r.y > vl_aperture_reach2(o->def.aperture) * s->aperture2)
+        return false;
     } else {
       r = vl_optics_refract(s, 1, r);
     }
-    if (r.alive == 0.0) return false;
+    if (r.alive == 0.0)
+      return false;
   }
   return r.dz > vl_optics_grazing;
 }
@@ -36,7 +39,8 @@ static bool search(const vlOptics *o, double radius, Box window, Box *found) {
   for (int i = 0; i <= ACROSS; i++)
     for (int k = 0; k <= DOWN; k++) {
       double x = window.x0 + (window.x1 - window.x0) * i / ACROSS, y = window.y1 * k / DOWN;
-      if (!passes(o, radius, x, y)) continue;
+      if (!passes(o, radius, x, y))
+        continue;
       found->x0 = fmin(found->x0, x);
       found->x1 = fmax(found->x1, x);
       found->y1 = fmax(found->y1, y);
@@ -50,8 +54,8 @@ static Box grown(Box b, Box window) {
   return (Box){b.x0 - dx, b.x1 + dx, b.y1 + dy};
 }
 
-/* Shrinks the window towards the pupil until it hardly changes. The chief ray is also tried, because it finds pupils
- * that are smaller than the first grid's spacing. */
+/* Shrinks the window towards the pupil until it hardly changes. The chief ray is also tried,
+ * because it finds pupils that are smaller than the first grid's spacing. */
 static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
   double reach = 1.5 * sqrt(o->surfaces[0].aperture2);
   const double radii[3] = {r0, 0.5 * (r0 + r1), r1};
@@ -68,25 +72,30 @@ static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
       }
       *any = search(o, radii[i], window, &box) || *any;
     }
-    if (!*any) return box;
+    if (!*any)
+      return box;
     Box next = grown(box, window);
     double shrink = (next.x1 - next.x0) * next.y1 / ((window.x1 - window.x0) * window.y1);
     window = next;
-    if (shrink > 0.8) break;
+    if (shrink > 0.8)
+      break;
   }
   return window;
 }
 
-/* The smallest scale of the box's ellipse that contains all passing rays, with a margin of two steps of the search. */
+/* The smallest scale of the box's ellipse that contains all passing rays, with a margin of two
+ * steps of the search. */
 static double fill_of(const vlOptics *o, double r0, double r1, Box b) {
   double cx = 0.5 * (b.x0 + b.x1), hx = 0.5 * (b.x1 - b.x0), most = 0.0;
   const double radii[3] = {r0, 0.5 * (r0 + r1), r1};
   for (int n = 0; n < 3; n++)
     for (int i = 0; i <= ACROSS; i++)
       for (int k = 0; k <= DOWN; k++) {
-        double x = b.x0 + 2.0 * hx * i / ACROSS, y = b.y1 * k / DOWN, ex = (x - cx) / hx, ey = y / b.y1;
+        double x = b.x0 + 2.0 * hx * i / ACROSS, y = b.y1 * k / DOWN, ex = (x - cx) / hx,
+               ey = y / b.y1;
         double e = sqrt(ex * ex + ey * ey);
-        if (e > most && passes(o, radii[n], x, y)) most = e;
+        if (e > most && passes(o, radii[n], x, y))
+          most = e;
       }
   return most + 4.0 / ACROSS;
 }
@@ -99,17 +108,21 @@ void vl_optics_find_pupils(vlOptics *o) {
     Box b = find_box(o, r0, r1, &any);
     vlPupil *p = &o->pupils[i];
     *p = (vlPupil){0};
-    if (!any) continue;
+    if (!any)
+      continue;
     double fill = fill_of(o, r0, r1, b), box = 2.0 * (b.x1 - b.x0) * b.y1;
     bool ellipse = fill * fill * quarter < 1.0;
-    *p = (vlPupil){b.x0, b.x1, b.y1, ellipse ? fill : 0.0, ellipse ? fill * fill * quarter * box : box};
+    *p = (vlPupil){b.x0, b.x1, b.y1, ellipse ? fill : 0.0,
+                   ellipse ? fill * fill * quarter * box : box};
   }
 }
 
-/* ---- chief rays -------------------------------------------------------------------------------------------------- */
+/* ---- chief rays
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* Computes x at the stop for the ray from the film radius to x = p at the rear surface. It ignores apertures; they are
- * tested once the chief ray is found. */
+/* Computes x at the stop for the ray from the film radius to x = p at the rear surface. It
+ * ignores apertures; they are tested once the chief ray is found. */
 static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
   vlOpticsRay r = vl_optics_start(radius, 0.0, p, 0.0, o->rear);
   for (uint32_t k = 0; k <= o->stop; k++) {
@@ -122,19 +135,23 @@ static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
 
 bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *chief) {
   double size = sqrt(o->surfaces[o->stop].aperture2),
-         step = 1e-4 * size; /* large compared with rounding errors, small compared with the lens */
+         step = 1e-4 *
+                size; /* large compared with rounding errors, small compared with the lens */
   double a = guess, b = guess + step, fa, fb;
   *chief = (vlChief){.pupil = guess};
-  if (!at_stop(o, radius, a, &fa) || !at_stop(o, radius, b, &fb)) return false;
+  if (!at_stop(o, radius, a, &fa) || !at_stop(o, radius, b, &fb))
+    return false;
   /* secant method: the height at the stop is nearly linear in the height at the pupil */
   for (int i = 0; i < 40 && fabs(fb) > 1e-15 * size && fb != fa; i++) {
     double next = b - fb * (b - a) / (fb - fa);
     a = b;
     fa = fb;
     b = next;
-    if (!at_stop(o, radius, b, &fb)) return false;
+    if (!at_stop(o, radius, b, &fb))
+      return false;
   }
-  if (!(fabs(fb) < 1e-9 * size)) return false; /* no root: the secant method did not converge */
+  if (!(fabs(fb) < 1e-9 * size))
+    return false; /* no root: the secant method did not converge */
   chief->pupil = b;
   vlOpticsRay r = vl_optics_start(radius, 0.0, b, 0.0, o->rear);
   for (uint32_t k = 0; k < o->count; k++) {

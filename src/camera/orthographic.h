@@ -1,5 +1,6 @@
-/* camera/orthographic.h: the orthographic projection: projectors are parallel to the view axis, and size does not
- * depend on distance. fx, fy are pixels per scene unit. The inverse (x and y unchanged) is in projection.h. */
+/* camera/orthographic.h: the orthographic projection: projectors are parallel to the view axis,
+ * and size does not depend on distance. fx, fy are pixels per scene unit. The inverse (x and y
+ * unchanged) is in projection.h. */
 #ifndef CAMERA_ORTHOGRAPHIC_H
 #define CAMERA_ORTHOGRAPHIC_H
 
@@ -7,7 +8,8 @@
 #include "camera/rays.h"
 
 /* x, y: pixels from the principal point. */
-static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c, double x, double y) {
+static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c, double x,
+                                                      double y) {
   vlCameraLocal r;
   r.ox = (x - c->skew_ratio * y) * c->inv_fx;
   r.oy = y * c->inv_fy;

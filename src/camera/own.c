@@ -9,14 +9,18 @@
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {
   const size_t size = VL_PAD(n) * sizeof(double);
   double *const zero[] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
-  for (size_t i = 0; i < VL_LENGTH(zero); i++) memset(zero[i], 0, size);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) r->weight[i] = 1.0;
-  const vlOwnFilmPoints points = {n, c->own_size[0], c->own_size[1], r->x, r->y, r->lens_u, r->lens_v, r->time};
+  for (size_t i = 0; i < VL_LENGTH(zero); i++)
+    memset(zero[i], 0, size);
+  for (uint32_t i = 0; i < VL_PAD(n); i++)
+    r->weight[i] = 1.0;
+  const vlOwnFilmPoints points = {n,    c->own_size[0], c->own_size[1], r->x,
+                                  r->y, r->lens_u,      r->lens_v,      r->time};
   const vlOwnRays rays = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->weight};
   c->own->rays(c->own->user, &points, &rays);
 }
 
-void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, vlOwnRows *r) {
+void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y,
+                       vlOwnRows *r) {
   double time = c->own_from + c->own_clock * c->shutter_open;
   for (uint32_t i = 0; i < n; i++) {
     r->x[i] = (x[i] - c->cx) * c->inv_fx;
@@ -27,34 +31,41 @@ void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, c
   vl_own_rays(c, n, r);
 }
 
-void vl_own_pixels(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, const double *z,
-                   double *film_x, double *film_y) {
-  for (uint32_t i = 0; i < n; i++) film_x[i] = film_y[i] = (double)NAN;
-  if (!c->own->pixels) return;
+void vl_own_pixels(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y,
+                   const double *z, double *film_x, double *film_y) {
+  for (uint32_t i = 0; i < n; i++)
+    film_x[i] = film_y[i] = (double)NAN;
+  if (!c->own->pixels)
+    return;
   const vlOwnSpacePoints points = {n, c->own_size[0], c->own_size[1], x, y, z, film_x, film_y};
   c->own->pixels(c->own->user, &points);
   for (uint32_t i = 0; i < n; i++) {
     film_x[i] = c->fx * film_x[i] + c->cx;
     film_y[i] = c->fy * film_y[i] + c->cy;
-    if (!isfinite(film_x[i] + film_y[i])) film_x[i] = film_y[i] = (double)NAN;
+    if (!isfinite(film_x[i] + film_y[i]))
+      film_x[i] = film_y[i] = (double)NAN;
   }
 }
 
 bool vl_own_ray_at(const vlCameraCompiled *c, const vlOwnRows *r, uint32_t i, vlWorldRay *ray) {
   *ray = vl_own_place(c, r->ox[i], r->oy[i], r->oz[i], r->dx[i], r->dy[i], r->dz[i]);
-  double sum = ray->dx * ray->inv_length + ray->dy * ray->inv_length + ray->dz * ray->inv_length;
+  double sum =
+      ray->dx * ray->inv_length + ray->dy * ray->inv_length + ray->dz * ray->inv_length;
   return ray->length > 0.0 && isfinite(sum) && isfinite(ray->ox + ray->oy + ray->oz);
 }
 
-void vl_own_world_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, vlOwnRay *rays) {
+void vl_own_world_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y,
+                       vlOwnRay *rays) {
   vlOwnRows rows;
   vl_own_chief_rays(c, n, x, y, &rows);
   for (uint32_t i = 0; i < n; i++) {
     vlWorldRay w;
     vlOwnRay *r = &rays[i];
     r->good = vl_own_ray_at(c, &rows, i, &w);
-    if (!r->good) continue;
-    const double o[3] = {w.ox, w.oy, w.oz}, d[3] = {w.dx * w.inv_length, w.dy * w.inv_length, w.dz * w.inv_length};
+    if (!r->good)
+      continue;
+    const double o[3] = {w.ox, w.oy, w.oz},
+                 d[3] = {w.dx * w.inv_length, w.dy * w.inv_length, w.dz * w.inv_length};
     memcpy(r->o, o, sizeof o);
     memcpy(r->d, d, sizeof d);
     r->stretch = w.length / vl_length3(rows.dx[i], rows.dy[i], rows.dz[i]);
@@ -62,22 +73,28 @@ void vl_own_world_rays(const vlCameraCompiled *c, uint32_t n, const double *x, c
   }
 }
 
-/* ---- making ------------------------------------------------------------------------------------------------------ */
+/* ---- making
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_name(const char *name) {
   size_t size = name ? strlen(name) : 0;
-  if (size == 0 || size >= VL_OWN_NAME || !vl_is_utf8(name)) return false;
+  if (size == 0 || size >= VL_OWN_NAME || !vl_is_utf8(name))
+    return false;
   for (size_t i = 0; i < size; i++)
-    if ((unsigned char)name[i] < ' ' || name[i] == 127) return false;
+    if ((unsigned char)name[i] < ' ' || name[i] == 127)
+      return false;
   return true;
 }
 
 vlResult vl_own_check(const char *what, const char *name, bool has_function, vlError *error) {
   if (!is_name(name))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "own %s: its name \"%s\" is not UTF-8 of 1 to %d bytes without control characters", what,
-                   vl_short_text(name).text, VL_OWN_NAME - 1);
-  if (!has_function) return vl_fail(error, VL_ERROR_ARGUMENT, "own %s \"%s\": its function is null", what, name);
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "own %s: its name \"%s\" is not UTF-8 of 1 to %d bytes without control characters",
+        what, vl_short_text(name).text, VL_OWN_NAME - 1);
+  if (!has_function)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "own %s \"%s\": its function is null", what, name);
   return VL_OK;
 }
 
@@ -104,7 +121,8 @@ static void measure_pixel(const vlCamera *camera, vlOwnRows *rows, double pixel[
       a[i] = k ? o[1][i] - o[0][i] : d[1][i] - d[0][i];
       b[i] = k ? o[3][i] - o[2][i] : d[3][i] - d[2][i];
     }
-    double area = vl_length3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+    double area = vl_length3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                             a[0] * b[1] - a[1] * b[0]);
     double side = sqrt(area) / (2.0 * h);
     pixel[k] = isfinite(side) ? side : 0.0;
   }
@@ -114,7 +132,8 @@ vlCameraDef vl_camera_own_def(const vlCameraDef *def) {
   const vlCameraDef standard = vl_default_camera_def(def->width, def->height);
   vlCameraDef own = *def;
   own.projection = VL_PROJECTION_OWN;
-  own.fov = own.view_distance = own.zoom = own.pixel_size = own.focal_mm = own.sensor_width_mm = VL_UNSET;
+  own.fov = own.view_distance = own.zoom = own.pixel_size = own.focal_mm = own.sensor_width_mm =
+      VL_UNSET;
   own.fx = own.fy = own.skew = own.cx = own.cy = VL_UNSET;
   own.screen_min_x = own.screen_max_x = own.screen_min_y = own.screen_max_y = VL_UNSET;
   own.shape[0] = own.shape[1] = own.max_angle = own.focus_distance = VL_UNSET;
@@ -126,9 +145,11 @@ vlCameraDef vl_camera_own_def(const vlCameraDef *def) {
 }
 
 vlResult vl_camera_own(const vlCameraDef *def, vlCamera *camera, vlError *error) {
-  if (def->projection != VL_PROJECTION_OWN) return VL_OK;
+  if (def->projection != VL_PROJECTION_OWN)
+    return VL_OK;
   vlResult result = vl_own_check("camera", def->own->name, def->own->rays != NULL, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlOwnRows rows;
   camera->own = def->own;
   camera->own_size[0] = def->width;

@@ -1,16 +1,17 @@
-/* camera/perspective.h: the perspective projection: all projectors meet in the centre of projection, the view plane
- * is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing from the Ground Up, ch. 8 and 9.) The inverse (x/z
- * and y/z) is in projection.h. */
+/* camera/perspective.h: the perspective projection: all projectors meet in the centre of
+ * projection, the view plane is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing
+ * from the Ground Up, ch. 8 and 9.) The inverse (x/z and y/z) is in projection.h. */
 #ifndef CAMERA_PERSPECTIVE_H
 #define CAMERA_PERSPECTIVE_H
 
 #include "camera/local.h"
 #include "camera/rays.h"
 
-/* x, y: pixels from the principal point. The direction has the form of the lecture, (x_v, y_v, d), with the view plane
- * at distance d = fx and pixels of size 1. It is not divided by d, so that it has no rounding error beyond that of the
- * lecture's formula. */
-static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, double x, double y) {
+/* x, y: pixels from the principal point. The direction has the form of the lecture, (x_v, y_v,
+ * d), with the view plane at distance d = fx and pixels of size 1. It is not divided by d, so
+ * that it has no rounding error beyond that of the lecture's formula. */
+static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, double x,
+                                                     double y) {
   vlCameraLocal r;
   r.ox = 0.0;
   r.oy = 0.0;

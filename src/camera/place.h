@@ -1,4 +1,5 @@
-/* camera/place.h: the pose, last of the four factors of a camera: camera space to world space. */
+/* camera/place.h: the pose, last of the four factors of a camera: camera space to world space.
+ */
 #ifndef CAMERA_PLACE_H
 #define CAMERA_PLACE_H
 
@@ -10,7 +11,8 @@
 typedef struct vlWorldRay {
   double ox, oy, oz, dx, dy, dz;
   double inv_length; /* 1 / |d| */
-  double length;     /* |d|; divided by d's z in camera space, it gives the distance along the ray per unit of depth */
+  double length; /* |d|; divided by d's z in camera space, it gives the distance along the ray
+                    per unit of depth */
 } vlWorldRay;
 
 static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLocal r) {
@@ -27,8 +29,10 @@ static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLoca
   return w;
 }
 
-/* Transforms a ray to world space, with its origin at the eye position of its direction (omnidirectional stereo). */
-static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePlace eye, vlWorldRay w) {
+/* Transforms a ray to world space, with its origin at the eye position of its direction
+ * (omnidirectional stereo). */
+static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePlace eye,
+                                             vlWorldRay w) {
   const double *m = c->rotation;
   w.ox += m[0] * eye.x + m[2] * eye.z;
   w.oy += m[3] * eye.x + m[5] * eye.z;
@@ -37,7 +41,8 @@ static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePla
 }
 
 /* Origin and unit direction of a ray as element i; 0 if it is not good. */
-static inline __attribute__((always_inline)) void vl_store_world_ray(vlCameraPoints *out, uint32_t i, int good,
+static inline __attribute__((always_inline)) void vl_store_world_ray(vlCameraPoints *out,
+                                                                     uint32_t i, int good,
                                                                      vlWorldRay w) {
   out->ox[i] = good ? w.ox : 0.0;
   out->oy[i] = good ? w.oy : 0.0;

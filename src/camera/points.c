@@ -1,4 +1,5 @@
-/* camera/points.c: the public functions for pixels to rays and points to pixels, single and in arrays. */
+/* camera/points.c: the public functions for pixels to rays and points to pixels, single and in
+ * arrays. */
 #include <math.h>
 
 #include "camera/optics.h"
@@ -29,7 +30,8 @@ vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
   if (m->steps > 0) {
     vlPlanePoint flat = vl_tilt(m->untilt, p.x, p.y);
     p = vl_distortion_start(m, flat.x, flat.y);
-    for (uint32_t step = 0; step < m->steps; step++) p = vl_distortion_step(m, p.x, p.y, flat.x, flat.y);
+    for (uint32_t step = 0; step < m->steps; step++)
+      p = vl_distortion_step(m, p.x, p.y, flat.x, flat.y);
     valid = flat.valid * vl_distortion_check(m, p.x, p.y, flat.x, flat.y);
   }
   vlDirection d = vl_plane_unproject(c->projection, c, face, p.x, p.y);
@@ -46,11 +48,12 @@ vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y,
   if (c->optics) {
     double film[2] = {0.0, 0.0};
     bool valid = vl_optics_project(c->optics, x, y, z, film);
-    return (vlPlanePoint){valid ? film[0] / c->pitch + c->cx : 0.0, valid ? film[1] / c->pitch + c->cy : 0.0,
-                          valid ? 1.0 : 0.0};
+    return (vlPlanePoint){valid ? film[0] / c->pitch + c->cx : 0.0,
+                          valid ? film[1] / c->pitch + c->cy : 0.0, valid ? 1.0 : 0.0};
   }
   vlDirection d = {x, y, z, 1.0};
-  if (c->eye_circle != 0.0) d = vl_eye_direction(c->eye_circle, x, y, z);
+  if (c->eye_circle != 0.0)
+    d = vl_eye_direction(c->eye_circle, x, y, z);
   vlPlanePoint p = vl_plane_project(c->projection, c, d.x, d.y, d.z);
   p.valid *= d.valid;
   if (c->distortion.steps > 0) {
@@ -63,8 +66,10 @@ vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y,
 
 static vlCameraLocal local_ray(const vlCameraCompiled *c, double x, double y, double *valid) {
   *valid = 1.0;
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) return vl_orthographic_unproject(c, x, y);
-  if (c->plain) return vl_perspective_unproject(c, x, y);
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_orthographic_unproject(c, x, y);
+  if (c->plain)
+    return vl_perspective_unproject(c, x, y);
   if (c->optics) {
     vlCameraLocal r = {0.0, 0.0, 0.0, 0.0, 1.0};
     *valid = vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r) ? 1.0 : 0.0;
@@ -75,21 +80,26 @@ static vlCameraLocal local_ray(const vlCameraCompiled *c, double x, double y, do
   return (vlCameraLocal){0.0, 0.0, d.x, d.y, d.z};
 }
 
-bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]) {
-  if (!camera || !isfinite(x) || !isfinite(y)) return false;
+bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3],
+                         double direction[3]) {
+  if (!camera || !isfinite(x) || !isfinite(y))
+    return false;
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
   vlWorldRay w;
   if (c.own) {
     vlOwnRows rows;
     vl_own_chief_rays(&c, 1, &x, &y, &rows);
-    if (!vl_own_ray_at(&c, &rows, 0, &w)) return false;
+    if (!vl_own_ray_at(&c, &rows, 0, &w))
+      return false;
   } else {
     double valid;
     vlCameraLocal r = local_ray(&c, x - c.cx, y - c.cy, &valid);
-    if (valid == 0.0) return false;
+    if (valid == 0.0)
+      return false;
     w = vl_camera_place(&c, r);
-    if (c.eye_circle != 0.0) w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
+    if (c.eye_circle != 0.0)
+      w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
   }
   origin[0] = w.ox;
   origin[1] = w.oy;
@@ -100,8 +110,10 @@ bool vl_camera_unproject(const vlCamera *camera, double x, double y, double orig
   return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);
 }
 
-bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z) {
-  if (!camera) return false;
+bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2],
+                       double *z) {
+  if (!camera)
+    return false;
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
   const double *m = c.camera_from_world;
@@ -109,10 +121,12 @@ bool vl_camera_project(const vlCamera *camera, const double point[3], double pix
   double y = m[4] * point[0] + m[5] * point[1] + m[6] * point[2] + m[7];
   double depth = m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11];
   vlPlanePoint f = vl_camera_film_point(&c, x, y, depth);
-  if (!(f.valid > 0.0)) return false;
+  if (!(f.valid > 0.0))
+    return false;
   pixel[0] = f.x;
   pixel[1] = f.y;
-  if (z) *z = depth;
+  if (z)
+    *z = depth;
   return true;
 }
 
@@ -121,9 +135,10 @@ static const vlCameraKernels *kernels(void) {
   return vl_camera_kernels(vl_isa_choose(VL_ISA_AUTO, &isa) == VL_OK ? isa : VL_ISA_BASE);
 }
 
-void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels, double *origins,
-                               double *directions, uint8_t *valid) {
-  if (!camera) return;
+void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels,
+                               double *origins, double *directions, uint8_t *valid) {
+  if (!camera)
+    return;
   vlCameraCompiled c;
   vlCameraPixels in;
   vlCameraPoints out;
@@ -148,14 +163,16 @@ void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const doubl
         o[1] = out.oy[i];
         o[2] = out.oz[i];
       }
-      if (valid) valid[first + i] = out.valid[i] > 0.0;
+      if (valid)
+        valid[first + i] = out.valid[i] > 0.0;
     }
   }
 }
 
-void vl_camera_project_batch(const vlCamera *camera, size_t count, const double *points, double *pixels, double *z,
-                             uint8_t *valid) {
-  if (!camera) return;
+void vl_camera_project_batch(const vlCamera *camera, size_t count, const double *points,
+                             double *pixels, double *z, uint8_t *valid) {
+  if (!camera)
+    return;
   vlCameraCompiled c;
   vlCameraPoints in;
   vlCameraPixels out;
@@ -173,21 +190,26 @@ void vl_camera_project_batch(const vlCamera *camera, size_t count, const double 
     for (uint32_t i = 0; i < n; i++) {
       pixels[2 * (first + i)] = out.x[i];
       pixels[2 * (first + i) + 1] = out.y[i];
-      if (z) z[first + i] = out.z[i];
-      if (valid) valid[first + i] = out.valid[i] > 0.0;
+      if (z)
+        z[first + i] = out.z[i];
+      if (valid)
+        valid[first + i] = out.valid[i] > 0.0;
     }
   }
 }
 
-/* Derivatives of the direction by fourth-order central differences. The steps balance truncation (1e-10 for usual
- * lenses) against rounding. */
-static bool slope(const vlCameraCompiled *c, double x, double y, double hx, double hy, double d[3]) {
-  static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, at[4] = {-2, -1, 1, 2};
+/* Derivatives of the direction by fourth-order central differences. The steps balance
+ * truncation (1e-10 for usual lenses) against rounding. */
+static bool slope(const vlCameraCompiled *c, double x, double y, double hx, double hy,
+                  double d[3]) {
+  static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12},
+                      at[4] = {-2, -1, 1, 2};
   d[0] = d[1] = d[2] = 0.0;
   for (int i = 0; i < 4; i++) {
     vlDirection r = vl_camera_direction(c, x + at[i] * hx, y + at[i] * hy);
     double k = weight[i] / (vl_length3(r.x, r.y, r.z) * (hx + hy));
-    if (r.valid == 0.0) return false;
+    if (r.valid == 0.0)
+      return false;
     d[0] += k * r.x;
     d[1] += k * r.y;
     d[2] += k * r.z;
@@ -196,16 +218,21 @@ static bool slope(const vlCameraCompiled *c, double x, double y, double hx, doub
 }
 
 double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
-  if (!camera || camera->projection == VL_PROJECTION_ORTHOGRAPHIC || !isfinite(x) || !isfinite(y)) return 0.0;
+  if (!camera || camera->projection == VL_PROJECTION_ORTHOGRAPHIC || !isfinite(x) ||
+      !isfinite(y))
+    return 0.0;
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
   double px = x - c.cx, py = y - c.cy, a[3], b[3];
   vlDirection d = vl_camera_direction(&c, px, py);
-  if (d.valid == 0.0) return 0.0;
-  /* plane units: 1/10000 of a focal length, smaller near the border of the domain. Truncation h^4 and rounding
-   * 1e-16 / h are both about 1e-12 to 1e-16; below 1e-7 rounding exceeds 1e-9. */
+  if (d.valid == 0.0)
+    return 0.0;
+  /* plane units: 1/10000 of a focal length, smaller near the border of the domain. Truncation
+   * h^4 and rounding 1e-16 / h are both about 1e-12 to 1e-16; below 1e-7 rounding exceeds 1e-9.
+   */
   for (double h = 1e-4; h > 1e-7; h *= 0.1) {
-    if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b)) continue;
+    if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b))
+      continue;
     double length = vl_length3(d.x, d.y, d.z);
     return fabs(d.x * (a[1] * b[2] - a[2] * b[1]) + d.y * (a[2] * b[0] - a[0] * b[2]) +
                 d.z * (a[0] * b[1] - a[1] * b[0])) /

@@ -1,6 +1,6 @@
-/* camera/points.h: maps a pixel to a direction, and a point to a pixel, without lens and pose. The public functions
- * call these for one point at a time. The batches (points.hot.c) run the same operations in stages, so both give the
- * same bits. */
+/* camera/points.h: maps a pixel to a direction, and a point to a pixel, without lens and pose.
+ * The public functions call these for one point at a time. The batches (points.hot.c) run the
+ * same operations in stages, so both give the same bits. */
 #ifndef CAMERA_POINTS_H
 #define CAMERA_POINTS_H
 
@@ -17,12 +17,13 @@ static inline vlPlanePoint vl_plane_to_pixel(const vlCameraCompiled *c, vlPlaneP
   return (vlPlanePoint){valid ? x : 0.0, valid ? y : 0.0, valid ? 1.0 : 0.0};
 }
 
-/* Normalises a projection's direction, except for perspective cameras, which keep z = 1. An invalid direction becomes
- * straight ahead, so that no later stage sees a zero or a NaN. */
+/* Normalises a projection's direction, except for perspective cameras, which keep z = 1. An
+ * invalid direction becomes straight ahead, so that no later stage sees a zero or a NaN. */
 static inline vlDirection vl_direction_finish(const int inclined, vlDirection d, double valid) {
   int good = d.valid > 0.0 && valid > 0.0;
   double k = inclined ? 1.0 : 1.0 / vl_not_tiny(vl_length3(d.x, d.y, d.z));
-  return (vlDirection){good ? d.x * k : 0.0, good ? d.y * k : 0.0, good ? d.z * k : 1.0, good ? 1.0 : 0.0};
+  return (vlDirection){good ? d.x * k : 0.0, good ? d.y * k : 0.0, good ? d.z * k : 1.0,
+                       good ? 1.0 : 0.0};
 }
 
 /* x, y: pixels from the principal point. */

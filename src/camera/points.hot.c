@@ -1,6 +1,7 @@
-/* camera/points.hot.c: pixels to directions and points to pixels in chunks of doubles, in stages: affine map,
- * distortion, projection. Each stage is a separate loop, so that any projection combines with any lens without a
- * loop per combination. Compiled once per instruction set. */
+/* camera/points.hot.c: pixels to directions and points to pixels in chunks of doubles, in
+ * stages: affine map, distortion, projection. Each stage is a separate loop, so that any
+ * projection combines with any lens without a loop per combination. Compiled once per
+ * instruction set. */
 #include "camera/optics_chunk.h"
 #include "camera/stages.h"
 
@@ -11,7 +12,8 @@
 #include "camera/points.h"
 
 /* Removes the distortion of plane points in place, with a fixed number of Newton steps. */
-static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y, double *valid) {
+static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y,
+                      double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
   double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK];
   /* must vectorise */
@@ -33,10 +35,12 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
     }
   }
   /* must vectorise */
-  VL_SIMD for (uint32_t i = 0; i < count; i++) valid[i] *= vl_distortion_check(m, x[i], y[i], u[i], v[i]);
+  VL_SIMD for (uint32_t i = 0; i < count; i++) valid[i] *=
+      vl_distortion_check(m, x[i], y[i], u[i], v[i]);
 }
 
-static inline __attribute__((always_inline)) void plane_loop(vlProjection kind, const vlCameraCompiled *camera,
+static inline __attribute__((always_inline)) void plane_loop(vlProjection kind,
+                                                             const vlCameraCompiled *camera,
                                                              uint32_t count, vlDirections *d) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const int inclined = kind == VL_PROJECTION_PERSPECTIVE;
@@ -59,24 +63,28 @@ void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirection
     d->y[i] = d->y[i] * inv_fy;
     d->valid[i] = 1.0;
   }
-  if (c->distortion.steps > 0) undistort(&c->distortion, count, d->x, d->y, d->valid);
+  if (c->distortion.steps > 0)
+    undistort(&c->distortion, count, d->x, d->y, d->valid);
   switch (c->projection) {
-#define PLANE_LOOP(NAME, name) \
-  case VL_PROJECTION_##NAME: plane_loop(VL_PROJECTION_##NAME, c, count, d); break;
+#define PLANE_LOOP(NAME, name)                     \
+  case VL_PROJECTION_##NAME:                       \
+    plane_loop(VL_PROJECTION_##NAME, c, count, d); \
+    break;
     VL_PROJECTION_KINDS(PLANE_LOOP)
 #undef PLANE_LOOP
-    case VL_PROJECTION_OWN: break;
+    case VL_PROJECTION_OWN:
+      break;
   }
 }
 
-static inline __attribute__((always_inline)) void place_loop(const int eyes, const vlCameraCompiled *camera,
-                                                             uint32_t count, const double *dx, const double *dy,
-                                                             const double *dz, const double *valid,
-                                                             vlCameraPoints *out) {
+static inline __attribute__((always_inline)) void place_loop(
+    const int eyes, const vlCameraCompiled *camera, uint32_t count, const double *dx,
+    const double *dy, const double *dz, const double *valid, vlCameraPoints *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlWorldRay w = vl_camera_place(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
-    if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, dx[i], dz[i]), w);
+    if (eyes)
+      w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, dx[i], dz[i]), w);
     int good = valid[i] > 0.0;
     vl_store_world_ray(out, i, good, w);
     out->valid[i] = valid[i];
@@ -84,13 +92,16 @@ static inline __attribute__((always_inline)) void place_loop(const int eyes, con
 }
 
 /* Only film points that are not finite are invalid. */
-static inline __attribute__((always_inline)) void plain_loop(const int orthographic, const vlCameraCompiled *camera,
-                                                             uint32_t count, const vlCameraPixels *in,
+static inline __attribute__((always_inline)) void plain_loop(const int orthographic,
+                                                             const vlCameraCompiled *camera,
+                                                             uint32_t count,
+                                                             const vlCameraPixels *in,
                                                              vlCameraPoints *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
-    vlCameraLocal r = orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
+    vlCameraLocal r =
+        orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
     vlWorldRay w = vl_camera_place(c, r);
     double sum = w.dx * w.inv_length + w.dy * w.inv_length + w.dz * w.inv_length;
     int good = sum - sum == 0.0 && x - x == 0.0 && y - y == 0.0;
@@ -99,7 +110,8 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
   }
 }
 
-static void own_unproject(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out) {
+static void own_unproject(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
+                          vlCameraPoints *out) {
   vlOwnRows rows;
   vl_own_chief_rays(c, n, in->x, in->y, &rows);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
@@ -110,7 +122,8 @@ static void own_unproject(const vlCameraCompiled *c, uint32_t n, const vlCameraP
   }
 }
 
-void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out) {
+void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
+                               vlCameraPoints *out) {
   uint32_t count = VL_PAD(n);
   if (c->own) {
     own_unproject(c, n, in, out);
@@ -136,18 +149,20 @@ void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCa
   }
 }
 
-static inline __attribute__((always_inline)) void project_loop(vlProjection kind, const int eyes,
-                                                               const vlCameraCompiled *camera, uint32_t count,
-                                                               const vlCameraPoints *in, vlCameraPixels *out) {
+static inline __attribute__((always_inline)) void project_loop(
+    vlProjection kind, const int eyes, const vlCameraCompiled *camera, uint32_t count,
+    const vlCameraPoints *in, vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const double *m = c->camera_from_world;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double wx = in->x[i], wy = in->y[i], wz = in->z[i];
-    double x = m[0] * wx + m[1] * wy + m[2] * wz + m[3], y = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
+    double x = m[0] * wx + m[1] * wy + m[2] * wz + m[3],
+           y = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
     double z = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
     vlDirection d = {x, y, z, 1.0};
-    if (eyes) d = vl_eye_direction(c->eye_circle, x, y, z);
+    if (eyes)
+      d = vl_eye_direction(c->eye_circle, x, y, z);
     vlPlanePoint p = vl_plane_project(kind, c, d.x, d.y, d.z);
     p.valid *= d.valid;
     out->x[i] = p.x;
@@ -157,7 +172,8 @@ static inline __attribute__((always_inline)) void project_loop(vlProjection kind
   }
 }
 
-static void own_project(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in, vlCameraPixels *out) {
+static void own_project(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in,
+                        vlCameraPixels *out) {
   const double *m = c->camera_from_world;
   double x[VL_CAMERA_CHUNK] = {0}, y[VL_CAMERA_CHUNK] = {0}, z[VL_CAMERA_CHUNK] = {0};
   for (uint32_t i = 0; i < n; i++) {
@@ -176,8 +192,8 @@ static void own_project(const vlCameraCompiled *c, uint32_t n, const vlCameraPoi
   }
 }
 
-void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const vlCameraPoints *in,
-                             vlCameraPixels *out) {
+void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n,
+                             const vlCameraPoints *in, vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   uint32_t count = VL_PAD(n);
   if (c->own) {
@@ -192,14 +208,16 @@ void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const v
   case VL_PROJECTION_##NAME:                                  \
     project_loop(VL_PROJECTION_##NAME, 0, c, count, in, out); \
     break;
-#define EYES_LOOP(NAME, name) \
-  if (c->projection == VL_PROJECTION_##NAME) project_loop(VL_PROJECTION_##NAME, 1, c, count, in, out);
+#define EYES_LOOP(NAME, name)                \
+  if (c->projection == VL_PROJECTION_##NAME) \
+    project_loop(VL_PROJECTION_##NAME, 1, c, count, in, out);
   if (c->eye_circle != 0.0) {
     VL_ROUND_PROJECTIONS(EYES_LOOP)
   } else {
     switch (c->projection) {
       VL_PROJECTION_KINDS(PROJECT_LOOP)
-      case VL_PROJECTION_OWN: break;
+      case VL_PROJECTION_OWN:
+        break;
     }
   }
 #undef EYES_LOOP

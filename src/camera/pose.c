@@ -1,5 +1,5 @@
-/* camera/pose.c: position and orientation of the camera, from eye, lookat, up and roll (the lecture's compute_uvw)
- * or from a matrix. */
+/* camera/pose.c: position and orientation of the camera, from eye, lookat, up and roll (the
+ * lecture's compute_uvw) or from a matrix. */
 #include <math.h>
 #include <string.h>
 
@@ -28,8 +28,8 @@ static double largest(Vec a) {
   return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
-/* Normalises a vector. It is scaled first, so that very long and very short vectors neither overflow nor underflow.
- * Axis-aligned vectors keep exact zeros and ones. */
+/* Normalises a vector. It is scaled first, so that very long and very short vectors neither
+ * overflow nor underflow. Axis-aligned vectors keep exact zeros and ones. */
 static Vec normalized(Vec a) {
   double scale = largest(a);
   a = (Vec){a.x / scale, a.y / scale, a.z / scale};
@@ -37,34 +37,42 @@ static Vec normalized(Vec a) {
   return (Vec){a.x / length, a.y / length, a.z / length};
 }
 
-/* If the sine between up and the view direction is below this, their cross product is mostly rounding. */
+/* If the sine between up and the view direction is below this, their cross product is mostly
+ * rounding. */
 static const double parallel_sine = 1e-9;
 
-/* u to the right, v up, w backwards, against the view direction: the lecture's viewing coordinates. */
+/* u to the right, v up, w backwards, against the view direction: the lecture's viewing
+ * coordinates.
+ */
 typedef struct {
   Vec u, v, w;
 } Basis;
 
-static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const char **warning, vlError *error) {
+static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const char **warning,
+                                  vlError *error) {
   Vec e = vec(def->eye), l = vec(def->lookat), up = vec(def->up);
   Vec back = {e.x - l.x, e.y - l.y, e.z - l.z};
   if (largest(back) == 0.0)
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: eye and lookat are the same point (%g %g %g); there is no direction to look in", e.x, e.y,
-                   e.z);
+                   "camera: eye and lookat are the same point (%g %g %g); there is no "
+                   "direction to look in",
+                   e.x, e.y, e.z);
   if (!isfinite(largest(back)))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: eye and lookat are too far apart for double precision");
-  if (largest(up) == 0.0) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: up is the zero vector");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: eye and lookat are too far apart for double precision");
+  if (largest(up) == 0.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: up is the zero vector");
 
   Vec w = normalized(back);
   Vec right = cross(normalized(up), w);
   if (sqrt(dot(right, right)) < parallel_sine) {
     if (warning)
       *warning =
-          "camera: up is parallel to the view direction; the image's right is taken along the world's x axis (z when "
+          "camera: up is parallel to the view direction; the image's right is taken along the "
+          "world's x axis (z when "
           "looking along x)";
-    /* The default up vector is the component of x perpendicular to w, or of z if w is near x. When the camera looks
-     * straight down, the top of the image is -z, as on a map. */
+    /* The default up vector is the component of x perpendicular to w, or of z if w is near x.
+     * When the camera looks straight down, the top of the image is -z, as on a map. */
     Vec axis = fabs(w.x) > 0.9 ? (Vec){0.0, 0.0, 1.0} : (Vec){1.0, 0.0, 0.0};
     double along = dot(axis, w);
     right = (Vec){axis.x - along * w.x, axis.y - along * w.y, axis.z - along * w.z};
@@ -77,29 +85,34 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
 
 static vlResult check_matrix(const vlMat4 *m, vlError *error) {
   if (!vl_mat4_is_finite(*m))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera holds a value that is not finite");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: world_from_camera holds a value that is not finite");
   const double *a = m->m;
   if (a[12] != 0.0 || a[13] != 0.0 || a[14] != 0.0 || a[15] != 1.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the last row of world_from_camera is %g %g %g %g; a pose has 0 0 0 1", a[12], a[13], a[14],
-                   a[15]);
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "camera: the last row of world_from_camera is %g %g %g %g; a pose has 0 0 0 1", a[12],
+        a[13], a[14], a[15]);
   /* Returns the volume spanned by the three normalised axes; it is 0 if they are coplanar. */
   Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
   double volume = 0.0, most = fmax(largest(x), fmax(largest(y), largest(z)));
   if (most > 1e30)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera stretches by %g; 1e30 is the most", most);
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: world_from_camera stretches by %g; 1e30 is the most", most);
   if (largest(x) > 0.0 && largest(y) > 0.0 && largest(z) > 0.0)
     volume = fabs(dot(normalized(x), cross(normalized(y), normalized(z))));
   if (!(volume > parallel_sine))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: world_from_camera is singular; its three axes lie in a plane or one is zero");
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "camera: world_from_camera is singular; its three axes lie in a plane or one is zero");
   return VL_OK;
 }
 
 static vlResult fill(vlMat4 m, vlCamera *camera, vlError *error) {
   vlMat4 inverse;
   if (!vl_mat4_inverse(m, &inverse) || !vl_mat4_is_finite(inverse))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera cannot be inverted; its scale is too extreme");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: world_from_camera cannot be inverted; its scale is too extreme");
   for (int i = 0; i < 16; i++) {
     camera->world_from_camera[i] = m.m[i] + 0.0;
     camera->camera_from_world[i] = inverse.m[i] + 0.0;
@@ -107,17 +120,20 @@ static vlResult fill(vlMat4 m, vlCamera *camera, vlError *error) {
   return VL_OK;
 }
 
-vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning,
+                        vlError *error) {
   vlMat4 m = vl_mat4_identity();
   vlResult result;
   if (def->has_matrix) {
     m = vl_mat4_load(def->world_from_camera);
     result = check_matrix(&m, error);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   } else {
     Basis b = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     result = basis_from_lookat(def, &b, warning, error);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     /* x = u, y = -v (down), z = -w (forward); 0 - v instead of -v keeps -0 out of the matrix */
     m.m[0] = b.u.x;
     m.m[1] = 0.0 - b.v.x;
@@ -145,7 +161,8 @@ vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **w
   return fill(m, camera, error);
 }
 
-vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera, vlError *error) {
+vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera,
+                               vlError *error) {
   vlMat4 m = vl_mat4_load(world_from_camera);
   vlResult result = check_matrix(&m, error);
   return result == VL_OK ? fill(m, camera, error) : result;

@@ -1,5 +1,5 @@
-/* camera/timing.c: the part of vl_camera_make for time: shutter, shutter curve, readout and the second pose. It also
- * makes the copy of a moving camera that is frozen at one time. */
+/* camera/timing.c: the part of vl_camera_make for time: shutter, shutter curve, readout and the
+ * second pose. It also makes the copy of a moving camera that is frozen at one time. */
 #include "camera/time.h"
 
 #include <math.h>
@@ -10,22 +10,29 @@
 #include "camera/rays.h"
 
 static vlResult check_curve(const vlCameraDef *d, vlError *error) {
-  if (d->shutter_points == 0) return VL_OK;
+  if (d->shutter_points == 0)
+    return VL_OK;
   if (d->shutter_points < 2 || d->shutter_points > VL_SHUTTER_POINTS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter's curve has %u points; it takes 2 to %d",
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: the shutter's curve has %u points; it takes 2 to %d",
                    d->shutter_points, (int)VL_SHUTTER_POINTS);
   double area = 0.0;
   for (uint32_t i = 0; i < d->shutter_points; i++) {
     double at = d->shutter_at[i], value = d->shutter_value[i];
     if (!(at >= 0.0 && at <= 1.0) || (i && at < d->shutter_at[i - 1]))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: point %u of the shutter's curve is at %g; from 0 to 1 they ascend", i, at);
+      return vl_fail(
+          error, VL_ERROR_ARGUMENT,
+          "camera: point %u of the shutter's curve is at %g; from 0 to 1 they ascend", i, at);
     if (!(value >= 0.0) || value > 1e30)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter's curve is %g at point %u; it must not be negative",
+      return vl_fail(error, VL_ERROR_ARGUMENT,
+                     "camera: the shutter's curve is %g at point %u; it must not be negative",
                      value, i);
-    if (i) area += 0.5 * (at - d->shutter_at[i - 1]) * (value + d->shutter_value[i - 1]);
+    if (i)
+      area += 0.5 * (at - d->shutter_at[i - 1]) * (value + d->shutter_value[i - 1]);
   }
-  if (!(area > 0.0)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter's curve lets no light through");
+  if (!(area > 0.0))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: the shutter's curve lets no light through");
   return VL_OK;
 }
 
@@ -33,15 +40,18 @@ static vlResult check_curve(const vlCameraDef *d, vlError *error) {
 static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
   *close = *def;
   bool given = !vl_is_unset(def->roll_close);
-  if (given) close->roll = def->roll_close;
+  if (given)
+    close->roll = def->roll_close;
   if (def->has_matrix) {
-    if (def->has_matrix_close) memcpy(close->world_from_camera, def->world_from_camera_close, 16 * sizeof(double));
+    if (def->has_matrix_close)
+      memcpy(close->world_from_camera, def->world_from_camera_close, 16 * sizeof(double));
     return given || def->has_matrix_close;
   }
   const double *from[3] = {def->eye_close, def->lookat_close, def->up_close};
   double *to[3] = {close->eye, close->lookat, close->up};
   for (int k = 0; k < 3; k++) {
-    if (vl_is_unset(from[k][0]) && vl_is_unset(from[k][1]) && vl_is_unset(from[k][2])) continue;
+    if (vl_is_unset(from[k][0]) && vl_is_unset(from[k][1]) && vl_is_unset(from[k][2]))
+      continue;
     memcpy(to[k], from[k], 3 * sizeof(double));
     given = true;
   }
@@ -53,44 +63,57 @@ static vlResult go_to(const double close[16], vlCamera *camera, vlError *error) 
   const double *t = camera->pose_times;
   vlMotion motion;
   if (!isfinite(t[0]) || !isfinite(t[1]) || !(t[0] <= t[1]))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: it cannot move from %g to %g seconds", t[0], t[1]);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: it cannot move from %g to %g seconds",
+                   t[0], t[1]);
   if (!vl_motion_make(camera->world_from_camera, close, &motion))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: no motion leads from its first pose to its second: one mirrors");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: no motion leads from its first pose to its second: one mirrors");
   memcpy(camera->world_from_camera_close, close, sizeof camera->world_from_camera_close);
-  camera->moves = memcmp(camera->world_from_camera, close, sizeof camera->world_from_camera) != 0;
+  camera->moves =
+      memcmp(camera->world_from_camera, close, sizeof camera->world_from_camera) != 0;
   return VL_OK;
 }
 
-vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const double close[16], const double times[2],
-                          vlCamera *result, vlError *error) {
+vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const double close[16],
+                          const double times[2], vlCamera *result, vlError *error) {
   vl_error_clear(error);
   if (!camera || !open || !close || !times || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: camera, open, close, times or result is null");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: camera, open, close, times or result is null");
   vlCamera there = *camera, made = *camera;
   vlResult status = vl_camera_pose_matrix(open, &made, error);
-  if (status == VL_OK) status = vl_camera_pose_matrix(close, &there, error);
+  if (status == VL_OK)
+    status = vl_camera_pose_matrix(close, &there, error);
   made.pose_times[0] = times[0];
   made.pose_times[1] = times[1];
-  if (status == VL_OK) status = go_to(there.world_from_camera, &made, error);
-  if (status == VL_OK) *result = made;
+  if (status == VL_OK)
+    status = go_to(there.world_from_camera, &made, error);
+  if (status == VL_OK)
+    *result = made;
   return status;
 }
 
-static vlResult make_motion(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+static vlResult make_motion(const vlCameraDef *def, vlCamera *camera, const char **warning,
+                            vlError *error) {
   vlCameraDef close;
-  memcpy(camera->world_from_camera_close, camera->world_from_camera, sizeof camera->world_from_camera);
+  memcpy(camera->world_from_camera_close, camera->world_from_camera,
+         sizeof camera->world_from_camera);
   double end = def->shutter_close + def->readout;
-  camera->pose_times[0] = vl_is_unset(def->pose_times[0]) ? def->shutter_open : def->pose_times[0];
+  camera->pose_times[0] =
+      vl_is_unset(def->pose_times[0]) ? def->shutter_open : def->pose_times[0];
   camera->pose_times[1] = vl_is_unset(def->pose_times[1]) ? end : def->pose_times[1];
-  if (!second_pose(def, &close)) return VL_OK;
+  if (!second_pose(def, &close))
+    return VL_OK;
   vlCamera there = *camera;
   vlResult result = vl_camera_pose(&close, &there, warning, error);
   return result == VL_OK ? go_to(there.world_from_camera, camera, error) : result;
 }
 
-vlResult vl_camera_time_part(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+vlResult vl_camera_time_part(const vlCameraDef *def, vlCamera *camera, const char **warning,
+                             vlError *error) {
   vlResult result = check_curve(def, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   camera->readout = def->readout;
   camera->readout_direction = def->readout_direction;
   camera->shutter_points = def->shutter_points;
@@ -103,15 +126,26 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
   memset(t, 0, sizeof *t);
   double rows = camera->readout / camera->height, columns = camera->readout / camera->width;
   switch (camera->readout_direction) {
-    case VL_READOUT_DOWN: t->per_row = rows; break;
-    case VL_READOUT_UP: t->per_row = -rows; break;
-    case VL_READOUT_RIGHT: t->per_column = columns; break;
-    case VL_READOUT_LEFT: t->per_column = -columns; break;
+    case VL_READOUT_DOWN:
+      t->per_row = rows;
+      break;
+    case VL_READOUT_UP:
+      t->per_row = -rows;
+      break;
+    case VL_READOUT_RIGHT:
+      t->per_column = columns;
+      break;
+    case VL_READOUT_LEFT:
+      t->per_column = -columns;
+      break;
   }
-  /* times are relative to the pixel that is read first; its exposure begins when the shutter opens */
+  /* times are relative to the pixel that is read first; its exposure begins when the shutter
+   * opens
+   */
   t->first_column = t->per_column < 0.0 ? camera->width - 1.0 : 0.0;
   t->first_row = t->per_row < 0.0 ? camera->height - 1.0 : 0.0;
-  t->moves = camera->moves && vl_motion_make(camera->world_from_camera, camera->world_from_camera_close, &t->motion);
+  t->moves = camera->moves && vl_motion_make(camera->world_from_camera,
+                                             camera->world_from_camera_close, &t->motion);
   t->pose_open = camera->pose_times[0];
   double span = camera->pose_times[1] - camera->pose_times[0];
   t->pose_rate = span > 0.0 ? 1.0 / span : 0.0;
@@ -119,32 +153,40 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
   for (uint32_t i = 0; i < t->points; i++) {
     t->at[i] = camera->shutter_at[i];
     t->value[i] = camera->shutter_value[i];
-    if (i) t->area += 0.5 * (t->at[i] - t->at[i - 1]) * (t->value[i] + t->value[i - 1]);
+    if (i)
+      t->area += 0.5 * (t->at[i] - t->at[i - 1]) * (t->value[i] + t->value[i - 1]);
     t->share[i] = t->area;
   }
-  for (uint32_t i = 0; i < t->points; i++) t->share[i] /= t->area;
+  for (uint32_t i = 0; i < t->points; i++)
+    t->share[i] /= t->area;
   t->timed = t->moves || t->points > 0 || camera->readout > 0.0;
 }
 
 double vl_camera_time(const vlCamera *camera, double x, double y, double u) {
-  if (!camera) return 0.0;
+  if (!camera)
+    return 0.0;
   vlCameraTime t;
   vl_camera_compile_time(camera, &t);
-  return camera->shutter_open + (floor(x) - t.first_column) * t.per_column + (floor(y) - t.first_row) * t.per_row +
+  return camera->shutter_open + (floor(x) - t.first_column) * t.per_column +
+         (floor(y) - t.first_row) * t.per_row +
          (camera->shutter_close - camera->shutter_open) * vl_shutter_share(&t, u);
 }
 
 vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *result) {
-  if (!camera || !result || !isfinite(time)) return VL_ERROR_ARGUMENT;
+  if (!camera || !result || !isfinite(time))
+    return VL_ERROR_ARGUMENT;
   vlCamera still = *camera;
   double span = camera->pose_times[1] - camera->pose_times[0];
   double f = span > 0.0 ? (time - camera->pose_times[0]) / span : 0.0, m[16];
   if (camera->moves) {
-    if (!vl_motion_at(camera->world_from_camera, camera->world_from_camera_close, f, m)) return VL_ERROR_ARGUMENT;
+    if (!vl_motion_at(camera->world_from_camera, camera->world_from_camera_close, f, m))
+      return VL_ERROR_ARGUMENT;
     vlResult status = vl_camera_pose_matrix(m, &still, NULL);
-    if (status != VL_OK) return status;
+    if (status != VL_OK)
+      return status;
   }
-  memcpy(still.world_from_camera_close, still.world_from_camera, sizeof still.world_from_camera);
+  memcpy(still.world_from_camera_close, still.world_from_camera,
+         sizeof still.world_from_camera);
   still.moves = false;
   still.shutter_open = still.shutter_close = still.pose_times[0] = still.pose_times[1] = time;
   still.shutter_points = 0;

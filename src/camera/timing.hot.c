@@ -1,5 +1,5 @@
-/* camera/timing.hot.c: times of rays for shutter curves, rolling shutters and moving cameras. Runs after the rays are
- * made in camera space. Compiled once per instruction set. */
+/* camera/timing.hot.c: times of rays for shutter curves, rolling shutters and moving cameras.
+ * Runs after the rays are made in camera space. Compiled once per instruction set. */
 #include "camera/rays.h"
 #include "camera/stages.h"
 
@@ -7,7 +7,8 @@ typedef struct Moved {
   double ox, oy, oz, dx, dy, dz, length;
 } Moved;
 
-static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double dx, double dy, double dz) {
+static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double dx, double dy,
+                             double dz) {
   const double *m = a.m;
   Moved r;
   r.ox = a.p[0] + (m[0] * ox + m[1] * oy + m[2] * oz);
@@ -20,10 +21,10 @@ static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double
   return r;
 }
 
-/* Transforms each ray from camera space to the world at the ray's own time. t_min and t_max are rescaled so that they
- * denote the same points. */
-static void move_chunk(const vlCameraTime *time, uint32_t count, const double *when, const vlCameraRays *r,
-                       uint32_t first) {
+/* Transforms each ray from camera space to the world at the ray's own time. t_min and t_max are
+ * rescaled so that they denote the same points. */
+static void move_chunk(const vlCameraTime *time, uint32_t count, const double *when,
+                       const vlCameraRays *r, uint32_t first) {
   const vlCameraTime copy = *time, *t = &copy;
   float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
   float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
@@ -33,8 +34,8 @@ static void move_chunk(const vlCameraTime *time, uint32_t count, const double *w
     double f = (when[i] - t->pose_open) * t->pose_rate;
     f = f > 0.0 ? f : 0.0;
     f = f < 1.0 ? f : 1.0;
-    Moved w = move_ray(vl_motion_between(&t->motion, f), (double)ox[i], (double)oy[i], (double)oz[i], (double)dx[i],
-                       (double)dy[i], (double)dz[i]);
+    Moved w = move_ray(vl_motion_between(&t->motion, f), (double)ox[i], (double)oy[i],
+                       (double)oz[i], (double)dx[i], (double)dy[i], (double)dz[i]);
     double inverse = 1.0 / w.length;
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -47,7 +48,8 @@ static void move_chunk(const vlCameraTime *time, uint32_t count, const double *w
   }
 }
 
-void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
+                         const vlCameraRays *r) {
   const vlCameraTime *t = &c->when;
   double when[VL_CAMERA_CHUNK];
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
@@ -57,6 +59,7 @@ void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t count, const vlCame
       when[i] = vl_camera_seconds(c, s->pixel_x[k], s->pixel_y[k], s->time[k]);
       r->time[k] = (float)when[i];
     }
-    if (t->moves) move_chunk(t, n, when, r, first);
+    if (t->moves)
+      move_chunk(t, n, when, r, first);
   }
 }

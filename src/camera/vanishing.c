@@ -1,6 +1,6 @@
-/* camera/vanishing.c: vanishing points of a camera, and a camera from vanishing points (Hartley and Zisserman,
- * Multiple View Geometry, 8.6 and 8.8: the viewing rays of vanishing points of orthogonal directions are
- * orthogonal). */
+/* camera/vanishing.c: vanishing points of a camera, and a camera from vanishing points (Hartley
+ * and Zisserman, Multiple View Geometry, 8.6 and 8.8: the viewing rays of vanishing points of
+ * orthogonal directions are orthogonal). */
 #include <math.h>
 
 #include "base/cookie.h"
@@ -10,8 +10,8 @@
 #include "math/double3.h"
 #include "velo/vanishing.h"
 
-/* Vanishing points farther than this many focal lengths count as infinite: their directions are within 1e-9 radians of
- * parallel to the view plane. */
+/* Vanishing points farther than this many focal lengths count as infinite: their directions are
+ * within 1e-9 radians of parallel to the view plane. */
 static const double infinitely_far = 1e9;
 static const double agreement = 1e-6; /* in focal lengths; values written with 7 digits agree */
 
@@ -22,61 +22,78 @@ static bool direction_of(const vlCamera *c, const double d[3], double v[3]) {
            c->camera_from_world[4 * i + 2] * d[2];
     length = fmax(length, fabs(v[i]));
   }
-  if (!(length > 0.0) || isinf(length)) return false;
-  for (int i = 0; i < 3; i++) v[i] /= length;
+  if (!(length > 0.0) || isinf(length))
+    return false;
+  for (int i = 0; i < 3; i++)
+    v[i] /= length;
   return true;
 }
 
-bool vl_camera_vanishing_point(const vlCamera *camera, const double direction[3], vlVanishingPoint *point) {
+bool vl_camera_vanishing_point(const vlCamera *camera, const double direction[3],
+                               vlVanishingPoint *point) {
   double v[3];
-  if (!camera || !direction || !point || !direction_of(camera, direction, v)) return false;
+  if (!camera || !direction || !point || !direction_of(camera, direction, v))
+    return false;
   bool flat = camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
   bool perspective = camera->projection == VL_PROJECTION_PERSPECTIVE;
   *point = (vlVanishingPoint){.kind = VL_VANISHING_NONE};
   double across = vl_length2(v[0], v[1]);
   if (flat || (perspective && fabs(v[2]) * infinitely_far <= across)) {
-    double x = camera->fx * v[0] + camera->skew * v[1], y = camera->fy * v[1], length = vl_length2(x, y);
-    if (across * infinitely_far <= fabs(v[2])) return true; /* orthographic, seen end on */
+    double x = camera->fx * v[0] + camera->skew * v[1], y = camera->fy * v[1],
+           length = vl_length2(x, y);
+    if (across * infinitely_far <= fabs(v[2]))
+      return true; /* orthographic, seen end on */
     point->kind = VL_VANISHING_INFINITE;
     point->direction[0] = x / length + 0.0;
     point->direction[1] = y / length + 0.0;
     return true;
   }
   point->behind = perspective && v[2] < 0.0;
-  for (int i = 0; i < 3 && point->behind; i++) v[i] = -v[i];
+  for (int i = 0; i < 3 && point->behind; i++)
+    v[i] = -v[i];
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
   vlPlanePoint p = vl_camera_film_point(&c, v[0], v[1], v[2]);
-  if (!(p.valid > 0.0)) return true;
+  if (!(p.valid > 0.0))
+    return true;
   point->kind = VL_VANISHING_FINITE;
   point->pixel[0] = p.x;
   point->pixel[1] = p.y;
   return true;
 }
 
-bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3], vlVanishingPoints *points) {
+bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3],
+                                vlVanishingPoints *points) {
   double n[3] = {0, 0, 0}, largest = 0.0;
-  if (!camera || !up || !points) return false;
+  if (!camera || !up || !points)
+    return false;
   *points = (vlVanishingPoints){.finite = 0};
   for (int i = 0; i < 3; i++) {
     const double axis[3] = {i == 0, i == 1, i == 2}, other[3] = {-axis[0], -axis[1], -axis[2]};
     vl_camera_vanishing_point(camera, axis, &points->axes[i]);
-    if (points->axes[i].kind == VL_VANISHING_NONE && camera->projection != VL_PROJECTION_ORTHOGRAPHIC &&
+    if (points->axes[i].kind == VL_VANISHING_NONE &&
+        camera->projection != VL_PROJECTION_ORTHOGRAPHIC &&
         vl_camera_vanishing_point(camera, other, &points->axes[i]))
       points->axes[i].behind = points->axes[i].kind == VL_VANISHING_FINITE;
     points->finite += points->axes[i].kind == VL_VANISHING_FINITE;
   }
-  if (camera->projection != VL_PROJECTION_PERSPECTIVE) points->finite = 0;
+  if (camera->projection != VL_PROJECTION_PERSPECTIVE)
+    points->finite = 0;
   /* Normals transform by the transpose: in camera space n = W^T up. */
   for (int i = 0; i < 3; i++) {
-    for (int k = 0; k < 3; k++) n[i] += camera->world_from_camera[4 * k + i] * up[k];
+    for (int k = 0; k < 3; k++)
+      n[i] += camera->world_from_camera[4 * k + i] * up[k];
     largest = fmax(largest, fabs(n[i]));
   }
-  if (!(largest > 0.0) || isinf(largest)) return false;
-  if (camera->projection != VL_PROJECTION_PERSPECTIVE || camera->distortion.steps > 0) return true;
-  if (vl_length2(n[0], n[1]) * infinitely_far <= fabs(n[2])) return true;
+  if (!(largest > 0.0) || isinf(largest))
+    return false;
+  if (camera->projection != VL_PROJECTION_PERSPECTIVE || camera->distortion.steps > 0)
+    return true;
+  if (vl_length2(n[0], n[1]) * infinitely_far <= fabs(n[2]))
+    return true;
   /* n . K^-1 (x, y, 1) = 0 */
-  double a = n[0] / camera->fx, b = (n[1] - a * camera->skew) / camera->fy, length = vl_length2(a, b);
+  double a = n[0] / camera->fx, b = (n[1] - a * camera->skew) / camera->fy,
+         length = vl_length2(a, b);
   points->has_horizon = true;
   points->horizon[0] = a / length + 0.0;
   points->horizon[1] = b / length + 0.0;
@@ -84,7 +101,9 @@ bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3], vlVa
   return true;
 }
 
-/* ---- the inverse ------------------------------------------------------------------------------------------------- */
+/* ---- the inverse
+ * -------------------------------------------------------------------------------------------------
+ */
 
 vlVanishingDef vl_default_vanishing_def(uint32_t width, uint32_t height) {
   return (vlVanishingDef){.cookie = VL_COOKIE_VANISHING,
@@ -98,26 +117,32 @@ vlVanishingDef vl_default_vanishing_def(uint32_t width, uint32_t height) {
 }
 
 static vlResult check(const vlVanishingDef *d, vlError *error) {
-  if (d->cookie != VL_COOKIE_VANISHING) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: " VL_BAD_COOKIE);
+  if (d->cookie != VL_COOKIE_VANISHING)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: " VL_BAD_COOKIE);
   if (d->count != 2 && d->count != 3)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: %u are given; a camera needs 2 or 3", d->count);
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "vanishing points: %u are given; a camera needs 2 or 3", d->count);
   for (uint32_t i = 0; i < d->count; i++) {
-    if (!isfinite(d->points[i][0]) || !isfinite(d->points[i][1]) || fabs(d->points[i][0]) > 1e100 ||
-        fabs(d->points[i][1]) > 1e100)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: number %u is not finite", i + 1);
+    if (!isfinite(d->points[i][0]) || !isfinite(d->points[i][1]) ||
+        fabs(d->points[i][0]) > 1e100 || fabs(d->points[i][1]) > 1e100)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: number %u is not finite",
+                     i + 1);
     for (uint32_t k = 0; k < i; k++)
       if (d->axes[i] == d->axes[k])
-        return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: numbers %u and %u are of the same axis", k + 1,
+        return vl_fail(error, VL_ERROR_ARGUMENT,
+                       "vanishing points: numbers %u and %u are of the same axis", k + 1,
                        i + 1);
-    if (d->axes[i] > 2) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: an axis is 0, 1 or 2");
+    if (d->axes[i] > 2)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: an axis is 0, 1 or 2");
   }
   if (vl_is_unset(d->cx) != vl_is_unset(d->cy) || isinf(d->cx) || isinf(d->cy))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: the principal point is (%g, %g)", d->cx, d->cy);
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "vanishing points: the principal point is (%g, %g)", d->cx, d->cy);
   return VL_OK;
 }
 
-/* Orthocentre of the triangle: the principal point (Caprile and Torre 1990). Relative to the first corner, so that a
- * distant corner costs little precision. */
+/* Orthocentre of the triangle: the principal point (Caprile and Torre 1990). Relative to the
+ * first corner, so that a distant corner costs little precision. */
 static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error) {
   const double *a = d->points[0];
   double b[2] = {d->points[1][0] - a[0], d->points[1][1] - a[1]},
@@ -125,45 +150,58 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
   double cross = b[0] * c[1] - b[1] * c[0], dot = b[0] * c[0] + b[1] * c[1];
   double size = fmax(fmax(fabs(b[0]), fabs(b[1])), fmax(fabs(c[0]), fabs(c[1])));
   if (!(fabs(cross) > 1e-12 * size * size)) /* sine of the angle between two sides, nearly */
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: the three lie on one line; no camera has such");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "vanishing points: the three lie on one line; no camera has such");
   /* h . (c - b) = 0 and h . b = b . c: h is parallel to the normal of c - b */
   p[0] = a[0] + dot * (c[1] - b[1]) / cross;
   p[1] = a[1] - dot * (c[0] - b[0]) / cross;
   return VL_OK;
 }
 
-vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef *camera, vlError *error) {
+vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef *camera,
+                                         vlError *error) {
   vl_error_clear(error);
-  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
+  if (!def || !camera)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
   double p[2] = {0.5 * def->width, 0.5 * def->height}, f2 = 0.0;
   vlResult result = check(def, error);
-  if (result == VL_OK && def->count == 3) result = orthocentre(def, p, error);
-  if (result != VL_OK) return result;
+  if (result == VL_OK && def->count == 3)
+    result = orthocentre(def, p, error);
+  if (result != VL_OK)
+    return result;
   uint32_t pairs = def->count == 3 ? 3 : 1;
   if (def->count == 2 && !vl_is_unset(def->cx)) {
     p[0] = def->cx;
     p[1] = def->cy;
   }
-  double least = INFINITY; /* of the three equal values, the one with the smallest terms has the least rounding error */
+  double least = INFINITY; /* of the three equal values, the one with the smallest terms has the
+                              least rounding error */
   for (uint32_t i = 0; i < pairs; i++) {
     const double *a = def->points[i], *b = def->points[(i + 1) % def->count];
     double x = (a[0] - p[0]) * (b[0] - p[0]), y = (a[1] - p[1]) * (b[1] - p[1]);
     if (!(x + y < 0.0))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "vanishing points: seen from the principal point (%.9g, %.9g), numbers %u and %u are less than 90 "
-                     "degrees apart; directions at right angles are not",
-                     p[0], p[1], i + 1, (i + 1) % def->count + 1);
-    if (fabs(x) + fabs(y) >= least) continue;
+      return vl_fail(
+          error, VL_ERROR_ARGUMENT,
+          "vanishing points: seen from the principal point (%.9g, %.9g), numbers %u and "
+          "%u are less than 90 "
+          "degrees apart; directions at right angles are not",
+          p[0], p[1], i + 1, (i + 1) % def->count + 1);
+    if (fabs(x) + fabs(y) >= least)
+      continue;
     least = fabs(x) + fabs(y);
     f2 = -(x + y);
   }
   double f = sqrt(f2);
   if (!(f > 1e-30 && f < 1e30))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: a focal length of %g pixels is out of range", f);
-  if (def->count == 3 && !vl_is_unset(def->cx) && vl_length2(def->cx - p[0], def->cy - p[1]) > agreement * f)
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vanishing points: the three have their principal point at (%.9g, %.9g), but (%.9g, %.9g) is given",
-                   p[0], p[1], def->cx, def->cy);
+                   "vanishing points: a focal length of %g pixels is out of range", f);
+  if (def->count == 3 && !vl_is_unset(def->cx) &&
+      vl_length2(def->cx - p[0], def->cy - p[1]) > agreement * f)
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "vanishing points: the three have their principal point at (%.9g, %.9g), but "
+        "(%.9g, %.9g) is given",
+        p[0], p[1], def->cx, def->cy);
   /* columns of camera from world: directions of the world's axes in camera space */
   double axes[3][3];
   for (int i = 0; i < 2; i++) {
@@ -188,6 +226,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   camera->cy = p[1];
   camera->has_matrix = true;
   for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) camera->world_from_camera[4 * i + k] = axes[i][k] + 0.0;
+    for (int k = 0; k < 3; k++)
+      camera->world_from_camera[4 * i + k] = axes[i][k] + 0.0;
   return VL_OK;
 }

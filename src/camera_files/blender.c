@@ -1,40 +1,52 @@
-/* camera_files/blender.c: a Blender camera as JSON, with Blender's own property names: bpy.types.Camera (type, lens,
- * sensor_width, sensor_height, sensor_fit, shift_x, shift_y, ortho_scale, clip_start, clip_end), the object's
- * matrix_world, RenderSettings (resolution_x, resolution_y, pixel_aspect_x, pixel_aspect_y). Axes x right, y up, z
- * back. shift is in units of the side that the sensor is fitted to: +0.1 moves the principal point left, and down. */
+/* camera_files/blender.c: a Blender camera as JSON, with Blender's own property names:
+ * bpy.types.Camera (type, lens, sensor_width, sensor_height, sensor_fit, shift_x, shift_y,
+ * ortho_scale, clip_start, clip_end), the object's matrix_world, RenderSettings (resolution_x,
+ * resolution_y, pixel_aspect_x, pixel_aspect_y). Axes x right, y up, z back. shift is in units
+ * of the side that the sensor is fitted to: +0.1 moves the principal point left, and down. */
 #include <math.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  double lens = 50.0, sensor_width = 36.0, sensor_height = 24.0, shift_x = 0.0, shift_y = 0.0, ortho = 6.0;
+  double lens = 50.0, sensor_width = 36.0, sensor_height = 24.0, shift_x = 0.0, shift_y = 0.0,
+         ortho = 6.0;
   double aspect_x = 1.0, aspect_y = 1.0, m[16];
   const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
   bool flat = vl_text_is(type, "ORTHO");
   if (type && !flat && !vl_text_is(type, "PERSP"))
     return vl_camera_unknown(file, tree, "type", type, "there are PERSP, ORTHO");
-  if (fit && !vl_text_is(fit, "AUTO") && !vl_text_is(fit, "HORIZONTAL") && !vl_text_is(fit, "VERTICAL"))
-    return vl_camera_unknown(file, tree, "sensor_fit", fit, "there are AUTO, HORIZONTAL, VERTICAL");
-  vlResult result =
-      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width), VL_FIELD_SIDE("resolution_y", &d->height));
+  if (fit && !vl_text_is(fit, "AUTO") && !vl_text_is(fit, "HORIZONTAL") &&
+      !vl_text_is(fit, "VERTICAL"))
+    return vl_camera_unknown(file, tree, "sensor_fit", fit,
+                             "there are AUTO, HORIZONTAL, VERTICAL");
+  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width),
+                                   VL_FIELD_SIDE("resolution_y", &d->height));
   if (result == VL_OK)
-    result = flat ? vl_camera_number(file, tree, "ortho_scale", &ortho) : vl_camera_number(file, tree, "lens", &lens);
+    result = flat ? vl_camera_number(file, tree, "ortho_scale", &ortho)
+                  : vl_camera_number(file, tree, "lens", &lens);
   if (result == VL_OK)
-    result =
-        VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("sensor_width", &sensor_width),
-                       VL_FIELD_OPTIONAL("sensor_height", &sensor_height), VL_FIELD_OPTIONAL("shift_x", &shift_x),
-                       VL_FIELD_OPTIONAL("shift_y", &shift_y), VL_FIELD_OPTIONAL("pixel_aspect_x", &aspect_x),
-                       VL_FIELD_OPTIONAL("pixel_aspect_y", &aspect_y), VL_FIELD_OPTIONAL("clip_start", &d->near_plane),
-                       VL_FIELD_OPTIONAL("clip_end", &d->far_plane), VL_FIELD_LIST("matrix_world", m, 16));
-  if (result != VL_OK) return result;
-  if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 && aspect_x > 0.0 && aspect_y > 0.0))
-    return vl_camera_wrong(file, "blender: lens, sensor, scale and pixel aspect must be above zero");
+    result = VL_READ_FIELDS(
+        file, tree, VL_FIELD_OPTIONAL("sensor_width", &sensor_width),
+        VL_FIELD_OPTIONAL("sensor_height", &sensor_height),
+        VL_FIELD_OPTIONAL("shift_x", &shift_x), VL_FIELD_OPTIONAL("shift_y", &shift_y),
+        VL_FIELD_OPTIONAL("pixel_aspect_x", &aspect_x),
+        VL_FIELD_OPTIONAL("pixel_aspect_y", &aspect_y),
+        VL_FIELD_OPTIONAL("clip_start", &d->near_plane),
+        VL_FIELD_OPTIONAL("clip_end", &d->far_plane), VL_FIELD_LIST("matrix_world", m, 16));
+  if (result != VL_OK)
+    return result;
+  if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 &&
+        aspect_x > 0.0 && aspect_y > 0.0))
+    return vl_camera_wrong(file,
+                           "blender: lens, sensor, scale and pixel aspect must be above zero");
   double ratio = aspect_y / aspect_x, w = d->width, h = d->height;
   bool vertical = vl_text_is(fit, "VERTICAL");
   bool across = fit && !vl_text_is(fit, "AUTO") ? !vertical : w >= ratio * h;
-  double side = across ? w : ratio * h; /* the side that the sensor is fitted to, in pixel widths */
+  double side =
+      across ? w : ratio * h; /* the side that the sensor is fitted to, in pixel widths */
   d->fx = flat ? side / ortho : lens / (vertical ? sensor_height : sensor_width) * side;
   d->fy = d->fx / ratio;
   d->cx = 0.5 * w - shift_x * side;
@@ -45,15 +57,19 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
   return VL_OK;
 }
 
-static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double m[16];
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_PLANES, &c);
-  if (result != VL_OK) return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  if (result != VL_OK)
+    return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_camera_no_model(file, d);
   result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
   /* Blender requires that the smaller of the two aspects is 1 */
   double ratio = c.fx / c.fy, w = c.width, h = c.height, side = w >= ratio * h ? w : ratio * h;
@@ -63,14 +79,17 @@ static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_put_string(text, record->name[0] ? record->name : "Camera");
   vl_camera_put(text, ",\n  \"type\": \"%s\",\n  \"%s\": %.17g,\n", flat ? "ORTHO" : "PERSP",
                 flat ? "ortho_scale" : "lens", flat ? side / c.fx : c.fx * sensor / side);
-  vl_camera_put(text, "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": %.17g,\n  \"shift_x\": %.17g,\n", sensor,
-                (0.5 * w - c.cx) / side + 0.0);
+  vl_camera_put(
+      text, "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": %.17g,\n  \"shift_x\": %.17g,\n",
+      sensor, (0.5 * w - c.cx) / side + 0.0);
   vl_camera_put(text, "  \"shift_y\": %.17g,\n", (c.cy - 0.5 * h) * ratio / side + 0.0);
-  if (c.near_plane > 0.0) vl_camera_put(text, "  \"clip_start\": %.17g,\n", c.near_plane);
-  if (!isinf(c.far_plane)) vl_camera_put(text, "  \"clip_end\": %.17g,\n", c.far_plane);
+  if (c.near_plane > 0.0)
+    vl_camera_put(text, "  \"clip_start\": %.17g,\n", c.near_plane);
+  if (!isinf(c.far_plane))
+    vl_camera_put(text, "  \"clip_end\": %.17g,\n", c.far_plane);
   vl_camera_put(text, "  \"resolution_x\": %u,\n  \"resolution_y\": %u,\n", c.width, c.height);
-  vl_camera_put(text, "  \"pixel_aspect_x\": %.17g,\n  \"pixel_aspect_y\": %.17g,\n", ratio < 1.0 ? 1.0 / ratio : 1.0,
-                ratio < 1.0 ? 1.0 : ratio);
+  vl_camera_put(text, "  \"pixel_aspect_x\": %.17g,\n  \"pixel_aspect_y\": %.17g,\n",
+                ratio < 1.0 ? 1.0 / ratio : 1.0, ratio < 1.0 ? 1.0 : ratio);
   vl_camera_put(text, "  \"matrix_world\": [");
   vl_camera_put_rows(text, m);
   vl_camera_put(text, "]\n}\n");

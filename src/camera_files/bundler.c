@@ -1,19 +1,23 @@
-/* camera_files/bundler.c: Bundler's bundle.out (also of RealityCapture, Metashape and Theia). For each camera f k1 k2,
- * R, t: camera from world. Camera axes: x right, y up, z back. The principal point is the image's middle. The file has
- * no image size. Cameras with f = 0 were not reconstructed and do not count; a camera's name is its number in the file.
+/* camera_files/bundler.c: Bundler's bundle.out (also of RealityCapture, Metashape and Theia).
+ * For each camera f k1 k2, R, t: camera from world. Camera axes: x right, y up, z back. The
+ * principal point is the image's middle. The file has no image size. Cameras with f = 0 were
+ * not reconstructed and do not count; a camera's name is its number in the file.
  */
 #include <stdio.h>
 #include <string.h>
 
 #include "camera_files/lines.h"
 
-static vlResult next_numbers(const vlCameraFile *file, vlCameraLines *lines, double *values, uint32_t count) {
+static vlResult next_numbers(const vlCameraFile *file, vlCameraLines *lines, double *values,
+                             uint32_t count) {
   uint32_t read;
-  if (!vl_camera_next_line(lines)) return vl_camera_wrong(file, "bundler: the file ends within a camera");
+  if (!vl_camera_next_line(lines))
+    return vl_camera_wrong(file, "bundler: the file ends within a camera");
   return vl_camera_line_numbers(file, lines, lines->text, values, count, count, &read);
 }
 
-static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t size,
+                             vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
   double head[2] = {0.0, 0.0}, v[15];
   bool taken = false;
@@ -23,21 +27,26 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
   record->frames = 0;
   for (uint32_t i = 0; result == VL_OK && i < (uint32_t)head[0]; i++) {
     char name[16];
-    for (uint32_t row = 0; result == VL_OK && row < 5; row++) result = next_numbers(file, &lines, v + 3 * row, 3);
-    if (result != VL_OK || v[0] == 0.0) continue;
+    for (uint32_t row = 0; result == VL_OK && row < 5; row++)
+      result = next_numbers(file, &lines, v + 3 * row, 3);
+    if (result != VL_OK || v[0] == 0.0)
+      continue;
     snprintf(name, sizeof name, "%u", i);
     if (!taken && vl_camera_is_frame(file, record->frames, name)) {
       taken = true;
       vl_camera_name(record, name);
       vl_camera_set_opencv(&record->camera, (double[]){v[1], v[2], 0, 0}, 4);
-      for (int k = 6; k < 15; k++) v[k] = (k >= 12 ? k > 12 : 1) ? -v[k] : v[k]; /* y and z of rows R1, R2 and of t */
+      for (int k = 6; k < 15; k++)
+        v[k] = (k >= 12 ? k > 12 : 1) ? -v[k] : v[k]; /* y and z of rows R1, R2 and of t */
       vl_camera_set_pose(&record->camera, v + 3, v + 12);
       record->camera.fx = record->camera.fy = v[0];
     }
     record->frames++;
   }
-  if (result != VL_OK) return result;
-  if (!taken) return vl_camera_no_frame(file, "camera", record->frames);
+  if (result != VL_OK)
+    return result;
+  if (!taken)
+    return vl_camera_no_frame(file, "camera", record->frames);
   result = vl_camera_size_beside(file, (const char *const[]){NULL}, record);
   record->camera.cx = 0.5 * record->camera.width;
   record->camera.cy = 0.5 * record->camera.height;
@@ -49,21 +58,28 @@ static bool is_bundler(const char *text, size_t size) {
   return size > sizeof begin && memcmp(text, begin, sizeof begin - 1) == 0;
 }
 
-static vlResult write_bundler(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_bundler(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   vlCamera c;
   double k[14] = {0}, r[9], t[3];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
   bool radial = family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV;
-  for (uint32_t i = 2; i < 14 && radial && family == VL_LENS_OPENCV; i++) radial = k[i] == 0.0;
-  if (!radial) return vl_camera_no_model(file, &record->camera);
+  for (uint32_t i = 2; i < 14 && radial && family == VL_LENS_OPENCV; i++)
+    radial = k[i] == 0.0;
+  if (!radial)
+    return vl_camera_no_model(file, &record->camera);
   result = vl_camera_refuse_off_centre(file, &c);
-  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK)
+    return result;
   vl_camera_get_pose(&c, r, t);
-  if (family == VL_LENS_PINHOLE) k[0] = k[1] = 0.0;
+  if (family == VL_LENS_PINHOLE)
+    k[0] = k[1] = 0.0;
   vl_camera_put(text, "# Bundle file v0.3\n1 0\n%.17g %.17g %.17g\n", c.fx, k[0], k[1]);
   for (int i = 0; i < 3; i++) {
     double sign = i ? -1 : 1;
@@ -74,5 +90,7 @@ static vlResult write_bundler(const vlCameraFile *file, const vlCameraRecord *re
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_bundler = {
-    .name = "bundler", .is_text = is_bundler, .read_text = read_bundler, .write = write_bundler};
+const vlCameraFormat vl_format_bundler = {.name = "bundler",
+                                          .is_text = is_bundler,
+                                          .read_text = read_bundler,
+                                          .write = write_bundler};

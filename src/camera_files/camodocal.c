@@ -1,7 +1,8 @@
-/* camera_files/camodocal.c: camodocal's camera files, which VINS-Mono and VINS-Fusion also read, directly or through
- * a configuration file that names them. Camera axes: x right, y down, z forward. The first pixel's centre is (0, 0).
- * A configuration's body_T_cam0 (or extrinsicRotation, extrinsicTranslation) is body (IMU) from camera, and the
- * world's space is that of the body. */
+/* camera_files/camodocal.c: camodocal's camera files, which VINS-Mono and VINS-Fusion also
+ * read, directly or through a configuration file that names them. Camera axes: x right, y down,
+ * z forward. The first pixel's centre is (0, 0). A configuration's body_T_cam0 (or
+ * extrinsicRotation, extrinsicTranslation) is body (IMU) from camera, and the world's space is
+ * that of the body. */
 #include <stdio.h>
 
 #include "base/file.h"
@@ -12,34 +13,43 @@ typedef struct {
   const char *name;
   vlLensFamily family;
   const char *intrinsics[4]; /* names in projection_parameters */
-  const char *lens[8]; /* names in OpenCV's order, in distortion_parameters; for a fisheye in projection_parameters */
+  const char *lens[8]; /* names in OpenCV's order, in distortion_parameters; for a fisheye in
+                          projection_parameters */
 } Model;
 
 static const Model models[] = {
     {"PINHOLE", VL_LENS_OPENCV, {"fx", "fy", "cx", "cy"}, {"k1", "k2", "p1", "p2"}},
     {"MEI", VL_LENS_UNIFIED, {"gamma1", "gamma2", "u0", "v0"}, {"k1", "k2", "p1", "p2"}},
     {"KANNALA_BRANDT", VL_LENS_FISHEYE, {"mu", "mv", "u0", "v0"}, {"k2", "k3", "k4", "k5"}},
-    {"PINHOLE_FULL", VL_LENS_OPENCV, {"fx", "fy", "cx", "cy"}, {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
+    {"PINHOLE_FULL",
+     VL_LENS_OPENCV,
+     {"fx", "fy", "cx", "cy"},
+     {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
 enum { MODELS = VL_LENGTH(models) };
 
-static vlResult read_model(const vlCameraFile *file, const json_t *tree, const Model *model, vlCameraDef *d) {
+static vlResult read_model(const vlCameraFile *file, const json_t *tree, const Model *model,
+                           vlCameraDef *d) {
   const json_t *plane, *lens = NULL, *mirror = NULL;
   double f[4], k[8];
   bool fisheye = model->family == VL_LENS_FISHEYE;
   uint32_t count = 0;
   vlResult result = vl_camera_field(file, tree, "projection_parameters", &plane);
-  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, plane, model->intrinsics[i], &f[i]);
-  if (result == VL_OK && !fisheye) result = vl_camera_field(file, tree, "distortion_parameters", &lens);
+  for (int i = 0; i < 4 && result == VL_OK; i++)
+    result = vl_camera_number(file, plane, model->intrinsics[i], &f[i]);
+  if (result == VL_OK && !fisheye)
+    result = vl_camera_field(file, tree, "distortion_parameters", &lens);
   while (count < 8 && model->lens[count] && result == VL_OK) {
     result = vl_camera_number(file, fisheye ? plane : lens, model->lens[count], &k[count]);
     count++;
   }
   if (result == VL_OK && model->family == VL_LENS_UNIFIED) {
     result = vl_camera_field(file, tree, "mirror_parameters", &mirror);
-    if (result == VL_OK) result = vl_camera_number(file, mirror, "xi", &d->shape[0]);
+    if (result == VL_OK)
+      result = vl_camera_number(file, mirror, "xi", &d->shape[0]);
     d->projection = VL_PROJECTION_UNIFIED;
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
   if (fisheye)
     vl_camera_set_fisheye(d, k);
@@ -48,28 +58,35 @@ static vlResult read_model(const vlCameraFile *file, const json_t *tree, const M
   return VL_OK;
 }
 
-static vlResult read_camera(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_camera(const vlCameraFile *file, const json_t *tree,
+                            vlCameraRecord *record) {
   const json_t *field;
   vlResult result = vl_camera_field(file, tree, "model_type", &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *name = json_string_value(field);
   if (name && (vl_text_is(name, "SCARAMUZZA") || vl_text_is(name, "scaramuzza")))
-    return vl_camera_wrong_in(file, tree, "model_type",
-                              "camodocal: SCARAMUZZA's polynomial is no projection of velo; calibrate as MEI or "
-                              "KANNALA_BRANDT");
+    return vl_camera_wrong_in(
+        file, tree, "model_type",
+        "camodocal: SCARAMUZZA's polynomial is no projection of velo; calibrate as MEI or "
+        "KANNALA_BRANDT");
   for (int i = 0; i < MODELS; i++) {
-    if (!vl_text_is(name, models[i].name)) continue;
+    if (!vl_text_is(name, models[i].name))
+      continue;
     result = vl_camera_sides(file, tree, "image_width", "image_height", record);
-    if (result == VL_OK) result = read_model(file, tree, &models[i], &record->camera);
+    if (result == VL_OK)
+      result = read_model(file, tree, &models[i], &record->camera);
     vl_camera_set_origin(&record->camera);
     vl_camera_name(record, vl_camera_text(tree, "camera_name"));
     return result;
   }
-  return vl_camera_unknown(file, tree, "model_type", name, "there are PINHOLE, PINHOLE_FULL, MEI, KANNALA_BRANDT");
+  return vl_camera_unknown(file, tree, "model_type", name,
+                           "there are PINHOLE, PINHOLE_FULL, MEI, KANNALA_BRANDT");
 }
 
 /* Reads the camera file whose name is in a configuration file. */
-static vlResult read_named(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraRecord *record) {
+static vlResult read_named(const vlCameraFile *file, const json_t *tree, const char *key,
+                           vlCameraRecord *record) {
   char path[4096], *text;
   size_t size;
   json_t *inner = NULL;
@@ -77,20 +94,23 @@ static vlResult read_named(const vlCameraFile *file, const json_t *tree, const c
   if (!name || !vl_path_join(file->path, name, path, sizeof path))
     return vl_camera_wrong_in(file, tree, key, "camodocal: \"%s\" must be a file's name", key);
   vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlCameraPlaces places = {.root = NULL};
   vlCameraFile other = *file;
   other.path = path;
   other.places = &places;
   result = vl_camera_tree(&other, text, size, &inner);
-  if (result == VL_OK) result = read_camera(&other, inner, record);
+  if (result == VL_OK)
+    result = read_camera(&other, inner, record);
   json_decref(inner);
   vl_camera_places_free(&other);
   vl_free(file->context, text);
   return result;
 }
 
-static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t index, vlCameraDef *d) {
+static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t index,
+                          vlCameraDef *d) {
   char key[32];
   double m[16] = {[15] = 1.0}, r[9], t[3];
   snprintf(key, sizeof key, "body_T_cam%u", index);
@@ -100,15 +120,18 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t
   } else if (index == 0 && vl_camera_has(tree, "extrinsicRotation")) {
     result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("extrinsicRotation", r, 9),
                             VL_FIELD_LIST("extrinsicTranslation", t, 3));
-    for (int i = 0; i < 12 && result == VL_OK; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : t[i / 4];
+    for (int i = 0; i < 12 && result == VL_OK; i++)
+      m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : t[i / 4];
   } else {
     return VL_OK;
   }
-  if (result == VL_OK) vl_camera_set_matrix(d, m, false);
+  if (result == VL_OK)
+    vl_camera_set_matrix(d, m, false);
   return result;
 }
 
-static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
+                               vlCameraRecord *record) {
   char key[32];
   if (vl_camera_has(tree, "model_type")) {
     vlResult result = read_camera(file, tree, record);
@@ -120,48 +143,62 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree, vlC
     char name[16];
     snprintf(key, sizeof key, "cam%u_calib", i);
     snprintf(name, sizeof name, "cam%u", i);
-    if (!vl_camera_has(tree, key)) break;
-    if (found == UINT32_MAX && vl_camera_is_frame(file, i, name)) found = i;
+    if (!vl_camera_has(tree, key))
+      break;
+    if (found == UINT32_MAX && vl_camera_is_frame(file, i, name))
+      found = i;
     record->frames++;
   }
-  if (found == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
+  if (found == UINT32_MAX)
+    return vl_camera_no_frame(file, "camera", record->frames);
   snprintf(key, sizeof key, "cam%u_calib", found);
   uint32_t frames = record->frames;
   vlResult result = read_named(file, tree, key, record);
-  if (result == VL_OK) result = read_pose(file, tree, found, &record->camera);
+  if (result == VL_OK)
+    result = read_pose(file, tree, found, &record->camera);
   record->frames = frames;
   return result;
 }
 
-static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *record,
+                                vlCameraText *text) {
   vlCamera c;
   double k[14];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if (family == VL_LENS_PINHOLE) family = VL_LENS_OPENCV;
+  if (family == VL_LENS_PINHOLE)
+    family = VL_LENS_OPENCV;
   bool full = family == VL_LENS_OPENCV && n > 4, fits = !full || n <= 8;
   const Model *model = NULL;
   for (int i = 0; i < MODELS && fits; i++)
-    if (models[i].family == family && (!full || models[i].lens[4]) && !model) model = &models[i];
-  if (!model || (family == VL_LENS_UNIFIED && n > 4)) return vl_camera_no_model(file, &record->camera);
+    if (models[i].family == family && (!full || models[i].lens[4]) && !model)
+      model = &models[i];
+  if (!model || (family == VL_LENS_UNIFIED && n > 4))
+    return vl_camera_no_model(file, &record->camera);
   const double f[4] = {c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
   VL_PUT_FORM(text, record, &c,
               "%YAML:1.0\n---\nmodel_type: $model\ncamera_name: $name\nimage_width: $width\n"
               "image_height: $height\n",
               VL_WORD("model", model->name));
-  if (family == VL_LENS_UNIFIED) vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c.shape[0]);
+  if (family == VL_LENS_UNIFIED)
+    vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c.shape[0]);
   bool fisheye = family == VL_LENS_FISHEYE;
   vl_camera_put(text, fisheye ? "projection_parameters:\n" : "distortion_parameters:\n");
-  for (int i = 0; i < 8 && model->lens[i]; i++) vl_camera_put(text, "  %s: %.17g\n", model->lens[i], k[i] + 0.0);
-  if (!fisheye) vl_camera_put(text, "projection_parameters:\n");
-  for (int i = 0; i < 4; i++) vl_camera_put(text, "  %s: %.17g\n", model->intrinsics[i], f[i]);
+  for (int i = 0; i < 8 && model->lens[i]; i++)
+    vl_camera_put(text, "  %s: %.17g\n", model->lens[i], k[i] + 0.0);
+  if (!fisheye)
+    vl_camera_put(text, "projection_parameters:\n");
+  for (int i = 0; i < 4; i++)
+    vl_camera_put(text, "  %s: %.17g\n", model->intrinsics[i], f[i]);
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_camodocal = {.name = "camodocal",
-                                            .marks = {"model_type", "cam0_calib", "projection_parameters"},
-                                            .one_mark = true,
-                                            .read = read_camodocal,
-                                            .write = write_camodocal};
+const vlCameraFormat vl_format_camodocal = {
+    .name = "camodocal",
+    .marks = {"model_type", "cam0_calib", "projection_parameters"},
+    .one_mark = true,
+    .read = read_camodocal,
+    .write = write_camodocal};

@@ -1,7 +1,8 @@
-/* camera_files/collada.c: COLLADA's cameras (.dae, versions 1.4 and 1.5): nodes of the visual scenes with
- * <instance_camera>. Camera axes: x right, y up, z back; the node's transforms in their order, world from camera,
- * column vectors; the axes of the world stay those of the file (<up_axis>). Angles are in degrees. There are no pixels:
- * the image's size comes from the aspect ratio; xmag and ymag are half the image's sides, as in glTF. */
+/* camera_files/collada.c: COLLADA's cameras (.dae, versions 1.4 and 1.5): nodes of the visual
+ * scenes with <instance_camera>. Camera axes: x right, y up, z back; the node's transforms in
+ * their order, world from camera, column vectors; the axes of the world stay those of the file
+ * (<up_axis>). Angles are in degrees. There are no pixels: the image's size comes from the
+ * aspect ratio; xmag and ymag are half the image's sides, as in glTF. */
 #include <math.h>
 
 #include "base/text.h"
@@ -21,12 +22,15 @@ static bool has_tag(const json_t *element, const char *tag) {
 /* <lookat>: eye, the point that is looked at, up. */
 static bool look_at(const double v[9], vlMat4 *m) {
   double x[3], y[3], z[3], length = 0.0;
-  for (int i = 0; i < 3; i++) z[i] = v[i] - v[3 + i];
+  for (int i = 0; i < 3; i++)
+    z[i] = v[i] - v[3 + i];
   length = vl_precise_hypot(vl_precise_hypot(z[0], z[1]), z[2]);
-  for (int i = 0; i < 3; i++) z[i] /= length;
+  for (int i = 0; i < 3; i++)
+    z[i] /= length;
   vl_cross3(v + 6, z, x);
   length = vl_precise_hypot(vl_precise_hypot(x[0], x[1]), x[2]);
-  for (int i = 0; i < 3; i++) x[i] /= length;
+  for (int i = 0; i < 3; i++)
+    x[i] /= length;
   vl_cross3(z, x, y);
   *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++) {
@@ -50,10 +54,12 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
       result = vl_camera_element_numbers(file, child, step.m, 16);
     } else if (has_tag(child, "translate")) {
       result = vl_camera_element_numbers(file, child, v, 3);
-      if (result == VL_OK) step = vl_mat4_translate(v[0], v[1], v[2]);
+      if (result == VL_OK)
+        step = vl_mat4_translate(v[0], v[1], v[2]);
     } else if (has_tag(child, "scale")) {
       result = vl_camera_element_numbers(file, child, v, 3);
-      if (result == VL_OK) step = vl_mat4_scale(v[0], v[1], v[2]);
+      if (result == VL_OK)
+        step = vl_mat4_scale(v[0], v[1], v[2]);
     } else if (has_tag(child, "rotate")) {
       result = vl_camera_element_numbers(file, child, v, 4);
       if (result == VL_OK && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0))
@@ -67,7 +73,8 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
     } else {
       continue;
     }
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     *world = vl_mat4_multiply(*world, step);
   }
   return VL_OK;
@@ -81,24 +88,30 @@ typedef struct {
   uint32_t count;
 } Search;
 
-static vlResult search(const vlCameraFile *file, const json_t *node, const json_t **stops, int depth, Search *s) {
+static vlResult search(const vlCameraFile *file, const json_t *node, const json_t **stops,
+                       int depth, Search *s) {
   const json_t *child;
   size_t i;
-  if (depth == MOST_DEPTH) return vl_camera_wrong_element(file, node, "nested too deeply for a camera");
+  if (depth == MOST_DEPTH)
+    return vl_camera_wrong_element(file, node, "nested too deeply for a camera");
   stops[depth] = node;
   const char *name = vl_camera_text(node, "name");
-  if (!name) name = vl_camera_text(node, "id");
+  if (!name)
+    name = vl_camera_text(node, "id");
   json_array_foreach(json_object_get(node, "/"), i, child) {
-    if (has_tag(child, "instance_camera") && !s->camera && vl_camera_is_frame(file, s->count, name)) {
+    if (has_tag(child, "instance_camera") && !s->camera &&
+        vl_camera_is_frame(file, s->count, name)) {
       s->camera = child;
       s->depth = depth + 1;
       s->name = name;
       memcpy(s->stops, stops, sizeof s->stops);
     }
     s->count += has_tag(child, "instance_camera");
-    if (!has_tag(child, "node")) continue;
+    if (!has_tag(child, "node"))
+      continue;
     vlResult result = search(file, child, stops, depth + 1, s);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
   return VL_OK;
 }
@@ -108,40 +121,54 @@ static const json_t *find_camera(const json_t *tree, const char *url) {
   size_t i;
   json_array_foreach(json_object_get(library, "/"), i, camera) {
     const char *id = vl_camera_text(camera, "id");
-    if (has_tag(camera, "camera") && id && url && *url == '#' && vl_text_is(id, url + 1)) return camera;
+    if (has_tag(camera, "camera") && id && url && *url == '#' && vl_text_is(id, url + 1))
+      return camera;
   }
   return NULL;
 }
 
-/* Half the width and height of the image: at distance 1, or for parallel projections in the world's unit. */
-static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool flat, double half[2]) {
+/* Half the width and height of the image: at distance 1, or for parallel projections in the
+ * world's unit. */
+static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool flat,
+                           double half[2]) {
   const char *const tags[2] = {flat ? "xmag" : "xfov", flat ? "ymag" : "yfov"};
   double aspect = VL_UNSET;
   vlResult result = vl_camera_child_number(file, lens, "aspect_ratio", false, &aspect);
   for (int i = 0; i < 2 && result == VL_OK; i++) {
     half[i] = VL_UNSET;
     result = vl_camera_child_number(file, lens, tags[i], false, &half[i]);
-    if (result != VL_OK || vl_is_unset(half[i])) continue;
+    if (result != VL_OK || vl_is_unset(half[i]))
+      continue;
     half[i] = fabs(half[i]);
     if (!(half[i] > 0.0) || (!flat && half[i] >= 180.0))
-      return vl_camera_wrong_element(file, vl_camera_child(lens, tags[i]), "<%s> gives no image", tags[i]);
-    if (!flat) half[i] = vl_precise_tan(0.5 * degree * half[i]);
+      return vl_camera_wrong_element(file, vl_camera_child(lens, tags[i]),
+                                     "<%s> gives no image", tags[i]);
+    if (!flat)
+      half[i] = vl_precise_tan(0.5 * degree * half[i]);
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (vl_is_unset(half[0]) && vl_is_unset(half[1]))
-    return vl_camera_wrong_element(file, lens, "there is neither <%s> nor <%s>", tags[0], tags[1]);
-  if (!vl_is_unset(half[0]) && !vl_is_unset(half[1])) return VL_OK;
+    return vl_camera_wrong_element(file, lens, "there is neither <%s> nor <%s>", tags[0],
+                                   tags[1]);
+  if (!vl_is_unset(half[0]) && !vl_is_unset(half[1]))
+    return VL_OK;
   if (vl_is_unset(aspect) && file->def->width && file->def->height)
     aspect = (double)file->def->width / file->def->height;
   if (!(aspect > 0.0))
-    return vl_camera_wrong_element(file, lens, "there is no <aspect_ratio>; give a size: --size WIDTHxHEIGHT");
-  if (vl_is_unset(half[0])) half[0] = half[1] * aspect;
-  if (vl_is_unset(half[1])) half[1] = half[0] / aspect;
+    return vl_camera_wrong_element(
+        file, lens, "there is no <aspect_ratio>; give a size: --size WIDTHxHEIGHT");
+  if (vl_is_unset(half[0]))
+    half[0] = half[1] * aspect;
+  if (vl_is_unset(half[1]))
+    half[1] = half[0] / aspect;
   return VL_OK;
 }
 
-static vlResult read_collada(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node, *stops[MOST_DEPTH] = {NULL};
+static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
+  const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node,
+               *stops[MOST_DEPTH] = {NULL};
   vlCameraDef *d = &record->camera;
   Search s = {.camera = NULL};
   vlMat4 world = vl_mat4_identity();
@@ -150,28 +177,40 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree, vlCam
   vlResult result = VL_OK;
   json_array_foreach(json_object_get(scenes, "/"), i, scene) {
     json_array_foreach(json_object_get(scene, "/"), k, node) {
-      if (result == VL_OK && has_tag(node, "node")) result = search(file, node, stops, 0, &s);
+      if (result == VL_OK && has_tag(node, "node"))
+        result = search(file, node, stops, 0, &s);
     }
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   record->frames = s.count;
-  if (!s.camera) return vl_camera_no_frame(file, "camera", s.count);
+  if (!s.camera)
+    return vl_camera_no_frame(file, "camera", s.count);
   const json_t *camera = find_camera(tree, vl_camera_text(s.camera, "url"));
-  if (!camera) return vl_camera_wrong_element(file, s.camera, "the node names a camera that does not exist");
+  if (!camera)
+    return vl_camera_wrong_element(file, s.camera,
+                                   "the node names a camera that does not exist");
   const json_t *common = vl_camera_child(vl_camera_child(camera, "optics"), "technique_common");
   const json_t *lens = vl_camera_child(common, "perspective");
   bool flat = !lens;
-  if (flat) lens = vl_camera_child(common, "orthographic");
-  if (!lens) return vl_camera_wrong_element(file, camera, "the camera is neither perspective nor orthographic");
+  if (flat)
+    lens = vl_camera_child(common, "orthographic");
+  if (!lens)
+    return vl_camera_wrong_element(file, camera,
+                                   "the camera is neither perspective nor orthographic");
   for (int depth = 0; depth < s.depth && result == VL_OK; depth++)
     result = add_transforms(file, s.stops[depth], &world);
-  if (result == VL_OK) result = read_sides(file, lens, flat, half);
+  if (result == VL_OK)
+    result = read_sides(file, lens, flat, half);
   if (result == VL_OK)
     result = VL_READ_CHILDREN(file, lens, VL_FIELD_OPTIONAL("znear", &d->near_plane),
                               VL_FIELD_OPTIONAL("zfar", &d->far_plane));
-  if (result == VL_OK) result = vl_camera_size(file, half[0] / half[1], record);
-  if (result != VL_OK) return result;
-  if (flat) d->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  if (result == VL_OK)
+    result = vl_camera_size(file, half[0] / half[1], record);
+  if (result != VL_OK)
+    return result;
+  if (flat)
+    d->projection = VL_PROJECTION_ORTHOGRAPHIC;
   d->fx = 0.5 * d->width / half[0];
   d->fy = 0.5 * d->height / half[1];
   d->has_matrix = true;
@@ -184,17 +223,21 @@ static bool is_collada(const json_t *tree) {
   return has_tag(tree, "COLLADA");
 }
 
-static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   vlCamera c;
   double k[14];
   uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+  if (result != VL_OK)
+    return result;
   bool flat = c.projection == VL_PROJECTION_ORTHOGRAPHIC;
   if (!flat && vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
     return vl_camera_no_model(file, &record->camera);
   result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   double x = 0.5 * c.width / c.fx, y = 0.5 * c.height / c.fy;
   const char *kind = flat ? "orthographic" : "perspective", *side = flat ? "mag" : "fov";
   if (!flat) {
@@ -209,7 +252,8 @@ static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *re
       "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
       "  <asset><created>1970-01-01T00:00:00</created><modified>1970-01-01T00:00:00</modified>"
       "<unit name=\"meter\" meter=\"1\"/><up_axis>Y_UP</up_axis></asset>\n"
-      "  <library_cameras>\n    <camera id=\"camera-lens\" name=\"camera\">\n      <optics><technique_common>\n"
+      "  <library_cameras>\n    <camera id=\"camera-lens\" name=\"camera\">\n      "
+      "<optics><technique_common>\n"
       "        <$kind>\n          <x$side>$x</x$side>\n          <y$side>$y</y$side>\n"
       "          <znear>$planes@0</znear>\n          <zfar>$planes@1</zfar>\n        </$kind>\n"
       "      </technique_common></optics>\n    </camera>\n  </library_cameras>\n"
@@ -217,9 +261,10 @@ static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *re
       "      <node id=\"camera\" name=\"camera\" type=\"NODE\">\n        <matrix "
       "sid=\"transform\">$flipped:s</matrix>\n"
       "        <instance_camera url=\"#camera-lens\"/>\n      </node>\n    </visual_scene>\n"
-      "  </library_visual_scenes>\n  <scene><instance_visual_scene url=\"#scene\"/></scene>\n</COLLADA>\n",
-      VL_WORD("kind", kind), VL_WORD("side", side), VL_VALUES("x", &x, 1), VL_VALUES("y", &y, 1),
-      VL_VALUES("planes", planes, 2));
+      "  </library_visual_scenes>\n  <scene><instance_visual_scene "
+      "url=\"#scene\"/></scene>\n</COLLADA>\n",
+      VL_WORD("kind", kind), VL_WORD("side", side), VL_VALUES("x", &x, 1),
+      VL_VALUES("y", &y, 1), VL_VALUES("planes", planes, 2));
 }
 
 const vlCameraFormat vl_format_collada = {

@@ -1,6 +1,7 @@
-/* camera_files/colmap.c: COLMAP's model, in its text form: cameras.txt (id, model, width, height, parameters) and
- * images.txt (id, quaternion w x y z, translation, camera id, name; a line of points follows each). OpenCV's axes,
- * camera from world, but the first pixel's centre is (0.5, 0.5), as in velo. */
+/* camera_files/colmap.c: COLMAP's model, in its text form: cameras.txt (id, model, width,
+ * height, parameters) and images.txt (id, quaternion w x y z, translation, camera id, name; a
+ * line of points follows each). OpenCV's axes, camera from world, but the first pixel's centre
+ * is (0.5, 0.5), as in velo. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,16 +24,20 @@ static char *next_line(Lines *lines) {
   while (lines->at < lines->end) {
     char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
     lines->at = stop ? stop + 1 : lines->end;
-    if (stop) *stop = 0;
+    if (stop)
+      *stop = 0;
     lines->line++;
     size_t n = strlen(line);
-    if (n && line[n - 1] == '\r') line[n - 1] = 0;
-    if (line[0] != '#') return line;
+    if (n && line[n - 1] == '\r')
+      line[n - 1] = 0;
+    if (line[0] != '#')
+      return line;
   }
   return NULL;
 }
 
-static vlResult wrong_line(const vlCameraFile *file, const char *path, uint32_t line, const char *what) {
+static vlResult wrong_line(const vlCameraFile *file, const char *path, uint32_t line,
+                           const char *what) {
   return vl_fail_at(file->error, VL_ERROR_SCENE, path, line, 1, "colmap: %s", what);
 }
 
@@ -52,16 +57,19 @@ static char *next_word(char **at) {
   return word;
 }
 
-static vlResult read_camera_line(const vlCameraFile *file, const char *path, const Lines *lines, char *rest,
-                                 vlCameraDef *d) {
+static vlResult read_camera_line(const vlCameraFile *file, const char *path, const Lines *lines,
+                                 char *rest, vlCameraDef *d) {
   char *model = next_word(&rest);
   double size[2], parameters[12];
   uint32_t count = 0;
   for (int i = 0; i < 2; i++)
-    if (!next_number(&rest, &size[i]) || !(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
-      return wrong_line(file, path, lines->line, "after the model come width and height in whole pixels");
+    if (!next_number(&rest, &size[i]) || !(size[i] >= 1.0 && size[i] <= 1 << 24) ||
+        size[i] != floor(size[i]))
+      return wrong_line(file, path, lines->line,
+                        "after the model come width and height in whole pixels");
   for (rest += strspn(rest, " \t"); *rest; rest += strspn(rest, " \t")) {
-    if (count == 12) return wrong_line(file, path, lines->line, "more than 12 parameters");
+    if (count == 12)
+      return wrong_line(file, path, lines->line, "more than 12 parameters");
     if (!next_number(&rest, &parameters[count++]))
       return wrong_line(file, path, lines->line, "a parameter is no finite number");
   }
@@ -69,70 +77,87 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   d->height = (uint32_t)size[1];
   vlError error = {0};
   vlResult result = vl_camera_def_colmap(d, model, parameters, count, &error);
-  if (result == VL_OK) return VL_OK;
+  if (result == VL_OK)
+    return VL_OK;
   vl_shorten_quoted(&error, model);
   return wrong_line(file, path, lines->line, error.message);
 }
 
 /* Reads the camera with this id, or the first camera if id is null. */
-static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id, vlCameraRecord *record) {
+static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id,
+                             vlCameraRecord *record) {
   char *text;
   size_t size;
   vlResult result = vl_colmap_load(file, path, &text, &size);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   Lines lines = {text, text + size, 0};
   bool found = false;
   for (char *line; result == VL_OK && !found && (line = next_line(&lines));) {
     double number;
-    if (line[strspn(line, " \t")] == 0) continue;
+    if (line[strspn(line, " \t")] == 0)
+      continue;
     if (!next_number(&line, &number))
       result = wrong_line(file, path, lines.line, "a line begins with the camera's number");
     else if ((found = !id || number == *id))
       result = read_camera_line(file, path, &lines, line, &record->camera);
   }
-  if (result == VL_OK && !found) result = wrong_line(file, path, 0, "the camera of the image is not there");
+  if (result == VL_OK && !found)
+    result = wrong_line(file, path, 0, "the camera of the image is not there");
   vl_free(file->context, text);
   return result;
 }
 
-static vlResult read_image_line(const vlCameraFile *file, const char *path, uint32_t line, char *rest, bool *found,
-                                uint32_t index, double *id, vlCameraRecord *record) {
+static vlResult read_image_line(const vlCameraFile *file, const char *path, uint32_t line,
+                                char *rest, bool *found, uint32_t index, double *id,
+                                vlCameraRecord *record) {
   double v[9], r[9];
   for (int i = 0; i < 9; i++)
     if (!next_number(&rest, &v[i]))
-      return wrong_line(file, path, line, "an image has 9 finite numbers: id, qw qx qy qz, tx ty tz, camera");
+      return wrong_line(file, path, line,
+                        "an image has 9 finite numbers: id, qw qx qy qz, tx ty tz, camera");
   rest += strspn(rest, " \t");
   *found = vl_camera_is_frame(file, index, rest);
-  if (!*found) return VL_OK;
-  if (!vl_rotation_from_quaternion(v + 1, r)) return wrong_line(file, path, line, "the quaternion is zero");
+  if (!*found)
+    return VL_OK;
+  if (!vl_rotation_from_quaternion(v + 1, r))
+    return wrong_line(file, path, line, "the quaternion is zero");
   vl_camera_set_pose(&record->camera, r, v + 5);
   vl_camera_name(record, rest);
   *id = v[8];
   return VL_OK;
 }
 
-static vlResult read_images(const vlCameraFile *file, const char *path, double *id, vlCameraRecord *record) {
+static vlResult read_images(const vlCameraFile *file, const char *path, double *id,
+                            vlCameraRecord *record) {
   char *text;
   size_t size;
   vlResult result = vl_colmap_load(file, path, &text, &size);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   Lines lines = {text, text + size, 0};
   bool taken = false;
   record->frames = 0;
   for (char *line; result == VL_OK && (line = next_line(&lines));) {
-    if (line[strspn(line, " \t")] == 0) continue;
+    if (line[strspn(line, " \t")] == 0)
+      continue;
     bool found = false;
-    if (!taken) result = read_image_line(file, path, lines.line, line, &found, record->frames, id, record);
+    if (!taken)
+      result =
+          read_image_line(file, path, lines.line, line, &found, record->frames, id, record);
     taken = taken || found;
     record->frames++;
     next_line(&lines); /* skip the line of points */
   }
-  if (result == VL_OK && !taken) result = vl_camera_no_frame(file, "image", record->frames);
+  if (result == VL_OK && !taken)
+    result = vl_camera_no_frame(file, "image", record->frames);
   vl_free(file->context, text);
   return result;
 }
 
-/* ---- many images ----------------------------------------------------------------------------------------------- */
+/* ---- many images
+ * -----------------------------------------------------------------------------------------------
+ */
 
 typedef struct {
   double id;
@@ -145,13 +170,14 @@ static int by_id(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
-                                 CameraIds *ids) {
+static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, const char *path,
+                                 char *text, size_t size, CameraIds *ids) {
   Lines lines = {text, text + size, 0};
   for (char *line; (line = next_line(&lines));) {
     vlCameraRecord record;
     CameraId id;
-    if (line[strspn(line, " \t")] == 0) continue;
+    if (line[strspn(line, " \t")] == 0)
+      continue;
     memset(&record, 0, sizeof record);
     record.camera = vl_default_camera_def(1, 1);
     record.dialect = VL_CAMERA_DIALECT_COLMAP;
@@ -159,35 +185,46 @@ static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, cons
       return wrong_line(file, path, lines.line, "a line begins with the camera's number");
     vlResult result = read_camera_line(file, path, &lines, line, &record.camera);
     snprintf(record.name, sizeof record.name, "%.0f", id.id);
-    if (result == VL_OK) result = vl_trajectory_add_camera(t, file, &record, &id.index);
-    if (result != VL_OK) return result;
+    if (result == VL_OK)
+      result = vl_trajectory_add_camera(t, file, &record, &id.index);
+    if (result != VL_OK)
+      return result;
     CameraId *added = VL_PUSH(file->context, ids);
-    if (!added) return vl_fail_memory(file->error);
+    if (!added)
+      return vl_fail_memory(file->error);
     *added = id;
   }
-  if (ids->count) qsort(ids->items, ids->count, sizeof *ids->items, by_id);
+  if (ids->count)
+    qsort(ids->items, ids->count, sizeof *ids->items, by_id);
   return VL_OK;
 }
 
-static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
-                                const CameraIds *ids) {
+static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path,
+                                char *text, size_t size, const CameraIds *ids) {
   Lines lines = {text, text + size, 0};
   vlCameraFileDef any = *file->def; /* no frame filter: every image is read */
   vlCameraFile copy = *file;
   copy.def = &any;
   any.frame = NULL;
   for (char *line; (line = next_line(&lines));) {
-    if (line[strspn(line, " \t")] == 0) continue;
+    if (line[strspn(line, " \t")] == 0)
+      continue;
     vlCameraRecord record = {.frames = 0};
     CameraId wanted = {0, 0};
     bool found = false;
-    vlResult result = read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record);
-    if (result != VL_OK) return result;
-    const CameraId *id = ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
+    vlResult result =
+        read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record);
+    if (result != VL_OK)
+      return result;
+    const CameraId *id =
+        ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
     vlFramePlace place = {path, lines.line, (uint32_t)t->frames.count, record.name};
-    if (!id) return vl_frame_wrong(file, &place, "there is no camera %.0f in cameras.txt", wanted.id);
-    result = vl_trajectory_add(t, file, &place, id->index, record.camera.world_from_camera, VL_UNSET);
-    if (result != VL_OK) return result;
+    if (!id)
+      return vl_frame_wrong(file, &place, "there is no camera %.0f in cameras.txt", wanted.id);
+    result = vl_trajectory_add(t, file, &place, id->index, record.camera.world_from_camera,
+                               VL_UNSET);
+    if (result != VL_OK)
+      return result;
     next_line(&lines); /* skip the line of points */
   }
   return VL_OK;
@@ -199,12 +236,17 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
   char paths[2][4096], *texts[2] = {NULL, NULL};
   size_t sizes[2] = {0, 0};
   CameraIds ids = {NULL, 0, 0};
-  if (!find_files(file->path, true, paths[0], paths[1])) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (!find_files(file->path, true, paths[0], paths[1]))
+    return vl_camera_wrong(file, "colmap: the name is too long");
   vlResult result = VL_OK;
-  for (int i = 0; i < 2 && result == VL_OK; i++) result = vl_colmap_load(file, paths[i], &texts[i], &sizes[i]);
-  if (result == VL_OK) result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
-  if (result == VL_OK) result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
-  for (int i = 0; i < 2; i++) vl_free(file->context, texts[i]);
+  for (int i = 0; i < 2 && result == VL_OK; i++)
+    result = vl_colmap_load(file, paths[i], &texts[i], &sizes[i]);
+  if (result == VL_OK)
+    result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
+  if (result == VL_OK)
+    result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
+  for (int i = 0; i < 2; i++)
+    vl_free(file->context, texts[i]);
   VL_ARRAY_FREE(file->context, &ids);
   return result;
 }
@@ -212,14 +254,17 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
 bool vl_colmap_is_name(const char *path) {
   static const char *const names[] = {"cameras.txt", "images.txt", "cameras.bin", "images.bin"};
   for (int i = 0; i < 4; i++)
-    if (vl_ends_with(path, names[i])) return true;
+    if (vl_ends_with(path, names[i]))
+      return true;
   return false;
 }
 
-/* Returns whether the path is a folder. A missing path counts as a folder unless it has the name of a model file. */
+/* Returns whether the path is a folder. A missing path counts as a folder unless it has the
+ * name of a model file. */
 static bool is_folder(const char *path) {
   struct stat status;
-  if (stat(path, &status) == 0) return S_ISDIR(status.st_mode);
+  if (stat(path, &status) == 0)
+    return S_ISDIR(status.st_mode);
   return !vl_ends_with(path, ".txt") && !vl_ends_with(path, ".bin");
 }
 
@@ -230,16 +275,19 @@ static bool exists(const char *folder, const char *inner, const char *name) {
   return length > 0 && length < (int)sizeof path && stat(path, &status) == 0;
 }
 
-/* Finds the paths of both files from the path of either, or of their folder, or of a project with its models in
- * sparse. A folder with both forms is read in its binary one, as COLMAP does. */
+/* Finds the paths of both files from the path of either, or of their folder, or of a project
+ * with its models in sparse. A folder with both forms is read in its binary one, as COLMAP
+ * does. */
 static bool find_files(const char *path, bool to_read, char cameras[4096], char images[4096]) {
   static const char *const inner[] = {"", "sparse/0/", "sparse/", "0/"};
   int a, b;
   if (is_folder(path)) {
     int found = 0, places = to_read ? 4 : 1;
-    while (found < places && !exists(path, inner[found], "cameras.bin") && !exists(path, inner[found], "cameras.txt"))
+    while (found < places && !exists(path, inner[found], "cameras.bin") &&
+           !exists(path, inner[found], "cameras.txt"))
       found++;
-    const char *below = inner[found % places], *suffix = exists(path, below, "cameras.bin") ? "bin" : "txt";
+    const char *below = inner[found % places],
+               *suffix = exists(path, below, "cameras.bin") ? "bin" : "txt";
     a = snprintf(cameras, 4096, "%s/%scameras.%s", path, below, suffix);
     b = snprintf(images, 4096, "%s/%simages.%s", path, below, suffix);
   } else {
@@ -259,10 +307,11 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   char cameras[4096], images[4096];
   struct stat status;
   double id = 0.0;
-  if (!find_files(file->path, true, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (!find_files(file->path, true, cameras, images))
+    return vl_camera_wrong(file, "colmap: the name is too long");
   /* cameras.txt alone: the camera is at the origin, unless an image's pose was requested */
-  if (stat(images, &status) == 0 || file->def->frame || vl_ends_with(file->path, "images.txt") ||
-      vl_ends_with(file->path, "images.bin")) {
+  if (stat(images, &status) == 0 || file->def->frame ||
+      vl_ends_with(file->path, "images.txt") || vl_ends_with(file->path, "images.bin")) {
     vlResult result = read_images(file, images, &id, record);
     return result == VL_OK ? read_cameras(file, cameras, &id, record) : result;
   }
@@ -271,28 +320,35 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   return read_cameras(file, cameras, NULL, record);
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, const char **model, double p[12],
-                             uint32_t *count) {
+static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, const char **model,
+                             double p[12], uint32_t *count) {
   double k[14] = {0};
   const double *c = d->distortion_coefficients;
   *count = 0;
   if (d->projection == VL_PROJECTION_FOV && d->distortion == VL_DISTORTION_NONE) {
     *model = "FOV";
     p[(*count)++] = d->shape[0];
-  } else if (d->projection == VL_PROJECTION_EQUIDISTANT && d->distortion == VL_DISTORTION_THIN_PRISM) {
+  } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
+             d->distortion == VL_DISTORTION_THIN_PRISM) {
     *model = "THIN_PRISM_FISHEYE";
-    for (int i = 0; i < 8; i++) p[(*count)++] = c[i];
-  } else if (d->projection == VL_PROJECTION_EQUIDISTANT && d->distortion != VL_DISTORTION_OPENCV) {
+    for (int i = 0; i < 8; i++)
+      p[(*count)++] = c[i];
+  } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
+             d->distortion != VL_DISTORTION_OPENCV) {
     *model = "OPENCV_FISHEYE";
-    for (uint32_t i = 0; i < 4; i++) p[(*count)++] = i < d->distortion_count ? c[i] : 0.0;
+    for (uint32_t i = 0; i < 4; i++)
+      p[(*count)++] = i < d->distortion_count ? c[i] : 0.0;
   } else {
     uint32_t n = 0;
     if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n))
       return vl_camera_no_model(file, d);
     for (int i = 8; i < 14; i++)
-      if (k[i] != 0.0) return vl_camera_no_model(file, d);
+      if (k[i] != 0.0)
+        return vl_camera_no_model(file, d);
     *model = n == 0 ? "PINHOLE" : n == 4 ? "OPENCV" : "FULL_OPENCV";
     *count = n == 0 ? 0 : n == 4 ? 4 : 8;
     memcpy(p, k, *count * sizeof *p);
@@ -300,23 +356,33 @@ static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, con
   return VL_OK;
 }
 
-static vlResult write_text(const vlCameraFile *file, const char *path, const vlCameraText *text) {
+static vlResult write_text(const vlCameraFile *file, const char *path,
+                           const vlCameraText *text) {
   vlFileWriter writer;
-  if (text->failed) return vl_fail_memory(file->error);
-  vlResult result = vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error);
-  if (result != VL_OK) return result;
+  if (text->failed)
+    return vl_fail_memory(file->error);
+  vlResult result =
+      vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error);
+  if (result != VL_OK)
+    return result;
   vl_file_write(&writer, text->text.items, text->text.count);
   return vl_file_commit(&writer, file->error);
 }
 
 static void put_lines(vlCameraText *cameras, vlCameraText *images, const vlColmapRecord *r) {
-  vl_camera_put(cameras, "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]; the first pixel's centre is (0.5, 0.5)\n");
+  vl_camera_put(
+      cameras,
+      "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]; the first pixel's centre is (0.5, 0.5)\n");
   vl_camera_put(cameras, "1 %s %u %u", r->model, r->width, r->height);
-  for (uint32_t i = 0; i < r->count; i++) vl_camera_put(cameras, " %.17g", r->parameters[i] + 0.0);
+  for (uint32_t i = 0; i < r->count; i++)
+    vl_camera_put(cameras, " %.17g", r->parameters[i] + 0.0);
   vl_camera_put(cameras, "\n");
-  vl_camera_put(images, "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; camera from world\n1");
-  for (int i = 0; i < 4; i++) vl_camera_put(images, " %.17g", r->quaternion[i] + 0.0);
-  for (int i = 0; i < 3; i++) vl_camera_put(images, " %.17g", r->translation[i] + 0.0);
+  vl_camera_put(
+      images, "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; camera from world\n1");
+  for (int i = 0; i < 4; i++)
+    vl_camera_put(images, " %.17g", r->quaternion[i] + 0.0);
+  for (int i = 0; i < 3; i++)
+    vl_camera_put(images, " %.17g", r->translation[i] + 0.0);
   vl_camera_put(images, " 1 %s\n\n", r->name);
 }
 
@@ -327,11 +393,15 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
   uint32_t count = 0;
   vlColmapRecord out = {.name = record->name[0] ? record->name : "camera"};
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result == VL_OK) result = choose_model(file, &record->camera, &out.model, p, &count);
-  if (result != VL_OK) return result;
-  if (!find_files(file->path, false, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (result == VL_OK)
+    result = choose_model(file, &record->camera, &out.model, p, &count);
+  if (result != VL_OK)
+    return result;
+  if (!find_files(file->path, false, cameras, images))
+    return vl_camera_wrong(file, "colmap: the name is too long");
   if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
-    return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path, strerror(errno));
+    return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path,
+                   strerror(errno));
   out.width = c.width;
   out.height = c.height;
   const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
@@ -346,12 +416,13 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
   else
     put_lines(&text, &poses, &out);
   result = write_text(file, cameras, &text);
-  if (result == VL_OK) result = write_text(file, images, &poses);
+  if (result == VL_OK)
+    result = write_text(file, images, &poses);
   VL_ARRAY_FREE(file->context, &text.text);
   VL_ARRAY_FREE(file->context, &poses.text);
   return result;
 }
 
-/* The row has no functions: a model consists of two files, so vl_camera_read and vl_camera_write call COLMAP's
- * functions directly. */
+/* The row has no functions: a model consists of two files, so vl_camera_read and
+ * vl_camera_write call COLMAP's functions directly. */
 const vlCameraFormat vl_format_colmap = {.name = "colmap", .write_folder = write_model};

@@ -1,7 +1,9 @@
-/* camera_files/dso.c: camera.txt of DSO, LSD-SLAM and the TUM monoVO dataset: a line with the model's name (without
- * one: FOV), fx fy cx cy and the lens, a line with the image's size, then the rectification, which is ignored. There is
- * no pose. The first pixel's centre is (0, 0). If cx and cy are below 1, the four numbers are shares of the image's
- * sides, which begins at (-0.5, -0.5). */
+/* camera_files/dso.c: camera.txt of DSO, LSD-SLAM and the TUM monoVO dataset: a line with the
+ * model's name (without one: FOV), fx fy cx cy and the lens, a line with the image's size, then
+ * the rectification, which is ignored. There is no pose. The first pixel's centre is (0, 0). If
+ * cx and cy are below 1, the four numbers are shares of the image's sides, which begins at
+ * (-0.5, -0.5).
+ */
 #include <math.h>
 
 #include "base/text.h"
@@ -11,21 +13,27 @@
 static const struct {
   const char *name;
   uint32_t count; /* of the lens */
-} models[] = {{"FOV", 1}, {"Pinhole", 1}, {"RadTan", 4}, {"EquiDistant", 4}, {"KannalaBrandt", 4}};
+} models[] = {
+    {"FOV", 1}, {"Pinhole", 1}, {"RadTan", 4}, {"EquiDistant", 4}, {"KannalaBrandt", 4}};
 enum { FOV, PINHOLE, RADTAN, EQUIDISTANT, KANNALA_BRANDT, MODELS };
 
-/* Returns the model of the first line and where its numbers begin; MODELS: the line is another one. */
+/* Returns the model of the first line and where its numbers begin; MODELS: the line is another
+ * one.
+ */
 static int model_of(const char *line, const char **numbers) {
   for (int i = 0; i < MODELS; i++) {
     size_t length = strlen(models[i].name);
     *numbers = line + length;
-    if (strncmp(line, models[i].name, length) == 0 && (line[length] == ' ' || line[length] == '\t')) return i;
+    if (strncmp(line, models[i].name, length) == 0 &&
+        (line[length] == ' ' || line[length] == '\t'))
+      return i;
   }
   *numbers = line;
   return FOV;
 }
 
-static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size,
+                         vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
   vlCameraDef *d = &record->camera;
   const char *numbers;
@@ -34,14 +42,19 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
   vl_camera_next_line(&lines);
   int model = model_of(lines.text, &numbers);
   most = 4 + models[model].count;
-  vlResult result = vl_camera_line_numbers(file, &lines, numbers, v, model == PINHOLE ? 4 : most, most, &count);
-  if (result != VL_OK) return result;
+  vlResult result = vl_camera_line_numbers(file, &lines, numbers, v,
+                                           model == PINHOLE ? 4 : most, most, &count);
+  if (result != VL_OK)
+    return result;
   const double *k = v + 4;
-  if (!vl_camera_next_line(&lines)) return vl_camera_wrong(file, "dso: the image's size is missing");
+  if (!vl_camera_next_line(&lines))
+    return vl_camera_wrong(file, "dso: the image's size is missing");
   result = vl_camera_line_numbers(file, &lines, lines.text, sides, 2, 2, &count);
   if (result == VL_OK && !vl_camera_set_sides(d, sides))
-    result = vl_camera_wrong_line(file, &lines, lines.text, "the image's size must be two whole numbers of pixels");
-  if (result != VL_OK) return result;
+    result = vl_camera_wrong_line(file, &lines, lines.text,
+                                  "the image's size must be two whole numbers of pixels");
+  if (result != VL_OK)
+    return result;
   bool shares = v[2] < 1.0 && v[3] < 1.0;
   if (shares) {
     d->fx = v[0] * sides[0];
@@ -55,8 +68,10 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
     d->projection = VL_PROJECTION_FOV;
     d->shape[0] = k[0];
   }
-  if (model == RADTAN) vl_camera_set_opencv(d, k, 4);
-  if (model == EQUIDISTANT || model == KANNALA_BRANDT) vl_camera_set_fisheye(d, k);
+  if (model == RADTAN)
+    vl_camera_set_opencv(d, k, 4);
+  if (model == EQUIDISTANT || model == KANNALA_BRANDT)
+    vl_camera_set_fisheye(d, k);
   vl_camera_set_origin(d);
   return VL_OK;
 }
@@ -73,28 +88,36 @@ static void count_words(const char *line, int *words, int *numbers) {
   }
 }
 
-/* A model's name, or a line of five words and one of two, which are numbers or precede a word about rectification. */
+/* A model's name, or a line of five words and one of two, which are numbers or precede a word
+ * about rectification. */
 static bool is_dso(const char *text, size_t size) {
   vlCameraLines lines = {.at = text, .end = text + size};
   const char *rest;
   int words[2], numbers[2];
-  if (!vl_camera_next_line(&lines)) return false;
+  if (!vl_camera_next_line(&lines))
+    return false;
   model_of(lines.text, &rest);
-  if (rest != lines.text) return true;
+  if (rest != lines.text)
+    return true;
   count_words(lines.text, &words[0], &numbers[0]);
-  if (words[0] != 5 || !vl_camera_next_line(&lines)) return false;
+  if (words[0] != 5 || !vl_camera_next_line(&lines))
+    return false;
   count_words(lines.text, &words[1], &numbers[1]);
-  if (words[1] != 2) return false;
-  if (numbers[0] == 5 && numbers[1] == 2) return true;
+  if (words[1] != 2)
+    return false;
+  if (numbers[0] == 5 && numbers[1] == 2)
+    return true;
   return vl_camera_next_line(&lines) &&
-         (vl_text_is(lines.text, "crop") || vl_text_is(lines.text, "full") || vl_text_is(lines.text, "none"));
+         (vl_text_is(lines.text, "crop") || vl_text_is(lines.text, "full") ||
+          vl_text_is(lines.text, "none"));
 }
 
-const vlCameraFormat vl_format_dso = {.name = "dso",
-                                      .is_text = is_dso,
-                                      .read_text = read_dso,
-                                      .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV,
-                                      .least = 1,
-                                      .most = 4,
-                                      .lens_words = {"Pinhole", "RadTan", "KannalaBrandt", "FOV"},
-                                      .form = "$lens $fx $fy $cx0 $cy0 $k:s\n$width $height\nfull\n$width $height\n"};
+const vlCameraFormat vl_format_dso = {
+    .name = "dso",
+    .is_text = is_dso,
+    .read_text = read_dso,
+    .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV,
+    .least = 1,
+    .most = 4,
+    .lens_words = {"Pinhole", "RadTan", "KannalaBrandt", "FOV"},
+    .form = "$lens $fx $fy $cx0 $cy0 $k:s\n$width $height\nfull\n$width $height\n"};

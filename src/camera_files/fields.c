@@ -8,46 +8,61 @@
 
 #include "math/elementary.h"
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 const char *const vl_camera_matrix_names[4] = {"fx", "fy", "cx", "cy"};
 
-static vlResult read_field(const vlCameraFile *file, const json_t *object, const vlCameraField *row) {
-  if (row->side) return vl_camera_side(file, object, row->key, row->side);
-  if (row->optional && !vl_camera_has(object, row->key)) return VL_OK;
-  if (!row->count) return vl_camera_number(file, object, row->key, row->values);
-  return vl_camera_numbers(file, object, row->key, row->values, row->optional ? 0 : row->count, row->count, row->found);
+static vlResult read_field(const vlCameraFile *file, const json_t *object,
+                           const vlCameraField *row) {
+  if (row->side)
+    return vl_camera_side(file, object, row->key, row->side);
+  if (row->optional && !vl_camera_has(object, row->key))
+    return VL_OK;
+  if (!row->count)
+    return vl_camera_number(file, object, row->key, row->values);
+  return vl_camera_numbers(file, object, row->key, row->values, row->optional ? 0 : row->count,
+                           row->count, row->found);
 }
 
-vlResult vl_camera_read_fields(const vlCameraFile *file, const json_t *object, const vlCameraField *rows) {
+vlResult vl_camera_read_fields(const vlCameraFile *file, const json_t *object,
+                               const vlCameraField *rows) {
   vlResult result = VL_OK;
-  for (; rows->key && result == VL_OK; rows++) result = read_field(file, object, rows);
+  for (; rows->key && result == VL_OK; rows++)
+    result = read_field(file, object, rows);
   return result;
 }
 
-vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element, const vlCameraField *rows) {
+vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element,
+                                 const vlCameraField *rows) {
   vlResult result = VL_OK;
   for (; rows->key && result == VL_OK; rows++)
     result = vl_camera_child_number(file, element, rows->key, !rows->optional, rows->values);
   return result;
 }
 
-vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object, const char *const *names, uint32_t count,
-                              bool optional, double *values) {
+vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
+                              const char *const *names, uint32_t count, bool optional,
+                              double *values) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < count && result == VL_OK; i++)
-    result = read_field(file, object, &(vlCameraField){.key = names[i], .values = &values[i], .optional = optional});
+    result = read_field(
+        file, object,
+        &(vlCameraField){.key = names[i], .values = &values[i], .optional = optional});
   return result;
 }
 
-const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list, const char *name_key,
-                               vlCameraRecord *record) {
+const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
+                               const char *name_key, vlCameraRecord *record) {
   record->frames = (uint32_t)json_array_size(list);
   for (uint32_t i = 0; i < record->frames; i++) {
     const json_t *item = json_array_get(list, i);
     const char *name = name_key ? vl_camera_text(item, name_key) : NULL;
-    if (!vl_camera_is_frame(file, i, name)) continue;
-    if (name) vl_camera_name(record, name);
+    if (!vl_camera_is_frame(file, i, name))
+      continue;
+    if (name)
+      vl_camera_name(record, name);
     return item;
   }
   return NULL;
@@ -55,27 +70,31 @@ const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list, con
 
 bool vl_camera_set_sides(vlCameraDef *def, const double size[2]) {
   for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i])) return false;
+    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+      return false;
   def->width = (uint32_t)size[0];
   def->height = (uint32_t)size[1];
   return true;
 }
 
-vlResult vl_camera_unknown(const vlCameraFile *file, const json_t *object, const char *key, const char *word,
-                           const char *known) {
+vlResult vl_camera_unknown(const vlCameraFile *file, const json_t *object, const char *key,
+                           const char *word, const char *known) {
   return vl_camera_wrong_in(file, object, key, "%s: unknown %s \"%s\"; %s", file->dialect, key,
                             vl_short_text(word).text, known);
 }
 
-void vl_camera_set_rigid(vlCameraDef *def, const double world_from_camera[9], const double centre[3]) {
+void vl_camera_set_rigid(vlCameraDef *def, const double world_from_camera[9],
+                         const double centre[3]) {
   double m[16] = {[15] = 1.0};
-  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? world_from_camera[3 * (i / 4) + i % 4] : centre[i / 4];
+  for (int i = 0; i < 12; i++)
+    m[i] = i % 4 < 3 ? world_from_camera[3 * (i / 4) + i % 4] : centre[i / 4];
   vl_camera_set_matrix(def, m, false);
 }
 
 void vl_camera_set_centre(vlCameraDef *def, const double r[9], const double centre[3]) {
   double t[3];
-  for (int i = 0; i < 3; i++) t[i] = 0.0 - (r[3 * i] * centre[0] + r[3 * i + 1] * centre[1] + r[3 * i + 2] * centre[2]);
+  for (int i = 0; i < 3; i++)
+    t[i] = 0.0 - (r[3 * i] * centre[0] + r[3 * i + 1] * centre[1] + r[3 * i + 2] * centre[2]);
   vl_camera_set_pose(def, r, t);
 }
 
@@ -84,11 +103,14 @@ void vl_camera_set_flipped(vlCameraDef *def, const double m[16]) {
   vl_camera_flip_axes(m, def->world_from_camera);
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* The values that every form can name, computed from the camera. */
 typedef struct {
-  double sides[2], k[9], r[9], t[3], v[3], flipped[16], flipped_columns[16], view_columns[16], axes[9], centre[3];
+  double sides[2], k[9], r[9], t[3], v[3], flipped[16], flipped_columns[16], view_columns[16],
+      axes[9], centre[3];
   double offset[2], aspect, ratio, yfov;
 } Values;
 
@@ -108,8 +130,10 @@ static Values values_of(const vlCamera *c) {
     v.flipped_columns[i] = v.flipped[other];
     v.view_columns[i] = c->camera_from_world[other];
   }
-  for (int i = 0; i < 9; i++) v.axes[i] = m[4 * (i / 3) + i % 3];
-  for (int i = 0; i < 3; i++) v.centre[i] = m[4 * i + 3];
+  for (int i = 0; i < 9; i++)
+    v.axes[i] = m[4 * (i / 3) + i % 3];
+  for (int i = 0; i < 3; i++)
+    v.centre[i] = m[4 * i + 3];
   return v;
 }
 
@@ -138,25 +162,29 @@ typedef struct {
 /* Returns the end of the key whose name begins at `at`. */
 static const char *parse_key(const char *at, Key *key) {
   *key = (Key){.name = at, .index = -1};
-  while (isalnum((unsigned char)*at)) at++;
+  while (isalnum((unsigned char)*at))
+    at++;
   key->length = (size_t)(at - key->name);
   if (*at == '@') {
     char *end;
     key->index = (int)strtol(at + 1, &end, 10);
     at = end;
   }
-  if (*at != ':' || !at[1] || !strchr("sq134", at[1])) return at;
+  if (*at != ':' || !at[1] || !strchr("sq134", at[1]))
+    return at;
   key->layout = at[1];
   return at + 2;
 }
 
 static const vlCameraValue *find_value(const vlCameraValue *list, const Key *key) {
   for (; list && list->key; list++)
-    if (strlen(list->key) == key->length && memcmp(list->key, key->name, key->length) == 0) return list;
+    if (strlen(list->key) == key->length && memcmp(list->key, key->name, key->length) == 0)
+      return list;
   return NULL;
 }
 
-static void put_value(vlCameraText *text, const vlCameraRecord *record, const vlCameraValue *value, const Key *key) {
+static void put_value(vlCameraText *text, const vlCameraRecord *record,
+                      const vlCameraValue *value, const Key *key) {
   if (value->word)
     vl_camera_put(text, "%s", value->word);
   else if (value->values && key->index >= 0)
@@ -201,28 +229,38 @@ vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record, co
     const size_t plain = strcspn(form, "$");
     vl_camera_put_bytes(text, form, plain);
     form += plain;
-    if (!*form) break;
+    if (!*form)
+      break;
     Key key;
     form = parse_key(form + 1, &key);
     const vlCameraValue *value = find_value(own, &key);
-    if (!value) value = find_value(all, &key);
-    if (value) put_value(text, record, value, &key);
+    if (!value)
+      value = find_value(all, &key);
+    if (value)
+      put_value(text, record, value, &key);
   }
   return VL_OK;
 }
 
-vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format, const vlCameraRecord *record,
-                              vlCameraText *text) {
+vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format,
+                              const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   vlFittedLens lens;
-  vlResult result = vl_camera_fit_lens(file, record, format->holds, format->lenses, format->most, &c, &lens);
-  if (result == VL_OK && format->centred) result = vl_camera_refuse_off_centre(file, &c);
-  if (result == VL_OK && format->square) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK) return result;
-  if (lens.family == VL_LENS_FOV) lens.k[0] = c.shape[0];
+  vlResult result =
+      vl_camera_fit_lens(file, record, format->holds, format->lenses, format->most, &c, &lens);
+  if (result == VL_OK && format->centred)
+    result = vl_camera_refuse_off_centre(file, &c);
+  if (result == VL_OK && format->square)
+    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK)
+    return result;
+  if (lens.family == VL_LENS_FOV)
+    lens.k[0] = c.shape[0];
   vlCameraRecord named = *record;
-  if (!named.name[0] && format->unnamed) vl_camera_name(&named, format->unnamed);
+  if (!named.name[0] && format->unnamed)
+    vl_camera_name(&named, format->unnamed);
   const uint32_t count = lens.count > format->least ? lens.count : format->least;
   const char *word = format->lens_words[lens.family];
-  return VL_PUT_FORM(text, &named, &c, format->form, VL_VALUES("k", lens.k, count), VL_WORD("lens", word));
+  return VL_PUT_FORM(text, &named, &c, format->form, VL_VALUES("k", lens.k, count),
+                     VL_WORD("lens", word));
 }

@@ -1,4 +1,5 @@
-/* camera_files/fields.h: a dialect's table of fields: a row for each, read by one reader and written by one writer. */
+/* camera_files/fields.h: a dialect's table of fields: a row for each, read by one reader and
+ * written by one writer. */
 #ifndef CAMERA_FILES_FIELDS_H
 #define CAMERA_FILES_FIELDS_H
 
@@ -24,32 +25,38 @@ typedef struct vlCameraField {
 #define VL_FIELD_SIDE(name, pointer) \
   { .key = name, .side = pointer }
 
-/* Reads the fields of an object in the order of the rows, up to the first error. The last row has no key. */
-vlResult vl_camera_read_fields(const vlCameraFile *file, const json_t *object, const vlCameraField *rows);
+/* Reads the fields of an object in the order of the rows, up to the first error. The last row
+ * has no key. */
+vlResult vl_camera_read_fields(const vlCameraFile *file, const json_t *object,
+                               const vlCameraField *rows);
 #define VL_READ_FIELDS(file, object, ...) \
   vl_camera_read_fields(file, object, (const vlCameraField[]){__VA_ARGS__, {.key = NULL}})
 /* The same for the child elements of an element of XML, which hold one number each. */
-vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element, const vlCameraField *rows);
+vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element,
+                                 const vlCameraField *rows);
 #define VL_READ_CHILDREN(file, element, ...) \
   vl_camera_read_children(file, element, (const vlCameraField[]){__VA_ARGS__, {.key = NULL}})
 /* Reads the numbers with these names into values, all required or all optional. */
-vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object, const char *const *names, uint32_t count,
-                              bool optional, double *values);
+vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
+                              const char *const *names, uint32_t count, bool optional,
+                              double *values);
 /* The names that most tools give to fx, fy, cx, cy. */
 extern const char *const vl_camera_matrix_names[4];
-/* The item of a list that the caller asked for by its number or by the text at name_key, which may be null and becomes
- * the record's name. Sets record->frames. Null: it is not there. */
-const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list, const char *name_key,
-                               vlCameraRecord *record);
+/* The item of a list that the caller asked for by its number or by the text at name_key, which
+ * may be null and becomes the record's name. Sets record->frames. Null: it is not there. */
+const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
+                               const char *name_key, vlCameraRecord *record);
 /* Sets the image's size. Returns false if it is not 1 to 16777216 whole pixels. */
 bool vl_camera_set_sides(vlCameraDef *def, const double size[2]);
 /* Reports an unknown word at object[key]. known: "there are A, B". */
-vlResult vl_camera_unknown(const vlCameraFile *file, const json_t *object, const char *key, const char *word,
-                           const char *known);
+vlResult vl_camera_unknown(const vlCameraFile *file, const json_t *object, const char *key,
+                           const char *word, const char *known);
 /* Sets the pose from the camera's rotation (world from camera) and its centre. */
-void vl_camera_set_rigid(vlCameraDef *def, const double world_from_camera[9], const double centre[3]);
+void vl_camera_set_rigid(vlCameraDef *def, const double world_from_camera[9],
+                         const double centre[3]);
 /* Sets the pose from a rotation (camera from world) and the camera's centre. */
-void vl_camera_set_centre(vlCameraDef *def, const double camera_from_world[9], const double centre[3]);
+void vl_camera_set_centre(vlCameraDef *def, const double camera_from_world[9],
+                          const double centre[3]);
 /* Sets the pose from a matrix, world from camera, for the camera axes x right, y up, z back. */
 void vl_camera_set_flipped(vlCameraDef *def, const double m[16]);
 
@@ -65,21 +72,22 @@ typedef struct vlCameraValue {
 #define VL_WORD(name, text) \
   { .key = name, .word = text }
 /* Appends a text in which $key stands for a value. Every dialect has
- *   $width $height, $fx $fy $skew $cx $cy, $cx0 $cy0 (from the centre of the first pixel), $near $far;
- *   $aspect: fy / fx; $ratio: width / height; $yfov: the vertical field of view, degrees;
- *   $name: the record's name, or "camera", in quotation marks;
- *   $K: fx skew cx0, 0 fy cy0, 0 0 1; $R $t: camera from world; $V: the rotation vector of R;
- *   $view: camera from world, 4 x 4; $pose: world from camera, 4 x 4; $flipped: $pose for axes x right, y up, z back;
- *   $viewcolumns $flippedcolumns: by columns; $axes $centre: the 3 x 3 part of $pose, and its last column.
- * $key@N is number N of a list, from 0. Lists are written as "1, 2, 3"; after :s as "1 2 3"; after :q with each number
- * in quotation marks; after :1, :3 or :4 in brackets, so many at a time. Returns VL_OK: text->failed says if memory is
- * lacking. */
-vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record, const vlCamera *camera,
-                            const vlCameraValue *own, const char *form);
+ *   $width $height, $fx $fy $skew $cx $cy, $cx0 $cy0 (from the centre of the first pixel),
+ * $near $far; $aspect: fy / fx; $ratio: width / height; $yfov: the vertical field of view,
+ * degrees; $name: the record's name, or "camera", in quotation marks; $K: fx skew cx0, 0 fy
+ * cy0, 0 0 1; $R $t: camera from world; $V: the rotation vector of R; $view: camera from world,
+ * 4 x 4; $pose: world from camera, 4 x 4; $flipped: $pose for axes x right, y up, z back;
+ * $viewcolumns $flippedcolumns: by columns; $axes $centre: the 3 x 3 part of $pose, and its
+ * last column. $key@N is number N of a list, from 0. Lists are written as "1, 2, 3"; after :s
+ * as "1 2 3"; after :q with each number in quotation marks; after :1, :3 or :4 in brackets, so
+ * many at a time. Returns VL_OK: text->failed says if memory is lacking. */
+vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record,
+                            const vlCamera *camera, const vlCameraValue *own, const char *form);
 #define VL_PUT_FORM(text, record, camera, form, ...) \
-  vl_camera_put_form(text, record, camera, (const vlCameraValue[]){__VA_ARGS__, {.key = NULL}}, form)
+  vl_camera_put_form(text, record, camera,           \
+                     (const vlCameraValue[]){__VA_ARGS__, {.key = NULL}}, form)
 /* Writes a camera by the form of its dialect's row. */
-vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format, const vlCameraRecord *record,
-                              vlCameraText *text);
+vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format,
+                              const vlCameraRecord *record, vlCameraText *text);
 
 #endif

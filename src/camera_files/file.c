@@ -1,4 +1,5 @@
-/* camera_files/file.c: the public functions: detects the dialect of a file, reads and writes whole files. */
+/* camera_files/file.c: the public functions: detects the dialect of a file, reads and writes
+ * whole files. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,7 +13,8 @@
 #include "velo/own.h"
 
 const char *vl_camera_dialect_name(vlCameraDialect dialect) {
-  if ((uint32_t)dialect >= VL_CAMERA_DIALECT_COUNT) return NULL;
+  if ((uint32_t)dialect >= VL_CAMERA_DIALECT_COUNT)
+    return NULL;
   return dialect ? vl_camera_formats[dialect]->name : "auto";
 }
 
@@ -26,13 +28,18 @@ static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
   json_t *unused;
   json_object_foreach((json_t *)tree, key, unused) {
     size_t n = strlen(names);
-    if (n < 100) snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", vl_short_text(key).text);
+    if (n < 100)
+      snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", vl_short_text(key).text);
   }
   if (vl_camera_has(tree, "<"))
-    return vl_camera_wrong(file, "no camera of a known dialect: XML with the root <%.60s>", vl_camera_text(tree, "<"));
-  if (json_array_size(json_object_get(tree, "[]")) > 0) snprintf(names, sizeof names, "those of a list");
-  return vl_camera_wrong(file, "no camera of a known dialect (docs/camera-files.md has the table); its fields are: %s",
-                         names);
+    return vl_camera_wrong(file, "no camera of a known dialect: XML with the root <%.60s>",
+                           vl_camera_text(tree, "<"));
+  if (json_array_size(json_object_get(tree, "[]")) > 0)
+    snprintf(names, sizeof names, "those of a list");
+  return vl_camera_wrong(
+      file,
+      "no camera of a known dialect (docs/camera-files.md has the table); its fields are: %s",
+      names);
 }
 
 static bool is_folder(const char *path) {
@@ -40,29 +47,37 @@ static bool is_folder(const char *path) {
   return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-static vlResult other_dialect(const vlCameraFile *file, vlCameraDialect found, vlCameraDialect wish) {
-  return vl_camera_wrong(file, "this is a camera in the dialect of %s, not of %s", vl_camera_formats[found]->name,
-                         vl_camera_formats[wish]->name);
+static vlResult other_dialect(const vlCameraFile *file, vlCameraDialect found,
+                              vlCameraDialect wish) {
+  return vl_camera_wrong(file, "this is a camera in the dialect of %s, not of %s",
+                         vl_camera_formats[found]->name, vl_camera_formats[wish]->name);
 }
 
-/* Returns whether the text looks like a tree format. Then the error of that format's parser is reported. */
+/* Returns whether the text looks like a tree format. Then the error of that format's parser is
+ * reported. */
 static bool is_meant_as_tree(const char *path, const char *text) {
   const char *first = text + strspn(text, " \t\r\n"), *second = *first ? first + 1 : first;
-  bool section = *first == '[' && ((*second >= 'A' && *second <= 'Z') || (*second >= 'a' && *second <= 'z')); /* .ini */
-  if (section && !vl_ends_with(path, ".json")) return false;
-  return strchr("{[<", *first) || strncmp(first, "%YAML", 5) == 0 || strncmp(first, "---", 3) == 0 ||
-         strncmp(first, "glTF", 4) == 0 || vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml") ||
+  bool section = *first == '[' && ((*second >= 'A' && *second <= 'Z') ||
+                                   (*second >= 'a' && *second <= 'z')); /* .ini */
+  if (section && !vl_ends_with(path, ".json"))
+    return false;
+  return strchr("{[<", *first) || strncmp(first, "%YAML", 5) == 0 ||
+         strncmp(first, "---", 3) == 0 || strncmp(first, "glTF", 4) == 0 ||
+         vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml") ||
          vl_ends_with(path, ".json");
 }
 
 /* Reports that the file is of no known kind, without naming a format. */
 static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size) {
   if (size >= 8 && memcmp(text, "PXR-USDC", 8) == 0)
-    return vl_camera_wrong(file, "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda");
+    return vl_camera_wrong(
+        file, "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda");
   if (size >= 6 && memcmp(text, "\x93NUMPY", 6) == 0)
     return vl_camera_wrong(file, "a NumPy array, which does not say what its numbers mean");
-  if (memchr(text, 0, size)) return vl_camera_wrong(file, "no camera: a binary file of no known kind");
-  return vl_camera_wrong_at(file, 1, 1, "no camera of a known dialect (docs/camera-files.md has the table)");
+  if (memchr(text, 0, size))
+    return vl_camera_wrong(file, "no camera: a binary file of no known kind");
+  return vl_camera_wrong_at(
+      file, 1, 1, "no camera of a known dialect (docs/camera-files.md has the table)");
 }
 
 /* The text or the tree of a file that is being read; one of the two is null. */
@@ -73,15 +88,17 @@ typedef struct {
 } Source;
 
 /* Reads one camera, or all cameras if there is a sink. */
-static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const Source *source, const vlCameraSink *sink,
-                            vlCameraRecord *record) {
+static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const Source *source,
+                            const vlCameraSink *sink, vlCameraRecord *record) {
   const vlCameraFormat *format = vl_camera_formats[dialect];
   vlResult result = VL_OK;
   uint32_t frames = 1, i = 0;
   file->dialect = format->name;
-  if (sink) file->ordinal = &i;
+  if (sink)
+    file->ordinal = &i;
   for (; i < frames && result == VL_OK; i++) {
-    if (sink) memset(record, 0, sizeof *record);
+    if (sink)
+      memset(record, 0, sizeof *record);
     if (sink) {
       record->camera = vl_default_camera_def(1, 1);
       record->frames = 1;
@@ -89,22 +106,25 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
     record->dialect = dialect;
     result = source->tree ? format->read(file, source->tree, record)
                           : format->read_text(file, source->text, source->size, record);
-    if (sink) frames = record->frames;
-    if (sink && result == VL_OK) result = sink->add(sink->data, file, record, i);
+    if (sink)
+      frames = record->frames;
+    if (sink && result == VL_OK)
+      result = sink->add(sink->data, file, record, i);
   }
   file->ordinal = NULL;
   return result;
 }
 
-static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, const vlCameraSink *sink,
-                          vlCameraRecord *record) {
+static vlResult read_tree(vlCameraFile *file, const char *text, size_t size,
+                          const vlCameraSink *sink, vlCameraRecord *record) {
   json_t *tree = NULL;
   vlCameraPlaces places = {.root = NULL};
   file->places = &places;
   vlResult result = vl_camera_tree(file, text, size, &tree);
   if (result != VL_OK) {
     vl_camera_places_free(file);
-    if (result == VL_ERROR_SCENE && size > 0 && !is_meant_as_tree(file->path, text)) return no_kind(file, text, size);
+    if (result == VL_ERROR_SCENE && size > 0 && !is_meant_as_tree(file->path, text))
+      return no_kind(file, text, size);
     return result;
   }
   vlCameraDialect found = vl_camera_dialect_of_tree(tree), wish = file->def->dialect;
@@ -113,30 +133,38 @@ static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, con
   related = related || (wish == VL_CAMERA_DIALECT_ROS && found == VL_CAMERA_DIALECT_OPENCV);
   if (wish && found && wish != found && !related) {
     result = other_dialect(file, found, wish);
-  } else if (wish && wish != found && (!vl_camera_formats[wish]->read || vl_camera_has(tree, "<"))) {
-    result = vl_camera_wrong(file, "this is no camera in the dialect of %s", vl_camera_formats[wish]->name);
+  } else if (wish && wish != found &&
+             (!vl_camera_formats[wish]->read || vl_camera_has(tree, "<"))) {
+    result = vl_camera_wrong(file, "this is no camera in the dialect of %s",
+                             vl_camera_formats[wish]->name);
   } else if (!wish && !found) {
     result = unknown(file, tree);
   } else {
     result = read_source(file, wish ? wish : found, &(Source){.tree = tree}, sink, record);
   }
-  if (result == VL_ERROR_SCENE) vl_camera_place_error(file);
+  if (result == VL_ERROR_SCENE)
+    vl_camera_place_error(file);
   json_decref(tree);
   vl_camera_places_free(file);
   return result;
 }
 
-static vlResult read_file(vlCameraFile *file, const vlCameraSink *sink, vlCameraRecord *record) {
+static vlResult read_file(vlCameraFile *file, const vlCameraSink *sink,
+                          vlCameraRecord *record) {
   char *text;
   size_t size;
-  vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
+  if (result != VL_OK)
+    return result;
   size_t skip = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* byte order mark */
-  vlCameraDialect found = vl_camera_dialect_of_text(text + skip, size - skip), wish = file->def->dialect;
+  vlCameraDialect found = vl_camera_dialect_of_text(text + skip, size - skip),
+                  wish = file->def->dialect;
   if (found && wish && found != wish)
     result = other_dialect(file, found, wish);
   else if (found)
-    result = read_source(file, found, &(Source){.text = text + skip, .size = size - skip}, sink, record);
+    result = read_source(file, found, &(Source){.text = text + skip, .size = size - skip}, sink,
+                         record);
   else
     result = read_tree(file, text, size, sink, record);
   vl_free(file->context, text);
@@ -149,84 +177,115 @@ vlResult vl_camera_read_each(const vlCameraFile *file, const vlCameraSink *sink)
   return read_file(&own, sink, &record);
 }
 
-static vlResult begin(vlContext *context, const char *path, const vlCameraFileDef **def, vlCameraFileDef *standard,
-                      vlError *error) {
+static vlResult begin(vlContext *context, const char *path, const vlCameraFileDef **def,
+                      vlCameraFileDef *standard, vlError *error) {
   vl_error_clear(error);
   *standard = vl_default_camera_file_def();
-  if (!context || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: context or path is null");
-  if (!*def) *def = standard;
-  if ((*def)->cookie != VL_COOKIE_CAMERA_FILE) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: " VL_BAD_COOKIE);
+  if (!context || !path)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: context or path is null");
+  if (!*def)
+    *def = standard;
+  if ((*def)->cookie != VL_COOKIE_CAMERA_FILE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: " VL_BAD_COOKIE);
   if ((uint32_t)(*def)->dialect >= VL_CAMERA_DIALECT_COUNT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: unknown dialect %d", (int)(*def)->dialect);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: unknown dialect %d",
+                   (int)(*def)->dialect);
   return VL_OK;
 }
 
-vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def, vlCameraRecord *record,
-                        vlError *error) {
+vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def,
+                        vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
   vlResult result = begin(context, path, &def, &standard, error);
-  if (result != VL_OK) return result;
-  if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
+  if (result != VL_OK)
+    return result;
+  if (!record)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   if (def->dialect == VL_CAMERA_DIALECT_EXR)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: this is an image; it is read as one");
+    return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                   "camera file: this is an image; it is read as one");
   if (def->dialect == VL_CAMERA_DIALECT_PBRT)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pbrt scenes are read as scenes");
-  vlCameraFile file = {
-      .context = context, .path = path, .dialect = vl_camera_dialect_name(def->dialect), .def = def, .error = error};
+  vlCameraFile file = {.context = context,
+                       .path = path,
+                       .dialect = vl_camera_dialect_name(def->dialect),
+                       .def = def,
+                       .error = error};
   vlCameraRecord read = {.camera = vl_default_camera_def(1, 1), .frames = 1};
-  if (def->dialect == VL_CAMERA_DIALECT_COLMAP || (!def->dialect && (is_folder(path) || vl_colmap_is_name(path)))) {
+  if (def->dialect == VL_CAMERA_DIALECT_COLMAP ||
+      (!def->dialect && (is_folder(path) || vl_colmap_is_name(path)))) {
     file.dialect = "colmap";
     read.dialect = VL_CAMERA_DIALECT_COLMAP;
     result = vl_camera_read_colmap(&file, &read);
   } else {
     result = read_file(&file, NULL, &read);
   }
-  if (result == VL_OK) *record = read;
+  if (result == VL_OK)
+    *record = read;
   return result;
 }
 
 static vlCameraDialect dialect_of_name(const char *path) {
-  if (vl_colmap_is_name(path) || is_folder(path)) return VL_CAMERA_DIALECT_COLMAP;
-  if (vl_ends_with(path, "transforms.json")) return VL_CAMERA_DIALECT_NERF;
-  if (vl_ends_with(path, ".json")) return VL_CAMERA_DIALECT_VELO;
-  if (vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml")) return VL_CAMERA_DIALECT_OPENCV;
-  if (vl_ends_with(path, ".pbrt")) return VL_CAMERA_DIALECT_PBRT;
-  if (vl_ends_with(path, ".gltf")) return VL_CAMERA_DIALECT_GLTF;
-  if (vl_ends_with(path, ".usda")) return VL_CAMERA_DIALECT_USD;
-  if (vl_ends_with(path, ".xml")) return VL_CAMERA_DIALECT_MITSUBA;
+  if (vl_colmap_is_name(path) || is_folder(path))
+    return VL_CAMERA_DIALECT_COLMAP;
+  if (vl_ends_with(path, "transforms.json"))
+    return VL_CAMERA_DIALECT_NERF;
+  if (vl_ends_with(path, ".json"))
+    return VL_CAMERA_DIALECT_VELO;
+  if (vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml"))
+    return VL_CAMERA_DIALECT_OPENCV;
+  if (vl_ends_with(path, ".pbrt"))
+    return VL_CAMERA_DIALECT_PBRT;
+  if (vl_ends_with(path, ".gltf"))
+    return VL_CAMERA_DIALECT_GLTF;
+  if (vl_ends_with(path, ".usda"))
+    return VL_CAMERA_DIALECT_USD;
+  if (vl_ends_with(path, ".xml"))
+    return VL_CAMERA_DIALECT_MITSUBA;
   return VL_CAMERA_DIALECT_AUTO;
 }
 
 bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect) {
-  if (!dialect && path) dialect = dialect_of_name(path);
-  const vlCameraFormat *format = (unsigned)dialect < VL_CAMERA_DIALECT_COUNT ? vl_camera_formats[dialect] : NULL;
+  if (!dialect && path)
+    dialect = dialect_of_name(path);
+  const vlCameraFormat *format =
+      (unsigned)dialect < VL_CAMERA_DIALECT_COUNT ? vl_camera_formats[dialect] : NULL;
   return format && format->write_folder;
 }
 
-vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def, const vlCameraRecord *record,
-                         vlError *error) {
+vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def,
+                         const vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
   vlResult result = begin(context, path, &def, &standard, error);
-  if (result != VL_OK) return result;
-  if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
+  if (result != VL_OK)
+    return result;
+  if (!record)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   if (record->camera.own)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: none can hold a camera of one's own, \"%s\"",
+    return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                   "camera file: none can hold a camera of one's own, \"%s\"",
                    vl_short_text(record->camera.own->name).text);
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the name \"%.200s\" does not say which dialect to write",
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera file: the name \"%.200s\" does not say which dialect to write",
                    path);
   const vlCameraFormat *format = vl_camera_formats[dialect];
-  vlCameraFile file = {.context = context, .path = path, .dialect = format->name, .def = def, .error = error};
-  if (format->write_folder) return format->write_folder(&file, record);
+  vlCameraFile file = {
+      .context = context, .path = path, .dialect = format->name, .def = def, .error = error};
+  if (format->write_folder)
+    return format->write_folder(&file, record);
   if (!format->write && !format->form)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s", format->name,
-                   format->not_written);
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s",
+                   format->name, format->not_written);
   vlCameraText text = {.context = context};
-  result = format->form ? vl_camera_write_form(&file, format, record, &text) : format->write(&file, record, &text);
-  if (result == VL_OK && text.failed) result = vl_fail_memory(error);
+  result = format->form ? vl_camera_write_form(&file, format, record, &text)
+                        : format->write(&file, record, &text);
+  if (result == VL_OK && text.failed)
+    result = vl_fail_memory(error);
   vlFileWriter writer;
-  if (result == VL_OK) result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);
+  if (result == VL_OK)
+    result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);
   if (result == VL_OK) {
     vl_file_write(&writer, text.text.items, text.text.count);
     result = vl_file_commit(&writer, error);

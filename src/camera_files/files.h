@@ -1,5 +1,6 @@
-/* camera_files/files.h: functions shared by the readers and writers of camera files. A JSON, YAML, XML or USD file
- * is first parsed into a tree (jansson's). A writer collects text, which is written as a whole. */
+/* camera_files/files.h: functions shared by the readers and writers of camera files. A JSON,
+ * YAML, XML or USD file is first parsed into a tree (jansson's). A writer collects text, which
+ * is written as a whole. */
 #ifndef CAMERA_FILES_FILES_H
 #define CAMERA_FILES_FILES_H
 
@@ -12,8 +13,8 @@
 #include "velo/camera_file.h"
 #include "velo/setting.h"
 
-/* The position of each value of a tree in the file, as line << 32 | column. A value precedes the values that it
- * contains. */
+/* The position of each value of a tree in the file, as line << 32 | column. A value precedes
+ * the values that it contains. */
 typedef struct vlCameraPlaces {
   const json_t *root;
   VL_ARRAY(uint64_t) at;
@@ -25,95 +26,118 @@ typedef struct vlCameraFile {
   const char *path, *dialect; /* name of the dialect, for messages */
   const vlCameraFileDef *def;
   vlError *error;
-  vlCameraPlaces *places;  /* may be null; then errors have no line */
-  const uint32_t *ordinal; /* number of the camera to read, which overrides the def; may be null */
+  vlCameraPlaces *places; /* may be null; then errors have no line */
+  const uint32_t
+      *ordinal; /* number of the camera to read, which overrides the def; may be null */
 } vlCameraFile;
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) __attribute__((format(printf, 2, 3)));
+vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Like vl_camera_wrong, with a location. line is 0 if it is unknown. */
-vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column,
+                            const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* Reports an error at object[key], or at the object itself if key is null or missing. */
-vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-/* Parses JSON, YAML or XML, which the first character tells apart. FileStorage's XML becomes a tree of the same form as
- * its YAML; other XML becomes the elements of vl_camera_xml. A list at the top level is wrapped: {"[]": list}. If
- * file->places is set, the positions of the values are recorded there. */
+vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key,
+                            const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* Parses JSON, YAML or XML, which the first character tells apart. FileStorage's XML becomes a
+ * tree of the same form as its YAML; other XML becomes the elements of vl_camera_xml. A list at
+ * the top level is wrapped: {"[]": list}. If file->places is set, the positions of the values
+ * are recorded there. */
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
-vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
+vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size,
+                           json_t **tree);
 /* Records the position of the next value. Returns false if out of memory. */
 bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column);
-/* Adds a position to an error that has none: the position of the first field that the message quotes, or of the
- * top-level value. */
+/* Adds a position to an error that has none: the position of the first field that the message
+ * quotes, or of the top-level value. */
 void vl_camera_place_error(const vlCameraFile *file);
 void vl_camera_places_free(vlCameraFile *file);
 
-/* Parses XML. Below the root, only elements whose tags are in the list `wanted` are kept, unless the list contains the
- * root itself. Null ends the list. If the list is null, all elements are kept with their text ("$"). */
-vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, const char *const *wanted,
-                       json_t **tree);
-/* Gets the tag of the root element, after declaration and comments. Returns false if the text is not XML. */
+/* Parses XML. Below the root, only elements whose tags are in the list `wanted` are kept,
+ * unless the list contains the root itself. Null ends the list. If the list is null, all
+ * elements are kept with their text ("$"). */
+vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size,
+                       const char *const *wanted, json_t **tree);
+/* Gets the tag of the root element, after declaration and comments. Returns false if the text
+ * is not XML. */
 bool vl_camera_xml_root(const char *text, char tag[64]);
 /* Returns the first child element with this tag, or null. */
 const json_t *vl_camera_child(const json_t *element, const char *tag);
 /* Reports an error at an element. */
-vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element,
+                                 const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Reads exactly count finite numbers from an element's text. */
-vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element, double *values, uint32_t count);
-/* Reads one number from the child with this tag. If the child is missing, *value is unchanged, and it is an error if
- * the number is required. */
-vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element, const char *tag, bool needed,
-                                double *value);
+vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element,
+                                   double *values, uint32_t count);
+/* Reads one number from the child with this tag. If the child is missing, *value is unchanged,
+ * and it is an error if the number is required. */
+vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element,
+                                const char *tag, bool needed, double *value);
 
 /* Parses USD's text form. */
 vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 
 /* Reads a required number. If it is missing, the error names the nearest key. */
-vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key, const json_t **value);
+vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key,
+                         const json_t **value);
 /* A value of the tree, for its row. */
 vlGiven vl_json_given(const json_t *item);
-vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key, double *value);
+vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key,
+                          double *value);
 /* Reads an optional number; *value is unchanged if the key is missing. */
-vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value);
+vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key,
+                            double *value);
 /* Reads the width or height of an image. */
-vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value);
-/* Sets the image's size if the file has none. It is the size of the def, or else 720 rows with this aspect ratio (width
- * / height). */
+vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key,
+                        uint32_t *value);
+/* Sets the image's size if the file has none. It is the size of the def, or else 720 rows with
+ * this aspect ratio (width / height). */
 vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record);
-/* Sets the image's size for a file that has none. It is the size of the def, or else of the first of the named images
- * that exists. The names are relative to the file's folder, and null ends the list. It is an error if there is neither.
+/* Sets the image's size for a file that has none. It is the size of the def, or else of the
+ * first of the named images that exists. The names are relative to the file's folder, and null
+ * ends the list. It is an error if there is neither.
  */
-vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images, vlCameraRecord *record);
-/* Reads the image's size from two keys if both exist. Otherwise sets the size like vl_camera_size_beside without
- * images. */
-vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width, const char *height,
-                         vlCameraRecord *record);
+vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images,
+                               vlCameraRecord *record);
+/* Reads the image's size from two keys if both exist. Otherwise sets the size like
+ * vl_camera_size_beside without images. */
+vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width,
+                         const char *height, vlCameraRecord *record);
 /* Reads a list of two numbers, width and height. */
-vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key, vlCameraRecord *record);
-/* Reads between `least` and `most` numbers from a list, a list of lists, or FileStorage's {rows, cols, data}. */
-vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
-                           uint32_t least, uint32_t most, uint32_t *count);
-/* Parses the next number of a text, after blanks and commas. If there is no number, *end is text. */
+vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key,
+                             vlCameraRecord *record);
+/* Reads between `least` and `most` numbers from a list, a list of lists, or FileStorage's
+ * {rows, cols, data}. */
+vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
+                           double *values, uint32_t least, uint32_t most, uint32_t *count);
+/* Parses the next number of a text, after blanks and commas. If there is no number, *end is
+ * text.
+ */
 double vl_camera_parse(const char *text, char **end);
 /* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
-/* Returns whether the camera or pose with this index and name is the requested one. The name may be null. */
+/* Returns whether the camera or pose with this index and name is the requested one. The name
+ * may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
 void vl_camera_name(vlCameraRecord *record, const char *name);
 /* The camera that the caller asked for, as messages show it; `otherwise` if none was. */
 vlArgumentText vl_camera_asked(const vlCameraFile *file, const char *otherwise);
-/* Reports that the requested camera is not among the `count` cameras of the file. what: the format's word for one. */
+/* Reports that the requested camera is not among the `count` cameras of the file. what: the
+ * format's word for one. */
 vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count);
-/* Sets fx, fy, cx, cy and skew from a matrix by rows, for which the centre of the first pixel is (0, 0). It is an error
- * at object[key] if the matrix is not fx skew cx, 0 fy cy, 0 0 1. */
-vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key, const double k[9],
-                         vlCameraDef *def);
+/* Sets fx, fy, cx, cy and skew from a matrix by rows, for which the centre of the first pixel
+ * is (0, 0). It is an error at object[key] if the matrix is not fx skew cx, 0 fy cy, 0 0 1. */
+vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key,
+                         const double k[9], vlCameraDef *def);
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 typedef struct vlCameraText {
   vlContext *context;
@@ -132,7 +156,8 @@ enum {
   VL_HOLDS_EXPOSURE = 64
 };
 
-void vl_camera_put(vlCameraText *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void vl_camera_put(vlCameraText *text, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 /* Appends all of another text. */
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
@@ -142,13 +167,15 @@ void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t co
 void vl_camera_put_rows(vlCameraText *text, const double m[16]);
 /* Appends a quoted string, for JSON and YAML. */
 void vl_camera_put_string(vlCameraText *text, const char *string);
-/* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns an error that names the
- * field. */
+/* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns
+ * an error that names the field. */
 vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool present);
 /* Returns whether the field is in the list of fields that may be dropped. */
 bool vl_camera_drops(const vlCameraFile *file, const char *field);
-/* Makes *camera from the record. Returns an error for any property that the flags `holds` do not include. */
-vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera);
+/* Makes *camera from the record. Returns an error for any property that the flags `holds` do
+ * not include. */
+vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
+                       vlCamera *camera);
 /* The lens models that calibration tools name. */
 typedef enum vlLensFamily {
   VL_LENS_PINHOLE,
@@ -167,115 +194,134 @@ typedef struct vlFittedLens {
   double k[14];
   uint32_t count;
 } vlFittedLens;
-/* vl_camera_fit for dialects with several lenses. families: a bit for each (1 << VL_LENS_FOV); most: how many
- * coefficients there may be. */
-vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, uint32_t families,
-                            uint32_t most, vlCamera *camera, vlFittedLens *lens);
+/* vl_camera_fit for dialects with several lenses. families: a bit for each (1 << VL_LENS_FOV);
+ * most: how many coefficients there may be. */
+vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record,
+                            uint32_t holds, uint32_t families, uint32_t most, vlCamera *camera,
+                            vlFittedLens *lens);
 /* vl_camera_fit for dialects without lens distortion. */
-vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
-                               vlCamera *camera);
+vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record,
+                               uint32_t holds, vlCamera *camera);
 /* vl_camera_fit for dialects with the first five of OpenCV's coefficients, k1 k2 p1 p2 k3. */
-vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, double k[14],
-                              vlCamera *camera);
+vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record,
+                              uint32_t holds, double k[14], vlCamera *camera);
 /* vl_camera_refuse for a principal point that is not the image's centre. */
 vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera);
-/* Reports that the dialect cannot express the def's projection, or the distortion of that projection. */
+/* Reports that the dialect cannot express the def's projection, or the distortion of that
+ * projection. */
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def);
-/* Converts the distortion to OpenCV's 14 coefficients. *count is 0, 4, 5, 8, 12 or 14; the coefficients after it are 0.
- * Returns false if the model is not one of OpenCV's. */
+/* Converts the distortion to OpenCV's 14 coefficients. *count is 0, 4, 5, 8, 12 or 14; the
+ * coefficients after it are 0. Returns false if the model is not one of OpenCV's. */
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 
-/* ---- lenses ------------------------------------------------------------------------------------------------------ */
+/* ---- lenses
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* Sets fx, fy, cx, cy from values for which the centre of the first pixel is (0, 0). */
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
-/* Sets OpenCV's distortion. Zeros are appended up to the next number of coefficients that OpenCV allows. */
+/* Sets OpenCV's distortion. Zeros are appended up to the next number of coefficients that
+ * OpenCV allows. */
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);
 /* Sets OpenCV's fisheye: k1 to k4. */
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
 /* The family of a camera's lens, with its coefficients. */
 vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
 
-/* ---- rotations: row-major 3 x 3 ---------------------------------------------------------------------------------- */
+/* ---- rotations: row-major 3 x 3
+ * ---------------------------------------------------------------------------------- */
 
 void vl_rotation_from_vector(const double v[3], double r[9]);
 void vl_rotation_to_vector(const double r[9], double v[3]);
-/* Converts a quaternion w x y z to a rotation. Returns false if its length is 0 or not finite. */
+/* Converts a quaternion w x y z to a rotation. Returns false if its length is 0 or not finite.
+ */
 bool vl_rotation_from_quaternion(const double q[4], double r[9]);
 void vl_rotation_to_quaternion(const double r[9], double q[4]);
-/* Both functions use camera-from-world rotation and translation. The first sets the def's pose; the second reads the
- * pose of a camera. */
+/* Both functions use camera-from-world rotation and translation. The first sets the def's pose;
+ * the second reads the pose of a camera. */
 void vl_camera_set_pose(vlCameraDef *def, const double r[9], const double t[3]);
 void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]);
-/* Sets the pose from a row-major 4 x 4 matrix, world from camera or camera from world. Returns false if the matrix is
- * singular. */
+/* Sets the pose from a row-major 4 x 4 matrix, world from camera or camera from world. Returns
+ * false if the matrix is singular. */
 bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world);
 void vl_camera_set_origin(vlCameraDef *def);
-/* Converts a world-from-camera matrix between the camera axes x right, y up, z back and velo's axes, in either
- * direction. It negates columns y and z. */
+/* Converts a world-from-camera matrix between the camera axes x right, y up, z back and velo's
+ * axes, in either direction. It negates columns y and z. */
 void vl_camera_flip_axes(const double m[16], double result[16]);
 /* The same for other camera axes: multiplies columns x, y, z by the given factors, 1 or -1. */
-void vl_camera_flip_columns(const double m[16], double x, double y, double z, double result[16]);
+void vl_camera_flip_columns(const double m[16], double x, double y, double z,
+                            double result[16]);
 
-/* ---- dialects ---------------------------------------------------------------------------------------------------- */
+/* ---- dialects
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record);
+typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree,
+                                  vlCameraRecord *record);
 /* A function that reads a camera from the file's text. */
-typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record);
-typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text);
+typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size,
+                                  vlCameraRecord *record);
+typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record,
+                                   vlCameraText *text);
 typedef vlResult vlCameraWriteFolder(const vlCameraFile *file, const vlCameraRecord *record);
 
 /* A row of the table of dialects. Each row is defined at the end of the dialect's own file. */
 typedef struct vlCameraFormat {
   const char *name;
-  /* Return whether a tree (JSON, YAML, FileStorage's XML) or a text is in this dialect. They look for content that no
-   * other dialect has. */
+  /* Return whether a tree (JSON, YAML, FileStorage's XML) or a text is in this dialect. They
+   * look for content that no other dialect has. */
   bool (*is_tree)(const json_t *tree);
-  /* In place of is_tree: the keys that the object has, all of them or one. marks_in: the object is the value of this
-   * key or, if that is a list, its first item; null: the tree. */
+  /* In place of is_tree: the keys that the object has, all of them or one. marks_in: the object
+   * is the value of this key or, if that is a list, its first item; null: the tree. */
   const char *marks[3], *marks_in;
   bool one_mark;
   bool (*is_text)(const char *text, size_t size);
   vlCameraReadTree *read;
   vlCameraReadText *read_text;
   vlCameraWriteText *write;
-  vlCameraWriteFolder *write_folder; /* in place of write: the path is that of a folder of files, or of one of them */
+  vlCameraWriteFolder *write_folder; /* in place of write: the path is that of a folder of
+                                        files, or of one of them */
   const char *not_written;           /* why there is no writer */
-  /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of the lens, and $lens, its
-   * word. holds: of vl_camera_fit. lenses, most: of vl_camera_fit_lens. */
+  /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
+   * the lens, and $lens, its word. holds: of vl_camera_fit. lenses, most: of
+   * vl_camera_fit_lens. */
   const char *form;
   uint32_t holds, lenses, most;
   uint32_t least;                        /* $k has at least so many coefficients */
   const char *lens_words[VL_LENS_OTHER]; /* by family */
   const char *unnamed;                   /* $name of a record without a name; null: "camera" */
-  bool centred, square;                  /* the principal point must be the image's centre; fx must be fy */
+  bool centred, square; /* the principal point must be the image's centre; fx must be fy */
 } vlCameraFormat;
 
-extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_format_colmap, vl_format_nerf,
-    vl_format_kalibr, vl_format_blender, vl_format_pbrt, vl_format_gltf, vl_format_opengl, vl_format_vulkan,
-    vl_format_d3d, vl_format_mitsuba, vl_format_exr, vl_format_usd, vl_format_euroc, vl_format_camodocal,
-    vl_format_basalt, vl_format_orbslam, vl_format_okvis, vl_format_svo, vl_format_kitti, vl_format_bop,
-    vl_format_gaussians, vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d, vl_format_visp,
-    vl_format_middlebury, vl_format_mvsnet, vl_format_bundler, vl_format_openmvg, vl_format_realitycapture,
-    vl_format_nerfstudio, vl_format_visualsfm, vl_format_zed, vl_format_collada, vl_format_dso, vl_format_llff,
-    vl_format_record3d, vl_format_polycam, vl_format_scanner3d, vl_format_depthai, vl_format_kinect,
-    vl_format_realsense, vl_format_calibio, vl_format_nuscenes, vl_format_panoptic, vl_format_nerfies,
-    vl_format_threejs, vl_format_matrix;
+extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_format_colmap,
+    vl_format_nerf, vl_format_kalibr, vl_format_blender, vl_format_pbrt, vl_format_gltf,
+    vl_format_opengl, vl_format_vulkan, vl_format_d3d, vl_format_mitsuba, vl_format_exr,
+    vl_format_usd, vl_format_euroc, vl_format_camodocal, vl_format_basalt, vl_format_orbslam,
+    vl_format_okvis, vl_format_svo, vl_format_kitti, vl_format_bop, vl_format_gaussians,
+    vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d,
+    vl_format_visp, vl_format_middlebury, vl_format_mvsnet, vl_format_bundler,
+    vl_format_openmvg, vl_format_realitycapture, vl_format_nerfstudio, vl_format_visualsfm,
+    vl_format_zed, vl_format_collada, vl_format_dso, vl_format_llff, vl_format_record3d,
+    vl_format_polycam, vl_format_scanner3d, vl_format_depthai, vl_format_kinect,
+    vl_format_realsense, vl_format_calibio, vl_format_nuscenes, vl_format_panoptic,
+    vl_format_nerfies, vl_format_threejs, vl_format_matrix;
 
-/* The first returns whether an object has the key. The second returns whether the value at the key has the second key;
- * if that value is a list, its first item is tested. */
+/* The first returns whether an object has the key. The second returns whether the value at the
+ * key has the second key; if that value is a list, its first item is tested. */
 bool vl_camera_has(const json_t *object, const char *key);
 bool vl_camera_has_in(const json_t *object, const char *key, const char *inner);
 
 vlCameraReadTree vl_camera_read_velo, vl_camera_read_opencv, vl_camera_read_kalibr;
 vlCameraWriteText vl_camera_write_velo;
-/* Appends the camera in the form of vl_camera_write_velo, but without the aperture image and the lens surfaces. */
+/* Appends the camera in the form of vl_camera_write_velo, but without the aperture image and
+ * the lens surfaces. */
 void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text);
 vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record);
 
 /* Receives each camera of a file. */
 typedef struct vlCameraSink {
-  vlResult (*add)(void *data, const vlCameraFile *file, const vlCameraRecord *record, uint32_t index);
+  vlResult (*add)(void *data, const vlCameraFile *file, const vlCameraRecord *record,
+                  uint32_t index);
   void *data;
 } vlCameraSink;
 /* Reads all cameras of a file of any dialect except COLMAP's. */

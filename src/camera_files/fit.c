@@ -7,19 +7,24 @@
 
 bool vl_camera_drops(const vlCameraFile *file, const char *field) {
   for (uint32_t i = 0; i < file->def->drop_count; i++)
-    if (vl_text_is(file->def->drop[i], field)) return true;
+    if (vl_text_is(file->def->drop[i], field))
+      return true;
   return false;
 }
 
 vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool present) {
-  if (!present || vl_camera_drops(file, field)) return VL_OK;
-  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-                    "%s cannot hold this camera's \"%s\"; to leave it out, drop it by that name", file->dialect, field);
+  if (!present || vl_camera_drops(file, field))
+    return VL_OK;
+  return vl_fail_at(
+      file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+      "%s cannot hold this camera's \"%s\"; to leave it out, drop it by that name",
+      file->dialect, field);
 }
 
 static bool is_identity(const double m[16]) {
   for (int i = 0; i < 16; i++)
-    if (m[i] != (i % 5 == 0 ? 1.0 : 0.0)) return false;
+    if (m[i] != (i % 5 == 0 ? 1.0 : 0.0))
+      return false;
   return true;
 }
 
@@ -28,12 +33,14 @@ static bool is_rigid(const double m[16]) {
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
-      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < 1e-9)) return false;
+      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < 1e-9))
+        return false;
     }
   return vl_mat4_determinant3(vl_mat4_load(m)) > 0.0;
 }
 
-/* The same view with the image mirrored horizontally: negates the x axis. For left-handed worlds such as pbrt's. */
+/* The same view with the image mirrored horizontally: negates the x axis. For left-handed
+ * worlds such as pbrt's. */
 static void unmirror(vlCamera *c) {
   for (int i = 0; i < 4; i++) {
     c->world_from_camera[4 * i] = 0.0 - c->world_from_camera[4 * i];
@@ -43,10 +50,12 @@ static void unmirror(vlCamera *c) {
   c->skew = 0.0 - c->skew;
 }
 
-vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera) {
+vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
+                       vlCamera *camera) {
   const vlCameraDef *d = &record->camera;
   vlResult result = vl_camera_make(d, camera, NULL, file->error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool posed = holds & VL_HOLDS_POSE;
   const vlLens *lens = &camera->lens;
   const struct {
@@ -67,7 +76,8 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
       {"aperture", lens->aperture != NULL},
       {"aperture_ratio", lens->ratio != 1.0},
       {"focus_pixel", !vl_is_unset(lens->focus_pixel[0])},
-      {"tilt", lens->tilt[0] != 0.0 || lens->tilt[1] != 0.0 || lens->hinge[0] != 0.0 || lens->hinge[1] != 0.0},
+      {"tilt", lens->tilt[0] != 0.0 || lens->tilt[1] != 0.0 || lens->hinge[0] != 0.0 ||
+                   lens->hinge[1] != 0.0},
       {"vignetting", lens->vignetting},
       {"shutter_curve", camera->shutter_points != 0},
       {"readout", camera->readout != 0.0},
@@ -76,26 +86,30 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
   };
   for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
     result = vl_camera_refuse(file, fields[i].field, fields[i].present);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool strict = posed && !(holds & VL_HOLDS_SCALE);
-  if (strict && vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0 && camera->distortion.steps == 0) {
+  if (strict && vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0 &&
+      camera->distortion.steps == 0) {
     result = vl_camera_refuse(file, "mirror", true);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     unmirror(camera);
   }
   if (strict && !is_rigid(camera->world_from_camera))
     return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
                       "%s cannot hold a pose that scales or mirrors", file->dialect);
-  if (vl_camera_drops(file, "skew")) camera->skew = 0.0;
+  if (vl_camera_drops(file, "skew"))
+    camera->skew = 0.0;
   return VL_OK;
 }
 
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {
-  static const char *const names[] = {"no distortion", "OpenCV's distortion", "a radial distortion",
-                                      "the thin-prism distortion"};
+  static const char *const names[] = {"no distortion", "OpenCV's distortion",
+                                      "a radial distortion", "the thin-prism distortion"};
   return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-                    "%s cannot hold the %s projection with %s and these coefficients", file->dialect,
-                    vl_projection_name(def->projection), names[def->distortion]);
+                    "%s cannot hold the %s projection with %s and these coefficients",
+                    file->dialect, vl_projection_name(def->projection), names[def->distortion]);
 }
 
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) {
@@ -108,43 +122,50 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
     k[0] = c[0];
     k[1] = def->distortion_count > 1 ? c[1] : 0.0;
     k[4] = def->distortion_count > 2 ? c[2] : 0.0;
-    if (def->distortion_count > 3 && c[3] != 0.0) return false;
+    if (def->distortion_count > 3 && c[3] != 0.0)
+      return false;
   } else if (def->distortion != VL_DISTORTION_NONE) {
     return false;
   }
   /* the given number of coefficients, or the smallest that includes all nonzero ones */
   uint32_t last = def->distortion == VL_DISTORTION_OPENCV ? def->distortion_count : 0;
   for (uint32_t i = 0; i < 14; i++)
-    if (k[i] != 0.0 && i + 1 > last) last = i + 1;
-  for (int i = 5; i >= 0 && counts[i] >= last; i--) *count = counts[i];
+    if (k[i] != 0.0 && i + 1 > last)
+      last = i + 1;
+  for (int i = 5; i >= 0 && counts[i] >= last; i--)
+    *count = counts[i];
   return true;
 }
 
-vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, uint32_t families,
-                            uint32_t most, vlCamera *camera, vlFittedLens *lens) {
+vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record,
+                            uint32_t holds, uint32_t families, uint32_t most, vlCamera *camera,
+                            vlFittedLens *lens) {
   vlResult result = vl_camera_fit(file, record, holds, camera);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   lens->family = vl_camera_lens_family(&record->camera, lens->k, &lens->count);
-  if ((families >> lens->family & 1u) && lens->count <= most) return VL_OK;
+  if ((families >> lens->family & 1u) && lens->count <= most)
+    return VL_OK;
   return vl_camera_no_model(file, &record->camera);
 }
 
-vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
-                               vlCamera *camera) {
+vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record,
+                               uint32_t holds, vlCamera *camera) {
   vlFittedLens lens;
   return vl_camera_fit_lens(file, record, holds, 1 << VL_LENS_PINHOLE, 0, camera, &lens);
 }
 
-vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, double k[14],
-                              vlCamera *camera) {
+vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record,
+                              uint32_t holds, double k[14], vlCamera *camera) {
   vlFittedLens lens = {.count = 0};
-  vlResult result =
-      vl_camera_fit_lens(file, record, holds, 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV, 5, camera, &lens);
+  vlResult result = vl_camera_fit_lens(
+      file, record, holds, 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV, 5, camera, &lens);
   memcpy(k, lens.k, sizeof lens.k);
   return result;
 }
 
 vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera) {
   vlResult result = vl_camera_refuse(file, "cx", camera->cx != 0.5 * camera->width);
-  return result == VL_OK ? vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height) : result;
+  return result == VL_OK ? vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height)
+                         : result;
 }

@@ -1,4 +1,5 @@
-/* camera_files/formats.c: the table of camera file formats (dialects). Each dialect's own file defines its row. */
+/* camera_files/formats.c: the table of camera file formats (dialects). Each dialect's own file
+ * defines its row. */
 #include "camera_files/formats.h"
 #include "base/text.h"
 
@@ -57,8 +58,9 @@ const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_MATRIX] = &vl_format_matrix,
 };
 
-/* The order in which dialects are tried on a parsed file (JSON, YAML or XML): a dialect that is recognised by
- * fields of its own comes before one that is recognised by fields that several tools use. */
+/* The order in which dialects are tried on a parsed file (JSON, YAML or XML): a dialect that is
+ * recognised by fields of its own comes before one that is recognised by fields that several
+ * tools use. */
 static const vlCameraDialect order[] = {VL_CAMERA_DIALECT_REALITYCAPTURE,
                                         VL_CAMERA_DIALECT_COLLADA,
                                         VL_CAMERA_DIALECT_NERFSTUDIO,
@@ -100,7 +102,8 @@ static const vlCameraDialect order[] = {VL_CAMERA_DIALECT_REALITYCAPTURE,
 
 static bool has_marks(const vlCameraFormat *format, const json_t *tree) {
   const json_t *object = format->marks_in ? json_object_get(tree, format->marks_in) : tree;
-  if (format->marks_in && json_is_array(object)) object = json_array_get(object, 0);
+  if (format->marks_in && json_is_array(object))
+    object = json_array_get(object, 0);
   size_t count = 0, found = 0;
   while (count < VL_LENGTH(format->marks) && format->marks[count])
     found += vl_camera_has(object, format->marks[count++]);
@@ -110,13 +113,15 @@ static bool has_marks(const vlCameraFormat *format, const json_t *tree) {
 vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree) {
   for (size_t i = 0; i < VL_LENGTH(order); i++) {
     const vlCameraFormat *format = vl_camera_formats[order[i]];
-    if (format->is_tree ? format->is_tree(tree) : has_marks(format, tree)) return order[i];
+    if (format->is_tree ? format->is_tree(tree) : has_marks(format, tree))
+      return order[i];
   }
   return VL_CAMERA_DIALECT_AUTO;
 }
 
 vlCameraDialect vl_camera_dialect_of_text(const char *text, size_t size) {
   for (int i = 1; i < VL_CAMERA_DIALECT_COUNT; i++)
-    if (vl_camera_formats[i]->is_text && vl_camera_formats[i]->is_text(text, size)) return (vlCameraDialect)i;
+    if (vl_camera_formats[i]->is_text && vl_camera_formats[i]->is_text(text, size))
+      return (vlCameraDialect)i;
   return VL_CAMERA_DIALECT_AUTO;
 }

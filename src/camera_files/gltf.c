@@ -1,7 +1,8 @@
-/* camera_files/gltf.c: glTF 2.0's cameras (section 3.10): a node's transform, world from camera, axes x right, y up,
- * z back, column-major matrices; yfov and aspectRatio (perspective); xmag and ymag, half the image's sides
- * (orthographic). glTF has neither a size in pixels nor a principal point. The full camera is stored in the camera's
- * `extras`, as velo's own JSON, from which velo reads it back. */
+/* camera_files/gltf.c: glTF 2.0's cameras (section 3.10): a node's transform, world from
+ * camera, axes x right, y up, z back, column-major matrices; yfov and aspectRatio
+ * (perspective); xmag and ymag, half the image's sides (orthographic). glTF has neither a size
+ * in pixels nor a principal point. The full camera is stored in the camera's `extras`, as
+ * velo's own JSON, from which velo reads it back. */
 #include <math.h>
 
 #include "base/text.h"
@@ -33,33 +34,40 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat
   *result = vl_mat4_identity();
   if (json_object_get(node, "matrix")) {
     status = vl_camera_numbers(file, node, "matrix", m, 16, 16, NULL);
-    for (int i = 0; i < 16 && status == VL_OK; i++) result->m[i] = m[4 * (i % 4) + i / 4];
+    for (int i = 0; i < 16 && status == VL_OK; i++)
+      result->m[i] = m[4 * (i % 4) + i / 4];
     return status;
   }
-  if (json_object_get(node, "translation")) status = vl_camera_numbers(file, node, "translation", t, 3, 3, NULL);
+  if (json_object_get(node, "translation"))
+    status = vl_camera_numbers(file, node, "translation", t, 3, 3, NULL);
   if (status == VL_OK && json_object_get(node, "rotation"))
     status = vl_camera_numbers(file, node, "rotation", q, 4, 4, NULL);
-  if (status == VL_OK && json_object_get(node, "scale")) status = vl_camera_numbers(file, node, "scale", s, 3, 3, NULL);
+  if (status == VL_OK && json_object_get(node, "scale"))
+    status = vl_camera_numbers(file, node, "scale", s, 3, 3, NULL);
   const double wxyz[4] = {q[3], q[0], q[1], q[2]};
   if (status == VL_OK && !vl_rotation_from_quaternion(wxyz, r))
     status = vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation");
   for (int i = 0; i < 3 && status == VL_OK; i++) {
-    for (int j = 0; j < 3; j++) result->m[4 * i + j] = r[3 * i + j] * s[j];
+    for (int j = 0; j < 3; j++)
+      result->m[4 * i + j] = r[3 * i + j] * s[j];
     result->m[4 * i + 3] = t[i];
   }
   return status;
 }
 
 /* World matrix of a node. *parents[i] is the parent of node i, -1 for none. */
-static vlResult world_matrix(const vlCameraFile *file, const json_t *nodes, const int64_t *parents, int64_t index,
-                             vlMat4 *result) {
+static vlResult world_matrix(const vlCameraFile *file, const json_t *nodes,
+                             const int64_t *parents, int64_t index, vlMat4 *result) {
   int64_t steps = 0, count = (int64_t)json_array_size(nodes);
   *result = vl_mat4_identity();
   for (int64_t i = index; i >= 0; i = parents[i]) {
     vlMat4 local;
-    if (++steps > count) return vl_camera_wrong(file, "gltf: node %lld is among its own children", (long long)index);
+    if (++steps > count)
+      return vl_camera_wrong(file, "gltf: node %lld is among its own children",
+                             (long long)index);
     vlResult status = local_matrix(file, json_array_get(nodes, (size_t)i), &local);
-    if (status != VL_OK) return status;
+    if (status != VL_OK)
+      return status;
     *result = vl_mat4_multiply(local, *result);
   }
   return VL_OK;
@@ -68,7 +76,8 @@ static vlResult world_matrix(const vlCameraFile *file, const json_t *nodes, cons
 static vlResult find_parents(const vlCameraFile *file, const json_t *nodes, int64_t *parents) {
   size_t count = json_array_size(nodes), k;
   json_t *child;
-  for (size_t i = 0; i < count; i++) parents[i] = -1;
+  for (size_t i = 0; i < count; i++)
+    parents[i] = -1;
   for (size_t i = 0; i < count; i++)
     json_array_foreach(json_object_get(json_array_get(nodes, i), "children"), k, child) {
       double at = json_number_value(child);
@@ -79,36 +88,46 @@ static vlResult find_parents(const vlCameraFile *file, const json_t *nodes, int6
   return VL_OK;
 }
 
-static vlResult read_perspective(const vlCameraFile *file, const json_t *lens, vlCameraRecord *record) {
+static vlResult read_perspective(const vlCameraFile *file, const json_t *lens,
+                                 vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double yfov = 0.0, aspect = VL_UNSET;
-  vlResult result = VL_READ_FIELDS(file, lens, VL_FIELD("yfov", &yfov), VL_FIELD_OPTIONAL("aspectRatio", &aspect),
-                                   VL_FIELD("znear", &d->near_plane), VL_FIELD_OPTIONAL("zfar", &d->far_plane));
+  vlResult result = VL_READ_FIELDS(
+      file, lens, VL_FIELD("yfov", &yfov), VL_FIELD_OPTIONAL("aspectRatio", &aspect),
+      VL_FIELD("znear", &d->near_plane), VL_FIELD_OPTIONAL("zfar", &d->far_plane));
   if (result == VL_OK && !(yfov > 0.0 && yfov < 3.14159265358979))
-    return vl_camera_wrong(file, "gltf: \"yfov\" is %g radians; it must lie between 0 and pi", yfov);
-  if (aspect == 0.0) aspect = VL_UNSET; /* not valid, but Assimp writes it where it knows none */
+    return vl_camera_wrong(file, "gltf: \"yfov\" is %g radians; it must lie between 0 and pi",
+                           yfov);
+  if (aspect == 0.0)
+    aspect = VL_UNSET; /* not valid, but Assimp writes it where it knows none */
   if (result == VL_OK && aspect < 0.0)
     return vl_camera_wrong(file, "gltf: \"aspectRatio\" is %g; it must be above zero", aspect);
-  if (result == VL_OK) result = vl_camera_size(file, vl_is_unset(aspect) ? 16.0 / 9.0 : aspect, record);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_size(file, vl_is_unset(aspect) ? 16.0 / 9.0 : aspect, record);
+  if (result != VL_OK)
+    return result;
   double half = vl_precise_tan(0.5 * yfov);
   d->fy = 0.5 * d->height / half;
   d->fx = vl_is_unset(aspect) ? d->fy : 0.5 * d->width / (half * aspect);
   return VL_OK;
 }
 
-static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens, vlCameraRecord *record) {
+static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens,
+                                  vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double x = 0.0, y = 0.0;
-  vlResult result = VL_READ_FIELDS(file, lens, VL_FIELD("xmag", &x), VL_FIELD("ymag", &y),
-                                   VL_FIELD("znear", &d->near_plane), VL_FIELD("zfar", &d->far_plane));
+  vlResult result =
+      VL_READ_FIELDS(file, lens, VL_FIELD("xmag", &x), VL_FIELD("ymag", &y),
+                     VL_FIELD("znear", &d->near_plane), VL_FIELD("zfar", &d->far_plane));
   /* some exporters write negative values; the extent is the same */
   x = fabs(x);
   y = fabs(y);
   if (result == VL_OK && !(x > 0.0 && y > 0.0))
     return vl_camera_wrong(file, "gltf: \"xmag\" and \"ymag\" must not be zero");
-  if (result == VL_OK) result = vl_camera_size(file, x / y, record);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_size(file, x / y, record);
+  if (result != VL_OK)
+    return result;
   d->projection = VL_PROJECTION_ORTHOGRAPHIC;
   d->fx = 0.5 * d->width / x;
   d->fy = 0.5 * d->height / y;
@@ -119,13 +138,16 @@ static bool agree(double a, double b) {
   return fabs(a - b) <= 1e-6 * fmax(1.0, fmax(fabs(a), fabs(b)));
 }
 
-/* Reads the full camera from the extras. glTF's own numbers must still be those written with it. */
-static vlResult read_extras(const vlCameraFile *file, const json_t *extras, const vlMat4 *pose, const json_t *lens,
-                            vlCameraRecord *record) {
+/* Reads the full camera from the extras. glTF's own numbers must still be those written with
+ * it. */
+static vlResult read_extras(const vlCameraFile *file, const json_t *extras, const vlMat4 *pose,
+                            const json_t *lens, vlCameraRecord *record) {
   vlCamera camera;
   vlResult result = vl_camera_read_velo(file, extras, record);
-  if (result == VL_OK) result = vl_camera_make(&record->camera, &camera, NULL, file->error);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_make(&record->camera, &camera, NULL, file->error);
+  if (result != VL_OK)
+    return result;
   Numbers n = numbers_of(&camera);
   const struct {
     const char *key;
@@ -135,13 +157,16 @@ static vlResult read_extras(const vlCameraFile *file, const json_t *extras, cons
   for (int i = 0; i < 2; i++) {
     double value = json_number_value(json_object_get(lens, fields[i].key));
     if (!agree(value, fields[i].value))
-      return vl_camera_wrong(file, "gltf: \"%s\" is %.9g, but velo's camera in \"extras\" makes it %.9g; remove one",
-                             fields[i].key, value, fields[i].value);
+      return vl_camera_wrong(
+          file,
+          "gltf: \"%s\" is %.9g, but velo's camera in \"extras\" makes it %.9g; remove one",
+          fields[i].key, value, fields[i].value);
   }
   for (int i = 0; i < 12; i++)
     if (!agree(pose->m[i], n.matrix[i]))
       return vl_camera_wrong(file,
-                             "gltf: the node stands elsewhere than velo's camera in \"extras\"; remove the extras");
+                             "gltf: the node stands elsewhere than velo's camera in "
+                             "\"extras\"; remove the extras");
   return VL_OK;
 }
 
@@ -151,67 +176,92 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   const char *type = vl_camera_text(camera, "type");
   bool flat = vl_text_is(type, "orthographic");
   if (!type || (!flat && !vl_text_is(type, "perspective")))
-    return vl_camera_wrong(file, "gltf: unknown camera type \"%s\"; there are perspective, orthographic",
-                           vl_short_text(type).text);
+    return vl_camera_wrong(
+        file, "gltf: unknown camera type \"%s\"; there are perspective, orthographic",
+        vl_short_text(type).text);
   const json_t *lens, *extras = json_object_get(json_object_get(camera, "extras"), "velo");
   vlResult result = vl_camera_field(file, camera, type, &lens);
-  if (result == VL_OK && extras) return read_extras(file, extras, pose, lens, record);
-  if (result == VL_OK) result = flat ? read_orthographic(file, lens, record) : read_perspective(file, lens, record);
+  if (result == VL_OK && extras)
+    return read_extras(file, extras, pose, lens, record);
+  if (result == VL_OK)
+    result =
+        flat ? read_orthographic(file, lens, record) : read_perspective(file, lens, record);
   d->has_matrix = true;
   vl_camera_flip_axes(pose->m, d->world_from_camera);
   return result;
 }
 
-static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const json_t *index, const json_t **camera) {
+static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const json_t *index,
+                          const json_t **camera) {
   double at = json_number_value(index);
-  *camera = at >= 0.0 && at == floor(at) && at < (double)json_array_size(cameras) ? json_array_get(cameras, (size_t)at)
-                                                                                  : NULL;
-  return json_is_object(*camera) ? VL_OK : vl_camera_wrong(file, "gltf: a node names a camera that does not exist");
+  *camera = at >= 0.0 && at == floor(at) && at < (double)json_array_size(cameras)
+                ? json_array_get(cameras, (size_t)at)
+                : NULL;
+  return json_is_object(*camera)
+             ? VL_OK
+             : vl_camera_wrong(file, "gltf: a node names a camera that does not exist");
 }
 
-static vlResult read_gltf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *cameras, *nodes = json_object_get(tree, "nodes"), *camera = NULL, *chosen = NULL;
+static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
+                          vlCameraRecord *record) {
+  const json_t *cameras, *nodes = json_object_get(tree, "nodes"), *camera = NULL,
+                         *chosen = NULL;
   vlResult result = vl_camera_field(file, tree, "cameras", &cameras);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   size_t count = json_array_size(nodes);
   vlMat4 pose = vl_mat4_identity();
   record->frames = 0;
   for (size_t i = 0; i < count && result == VL_OK; i++) {
     const json_t *node = json_array_get(nodes, i), *index = json_object_get(node, "camera");
-    if (!index) continue;
+    if (!index)
+      continue;
     result = camera_of(file, cameras, index, &camera);
     const char *name = vl_camera_text(node, "name");
-    if (!name) name = vl_camera_text(camera, "name");
+    if (!name)
+      name = vl_camera_text(camera, "name");
     if (result == VL_OK && !chosen && vl_camera_is_frame(file, record->frames, name)) {
       int64_t *parents = vl_alloc(file->context, count * sizeof *parents);
-      if (!parents) return vl_fail_memory(file->error);
+      if (!parents)
+        return vl_fail_memory(file->error);
       chosen = camera;
       result = find_parents(file, nodes, parents);
-      if (result == VL_OK) result = world_matrix(file, nodes, parents, (int64_t)i, &pose);
+      if (result == VL_OK)
+        result = world_matrix(file, nodes, parents, (int64_t)i, &pose);
       vl_free(file->context, parents);
       vl_camera_name(record, name);
     }
     record->frames++;
   }
   if (result == VL_OK && record->frames == 0)
-    return vl_camera_wrong(file, "gltf: no node holds a camera (\"cameras\" has %zu)", json_array_size(cameras));
-  if (result == VL_OK && !chosen) return vl_camera_no_frame(file, "camera", record->frames);
-  if (result != VL_OK) return result;
+    return vl_camera_wrong(file, "gltf: no node holds a camera (\"cameras\" has %zu)",
+                           json_array_size(cameras));
+  if (result == VL_OK && !chosen)
+    return vl_camera_no_frame(file, "camera", record->frames);
+  if (result != VL_OK)
+    return result;
   char name[sizeof record->name];
   memcpy(name, record->name, sizeof name);
   result = read_camera(file, chosen, &pose, record);
-  if (!record->name[0]) memcpy(record->name, name, sizeof name);
+  if (!record->name[0])
+    memcpy(record->name, name, sizeof name);
   return result;
 }
 
-static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *record,
+                           vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
-  if (result == VL_OK) result = vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
-  if (result == VL_OK) result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result == VL_OK) result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
+  if (result == VL_OK)
+    result = vl_camera_refuse_off_centre(file, &c);
+  if (result != VL_OK)
+    return result;
   Numbers n = numbers_of(&c);
   const double *m = n.matrix;
   double dots[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
@@ -222,23 +272,31 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
     }
   for (int k = 0; k < 3; k++)
     if (fabs(dots[k]) > 1e-9 * sqrt(squares[k] * squares[(k + 1) % 3]))
-      return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0, "gltf cannot hold a pose that shears");
-  vl_camera_put(text, "{\n  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n  \"scene\": 0,\n");
+      return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                        "gltf cannot hold a pose that shears");
+  vl_camera_put(
+      text,
+      "{\n  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n  \"scene\": 0,\n");
   vl_camera_put(text, "  \"scenes\": [{\"nodes\": [0]}],\n  \"nodes\": [{\n    \"name\": ");
   vl_camera_put_string(text, record->name[0] ? record->name : "Camera");
   vl_camera_put(text, ",\n    \"camera\": 0,\n    \"matrix\": [");
-  for (int i = 0; i < 16; i++) vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * (i % 4) + i / 4]);
+  for (int i = 0; i < 16; i++)
+    vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * (i % 4) + i / 4]);
   vl_camera_put(text, "]\n  }],\n  \"cameras\": [{\n    \"type\": \"%s\",\n    \"%s\": {",
-                n.flat ? "orthographic" : "perspective", n.flat ? "orthographic" : "perspective");
+                n.flat ? "orthographic" : "perspective",
+                n.flat ? "orthographic" : "perspective");
   if (n.flat)
     vl_camera_put(text, "\"xmag\": %.17g, \"ymag\": %.17g", n.xmag, n.ymag);
   else
     vl_camera_put(text, "\"aspectRatio\": %.17g, \"yfov\": %.17g", n.aspect, n.yfov);
-  /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that the camera has none */
-  double near_plane = c.near_plane > 0.0 || n.flat ? c.near_plane : fmin(0.01, 1e-3 * c.far_plane);
+  /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that
+   * the camera has none */
+  double near_plane =
+      c.near_plane > 0.0 || n.flat ? c.near_plane : fmin(0.01, 1e-3 * c.far_plane);
   vl_camera_put(text, ", \"znear\": %.17g", near_plane);
   if (!isinf(c.far_plane) || n.flat)
-    vl_camera_put(text, ", \"zfar\": %.17g", isinf(c.far_plane) ? near_plane + 1e4 : c.far_plane);
+    vl_camera_put(text, ", \"zfar\": %.17g",
+                  isinf(c.far_plane) ? near_plane + 1e4 : c.far_plane);
   vl_camera_put(text, "},\n    \"extras\": {\"velo\": ");
   vlCameraText whole = {.context = text->context};
   result = vl_camera_write_velo(file, record, &whole);
@@ -248,4 +306,5 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
   return result;
 }
 
-const vlCameraFormat vl_format_gltf = {.name = "gltf", .marks = {"asset"}, .read = read_gltf, .write = write_gltf};
+const vlCameraFormat vl_format_gltf = {
+    .name = "gltf", .marks = {"asset"}, .read = read_gltf, .write = write_gltf};

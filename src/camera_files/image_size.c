@@ -1,5 +1,6 @@
-/* camera_files/image_size.c: the image size for files that have none. It is the size that the caller gives, or that
- * of an image beside the file, read from the first bytes of a PNG or JPEG. */
+/* camera_files/image_size.c: the image size for files that have none. It is the size that the
+ * caller gives, or that of an image beside the file, read from the first bytes of a PNG or
+ * JPEG. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -7,26 +8,32 @@
 
 static uint32_t big_endian(const unsigned char *b, int count) {
   uint32_t value = 0;
-  for (int i = 0; i < count; i++) value = value << 8 | b[i];
+  for (int i = 0; i < count; i++)
+    value = value << 8 | b[i];
   return value;
 }
 
 /* Skips the segments of a JPEG up to the frame header, which holds the size. */
 static bool jpeg_size(FILE *file, uint32_t size[2]) {
   unsigned char b[8];
-  if (fseek(file, 2, SEEK_SET) != 0) return false;
+  if (fseek(file, 2, SEEK_SET) != 0)
+    return false;
   for (int segments = 0; segments < 1000; segments++) {
-    if (fread(b, 1, 4, file) != 4 || b[0] != 0xff) return false;
+    if (fread(b, 1, 4, file) != 4 || b[0] != 0xff)
+      return false;
     uint32_t length = big_endian(b + 2, 2);
     bool frame = b[1] >= 0xc0 && b[1] <= 0xcf && b[1] != 0xc4 && b[1] != 0xc8 && b[1] != 0xcc;
-    if (length < 2) return false;
+    if (length < 2)
+      return false;
     if (frame) {
-      if (fread(b, 1, 5, file) != 5) return false;
+      if (fread(b, 1, 5, file) != 5)
+        return false;
       size[0] = big_endian(b + 3, 2);
       size[1] = big_endian(b + 1, 2);
       return true;
     }
-    if (fseek(file, (long)length - 2, SEEK_CUR) != 0) return false;
+    if (fseek(file, (long)length - 2, SEEK_CUR) != 0)
+      return false;
   }
   return false;
 }
@@ -34,7 +41,8 @@ static bool jpeg_size(FILE *file, uint32_t size[2]) {
 static bool size_of(vlContext *context, const char *path, uint32_t size[2]) {
   unsigned char b[24];
   FILE *file = fopen(path, "rb");
-  if (!file) return false;
+  if (!file)
+    return false;
   bool found = false;
   if (fread(b, 1, sizeof b, file) == sizeof b) {
     if (memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0) {
@@ -45,12 +53,14 @@ static bool size_of(vlContext *context, const char *path, uint32_t size[2]) {
       found = jpeg_size(file, size);
     }
   }
-  if (found) vl_note_input(context, path, VL_OUTPUT_PLAIN);
+  if (found)
+    vl_note_input(context, path, VL_OUTPUT_PLAIN);
   fclose(file);
   return found && size[0] >= 1 && size[0] <= 1 << 24 && size[1] >= 1 && size[1] <= 1 << 24;
 }
 
-vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images, vlCameraRecord *record) {
+vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images,
+                               vlCameraRecord *record) {
   static const char *const suffixes[] = {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"};
   vlCameraDef *d = &record->camera;
   if (file->def->width && file->def->height) {
@@ -63,32 +73,40 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
       char name[1024], path[4096];
       uint32_t size[2];
       int length = snprintf(name, sizeof name, "%s%s", *images, suffixes[i]);
-      if (!**images || length < 0 || (size_t)length >= sizeof name) continue;
-      if (!vl_path_join(file->path, name, path, sizeof path) || !size_of(file->context, path, size)) continue;
+      if (!**images || length < 0 || (size_t)length >= sizeof name)
+        continue;
+      if (!vl_path_join(file->path, name, path, sizeof path) ||
+          !size_of(file->context, path, size))
+        continue;
       d->width = size[0];
       d->height = size[1];
       return VL_OK;
     }
-  return vl_camera_wrong(file, "%s: the file has no image size%s; give one: --size WIDTHxHEIGHT", file->dialect,
-                         images && *images ? " and its images are not there" : "");
+  return vl_camera_wrong(
+      file, "%s: the file has no image size%s; give one: --size WIDTHxHEIGHT", file->dialect,
+      images && *images ? " and its images are not there" : "");
 }
 
-vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width, const char *height,
-                         vlCameraRecord *record) {
+vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width,
+                         const char *height, vlCameraRecord *record) {
   if (!json_object_get(object, width) && !json_object_get(object, height))
     return vl_camera_size_beside(file, NULL, record);
   vlResult result = vl_camera_side(file, object, width, &record->camera.width);
-  return result == VL_OK ? vl_camera_side(file, object, height, &record->camera.height) : result;
+  return result == VL_OK ? vl_camera_side(file, object, height, &record->camera.height)
+                         : result;
 }
 
-vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key, vlCameraRecord *record) {
+vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key,
+                             vlCameraRecord *record) {
   double size[2] = {0};
   vlResult result = vl_camera_numbers(file, object, key, size, 2, 2, NULL);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != (double)(uint32_t)size[i])
-      return vl_camera_wrong_in(file, object, key, "%s: \"%s\" is %g x %g; it must be whole pixels", file->dialect, key,
-                                size[0], size[1]);
+      return vl_camera_wrong_in(file, object, key,
+                                "%s: \"%s\" is %g x %g; it must be whole pixels", file->dialect,
+                                key, size[0], size[1]);
   record->camera.width = (uint32_t)size[0];
   record->camera.height = (uint32_t)size[1];
   return VL_OK;

@@ -1,6 +1,6 @@
-/* camera_files/kalibr.c: Kalibr's camchain: cam0, cam1, ...; world space is cam0's space, or the IMU's where the
- * cameras have T_cam_imu (camera from IMU) and no chain. OpenCV's axes; the first
- * pixel's centre is (0, 0). */
+/* camera_files/kalibr.c: Kalibr's camchain: cam0, cam1, ...; world space is cam0's space, or
+ * the IMU's where the cameras have T_cam_imu (camera from IMU) and no chain. OpenCV's axes; the
+ * first pixel's centre is (0, 0). */
 #include <math.h>
 #include <stdio.h>
 
@@ -24,28 +24,35 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
   double k[4] = {0};
   uint32_t n = 0;
   vlResult result = vl_camera_field(file, cam, "distortion_model", &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *lens = json_string_value(field);
   bool plain = d->projection == VL_PROJECTION_PERSPECTIVE;
-  if (vl_text_is(lens, "none")) return VL_OK;
+  if (vl_text_is(lens, "none"))
+    return VL_OK;
   result = vl_camera_numbers(file, cam, "distortion_coeffs", k, 0, 4, &n);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool radtan = vl_text_is(lens, "radtan"), equi = vl_text_is(lens, "equidistant");
   bool fov = vl_text_is(lens, "fov");
   if (!radtan && !equi && !fov)
-    return vl_camera_unknown(file, cam, "distortion_model", lens, "there are radtan, equidistant, fov, none");
+    return vl_camera_unknown(file, cam, "distortion_model", lens,
+                             "there are radtan, equidistant, fov, none");
   if (!plain && !radtan)
     return vl_camera_wrong_in(file, cam, "distortion_model",
-                              "kalibr: distortion_model \"%s\" goes with the pinhole only", lens);
+                              "kalibr: distortion_model \"%s\" goes with the pinhole only",
+                              lens);
   if (n != (fov ? 1u : 4u))
     return vl_camera_wrong_in(file, cam, "distortion_coeffs",
-                              "kalibr: \"distortion_coeffs\" holds %u numbers; %s has %d", n, lens, fov ? 1 : 4);
+                              "kalibr: \"distortion_coeffs\" holds %u numbers; %s has %d", n,
+                              lens, fov ? 1 : 4);
   if (fov) {
     d->projection = VL_PROJECTION_FOV;
     d->shape[0] = k[0];
     return VL_OK;
   }
-  if (equi) d->projection = VL_PROJECTION_EQUIDISTANT;
+  if (equi)
+    d->projection = VL_PROJECTION_EQUIDISTANT;
   d->distortion = equi ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
   d->distortion_count = 4;
   memcpy(d->distortion_coefficients, k, sizeof k);
@@ -57,19 +64,27 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
   const json_t *field;
   double k[6] = {0};
   vlResult result = vl_camera_field(file, cam, "camera_model", &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *name = json_string_value(field);
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
-    if (vl_text_is(name, models[i].name)) model = &models[i];
-  if (!model) return vl_camera_unknown(file, cam, "camera_model", name, "there are pinhole, omni, eucm, ds");
+    if (vl_text_is(name, models[i].name))
+      model = &models[i];
+  if (!model)
+    return vl_camera_unknown(file, cam, "camera_model", name,
+                             "there are pinhole, omni, eucm, ds");
   d->projection = model->projection;
-  result = vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4, NULL);
+  result =
+      vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4, NULL);
   bool sized = vl_camera_has(cam, "resolution");
   if (result == VL_OK)
-    result = sized ? vl_camera_side_pair(file, cam, "resolution", record) : vl_camera_size_beside(file, NULL, record);
-  if (result != VL_OK) return result;
-  for (uint32_t i = 0; i < model->shapes; i++) d->shape[i] = k[i];
+    result = sized ? vl_camera_side_pair(file, cam, "resolution", record)
+                   : vl_camera_size_beside(file, NULL, record);
+  if (result != VL_OK)
+    return result;
+  for (uint32_t i = 0; i < model->shapes; i++)
+    d->shape[i] = k[i];
   const double *f = k + model->shapes;
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
   return read_lens(file, cam, d);
@@ -78,30 +93,35 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
 static uint32_t cameras_of(const json_t *tree) {
   char key[16];
   uint32_t count = 0;
-  do snprintf(key, sizeof key, "cam%u", count);
+  do
+    snprintf(key, sizeof key, "cam%u", count);
   while (json_object_get(tree, key) && ++count);
   return count;
 }
 
-/* The key of a camera's pose relative to the IMU: camera from IMU, or OpenVINS' IMU from camera. */
+/* The key of a camera's pose relative to the IMU: camera from IMU, or OpenVINS' IMU from
+ * camera. */
 static const char *imu_key(const json_t *cam, bool *inverse) {
   *inverse = !vl_camera_has(cam, "T_cam_imu") && vl_camera_has(cam, "T_imu_cam");
   return *inverse ? "T_imu_cam" : "T_cam_imu";
 }
 
-/* Returns whether the poses are relative to the IMU, because the chain from camera to camera is missing. */
+/* Returns whether the poses are relative to the IMU, because the chain from camera to camera is
+ * missing. */
 static bool is_by_imu(const json_t *tree, uint32_t cameras) {
   bool chain = cameras > 1, imu = true;
   for (uint32_t i = 0; i < cameras; i++) {
     char key[16];
     snprintf(key, sizeof key, "cam%u", i);
-    imu = imu && (vl_camera_has_in(tree, key, "T_cam_imu") || vl_camera_has_in(tree, key, "T_imu_cam"));
+    imu = imu && (vl_camera_has_in(tree, key, "T_cam_imu") ||
+                  vl_camera_has_in(tree, key, "T_imu_cam"));
     chain = chain && (i == 0 || vl_camera_has_in(tree, key, "T_cn_cnm1"));
   }
   return imu && !chain;
 }
 
-vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree,
+                               vlCameraRecord *record) {
   vlMat4 from_world = vl_mat4_identity();
   record->frames = cameras_of(tree);
   bool by_imu = is_by_imu(tree, record->frames);
@@ -109,44 +129,56 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree, vlC
     char key[16];
     snprintf(key, sizeof key, "cam%u", i);
     const json_t *cam = json_object_get(tree, key);
-    if (!json_is_object(cam)) return vl_camera_wrong_in(file, tree, key, "kalibr: \"%s\" holds no fields", key);
+    if (!json_is_object(cam))
+      return vl_camera_wrong_in(file, tree, key, "kalibr: \"%s\" holds no fields", key);
     if (i > 0 || by_imu) {
       vlMat4 step = vl_mat4_identity();
       bool inverse;
       const char *name = imu_key(cam, &inverse);
-      vlResult result = vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL);
-      if (result != VL_OK) return result;
+      vlResult result =
+          vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL);
+      if (result != VL_OK)
+        return result;
       if (by_imu && inverse && !vl_mat4_inverse(step, &step))
         return vl_camera_wrong_in(file, cam, name, "kalibr: \"%s\" is singular", name);
       from_world = by_imu ? step : vl_mat4_multiply(step, from_world);
     }
-    if (!vl_camera_is_frame(file, i, key)) continue;
+    if (!vl_camera_is_frame(file, i, key))
+      continue;
     vlMat4 pose;
     if (!vl_mat4_inverse(from_world, &pose) || !isfinite(pose.m[0]))
       return vl_camera_wrong_in(file, tree, key, "kalibr: the pose of \"%s\" is singular", key);
     record->camera.has_matrix = true;
-    for (int e = 0; e < 16; e++) record->camera.world_from_camera[e] = e < 12 ? pose.m[e] + 0.0 : e == 15;
+    for (int e = 0; e < 16; e++)
+      record->camera.world_from_camera[e] = e < 12 ? pose.m[e] + 0.0 : e == 15;
     vl_camera_name(record, key);
     return read_cam(file, cam, record);
   }
-  return vl_camera_wrong(file, "kalibr: there is no camera \"%s\"", vl_camera_asked(file, "cam0").text);
+  return vl_camera_wrong(file, "kalibr: there is no camera \"%s\"",
+                         vl_camera_asked(file, "cam0").text);
 }
 
-static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *record,
+                             vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double k[14] = {0};
   uint32_t n = 0;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
-  bool fov = d->projection == VL_PROJECTION_FOV, equi = d->projection == VL_PROJECTION_EQUIDISTANT;
+  if (result != VL_OK)
+    return result;
+  bool fov = d->projection == VL_PROJECTION_FOV,
+       equi = d->projection == VL_PROJECTION_EQUIDISTANT;
   const char *lens = "none";
   const Model *model = fov || equi ? &models[0] : NULL;
   for (int i = 0; i < MODELS; i++)
-    if (d->projection == models[i].projection) model = &models[i];
-  if (!model) return vl_camera_no_model(file, d);
+    if (d->projection == models[i].projection)
+      model = &models[i];
+  if (!model)
+    return vl_camera_no_model(file, d);
   if (fov) {
-    if (d->distortion != VL_DISTORTION_NONE) return vl_camera_no_model(file, d);
+    if (d->distortion != VL_DISTORTION_NONE)
+      return vl_camera_no_model(file, d);
     k[0] = d->shape[0];
     n = 1;
     lens = "fov";
@@ -158,20 +190,25 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
     lens = "equidistant";
   } else if (d->distortion != VL_DISTORTION_NONE) {
     bool fits = vl_camera_as_opencv(d, k, &n);
-    for (int i = 4; i < 14; i++) fits = fits && k[i] == 0.0;
-    if (!fits || model->shapes == 2) return vl_camera_no_model(file, d);
+    for (int i = 4; i < 14; i++)
+      fits = fits && k[i] == 0.0;
+    if (!fits || model->shapes == 2)
+      return vl_camera_no_model(file, d);
     n = 4;
     lens = "radtan";
   }
   vl_camera_put(text, "cam0:\n  camera_model: %s\n  intrinsics: [", model->name);
-  for (uint32_t i = 0; i < model->shapes; i++) vl_camera_put(text, "%.17g, ", c.shape[i]);
+  for (uint32_t i = 0; i < model->shapes; i++)
+    vl_camera_put(text, "%.17g, ", c.shape[i]);
   VL_PUT_FORM(text, record, &c,
               "$fx, $fy, $cx0, $cy0]\n  distortion_model: $lens\n  distortion_coeffs: [$k]\n"
               "  resolution: [$width, $height]\n",
               VL_WORD("lens", lens), VL_VALUES("k", k, n));
   bool posed = false;
-  for (int i = 0; i < 16; i++) posed = posed || c.camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
-  if (posed) vl_camera_put(text, "  T_cam_imu:\n"); /* the world's space is the IMU's */
+  for (int i = 0; i < 16; i++)
+    posed = posed || c.camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
+  if (posed)
+    vl_camera_put(text, "  T_cam_imu:\n"); /* the world's space is the IMU's */
   for (int i = 0; i < 16 && posed; i += 4) {
     vl_camera_put(text, "  - [");
     vl_camera_put_numbers(text, c.camera_from_world + i, 4);

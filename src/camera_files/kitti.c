@@ -1,6 +1,7 @@
-/* camera_files/kitti.c: KITTI's calibrations: calib.txt with P0 to P3 (odometry, object detection) and
- * calib_cam_to_cam.txt (raw data: S_00, K_00, D_00, R_00, T_00). x right, y down, z forward; camera from world; the
- * first pixel's centre is (0, 0). P = K [I | t]: the world's space is the rectified camera 0's; R and T: camera 0's. */
+/* camera_files/kitti.c: KITTI's calibrations: calib.txt with P0 to P3 (odometry, object
+ * detection) and calib_cam_to_cam.txt (raw data: S_00, K_00, D_00, R_00, T_00). x right, y
+ * down, z forward; camera from world; the first pixel's centre is (0, 0). P = K [I | t]: the
+ * world's space is the rectified camera 0's; R and T: camera 0's. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,16 +17,18 @@ typedef struct {
   vlCameraLines line;
 } Row;
 
-static vlResult find_row(const vlCameraFile *file, const char *text, size_t size, Row *row, uint32_t least,
-                         bool *found) {
+static vlResult find_row(const vlCameraFile *file, const char *text, size_t size, Row *row,
+                         uint32_t least, bool *found) {
   row->line = (vlCameraLines){.at = text, .end = text + size};
   *found = false;
   size_t length = strlen(row->key);
   while (vl_camera_next_line(&row->line)) {
     const char *line = row->line.text;
-    if (strncmp(line, row->key, length) != 0 || (line[length] != ':' && line[length] != ' ')) continue;
+    if (strncmp(line, row->key, length) != 0 || (line[length] != ':' && line[length] != ' '))
+      continue;
     *found = true;
-    return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, least, least, &row->count);
+    return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, least,
+                                  least, &row->count);
   }
   return VL_OK;
 }
@@ -35,13 +38,15 @@ static vlResult missing(const vlCameraFile *file, const char *key) {
 }
 
 /* P: the projection of a rectified camera. */
-static vlResult read_projection(const vlCameraFile *file, const Row *row, uint32_t camera, vlCameraRecord *record) {
+static vlResult read_projection(const vlCameraFile *file, const Row *row, uint32_t camera,
+                                vlCameraRecord *record) {
   const double *p = row->values;
   vlCameraDef *d = &record->camera;
   char odometry[32], object[32];
-  if (p[1] != 0.0 || p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || p[10] != 1.0 || !(p[0] > 0.0 && p[5] > 0.0))
-    return vl_camera_wrong_line(file, &row->line, row->line.text, "%s must be fx 0 cx tx, 0 fy cy ty, 0 0 1 tz",
-                                row->key);
+  if (p[1] != 0.0 || p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || p[10] != 1.0 ||
+      !(p[0] > 0.0 && p[5] > 0.0))
+    return vl_camera_wrong_line(file, &row->line, row->line.text,
+                                "%s must be fx 0 cx tx, 0 fy cy ty, 0 0 1 tz", row->key);
   /* the images beside the two kinds of file */
   snprintf(odometry, sizeof odometry, "image_%u/000000.png", camera);
   snprintf(object, sizeof object, "../image_%u/000000.png", camera);
@@ -52,8 +57,8 @@ static vlResult read_projection(const vlCameraFile *file, const Row *row, uint32
   return vl_camera_size_beside(file, (const char *const[]){odometry, object, NULL}, record);
 }
 
-static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size, uint32_t camera,
-                         vlCameraRecord *record) {
+static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size,
+                         uint32_t camera, vlCameraRecord *record) {
   static const struct {
     char letter;
     uint32_t count;
@@ -64,23 +69,26 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
     bool found;
     snprintf(rows[i].key, sizeof rows[i].key, "%c_%02u", wanted[i].letter, camera);
     vlResult result = find_row(file, text, size, &rows[i], wanted[i].count, &found);
-    if (result != VL_OK) return result;
-    if (!found) return missing(file, rows[i].key);
+    if (result != VL_OK)
+      return result;
+    if (!found)
+      return missing(file, rows[i].key);
   }
   const double *k = rows[1].values;
   if (!vl_camera_set_sides(d, rows[0].values))
-    return vl_camera_wrong_line(file, &rows[0].line, rows[0].line.text, "%s must be two whole numbers of pixels",
-                                rows[0].key);
+    return vl_camera_wrong_line(file, &rows[0].line, rows[0].line.text,
+                                "%s must be two whole numbers of pixels", rows[0].key);
   if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_line(file, &rows[1].line, rows[1].line.text, "%s must be fx 0 cx, 0 fy cy, 0 0 1",
-                                rows[1].key);
+    return vl_camera_wrong_line(file, &rows[1].line, rows[1].line.text,
+                                "%s must be fx 0 cx, 0 fy cy, 0 0 1", rows[1].key);
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, rows[2].values, 5);
   vl_camera_set_pose(d, rows[3].values, rows[4].values);
   return VL_OK;
 }
 
-static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t size,
+                           vlCameraRecord *record) {
   Row chosen = {.count = 0};
   uint32_t taken = UINT32_MAX;
   bool raw = false;
@@ -91,9 +99,12 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
     snprintf(row.key, sizeof row.key, "K_%02u", i);
     vlResult result = find_row(file, text, size, &row, 9, &unrectified);
     snprintf(row.key, sizeof row.key, "P%u", i);
-    if (result == VL_OK && !unrectified) result = find_row(file, text, size, &row, 12, &found);
-    if (result != VL_OK) return result;
-    if (!found && !unrectified) continue;
+    if (result == VL_OK && !unrectified)
+      result = find_row(file, text, size, &row, 12, &found);
+    if (result != VL_OK)
+      return result;
+    if (!found && !unrectified)
+      continue;
     char name[16];
     snprintf(name, sizeof name, unrectified ? "%02u" : "P%u", i);
     if (taken == UINT32_MAX && vl_camera_is_frame(file, record->frames, name)) {
@@ -104,16 +115,23 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
     }
     record->frames++;
   }
-  if (!record->frames) return missing(file, "P0");
-  if (taken == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
-  return raw ? read_raw(file, text, size, taken, record) : read_projection(file, &chosen, taken, record);
+  if (!record->frames)
+    return missing(file, "P0");
+  if (taken == UINT32_MAX)
+    return vl_camera_no_frame(file, "camera", record->frames);
+  return raw ? read_raw(file, text, size, taken, record)
+             : read_projection(file, &chosen, taken, record);
 }
 
 static bool is_kitti(const char *text, size_t size) {
   vlCameraLines lines = {.at = text, .end = text + size};
-  if (!vl_camera_next_line(&lines)) return false;
-  if (strncmp(lines.text, "calib_time:", 11) == 0 || strncmp(lines.text, "corner_dist:", 12) == 0) return true;
-  bool p = lines.text[0] == 'P' && strspn(lines.text + 1, "0123456789") == 1 && strchr(": ", lines.text[2]);
+  if (!vl_camera_next_line(&lines))
+    return false;
+  if (strncmp(lines.text, "calib_time:", 11) == 0 ||
+      strncmp(lines.text, "corner_dist:", 12) == 0)
+    return true;
+  bool p = lines.text[0] == 'P' && strspn(lines.text + 1, "0123456789") == 1 &&
+           strchr(": ", lines.text[2]);
   return p || strncmp(lines.text, "S_0", 3) == 0 || strncmp(lines.text, "K_0", 3) == 0;
 }
 

@@ -1,4 +1,5 @@
-/* camera_files/lens.c: the lens models that calibration tools have in common, and poses given as matrices. */
+/* camera_files/lens.c: the lens models that calibration tools have in common, and poses given
+ * as matrices. */
 #include <string.h>
 
 #include "camera_files/files.h"
@@ -18,7 +19,8 @@ void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count) {
   memcpy(def->distortion_coefficients, k, count * sizeof *k);
   def->distortion_count = 0;
   for (int i = 4; i >= 0 && count; i--)
-    if (counts[i] >= count) def->distortion_count = counts[i];
+    if (counts[i] >= count)
+      def->distortion_count = counts[i];
 }
 
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]) {
@@ -34,17 +36,22 @@ vlLensFamily vl_camera_lens_family(const vlCameraDef *d, double k[14], uint32_t 
   bool plain = d->distortion == VL_DISTORTION_NONE;
   if (d->projection == VL_PROJECTION_PERSPECTIVE || d->projection == VL_PROJECTION_UNIFIED) {
     bool unified = d->projection == VL_PROJECTION_UNIFIED;
-    if (!vl_camera_as_opencv(d, k, count)) return VL_LENS_OTHER;
+    if (!vl_camera_as_opencv(d, k, count))
+      return VL_LENS_OTHER;
     return unified ? VL_LENS_UNIFIED : *count ? VL_LENS_OPENCV : VL_LENS_PINHOLE;
   }
-  if (d->projection == VL_PROJECTION_EQUIDISTANT && (plain || d->distortion == VL_DISTORTION_RADIAL)) {
+  if (d->projection == VL_PROJECTION_EQUIDISTANT &&
+      (plain || d->distortion == VL_DISTORTION_RADIAL)) {
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
     *count = 4;
     return VL_LENS_FISHEYE;
   }
-  if (!plain) return VL_LENS_OTHER;
-  if (d->projection == VL_PROJECTION_FOV) return VL_LENS_FOV;
-  if (d->projection == VL_PROJECTION_EUCM) return VL_LENS_EUCM;
+  if (!plain)
+    return VL_LENS_OTHER;
+  if (d->projection == VL_PROJECTION_FOV)
+    return VL_LENS_FOV;
+  if (d->projection == VL_PROJECTION_EUCM)
+    return VL_LENS_EUCM;
   return d->projection == VL_PROJECTION_DOUBLE_SPHERE ? VL_LENS_DOUBLE_SPHERE : VL_LENS_OTHER;
 }
 
@@ -52,9 +59,11 @@ bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world)
   vlMat4 pose = vl_mat4_load(m);
   pose.m[12] = pose.m[13] = pose.m[14] = 0.0;
   pose.m[15] = 1.0;
-  if (from_world && !vl_mat4_inverse(pose, &pose)) return false;
+  if (from_world && !vl_mat4_inverse(pose, &pose))
+    return false;
   def->has_matrix = true;
-  for (int i = 0; i < 16; i++) def->world_from_camera[i] = pose.m[i] + 0.0;
+  for (int i = 0; i < 16; i++)
+    def->world_from_camera[i] = pose.m[i] + 0.0;
   return true;
 }
 

@@ -11,11 +11,15 @@ bool vl_camera_next_line(vlCameraLines *lines) {
     const char *start = lines->at, *first = start, *last = stop ? stop : lines->end;
     lines->at = stop ? stop + 1 : lines->end;
     lines->number++;
-    while (first < last && (*first == ' ' || *first == '\t')) first++;
-    while (last > first && (last[-1] == ' ' || last[-1] == '\t' || last[-1] == '\r')) last--;
-    if (first == last || *first == '#') continue;
+    while (first < last && (*first == ' ' || *first == '\t'))
+      first++;
+    while (last > first && (last[-1] == ' ' || last[-1] == '\t' || last[-1] == '\r'))
+      last--;
+    if (first == last || *first == '#')
+      continue;
     size_t length = (size_t)(last - first);
-    if (length > sizeof lines->text - 1) length = sizeof lines->text - 1;
+    if (length > sizeof lines->text - 1)
+      length = sizeof lines->text - 1;
     memcpy(lines->text, first, length);
     lines->text[length] = 0;
     lines->indent = (uint32_t)(first - start);
@@ -24,28 +28,33 @@ bool vl_camera_next_line(vlCameraLines *lines) {
   return false;
 }
 
-vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lines, const char *at, const char *format,
-                              ...) {
+vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lines,
+                              const char *at, const char *format, ...) {
   char message[300];
   VL_FORMAT(message, format);
   uint32_t column = lines->indent + (uint32_t)(at - lines->text) + 1;
   return vl_camera_wrong_at(file, lines->number, column, "%s: %s", file->dialect, message);
 }
 
-vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines, const char *from, double *values,
-                                uint32_t least, uint32_t most, uint32_t *count) {
+vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines,
+                                const char *from, double *values, uint32_t least, uint32_t most,
+                                uint32_t *count) {
   uint32_t found = 0;
   const char *at = from + strspn(from, " \t");
   while (*at) {
     char *end;
     double value = vl_camera_parse(at, &end);
     if (end == at || !isfinite(value))
-      return vl_camera_wrong_line(file, lines, at, "no finite number: \"%s\"", vl_short_text(at).text);
-    if (found == most) return vl_camera_wrong_line(file, lines, at, "more than %u numbers", most);
+      return vl_camera_wrong_line(file, lines, at, "no finite number: \"%s\"",
+                                  vl_short_text(at).text);
+    if (found == most)
+      return vl_camera_wrong_line(file, lines, at, "more than %u numbers", most);
     values[found++] = value;
     at = end + strspn(end, " \t");
   }
-  if (found < least) return vl_camera_wrong_line(file, lines, from, "%u numbers; it must be %u", found, least);
-  if (count) *count = found;
+  if (found < least)
+    return vl_camera_wrong_line(file, lines, from, "%u numbers; it must be %u", found, least);
+  if (count)
+    *count = found;
   return VL_OK;
 }

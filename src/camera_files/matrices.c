@@ -1,7 +1,8 @@
-/* camera_files/matrices.c: the projection and view matrix of OpenGL, Vulkan and Direct3D, as JSON or YAML. The file
- * states the conventions in which the three differ: `order` of the 16 numbers; `vectors` that the matrix acts on;
- * clip_y (direction of the image's top); clip_z (values of the near and far plane). Written for a view space x
- * right, y up, z back. Read for any view space, since the matrix itself determines the view direction. */
+/* camera_files/matrices.c: the projection and view matrix of OpenGL, Vulkan and Direct3D, as
+ * JSON or YAML. The file states the conventions in which the three differ: `order` of the 16
+ * numbers; `vectors` that the matrix acts on; clip_y (direction of the image's top); clip_z
+ * (values of the near and far plane). Written for a view space x right, y up, z back. Read for
+ * any view space, since the matrix itself determines the view direction. */
 #include <math.h>
 
 #include "base/text.h"
@@ -22,52 +23,64 @@ static const Api apis[] = {{"opengl", VL_CAMERA_DIALECT_OPENGL, false, -1.0, fal
                            {"d3d", VL_CAMERA_DIALECT_D3D, false, 0.0, true, true}};
 enum { API_COUNT = VL_LENGTH(apis) };
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* A string that must be one of two words. */
-static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key, const char *yes, const char *no,
-                       bool *value) {
+static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key,
+                       const char *yes, const char *no, bool *value) {
   const json_t *field;
   vlResult result = vl_camera_field(file, tree, key, &field);
   const char *word = json_string_value(field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   *value = vl_text_is(word, yes);
-  if (*value || vl_text_is(word, no)) return VL_OK;
-  return vl_camera_wrong(file, "%s: \"%s\" must be \"%s\" or \"%s\"", file->dialect, key, yes, no);
+  if (*value || vl_text_is(word, no))
+    return VL_OK;
+  return vl_camera_wrong(file, "%s: \"%s\" must be \"%s\" or \"%s\"", file->dialect, key, yes,
+                         no);
 }
 
-/* Reads 16 numbers from a list, lists, or a string; converts to row-major, acting on column vectors. */
-static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, bool transposed,
-                            vlMat4 *matrix) {
+/* Reads 16 numbers from a list, lists, or a string; converts to row-major, acting on column
+ * vectors. */
+static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
+                            bool transposed, vlMat4 *matrix) {
   double m[16];
   const char *text = vl_camera_text(tree, key);
   uint32_t count = 0;
   if (text) {
     for (char *end; count < 17; text = end, count++) {
       double value = vl_camera_parse(text, &end);
-      if (end == text) break;
-      if (count < 16) m[count] = value;
+      if (end == text)
+        break;
+      if (count < 16)
+        m[count] = value;
     }
     if (count != 16 || text[strspn(text, " \t\r\n,;")] != 0)
       return vl_camera_wrong(file, "%s: \"%s\" must hold 16 numbers", file->dialect, key);
   } else {
     vlResult result = vl_camera_numbers(file, tree, key, m, 16, 16, NULL);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
   for (int i = 0; i < 16; i++) {
     matrix->m[i] = m[transposed ? 4 * (i % 4) + i / 4 : i];
-    if (!isfinite(matrix->m[i])) return vl_camera_wrong(file, "%s: \"%s\" is not finite", file->dialect, key);
+    if (!isfinite(matrix->m[i]))
+      return vl_camera_wrong(file, "%s: \"%s\" is not finite", file->dialect, key);
   }
   return VL_OK;
 }
 
 /* z at which clip.z / clip.w = value, where clip.z = a z + b and clip.w = z, or 1. */
 static double plane_at(bool flat, double a, double b, double value) {
-  if (flat) return (value - b) / a;
+  if (flat)
+    return (value - b) / a;
   return value == a ? INFINITY : b / (value - a);
 }
 
-static vlResult planes(const vlCameraFile *file, bool flat, double a, double b, double z_near, vlCameraDef *d) {
+static vlResult planes(const vlCameraFile *file, bool flat, double a, double b, double z_near,
+                       vlCameraDef *d) {
   double near_plane = plane_at(flat, a, b, z_near), far_plane = plane_at(flat, a, b, 1.0);
   if (near_plane > far_plane) { /* reversed z */
     double other = near_plane;
@@ -75,36 +88,46 @@ static vlResult planes(const vlCameraFile *file, bool flat, double a, double b, 
     far_plane = other;
   }
   /* the far plane is infinite, inexactly represented in single precision */
-  if (!flat && far_plane < 0.0) far_plane = INFINITY;
+  if (!flat && far_plane < 0.0)
+    far_plane = INFINITY;
   if (!(near_plane >= 0.0 && far_plane > near_plane))
-    return vl_camera_wrong(file, "%s: \"projection_matrix\" has its near plane at %g and its far plane at %g",
-                           file->dialect, near_plane, far_plane);
+    return vl_camera_wrong(
+        file, "%s: \"projection_matrix\" has its near plane at %g and its far plane at %g",
+        file->dialect, near_plane, far_plane);
   d->near_plane = near_plane;
   d->far_plane = far_plane;
   return VL_OK;
 }
 
-static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vlMat4 view, bool down, double z_near,
-                          vlCameraDef *d) {
+static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vlMat4 view,
+                          bool down, double z_near, vlCameraDef *d) {
   double p[16], w = d->width, h = d->height;
   memcpy(p, projection->m, sizeof p);
   bool flat = p[14] == 0.0;
   double scale = flat ? p[15] : p[14];
   if (p[12] != 0.0 || p[13] != 0.0 || (flat ? p[15] : p[14]) == 0.0 || (!flat && p[15] != 0.0))
     return vl_camera_wrong(file,
-                           "%s: the last row of \"projection_matrix\" is %g %g %g %g; it must be 0 0 1 0, 0 0 -1 0 or "
+                           "%s: the last row of \"projection_matrix\" is %g %g %g %g; it must "
+                           "be 0 0 1 0, 0 0 -1 0 or "
                            "0 0 0 1: are order and vectors right?",
                            file->dialect, p[12], p[13], p[14], p[15]);
-  for (int i = 0; i < 16; i++) p[i] /= fabs(scale);
+  for (int i = 0; i < 16; i++)
+    p[i] /= fabs(scale);
   double forward = flat ? 1.0 : scale > 0.0 ? 1.0 : -1.0;
-  if (flat && scale < 0.0) return vl_camera_wrong(file, "%s: \"projection_matrix\" mirrors w", file->dialect);
-  /* orthographic: forward is the direction in which clip.z increases; with reversed z it decreases */
-  if (flat) forward = p[10] < 0.0 ? -1.0 : 1.0;
+  if (flat && scale < 0.0)
+    return vl_camera_wrong(file, "%s: \"projection_matrix\" mirrors w", file->dialect);
+  /* orthographic: forward is the direction in which clip.z increases; with reversed z it
+   * decreases
+   */
+  if (flat)
+    forward = p[10] < 0.0 ? -1.0 : 1.0;
   if (p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || (!flat && (p[3] != 0.0 || p[7] != 0.0)))
-    return vl_camera_wrong(file, "%s: \"projection_matrix\" is not of the form of a camera's", file->dialect);
+    return vl_camera_wrong(file, "%s: \"projection_matrix\" is not of the form of a camera's",
+                           file->dialect);
   if (p[0] == 0.0 || p[5] == 0.0 || (flat && p[10] == 0.0))
     return vl_camera_wrong(file, "%s: \"projection_matrix\" is singular", file->dialect);
-  double flip = down ? 1.0 : -1.0, x = p[0] < 0.0 ? -1.0 : 1.0, y = flip * p[5] < 0.0 ? -1.0 : 1.0;
+  double flip = down ? 1.0 : -1.0, x = p[0] < 0.0 ? -1.0 : 1.0,
+         y = flip * p[5] < 0.0 ? -1.0 : 1.0;
   d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
   d->fx = 0.5 * w * fabs(p[0]);
   d->fy = 0.5 * h * fabs(p[5]);
@@ -112,45 +135,57 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
   d->cx = 0.5 * w * (1.0 + (flat ? p[3] : p[2] * forward));
   d->cy = 0.5 * h * (1.0 + flip * (flat ? p[7] : p[6] * forward));
   if (flat && (p[2] != 0.0 || p[6] != 0.0))
-    return vl_camera_wrong(file, "%s: an oblique \"projection_matrix\" is not taken", file->dialect);
+    return vl_camera_wrong(file, "%s: an oblique \"projection_matrix\" is not taken",
+                           file->dialect);
   vlResult result = planes(file, flat, p[10] * forward, p[11], z_near, d);
   vlMat4 inverse;
-  if (result == VL_OK && (view.m[12] != 0.0 || view.m[13] != 0.0 || view.m[14] != 0.0 || view.m[15] != 1.0 ||
-                          !vl_mat4_inverse(view, &inverse)))
-    return vl_camera_wrong(file, "%s: \"view_matrix\" is no pose: are order and vectors right?", file->dialect);
-  if (result != VL_OK) return result;
+  if (result == VL_OK && (view.m[12] != 0.0 || view.m[13] != 0.0 || view.m[14] != 0.0 ||
+                          view.m[15] != 1.0 || !vl_mat4_inverse(view, &inverse)))
+    return vl_camera_wrong(file, "%s: \"view_matrix\" is no pose: are order and vectors right?",
+                           file->dialect);
+  if (result != VL_OK)
+    return result;
   d->has_matrix = true;
   vl_camera_flip_columns(inverse.m, x, y, forward, d->world_from_camera);
   d->world_from_camera[15] = 1.0;
   return VL_OK;
 }
 
-static vlResult read_matrices(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
+                              vlCameraRecord *record) {
   static const char *const names[] = {"opengl", "vulkan", "d3d"};
   vlCameraDef *d = &record->camera;
   const json_t *field;
   vlResult result = vl_camera_field(file, tree, "graphics_api", &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *word = json_string_value(field);
   const Api *api = NULL;
   for (int i = 0; i < API_COUNT && word; i++)
-    if (vl_text_is(apis[i].name, word)) api = &apis[i];
+    if (vl_text_is(apis[i].name, word))
+      api = &apis[i];
   if (!api) {
     char known[300];
     vl_tell_names(known, sizeof known, word ? word : "", names, API_COUNT);
-    return vl_camera_wrong(file, "unknown graphics_api \"%s\"%s", vl_short_text(word).text, known);
+    return vl_camera_wrong(file, "unknown graphics_api \"%s\"%s", vl_short_text(word).text,
+                           known);
   }
   vlCameraFile own = *file;
   own.dialect = api->name;
   record->dialect = api->dialect;
-  bool rows_first = false, row_vectors = false, down = api->down, zero_to_one = api->z_near == 0.0;
+  bool rows_first = false, row_vectors = false, down = api->down,
+       zero_to_one = api->z_near == 0.0;
   double z[2];
   vlMat4 projection, view;
   result = vl_camera_side(&own, tree, "width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(&own, tree, "height", &d->height);
-  if (result == VL_OK) result = choice(&own, tree, "order", "row-major", "column-major", &rows_first);
-  if (result == VL_OK) result = choice(&own, tree, "vectors", "row", "column", &row_vectors);
-  if (result == VL_OK && json_object_get(tree, "clip_y")) result = choice(&own, tree, "clip_y", "down", "up", &down);
+  if (result == VL_OK)
+    result = vl_camera_side(&own, tree, "height", &d->height);
+  if (result == VL_OK)
+    result = choice(&own, tree, "order", "row-major", "column-major", &rows_first);
+  if (result == VL_OK)
+    result = choice(&own, tree, "vectors", "row", "column", &row_vectors);
+  if (result == VL_OK && json_object_get(tree, "clip_y"))
+    result = choice(&own, tree, "clip_y", "down", "up", &down);
   if (result == VL_OK && json_object_get(tree, "clip_z")) {
     result = vl_camera_numbers(&own, tree, "clip_z", z, 2, 2, NULL);
     zero_to_one = z[0] == 0.0;
@@ -158,11 +193,16 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree, vlCa
       result = vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect);
   }
   bool transposed = rows_first == row_vectors;
-  if (result == VL_OK) result = read_matrix(&own, tree, "projection_matrix", transposed, &projection);
-  if (result == VL_OK) result = read_matrix(&own, tree, "view_matrix", transposed, &view);
-  if (result == VL_OK) result = decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d);
-  /* these fields give the camera's planes: a matrix must have planes even if the camera has none */
-  if (result == VL_OK) result = vl_camera_optional(&own, tree, "near_plane", &d->near_plane);
+  if (result == VL_OK)
+    result = read_matrix(&own, tree, "projection_matrix", transposed, &projection);
+  if (result == VL_OK)
+    result = read_matrix(&own, tree, "view_matrix", transposed, &view);
+  if (result == VL_OK)
+    result = decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d);
+  /* these fields give the camera's planes: a matrix must have planes even if the camera has
+   * none */
+  if (result == VL_OK)
+    result = vl_camera_optional(&own, tree, "near_plane", &d->near_plane);
   if (result == VL_OK && json_is_null(json_object_get(tree, "far_plane")))
     d->far_plane = INFINITY;
   else if (result == VL_OK)
@@ -171,16 +211,21 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree, vlCa
   return result;
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-/* Projection matrix from view space (x right, y up, z back) to clip space, for column vectors. */
+/* Projection matrix from view space (x right, y up, z back) to clip space, for column vectors.
+ */
 static vlMat4 projection_of(const vlCamera *c, const Api *api) {
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double w = c->width, h = c->height, up = api->down ? 1.0 : -1.0;
   double x = 2.0 * c->cx / w - 1.0, y = up * (2.0 * c->cy / h - 1.0);
   double f = c->far_plane, n = c->near_plane, a, b;
-  if (!(n > 0.0) && !flat) n = fmin(0.01, 1e-3 * f);
-  if (flat && isinf(f)) f = n + 1e4;
+  if (!(n > 0.0) && !flat)
+    n = fmin(0.01, 1e-3 * f);
+  if (flat && isinf(f))
+    f = n + 1e4;
   double lo = api->z_near;
   /* clip.z = a z + b, z = -Z of view space: n maps to lo w, f to w */
   if (flat) {
@@ -210,20 +255,26 @@ static void put_matrix(vlCameraText *text, const char *name, const vlMat4 *m, bo
   vl_camera_put(text, "\n  ]");
 }
 
-static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *record,
+                               vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   const Api *api = &apis[0];
   vlCamera c;
   for (int i = 0; i < API_COUNT; i++)
-    if (vl_text_is(apis[i].name, file->dialect)) api = &apis[i];
+    if (vl_text_is(apis[i].name, file->dialect))
+      api = &apis[i];
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES;
   vlResult result = vl_camera_fit(file, record, holds, &c);
-  if (result != VL_OK) return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  if (result != VL_OK)
+    return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_camera_no_model(file, d);
   result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlMat4 projection = projection_of(&c, api), view = vl_mat4_load(c.camera_from_world);
-  for (int i = 4; i < 12; i++) view.m[i] = 0.0 - view.m[i];
+  for (int i = 4; i < 12; i++)
+    view.m[i] = 0.0 - view.m[i];
   bool transposed = api->rows_first == api->row_vectors;
   vl_camera_put(text, "{\n  \"graphics_api\": \"%s\",\n", api->name);
   if (record->name[0]) {
@@ -231,10 +282,15 @@ static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *r
     vl_camera_put_string(text, record->name);
     vl_camera_put(text, ",\n");
   }
-  vl_camera_put(text, "  \"width\": %u,\n  \"height\": %u,\n  \"pixel_origin\": \"corner\",\n", c.width, c.height);
-  vl_camera_put(text, "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"%s\",\n  \"vectors\": \"%s\",\n",
-                api->rows_first ? "row-major" : "column-major", api->row_vectors ? "row" : "column");
-  vl_camera_put(text, "  \"clip_y\": \"%s\",\n  \"clip_z\": [%g, 1],\n", api->down ? "down" : "up", api->z_near);
+  vl_camera_put(text, "  \"width\": %u,\n  \"height\": %u,\n  \"pixel_origin\": \"corner\",\n",
+                c.width, c.height);
+  vl_camera_put(text,
+                "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"%s\",\n  "
+                "\"vectors\": \"%s\",\n",
+                api->rows_first ? "row-major" : "column-major",
+                api->row_vectors ? "row" : "column");
+  vl_camera_put(text, "  \"clip_y\": \"%s\",\n  \"clip_z\": [%g, 1],\n",
+                api->down ? "down" : "up", api->z_near);
   vl_camera_put(text, "  \"near_plane\": %.17g,\n  \"far_plane\": ", c.near_plane);
   vl_camera_put(text, isinf(c.far_plane) ? "null,\n" : "%.17g,\n", c.far_plane);
   put_matrix(text, "projection_matrix", &projection, transposed);
@@ -262,4 +318,5 @@ const vlCameraFormat vl_format_opengl = {
     .name = "opengl", .is_tree = is_opengl, .read = read_matrices, .write = write_matrices};
 const vlCameraFormat vl_format_vulkan = {
     .name = "vulkan", .is_tree = is_vulkan, .read = read_matrices, .write = write_matrices};
-const vlCameraFormat vl_format_d3d = {.name = "d3d", .is_tree = is_d3d, .read = read_matrices, .write = write_matrices};
+const vlCameraFormat vl_format_d3d = {
+    .name = "d3d", .is_tree = is_d3d, .read = read_matrices, .write = write_matrices};

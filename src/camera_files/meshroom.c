@@ -1,6 +1,7 @@
-/* camera_files/meshroom.c: AliceVision's .sfm (Meshroom), JSON: views, intrinsics, poses; numbers are written as text.
- * x right, y down, z forward; a pose is center and rotation, camera from world, written column by column. The principal
- * point counts from the image's middle (before version 1.2.1: from its corner); the focal length is in millimetres of a
+/* camera_files/meshroom.c: AliceVision's .sfm (Meshroom), JSON: views, intrinsics, poses;
+ * numbers are written as text. x right, y down, z forward; a pose is center and rotation,
+ * camera from world, written column by column. The principal point counts from the image's
+ * middle (before version 1.2.1: from its corner); the focal length is in millimetres of a
  * sensor (before 1.2.2: in pixels). */
 #include <math.h>
 #include <stdlib.h>
@@ -16,24 +17,29 @@ static bool number_of(const json_t *value, double *number) {
   return (text ? end != text && *end == 0 : json_is_number(value)) && isfinite(*number);
 }
 
-static vlResult numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
-                        uint32_t count) {
+static vlResult numbers(const vlCameraFile *file, const json_t *object, const char *key,
+                        double *values, uint32_t count) {
   const json_t *field;
   vlResult result = vl_camera_field(file, object, key, &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool one = count == 1 && !json_is_array(field), good = one || json_array_size(field) == count;
-  for (uint32_t i = 0; i < count && good; i++) good = number_of(one ? field : json_array_get(field, i), &values[i]);
-  if (good) return VL_OK;
-  return vl_camera_wrong_in(file, object, key, "meshroom: \"%s\" must hold %u finite number%s", key, count,
-                            count == 1 ? "" : "s");
+  for (uint32_t i = 0; i < count && good; i++)
+    good = number_of(one ? field : json_array_get(field, i), &values[i]);
+  if (good)
+    return VL_OK;
+  return vl_camera_wrong_in(file, object, key, "meshroom: \"%s\" must hold %u finite number%s",
+                            key, count, count == 1 ? "" : "s");
 }
 
 static bool is_before(const double version[3], double minor, double revision) {
   return version[0] < 1.0 ||
-         (version[0] == 1.0 && (version[1] < minor || (version[1] == minor && version[2] < revision)));
+         (version[0] == 1.0 &&
+          (version[1] < minor || (version[1] == minor && version[2] < revision)));
 }
 
-static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic, const double version[3], vlCameraDef *d) {
+static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic,
+                           const double version[3], vlCameraDef *d) {
   double f[2], mm, sensor, ratio = 1.0;
   vlResult result;
   if (vl_camera_has(intrinsic, "pxFocalLength")) {
@@ -44,25 +50,30 @@ static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic, co
     return result;
   }
   result = numbers(file, intrinsic, "focalLength", &mm, 1);
-  if (result == VL_OK) result = numbers(file, intrinsic, "sensorWidth", &sensor, 1);
+  if (result == VL_OK)
+    result = numbers(file, intrinsic, "sensorWidth", &sensor, 1);
   if (result == VL_OK && vl_camera_has(intrinsic, "pixelRatio"))
     result = numbers(file, intrinsic, "pixelRatio", &ratio, 1);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (!(sensor > 0.0 && ratio > 0.0))
-    return vl_camera_wrong_in(file, intrinsic, "sensorWidth", "meshroom: the sensor's sides must be above zero");
+    return vl_camera_wrong_in(file, intrinsic, "sensorWidth",
+                              "meshroom: the sensor's sides must be above zero");
   /* before 1.2.5 pixelRatio is fx / fy, then the pixel's width / height */
   d->fx = mm / sensor * d->width;
   d->fy = is_before(version, 2, 5) ? d->fx / ratio : d->fx * ratio;
   return VL_OK;
 }
 
-/* The distortion, by its name: of version 1.2.8 and later in distortionType, before as the camera's type. */
+/* The distortion, by its name: of version 1.2.8 and later in distortionType, before as the
+ * camera's type. */
 static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlCameraDef *d) {
   static const struct {
     const char *names[3];
     uint32_t count;
-  } models[] = {{{"none", "pinhole"}, 0},        {{"radialk1", "radial1"}, 1}, {{"radialk3", "radial3"}, 3},
-                {{"brown", "brownt2"}, 5},       {{"fisheye4", "fisheye"}, 4}, {{"fisheye1"}, 1},
+  } models[] = {{{"none", "pinhole"}, 0},        {{"radialk1", "radial1"}, 1},
+                {{"radialk3", "radial3"}, 3},    {{"brown", "brownt2"}, 5},
+                {{"fisheye4", "fisheye"}, 4},    {{"fisheye1"}, 1},
                 {{"radialk3pt", "radial3pt"}, 3}};
   const char *key = vl_camera_text(intrinsic, "distortionType") ? "distortionType" : "type";
   const char *base = vl_camera_text(intrinsic, "type"), *name = vl_camera_text(intrinsic, key);
@@ -70,22 +81,27 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
   double k[5] = {0.0};
   int model = -1;
   if (base && (strstr(base, "equidistant") || strstr(base, "equirectangular")))
-    return vl_camera_wrong_in(file, intrinsic, "type", "meshroom: type \"%s\" is no model of velo",
+    return vl_camera_wrong_in(file, intrinsic, "type",
+                              "meshroom: type \"%s\" is no model of velo",
                               vl_short_text(base).text);
   for (int i = 0; i < 7; i++)
     for (int j = 0; j < 3 && models[i].names[j]; j++)
-      if (vl_text_is(name, models[i].names[j])) model = i;
+      if (vl_text_is(name, models[i].names[j]))
+        model = i;
   if (model < 0)
-    return vl_camera_wrong_in(file, intrinsic, key,
-                              "meshroom: unknown %s \"%s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
-                              "fisheye1, fisheye4",
-                              key, vl_short_text(name).text);
+    return vl_camera_wrong_in(
+        file, intrinsic, key,
+        "meshroom: unknown %s \"%s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
+        "fisheye1, fisheye4",
+        key, vl_short_text(name).text);
   uint32_t count = json_array_size(list) ? models[model].count : 0;
   if (count) {
     vlResult result = numbers(file, intrinsic, "distortionParams", k, count);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
-  const double radial[5] = {k[0], k[1], 0.0, 0.0, k[2]}, brown[5] = {k[0], k[1], k[3], k[4], k[2]};
+  const double radial[5] = {k[0], k[1], 0.0, 0.0, k[2]},
+               brown[5] = {k[0], k[1], k[3], k[4], k[2]};
   if (model == 4) {
     vl_camera_set_fisheye(d, k);
   } else if (model == 5) {
@@ -103,16 +119,21 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
   return VL_OK;
 }
 
-static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree, const json_t *intrinsic,
-                               vlCameraRecord *record) {
+static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
+                               const json_t *intrinsic, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double version[3] = {1.0, 0.0, 0.0}, size[2] = {0.0, 0.0}, c[2] = {0.0, 0.0};
   vlResult result = VL_OK;
-  if (vl_camera_has(tree, "version")) result = numbers(file, tree, "version", version, 3);
-  if (result == VL_OK) result = numbers(file, intrinsic, "width", &size[0], 1);
-  if (result == VL_OK) result = numbers(file, intrinsic, "height", &size[1], 1);
-  if (result == VL_OK) result = numbers(file, intrinsic, "principalPoint", c, 2);
-  if (result != VL_OK) return result;
+  if (vl_camera_has(tree, "version"))
+    result = numbers(file, tree, "version", version, 3);
+  if (result == VL_OK)
+    result = numbers(file, intrinsic, "width", &size[0], 1);
+  if (result == VL_OK)
+    result = numbers(file, intrinsic, "height", &size[1], 1);
+  if (result == VL_OK)
+    result = numbers(file, intrinsic, "principalPoint", c, 2);
+  if (result != VL_OK)
+    return result;
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
       return vl_camera_wrong_in(file, intrinsic, i ? "height" : "width",
@@ -133,79 +154,108 @@ static const json_t *with_id(const json_t *list, const char *key, const json_t *
   const json_t *item;
   size_t i;
   json_array_foreach(list, i, item) {
-    if (id && json_equal(json_object_get(item, key), id)) return item;
+    if (id && json_equal(json_object_get(item, key), id))
+      return item;
   }
   return NULL;
 }
 
-static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view, vlCameraRecord *record) {
-  const json_t *intrinsic =
-      with_id(json_object_get(tree, "intrinsics"), "intrinsicId", json_object_get(view, "intrinsicId"));
-  const json_t *pose = with_id(json_object_get(tree, "poses"), "poseId", json_object_get(view, "poseId")), *transform;
+static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view,
+                          vlCameraRecord *record) {
+  const json_t *intrinsic = with_id(json_object_get(tree, "intrinsics"), "intrinsicId",
+                                    json_object_get(view, "intrinsicId"));
+  const json_t *pose = with_id(json_object_get(tree, "poses"), "poseId",
+                               json_object_get(view, "poseId")),
+               *transform;
   double r[9] = {0.0}, center[3] = {0.0};
   if (!intrinsic)
-    return vl_camera_wrong_in(file, view, "intrinsicId",
-                              "meshroom: the view's \"intrinsicId\" is not among the intrinsics");
+    return vl_camera_wrong_in(
+        file, view, "intrinsicId",
+        "meshroom: the view's \"intrinsicId\" is not among the intrinsics");
   vlResult result = read_intrinsic(file, tree, intrinsic, record);
   vl_camera_set_origin(&record->camera);
   vl_camera_name(record, vl_camera_text(view, "path"));
-  if (result != VL_OK || !pose) return result;
+  if (result != VL_OK || !pose)
+    return result;
   result = vl_camera_field(file, json_object_get(pose, "pose"), "transform", &transform);
-  if (result == VL_OK) result = numbers(file, transform, "rotation", r, 9);
-  if (result == VL_OK) result = numbers(file, transform, "center", center, 3);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = numbers(file, transform, "rotation", r, 9);
+  if (result == VL_OK)
+    result = numbers(file, transform, "center", center, 3);
+  if (result != VL_OK)
+    return result;
   /* the column-major matrix camera from world equals the row-major matrix world from camera */
   vl_camera_set_rigid(&record->camera, r, center);
   return VL_OK;
 }
 
 /* Reads the views that have a pose, or all views if none has one. */
-static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree,
+                              vlCameraRecord *record) {
   const json_t *poses = json_object_get(tree, "poses"), *view, *chosen = NULL;
   size_t i;
   bool posed = json_array_size(poses) > 0;
   record->frames = 0;
   json_array_foreach(json_object_get(tree, "views"), i, view) {
     const char *path = vl_camera_text(view, "path"), *slash = path ? strrchr(path, '/') : NULL;
-    if (posed && !with_id(poses, "poseId", json_object_get(view, "poseId"))) continue;
+    if (posed && !with_id(poses, "poseId", json_object_get(view, "poseId")))
+      continue;
     bool wanted = vl_camera_is_frame(file, record->frames, path) ||
-                  (slash && !file->ordinal && file->def->frame && vl_text_is(slash + 1, file->def->frame));
-    if (!chosen && wanted) chosen = view;
+                  (slash && !file->ordinal && file->def->frame &&
+                   vl_text_is(slash + 1, file->def->frame));
+    if (!chosen && wanted)
+      chosen = view;
     record->frames++;
   }
-  if (chosen) return read_view(file, tree, chosen, record);
-  return vl_camera_wrong_in(file, tree, "views", "meshroom: there is no view \"%s\" among the %u",
+  if (chosen)
+    return read_view(file, tree, chosen, record);
+  return vl_camera_wrong_in(file, tree, "views",
+                            "meshroom: there is no view \"%s\" among the %u",
                             vl_camera_asked(file, "0").text, record->frames);
 }
 
 static bool is_meshroom(const json_t *tree) {
-  return vl_camera_has(tree, "views") && vl_camera_has(tree, "intrinsics") && !vl_camera_has(tree, "sfm_data_version");
+  return vl_camera_has(tree, "views") && vl_camera_has(tree, "intrinsics") &&
+         !vl_camera_has(tree, "sfm_data_version");
 }
 
-static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *record,
+                               vlCameraText *text) {
   vlCamera c;
   vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON | 1 << VL_LENS_FOV, 5, &c, &fit);
-  if (result != VL_OK) return result;
+  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE,
+                                       VL_LENSES_COMMON | 1 << VL_LENS_FOV, 5, &c, &fit);
+  if (result != VL_OK)
+    return result;
   static const char *const words[] = {"none", "brown", "fisheye4", "fisheye1"};
   const bool brown = fit.family == VL_LENS_OPENCV, fov = fit.family == VL_LENS_FOV;
   const double k[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
-  const double sensor = record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0;
-  const double values[] = {sensor, sensor * (c.fx / c.fy) * c.height / c.width, c.fx * sensor / c.width};
+  const double sensor =
+      record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0;
+  const double values[] = {sensor, sensor * (c.fx / c.fy) * c.height / c.width,
+                           c.fx * sensor / c.width};
   const double middle[2] = {c.cx - 0.5 * c.width, c.cy - 0.5 * c.height};
   return VL_PUT_FORM(
       text, record, &c,
-      "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", \"poseId\": \"1\", "
+      "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", "
+      "\"poseId\": \"1\", "
       "\"frameId\": \"0\", \"intrinsicId\": \"1\",\n     \"path\": $name, \"width\": $width:q, "
       "\"height\": $height:q}\n  ],\n"
-      "  \"intrinsics\": [\n    {\"intrinsicId\": \"1\", \"width\": $width:q, \"height\": $height:q,\n"
-      "     \"sensorWidth\": $sensor@0:q, \"sensorHeight\": $sensor@1:q, \"serialNumber\": \"\",\n"
-      "     \"type\": \"pinhole\", \"initializationMode\": \"calibrated\", \"focalLength\": $sensor@2:q,\n"
+      "  \"intrinsics\": [\n    {\"intrinsicId\": \"1\", \"width\": $width:q, \"height\": "
+      "$height:q,\n"
+      "     \"sensorWidth\": $sensor@0:q, \"sensorHeight\": $sensor@1:q, \"serialNumber\": "
+      "\"\",\n"
+      "     \"type\": \"pinhole\", \"initializationMode\": \"calibrated\", \"focalLength\": "
+      "$sensor@2:q,\n"
       "     \"pixelRatio\": $aspect:q, \"principalPoint\": [$middle:q],\n"
-      "     \"distortionType\": \"$lens\", \"distortionParams\": [$own:q], \"locked\": \"false\"}\n  ],\n"
-      "  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n      \"rotation\": [$axes:q],\n"
+      "     \"distortionType\": \"$lens\", \"distortionParams\": [$own:q], \"locked\": "
+      "\"false\"}\n  ],\n"
+      "  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n      "
+      "\"rotation\": "
+      "[$axes:q],\n"
       "      \"center\": [$centre:q]}, \"locked\": \"0\"}}\n  ]\n}\n",
-      VL_VALUES("sensor", values, 3), VL_VALUES("middle", middle, 2), VL_WORD("lens", words[fit.family]),
+      VL_VALUES("sensor", values, 3), VL_VALUES("middle", middle, 2),
+      VL_WORD("lens", words[fit.family]),
       VL_VALUES("own",
                 fov     ? c.shape
                 : brown ? k

@@ -1,40 +1,53 @@
-/* camera_files/metashape.c: Metashape's (PhotoScan's) XML of cameras, <document> with <chunk>, and of one calibration.
- * x right, y down, z forward; <transform> is chunk from camera, and the chunk's space is the world's: the chunk's own
- * transform (to a coordinate system of the earth) is not applied. The first pixel's centre is (0.5, 0.5); cx and cy
- * count from the image's middle. With x', y' the distorted point: u = w/2 + cx + x' (f + b1) + y' b2, v = h/2 + cy +
+/* camera_files/metashape.c: Metashape's (PhotoScan's) XML of cameras, <document> with <chunk>,
+ * and of one calibration. x right, y down, z forward; <transform> is chunk from camera, and the
+ * chunk's space is the world's: the chunk's own transform (to a coordinate system of the earth)
+ * is not applied. The first pixel's centre is (0.5, 0.5); cx and cy count from the image's
+ * middle. With x', y' the distorted point: u = w/2 + cx + x' (f + b1) + y' b2, v = h/2 + cy +
  * y' f. Metashape's p1 and p2 are OpenCV's p2 and p1; k4 is r^8. */
 #include <math.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-/* Reads the numbers of <calibration>. Files of version 1.1 and before have fx, fy, and cx, cy from the image's corner.
+/* Reads the numbers of <calibration>. Files of version 1.1 and before have fx, fy, and cx, cy
+ * from the image's corner.
  */
-static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration, vlCameraDef *d) {
-  static const char *const names[] = {"k1", "k2", "p2", "p1", "k3", "k4"}; /* the order of VL_DISTORTION_THIN_PRISM */
-  double f = 0.0, c[2] = {VL_UNSET, VL_UNSET}, b[2] = {0.0, 0.0}, k[8] = {0.0}, more[2] = {0.0, 0.0};
+static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration,
+                             vlCameraDef *d) {
+  static const char *const names[] = {"k1", "k2", "p2", "p1",
+                                      "k3", "k4"}; /* the order of VL_DISTORTION_THIN_PRISM */
+  double f = 0.0, c[2] = {VL_UNSET, VL_UNSET}, b[2] = {0.0, 0.0}, k[8] = {0.0},
+         more[2] = {0.0, 0.0};
   bool old = vl_camera_child(calibration, "fx") != NULL;
   vlResult result = vl_camera_child_number(file, calibration, old ? "fy" : "f", true, &f);
-  if (result == VL_OK && old) result = vl_camera_child_number(file, calibration, "fx", true, &d->fx);
+  if (result == VL_OK && old)
+    result = vl_camera_child_number(file, calibration, "fx", true, &d->fx);
   if (result == VL_OK)
-    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("cx", &c[0]), VL_FIELD_OPTIONAL("cy", &c[1]),
-                              VL_FIELD_OPTIONAL("b1", &b[0]), VL_FIELD_OPTIONAL(old ? "skew" : "b2", &b[1]));
+    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("cx", &c[0]),
+                              VL_FIELD_OPTIONAL("cy", &c[1]), VL_FIELD_OPTIONAL("b1", &b[0]),
+                              VL_FIELD_OPTIONAL(old ? "skew" : "b2", &b[1]));
   for (int i = 0; i < 6 && result == VL_OK; i++)
     result = vl_camera_child_number(file, calibration, names[i], false, &k[i]);
   if (result == VL_OK)
-    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("p3", &more[0]), VL_FIELD_OPTIONAL("p4", &more[1]));
-  if (result != VL_OK) return result;
+    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("p3", &more[0]),
+                              VL_FIELD_OPTIONAL("p4", &more[1]));
+  if (result != VL_OK)
+    return result;
   if (more[0] != 0.0 || more[1] != 0.0)
-    return vl_camera_wrong_element(file, calibration, "p3 and p4 are no terms of velo's distortion");
+    return vl_camera_wrong_element(file, calibration,
+                                   "p3 and p4 are no terms of velo's distortion");
   double offset = old ? 0.0 : 0.5;
   d->fy = f;
-  if (!old) d->fx = f + b[0];
+  if (!old)
+    d->fx = f + b[0];
   d->skew = b[1];
   d->cx = vl_is_unset(c[0]) ? 0.5 * d->width : offset * d->width + c[0];
   d->cy = vl_is_unset(c[1]) ? 0.5 * d->height : offset * d->height + c[1];
   bool bent = false;
-  for (int i = 0; i < 6; i++) bent = bent || k[i] != 0.0;
-  if (!bent) return VL_OK;
+  for (int i = 0; i < 6; i++)
+    bent = bent || k[i] != 0.0;
+  if (!bent)
+    return VL_OK;
   if (k[5] == 0.0 && d->projection == VL_PROJECTION_PERSPECTIVE) {
     vl_camera_set_opencv(d, k, 5);
     return VL_OK;
@@ -45,18 +58,22 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration
   return VL_OK;
 }
 
-static vlResult read_attribute(const vlCameraFile *file, const json_t *element, const char *name, uint32_t *value) {
+static vlResult read_attribute(const vlCameraFile *file, const json_t *element,
+                               const char *name, uint32_t *value) {
   const char *text = vl_camera_text(element, name);
   char *end;
   double number = text ? vl_camera_parse(text, &end) : 0.0;
   if (!(number >= 1.0 && number <= 1 << 24) || number != floor(number))
-    return vl_camera_wrong_element(file, element, "\"%s\" must be a whole number of pixels", name);
+    return vl_camera_wrong_element(file, element, "\"%s\" must be a whole number of pixels",
+                                   name);
   *value = (uint32_t)number;
   return VL_OK;
 }
 
-static vlResult set_type(const vlCameraFile *file, const json_t *element, const char *type, vlCameraDef *d) {
-  if (!type || vl_text_is(type, "frame")) return VL_OK;
+static vlResult set_type(const vlCameraFile *file, const json_t *element, const char *type,
+                         vlCameraDef *d) {
+  if (!type || vl_text_is(type, "frame"))
+    return VL_OK;
   if (vl_text_is(type, "fisheye") || vl_text_is(type, "equidistant_fisheye")) {
     d->projection = VL_PROJECTION_EQUIDISTANT;
   } else if (vl_text_is(type, "equisolid_fisheye")) {
@@ -64,32 +81,43 @@ static vlResult set_type(const vlCameraFile *file, const json_t *element, const 
   } else if (vl_text_is(type, "spherical")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
-    return vl_camera_wrong_element(file, element,
-                                   "type \"%s\" is no model of velo; there are frame, fisheye, equisolid_fisheye, "
-                                   "spherical",
-                                   vl_short_text(type).text);
+    return vl_camera_wrong_element(
+        file, element,
+        "type \"%s\" is no model of velo; there are frame, fisheye, equisolid_fisheye, "
+        "spherical",
+        vl_short_text(type).text);
   }
   return VL_OK;
 }
 
-/* Reads the adjusted calibration of a sensor, or else its first one. The image's size is that of the sensor. */
-static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor, vlCameraRecord *record) {
+/* Reads the adjusted calibration of a sensor, or else its first one. The image's size is that
+ * of the sensor. */
+static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor,
+                            vlCameraRecord *record) {
   const json_t *child, *calibration = NULL, *size = vl_camera_child(sensor, "resolution");
   vlCameraDef *d = &record->camera;
   size_t i;
   json_array_foreach(json_object_get(sensor, "/"), i, child) {
-    if (!vl_text_is(vl_camera_text(child, "<"), "calibration")) continue;
+    if (!vl_text_is(vl_camera_text(child, "<"), "calibration"))
+      continue;
     const char *class = vl_camera_text(child, "class");
-    if (!calibration || vl_text_is(class, "adjusted")) calibration = child;
+    if (!calibration || vl_text_is(class, "adjusted"))
+      calibration = child;
   }
-  if (calibration && vl_camera_child(calibration, "resolution")) size = vl_camera_child(calibration, "resolution");
+  if (calibration && vl_camera_child(calibration, "resolution"))
+    size = vl_camera_child(calibration, "resolution");
   const char *type = vl_camera_text(calibration, "type");
-  if (!size) return vl_camera_wrong_element(file, sensor, "the sensor has no <resolution>");
+  if (!size)
+    return vl_camera_wrong_element(file, sensor, "the sensor has no <resolution>");
   vlResult result = read_attribute(file, size, "width", &d->width);
-  if (result == VL_OK) result = read_attribute(file, size, "height", &d->height);
-  if (result == VL_OK) result = set_type(file, sensor, type ? type : vl_camera_text(sensor, "type"), d);
-  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR) return result;
-  if (!calibration) return vl_camera_wrong_element(file, sensor, "the sensor has no <calibration>");
+  if (result == VL_OK)
+    result = read_attribute(file, size, "height", &d->height);
+  if (result == VL_OK)
+    result = set_type(file, sensor, type ? type : vl_camera_text(sensor, "type"), d);
+  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR)
+    return result;
+  if (!calibration)
+    return vl_camera_wrong_element(file, sensor, "the sensor has no <calibration>");
   return read_numbers(file, calibration, d);
 }
 
@@ -99,15 +127,20 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
   const json_t *sensor;
   double m[16];
   size_t i;
-  vlResult result = vl_camera_element_numbers(file, vl_camera_child(camera, "transform"), m, 16);
-  if (result != VL_OK) return result;
-  if (!vl_camera_set_matrix(&record->camera, m, false)) return vl_camera_wrong_element(file, camera, "no pose");
+  vlResult result =
+      vl_camera_element_numbers(file, vl_camera_child(camera, "transform"), m, 16);
+  if (result != VL_OK)
+    return result;
+  if (!vl_camera_set_matrix(&record->camera, m, false))
+    return vl_camera_wrong_element(file, camera, "no pose");
   vl_camera_name(record, vl_camera_text(camera, "label"));
   json_array_foreach(json_object_get(vl_camera_child(chunk, "sensors"), "/"), i, sensor) {
     const char *own = vl_camera_text(sensor, "id");
-    if (id && own && vl_text_is(id, own)) return read_sensor(file, sensor, record);
+    if (id && own && vl_text_is(id, own))
+      return read_sensor(file, sensor, record);
   }
-  return vl_camera_wrong_element(file, camera, "there is no sensor \"%s\"", vl_short_text(id).text);
+  return vl_camera_wrong_element(file, camera, "there is no sensor \"%s\"",
+                                 vl_short_text(id).text);
 }
 
 typedef struct {
@@ -122,58 +155,73 @@ static void search(Search *s, const json_t *list, int depth) {
   size_t i;
   json_array_foreach(json_object_get(list, "/"), i, camera) {
     const char *tag = vl_camera_text(camera, "<");
-    if (vl_text_is(tag, "group") && depth > 0) search(s, camera, depth - 1);
-    if (!vl_text_is(tag, "camera") || !vl_camera_child(camera, "transform")) continue;
-    if (!s->chosen && vl_camera_is_frame(s->file, s->count, vl_camera_text(camera, "label"))) s->chosen = camera;
+    if (vl_text_is(tag, "group") && depth > 0)
+      search(s, camera, depth - 1);
+    if (!vl_text_is(tag, "camera") || !vl_camera_child(camera, "transform"))
+      continue;
+    if (!s->chosen && vl_camera_is_frame(s->file, s->count, vl_camera_text(camera, "label")))
+      s->chosen = camera;
     s->count++;
   }
 }
 
-static vlResult read_calibration(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
+static vlResult read_calibration(const vlCameraFile *file, const json_t *root,
+                                 vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double size[2] = {0.0, 0.0};
   const char *text = vl_camera_text(vl_camera_child(root, "projection"), "$");
-  vlResult result = VL_READ_CHILDREN(file, root, VL_FIELD("width", &size[0]), VL_FIELD("height", &size[1]));
-  if (result == VL_OK) result = set_type(file, root, text, d);
-  if (result != VL_OK) return result;
+  vlResult result =
+      VL_READ_CHILDREN(file, root, VL_FIELD("width", &size[0]), VL_FIELD("height", &size[1]));
+  if (result == VL_OK)
+    result = set_type(file, root, text, d);
+  if (result != VL_OK)
+    return result;
   if (!vl_camera_set_sides(d, size))
-    return vl_camera_wrong_element(file, root, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
+    return vl_camera_wrong_element(file, root, "the image is %g x %g; it must be whole pixels",
+                                   size[0], size[1]);
   vl_camera_set_origin(d);
   return read_numbers(file, root, d);
 }
 
-static vlResult read_document(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
+static vlResult read_document(const vlCameraFile *file, const json_t *root,
+                              vlCameraRecord *record) {
   const json_t *chunk = vl_camera_child(root, "chunk");
-  if (!chunk) return vl_camera_wrong_element(file, root, "the document has no <chunk>");
+  if (!chunk)
+    return vl_camera_wrong_element(file, root, "the document has no <chunk>");
   Search s = {.file = file};
   search(&s, vl_camera_child(chunk, "cameras"), 8);
   record->frames = s.count;
-  if (s.chosen) return read_camera(file, chunk, s.chosen, record);
+  if (s.chosen)
+    return read_camera(file, chunk, s.chosen, record);
   return vl_camera_wrong_element(file, chunk, "there is no aligned camera \"%s\" among the %u",
                                  vl_camera_asked(file, "0").text, s.count);
 }
 
-static vlResult read_metashape(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
+static vlResult read_metashape(const vlCameraFile *file, const json_t *root,
+                               vlCameraRecord *record) {
   bool calibration = vl_text_is(vl_camera_text(root, "<"), "calibration");
   return calibration ? read_calibration(file, root, record) : read_document(file, root, record);
 }
 
 static bool is_metashape(const json_t *tree) {
   const char *tag = vl_camera_text(tree, "<");
-  return tag && (vl_text_is(tag, "calibration") || (vl_text_is(tag, "document") && vl_camera_child(tree, "chunk")));
+  return tag && (vl_text_is(tag, "calibration") ||
+                 (vl_text_is(tag, "document") && vl_camera_child(tree, "chunk")));
 }
 
-static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *record,
+                                vlCameraText *text) {
   static const char *const names[] = {"k1", "k2", "p2", "p1", "k3", "k4"};
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double k[14];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlLensFamily family = vl_camera_lens_family(d, k, &n);
-  bool prism = d->distortion == VL_DISTORTION_THIN_PRISM && d->distortion_coefficients[6] == 0.0 &&
-               d->distortion_coefficients[7] == 0.0;
+  bool prism = d->distortion == VL_DISTORTION_THIN_PRISM &&
+               d->distortion_coefficients[6] == 0.0 && d->distortion_coefficients[7] == 0.0;
   bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
   if (prism && (fisheye || d->projection == VL_PROJECTION_PERSPECTIVE)) {
     memcpy(k, d->distortion_coefficients, 6 * sizeof *k);
@@ -184,30 +232,41 @@ static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *
     return vl_camera_no_model(file, d);
   }
   const char *type = fisheye ? "fisheye" : "frame";
-  const char *name = record->name[0] && !strpbrk(record->name, "<>&\"") ? record->name : "camera";
+  const char *name =
+      record->name[0] && !strpbrk(record->name, "<>&\"") ? record->name : "camera";
   vl_camera_put(text,
-                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  <chunk label=\"Chunk\" "
+                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  "
+                "<chunk label=\"Chunk\" "
                 "enabled=\"true\">\n    <sensors next_id=\"1\">\n");
+  vl_camera_put(
+      text,
+      "      <sensor id=\"0\" label=\"sensor\" type=\"%s\">\n        <resolution width=\"%u\" "
+      "height=\"%u\"/>\n",
+      type, c.width, c.height);
   vl_camera_put(text,
-                "      <sensor id=\"0\" label=\"sensor\" type=\"%s\">\n        <resolution width=\"%u\" "
-                "height=\"%u\"/>\n",
-                type, c.width, c.height);
-  vl_camera_put(text,
-                "        <calibration type=\"%s\" class=\"adjusted\">\n          <resolution width=\"%u\" "
+                "        <calibration type=\"%s\" class=\"adjusted\">\n          <resolution "
+                "width=\"%u\" "
                 "height=\"%u\"/>\n          <f>%.17g</f>\n",
                 type, c.width, c.height, c.fy);
-  vl_camera_put(text, "          <cx>%.17g</cx>\n          <cy>%.17g</cy>\n", c.cx - 0.5 * c.width + 0.0,
-                c.cy - 0.5 * c.height + 0.0);
-  vl_camera_put(text, "          <b1>%.17g</b1>\n          <b2>%.17g</b2>\n", c.fx - c.fy + 0.0, c.skew + 0.0);
-  for (int i = 0; i < 6; i++) vl_camera_put(text, "          <%s>%.17g</%s>\n", names[i], k[i] + 0.0, names[i]);
+  vl_camera_put(text, "          <cx>%.17g</cx>\n          <cy>%.17g</cy>\n",
+                c.cx - 0.5 * c.width + 0.0, c.cy - 0.5 * c.height + 0.0);
+  vl_camera_put(text, "          <b1>%.17g</b1>\n          <b2>%.17g</b2>\n", c.fx - c.fy + 0.0,
+                c.skew + 0.0);
+  for (int i = 0; i < 6; i++)
+    vl_camera_put(text, "          <%s>%.17g</%s>\n", names[i], k[i] + 0.0, names[i]);
+  vl_camera_put(
+      text,
+      "        </calibration>\n      </sensor>\n    </sensors>\n    <cameras next_id=\"1\">\n"
+      "      <camera id=\"0\" sensor_id=\"0\" label=\"%s\">\n        <transform>",
+      name);
+  for (int i = 0; i < 16; i++)
+    vl_camera_put(text, "%s%.17g", i ? " " : "", c.world_from_camera[i] + 0.0);
   vl_camera_put(text,
-                "        </calibration>\n      </sensor>\n    </sensors>\n    <cameras next_id=\"1\">\n"
-                "      <camera id=\"0\" sensor_id=\"0\" label=\"%s\">\n        <transform>",
-                name);
-  for (int i = 0; i < 16; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", c.world_from_camera[i] + 0.0);
-  vl_camera_put(text, "</transform>\n      </camera>\n    </cameras>\n  </chunk>\n</document>\n");
+                "</transform>\n      </camera>\n    </cameras>\n  </chunk>\n</document>\n");
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_metashape = {
-    .name = "metashape", .is_tree = is_metashape, .read = read_metashape, .write = write_metashape};
+const vlCameraFormat vl_format_metashape = {.name = "metashape",
+                                            .is_tree = is_metashape,
+                                            .read = read_metashape,
+                                            .write = write_metashape};

@@ -1,6 +1,6 @@
-/* camera_files/middlebury.c: calib.txt of the Middlebury stereo datasets (2014, 2021): cam0 and cam1 as [f 0 cx; 0 f
- * cy; 0 0 1], baseline, width, height. x right, y down, z forward; the world's space is camera 0's, in the baseline's
- * unit; the first pixel's centre is (0, 0). */
+/* camera_files/middlebury.c: calib.txt of the Middlebury stereo datasets (2014, 2021): cam0 and
+ * cam1 as [f 0 cx; 0 f cy; 0 0 1], baseline, width, height. x right, y down, z forward; the
+ * world's space is camera 0's, in the baseline's unit; the first pixel's centre is (0, 0). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,43 +14,57 @@ static const char *find(const char *text, size_t size, const char *key, vlCamera
   const size_t length = strlen(key);
   *line = (vlCameraLines){.at = text, .end = text + size};
   while (vl_camera_next_line(line))
-    if (strncmp(line->text, key, length) == 0 && line->text[length] == '=') return line->text + length + 1;
+    if (strncmp(line->text, key, length) == 0 && line->text[length] == '=')
+      return line->text + length + 1;
   return NULL;
 }
 
-static vlResult read_number(const vlCameraFile *file, const char *text, size_t size, const char *key, double *value,
-                            bool *found) {
+static vlResult read_number(const vlCameraFile *file, const char *text, size_t size,
+                            const char *key, double *value, bool *found) {
   vlCameraLines line;
   uint32_t count;
   const char *at = find(text, size, key, &line);
-  if (found) *found = at != NULL;
-  if (at) return vl_camera_line_numbers(file, &line, at, value, 1, 1, &count);
-  return found ? VL_OK : vl_camera_wrong_at(file, 1, 1, "middlebury: the line \"%s=\" is missing", key);
+  if (found)
+    *found = at != NULL;
+  if (at)
+    return vl_camera_line_numbers(file, &line, at, value, 1, 1, &count);
+  return found ? VL_OK
+               : vl_camera_wrong_at(file, 1, 1, "middlebury: the line \"%s=\" is missing", key);
 }
 
-static vlResult read_size(const vlCameraFile *file, const char *text, size_t size, int number, vlCameraRecord *record) {
+static vlResult read_size(const vlCameraFile *file, const char *text, size_t size, int number,
+                          vlCameraRecord *record) {
   double sides[2];
   bool found[2];
   vlResult result = read_number(file, text, size, "width", &sides[0], &found[0]);
-  if (result == VL_OK) result = read_number(file, text, size, "height", &sides[1], &found[1]);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = read_number(file, text, size, "height", &sides[1], &found[1]);
+  if (result != VL_OK)
+    return result;
   if (!found[0] && !found[1])
-    return vl_camera_size_beside(file, (const char *const[]){number ? "im1.png" : "im0.png", NULL}, record);
-  if (found[0] && found[1] && vl_camera_set_sides(&record->camera, sides)) return VL_OK;
-  return vl_camera_wrong_at(file, 1, 1, "middlebury: \"width\" and \"height\" must be whole numbers of pixels");
+    return vl_camera_size_beside(
+        file, (const char *const[]){number ? "im1.png" : "im0.png", NULL}, record);
+  if (found[0] && found[1] && vl_camera_set_sides(&record->camera, sides))
+    return VL_OK;
+  return vl_camera_wrong_at(
+      file, 1, 1, "middlebury: \"width\" and \"height\" must be whole numbers of pixels");
 }
 
-static vlResult read_middlebury(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_middlebury(const vlCameraFile *file, const char *text, size_t size,
+                                vlCameraRecord *record) {
   static const char *const names[2] = {"cam0", "cam1"};
   vlCameraLines line;
   int chosen = -1;
   record->frames = 0;
   for (int i = 0; i < 2; i++) {
-    if (!find(text, size, names[i], &line)) continue;
-    if (chosen < 0 && vl_camera_is_frame(file, record->frames, names[i])) chosen = i;
+    if (!find(text, size, names[i], &line))
+      continue;
+    if (chosen < 0 && vl_camera_is_frame(file, record->frames, names[i]))
+      chosen = i;
     record->frames++;
   }
-  if (chosen < 0) return vl_camera_no_frame(file, "camera", record->frames);
+  if (chosen < 0)
+    return vl_camera_no_frame(file, "camera", record->frames);
   const char *at = find(text, size, names[chosen], &line);
   double k[9];
   for (int i = 0; i < 9; i++) {
@@ -61,15 +75,18 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
       return vl_camera_wrong_line(file, &line, at, "%s must have nine numbers", names[chosen]);
     at = end;
   }
-  if (at[strspn(at, "] ;")]) return vl_camera_wrong_line(file, &line, at, "unexpected text");
+  if (at[strspn(at, "] ;")])
+    return vl_camera_wrong_line(file, &line, at, "unexpected text");
   if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_line(file, &line, line.text, "%s must be [fx 0 cx; 0 fy cy; 0 0 1]", names[chosen]);
+    return vl_camera_wrong_line(file, &line, line.text, "%s must be [fx 0 cx; 0 fy cy; 0 0 1]",
+                                names[chosen]);
   vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
   const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   double t[3] = {0, 0, 0};
   if (chosen == 1) {
     vlResult result = read_number(file, text, size, "baseline", &t[0], NULL);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     t[0] = -t[0];
   }
   vl_camera_set_pose(&record->camera, r, t);

@@ -1,8 +1,8 @@
-/* camera_files/mitsuba.c: a sensor of Mitsuba 3's XML: perspective, thinlens, orthographic (Mitsuba's documentation,
- * "Sensors"). Camera axes x left, y up, z forward; to_world: world from camera; operations in a transform apply in
- * their order. Pixels count from the film's corner. principal_point_offset is added to a film position, in film
- * sides: the axis meets the film at 0.5 minus the offset. Names are accepted in both spellings, to_world and
- * toWorld. */
+/* camera_files/mitsuba.c: a sensor of Mitsuba 3's XML: perspective, thinlens, orthographic
+ * (Mitsuba's documentation, "Sensors"). Camera axes x left, y up, z forward; to_world: world
+ * from camera; operations in a transform apply in their order. Pixels count from the film's
+ * corner. principal_point_offset is added to a film position, in film sides: the axis meets the
+ * film at 0.5 minus the offset. Names are accepted in both spellings, to_world and toWorld. */
 #include <ctype.h>
 #include <math.h>
 
@@ -14,7 +14,9 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 typedef struct {
   const vlCameraFile *file;
@@ -32,50 +34,68 @@ static uint32_t line_of(const json_t *element) {
 /* Returns whether two names are equal except for case and underscores. */
 static bool same(const char *a, const char *b) {
   for (;; a++, b++) {
-    while (*a == '_') a++;
-    while (*b == '_') b++;
-    if (tolower((unsigned char)*a) != tolower((unsigned char)*b)) return false;
-    if (!*a) return true;
+    while (*a == '_')
+      a++;
+    while (*b == '_')
+      b++;
+    if (tolower((unsigned char)*a) != tolower((unsigned char)*b))
+      return false;
+    if (!*a)
+      return true;
   }
 }
 
-/* Gets an attribute's text, with $name replaced by its default. The text is null if the attribute is missing. */
-static vlResult attribute(const Scene *scene, const json_t *element, const char *key, const char **text) {
+/* Gets an attribute's text, with $name replaced by its default. The text is null if the
+ * attribute is missing. */
+static vlResult attribute(const Scene *scene, const json_t *element, const char *key,
+                          const char **text) {
   const json_t *item;
   size_t i;
   *text = vl_camera_text(element, key);
-  if (!*text || **text != '$') return VL_OK;
+  if (!*text || **text != '$')
+    return VL_OK;
   json_array_foreach(json_object_get(scene->root, "/"), i, item) {
     const char *name = vl_camera_text(item, "name");
-    if (!vl_text_is(tag_of(item), "default") || !vl_text_is(name, *text + 1)) continue;
+    if (!vl_text_is(tag_of(item), "default") || !vl_text_is(name, *text + 1))
+      continue;
     *text = vl_camera_text(item, "value");
-    if (*text) return VL_OK;
+    if (*text)
+      return VL_OK;
     break;
   }
-  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: \"%s\" has no <default>",
+  return vl_camera_wrong_at(scene->file, line_of(element), 0,
+                            "mitsuba: \"%s\" has no <default>",
                             vl_short_text(vl_camera_text(element, key)).text);
 }
 
-/* `count` numbers, or one that is used for all. *found: whether the attribute exists (null: it is required). */
-static vlResult numbers(const Scene *scene, const json_t *element, const char *key, uint32_t count, double *values,
-                        bool *found) {
+/* `count` numbers, or one that is used for all. *found: whether the attribute exists (null: it
+ * is required). */
+static vlResult numbers(const Scene *scene, const json_t *element, const char *key,
+                        uint32_t count, double *values, bool *found) {
   const char *text;
   vlResult result = attribute(scene, element, key, &text);
-  if (found) *found = text != NULL;
-  if (result != VL_OK || (!text && found)) return result;
+  if (found)
+    *found = text != NULL;
+  if (result != VL_OK || (!text && found))
+    return result;
   uint32_t n = 0;
   char *end = (char *)text;
   for (const char *at = text; at && n < count; at = end, n++) {
     values[n] = vl_camera_parse(at, &end);
-    if (end == at) break;
+    if (end == at)
+      break;
   }
   bool whole = text && end[strspn(end, " \t\r\n,")] == 0;
-  for (uint32_t i = 0; i < n; i++) whole = whole && isfinite(values[i]);
+  for (uint32_t i = 0; i < n; i++)
+    whole = whole && isfinite(values[i]);
   if (whole && n == 1)
-    for (; n < count; n++) values[n] = values[0];
-  if (whole && n == count) return VL_OK;
-  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: \"%s\" of <%s> must hold %u finite number%s",
-                            key, vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
+    for (; n < count; n++)
+      values[n] = values[0];
+  if (whole && n == count)
+    return VL_OK;
+  return vl_camera_wrong_at(scene->file, line_of(element), 0,
+                            "mitsuba: \"%s\" of <%s> must hold %u finite number%s", key,
+                            vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
 }
 
 /* Returns the parameter of a sensor or film with this name, or null. */
@@ -84,23 +104,28 @@ static const json_t *parameter(const json_t *parent, const char *name) {
   const json_t *item;
   json_array_foreach(json_object_get(parent, "/"), i, item) {
     const char *own = vl_camera_text(item, "name");
-    if (own && same(own, name)) return item;
+    if (own && same(own, name))
+      return item;
   }
   return NULL;
 }
 
 /* Reads a <float> or <integer>; *value is unchanged if there is none. */
-static vlResult number(const Scene *scene, const json_t *parent, const char *name, double *value) {
+static vlResult number(const Scene *scene, const json_t *parent, const char *name,
+                       double *value) {
   const json_t *item = parameter(parent, name);
   return item ? numbers(scene, item, "value", 1, value, NULL) : VL_OK;
 }
 
-static vlResult word(const Scene *scene, const json_t *parent, const char *name, const char **text) {
+static vlResult word(const Scene *scene, const json_t *parent, const char *name,
+                     const char **text) {
   const json_t *item = parameter(parent, name);
-  if (!item) return VL_OK;
+  if (!item)
+    return VL_OK;
   vlResult result = attribute(scene, item, "value", text);
   if (result == VL_OK && !*text)
-    return vl_camera_wrong_at(scene->file, line_of(item), 0, "mitsuba: \"%s\" has no value", name);
+    return vl_camera_wrong_at(scene->file, line_of(item), 0, "mitsuba: \"%s\" has no value",
+                              name);
   return result;
 }
 
@@ -110,7 +135,8 @@ static vlResult triple(const Scene *scene, const json_t *op, double standard, do
   bool found = false;
   v[0] = v[1] = v[2] = standard;
   vlResult result = numbers(scene, op, "value", 3, v, &found);
-  for (int i = 0; i < 3 && result == VL_OK; i++) result = numbers(scene, op, keys[i], 1, &v[i], &found);
+  for (int i = 0; i < 3 && result == VL_OK; i++)
+    result = numbers(scene, op, keys[i], 1, &v[i], &found);
   return result;
 }
 
@@ -118,19 +144,26 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   double o[3], t[3], up[3] = {0, 1, 0}, z[3], x[3], y[3];
   bool found;
   vlResult result = numbers(scene, op, "origin", 3, o, NULL);
-  if (result == VL_OK) result = numbers(scene, op, "target", 3, t, NULL);
-  if (result == VL_OK) result = numbers(scene, op, "up", 3, up, &found);
-  if (result != VL_OK) return result;
-  for (int i = 0; i < 3; i++) z[i] = t[i] - o[i];
+  if (result == VL_OK)
+    result = numbers(scene, op, "target", 3, t, NULL);
+  if (result == VL_OK)
+    result = numbers(scene, op, "up", 3, up, &found);
+  if (result != VL_OK)
+    return result;
+  for (int i = 0; i < 3; i++)
+    z[i] = t[i] - o[i];
   double length = vl_norm3(z);
-  for (int i = 0; i < 3; i++) z[i] /= length;
+  for (int i = 0; i < 3; i++)
+    z[i] /= length;
   vl_cross3(up, z, x); /* left */
   double across = vl_norm3(x);
   if (!(length > 0.0 && across > 1e-9 * vl_norm3(up)))
-    return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: origin, target and up of <%s> give no direction",
+    return vl_camera_wrong_at(scene->file, line_of(op), 0,
+                              "mitsuba: origin, target and up of <%s> give no direction",
                               vl_short_text(tag_of(op)).text);
   *m = vl_mat4_identity();
-  for (int i = 0; i < 3; i++) x[i] /= across;
+  for (int i = 0; i < 3; i++)
+    x[i] /= across;
   vl_cross3(z, x, y);
   for (int i = 0; i < 3; i++) {
     m->m[4 * i] = x[i];
@@ -146,26 +179,33 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
   double v[16];
   vlResult result = VL_OK;
   *m = vl_mat4_identity();
-  if (same(tag, "lookat")) return look_at(scene, op, m);
+  if (same(tag, "lookat"))
+    return look_at(scene, op, m);
   if (vl_text_is(tag, "translate")) {
     result = triple(scene, op, 0.0, v);
-    if (result == VL_OK) *m = vl_mat4_translate(v[0], v[1], v[2]);
+    if (result == VL_OK)
+      *m = vl_mat4_translate(v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "scale")) {
     result = triple(scene, op, 1.0, v);
-    if (result == VL_OK) *m = vl_mat4_scale(v[0], v[1], v[2]);
+    if (result == VL_OK)
+      *m = vl_mat4_scale(v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "rotate")) {
     result = triple(scene, op, 0.0, v);
-    if (result == VL_OK) result = numbers(scene, op, "angle", 1, &v[3], NULL);
+    if (result == VL_OK)
+      result = numbers(scene, op, "angle", 1, &v[3], NULL);
     if (result == VL_OK && v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
       return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: <rotate> has no axis");
-    if (result == VL_OK) *m = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
+    if (result == VL_OK)
+      *m = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "matrix")) {
     result = numbers(scene, op, "value", 16, v, NULL);
-    if (result == VL_OK) *m = vl_mat4_load(v);
+    if (result == VL_OK)
+      *m = vl_mat4_load(v);
   } else {
-    return vl_camera_wrong_at(scene->file, line_of(op), 0,
-                              "mitsuba: unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
-                              vl_short_text(tag).text);
+    return vl_camera_wrong_at(
+        scene->file, line_of(op), 0,
+        "mitsuba: unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
+        vl_short_text(tag).text);
   }
   return result;
 }
@@ -177,74 +217,94 @@ static vlResult to_world(const Scene *scene, const json_t *sensor, vlMat4 *matri
   json_array_foreach(json_object_get(transform, "/"), i, op) {
     vlMat4 m;
     vlResult result = operation(scene, op, &m);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     *matrix = vl_mat4_multiply(m, *matrix);
   }
   return VL_OK;
 }
 
 /* Reads width and height of the full film, and the crop that is the image. */
-static vlResult read_film(const Scene *scene, const json_t *sensor, double size[2], double crop[4]) {
-  static const char *const names[] = {"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"};
+static vlResult read_film(const Scene *scene, const json_t *sensor, double size[2],
+                          double crop[4]) {
+  static const char *const names[] = {"crop_offset_x", "crop_offset_y", "crop_width",
+                                      "crop_height"};
   const json_t *film = NULL, *item;
   size_t i;
   size[0] = 768.0;
   size[1] = 576.0; /* Mitsuba's default */
-  json_array_foreach(json_object_get(sensor, "/"), i, item) if (vl_text_is(tag_of(item), "film")) film = item;
+  json_array_foreach(json_object_get(sensor, "/"), i,
+                     item) if (vl_text_is(tag_of(item), "film")) film = item;
   vlResult result = number(scene, film, "width", &size[0]);
-  if (result == VL_OK) result = number(scene, film, "height", &size[1]);
+  if (result == VL_OK)
+    result = number(scene, film, "height", &size[1]);
   crop[0] = crop[1] = 0.0;
   crop[2] = size[0];
   crop[3] = size[1];
-  for (int k = 0; k < 4 && result == VL_OK; k++) result = number(scene, film, names[k], &crop[k]);
-  if (result != VL_OK) return result;
+  for (int k = 0; k < 4 && result == VL_OK; k++)
+    result = number(scene, film, names[k], &crop[k]);
+  if (result != VL_OK)
+    return result;
   for (int k = 0; k < 2; k++)
     if (!(size[k] >= 1.0 && size[k] <= 1 << 24 && crop[k] >= 0.0 && crop[2 + k] >= 1.0 &&
           crop[k] + crop[2 + k] <= size[k]) ||
-        size[k] != floor(size[k]) || crop[k] != floor(crop[k]) || crop[2 + k] != floor(crop[2 + k]))
-      return vl_camera_wrong_at(scene->file, line_of(film ? film : sensor), 0,
-                                "mitsuba: the film's sides and crop must be whole pixels, sides 1 to 16777216");
+        size[k] != floor(size[k]) || crop[k] != floor(crop[k]) ||
+        crop[2 + k] != floor(crop[2 + k]))
+      return vl_camera_wrong_at(
+          scene->file, line_of(film ? film : sensor), 0,
+          "mitsuba: the film's sides and crop must be whole pixels, sides 1 to 16777216");
   return VL_OK;
 }
 
 /* Computes the focal length in pixels. */
-static vlResult read_fov(const Scene *scene, const json_t *sensor, const double size[2], double *f) {
+static vlResult read_fov(const Scene *scene, const json_t *sensor, const double size[2],
+                         double *f) {
   static const char *const names[] = {"x", "y", "diagonal", "smaller", "larger"};
   double fov = VL_UNSET, w = size[0], h = size[1], diagonal = sqrt(w * w + h * h);
   const double sides[5] = {w, h, diagonal, fmin(w, h), fmax(w, h)};
   const char *axis = "x", *focal = NULL;
   vlResult result = number(scene, sensor, "fov", &fov);
-  if (result == VL_OK) result = word(scene, sensor, "fov_axis", &axis);
-  if (result == VL_OK) result = word(scene, sensor, "focal_length", &focal);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = word(scene, sensor, "fov_axis", &axis);
+  if (result == VL_OK)
+    result = word(scene, sensor, "focal_length", &focal);
+  if (result != VL_OK)
+    return result;
   uint32_t line = line_of(sensor);
   if (!vl_is_unset(fov) && focal)
-    return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: fov and focal_length are given; there is room for one");
+    return vl_camera_wrong_at(scene->file, line, 0,
+                              "mitsuba: fov and focal_length are given; there is room for one");
   if (vl_is_unset(fov)) { /* 35 mm equivalent, by the film's diagonal */
     char *end = NULL;
     double mm = focal ? vl_camera_parse(focal, &end) : 50.0;
-    if (!(mm > 0.0) || isinf(mm) || (focal && (end == focal || (*end && !vl_text_is(end, "mm")))))
-      return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: focal_length \"%s\" must be like \"50mm\"",
+    if (!(mm > 0.0) || isinf(mm) ||
+        (focal && (end == focal || (*end && !vl_text_is(end, "mm")))))
+      return vl_camera_wrong_at(scene->file, line, 0,
+                                "mitsuba: focal_length \"%s\" must be like \"50mm\"",
                                 vl_short_text(focal).text);
     *f = mm * diagonal / sqrt(36.0 * 36.0 + 24.0 * 24.0);
     return VL_OK;
   }
   if (!(fov > 0.0 && fov < 180.0))
-    return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: fov is %g degrees; it must lie between 0 and 180", fov);
+    return vl_camera_wrong_at(scene->file, line, 0,
+                              "mitsuba: fov is %g degrees; it must lie between 0 and 180", fov);
   for (int i = 0; i < 5; i++)
     if (vl_text_is(axis, names[i])) {
       *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * degree);
       return VL_OK;
     }
-  return vl_camera_wrong_at(scene->file, line, 0,
-                            "mitsuba: unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
-                            vl_short_text(axis).text);
+  return vl_camera_wrong_at(
+      scene->file, line, 0,
+      "mitsuba: unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
+      vl_short_text(axis).text);
 }
 
 /* The numbers of a sensor, each optional. */
-static vlResult read_numbers(const Scene *scene, const json_t *sensor, const vlCameraField *rows) {
+static vlResult read_numbers(const Scene *scene, const json_t *sensor,
+                             const vlCameraField *rows) {
   vlResult result = VL_OK;
-  for (; rows->key && result == VL_OK; rows++) result = number(scene, sensor, rows->key, rows->values);
+  for (; rows->key && result == VL_OK; rows++)
+    result = number(scene, sensor, rows->key, rows->values);
   return result;
 }
 
@@ -253,7 +313,8 @@ static void set_orthographic(double width, vlMat4 *m, vlCameraDef *d) {
   double length[3];
   for (int k = 0; k < 3; k++) {
     length[k] = sqrt(m->m[k] * m->m[k] + m->m[4 + k] * m->m[4 + k] + m->m[8 + k] * m->m[8 + k]);
-    for (int i = 0; i < 12; i += 4) m->m[i + k] /= length[k];
+    for (int i = 0; i < 12; i += 4)
+      m->m[i + k] /= length[k];
   }
   d->projection = VL_PROJECTION_ORTHOGRAPHIC;
   d->fx = 0.5 * width / length[0];
@@ -265,34 +326,48 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   const vlCameraFile *file = scene->file;
   const char *type = NULL;
   vlResult result = attribute(scene, sensor, "type", &type);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   int kind = 0;
-  while (kind < 3 && !vl_text_is(type, types[kind])) kind++;
+  while (kind < 3 && !vl_text_is(type, types[kind]))
+    kind++;
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);
-    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%s\"%s", vl_short_text(type).text,
-                              known);
+    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%s\"%s",
+                              vl_short_text(type).text, known);
   }
   double size[2], crop[4], offset[2] = {0, 0}, f = 1.0;
   vlMat4 m;
   result = read_film(scene, sensor, size, crop);
-  if (result == VL_OK && kind < 2) result = read_fov(scene, sensor, size, &f);
-  if (result == VL_OK) result = to_world(scene, sensor, &m);
-  const vlCameraField fields[] = {
-      VL_FIELD("near_clip", &d->near_plane),          VL_FIELD("far_clip", &d->far_plane),
-      VL_FIELD("focus_distance", &d->focus_distance), VL_FIELD("shutter_open", &d->shutter_open),
-      VL_FIELD("shutter_close", &d->shutter_close),   {.key = NULL}};
-  if (result == VL_OK) result = read_numbers(scene, sensor, fields);
-  if (result == VL_OK && kind == 0) result = number(scene, sensor, "principal_point_offset_x", &offset[0]);
-  if (result == VL_OK && kind == 0) result = number(scene, sensor, "principal_point_offset_y", &offset[1]);
-  if (result == VL_OK && kind == 1) result = number(scene, sensor, "aperture_radius", &d->lens_radius);
-  if (result != VL_OK) return result;
+  if (result == VL_OK && kind < 2)
+    result = read_fov(scene, sensor, size, &f);
+  if (result == VL_OK)
+    result = to_world(scene, sensor, &m);
+  const vlCameraField fields[] = {VL_FIELD("near_clip", &d->near_plane),
+                                  VL_FIELD("far_clip", &d->far_plane),
+                                  VL_FIELD("focus_distance", &d->focus_distance),
+                                  VL_FIELD("shutter_open", &d->shutter_open),
+                                  VL_FIELD("shutter_close", &d->shutter_close),
+                                  {.key = NULL}};
+  if (result == VL_OK)
+    result = read_numbers(scene, sensor, fields);
+  if (result == VL_OK && kind == 0)
+    result = number(scene, sensor, "principal_point_offset_x", &offset[0]);
+  if (result == VL_OK && kind == 0)
+    result = number(scene, sensor, "principal_point_offset_y", &offset[1]);
+  if (result == VL_OK && kind == 1)
+    result = number(scene, sensor, "aperture_radius", &d->lens_radius);
+  if (result != VL_OK)
+    return result;
   if (kind == 1 && !parameter(sensor, "aperture_radius"))
-    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: a thinlens needs its aperture_radius");
-  if (kind == 1 && vl_is_unset(d->focus_distance)) d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
+    return vl_camera_wrong_at(file, line_of(sensor), 0,
+                              "mitsuba: a thinlens needs its aperture_radius");
+  if (kind == 1 && vl_is_unset(d->focus_distance))
+    d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
   d->fx = d->fy = f;
-  if (kind == 2) set_orthographic(size[0], &m, d);
+  if (kind == 2)
+    set_orthographic(size[0], &m, d);
   d->cx = size[0] * (0.5 - offset[0]) - crop[0];
   d->cy = size[1] * (0.5 - offset[1]) - crop[1];
   d->width = (uint32_t)crop[2];
@@ -302,21 +377,26 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   return VL_OK;
 }
 
-static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t size,
+                             vlCameraRecord *record) {
   static const char *const wanted[] = {"sensor", "default", "include", NULL};
   json_t *tree;
   vlResult result = vl_camera_xml(file, text, size, wanted, &tree);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   Scene scene = {file, tree};
   const json_t *item, *chosen = NULL;
   size_t i;
   bool root = vl_text_is(tag_of(tree), "sensor"), includes = false;
   record->frames = root;
-  if (root) chosen = tree;
+  if (root)
+    chosen = tree;
   json_array_foreach(json_object_get(tree, "/"), i, item) {
     includes = includes || vl_text_is(tag_of(item), "include");
-    if (root || !vl_text_is(tag_of(item), "sensor")) continue;
-    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(item, "id"))) chosen = item;
+    if (root || !vl_text_is(tag_of(item), "sensor"))
+      continue;
+    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(item, "id")))
+      chosen = item;
     record->frames++;
   }
   if (chosen) {
@@ -325,14 +405,17 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
   } else if (record->frames) {
     result = vl_camera_no_frame(file, "sensor", record->frames);
   } else {
-    result = vl_camera_wrong(file, "mitsuba: <%s> holds no <sensor>%s", vl_short_text(tag_of(tree)).text,
+    result = vl_camera_wrong(file, "mitsuba: <%s> holds no <sensor>%s",
+                             vl_short_text(tag_of(tree)).text,
                              includes ? "; included files are not followed" : "");
   }
   json_decref(tree);
   return result;
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void put_float(vlCameraText *text, const char *name, double value) {
   vl_camera_put(text, "    <float name=\"%s\" value=\"%.17g\"/>\n", name, value + 0.0);
@@ -347,29 +430,41 @@ static void put_name(vlCameraText *text, const char *name) {
   }
 }
 
-static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME;
   vlResult result = vl_camera_fit(file, record, holds, &c);
-  if (result != VL_OK) return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  if (result != VL_OK)
+    return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_camera_no_model(file, d);
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c.lens_radius > 0.0 && !flat;
   bool centred = flat || lens; /* these have no principal point */
   result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result == VL_OK) result = vl_camera_refuse(file, "fy", !flat && fabs(c.fy - c.fx) > 1e-12 * c.fx);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cx", centred && c.cx != 0.5 * c.width);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cy", centred && c.cy != 0.5 * c.height);
-  if (result == VL_OK) result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
-  if (result == VL_OK) result = vl_camera_refuse(file, "focus_distance", lens && isinf(c.focus_distance));
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "fy", !flat && fabs(c.fy - c.fx) > 1e-12 * c.fx);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "cx", centred && c.cx != 0.5 * c.width);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "cy", centred && c.cy != 0.5 * c.height);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "focus_distance", lens && isinf(c.focus_distance));
+  if (result != VL_OK)
+    return result;
   double m[16];
   vl_camera_flip_columns(c.world_from_camera, -1.0, -1.0, 1.0, m);
   for (int i = 0; i < 12 && flat; i += 4) {
     m[i] *= 0.5 * c.width / c.fx;
     m[i + 1] *= 0.5 * c.width / c.fy;
   }
-  vl_camera_put(text, "<!-- pixels count from the film's upper left corner; camera axes x left, y up, z forward -->\n");
+  vl_camera_put(
+      text,
+      "<!-- pixels count from the film's upper left corner; camera axes x left, y up, z "
+      "forward -->\n");
   vl_camera_put(text, "<scene version=\"3.0.0\">\n  <sensor type=\"%s\"",
                 flat   ? "orthographic"
                 : lens ? "thinlens"
@@ -380,33 +475,47 @@ static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *re
     vl_camera_put(text, "\"");
   }
   vl_camera_put(text, ">\n    <transform name=\"to_world\">\n      <matrix value=\"");
-  for (int i = 0; i < 16; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", m[i]);
+  for (int i = 0; i < 16; i++)
+    vl_camera_put(text, "%s%.17g", i ? " " : "", m[i]);
   vl_camera_put(text, "\"/>\n    </transform>\n");
   if (!flat) {
     vl_camera_put(text, "    <string name=\"fov_axis\" value=\"x\"/>\n");
     put_float(text, "fov", 2.0 * vl_precise_atan(0.5 * c.width / c.fx) / degree);
   }
-  if (!centred && c.cx != 0.5 * c.width) put_float(text, "principal_point_offset_x", 0.5 - c.cx / c.width);
-  if (!centred && c.cy != 0.5 * c.height) put_float(text, "principal_point_offset_y", 0.5 - c.cy / c.height);
-  if (lens) put_float(text, "aperture_radius", c.lens_radius);
+  if (!centred && c.cx != 0.5 * c.width)
+    put_float(text, "principal_point_offset_x", 0.5 - c.cx / c.width);
+  if (!centred && c.cy != 0.5 * c.height)
+    put_float(text, "principal_point_offset_y", 0.5 - c.cy / c.height);
+  if (lens)
+    put_float(text, "aperture_radius", c.lens_radius);
   if (!isinf(c.focus_distance) && !vl_camera_drops(file, "focus_distance"))
     put_float(text, "focus_distance", c.focus_distance);
-  if (c.near_plane > 0.0) put_float(text, "near_clip", c.near_plane);
-  if (!isinf(c.far_plane)) put_float(text, "far_clip", c.far_plane);
+  if (c.near_plane > 0.0)
+    put_float(text, "near_clip", c.near_plane);
+  if (!isinf(c.far_plane))
+    put_float(text, "far_clip", c.far_plane);
   if (c.shutter_open != 0.0 || c.shutter_close != 1.0) {
     put_float(text, "shutter_open", c.shutter_open);
     put_float(text, "shutter_close", c.shutter_close);
   }
-  vl_camera_put(text, "    <film type=\"hdrfilm\">\n      <integer name=\"width\" value=\"%u\"/>\n", c.width);
-  vl_camera_put(text, "      <integer name=\"height\" value=\"%u\"/>\n    </film>\n  </sensor>\n</scene>\n", c.height);
+  vl_camera_put(text,
+                "    <film type=\"hdrfilm\">\n      <integer name=\"width\" value=\"%u\"/>\n",
+                c.width);
+  vl_camera_put(
+      text,
+      "      <integer name=\"height\" value=\"%u\"/>\n    </film>\n  </sensor>\n</scene>\n",
+      c.height);
   return VL_OK;
 }
 
 static bool is_mitsuba(const char *text, size_t size) {
   char tag[64];
   (void)size;
-  return vl_camera_xml_root(text, tag) && (vl_text_is(tag, "scene") || vl_text_is(tag, "sensor"));
+  return vl_camera_xml_root(text, tag) &&
+         (vl_text_is(tag, "scene") || vl_text_is(tag, "sensor"));
 }
 
-const vlCameraFormat vl_format_mitsuba = {
-    .name = "mitsuba", .is_text = is_mitsuba, .read_text = read_mitsuba, .write = write_mitsuba};
+const vlCameraFormat vl_format_mitsuba = {.name = "mitsuba",
+                                          .is_text = is_mitsuba,
+                                          .read_text = read_mitsuba,
+                                          .write = write_mitsuba};

@@ -1,43 +1,58 @@
-/* camera_files/mvsnet.c: MVSNet's cam.txt (DTU, BlendedMVS): the words extrinsic and intrinsic, each before a matrix.
- * x right, y down, z forward; camera from world; the first pixel's centre is (0, 0). The depth range is ignored. */
+/* camera_files/mvsnet.c: MVSNet's cam.txt (DTU, BlendedMVS): the words extrinsic and intrinsic,
+ * each before a matrix. x right, y down, z forward; camera from world; the first pixel's centre
+ * is (0, 0). The depth range is ignored. */
 #include <stdio.h>
 
 #include "base/text.h"
 #include "camera_files/lines.h"
 
-static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, const char *word, uint32_t n, double *m) {
+static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, const char *word,
+                            uint32_t n, double *m) {
   if (!vl_camera_next_line(lines) || !vl_text_is(lines->text, word))
     return vl_camera_wrong(file, "mvsnet: \"%s\" is missing", word);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t count;
-    if (!vl_camera_next_line(lines)) return vl_camera_wrong(file, "mvsnet: \"%s\" must have %u rows", word, n);
-    vlResult result = vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, &count);
-    if (result != VL_OK) return result;
+    if (!vl_camera_next_line(lines))
+      return vl_camera_wrong(file, "mvsnet: \"%s\" must have %u rows", word, n);
+    vlResult result =
+        vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, &count);
+    if (result != VL_OK)
+      return result;
   }
   return VL_OK;
 }
 
-static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t size,
+                            vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
   double m[16], k[9] = {0.0};
   char images[4][300];
   vlResult result = read_matrix(file, &lines, "extrinsic", 4, m);
   const vlCameraLines last = lines; /* of extrinsic */
-  if (result == VL_OK) result = read_matrix(file, &lines, "intrinsic", 3, k);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = read_matrix(file, &lines, "intrinsic", 3, k);
+  if (result != VL_OK)
+    return result;
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_line(file, &lines, lines.text, "\"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");
+    return vl_camera_wrong_line(file, &lines, lines.text,
+                                "\"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");
   if (!vl_camera_set_matrix(&record->camera, m, true))
     return vl_camera_wrong_line(file, &last, last.text, "\"extrinsic\" is singular");
   vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
   record->camera.skew = k[1];
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *end = strstr(name, "_cam.txt");
-  static const char *const places[] = {"../images", "../blended_images"}, *const suffixes[] = {"jpg", "png"};
-  for (int i = 0; i < 4; i++) snprintf(images[i], sizeof images[i], "%s/%.200s", places[i / 2], name);
-  if (!end || end - name > 200) return vl_camera_size_beside(file, (const char *const[]){NULL}, record);
+  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
+             *end = strstr(name, "_cam.txt");
+  static const char *const places[] = {"../images", "../blended_images"}, *const suffixes[] = {
+                                                                              "jpg", "png"};
   for (int i = 0; i < 4; i++)
-    snprintf(images[i], sizeof images[i], "%s/%.*s.%s", places[i / 2], (int)(end - name), name, suffixes[i % 2]);
-  return vl_camera_size_beside(file, (const char *const[]){images[0], images[1], images[2], images[3], NULL}, record);
+    snprintf(images[i], sizeof images[i], "%s/%.200s", places[i / 2], name);
+  if (!end || end - name > 200)
+    return vl_camera_size_beside(file, (const char *const[]){NULL}, record);
+  for (int i = 0; i < 4; i++)
+    snprintf(images[i], sizeof images[i], "%s/%.*s.%s", places[i / 2], (int)(end - name), name,
+             suffixes[i % 2]);
+  return vl_camera_size_beside(
+      file, (const char *const[]){images[0], images[1], images[2], images[3], NULL}, record);
 }
 
 static bool is_mvsnet(const char *text, size_t size) {
@@ -45,16 +60,19 @@ static bool is_mvsnet(const char *text, size_t size) {
   return vl_camera_next_line(&lines) && vl_text_is(lines.text, "extrinsic");
 }
 
-static vlResult write_mvsnet(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_mvsnet(const vlCameraFile *file, const vlCameraRecord *record,
+                             vlCameraText *text) {
   vlCamera c;
   vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const double *m = c.camera_from_world;
   vl_camera_put(text, "extrinsic\n");
   for (int i = 0; i < 4; i++)
-    vl_camera_put(text, "%.17g %.17g %.17g %.17g\n", m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]);
-  vl_camera_put(text, "\nintrinsic\n%.17g %.17g %.17g\n0 %.17g %.17g\n0 0 1\n", c.fx, c.skew, c.cx - 0.5, c.fy,
-                c.cy - 0.5);
+    vl_camera_put(text, "%.17g %.17g %.17g %.17g\n", m[4 * i], m[4 * i + 1], m[4 * i + 2],
+                  m[4 * i + 3]);
+  vl_camera_put(text, "\nintrinsic\n%.17g %.17g %.17g\n0 %.17g %.17g\n0 0 1\n", c.fx, c.skew,
+                c.cx - 0.5, c.fy, c.cy - 0.5);
   return VL_OK;
 }
 

@@ -1,5 +1,5 @@
-/* camera_files/nerf.c: NeRF's transforms.json. Camera axes x right, y up, z back; world from camera; pixels count from
- * the image's corner, as in velo. */
+/* camera_files/nerf.c: NeRF's transforms.json. Camera axes x right, y up, z back; world from
+ * camera; pixels count from the image's corner, as in velo. */
 #include <math.h>
 
 #include "camera_files/fields.h"
@@ -13,25 +13,32 @@ static const json_t *holder(const json_t *frame, const json_t *tree, const char 
   return json_object_get(frame, key) ? frame : tree;
 }
 
-static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const json_t *tree, vlCameraDef *d) {
+static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const json_t *tree,
+                          vlCameraDef *d) {
   static const char *const names[] = {"k1", "k2", "p1", "p2", "k3", "k4"};
   double k[6] = {0};
   vlResult result = VL_OK;
   for (int i = 0; i < 6 && result == VL_OK; i++)
     result = vl_camera_optional(file, holder(frame, tree, names[i]), names[i], &k[i]);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *model = vl_camera_text(holder(frame, tree, "camera_model"), "camera_model");
-  bool fisheye = model && (vl_text_is(model, "OPENCV_FISHEYE") || vl_text_is(model, "RADIAL_FISHEYE"));
+  bool fisheye =
+      model && (vl_text_is(model, "OPENCV_FISHEYE") || vl_text_is(model, "RADIAL_FISHEYE"));
   fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
   if (model && !fisheye && !vl_text_is(model, "OPENCV") && !vl_text_is(model, "PINHOLE") &&
-      !vl_text_is(model, "SIMPLE_PINHOLE") && !vl_text_is(model, "RADIAL") && !vl_text_is(model, "SIMPLE_RADIAL"))
-    return vl_camera_wrong_in(file, holder(frame, tree, "camera_model"), "camera_model",
-                              "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
-                              "RADIAL, OPENCV, OPENCV_FISHEYE",
-                              vl_short_text(model).text);
+      !vl_text_is(model, "SIMPLE_PINHOLE") && !vl_text_is(model, "RADIAL") &&
+      !vl_text_is(model, "SIMPLE_RADIAL"))
+    return vl_camera_wrong_in(
+        file, holder(frame, tree, "camera_model"), "camera_model",
+        "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
+        "RADIAL, OPENCV, OPENCV_FISHEYE",
+        vl_short_text(model).text);
   bool tangential = k[2] != 0.0 || k[3] != 0.0;
-  if (fisheye && tangential) return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");
-  if (!fisheye && k[5] != 0.0) return vl_camera_wrong(file, "nerf: \"k4\" is taken for fisheyes only");
+  if (fisheye && tangential)
+    return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");
+  if (!fisheye && k[5] != 0.0)
+    return vl_camera_wrong(file, "nerf: \"k4\" is taken for fisheyes only");
   if (fisheye) {
     const double radial[4] = {k[0], k[1], k[4], k[5]};
     d->projection = VL_PROJECTION_EQUIDISTANT;
@@ -46,29 +53,37 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   return VL_OK;
 }
 
-/* Fields of instant-ngp that make another camera of it: refused, so that none is read as a pinhole. */
-static vlResult refuse_others(const vlCameraFile *file, const json_t *frame, const json_t *tree) {
-  static const char *const polynomial[] = {"ftheta_p0", "ftheta_p1", "ftheta_p2", "ftheta_p3", "ftheta_p4"};
+/* Fields of instant-ngp that make another camera of it: refused, so that none is read as a
+ * pinhole.
+ */
+static vlResult refuse_others(const vlCameraFile *file, const json_t *frame,
+                              const json_t *tree) {
+  static const char *const polynomial[] = {"ftheta_p0", "ftheta_p1", "ftheta_p2", "ftheta_p3",
+                                           "ftheta_p4"};
   static const char *const flags[] = {"latlong", "equirectangular"};
   for (size_t i = 0; i < VL_LENGTH(polynomial); i++)
     if (vl_camera_has(holder(frame, tree, polynomial[i]), polynomial[i]))
       return vl_camera_wrong_in(file, holder(frame, tree, polynomial[i]), polynomial[i],
-                                "nerf: \"%s\": the f-theta projection is not taken", polynomial[i]);
+                                "nerf: \"%s\": the f-theta projection is not taken",
+                                polynomial[i]);
   for (size_t i = 0; i < VL_LENGTH(flags); i++)
     if (json_is_true(json_object_get(holder(frame, tree, flags[i]), flags[i])))
-      return vl_camera_wrong_in(file, holder(frame, tree, flags[i]), flags[i],
-                                "nerf: \"%s\" is not taken; there are perspective cameras and fisheyes", flags[i]);
+      return vl_camera_wrong_in(
+          file, holder(frame, tree, flags[i]), flags[i],
+          "nerf: \"%s\" is not taken; there are perspective cameras and fisheyes", flags[i]);
   const char *start = "transform_matrix_start", *end = "transform_matrix_end";
   const json_t *first = json_object_get(frame, start), *last = json_object_get(frame, end);
   if ((first || last) && (!first || !last || !json_equal(first, last)))
-    return vl_camera_wrong_in(file, frame, first ? start : end,
-                              "nerf: \"%s\": the pose of a rolling shutter, which moves, is not taken",
-                              first ? start : end);
+    return vl_camera_wrong_in(
+        file, frame, first ? start : end,
+        "nerf: \"%s\": the pose of a rolling shutter, which moves, is not taken",
+        first ? start : end);
   return VL_OK;
 }
 
 /* w and h; the synthetic scenes have none: the size is that of the frame's image. */
-static vlResult read_size(const vlCameraFile *file, const json_t *frame, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_size(const vlCameraFile *file, const json_t *frame, const json_t *tree,
+                          vlCameraRecord *record) {
   const json_t *w = holder(frame, tree, "w"), *h = holder(frame, tree, "h");
   if (!vl_camera_has(w, "w") && !vl_camera_has(h, "h")) {
     const char *image = vl_camera_text(frame, "file_path");
@@ -78,8 +93,8 @@ static vlResult read_size(const vlCameraFile *file, const json_t *frame, const j
   return result == VL_OK ? vl_camera_side(file, h, "h", &record->camera.height) : result;
 }
 
-vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame, const json_t *tree,
-                                   vlCameraRecord *record) {
+vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame,
+                                   const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16] = {0}, angle_x = VL_UNSET, angle_y = VL_UNSET;
   uint32_t count;
@@ -94,56 +109,76 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
                 {"camera_angle_x", &angle_x},
                 {"camera_angle_y", &angle_y}};
   for (size_t i = 0; i < 6 && result == VL_OK; i++)
-    result = vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key, fields[i].value);
-  if (result == VL_OK) result = refuse_others(file, frame, tree);
-  if (result == VL_OK) result = read_lens(file, frame, tree, d);
-  if (result == VL_OK) result = vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count);
-  if (result != VL_OK) return result;
+    result = vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key,
+                                fields[i].value);
+  if (result == VL_OK)
+    result = refuse_others(file, frame, tree);
+  if (result == VL_OK)
+    result = read_lens(file, frame, tree, d);
+  if (result == VL_OK)
+    result = vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count);
+  if (result != VL_OK)
+    return result;
   /* the angles give the focal length without distortion; fl_x overrides them */
-  if (vl_is_unset(d->fx) && !vl_is_unset(angle_x)) d->fx = 0.5 * d->width / vl_precise_tan(0.5 * angle_x);
-  if (vl_is_unset(d->fy) && !vl_is_unset(angle_y)) d->fy = 0.5 * d->height / vl_precise_tan(0.5 * angle_y);
+  if (vl_is_unset(d->fx) && !vl_is_unset(angle_x))
+    d->fx = 0.5 * d->width / vl_precise_tan(0.5 * angle_x);
+  if (vl_is_unset(d->fy) && !vl_is_unset(angle_y))
+    d->fy = 0.5 * d->height / vl_precise_tan(0.5 * angle_y);
   if (vl_is_unset(d->fx) && vl_is_unset(d->fy))
-    return vl_camera_wrong(file, "nerf: the field \"fl_x\" is missing, and \"camera_angle_x\" too");
-  if (count == 12) m[15] = 1.0;
+    return vl_camera_wrong(file,
+                           "nerf: the field \"fl_x\" is missing, and \"camera_angle_x\" too");
+  if (count == 12)
+    m[15] = 1.0;
   vl_camera_set_flipped(d, m);
   vl_camera_name(record, vl_camera_text(frame, "file_path"));
   return VL_OK;
 }
 
-static vlResult read_nerf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_nerf(const vlCameraFile *file, const json_t *tree,
+                          vlCameraRecord *record) {
   const json_t *frames;
   vlResult result = vl_camera_field(file, tree, "frames", &frames);
-  if (result != VL_OK) return result;
-  if (!json_is_array(frames)) return vl_camera_wrong_in(file, tree, "frames", "nerf: \"frames\" must be a list");
+  if (result != VL_OK)
+    return result;
+  if (!json_is_array(frames))
+    return vl_camera_wrong_in(file, tree, "frames", "nerf: \"frames\" must be a list");
   record->frames = (uint32_t)json_array_size(frames);
   for (uint32_t i = 0; i < record->frames; i++) {
     const json_t *frame = json_array_get(frames, i);
-    if (!json_is_object(frame)) return vl_camera_wrong_in(file, frames, NULL, "nerf: frame %u is no object", i);
+    if (!json_is_object(frame))
+      return vl_camera_wrong_in(file, frames, NULL, "nerf: frame %u is no object", i);
     if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path")))
       return vl_camera_read_nerf_frame(file, frame, tree, record);
   }
   return vl_camera_no_frame(file, "frame", record->frames);
 }
 
-static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {"k1", "k2", "p1", "p2", "k3"};
+static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *record,
+                           vlCameraText *text) {
+  static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {
+                                                                          "k1", "k2", "p1",
+                                                                          "p2", "k3"};
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double k[14] = {0};
   uint32_t n = 0;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
-  if (fisheye && (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE)) {
+  if (fisheye &&
+      (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE)) {
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
     n = 4;
   } else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n)) {
     return vl_camera_no_model(file, d);
   }
   for (int i = 5; i < 14; i++)
-    if (k[i] != 0.0) return vl_camera_no_model(file, d);
+    if (k[i] != 0.0)
+      return vl_camera_no_model(file, d);
   VL_PUT_FORM(text, record, &c,
-              "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  \"fl_x\": $fx,\n"
+              "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  "
+              "\"fl_x\": $fx,\n"
               "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy",
               VL_WORD("model", fisheye ? "OPENCV_FISHEYE"
                                : n     ? "OPENCV"
@@ -152,7 +187,8 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
     vl_camera_put(text, ",\n  \"%s\": %.17g", fisheye ? radial_names[i] : names[i], k[i]);
   vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
   vl_camera_put_string(text, record->name);
-  return vl_camera_put_form(text, record, &c, NULL, ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
+  return vl_camera_put_form(text, record, &c, NULL,
+                            ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
 }
 
 const vlCameraFormat vl_format_nerf = {.name = "nerf",

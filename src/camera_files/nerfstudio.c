@@ -1,6 +1,6 @@
-/* camera_files/nerfstudio.c: nerfstudio's camera_path.json: the cameras of a film, each with camera_to_world (16
- * numbers by rows) and the vertical fov in degrees. Camera axes: x right, y up, z back. The principal point is the
- * image's middle. */
+/* camera_files/nerfstudio.c: nerfstudio's camera_path.json: the cameras of a film, each with
+ * camera_to_world (16 numbers by rows) and the vertical fov in degrees. Camera axes: x right, y
+ * up, z back. The principal point is the image's middle. */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -10,34 +10,44 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 static vlResult read_type(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   const char *type = vl_camera_text(tree, "camera_type");
-  if (!type || vl_text_is(type, "perspective")) return VL_OK;
+  if (!type || vl_text_is(type, "perspective"))
+    return VL_OK;
   if (vl_text_is(type, "fisheye"))
     d->projection = VL_PROJECTION_EQUIDISTANT;
   else if (vl_text_is(type, "equirectangular"))
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   else
-    return vl_camera_wrong_in(file, tree, "camera_type",
-                              "nerfstudio: camera_type \"%s\" is none of velo; there are perspective, fisheye, "
-                              "equirectangular",
-                              vl_short_text(type).text);
+    return vl_camera_wrong_in(
+        file, tree, "camera_type",
+        "nerfstudio: camera_type \"%s\" is none of velo; there are perspective, fisheye, "
+        "equirectangular",
+        vl_short_text(type).text);
   return VL_OK;
 }
 
-static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *camera = vl_camera_choose(file, json_object_get(tree, "camera_path"), NULL, record);
+static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree,
+                                vlCameraRecord *record) {
+  const json_t *camera =
+      vl_camera_choose(file, json_object_get(tree, "camera_path"), NULL, record);
   vlCameraDef *d = &record->camera;
   double m[16], fov = 0.0;
-  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
+  if (!camera)
+    return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_sides(file, tree, "render_width", "render_height", record);
-  if (result == VL_OK) result = read_type(file, tree, d);
-  if (result == VL_OK) result = vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL);
+  if (result == VL_OK)
+    result = read_type(file, tree, d);
+  if (result == VL_OK)
+    result = vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL);
   if (result == VL_OK && d->projection != VL_PROJECTION_EQUIRECTANGULAR)
     result = vl_camera_number(file, camera, "fov", &fov);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vl_camera_set_flipped(d, m);
-  if (d->projection == VL_PROJECTION_EQUIRECTANGULAR) return VL_OK;
+  if (d->projection == VL_PROJECTION_EQUIRECTANGULAR)
+    return VL_OK;
   if (!(fov > 0.0 && fov < 180.0))
-    return vl_camera_wrong_in(file, camera, "fov", "nerfstudio: \"fov\" is %g; it must be between 0 and 180 degrees",
+    return vl_camera_wrong_in(file, camera, "fov",
+                              "nerfstudio: \"fov\" is %g; it must be between 0 and 180 degrees",
                               fov);
   d->fx = d->fy = 0.5 * d->height / vl_precise_tan(0.5 * degree * fov);
   return VL_OK;
@@ -54,6 +64,7 @@ const vlCameraFormat vl_format_nerfstudio = {
     .lenses = 1 << VL_LENS_PINHOLE,
     .form =
         "{\n  \"camera_type\": \"perspective\",\n  \"render_width\": $width,\n"
-        "  \"render_height\": $height,\n  \"fps\": 24,\n  \"seconds\": 1,\n  \"keyframes\": [],\n"
+        "  \"render_height\": $height,\n  \"fps\": 24,\n  \"seconds\": 1,\n  \"keyframes\": "
+        "[],\n"
         "  \"camera_path\": [\n    {\"camera_to_world\": [$flipped],\n"
         "     \"fov\": $yfov, \"aspect\": $ratio}\n  ]\n}\n"};

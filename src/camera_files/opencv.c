@@ -1,46 +1,58 @@
-/* camera_files/opencv.c: OpenCV's camera files, of one camera or of a stereo pair. x right, y down, z
- * forward; camera from world; the first pixel's centre is (0, 0): velo's cx and cy are larger by 0.5. */
+/* camera_files/opencv.c: OpenCV's camera files, of one camera or of a stereo pair. x right, y
+ * down, z forward; camera from world; the first pixel's centre is (0, 0): velo's cx and cy are
+ * larger by 0.5. */
 
 #include "camera_files/opencv.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-/* The names of lens models in both dialects; without a name the number of coefficients decides. */
-vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const char *coefficients, vlCameraDef *d) {
-  static const char *const names[] = {"opencv",     "pinhole", "plumb_bob", "rational_polynomial",
-                                      "thin_prism", "tilted",  "fisheye",   "equidistant",
-                                      "none"};
+/* The names of lens models in both dialects; without a name the number of coefficients decides.
+ */
+vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
+                             const char *coefficients, vlCameraDef *d) {
+  static const char *const names[] = {
+      "opencv",  "pinhole",     "plumb_bob", "rational_polynomial", "thin_prism", "tilted",
+      "fisheye", "equidistant", "none"};
   const char *model = vl_camera_text(tree, "distortion_model");
   if (json_object_get(tree, "distortion_model") && !model)
-    return vl_camera_wrong_in(file, tree, "distortion_model", "%s: \"distortion_model\" must be a word", file->dialect);
+    return vl_camera_wrong_in(file, tree, "distortion_model",
+                              "%s: \"distortion_model\" must be a word", file->dialect);
   bool fisheye = json_number_value(json_object_get(tree, "fisheye_model")) != 0.0;
   size_t found = 0, count = VL_LENGTH(names);
-  while (model && model[0] && found < count && !vl_text_is(model, names[found])) found++;
+  while (model && model[0] && found < count && !vl_text_is(model, names[found]))
+    found++;
   if (found == count) {
     char known[300];
     vl_tell_names(known, sizeof known, model, names, count);
-    return vl_camera_wrong_in(file, tree, "distortion_model", "%s: unknown distortion_model \"%s\"%s", file->dialect,
+    return vl_camera_wrong_in(file, tree, "distortion_model",
+                              "%s: unknown distortion_model \"%s\"%s", file->dialect,
                               vl_short_text(model).text, known);
   }
-  fisheye = fisheye || (model && (vl_text_is(model, "fisheye") || vl_text_is(model, "equidistant")));
+  fisheye =
+      fisheye || (model && (vl_text_is(model, "fisheye") || vl_text_is(model, "equidistant")));
   double *k = d->distortion_coefficients;
   uint32_t n = 0;
   vlResult result = vl_camera_numbers(file, tree, coefficients, k, 0, 14, &n);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool zero = true;
-  for (uint32_t i = 0; i < n; i++) zero = zero && k[i] == 0.0;
+  for (uint32_t i = 0; i < n; i++)
+    zero = zero && k[i] == 0.0;
   if (fisheye) {
     if (n != 4 && n != 0)
-      return vl_camera_wrong_in(file, tree, coefficients, "%s: \"%s\" holds %u numbers; a fisheye has 4", file->dialect,
+      return vl_camera_wrong_in(file, tree, coefficients,
+                                "%s: \"%s\" holds %u numbers; a fisheye has 4", file->dialect,
                                 coefficients, n);
     d->projection = VL_PROJECTION_EQUIDISTANT;
     d->distortion = n ? VL_DISTORTION_RADIAL : VL_DISTORTION_NONE;
   } else {
     if (n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
-      return vl_camera_wrong_in(file, tree, coefficients, "%s: \"%s\" holds %u numbers; there are 0, 4, 5, 8, 12 or 14",
+      return vl_camera_wrong_in(file, tree, coefficients,
+                                "%s: \"%s\" holds %u numbers; there are 0, 4, 5, 8, 12 or 14",
                                 file->dialect, coefficients, n);
     if (vl_text_is(model, "none") && !zero)
-      return vl_camera_wrong_in(file, tree, coefficients, "%s: distortion_model is \"none\", but \"%s\" is not zero",
+      return vl_camera_wrong_in(file, tree, coefficients,
+                                "%s: distortion_model is \"none\", but \"%s\" is not zero",
                                 file->dialect, coefficients);
     d->distortion = n ? VL_DISTORTION_OPENCV : VL_DISTORTION_NONE;
   }
@@ -48,50 +60,63 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const
   return VL_OK;
 }
 
-vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *d) {
+vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
+                               vlCameraDef *d) {
   double k[9];
   vlResult result = vl_camera_numbers(file, tree, key, k, 9, 9, NULL);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_in(file, tree, key, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]", file->dialect, key);
+    return vl_camera_wrong_in(file, tree, key, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]",
+                              file->dialect, key);
   if (k[1] != 0.0)
     return vl_camera_wrong_in(file, tree, key,
-                              "%s: \"%s\" has a skew of %g, which OpenCV's projection takes no notice of; set it to 0",
+                              "%s: \"%s\" has a skew of %g, which OpenCV's projection takes no "
+                              "notice of; set it to 0",
                               file->dialect, key, k[1]);
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   return VL_OK;
 }
 
-vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree, const vlCameraDef *d) {
+vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree,
+                               const vlCameraDef *d) {
   const json_t *roi = json_object_get(tree, "roi");
   double binning[2] = {0, 0}, x = 0, y = 0, width = 0, height = 0;
   vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
                                    VL_FIELD_OPTIONAL("binning_y", &binning[1]));
   if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
-    return vl_camera_wrong_in(file, tree, "binning_x",
-                              "%s: binning of %g x %g pixels is not taken; give the full image's camera", file->dialect,
-                              binning[0], binning[1]);
-  if (result != VL_OK || !json_is_object(roi)) return result;
-  result = VL_READ_FIELDS(file, roi, VL_FIELD_OPTIONAL("x_offset", &x), VL_FIELD_OPTIONAL("y_offset", &y),
-                          VL_FIELD_OPTIONAL("width", &width), VL_FIELD_OPTIONAL("height", &height));
+    return vl_camera_wrong_in(
+        file, tree, "binning_x",
+        "%s: binning of %g x %g pixels is not taken; give the full image's camera",
+        file->dialect, binning[0], binning[1]);
+  if (result != VL_OK || !json_is_object(roi))
+    return result;
+  result = VL_READ_FIELDS(file, roi, VL_FIELD_OPTIONAL("x_offset", &x),
+                          VL_FIELD_OPTIONAL("y_offset", &y), VL_FIELD_OPTIONAL("width", &width),
+                          VL_FIELD_OPTIONAL("height", &height));
   bool whole = width == 0.0 && height == 0.0; /* as ROS defines it */
   whole = whole || (x == 0.0 && y == 0.0 && width == d->width && height == d->height);
-  if (result != VL_OK || whole) return result;
-  return vl_camera_wrong_in(file, tree, "roi",
-                            "%s: a region of interest, %g x %g pixels at %g,%g, is not taken; give the full image's "
-                            "camera and render with --crop",
-                            file->dialect, width, height, x, y);
+  if (result != VL_OK || whole)
+    return result;
+  return vl_camera_wrong_in(
+      file, tree, "roi",
+      "%s: a region of interest, %g x %g pixels at %g,%g, is not taken; give the full image's "
+      "camera and render with --crop",
+      file->dialect, width, height, x, y);
 }
 
-/* A negative fy (as in ICL-NUIM's RGB-D sequences): a camera with y up, in a left-handed world. Converted to fy > 0
- * and a pose that mirrors y, which gives the same pixels. */
+/* A negative fy (as in ICL-NUIM's RGB-D sequences): a camera with y up, in a left-handed world.
+ * Converted to fy > 0 and a pose that mirrors y, which gives the same pixels. */
 static vlResult turn_y(const vlCameraFile *file, vlCameraDef *d) {
-  if (!(d->fy < 0.0)) return VL_OK;
+  if (!(d->fy < 0.0))
+    return VL_OK;
   for (uint32_t i = 0; i < d->distortion_count; i++)
     if (d->distortion_coefficients[i] != 0.0)
-      return vl_camera_wrong(file, "%s: fy is %g; below zero it goes without distortion only", file->dialect, d->fy);
+      return vl_camera_wrong(file, "%s: fy is %g; below zero it goes without distortion only",
+                             file->dialect, d->fy);
   d->fy = -d->fy;
-  for (int row = 0; row < 3; row++) d->world_from_camera[4 * row + 1] = 0.0 - d->world_from_camera[4 * row + 1];
+  for (int row = 0; row < 3; row++)
+    d->world_from_camera[4 * row + 1] = 0.0 - d->world_from_camera[4 * row + 1];
   return VL_OK;
 }
 
@@ -100,14 +125,17 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, vlCamera
   double v[3] = {0, 0, 0}, t[3] = {0, 0, 0}, r[9];
   bool any = json_object_get(tree, "rvec") || json_object_get(tree, "tvec");
   vlResult result = VL_OK;
-  if (any) result = vl_camera_numbers(file, tree, "rvec", v, 3, 3, NULL);
-  if (any && result == VL_OK) result = vl_camera_numbers(file, tree, "tvec", t, 3, 3, NULL);
+  if (any)
+    result = vl_camera_numbers(file, tree, "rvec", v, 3, 3, NULL);
+  if (any && result == VL_OK)
+    result = vl_camera_numbers(file, tree, "tvec", t, 3, 3, NULL);
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
   return result;
 }
 
-/* ---- names: of the calibration program (today and in version 2), and those that scripts use ---------------------- */
+/* ---- names: of the calibration program (today and in version 2), and those that scripts use
+ * ---------------------- */
 
 static const char *const matrix_names[] = {"camera_matrix", "cameraMatrix",     "Camera_Matrix",
                                            "CameraMatrix",  "intrinsic_matrix", "K",
@@ -122,9 +150,12 @@ static const char *const lens_names[] = {"distortion_coefficients",
                                          "distortion",
                                          "dist",
                                          "D"};
-static const char *const width_names[] = {"image_width", "image_Width", "Image_Width", "imageWidth", "width"};
-static const char *const height_names[] = {"image_height", "image_Height", "Image_Height", "imageHeight", "height"};
-static const char *const size_names[] = {"image_size", "imageSize", "img_size", "resolution", "size"};
+static const char *const width_names[] = {"image_width", "image_Width", "Image_Width",
+                                          "imageWidth", "width"};
+static const char *const height_names[] = {"image_height", "image_Height", "Image_Height",
+                                           "imageHeight", "height"};
+static const char *const size_names[] = {"image_size", "imageSize", "img_size", "resolution",
+                                         "size"};
 /* Matrix and distortion of the first and the second camera of a pair. */
 static const char *const stereo_names[][4] = {
     {"M1", "D1", "M2", "D2"},
@@ -134,100 +165,127 @@ static const char *const stereo_names[][4] = {
     {"mtx1", "dist1", "mtx2", "dist2"},
     {"mtxL", "distL", "mtxR", "distR"},
     {"K_left", "D_left", "K_right", "D_right"},
-    {"left_camera_matrix", "left_distortion_coefficients", "right_camera_matrix", "right_distortion_coefficients"},
-    {"camera_matrix_left", "distortion_coefficients_left", "camera_matrix_right", "distortion_coefficients_right"}};
+    {"left_camera_matrix", "left_distortion_coefficients", "right_camera_matrix",
+     "right_distortion_coefficients"},
+    {"camera_matrix_left", "distortion_coefficients_left", "camera_matrix_right",
+     "distortion_coefficients_right"}};
 enum { STEREO_NAMES = VL_LENGTH(stereo_names) };
 #define NAME_IN(tree, names) name_in(tree, names, VL_LENGTH(names))
 
 /* Returns the first name that is a key of the tree, or the first name if none is. */
 static const char *name_in(const json_t *tree, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)
-    if (vl_camera_has(tree, names[i])) return names[i];
+    if (vl_camera_has(tree, names[i]))
+      return names[i];
   return names[0];
 }
 
 static const char *const *stereo_of(const json_t *tree) {
   for (int i = 0; i < STEREO_NAMES; i++)
-    if (vl_camera_has(tree, stereo_names[i][0]) && vl_camera_has(tree, stereo_names[i][2])) return stereo_names[i];
+    if (vl_camera_has(tree, stereo_names[i][0]) && vl_camera_has(tree, stereo_names[i][2]))
+      return stereo_names[i];
   return NULL;
 }
 
-static vlResult read_size(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_size(const vlCameraFile *file, const json_t *tree,
+                          vlCameraRecord *record) {
   const char *pair = NAME_IN(tree, size_names);
   const char *width = NAME_IN(tree, width_names), *height = NAME_IN(tree, height_names);
   bool paired = !vl_camera_has(tree, width) && vl_camera_has(tree, pair);
-  return paired ? vl_camera_side_pair(file, tree, pair, record) : vl_camera_sides(file, tree, width, height, record);
+  return paired ? vl_camera_side_pair(file, tree, pair, record)
+                : vl_camera_sides(file, tree, width, height, record);
 }
 
-/* Two cameras, and x2 = R x1 + T. The world's space is the first camera's. Without R and T, which the calibration
- * program writes into a file of their own, the second has no pose here. */
-static vlResult read_stereo(const vlCameraFile *file, const json_t *tree, const char *const *names,
-                            vlCameraRecord *record) {
+/* Two cameras, and x2 = R x1 + T. The world's space is the first camera's. Without R and T,
+ * which the calibration program writes into a file of their own, the second has no pose here.
+ */
+static vlResult read_stereo(const vlCameraFile *file, const json_t *tree,
+                            const char *const *names, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double r[9], t[3];
-  bool second = vl_camera_is_frame(file, 1, "right"), first = vl_camera_is_frame(file, 0, "left");
+  bool second = vl_camera_is_frame(file, 1, "right"),
+       first = vl_camera_is_frame(file, 0, "left");
   record->frames = 2;
   if (!first && !second)
-    return vl_camera_wrong(file, "opencv: there is no camera \"%s\": there are left (0) and right (1)",
-                           vl_camera_asked(file, "").text);
+    return vl_camera_wrong(
+        file, "opencv: there is no camera \"%s\": there are left (0) and right (1)",
+        vl_camera_asked(file, "").text);
   second = second && !first;
   const char *matrix = names[second ? 2 : 0], *lens = names[second ? 3 : 1];
   vlResult result = vl_opencv_read_matrix(file, tree, matrix, d);
-  if (result == VL_OK && vl_camera_has(tree, lens)) result = vl_opencv_read_lens(file, tree, lens, d);
+  if (result == VL_OK && vl_camera_has(tree, lens))
+    result = vl_opencv_read_lens(file, tree, lens, d);
   vl_camera_set_origin(d);
   if (result == VL_OK && second) {
     result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("R", r, 9), VL_FIELD_LIST("T", t, 3));
-    if (result == VL_OK) vl_camera_set_pose(d, r, t);
+    if (result == VL_OK)
+      vl_camera_set_pose(d, r, t);
   }
   vl_camera_name(record, second ? "right" : "left");
   return result == VL_OK ? read_size(file, tree, record) : result;
 }
 
-vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree,
+                               vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   const char *const *stereo = stereo_of(tree);
-  if (stereo) return read_stereo(file, tree, stereo, record);
+  if (stereo)
+    return read_stereo(file, tree, stereo, record);
   vlResult result = read_size(file, tree, record);
-  if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d);
-  if (result == VL_OK) result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
-  if (result == VL_OK) result = vl_opencv_refuse_part(file, tree, d);
+  if (result == VL_OK)
+    result = vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d);
+  if (result == VL_OK)
+    result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
+  if (result == VL_OK)
+    result = vl_opencv_refuse_part(file, tree, d);
   if (result == VL_OK && vl_camera_has(tree, "xi")) { /* xi marks the omnidirectional model */
     double xi = 0.0;
     bool list = !json_is_number(json_object_get(tree, "xi"));
-    result = list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL) : vl_camera_number(file, tree, "xi", &xi);
+    result = list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL)
+                  : vl_camera_number(file, tree, "xi", &xi);
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = xi;
   }
-  if (result == VL_OK) result = read_pose(file, tree, d);
-  if (result == VL_OK) result = turn_y(file, d);
+  if (result == VL_OK)
+    result = read_pose(file, tree, d);
+  if (result == VL_OK)
+    result = turn_y(file, d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
   return result;
 }
 
 static bool is_opencv(const json_t *tree) {
-  return vl_camera_has(tree, NAME_IN(tree, matrix_names)) || stereo_of(tree) || vl_camera_has(tree, "image_width");
+  return vl_camera_has(tree, NAME_IN(tree, matrix_names)) || stereo_of(tree) ||
+         vl_camera_has(tree, "image_width");
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* The lens as both dialects write it: coefficients, and whether it is a fisheye. */
-vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14], uint32_t *n, bool *fisheye) {
+vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14],
+                           uint32_t *n, bool *fisheye) {
   *fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
   *n = 0;
-  if (*fisheye && d->distortion <= VL_DISTORTION_RADIAL && d->distortion != VL_DISTORTION_OPENCV) {
+  if (*fisheye && d->distortion <= VL_DISTORTION_RADIAL &&
+      d->distortion != VL_DISTORTION_OPENCV) {
     memset(k, 0, 14 * sizeof *k);
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
     *n = 4;
     return VL_OK;
   }
-  if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, n)) return vl_camera_no_model(file, d);
+  if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, n))
+    return vl_camera_no_model(file, d);
   return VL_OK;
 }
 
-void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns, const double *data,
-                          bool tagged) {
-  vl_camera_put(text, "%s: %s\n  rows: %d\n  cols: %d\n", name, tagged ? "!!opencv-matrix" : "", rows, columns);
-  if (tagged) vl_camera_put(text, "  dt: d\n");
+void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns,
+                          const double *data, bool tagged) {
+  vl_camera_put(text, "%s: %s\n  rows: %d\n  cols: %d\n", name, tagged ? "!!opencv-matrix" : "",
+                rows, columns);
+  if (tagged)
+    vl_camera_put(text, "  dt: d\n");
   vl_camera_put(text, "  data: [");
   vl_camera_put_numbers(text, data, (uint32_t)(rows * columns));
   vl_camera_put(text, "]\n");
@@ -239,65 +297,82 @@ static void put_list(vlCameraText *text, const char *name, const double *data, u
   vl_camera_put(text, "]");
 }
 
-static void put_xml_matrix(vlCameraText *text, const char *name, int rows, int columns, const double *data) {
-  vl_camera_put(text, "<%s type_id=\"opencv-matrix\">\n  <rows>%d</rows>\n  <cols>%d</cols>\n  <dt>d</dt>\n  <data>",
+static void put_xml_matrix(vlCameraText *text, const char *name, int rows, int columns,
+                           const double *data) {
+  vl_camera_put(text,
+                "<%s type_id=\"opencv-matrix\">\n  <rows>%d</rows>\n  <cols>%d</cols>\n  "
+                "<dt>d</dt>\n  <data>",
                 name, rows, columns);
-  for (int i = 0; i < rows * columns; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", data[i] + 0.0);
+  for (int i = 0; i < rows * columns; i++)
+    vl_camera_put(text, "%s%.17g", i ? " " : "", data[i] + 0.0);
   vl_camera_put(text, "</data></%s>\n", name);
 }
 
-static void put_xml(vlCameraText *text, const vlCamera *c, bool fisheye, const double m[9], const double *k, uint32_t n,
-                    const double v[3], const double t[3]) {
-  vl_camera_put(text, "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>%u</image_width>\n", c->width);
+static void put_xml(vlCameraText *text, const vlCamera *c, bool fisheye, const double m[9],
+                    const double *k, uint32_t n, const double v[3], const double t[3]) {
+  vl_camera_put(text,
+                "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>%u</image_width>\n",
+                c->width);
   vl_camera_put(text, "<image_height>%u</image_height>\n", c->height);
   put_xml_matrix(text, "camera_matrix", 3, 3, m);
-  if (fisheye) vl_camera_put(text, "<fisheye_model>1</fisheye_model>\n");
+  if (fisheye)
+    vl_camera_put(text, "<fisheye_model>1</fisheye_model>\n");
   put_xml_matrix(text, "distortion_coefficients", (int)n, 1, k);
   put_xml_matrix(text, "rvec", 3, 1, v);
   put_xml_matrix(text, "tvec", 3, 1, t);
   vl_camera_put(text, "</opencv_storage>\n");
 }
 
-static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *record,
+                             vlCameraText *text) {
   vlCamera c;
   double k[14], r[9], v[3], t[3];
   uint32_t n = 0;
   bool fisheye = false;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result == VL_OK) result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
+  if (result != VL_OK)
+    return result;
   vl_camera_get_pose(&c, r, t);
   vl_rotation_to_vector(r, v);
   const double m[9] = {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
   if (vl_ends_with(file->path, ".json")) {
-    vl_camera_put(text, "{\n  \"image_width\": %u,\n  \"image_height\": %u,\n  \"camera_matrix\": [", c.width,
-                  c.height);
+    vl_camera_put(text,
+                  "{\n  \"image_width\": %u,\n  \"image_height\": %u,\n  \"camera_matrix\": [",
+                  c.width, c.height);
     for (int i = 0; i < 3; i++) {
       vl_camera_put(text, "%s[", i ? ", " : "");
       vl_camera_put_numbers(text, m + 3 * i, 3);
       vl_camera_put(text, "]");
     }
     vl_camera_put(text, "]");
-    if (fisheye) vl_camera_put(text, ",\n  \"distortion_model\": \"fisheye\"");
+    if (fisheye)
+      vl_camera_put(text, ",\n  \"distortion_model\": \"fisheye\"");
     put_list(text, "distortion_coefficients", k, n);
     put_list(text, "rvec", v, 3);
     put_list(text, "tvec", t, 3);
     vl_camera_put(text, "\n}\n");
     return VL_OK;
   }
-  if (n == 0) n = 4; /* FileStorage has no empty matrix; four zeros are equivalent */
+  if (n == 0)
+    n = 4; /* FileStorage has no empty matrix; four zeros are equivalent */
   if (vl_ends_with(file->path, ".xml")) {
     put_xml(text, &c, fisheye, m, k, n, v, t);
     return VL_OK;
   }
-  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c.width, c.height);
+  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c.width,
+                c.height);
   vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, true);
-  if (fisheye) vl_camera_put(text, "distortion_model: fisheye\n");
+  if (fisheye)
+    vl_camera_put(text, "distortion_model: fisheye\n");
   vl_opencv_put_matrix(text, "distortion_coefficients", (int)n, 1, k, true);
   vl_opencv_put_matrix(text, "rvec", 3, 1, v, true);
   vl_opencv_put_matrix(text, "tvec", 3, 1, t, true);
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_opencv = {
-    .name = "opencv", .is_tree = is_opencv, .read = vl_camera_read_opencv, .write = write_opencv};
+const vlCameraFormat vl_format_opencv = {.name = "opencv",
+                                         .is_tree = is_opencv,
+                                         .read = vl_camera_read_opencv,
+                                         .write = write_opencv};

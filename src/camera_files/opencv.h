@@ -4,17 +4,23 @@
 
 #include "camera_files/files.h"
 
-/* Reads the matrix [fx 0 cx; 0 fy cy; 0 0 1], for which the centre of the first pixel is (0, 0). */
-vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *def);
-/* Reads the coefficients at a key. The tree names their model; without a name, the number of coefficients decides. */
-vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *def);
-/* ROS's binning and region of interest, with which matrix and size are not those of the image. Refuses them. def: with
- * the size. */
-vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree, const vlCameraDef *def);
+/* Reads the matrix [fx 0 cx; 0 fy cy; 0 0 1], for which the centre of the first pixel is (0,
+ * 0). */
+vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
+                               vlCameraDef *def);
+/* Reads the coefficients at a key. The tree names their model; without a name, the number of
+ * coefficients decides. */
+vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const char *key,
+                             vlCameraDef *def);
+/* ROS's binning and region of interest, with which matrix and size are not those of the image.
+ * Refuses them. def: with the size. */
+vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree,
+                               const vlCameraDef *def);
 /* Computes the coefficients to write, and whether the camera is a fisheye. */
-vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *def, double k[14], uint32_t *count,
-                           bool *fisheye);
+vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *def, double k[14],
+                           uint32_t *count, bool *fisheye);
 /* Appends a matrix. tagged: with FileStorage's tag !!opencv-matrix. */
-void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns, const double *data, bool tagged);
+void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns,
+                          const double *data, bool tagged);
 
 #endif

@@ -1,5 +1,6 @@
-/* camera_files/openmvg.c: OpenMVG's sfm_data.json. Camera axes: x right, y down, z forward; rotation is camera from
- * world, center the camera's centre. The principal point counts from the image's corner. */
+/* camera_files/openmvg.c: OpenMVG's sfm_data.json. Camera axes: x right, y down, z forward;
+ * rotation is camera from world, center the camera's centre. The principal point counts from
+ * the image's corner. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -15,26 +16,31 @@ static double id_of(const json_t *object, const char *key) {
 static const json_t *item_of(const json_t *list, double key) {
   size_t i;
   json_t *item;
-  json_array_foreach((json_t *)list, i, item) if (key >= 0.0 && id_of(item, "key") == key) return item;
+  json_array_foreach((json_t *)list, i,
+                     item) if (key >= 0.0 && id_of(item, "key") == key) return item;
   return NULL;
 }
 
-/* The object that has the field: that of the pointer or one of the base classes below it ("value0"). */
+/* The object that has the field: that of the pointer or one of the base classes below it
+ * ("value0"). */
 static const json_t *data_of(const json_t *item, const char *field) {
-  const json_t *value = json_object_get(item, "value"), *wrapper = json_object_get(value, "ptr_wrapper");
+  const json_t *value = json_object_get(item, "value"),
+               *wrapper = json_object_get(value, "ptr_wrapper");
   const json_t *data = wrapper ? json_object_get(wrapper, "data") : value;
   for (int depth = 0; depth < 3 && data && !json_object_get(data, field); depth++)
     data = json_object_get(data, "value0");
   return data;
 }
 
-/* The number of an object's class; bit 31 marks the first object of the class. 0: there is none. */
+/* The number of an object's class; bit 31 marks the first object of the class. 0: there is
+ * none. */
 static uint32_t class_number(const json_t *value) {
   const double id = id_of(value, "polymorphic_id");
   return id >= 0.0 && id <= UINT32_MAX ? (uint32_t)id & 0x7fffffff : 0;
 }
 
-/* The class of an intrinsic: only the first object of a class has its name, later ones have its number. */
+/* The class of an intrinsic: only the first object of a class has its name, later ones have its
+ * number. */
 static const char *class_of(const json_t *list, const json_t *item) {
   const uint32_t id = class_number(json_object_get(item, "value"));
   size_t i;
@@ -42,12 +48,14 @@ static const char *class_of(const json_t *list, const json_t *item) {
   json_array_foreach((json_t *)list, i, other) {
     const json_t *value = json_object_get(other, "value");
     const char *name = vl_camera_text(value, "polymorphic_name");
-    if (name && class_number(value) == id) return name;
+    if (name && class_number(value) == id)
+      return name;
   }
   return NULL;
 }
 
-static vlResult read_lens(const vlCameraFile *file, const json_t *item, const char *name, vlCameraDef *d) {
+static vlResult read_lens(const vlCameraFile *file, const json_t *item, const char *name,
+                          vlCameraDef *d) {
   static const struct {
     const char *name, *field;
     uint32_t count;
@@ -58,11 +66,14 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
                 {"fisheye", "fisheye", 4}};
   double k[5] = {0};
   for (size_t i = 0; i < VL_LENGTH(models); i++) {
-    if (!vl_text_is(models[i].name, name)) continue;
-    if (!models[i].field) return VL_OK;
-    vlResult result = vl_camera_numbers(file, data_of(item, models[i].field), models[i].field, k, models[i].count,
-                                        models[i].count, NULL);
-    if (result != VL_OK) return result;
+    if (!vl_text_is(models[i].name, name))
+      continue;
+    if (!models[i].field)
+      return VL_OK;
+    vlResult result = vl_camera_numbers(file, data_of(item, models[i].field), models[i].field,
+                                        k, models[i].count, models[i].count, NULL);
+    if (result != VL_OK)
+      return result;
     if (i == 4) {
       vl_camera_set_fisheye(d, k);
       return VL_OK;
@@ -70,10 +81,11 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
     vl_camera_set_opencv(d, (double[]){k[0], k[1], k[3], k[4], k[2]}, 5); /* k1 k2 k3 t1 t2 */
     return VL_OK;
   }
-  return vl_camera_wrong_in(file, item, NULL,
-                            "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
-                            "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
-                            vl_short_text(name).text);
+  return vl_camera_wrong_in(
+      file, item, NULL,
+      "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
+      "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
+      vl_short_text(name).text);
 }
 
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, const json_t *item,
@@ -81,16 +93,21 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
   const char *name = class_of(list, item);
   vlCameraDef *d = &record->camera;
   double f, c[2];
-  if (!name) return vl_camera_wrong_in(file, item, NULL, "openmvg: an intrinsic without \"polymorphic_name\"");
+  if (!name)
+    return vl_camera_wrong_in(file, item, NULL,
+                              "openmvg: an intrinsic without \"polymorphic_name\"");
   vlResult result = vl_camera_sides(file, data_of(item, "width"), "width", "height", record);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (vl_text_is(name, "spherical")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
     return VL_OK;
   }
   const json_t *data = data_of(item, "focal_length");
-  result = VL_READ_FIELDS(file, data, VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2));
-  if (result != VL_OK) return result;
+  result = VL_READ_FIELDS(file, data, VL_FIELD("focal_length", &f),
+                          VL_FIELD_LIST("principal_point", c, 2));
+  if (result != VL_OK)
+    return result;
   d->fx = d->fy = f;
   d->cx = c[0];
   d->cy = c[1];
@@ -98,23 +115,29 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
 }
 
 /* A view with a pose is a camera. */
-static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view, const json_t *pose,
-                          vlCameraRecord *record) {
+static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view,
+                          const json_t *pose, vlCameraRecord *record) {
   const json_t *intrinsics = json_object_get(tree, "intrinsics");
   const json_t *item = item_of(intrinsics, id_of(view, "id_intrinsic"));
   double r[9], center[3];
-  if (!item) return vl_camera_wrong_in(file, view, "id_intrinsic", "openmvg: the view's intrinsic is missing");
+  if (!item)
+    return vl_camera_wrong_in(file, view, "id_intrinsic",
+                              "openmvg: the view's intrinsic is missing");
   vlResult result = read_intrinsic(file, intrinsics, item, record);
   if (result == VL_OK)
-    result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("rotation", r, 9), VL_FIELD_LIST("center", center, 3));
-  if (result != VL_OK) return result;
+    result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("rotation", r, 9),
+                            VL_FIELD_LIST("center", center, 3));
+  if (result != VL_OK)
+    return result;
   vl_camera_set_centre(&record->camera, r, center);
   const char *name = vl_camera_text(view, "filename");
-  if (name) vl_camera_name(record, name);
+  if (name)
+    vl_camera_name(record, name);
   return VL_OK;
 }
 
-static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   const json_t *extrinsics = json_object_get(tree, "extrinsics"), *chosen = NULL, *pose = NULL;
   size_t i;
   json_t *item;
@@ -122,14 +145,16 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCam
   json_array_foreach(json_object_get(tree, "views"), i, item) {
     const json_t *view = data_of(item, "id_pose");
     const json_t *own = item_of(extrinsics, id_of(view, "id_pose"));
-    if (!view || !own) continue; /* not reconstructed */
+    if (!view || !own)
+      continue; /* not reconstructed */
     if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(view, "filename"))) {
       chosen = view;
       pose = json_object_get(own, "value");
     }
     record->frames++;
   }
-  if (chosen) return read_view(file, tree, chosen, pose, record);
+  if (chosen)
+    return read_view(file, tree, chosen, pose, record);
   if (record->frames || !json_array_size(json_object_get(tree, "intrinsics")))
     return vl_camera_no_frame(file, "camera", record->frames);
   record->frames = 1; /* before the reconstruction: the first intrinsic, at the origin */
@@ -138,30 +163,42 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCam
                         json_array_get(json_object_get(tree, "intrinsics"), 0), record);
 }
 
-static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   vlCamera c;
   vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 5, &c, &fit);
-  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 5, &c, &fit);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK)
+    return result;
   const double brown[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
   double r[9], t[3], centre[3];
   vl_camera_get_pose(&c, r, t);
-  for (int i = 0; i < 3; i++) centre[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
+  for (int i = 0; i < 3; i++)
+    centre[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
   const bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV;
   vl_camera_put_form(
       text, record, &c, NULL,
-      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": 0, \"value\": "
-      "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {\"local_path\": "
+      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": "
+      "[{\"key\": 0, \"value\": "
+      "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
+      "\"data\": {\"local_path\": "
       "\"\", \"filename\": ");
   vl_camera_put_string(text, record->name);
   return VL_PUT_FORM(
       text, record, &c,
-      ", \"width\": $width, \"height\": $height, \"id_view\": 0, \"id_intrinsic\": 0, \"id_pose\": 0}}}}],\n"
-      "  \"intrinsics\": [{\"key\": 0, \"value\": {\"polymorphic_id\": 2147483649, \"polymorphic_name\": \"$model\", "
-      "\"ptr_wrapper\": {\"id\": 2147483650, \"data\": {\"width\": $width, \"height\": $height, "
+      ", \"width\": $width, \"height\": $height, \"id_view\": 0, \"id_intrinsic\": 0, "
+      "\"id_pose\": "
+      "0}}}}],\n"
+      "  \"intrinsics\": [{\"key\": 0, \"value\": {\"polymorphic_id\": 2147483649, "
+      "\"polymorphic_name\": \"$model\", "
+      "\"ptr_wrapper\": {\"id\": 2147483650, \"data\": {\"width\": $width, \"height\": "
+      "$height, "
       "\"focal_length\": $fx, \"principal_point\": [$cx, $cy]$before$k$after}}}}],\n"
-      "  \"extrinsics\": [{\"key\": 0, \"value\": {\"rotation\": [$R:3], \"center\": [$center]}}],\n"
+      "  \"extrinsics\": [{\"key\": 0, \"value\": {\"rotation\": [$R:3], \"center\": "
+      "[$center]}}],\n"
       "  \"structure\": [],\n  \"control_points\": []\n}\n",
       VL_WORD("model", fisheye ? "fisheye"
                        : bent  ? "pinhole_brown_t2"
@@ -176,5 +213,7 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
       VL_WORD("after", fisheye || bent ? "]" : ""), VL_VALUES("center", centre, 3));
 }
 
-const vlCameraFormat vl_format_openmvg = {
-    .name = "openmvg", .marks = {"sfm_data_version"}, .read = read_openmvg, .write = write_openmvg};
+const vlCameraFormat vl_format_openmvg = {.name = "openmvg",
+                                          .marks = {"sfm_data_version"},
+                                          .read = read_openmvg,
+                                          .write = write_openmvg};

@@ -1,13 +1,14 @@
-/* camera_files/opensfm.c: OpenSfM's reconstruction.json (a list of reconstructions with cameras and shots) and
- * camera_models.json (cameras by name), which OpenDroneMap also writes. Camera axes: x right, y down, z forward. A
- * shot's rotation (axis and angle) and translation are camera from world. Lengths in the image are fractions of its
- * larger side, measured from its middle: velo's cx is width / 2 + c_x max(width, height). */
+/* camera_files/opensfm.c: OpenSfM's reconstruction.json (a list of reconstructions with cameras
+ * and shots) and camera_models.json (cameras by name), which OpenDroneMap also writes. Camera
+ * axes: x right, y down, z forward. A shot's rotation (axis and angle) and translation are
+ * camera from world. Lengths in the image are fractions of its larger side, measured from its
+ * middle: velo's cx is width / 2 + c_x max(width, height). */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-static vlResult coefficients(const vlCameraFile *file, const json_t *camera, const char *const *names, double *k,
-                             uint32_t count) {
+static vlResult coefficients(const vlCameraFile *file, const json_t *camera,
+                             const char *const *names, double *k, uint32_t count) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < count && result == VL_OK; i++) {
     k[i] = 0.0;
@@ -16,45 +17,55 @@ static vlResult coefficients(const vlCameraFile *file, const json_t *camera, con
   return result;
 }
 
-static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const char *type, vlCameraDef *d) {
-  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {"k1", "k2", "k3", "k4"};
+static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const char *type,
+                          vlCameraDef *d) {
+  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {
+                                                                         "k1", "k2", "k3",
+                                                                         "k4"};
   double k[5];
   vlResult result = VL_OK;
   if (vl_text_is(type, "brown")) {
     result = coefficients(file, camera, brown, k, 5);
     vl_camera_set_opencv(d, k, 5);
-  } else if (vl_text_is(type, "perspective") || vl_text_is(type, "radial") || vl_text_is(type, "simple_radial")) {
+  } else if (vl_text_is(type, "perspective") || vl_text_is(type, "radial") ||
+             vl_text_is(type, "simple_radial")) {
     result = coefficients(file, camera, brown, k, 2);
     k[2] = k[3] = 0.0;
     vl_camera_set_opencv(d, k, 4);
   } else if (vl_text_is(type, "fisheye") || vl_text_is(type, "fisheye_opencv")) {
     result = coefficients(file, camera, fisheye, k, 4);
-    if (type[7] == 0) k[2] = k[3] = 0.0;
+    if (type[7] == 0)
+      k[2] = k[3] = 0.0;
     vl_camera_set_fisheye(d, k);
   } else if (vl_text_is(type, "spherical") || vl_text_is(type, "equirectangular")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
-    return vl_camera_wrong_in(file, camera, "projection_type",
-                              "opensfm: projection_type \"%s\" is no model of velo; there are perspective, brown, "
-                              "radial, simple_radial, fisheye, fisheye_opencv, spherical",
-                              vl_short_text(type).text);
+    return vl_camera_wrong_in(
+        file, camera, "projection_type",
+        "opensfm: projection_type \"%s\" is no model of velo; there are perspective, brown, "
+        "radial, simple_radial, fisheye, fisheye_opencv, spherical",
+        vl_short_text(type).text);
   }
   return result;
 }
 
-static vlResult read_camera(const vlCameraFile *file, const json_t *camera, vlCameraRecord *record) {
+static vlResult read_camera(const vlCameraFile *file, const json_t *camera,
+                            vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   const char *type = vl_camera_text(camera, "projection_type");
   double f[2], c[2] = {0.0, 0.0};
-  if (!type) type = "perspective";
-  vlResult result =
-      VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height));
-  if (result == VL_OK) result = read_lens(file, camera, type, d);
-  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR) return result;
+  if (!type)
+    type = "perspective";
+  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
+                                   VL_FIELD_SIDE("height", &d->height));
+  if (result == VL_OK)
+    result = read_lens(file, camera, type, d);
+  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR)
+    return result;
   bool one = vl_camera_has(camera, "focal");
   result = VL_READ_FIELDS(file, camera, VL_FIELD(one ? "focal" : "focal_x", &f[0]),
-                          VL_FIELD(one ? "focal" : "focal_y", &f[1]), VL_FIELD_OPTIONAL("c_x", &c[0]),
-                          VL_FIELD_OPTIONAL("c_y", &c[1]));
+                          VL_FIELD(one ? "focal" : "focal_y", &f[1]),
+                          VL_FIELD_OPTIONAL("c_x", &c[0]), VL_FIELD_OPTIONAL("c_y", &c[1]));
   double side = d->width > d->height ? d->width : d->height;
   d->fx = f[0] * side;
   d->fy = f[1] * side;
@@ -63,14 +74,17 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, vlCa
   return result;
 }
 
-static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const json_t *cameras, const char *name,
-                          vlCameraRecord *record) {
+static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const json_t *cameras,
+                          const char *name, vlCameraRecord *record) {
   double v[3], t[3], r[9];
   const char *camera = vl_camera_text(shot, "camera");
-  vlResult result = VL_READ_FIELDS(file, shot, VL_FIELD_LIST("rotation", v, 3), VL_FIELD_LIST("translation", t, 3));
-  if (result != VL_OK) return result;
+  vlResult result = VL_READ_FIELDS(file, shot, VL_FIELD_LIST("rotation", v, 3),
+                                   VL_FIELD_LIST("translation", t, 3));
+  if (result != VL_OK)
+    return result;
   if (!camera || !vl_camera_has(cameras, camera))
-    return vl_camera_wrong_in(file, shot, "camera", "opensfm: the shot's camera \"%.60s\" is not there",
+    return vl_camera_wrong_in(file, shot, "camera",
+                              "opensfm: the shot's camera \"%.60s\" is not there",
                               camera ? camera : "");
   result = read_camera(file, json_object_get(cameras, camera), record);
   vl_rotation_from_vector(v, r);
@@ -80,16 +94,19 @@ static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const js
 }
 
 /* Reads camera_models.json, which holds cameras without shots. */
-static vlResult read_models(const vlCameraFile *file, const json_t *cameras, vlCameraRecord *record) {
+static vlResult read_models(const vlCameraFile *file, const json_t *cameras,
+                            vlCameraRecord *record) {
   const char *name, *chosen = NULL;
   json_t *camera;
   record->frames = 0;
   json_object_foreach((json_t *)cameras, name, camera) {
-    if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = name;
+    if (!chosen && vl_camera_is_frame(file, record->frames, name))
+      chosen = name;
     record->frames++;
   }
   if (!chosen)
-    return vl_camera_wrong_in(file, cameras, NULL, "opensfm: there is no camera \"%s\" among the %u",
+    return vl_camera_wrong_in(file, cameras, NULL,
+                              "opensfm: there is no camera \"%s\" among the %u",
                               vl_camera_asked(file, "0").text, record->frames);
   vl_camera_set_origin(&record->camera);
   vl_camera_name(record, chosen);
@@ -97,13 +114,15 @@ static vlResult read_models(const vlCameraFile *file, const json_t *cameras, vlC
 }
 
 /* Reads the shots of all reconstructions in the file, one reconstruction after the other. */
-static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   const json_t *list = json_object_get(tree, "[]"), *chosen = NULL, *of = NULL;
   const char *name, *chosen_name = NULL;
   json_t *shot;
   size_t count = list ? json_array_size(list) : 1;
   if (!list && !vl_camera_has(tree, "shots"))
-    return read_models(file, vl_camera_has(tree, "cameras") ? json_object_get(tree, "cameras") : tree, record);
+    return read_models(
+        file, vl_camera_has(tree, "cameras") ? json_object_get(tree, "cameras") : tree, record);
   record->frames = 0;
   for (size_t i = 0; i < count; i++) {
     const json_t *one = list ? json_array_get(list, i) : tree;
@@ -117,26 +136,32 @@ static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree, vlCam
       record->frames++;
     }
   }
-  if (!chosen) return vl_camera_no_frame(file, "shot", record->frames);
+  if (!chosen)
+    return vl_camera_no_frame(file, "shot", record->frames);
   return read_shot(file, chosen, of, chosen_name, record);
 }
 
 static bool is_opensfm(const json_t *tree) {
   void *first = json_object_iter((json_t *)tree);
-  bool shots =
-      vl_camera_has_in(tree, "[]", "shots") || (vl_camera_has(tree, "shots") && vl_camera_has(tree, "cameras"));
+  bool shots = vl_camera_has_in(tree, "[]", "shots") ||
+               (vl_camera_has(tree, "shots") && vl_camera_has(tree, "cameras"));
   return shots || (first && vl_camera_has(json_object_iter_value(first), "projection_type"));
 }
 
-static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {"k1", "k2", "k3", "k4"};
+static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
+  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {
+                                                                         "k1", "k2", "k3",
+                                                                         "k4"};
   vlCamera c;
   double k[14];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool bent = family == VL_LENS_FISHEYE, whole = record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
+  bool bent = family == VL_LENS_FISHEYE,
+       whole = record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
   if (whole) {
     family = VL_LENS_PINHOLE;
     n = 0;
@@ -145,20 +170,24 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
     return vl_camera_no_model(file, &record->camera);
   const char *type = whole ? "spherical" : bent ? "fisheye_opencv" : "brown";
   const double side = c.width > c.height ? c.width : c.height;
-  const double f[4] = {c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side, (c.cy - 0.5 * c.height) / side};
+  const double f[4] = {c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side,
+                       (c.cy - 0.5 * c.height) / side};
   VL_PUT_FORM(text, record, &c,
-              "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": \"$type\", \"width\": $width, "
+              "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": \"$type\", "
+              "\"width\": $width, "
               "\"height\": $height",
               VL_WORD("type", type));
   if (!whole)
-    VL_PUT_FORM(text, record, &c, ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3",
+    VL_PUT_FORM(text, record, &c,
+                ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3",
                 VL_VALUES("f", f, 4));
   for (int i = 0; i < (bent ? 4 : 5) && !whole; i++)
     vl_camera_put(text, ", \"%s\": %.17g", bent ? fisheye[i] : brown[i], k[i] + 0.0);
-  return vl_camera_put_form(text, record, &c, NULL,
-                            "}\n    },\n    \"shots\": {\n      $name: {\"camera\": \"camera\",\n"
-                            "        \"rotation\": [$V],\n        \"translation\": [$t]}\n    },\n"
-                            "    \"points\": {}\n  }\n]\n");
+  return vl_camera_put_form(
+      text, record, &c, NULL,
+      "}\n    },\n    \"shots\": {\n      $name: {\"camera\": \"camera\",\n"
+      "        \"rotation\": [$V],\n        \"translation\": [$t]}\n    },\n"
+      "    \"points\": {}\n  }\n]\n");
 }
 
 const vlCameraFormat vl_format_opensfm = {

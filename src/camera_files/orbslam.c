@@ -1,6 +1,6 @@
-/* camera_files/orbslam.c: settings of ORB-SLAM 2 and 3: keys like Camera.fx, or Camera1.fx and Camera2.fx. x right, y
- * down, z forward; the first pixel's centre is (0, 0). The world's space is the first camera's; the second one's pose
- * in it is Stereo.T_c1_c2 (older: Tlr). */
+/* camera_files/orbslam.c: settings of ORB-SLAM 2 and 3: keys like Camera.fx, or Camera1.fx and
+ * Camera2.fx. x right, y down, z forward; the first pixel's centre is (0, 0). The world's space
+ * is the first camera's; the second one's pose in it is Stereo.T_c1_c2 (older: Tlr). */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -12,8 +12,8 @@ static const char *key_of(char key[64], const char *prefix, const char *name) {
 }
 
 /* Reads k1 k2 p1 p2 k3 ... by name. *count includes the last one that exists. */
-static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *prefix, bool fisheye,
-                          vlCameraDef *d) {
+static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *prefix,
+                          bool fisheye, vlCameraDef *d) {
   static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
   static const char *const radial[] = {"k1", "k2", "k3", "k4"};
   double k[8] = {0};
@@ -22,11 +22,13 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < (fisheye ? 4u : 8u) && result == VL_OK; i++) {
     key_of(key, prefix, fisheye ? radial[i] : pinhole[i]);
-    if (!vl_camera_has(tree, key) && !fisheye) continue;
+    if (!vl_camera_has(tree, key) && !fisheye)
+      continue;
     result = vl_camera_number(file, tree, key, &k[i]);
     count = i + 1;
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (fisheye)
     vl_camera_set_fisheye(d, k);
   else
@@ -34,7 +36,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
   return VL_OK;
 }
 
-static vlResult read_one(const vlCameraFile *file, const json_t *tree, const char *prefix, vlCameraRecord *record) {
+static vlResult read_one(const vlCameraFile *file, const json_t *tree, const char *prefix,
+                         vlCameraRecord *record) {
   static const char *const names[] = {"fx", "fy", "cx", "cy"};
   const char *type = vl_camera_text(tree, "Camera.type");
   char key[64];
@@ -42,49 +45,63 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
   vlResult result = VL_OK;
   bool fisheye = vl_text_is(type, "KannalaBrandt8");
   if (type && !fisheye && !vl_text_is(type, "PinHole") && !vl_text_is(type, "Rectified"))
-    return vl_camera_unknown(file, tree, "Camera.type", type, "there are PinHole, Rectified, KannalaBrandt8");
+    return vl_camera_unknown(file, tree, "Camera.type", type,
+                             "there are PinHole, Rectified, KannalaBrandt8");
   for (int i = 0; i < 4 && result == VL_OK; i++)
     result = vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]);
-  if (result == VL_OK) result = read_lens(file, tree, prefix, fisheye, &record->camera);
-  if (result == VL_OK) result = vl_camera_sides(file, tree, "Camera.width", "Camera.height", record);
-  if (result == VL_OK) vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
+  if (result == VL_OK)
+    result = read_lens(file, tree, prefix, fisheye, &record->camera);
+  if (result == VL_OK)
+    result = vl_camera_sides(file, tree, "Camera.width", "Camera.height", record);
+  if (result == VL_OK)
+    vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
   return result;
 }
 
-static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   char prefix[16] = "Camera", key[64];
   bool numbered = vl_camera_has(tree, "Camera1.fx"), pair = vl_camera_has(tree, "Camera2.fx");
   record->frames = pair ? 2 : 1;
   uint32_t index = vl_camera_is_frame(file, 0, "Camera1") ? 0 : 1;
   if (index == 1 && !(pair && vl_camera_is_frame(file, 1, "Camera2")))
     return vl_camera_no_frame(file, "camera", record->frames);
-  if (numbered || index == 1) snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
+  if (numbered || index == 1)
+    snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
   vlResult result = read_one(file, tree, prefix, record);
   vl_camera_set_origin(&record->camera);
   if (result == VL_OK && index == 1) {
     double m[16] = {[15] = 1.0};
     const char *pose = vl_camera_has(tree, "Tlr") ? "Tlr" : "Stereo.T_c1_c2";
     result = vl_camera_numbers(file, tree, pose, m, 12, 16, NULL);
-    if (result == VL_OK) vl_camera_set_matrix(&record->camera, m, false);
+    if (result == VL_OK)
+      vl_camera_set_matrix(&record->camera, m, false);
   }
   vl_camera_name(record, vl_camera_text(tree, key_of(key, "Camera", "name")));
   return result;
 }
 
-static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {"k1", "k2", "k3", "k4"};
+static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
+  static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {
+                                                                           "k1", "k2", "k3",
+                                                                           "k4"};
   vlCamera c;
   vlFittedLens fit;
   vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   bool fisheye = fit.family == VL_LENS_FISHEYE;
   VL_PUT_FORM(text, record, &c,
-              "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: $fx\nCamera1.fy: $fy\n"
+              "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: "
+              "$fx\nCamera1.fy: $fy\n"
               "Camera1.cx: $cx0\nCamera1.cy: $cy0\n\n",
               VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"));
   for (uint32_t i = 0; i < fit.count; i++)
-    vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i], fit.k[i] + 0.0);
-  return vl_camera_put_form(text, record, &c, NULL, "\nCamera.width: $width\nCamera.height: $height\n");
+    vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i],
+                  fit.k[i] + 0.0);
+  return vl_camera_put_form(text, record, &c, NULL,
+                            "\nCamera.width: $width\nCamera.height: $height\n");
 }
 
 const vlCameraFormat vl_format_orbslam = {.name = "orbslam",

@@ -1,6 +1,7 @@
-/* camera_files/phone.c: the JSON of phone scanners, whose poses are ARKit's: world from camera, camera axes x right, y
- * up, z back; the first pixel's centre is (0.5, 0.5). Record3D: metadata of a recording, with K by columns and poses
- * (qx qy qz qw x y z). Polycam: keyframes/cameras/N.json, with t_00 to t_23 by rows. 3D Scanner App: frame_N.json, with
+/* camera_files/phone.c: the JSON of phone scanners, whose poses are ARKit's: world from camera,
+ * camera axes x right, y up, z back; the first pixel's centre is (0.5, 0.5). Record3D: metadata
+ * of a recording, with K by columns and poses (qx qy qz qw x y z). Polycam:
+ * keyframes/cameras/N.json, with t_00 to t_23 by rows. 3D Scanner App: frame_N.json, with
  * cameraPoseARFrame and intrinsics by rows; the size is that of the image beside it. */
 #include <stdio.h>
 #include <string.h>
@@ -11,10 +12,14 @@ static void set_arkit_pose(const double m[16], vlCameraDef *d) {
   vl_camera_set_flipped(d, m);
 }
 
-/* ---- Record3D ---------------------------------------------------------------------------------------------------- */
+/* ---- Record3D
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *poses = json_object_get(tree, "poses"), *own = json_object_get(tree, "perFrameIntrinsicCoeffs");
+static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
+                              vlCameraRecord *record) {
+  const json_t *poses = json_object_get(tree, "poses"),
+               *own = json_object_get(tree, "perFrameIntrinsicCoeffs");
   vlCameraDef *d = &record->camera;
   const json_t *pose = NULL, *coefficients = NULL;
   double v[7], k[9], r[9], f[4];
@@ -24,20 +29,29 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCa
       pose = json_array_get(poses, i);
       coefficients = json_array_get(own, i);
     }
-  if (!pose) return vl_camera_no_frame(file, "camera", record->frames);
-  json_t *holder = json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
-  if (!holder) return vl_fail_memory(file->error);
+  if (!pose)
+    return vl_camera_no_frame(file, "camera", record->frames);
+  json_t *holder =
+      json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
+  if (!holder)
+    return vl_fail_memory(file->error);
   vlResult result = vl_camera_numbers(file, holder, "poses", v, 7, 7, NULL);
   bool single = vl_camera_has(holder, "perFrameIntrinsicCoeffs");
-  if (result == VL_OK && single) result = vl_camera_numbers(file, holder, "perFrameIntrinsicCoeffs", f, 4, 4, NULL);
+  if (result == VL_OK && single)
+    result = vl_camera_numbers(file, holder, "perFrameIntrinsicCoeffs", f, 4, 4, NULL);
   json_decref(holder);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "K", k, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_sides(file, tree, "w", "h", record);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_numbers(file, tree, "K", k, 9, 9, NULL);
+  if (result == VL_OK)
+    result = vl_camera_sides(file, tree, "w", "h", record);
+  if (result != VL_OK)
+    return result;
   const double q[4] = {v[3], v[0], v[1], v[2]};
   if (!vl_rotation_from_quaternion(q, r))
-    return vl_camera_wrong_in(file, pose, NULL, "record3d: the quaternion of \"poses\" is no rotation");
-  const double m[16] = {r[0], r[1], r[2], v[4], r[3], r[4], r[5], v[5], r[6], r[7], r[8], v[6], 0, 0, 0, 1};
+    return vl_camera_wrong_in(file, pose, NULL,
+                              "record3d: the quaternion of \"poses\" is no rotation");
+  const double m[16] = {r[0], r[1], r[2], v[4], r[3], r[4], r[5], v[5],
+                        r[6], r[7], r[8], v[6], 0,    0,    0,    1};
   set_arkit_pose(m, d);
   d->fx = single ? f[0] : k[0];
   d->fy = single ? f[1] : k[4];
@@ -47,27 +61,34 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCa
 }
 
 static bool is_record3d(const json_t *tree) {
-  return vl_camera_has(tree, "poses") && vl_camera_has(tree, "K") && json_is_array(json_object_get(tree, "poses"));
+  return vl_camera_has(tree, "poses") && vl_camera_has(tree, "K") &&
+         json_is_array(json_object_get(tree, "poses"));
 }
 
-const vlCameraFormat vl_format_record3d = {.name = "record3d",
-                                           .is_tree = is_record3d,
-                                           .read = read_record3d,
-                                           .not_written = "it describes a recording of a phone"};
+const vlCameraFormat vl_format_record3d = {
+    .name = "record3d",
+    .is_tree = is_record3d,
+    .read = read_record3d,
+    .not_written = "it describes a recording of a phone"};
 
-/* ---- Polycam ----------------------------------------------------------------------------------------------------- */
+/* ---- Polycam
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_polycam(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_polycam(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16] = {[15] = 1.0};
   vlResult result =
-      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height),
-                     VL_FIELD("fx", &d->fx), VL_FIELD("fy", &d->fy), VL_FIELD("cx", &d->cx), VL_FIELD("cy", &d->cy));
+      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width),
+                     VL_FIELD_SIDE("height", &d->height), VL_FIELD("fx", &d->fx),
+                     VL_FIELD("fy", &d->fy), VL_FIELD("cx", &d->cx), VL_FIELD("cy", &d->cy));
   for (int i = 0; i < 12 && result == VL_OK; i++) {
     const char key[] = {'t', '_', (char)('0' + i / 4), (char)('0' + i % 4), 0};
     result = vl_camera_number(file, tree, key, &m[i]);
   }
-  if (result == VL_OK) set_arkit_pose(m, d);
+  if (result == VL_OK)
+    set_arkit_pose(m, d);
   return result;
 }
 
@@ -80,20 +101,28 @@ const vlCameraFormat vl_format_polycam = {
     .form =
         "{\n  \"width\": $width, \"height\": $height,\n"
         "  \"fx\": $fx, \"fy\": $fy, \"cx\": $cx, \"cy\": $cy,\n"
-        "  \"t_00\": $flipped@0, \"t_01\": $flipped@1, \"t_02\": $flipped@2, \"t_03\": $flipped@3,\n"
-        "  \"t_10\": $flipped@4, \"t_11\": $flipped@5, \"t_12\": $flipped@6, \"t_13\": $flipped@7,\n"
-        "  \"t_20\": $flipped@8, \"t_21\": $flipped@9, \"t_22\": $flipped@10, \"t_23\": $flipped@11\n}\n"};
+        "  \"t_00\": $flipped@0, \"t_01\": $flipped@1, \"t_02\": $flipped@2, \"t_03\": "
+        "$flipped@3,\n"
+        "  \"t_10\": $flipped@4, \"t_11\": $flipped@5, \"t_12\": $flipped@6, \"t_13\": "
+        "$flipped@7,\n"
+        "  \"t_20\": $flipped@8, \"t_21\": $flipped@9, \"t_22\": $flipped@10, \"t_23\": "
+        "$flipped@11\n}\n"};
 
-/* ---- 3D Scanner App ---------------------------------------------------------------------------------------------- */
+/* ---- 3D Scanner App
+ * ----------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_scanner(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_scanner(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16], k[9];
   char image[300];
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *dot = strrchr(name, '.');
-  vlResult result =
-      VL_READ_FIELDS(file, tree, VL_FIELD_LIST("cameraPoseARFrame", m, 16), VL_FIELD_LIST("intrinsics", k, 9));
-  if (result != VL_OK) return result;
+  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
+             *dot = strrchr(name, '.');
+  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("cameraPoseARFrame", m, 16),
+                                   VL_FIELD_LIST("intrinsics", k, 9));
+  if (result != VL_OK)
+    return result;
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
   set_arkit_pose(m, d);
   d->fx = k[0];
@@ -103,7 +132,8 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree, vlCam
   return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
 }
 
-const vlCameraFormat vl_format_scanner3d = {.name = "scanner3d",
-                                            .marks = {"cameraPoseARFrame", "intrinsics"},
-                                            .read = read_scanner,
-                                            .not_written = "it describes a recording of a phone"};
+const vlCameraFormat vl_format_scanner3d = {
+    .name = "scanner3d",
+    .marks = {"cameraPoseARFrame", "intrinsics"},
+    .read = read_scanner,
+    .not_written = "it describes a recording of a phone"};

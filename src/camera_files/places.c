@@ -1,59 +1,72 @@
-/* camera_files/places.c: the line and column of each value of a tree. The parsers record the positions in the tree's
- * order, with each value before the values that it contains. A lookup counts the values before the wanted one. */
+/* camera_files/places.c: the line and column of each value of a tree. The parsers record the
+ * positions in the tree's order, with each value before the values that it contains. A lookup
+ * counts the values before the wanted one. */
 
 #include "base/text.h"
 #include "camera_files/files.h"
 
 bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column) {
-  if (!file->places) return true;
+  if (!file->places)
+    return true;
   uint64_t *place = VL_PUSH(file->context, &file->places->at);
-  if (place) *place = (uint64_t)line << 32 | column;
+  if (place)
+    *place = (uint64_t)line << 32 | column;
   return place != NULL;
 }
 
 void vl_camera_places_free(vlCameraFile *file) {
-  if (!file->places) return;
+  if (!file->places)
+    return;
   VL_ARRAY_FREE(file->context, &file->places->at);
   file->places = NULL;
 }
 
 /* Counts the values before the wanted one. Returns true when it is found. */
 static bool count_to(const json_t *node, const json_t *wanted, size_t *index) {
-  if (node == wanted) return true;
+  if (node == wanted)
+    return true;
   ++*index;
   const char *key;
   json_t *child;
   size_t i;
   if (json_is_object(node)) {
-    json_object_foreach((json_t *)node, key, child) if (count_to(child, wanted, index)) return true;
+    json_object_foreach((json_t *)node, key,
+                        child) if (count_to(child, wanted, index)) return true;
   } else {
-    json_array_foreach((json_t *)node, i, child) if (count_to(child, wanted, index)) return true;
+    json_array_foreach((json_t *)node, i,
+                       child) if (count_to(child, wanted, index)) return true;
   }
   return false;
 }
 
-/* The index of object[key], or of the object. true, false and null are the same value everywhere, so the values of an
- * object are counted by their keys. */
+/* The index of object[key], or of the object. true, false and null are the same value
+ * everywhere, so the values of an object are counted by their keys. */
 static size_t index_of(const vlCameraPlaces *places, const json_t *object, const char *key) {
   size_t index = 0;
-  if (!count_to(places->root, object, &index)) return SIZE_MAX;
-  if (!key || !json_object_get(object, key)) return index;
+  if (!count_to(places->root, object, &index))
+    return SIZE_MAX;
+  if (!key || !json_object_get(object, key))
+    return index;
   const char *other;
   json_t *child;
   size_t inner = index + 1;
   json_object_foreach((json_t *)object, other, child) {
-    if (vl_text_is(other, key)) return inner;
+    if (vl_text_is(other, key))
+      return inner;
     count_to(child, NULL, &inner);
   }
   return index;
 }
 
-vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key, const char *format, ...) {
+vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key,
+                            const char *format, ...) {
   char message[400];
   VL_FORMAT(message, format);
   size_t index = file->places && object ? index_of(file->places, object, key) : SIZE_MAX;
-  uint64_t place = file->places && index < file->places->at.count ? file->places->at.items[index] : 0;
-  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)(place >> 32), (uint32_t)place, "%s", message);
+  uint64_t place =
+      file->places && index < file->places->at.count ? file->places->at.items[index] : 0;
+  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)(place >> 32),
+                    (uint32_t)place, "%s", message);
 }
 
 /* The first object of the tree that has this key. */
@@ -62,7 +75,8 @@ static const json_t *holder_of(const json_t *node, const char *key) {
   json_t *child;
   size_t i;
   const json_t *found = NULL;
-  if (json_object_get(node, key)) return node;
+  if (json_object_get(node, key))
+    return node;
   if (json_is_object(node)) {
     json_object_foreach((json_t *)node, other, child) if (!found) found = holder_of(child, key);
   } else {
@@ -73,7 +87,9 @@ static const json_t *holder_of(const json_t *node, const char *key) {
 
 void vl_camera_place_error(const vlCameraFile *file) {
   vlError *error = file->error;
-  if (!error || error->line || !file->places || !file->places->at.count || !vl_text_is(error->file, file->path)) return;
+  if (!error || error->line || !file->places || !file->places->at.count ||
+      !vl_text_is(error->file, file->path))
+    return;
   const json_t *root = file->places->root, *holder = NULL;
   char key[64];
   const char *quote = strchr(error->message, '"'), *end = quote ? strchr(quote + 1, '"') : NULL;

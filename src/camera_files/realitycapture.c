@@ -1,9 +1,10 @@
-/* camera_files/realitycapture.c: RealityCapture's (RealityScan's) XMP beside each image, and its CSV "Internal/External
- * camera parameters". Camera axes of the XMP: x right, y down, z forward; xcr:Rotation is camera from world by rows,
- * xcr:Position the camera's centre. With s the larger side of the image: f = s * 35 mm focal length / 36, cx = w/2 + s
- * * U, cy = h/2 + s * V; the first pixel's centre is (0.5, 0.5). The distortion is Brown's, with t1 and t2 as OpenCV's
- * p1 and p2. The CSV: x, y, alt is the centre; with heading h, pitch p, roll r the camera's axes (x right, y up, z
- * back) are the columns of Rz(-h) Rx(p) Ry(r). */
+/* camera_files/realitycapture.c: RealityCapture's (RealityScan's) XMP beside each image, and
+ * its CSV "Internal/External camera parameters". Camera axes of the XMP: x right, y down, z
+ * forward; xcr:Rotation is camera from world by rows, xcr:Position the camera's centre. With s
+ * the larger side of the image: f = s * 35 mm focal length / 36, cx = w/2 + s
+ * * U, cy = h/2 + s * V; the first pixel's centre is (0.5, 0.5). The distortion is Brown's,
+ * with t1 and t2 as OpenCV's p1 and p2. The CSV: x, y, alt is the centre; with heading h, pitch
+ * p, roll r the camera's axes (x right, y up, z back) are the columns of Rz(-h) Rx(p) Ry(r). */
 #include <math.h>
 #include <stdio.h>
 
@@ -23,8 +24,10 @@ static void set_lens(const Lens *lens, vlCameraDef *d) {
   d->cx = 0.5 * d->width + side * lens->center[0];
   d->cy = 0.5 * d->height + side * lens->center[1];
   bool bent = false;
-  for (int i = 0; i < 6; i++) bent = bent || k[i] != 0.0;
-  if (!bent) return;
+  for (int i = 0; i < 6; i++)
+    bent = bent || k[i] != 0.0;
+  if (!bent)
+    return;
   if (k[3] == 0.0) {
     vl_camera_set_opencv(d, (double[]){k[0], k[1], k[4], k[5], k[2]}, 5);
     return;
@@ -35,11 +38,14 @@ static void set_lens(const Lens *lens, vlCameraDef *d) {
   memcpy(d->distortion_coefficients, thin, sizeof thin);
 }
 
-/* ---- XMP --------------------------------------------------------------------------------------------------------- */
+/* ---- XMP
+ * ---------------------------------------------------------------------------------------------------------
+ */
 
 static const json_t *description_of(const json_t *tree) {
   const char *tag = vl_camera_text(tree, "<");
-  if (!vl_text_is(tag, "x:xmpmeta")) return NULL;
+  if (!vl_text_is(tag, "x:xmpmeta"))
+    return NULL;
   return vl_camera_child(vl_camera_child(tree, "rdf:RDF"), "rdf:Description");
 }
 
@@ -49,93 +55,143 @@ static const char *property(const json_t *description, const char *name) {
   return text ? text : vl_camera_text(vl_camera_child(description, name), "$");
 }
 
-static vlResult read_property(const vlCameraFile *file, const json_t *description, const char *name, uint32_t count,
-                              bool needed, double *values) {
+static vlResult read_property(const vlCameraFile *file, const json_t *description,
+                              const char *name, uint32_t count, bool needed, double *values) {
   const char *text = property(description, name);
   uint32_t found = 0;
-  if (!text && !needed) return VL_OK;
-  if (!text) return vl_camera_wrong_element(file, description, "there is no %s", name);
+  if (!text && !needed)
+    return VL_OK;
+  if (!text)
+    return vl_camera_wrong_element(file, description, "there is no %s", name);
   for (char *end; found <= count; text = end, found++) {
     double value = vl_camera_parse(text, &end);
-    if (end == text || !isfinite(value)) break;
-    if (found < count) values[found] = value;
+    if (end == text || !isfinite(value))
+      break;
+    if (found < count)
+      values[found] = value;
   }
-  if (found == count && text[strspn(text, " \t\r\n")] == 0) return VL_OK;
-  return vl_camera_wrong_element(file, description, "%s must hold %u finite number%s", name, count,
-                                 count == 1 ? "" : "s");
+  if (found == count && text[strspn(text, " \t\r\n")] == 0)
+    return VL_OK;
+  return vl_camera_wrong_element(file, description, "%s must hold %u finite number%s", name,
+                                 count, count == 1 ? "" : "s");
 }
 
 static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  static const char *const models[] = {"perspective", "brown3", "brown4", "brown3t2", "brown4t2"};
+  static const char *const models[] = {"perspective", "brown3", "brown4", "brown3t2",
+                                       "brown4t2"};
   const json_t *description = description_of(tree);
   double r[9], c[3], aspect = 1.0, skew = 0.0;
   Lens lens = {.f35 = 0.0};
   const char *model = property(description, "xcr:DistortionModel");
   bool known = !model;
-  for (size_t i = 0; i < VL_LENGTH(models) && !known; i++) known = vl_text_is(model, models[i]);
+  for (size_t i = 0; i < VL_LENGTH(models) && !known; i++)
+    known = vl_text_is(model, models[i]);
   if (!known)
-    return vl_camera_wrong_element(file, description,
-                                   "xcr:DistortionModel \"%s\" is no model of velo; there are perspective, brown3, "
-                                   "brown4, brown3t2, brown4t2",
-                                   vl_short_text(model).text);
+    return vl_camera_wrong_element(
+        file, description,
+        "xcr:DistortionModel \"%s\" is no model of velo; there are perspective, brown3, "
+        "brown4, brown3t2, brown4t2",
+        vl_short_text(model).text);
   vlResult result = read_property(file, description, "xcr:FocalLength35mm", 1, true, &lens.f35);
-  if (result == VL_OK) result = read_property(file, description, "xcr:PrincipalPointU", 1, false, &lens.center[0]);
-  if (result == VL_OK) result = read_property(file, description, "xcr:PrincipalPointV", 1, false, &lens.center[1]);
-  if (result == VL_OK) result = read_property(file, description, "xcr:AspectRatio", 1, false, &aspect);
-  if (result == VL_OK) result = read_property(file, description, "xcr:Skew", 1, false, &skew);
-  if (result == VL_OK) result = read_property(file, description, "xcr:DistortionCoeficients", 6, false, lens.k);
-  if (result == VL_OK) result = read_property(file, description, "xcr:Rotation", 9, true, r);
-  if (result == VL_OK) result = read_property(file, description, "xcr:Position", 3, true, c);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:PrincipalPointU", 1, false, &lens.center[0]);
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:PrincipalPointV", 1, false, &lens.center[1]);
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:AspectRatio", 1, false, &aspect);
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:Skew", 1, false, &skew);
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:DistortionCoeficients", 6, false, lens.k);
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:Rotation", 9, true, r);
+  if (result == VL_OK)
+    result = read_property(file, description, "xcr:Position", 3, true, c);
+  if (result != VL_OK)
+    return result;
   if (aspect != 1.0 || skew != 0.0)
-    return vl_camera_wrong_element(file, description, "xcr:AspectRatio must be 1 and xcr:Skew 0");
-  if (vl_text_is(model, models[0])) memset(lens.k, 0, sizeof lens.k);
+    return vl_camera_wrong_element(file, description,
+                                   "xcr:AspectRatio must be 1 and xcr:Skew 0");
+  if (vl_text_is(model, models[0]))
+    memset(lens.k, 0, sizeof lens.k);
   vl_camera_set_centre(&record->camera, r, c);
   char image[300];
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *dot = strrchr(name, '.');
+  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
+             *dot = strrchr(name, '.');
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
   result = vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
-  if (result == VL_OK) set_lens(&lens, &record->camera);
+  if (result == VL_OK)
+    set_lens(&lens, &record->camera);
   return result;
 }
 
 static bool is_xmp(const json_t *tree) {
   const json_t *description = description_of(tree);
-  return description && (property(description, "xcr:Rotation") || property(description, "xcr:FocalLength35mm"));
+  return description && (property(description, "xcr:Rotation") ||
+                         property(description, "xcr:FocalLength35mm"));
 }
 
-static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record,
+                          vlCameraText *text) {
   vlCamera c;
   double k[14];
   vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE, k, &c);
-  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK) return result;
-  const double side = c.width > c.height ? c.width : c.height, *m = c.camera_from_world, *p = c.world_from_camera;
-  vl_camera_put(text,
-                "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n"
-                "  <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
-                "    <rdf:Description xcr:Version=\"3\" xcr:PosePrior=\"initial\" xcr:Coordinates=\"absolute\"\n"
-                "       xcr:DistortionModel=\"%s\" xcr:FocalLength35mm=\"%.17g\" xcr:Skew=\"0\" xcr:AspectRatio=\"1\"\n"
-                "       xcr:PrincipalPointU=\"%.17g\" xcr:PrincipalPointV=\"%.17g\"\n"
-                "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n",
-                c.distortion.steps == 0      ? "perspective"
-                : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
-                                             : "brown3t2",
-                36.0 * c.fx / side, (c.cx - 0.5 * c.width) / side, (c.cy - 0.5 * c.height) / side);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK)
+    return result;
+  const double side = c.width > c.height ? c.width : c.height, *m = c.camera_from_world,
+               *p = c.world_from_camera;
+  vl_camera_put(
+      text,
+      "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n"
+      "  <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
+      "    <rdf:Description xcr:Version=\"3\" xcr:PosePrior=\"initial\" "
+      "xcr:Coordinates=\"absolute\"\n"
+      "       xcr:DistortionModel=\"%s\" xcr:FocalLength35mm=\"%.17g\" xcr:Skew=\"0\" "
+      "xcr:AspectRatio=\"1\"\n"
+      "       xcr:PrincipalPointU=\"%.17g\" xcr:PrincipalPointV=\"%.17g\"\n"
+      "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n",
+      c.distortion.steps == 0      ? "perspective"
+      : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
+                                   : "brown3t2",
+      36.0 * c.fx / side, (c.cx - 0.5 * c.width) / side, (c.cy - 0.5 * c.height) / side);
   vl_camera_put(text, "      <xcr:Rotation>");
-  for (int i = 0; i < 9; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", m[4 * (i / 3) + i % 3] + 0.0);
-  vl_camera_put(text, "</xcr:Rotation>\n      <xcr:Position>%.17g %.17g %.17g</xcr:Position>\n", p[3], p[7], p[11]);
-  vl_camera_put(text, "      <xcr:DistortionCoeficients>%.17g %.17g %.17g 0 %.17g %.17g</xcr:DistortionCoeficients>\n",
+  for (int i = 0; i < 9; i++)
+    vl_camera_put(text, "%s%.17g", i ? " " : "", m[4 * (i / 3) + i % 3] + 0.0);
+  vl_camera_put(text, "</xcr:Rotation>\n      <xcr:Position>%.17g %.17g %.17g</xcr:Position>\n",
+                p[3], p[7], p[11]);
+  vl_camera_put(text,
+                "      <xcr:DistortionCoeficients>%.17g %.17g %.17g 0 %.17g "
+                "%.17g</xcr:DistortionCoeficients>\n",
                 k[0], k[1], k[4], k[2], k[3]);
   vl_camera_put(text, "    </rdf:Description>\n  </rdf:RDF>\n</x:xmpmeta>\n");
   return VL_OK;
 }
 
-/* ---- CSV --------------------------------------------------------------------------------------------------------- */
+/* ---- CSV
+ * ---------------------------------------------------------------------------------------------------------
+ */
 
-enum { NAME, X, Y, ALT, HEADING, PITCH, ROLL, F, PX, PY, K1, T2 = K1 + 5, COLUMNS, MOST_FIELDS = 64 };
-static const char *const columns[COLUMNS] = {"#name", "x",  "y",  "alt", "heading", "pitch", "roll", "f",
-                                             "px",    "py", "k1", "k2",  "k3",      "k4",    "t1",   "t2"};
+enum {
+  NAME,
+  X,
+  Y,
+  ALT,
+  HEADING,
+  PITCH,
+  ROLL,
+  F,
+  PX,
+  PY,
+  K1,
+  T2 = K1 + 5,
+  COLUMNS,
+  MOST_FIELDS = 64
+};
+static const char *const columns[COLUMNS] = {"#name", "x",  "y",  "alt", "heading", "pitch",
+                                             "roll",  "f",  "px", "py",  "k1",      "k2",
+                                             "k3",    "k4", "t1", "t2"};
 
 /* The lines of the text, with those that begin with #, unlike vl_camera_next_line. */
 typedef struct {
@@ -148,19 +204,23 @@ typedef struct {
 
 static bool next_row(Row *row) {
   while (row->at < row->end) {
-    const char *stop = memchr(row->at, '\n', (size_t)(row->end - row->at)), *last = stop ? stop : row->end;
+    const char *stop = memchr(row->at, '\n', (size_t)(row->end - row->at)),
+               *last = stop ? stop : row->end;
     size_t length = (size_t)(last - row->at);
-    if (length > sizeof row->text - 1) length = sizeof row->text - 1;
+    if (length > sizeof row->text - 1)
+      length = sizeof row->text - 1;
     memcpy(row->text, row->at, length);
     row->text[length] = 0;
     row->text[strcspn(row->text, "\r")] = 0;
     row->at = stop ? stop + 1 : row->end;
     row->number++;
-    if (!row->text[0] || strncmp(row->text, "#cameras", 8) == 0) continue;
+    if (!row->text[0] || strncmp(row->text, "#cameras", 8) == 0)
+      continue;
     row->count = 0;
     for (char *field = row->text; field && row->count < MOST_FIELDS;) {
       char *comma = strchr(field, ',');
-      if (comma) *comma = 0;
+      if (comma)
+        *comma = 0;
       row->fields[row->count++] = field;
       field = comma ? comma + 1 : NULL;
     }
@@ -169,17 +229,19 @@ static bool next_row(Row *row) {
   return false;
 }
 
-static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[COLUMNS], vlCameraRecord *record) {
+static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[COLUMNS],
+                         vlCameraRecord *record) {
   double v[COLUMNS] = {0.0};
   for (int k = X; k < COLUMNS; k++) {
-    if (of[k] < 0) continue;
+    if (of[k] < 0)
+      continue;
     const char *field = of[k] < row->count ? row->fields[of[k]] : "";
     char *end;
     v[k] = vl_camera_parse(field, &end);
     if (end == field || end[strspn(end, " ")] || !isfinite(v[k]))
       return vl_camera_wrong_at(file, row->number, 1 + (uint32_t)(field - row->text),
-                                "realitycapture: \"%s\" is \"%s\"; it must be a finite number", columns[k],
-                                vl_short_text(field).text);
+                                "realitycapture: \"%s\" is \"%s\"; it must be a finite number",
+                                columns[k], vl_short_text(field).text);
   }
   Lens lens = {.f35 = v[F], .center = {v[PX], v[PY]}};
   memcpy(lens.k, v + K1, sizeof lens.k);
@@ -189,7 +251,8 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
     sine[i] = vl_precise_sin(angle);
     cosine[i] = vl_precise_cos(angle);
   }
-  const double sh = sine[0], ch = cosine[0], sp = sine[1], cp = cosine[1], sr = sine[2], cr = cosine[2];
+  const double sh = sine[0], ch = cosine[0], sp = sine[1], cp = cosine[1], sr = sine[2],
+               cr = cosine[2];
   const double r[9] = {ch * cr - sh * sp * sr,
                        -sh * cp,
                        ch * sr + sh * sp * cr,
@@ -199,42 +262,53 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
                        -cp * sr,
                        sp,
                        cp * cr};
-  for (int i = 0; i < 9; i++) m[4 * (i / 3) + i % 3] = r[i];
+  for (int i = 0; i < 9; i++)
+    m[4 * (i / 3) + i % 3] = r[i];
   record->camera.has_matrix = true;
   vl_camera_flip_axes(m, record->camera.world_from_camera);
   char folder[300];
   const char *name = record->name;
   snprintf(folder, sizeof folder, "images/%s", name);
-  vlResult result = vl_camera_size_beside(file, (const char *const[]){name, folder, NULL}, record);
-  if (result == VL_OK) set_lens(&lens, &record->camera);
+  vlResult result =
+      vl_camera_size_beside(file, (const char *const[]){name, folder, NULL}, record);
+  if (result == VL_OK)
+    set_lens(&lens, &record->camera);
   return result;
 }
 
-static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size,
+                         vlCameraRecord *record) {
   Row row = {.at = text, .end = text + size};
   int of[COLUMNS];
-  if (!next_row(&row)) return vl_camera_wrong(file, "realitycapture: the file has no header");
+  if (!next_row(&row))
+    return vl_camera_wrong(file, "realitycapture: the file has no header");
   for (int k = 0; k < COLUMNS; k++) {
     of[k] = -1;
     for (int i = 0; i < row.count; i++)
-      if (vl_text_is(row.fields[i], columns[k])) of[k] = i;
+      if (vl_text_is(row.fields[i], columns[k]))
+        of[k] = i;
     if (k <= F && of[k] < 0)
-      return vl_camera_wrong_at(file, row.number, 1, "realitycapture: the column \"%s\" is missing", columns[k]);
+      return vl_camera_wrong_at(file, row.number, 1,
+                                "realitycapture: the column \"%s\" is missing", columns[k]);
   }
   Row chosen = {.count = 0};
   for (record->frames = 0; next_row(&row); record->frames++) {
     const char *name = of[NAME] < row.count ? row.fields[of[NAME]] : "";
-    if (chosen.count || !vl_camera_is_frame(file, record->frames, name)) continue;
+    if (chosen.count || !vl_camera_is_frame(file, record->frames, name))
+      continue;
     vl_camera_name(record, name);
     chosen = row;
-    for (int i = 0; i < row.count; i++) chosen.fields[i] = chosen.text + (row.fields[i] - row.text);
+    for (int i = 0; i < row.count; i++)
+      chosen.fields[i] = chosen.text + (row.fields[i] - row.text);
   }
-  return chosen.count ? read_row(file, &chosen, of, record) : vl_camera_no_frame(file, "camera", record->frames);
+  return chosen.count ? read_row(file, &chosen, of, record)
+                      : vl_camera_no_frame(file, "camera", record->frames);
 }
 
 static bool is_csv(const char *text, size_t size) {
   (void)size;
-  return strncmp(text, "#name,", 6) == 0 || (strncmp(text, "#cameras", 8) == 0 && strstr(text, "\n#name,"));
+  return strncmp(text, "#name,", 6) == 0 ||
+         (strncmp(text, "#cameras", 8) == 0 && strstr(text, "\n#name,"));
 }
 
 const vlCameraFormat vl_format_realitycapture = {.name = "realitycapture",

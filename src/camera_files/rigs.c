@@ -1,29 +1,36 @@
-/* camera_files/rigs.c: JSON of rigs and datasets. Axes: x right, y down, z forward. calib.io: Calibration.cameras with
- * OpenCV's lens by name and camera from world (rotation vector, translation); fy = f ar; first pixel's centre (0, 0).
- * nuScenes: a list of calibrated_sensor, world (the vehicle's) from camera, quaternion w x y z; no image size; (0, 0).
- * CMU Panoptic: cameras with K, distCoef, R, t, camera from world, in centimetres; (0, 0). Nerfies: orientation, camera
- * from world, and position, the camera's centre; (0.5, 0.5). */
+/* camera_files/rigs.c: JSON of rigs and datasets. Axes: x right, y down, z forward. calib.io:
+ * Calibration.cameras with OpenCV's lens by name and camera from world (rotation vector,
+ * translation); fy = f ar; first pixel's centre (0, 0). nuScenes: a list of calibrated_sensor,
+ * world (the vehicle's) from camera, quaternion w x y z; no image size; (0, 0). CMU Panoptic:
+ * cameras with K, distCoef, R, t, camera from world, in centimetres; (0, 0). Nerfies:
+ * orientation, camera from world, and position, the camera's centre; (0.5, 0.5). */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
 
 static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
-  while (count && k[count - 1] == 0.0) count--;
+  while (count && k[count - 1] == 0.0)
+    count--;
   vl_camera_set_opencv(d, k, count);
 }
 
-/* ---- calib.io ---------------------------------------------------------------------------------------------------- */
+/* ---- calib.io
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key, bool needed,
-                           double *value) {
+static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key,
+                           bool needed, double *value) {
   const json_t *field = json_object_get(parameters, key);
-  if (!field && !needed) return VL_OK;
-  if (!json_is_object(field)) return vl_camera_number(file, parameters, key, value);
+  if (!field && !needed)
+    return VL_OK;
+  if (!json_is_object(field))
+    return vl_camera_number(file, parameters, key, value);
   return vl_camera_number(file, field, "val", value);
 }
 
 /* Camera from world: a rotation vector and a translation; the origin without a transform. */
-static vlResult read_transform(const vlCameraFile *file, const json_t *transform, vlCameraDef *d) {
+static vlResult read_transform(const vlCameraFile *file, const json_t *transform,
+                               vlCameraDef *d) {
   static const char *const turns[] = {"rx", "ry", "rz"}, *const shifts[] = {"x", "y", "z"};
   const json_t *rotation = json_object_get(transform, "rotation");
   const json_t *translation = json_object_get(transform, "translation");
@@ -31,41 +38,56 @@ static vlResult read_transform(const vlCameraFile *file, const json_t *transform
   vlResult result = VL_OK;
   for (int i = 0; i < 3 && transform && result == VL_OK; i++) {
     result = vl_camera_number(file, rotation, turns[i], &v[i]);
-    if (result == VL_OK) result = vl_camera_number(file, translation, shifts[i], &t[i]);
+    if (result == VL_OK)
+      result = vl_camera_number(file, translation, shifts[i], &t[i]);
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
 }
 
-static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   static const char *const lens[] = {"k1", "k2", "p1", "p2", "k3", "k4",   "k5",
                                      "k6", "s1", "s2", "s3", "s4", "tauX", "tauY"};
   const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"),
                *camera = vl_camera_choose(file, list, NULL, record);
   vlCameraDef *d = &record->camera;
   double f = 0.0, aspect = 1.0, cx = 0.0, cy = 0.0, k[14] = {0.0};
-  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
+  if (!camera)
+    return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *model, *parameters;
   vlResult result = vl_camera_field(file, camera, "model", &model);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *name = vl_camera_text(model, "polymorphic_name");
   if (name && !vl_text_is(name, "libCalib::CameraModelOpenCV"))
-    return vl_camera_unknown(file, model, "polymorphic_name", name, "there is libCalib::CameraModelOpenCV");
+    return vl_camera_unknown(file, model, "polymorphic_name", name,
+                             "there is libCalib::CameraModelOpenCV");
   const json_t *data = json_object_get(json_object_get(model, "ptr_wrapper"), "data");
   const json_t *base = json_object_get(data, "CameraModelCRT");
-  if (!base) base = json_object_get(data, "CameraModelCRTP");
+  if (!base)
+    base = json_object_get(data, "CameraModelCRTP");
   const json_t *size = json_object_get(json_object_get(base, "CameraModelBase"), "imageSize");
   result = vl_camera_sides(file, size, "width", "height", record);
-  if (result == VL_OK) result = vl_camera_field(file, data, "parameters", &parameters);
-  if (result == VL_OK) result = read_value(file, parameters, "f", true, &f);
-  if (result == VL_OK) result = read_value(file, parameters, "ar", false, &aspect);
-  if (result == VL_OK) result = read_value(file, parameters, "cx", true, &cx);
-  if (result == VL_OK) result = read_value(file, parameters, "cy", true, &cy);
-  for (int i = 0; i < 14 && result == VL_OK; i++) result = read_value(file, parameters, lens[i], false, &k[i]);
-  if (result == VL_OK) result = read_transform(file, json_object_get(camera, "transform"), d);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_field(file, data, "parameters", &parameters);
+  if (result == VL_OK)
+    result = read_value(file, parameters, "f", true, &f);
+  if (result == VL_OK)
+    result = read_value(file, parameters, "ar", false, &aspect);
+  if (result == VL_OK)
+    result = read_value(file, parameters, "cx", true, &cx);
+  if (result == VL_OK)
+    result = read_value(file, parameters, "cy", true, &cy);
+  for (int i = 0; i < 14 && result == VL_OK; i++)
+    result = read_value(file, parameters, lens[i], false, &k[i]);
+  if (result == VL_OK)
+    result = read_transform(file, json_object_get(camera, "transform"), d);
+  if (result != VL_OK)
+    return result;
   vl_camera_set_centred(d, f, f * aspect, cx, cy);
   set_lens(k, 14, d);
   return VL_OK;
@@ -75,21 +97,26 @@ static bool is_calibio(const json_t *tree) {
   return vl_camera_has_in(json_object_get(tree, "Calibration"), "cameras", "model");
 }
 
-const vlCameraFormat vl_format_calibio = {.name = "calibio",
-                                          .is_tree = is_calibio,
-                                          .read = read_calibio,
-                                          .not_written = "it is the result of a calibration, with its statistics"};
+const vlCameraFormat vl_format_calibio = {
+    .name = "calibio",
+    .is_tree = is_calibio,
+    .read = read_calibio,
+    .not_written = "it is the result of a calibration, with its statistics"};
 
-/* ---- nuScenes ---------------------------------------------------------------------------------------------------- */
+/* ---- nuScenes
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
+                              vlCameraRecord *record) {
   const json_t *list = json_object_get(tree, "[]"), *item, *chosen = NULL;
   vlCameraDef *d = &record->camera;
   double k[9], q[4], t[3], r[9];
   size_t i;
   record->frames = 0;
   json_array_foreach(list, i, item) {
-    if (json_array_size(json_object_get(item, "camera_intrinsic")) == 0) continue; /* lidar and radar */
+    if (json_array_size(json_object_get(item, "camera_intrinsic")) == 0)
+      continue; /* lidar and radar */
     const char *token = vl_camera_text(item, "token");
     if (!chosen && vl_camera_is_frame(file, record->frames, token)) {
       chosen = item;
@@ -97,36 +124,50 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCa
     }
     record->frames++;
   }
-  if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("camera_intrinsic", k, 9),
-                                   VL_FIELD_LIST("rotation", q, 4), VL_FIELD_LIST("translation", t, 3));
-  if (result == VL_OK) result = vl_camera_set_k(file, chosen, "camera_intrinsic", k, d);
-  if (result != VL_OK) return result;
+  if (!chosen)
+    return vl_camera_no_frame(file, "camera", record->frames);
+  vlResult result =
+      VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("camera_intrinsic", k, 9),
+                     VL_FIELD_LIST("rotation", q, 4), VL_FIELD_LIST("translation", t, 3));
+  if (result == VL_OK)
+    result = vl_camera_set_k(file, chosen, "camera_intrinsic", k, d);
+  if (result != VL_OK)
+    return result;
   if (!vl_rotation_from_quaternion(q, r))
-    return vl_camera_wrong_in(file, chosen, "rotation", "nuscenes: the quaternion \"rotation\" is no rotation");
+    return vl_camera_wrong_in(file, chosen, "rotation",
+                              "nuscenes: the quaternion \"rotation\" is no rotation");
   vl_camera_set_rigid(d, r, t);
   return vl_camera_size_beside(file, NULL, record);
 }
 
-const vlCameraFormat vl_format_nuscenes = {.name = "nuscenes",
-                                           .marks = {"camera_intrinsic", "rotation"},
-                                           .marks_in = "[]",
-                                           .read = read_nuscenes,
-                                           .not_written = "it is a table of a dataset, with keys of other tables"};
+const vlCameraFormat vl_format_nuscenes = {
+    .name = "nuscenes",
+    .marks = {"camera_intrinsic", "rotation"},
+    .marks_in = "[]",
+    .read = read_nuscenes,
+    .not_written = "it is a table of a dataset, with keys of other tables"};
 
-/* ---- CMU Panoptic ------------------------------------------------------------------------------------------------ */
+/* ---- CMU Panoptic
+ * ------------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *chosen = vl_camera_choose(file, json_object_get(tree, "cameras"), "name", record);
+static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
+                              vlCameraRecord *record) {
+  const json_t *chosen =
+      vl_camera_choose(file, json_object_get(tree, "cameras"), "name", record);
   vlCameraDef *d = &record->camera;
   double k[9], lens[5], r[9], t[3];
-  if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
+  if (!chosen)
+    return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side_pair(file, chosen, "resolution", record);
   if (result == VL_OK)
-    result = VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("K", k, 9), VL_FIELD_LIST("distCoef", lens, 5),
-                            VL_FIELD_LIST("R", r, 9), VL_FIELD_LIST("t", t, 3));
-  if (result == VL_OK) result = vl_camera_set_k(file, chosen, "K", k, d);
-  if (result != VL_OK) return result;
+    result = VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("K", k, 9),
+                            VL_FIELD_LIST("distCoef", lens, 5), VL_FIELD_LIST("R", r, 9),
+                            VL_FIELD_LIST("t", t, 3));
+  if (result == VL_OK)
+    result = vl_camera_set_k(file, chosen, "K", k, d);
+  if (result != VL_OK)
+    return result;
   set_lens(lens, 5, d);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
@@ -144,22 +185,30 @@ const vlCameraFormat vl_format_panoptic = {
     .unnamed = "00_00",
     .form =
         "{\"cameras\": [\n"
-        "  {\"name\": $name, \"type\": \"hd\", \"resolution\": [$width, $height], \"panel\": 0, \"node\": 0,\n"
-        "   \"K\": [$K:3],\n   \"distCoef\": [$k],\n   \"R\": [$R:3],\n   \"t\": [$t:1]}\n]}\n"};
+        "  {\"name\": $name, \"type\": \"hd\", \"resolution\": [$width, $height], \"panel\": "
+        "0, "
+        "\"node\": 0,\n"
+        "   \"K\": [$K:3],\n   \"distCoef\": [$k],\n   \"R\": [$R:3],\n   \"t\": "
+        "[$t:1]}\n]}\n"};
 
-/* ---- Nerfies ----------------------------------------------------------------------------------------------------- */
+/* ---- Nerfies
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double r[9], p[3], f, c[2], aspect = 1.0, radial[3] = {0.0}, tangential[2] = {0.0};
   vlResult result = vl_camera_side_pair(file, tree, "image_size", record);
   if (result == VL_OK)
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("orientation", r, 9), VL_FIELD_LIST("position", p, 3),
-                            VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2),
-                            VL_FIELD_OPTIONAL("skew", &d->skew), VL_FIELD_OPTIONAL("pixel_aspect_ratio", &aspect),
-                            VL_FIELD_LIST_OPTIONAL("radial_distortion", radial, 3, NULL),
-                            VL_FIELD_LIST_OPTIONAL("tangential_distortion", tangential, 2, NULL));
-  if (result != VL_OK) return result;
+    result = VL_READ_FIELDS(
+        file, tree, VL_FIELD_LIST("orientation", r, 9), VL_FIELD_LIST("position", p, 3),
+        VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2),
+        VL_FIELD_OPTIONAL("skew", &d->skew), VL_FIELD_OPTIONAL("pixel_aspect_ratio", &aspect),
+        VL_FIELD_LIST_OPTIONAL("radial_distortion", radial, 3, NULL),
+        VL_FIELD_LIST_OPTIONAL("tangential_distortion", tangential, 2, NULL));
+  if (result != VL_OK)
+    return result;
   d->fx = f;
   d->fy = f * aspect;
   d->cx = c[0];
@@ -179,6 +228,8 @@ const vlCameraFormat vl_format_nerfies = {
     .most = 5,
     .form =
         "{\n  \"orientation\": [$R:3],\n  \"position\": [$centre],\n  \"focal_length\": $fx,\n"
-        "  \"principal_point\": [$cx, $cy],\n  \"skew\": $skew,\n  \"pixel_aspect_ratio\": $aspect,\n"
-        "  \"radial_distortion\": [$k@0, $k@1, $k@4],\n  \"tangential_distortion\": [$k@2, $k@3],\n"
+        "  \"principal_point\": [$cx, $cy],\n  \"skew\": $skew,\n  \"pixel_aspect_ratio\": "
+        "$aspect,\n"
+        "  \"radial_distortion\": [$k@0, $k@1, $k@4],\n  \"tangential_distortion\": [$k@2, "
+        "$k@3],\n"
         "  \"image_size\": [$width, $height]\n}\n"};

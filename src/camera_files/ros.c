@@ -1,5 +1,6 @@
-/* camera_files/ros.c: ROS's camera_info: YAML as the calibrator writes it, the message's fields, and the older .ini. As
- * OpenCV: x right, y down, z forward; the first pixel's centre is (0, 0). No pose. */
+/* camera_files/ros.c: ROS's camera_info: YAML as the calibrator writes it, the message's
+ * fields, and the older .ini. As OpenCV: x right, y down, z forward; the first pixel's centre
+ * is (0, 0). No pose. */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,56 +12,78 @@
 static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   /* field names of the ROS message (either version), or of the file */
-  const char *k = json_object_get(tree, "K") ? "K" : json_object_get(tree, "k") ? "k" : "camera_matrix";
-  const char *c = json_object_get(tree, "D") ? "D" : json_object_get(tree, "d") ? "d" : "distortion_coefficients";
+  const char *k = json_object_get(tree, "K")   ? "K"
+                  : json_object_get(tree, "k") ? "k"
+                                               : "camera_matrix";
+  const char *c = json_object_get(tree, "D")   ? "D"
+                  : json_object_get(tree, "d") ? "d"
+                                               : "distortion_coefficients";
   bool message = k[0] != 'c';
-  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE(message ? "width" : "image_width", &d->width),
-                                   VL_FIELD_SIDE(message ? "height" : "image_height", &d->height));
-  if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, k, d);
-  if (result == VL_OK) result = vl_opencv_read_lens(file, tree, c, d);
-  if (result == VL_OK) result = vl_opencv_refuse_part(file, tree, d);
+  vlResult result =
+      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE(message ? "width" : "image_width", &d->width),
+                     VL_FIELD_SIDE(message ? "height" : "image_height", &d->height));
+  if (result == VL_OK)
+    result = vl_opencv_read_matrix(file, tree, k, d);
+  if (result == VL_OK)
+    result = vl_opencv_read_lens(file, tree, c, d);
+  if (result == VL_OK)
+    result = vl_opencv_refuse_part(file, tree, d);
   vl_camera_set_origin(d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
   return result;
 }
 
-/* ---- .ini -------------------------------------------------------------------------------------------------------- */
+/* ---- .ini
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct {
   const vlCameraFile *file;
   vlCameraLines lines;
 } Ini;
 
-/* Reads between `least` and `most` numbers from the next lines. The line after the last number stays unread. */
-static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t least, uint32_t most, uint32_t *count) {
+/* Reads between `least` and `most` numbers from the next lines. The line after the last number
+ * stays unread. */
+static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t least,
+                            uint32_t most, uint32_t *count) {
   uint32_t line = ini->lines.number;
   *count = 0;
   while (*count < most) {
     vlCameraLines ahead = ini->lines;
-    if (!vl_camera_next_line(&ahead)) break;
+    if (!vl_camera_next_line(&ahead))
+      break;
     const char *at = ahead.text;
-    if (*at == '[' || (*count > 0 && !*at)) break;
+    if (*at == '[' || (*count > 0 && !*at))
+      break;
     for (char *end; *at; at = end) {
       double value = vl_camera_parse(at, &end);
-      if (end == at && *count == 0) return vl_camera_wrong_line(ini->file, &ahead, at, "\"%s\" needs numbers", key);
-      if (end == at) return VL_OK; /* the next key */
-      if (*count == most) return vl_camera_wrong_line(ini->file, &ahead, at, "more than %u numbers", most);
-      if (!isfinite(value)) return vl_camera_wrong_line(ini->file, &ahead, at, "a number is not finite");
+      if (end == at && *count == 0)
+        return vl_camera_wrong_line(ini->file, &ahead, at, "\"%s\" needs numbers", key);
+      if (end == at)
+        return VL_OK; /* the next key */
+      if (*count == most)
+        return vl_camera_wrong_line(ini->file, &ahead, at, "more than %u numbers", most);
+      if (!isfinite(value))
+        return vl_camera_wrong_line(ini->file, &ahead, at, "a number is not finite");
       values[(*count)++] = value;
       end += strspn(end, " \t");
     }
     ini->lines = ahead;
   }
-  if (*count >= least) return VL_OK;
-  return vl_camera_wrong_at(ini->file, line, 1, "ros: \"%s\" holds %u numbers; it must hold %u", key, *count, least);
+  if (*count >= least)
+    return VL_OK;
+  return vl_camera_wrong_at(ini->file, line, 1, "ros: \"%s\" holds %u numbers; it must hold %u",
+                            key, *count, least);
 }
 
 /* Every section except [image] and [externals] is a camera. */
-static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size,
+                         vlCameraRecord *record) {
   Ini ini = {.file = file, .lines = {.at = text, .end = text + size}};
   vlCameraDef *d = &record->camera;
   double side[2] = {0, 0}, k[9], lens[8];
-  uint32_t count, lenses = 0, side_line = 1, matrix_line = 1; /* where a missing value should be */
+  uint32_t count, lenses = 0, side_line = 1,
+                  matrix_line = 1; /* where a missing value should be */
   bool wanted = false, found = false, matrix = false;
   vlResult result = VL_OK;
   record->frames = 0;
@@ -69,16 +92,21 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
     if (*line == '[') {
       char name[64];
       snprintf(name, sizeof name, "%.*s", (int)strcspn(line + 1, "]"), line + 1);
-      if (vl_text_is(name, "image")) side_line = ini.lines.number;
-      if (vl_text_is(name, "image") || vl_text_is(name, "externals")) continue;
+      if (vl_text_is(name, "image"))
+        side_line = ini.lines.number;
+      if (vl_text_is(name, "image") || vl_text_is(name, "externals"))
+        continue;
       wanted = !found && vl_camera_is_frame(file, record->frames, name);
-      if (wanted) vl_camera_name(record, name);
-      if (wanted) matrix_line = ini.lines.number;
+      if (wanted)
+        vl_camera_name(record, name);
+      if (wanted)
+        matrix_line = ini.lines.number;
       found = found || wanted;
       record->frames++;
     } else if (vl_text_is(line, "width") || vl_text_is(line, "height")) {
       side_line = ini.lines.number;
-      result = ini_numbers(&ini, line[0] == 'w' ? "width" : "height", &side[line[0] == 'h'], 1, 1, &count);
+      result = ini_numbers(&ini, line[0] == 'w' ? "width" : "height", &side[line[0] == 'h'], 1,
+                           1, &count);
     } else if (wanted && vl_text_is(line, "camera matrix")) {
       matrix_line = ini.lines.number;
       result = ini_numbers(&ini, "camera matrix", k, 9, 9, &count);
@@ -87,13 +115,18 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
       result = ini_numbers(&ini, "distortion", lens, 4, 8, &lenses);
     }
   }
-  if (result != VL_OK) return result;
-  if (!found) return vl_camera_wrong(file, "ros: there is no camera \"%s\"", vl_camera_asked(file, "0").text);
+  if (result != VL_OK)
+    return result;
+  if (!found)
+    return vl_camera_wrong(file, "ros: there is no camera \"%s\"",
+                           vl_camera_asked(file, "0").text);
   if (!vl_camera_set_sides(d, side))
-    return vl_camera_wrong_at(file, side_line, 1, "ros: [image] needs width and height in whole pixels");
+    return vl_camera_wrong_at(file, side_line, 1,
+                              "ros: [image] needs width and height in whole pixels");
   if (!matrix || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_at(file, matrix_line, 1,
-                              "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
+    return vl_camera_wrong_at(
+        file, matrix_line, 1,
+        "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, lens, lenses);
   vl_camera_set_origin(d);
@@ -108,38 +141,52 @@ static bool is_ini(const char *text, size_t size) {
 static bool is_ros(const json_t *tree) {
   bool k = vl_camera_has(tree, "K") || vl_camera_has(tree, "k"),
        d = vl_camera_has(tree, "D") || vl_camera_has(tree, "d");
-  return vl_camera_has(tree, "projection_matrix") || vl_camera_has(tree, "rectification_matrix") ||
-         (k && (vl_camera_has(tree, "distortion_model") || (d && vl_camera_has(tree, "width"))));
+  return vl_camera_has(tree, "projection_matrix") ||
+         vl_camera_has(tree, "rectification_matrix") ||
+         (k &&
+          (vl_camera_has(tree, "distortion_model") || (d && vl_camera_has(tree, "width"))));
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static void put_rows(vlCameraText *text, const char *name, const double *m, int rows, int columns) {
+static void put_rows(vlCameraText *text, const char *name, const double *m, int rows,
+                     int columns) {
   vl_camera_put(text, "\n%s\n", name);
-  for (int i = 0; i < rows * columns; i++) vl_camera_put(text, "%.17g%s", m[i] + 0.0, (i + 1) % columns ? " " : "\n");
+  for (int i = 0; i < rows * columns; i++)
+    vl_camera_put(text, "%.17g%s", m[i] + 0.0, (i + 1) % columns ? " " : "\n");
 }
 
-static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record,
+                          vlCameraText *text) {
   vlCamera c;
   double k[14];
   uint32_t n = 0;
   bool fisheye = false;
   vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result == VL_OK) result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
+  if (result != VL_OK)
+    return result;
   if (n > 8) {
     bool present = false;
-    for (int i = 8; i < 14; i++) present = present || k[i] != 0.0;
-    result = vl_camera_refuse(file, "distortion", present); /* s1 to s4, tilt: ROS has no such coefficients */
-    if (result != VL_OK) return result;
+    for (int i = 8; i < 14; i++)
+      present = present || k[i] != 0.0;
+    result = vl_camera_refuse(file, "distortion",
+                              present); /* s1 to s4, tilt: ROS has no such coefficients */
+    if (result != VL_OK)
+      return result;
     n = 8;
   }
-  if (!fisheye && n < 5) n = 5;
+  if (!fisheye && n < 5)
+    n = 5;
   const double m[9] = {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
   const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const double p[12] = {m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, 0, 0, 1, 0};
   if (vl_ends_with(file->path, ".ini")) {
-    if (fisheye) return vl_camera_no_model(file, &record->camera);
+    if (fisheye)
+      return vl_camera_no_model(file, &record->camera);
     vl_camera_put(text, "[image]\n\nwidth\n%u\n\nheight\n%u\n\n[%s]\n", c.width, c.height,
                   record->name[0] ? record->name : "camera");
     put_rows(text, "camera matrix", m, 3, 3);
@@ -152,12 +199,19 @@ static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record
   vl_camera_put_string(text, record->name[0] ? record->name : "camera");
   vl_camera_put(text, "\n");
   vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, false);
-  vl_camera_put(text, "distortion_model: %s\n", fisheye ? "equidistant" : n == 8 ? "rational_polynomial" : "plumb_bob");
+  vl_camera_put(text, "distortion_model: %s\n",
+                fisheye  ? "equidistant"
+                : n == 8 ? "rational_polynomial"
+                         : "plumb_bob");
   vl_opencv_put_matrix(text, "distortion_coefficients", 1, (int)n, k, false);
   vl_opencv_put_matrix(text, "rectification_matrix", 3, 3, identity, false);
   vl_opencv_put_matrix(text, "projection_matrix", 3, 4, p, false);
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_ros = {
-    .name = "ros", .is_tree = is_ros, .is_text = is_ini, .read = read_ros, .read_text = read_ini, .write = write_ros};
+const vlCameraFormat vl_format_ros = {.name = "ros",
+                                      .is_tree = is_ros,
+                                      .is_text = is_ini,
+                                      .read = read_ros,
+                                      .read_text = read_ini,
+                                      .write = write_ros};

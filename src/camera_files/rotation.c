@@ -1,5 +1,5 @@
-/* camera_files/rotation.c: rotations in the representations of files: vectors (Rodrigues), quaternions, matrices;
- * conversion of poses between directions and axes. */
+/* camera_files/rotation.c: rotations in the representations of files: vectors (Rodrigues),
+ * quaternions, matrices; conversion of poses between directions and axes. */
 #include <math.h>
 #include <string.h>
 
@@ -33,12 +33,14 @@ void vl_rotation_to_vector(const double r[9], double v[3]) {
   vl_rotation_to_quaternion(r, q);
   double sine = vl_norm3(q + 1);
   double scale = sine > 0.0 ? 2.0 * vl_precise_atan2(sine, q[0]) / sine : 2.0;
-  for (int i = 0; i < 3; i++) v[i] = scale * q[i + 1];
+  for (int i = 0; i < 3; i++)
+    v[i] = scale * q[i + 1];
 }
 
 bool vl_rotation_from_quaternion(const double q[4], double r[9]) {
   double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!(n > 1e-200 && n < 1e200)) return false;
+  if (!(n > 1e-200 && n < 1e200))
+    return false;
   double s = 2.0 / n, w = q[0], x = q[1], y = q[2], z = q[3];
   r[0] = 1.0 - s * (y * y + z * z);
   r[1] = s * (x * y - w * z);
@@ -52,28 +54,33 @@ bool vl_rotation_from_quaternion(const double q[4], double r[9]) {
   return true;
 }
 
-/* Starts from the largest component, which avoids division by small numbers (Shepperd 1978); w >= 0. */
+/* Starts from the largest component, which avoids division by small numbers (Shepperd 1978); w
+ * >= 0. */
 void vl_rotation_to_quaternion(const double r[9], double q[4]) {
-  double squares[4] = {1.0 + r[0] + r[4] + r[8], 1.0 + r[0] - r[4] - r[8], 1.0 - r[0] + r[4] - r[8],
-                       1.0 - r[0] - r[4] + r[8]};
+  double squares[4] = {1.0 + r[0] + r[4] + r[8], 1.0 + r[0] - r[4] - r[8],
+                       1.0 - r[0] + r[4] - r[8], 1.0 - r[0] - r[4] + r[8]};
   int best = 0;
   for (int i = 1; i < 4; i++)
-    if (squares[i] > squares[best]) best = i;
+    if (squares[i] > squares[best])
+      best = i;
   const double products[4][4] = {{squares[0], r[7] - r[5], r[2] - r[6], r[3] - r[1]},
                                  {r[7] - r[5], squares[1], r[3] + r[1], r[2] + r[6]},
                                  {r[2] - r[6], r[3] + r[1], squares[2], r[7] + r[5]},
                                  {r[3] - r[1], r[2] + r[6], r[7] + r[5], squares[3]}};
   double length = 0.0;
-  for (int i = 0; i < 4; i++) length += products[best][i] * products[best][i];
+  for (int i = 0; i < 4; i++)
+    length += products[best][i] * products[best][i];
   length = sqrt(length) * (products[best][0] < 0.0 ? -1.0 : 1.0);
-  for (int i = 0; i < 4; i++) q[i] = products[best][i] / length;
+  for (int i = 0; i < 4; i++)
+    q[i] = products[best][i] / length;
 }
 
 void vl_camera_set_pose(vlCameraDef *def, const double r[9], const double t[3]) {
   def->has_matrix = true;
   double *m = def->world_from_camera;
   for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) m[4 * i + j] = r[3 * j + i] + 0.0;
+    for (int j = 0; j < 3; j++)
+      m[4 * i + j] = r[3 * j + i] + 0.0;
     m[4 * i + 3] = 0.0 - (r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
     m[12 + i] = 0.0;
   }
@@ -87,9 +94,11 @@ void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]) {
   }
 }
 
-void vl_camera_flip_columns(const double m[16], double x, double y, double z, double result[16]) {
+void vl_camera_flip_columns(const double m[16], double x, double y, double z,
+                            double result[16]) {
   const double sign[4] = {x, y, z, 1.0};
-  for (int i = 0; i < 16; i++) result[i] = m[i] * sign[i % 4] + 0.0;
+  for (int i = 0; i < 16; i++)
+    result[i] = m[i] * sign[i % 4] + 0.0;
 }
 
 void vl_camera_flip_axes(const double m[16], double result[16]) {

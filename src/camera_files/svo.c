@@ -1,12 +1,14 @@
-/* camera_files/svo.c: SVO's camera files of version 1 (cam_model: Pinhole or ATAN) and version 2 (a rig of cameras,
- * each with camera and T_B_C). Camera axes: x right, y down, z forward. T_B_C is body from camera, and the world's
- * space is that of the body. The first pixel's centre is (0, 0). ATAN's numbers are fractions of the image's sides,
- * and its image begins at (-0.5, -0.5); so cx in velo's pixels is cam_cx times the width. */
+/* camera_files/svo.c: SVO's camera files of version 1 (cam_model: Pinhole or ATAN) and version
+ * 2 (a rig of cameras, each with camera and T_B_C). Camera axes: x right, y down, z forward.
+ * T_B_C is body from camera, and the world's space is that of the body. The first pixel's
+ * centre is (0, 0). ATAN's numbers are fractions of the image's sides, and its image begins at
+ * (-0.5, -0.5); so cx in velo's pixels is cam_cx times the width. */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_first(const vlCameraFile *file, const json_t *tree,
+                           vlCameraRecord *record) {
   static const char *const names[] = {"cam_fx", "cam_fy", "cam_cx", "cam_cy"};
   static const char *const lens[] = {"cam_d0", "cam_d1", "cam_d2", "cam_d3"};
   const char *model = vl_camera_text(tree, "cam_model");
@@ -16,9 +18,12 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
   if (!atan && !(vl_text_is(model, "Pinhole")))
     return vl_camera_unknown(file, tree, "cam_model", model, "there are Pinhole, ATAN");
   vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
-  if (result == VL_OK) result = vl_camera_read_named(file, tree, names, 4, false, f);
-  for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++) result = vl_camera_optional(file, tree, lens[i], &k[i]);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_read_named(file, tree, names, 4, false, f);
+  for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++)
+    result = vl_camera_optional(file, tree, lens[i], &k[i]);
+  if (result != VL_OK)
+    return result;
   vl_camera_set_origin(d);
   if (atan) {
     d->fx = f[0] * d->width;
@@ -31,7 +36,8 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
     }
   } else {
     vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-    vl_camera_set_opencv(d, k, k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0 || k[3] != 0.0 ? 4 : 0);
+    vl_camera_set_opencv(d, k,
+                         k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0 || k[3] != 0.0 ? 4 : 0);
   }
   return VL_OK;
 }
@@ -41,39 +47,49 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
   const char *type = vl_camera_text(lens, "type");
   double k[4] = {0};
   uint32_t n = 0;
-  if (!lens || vl_text_is(type, "none")) return VL_OK;
+  if (!lens || vl_text_is(type, "none"))
+    return VL_OK;
   vlResult result = vl_camera_numbers(file, lens, "parameters", k, 1, 4, &n);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (vl_text_is(type, "radial-tangential") && n == 4) {
     vl_camera_set_opencv(d, k, n);
-  } else if (vl_text_is(type, "equidistant") && n == 4 && d->projection == VL_PROJECTION_PERSPECTIVE) {
+  } else if (vl_text_is(type, "equidistant") && n == 4 &&
+             d->projection == VL_PROJECTION_PERSPECTIVE) {
     vl_camera_set_fisheye(d, k);
-  } else if (vl_text_is(type, "fisheye") && n == 1 && d->projection == VL_PROJECTION_PERSPECTIVE) {
+  } else if (vl_text_is(type, "fisheye") && n == 1 &&
+             d->projection == VL_PROJECTION_PERSPECTIVE) {
     d->projection = VL_PROJECTION_FOV;
     d->shape[0] = k[0];
   } else {
-    return vl_camera_wrong_in(file, lens, "type",
-                              "svo: unknown distortion \"%s\" of %u coefficients; there are radial-tangential and "
-                              "equidistant of 4, fisheye of 1, none",
-                              vl_short_text(type).text, n);
+    return vl_camera_wrong_in(
+        file, lens, "type",
+        "svo: unknown distortion \"%s\" of %u coefficients; there are radial-tangential and "
+        "equidistant of 4, fisheye of 1, none",
+        vl_short_text(type).text, n);
   }
   return VL_OK;
 }
 
-static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vlCameraRecord *record) {
+static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
+                                vlCameraRecord *record) {
   const json_t *camera;
   vlCameraDef *d = &record->camera;
   double k[5], m[16];
   uint32_t n = 0;
   vlResult result = vl_camera_field(file, item, "camera", &camera);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *type = vl_camera_text(camera, "type");
   bool unified = vl_text_is(type, "omni");
   if (!unified && type && !vl_text_is(type, "pinhole"))
     return vl_camera_unknown(file, camera, "type", type, "there are pinhole, omni");
-  result = vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
-  if (result == VL_OK) result = vl_camera_sides(file, camera, "image_width", "image_height", record);
-  if (result != VL_OK) return result;
+  result =
+      vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
+  if (result == VL_OK)
+    result = vl_camera_sides(file, camera, "image_width", "image_height", record);
+  if (result != VL_OK)
+    return result;
   if (unified) {
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = k[0];
@@ -84,7 +100,8 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vl
   vl_camera_set_origin(d);
   if (result == VL_OK && vl_camera_has(item, "T_B_C")) {
     result = vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL);
-    if (result == VL_OK) vl_camera_set_matrix(d, m, false);
+    if (result == VL_OK)
+      vl_camera_set_matrix(d, m, false);
   }
   vl_camera_name(record, vl_camera_text(camera, "label"));
   return result;
@@ -92,14 +109,16 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vl
 
 static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *cameras = json_object_get(tree, "cameras");
-  if (vl_camera_has(tree, "cam_model")) return read_first(file, tree, record);
+  if (vl_camera_has(tree, "cam_model"))
+    return read_first(file, tree, record);
   record->frames = (uint32_t)json_array_size(cameras);
   for (uint32_t i = 0; i < record->frames; i++) {
     const json_t *item = json_array_get(cameras, i);
     if (vl_camera_is_frame(file, i, vl_camera_text(json_object_get(item, "camera"), "label")))
       return read_rig_camera(file, item, record);
   }
-  return vl_camera_wrong_in(file, tree, "cameras", "svo: there is no camera \"%s\" among the %u",
+  return vl_camera_wrong_in(file, tree, "cameras",
+                            "svo: there is no camera \"%s\" among the %u",
                             vl_camera_asked(file, "0").text, record->frames);
 }
 
@@ -107,33 +126,41 @@ static bool is_svo(const json_t *tree) {
   return vl_camera_has(tree, "cam_model") || vl_camera_has_in(tree, "cameras", "camera");
 }
 
-static void put_matrix(vlCameraText *text, const char *indent, const char *name, int rows, int columns,
-                       const double *values) {
-  vl_camera_put(text, "%s%s:\n%s  cols: %d\n%s  rows: %d\n%s  data: [", indent, name, indent, columns, indent, rows,
-                indent);
+static void put_matrix(vlCameraText *text, const char *indent, const char *name, int rows,
+                       int columns, const double *values) {
+  vl_camera_put(text, "%s%s:\n%s  cols: %d\n%s  rows: %d\n%s  data: [", indent, name, indent,
+                columns, indent, rows, indent);
   vl_camera_put_numbers(text, values, (uint32_t)(rows * columns));
   vl_camera_put(text, "]\n");
 }
 
-static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record,
+                          vlCameraText *text) {
   static const char *const words[] = {"none", "radial-tangential", "equidistant", "fisheye"};
   vlCamera c;
   vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE,
-                                       VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED, 4, &c, &fit);
-  if (result != VL_OK) return result;
+  vlResult result = vl_camera_fit_lens(
+      file, record, VL_HOLDS_POSE, VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED,
+      4, &c, &fit);
+  if (result != VL_OK)
+    return result;
   const bool unified = fit.family == VL_LENS_UNIFIED, fov = fit.family == VL_LENS_FOV;
   const double f[5] = {c.shape[0], c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
-  if (fov) fit.k[0] = c.shape[0];
+  if (fov)
+    fit.k[0] = c.shape[0];
   vl_camera_put(text, "label: rig\ncameras:\n- camera:\n    label: ");
   vl_camera_put_string(text, record->name[0] ? record->name : "cam0");
-  VL_PUT_FORM(text, record, &c, "\n    type: $type\n    image_width: $width\n    image_height: $height\n",
+  VL_PUT_FORM(text, record, &c,
+              "\n    type: $type\n    image_width: $width\n    image_height: $height\n",
               VL_WORD("type", unified ? "omni" : "pinhole"));
   put_matrix(text, "    ", "intrinsics", unified ? 5 : 4, 1, unified ? f : f + 1);
-  vl_camera_put(text, "    distortion:\n      type: %s\n", unified ? words[fit.count > 0] : words[fit.family]);
-  if (fit.count || fov) put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit.count, 1, fit.k);
+  vl_camera_put(text, "    distortion:\n      type: %s\n",
+                unified ? words[fit.count > 0] : words[fit.family]);
+  if (fit.count || fov)
+    put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit.count, 1, fit.k);
   put_matrix(text, "  ", "T_B_C", 4, 4, c.world_from_camera);
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_svo = {.name = "svo", .is_tree = is_svo, .read = read_svo, .write = write_svo};
+const vlCameraFormat vl_format_svo = {
+    .name = "svo", .is_tree = is_svo, .read = read_svo, .write = write_svo};

@@ -1,6 +1,7 @@
-/* camera_files/threejs.c: three.js' JSON of a camera (Object3D.toJSON): object with type PerspectiveCamera (fov:
- * vertical, degrees; aspect; zoom) or OrthographicCamera (left, right, top, bottom), and matrix, world from camera, 16
- * numbers by columns. Camera axes: x right, y up, z back. There are no pixels. */
+/* camera_files/threejs.c: three.js' JSON of a camera (Object3D.toJSON): object with type
+ * PerspectiveCamera (fov: vertical, degrees; aspect; zoom) or OrthographicCamera (left, right,
+ * top, bottom), and matrix, world from camera, 16 numbers by columns. Camera axes: x right, y
+ * up, z back. There are no pixels. */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -10,27 +11,36 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 static bool is_camera(const json_t *object) {
   const char *type = vl_camera_text(object, "type");
-  return type && (vl_text_is(type, "PerspectiveCamera") || vl_text_is(type, "OrthographicCamera"));
+  return type &&
+         (vl_text_is(type, "PerspectiveCamera") || vl_text_is(type, "OrthographicCamera"));
 }
 
-static vlResult read_lens(const vlCameraFile *file, const json_t *object, vlCameraRecord *record) {
+static vlResult read_lens(const vlCameraFile *file, const json_t *object,
+                          vlCameraRecord *record) {
   static const char *const sides[4] = {"left", "right", "top", "bottom"};
   vlCameraDef *d = &record->camera;
   double fov = 0.0, aspect = 1.0, zoom = 1.0, s[4];
   bool flat = vl_text_is(vl_camera_text(object, "type"), "OrthographicCamera");
   vlResult result = vl_camera_optional(file, object, "zoom", &zoom);
-  if (result == VL_OK && !flat) result = vl_camera_number(file, object, "fov", &fov);
-  if (result == VL_OK && !flat) result = vl_camera_number(file, object, "aspect", &aspect);
-  for (int i = 0; i < 4 && flat && result == VL_OK; i++) result = vl_camera_number(file, object, sides[i], &s[i]);
+  if (result == VL_OK && !flat)
+    result = vl_camera_number(file, object, "fov", &fov);
+  if (result == VL_OK && !flat)
+    result = vl_camera_number(file, object, "aspect", &aspect);
+  for (int i = 0; i < 4 && flat && result == VL_OK; i++)
+    result = vl_camera_number(file, object, sides[i], &s[i]);
   if (result == VL_OK)
     result = VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("near", &d->near_plane),
                             VL_FIELD_OPTIONAL("far", &d->far_plane));
-  if (result != VL_OK) return result;
-  if (flat) aspect = (s[1] - s[0]) / (s[2] - s[3]);
+  if (result != VL_OK)
+    return result;
+  if (flat)
+    aspect = (s[1] - s[0]) / (s[2] - s[3]);
   if (!(zoom > 0.0 && aspect > 0.0) || (!flat && !(fov > 0.0 && fov < 180.0)))
-    return vl_camera_wrong_in(file, object, flat ? "left" : "fov", "threejs: these sides, fov or zoom give no image");
+    return vl_camera_wrong_in(file, object, flat ? "left" : "fov",
+                              "threejs: these sides, fov or zoom give no image");
   result = vl_camera_size(file, aspect, record);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (flat) {
     d->projection = VL_PROJECTION_ORTHOGRAPHIC;
     d->fx = zoom * d->width / (s[1] - s[0]);
@@ -44,13 +54,17 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object, vlCame
   return VL_OK;
 }
 
-static vlResult read_threejs(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_threejs(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   const json_t *object = json_object_get(tree, "object");
   double c[16], m[16];
   vlResult result = vl_camera_numbers(file, object, "matrix", c, 16, 16, NULL);
-  if (result == VL_OK) result = read_lens(file, object, record);
-  if (result != VL_OK) return result;
-  for (int i = 0; i < 16; i++) m[i] = c[4 * (i % 4) + i / 4];
+  if (result == VL_OK)
+    result = read_lens(file, object, record);
+  if (result != VL_OK)
+    return result;
+  for (int i = 0; i < 16; i++)
+    m[i] = c[4 * (i % 4) + i / 4];
   record->camera.has_matrix = true;
   vl_camera_flip_axes(m, record->camera.world_from_camera);
   vl_camera_name(record, vl_camera_text(object, "name"));
@@ -61,18 +75,26 @@ static bool is_threejs(const json_t *tree) {
   return vl_camera_has(tree, "metadata") && is_camera(json_object_get(tree, "object"));
 }
 
-static vlResult write_threejs(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_threejs(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   vlCamera c;
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
-  if (result == VL_OK) result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+  if (result == VL_OK)
+    result = vl_camera_refuse_off_centre(file, &c);
+  if (result != VL_OK)
+    return result;
   const double aspect = c.width / c.fx * c.fy / c.height;
-  const double planes[2] = {c.near_plane > 0.0 ? c.near_plane : 0.01, c.far_plane < 1e30 ? c.far_plane : 10000.0};
-  return VL_PUT_FORM(text, record, &c,
-                     "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n"
-                     "  \"object\": {\"type\": \"PerspectiveCamera\", \"fov\": $yfov, \"zoom\": 1, \"aspect\": $own,\n"
-                     "    \"near\": $planes@0, \"far\": $planes@1,\n    \"matrix\": [$flippedcolumns]}\n}\n",
-                     VL_VALUES("own", &aspect, 1), VL_VALUES("planes", planes, 2));
+  const double planes[2] = {c.near_plane > 0.0 ? c.near_plane : 0.01,
+                            c.far_plane < 1e30 ? c.far_plane : 10000.0};
+  return VL_PUT_FORM(
+      text, record, &c,
+      "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n"
+      "  \"object\": {\"type\": \"PerspectiveCamera\", \"fov\": $yfov, \"zoom\": 1, "
+      "\"aspect\": "
+      "$own,\n"
+      "    \"near\": $planes@0, \"far\": $planes@1,\n    \"matrix\": [$flippedcolumns]}\n}\n",
+      VL_VALUES("own", &aspect, 1), VL_VALUES("planes", planes, 2));
 }
 
 const vlCameraFormat vl_format_threejs = {

@@ -1,5 +1,6 @@
-/* camera_files/trajectory.c: trajectories, many frames from one file: detects the kind of file, checks the frames,
- * public functions. Poses and cameras are stored apart, because thousands of frames may share one camera. */
+/* camera_files/trajectory.c: trajectories, many frames from one file: detects the kind of file,
+ * checks the frames, public functions. Poses and cameras are stored apart, because thousands of
+ * frames may share one camera. */
 #include "camera_files/trajectory.h"
 
 #include <math.h>
@@ -15,18 +16,23 @@
 /* Allowed deviation of a pose's matrix from a rotation: files have 4 digits or more. */
 static const double rotation_tolerance = 1e-3;
 
-vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format, ...) {
+vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format,
+                        ...) {
   char message[300];
   VL_FORMAT(message, format);
-  const char *path = place->path ? place->path : file->path, *name = place->name ? place->name : "";
-  return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0, "frame %u%s%s%s: %s",
-                    place->frame, *name ? " (" : "", vl_short_text(name).text, *name ? ")" : "", message);
+  const char *path = place->path ? place->path : file->path,
+             *name = place->name ? place->name : "";
+  return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0,
+                    "frame %u%s%s%s: %s", place->frame, *name ? " (" : "",
+                    vl_short_text(name).text, *name ? ")" : "", message);
 }
 
-/* Describes what is wrong with a pose. Returns null if the pose is a rotation and a translation. */
+/* Describes what is wrong with a pose. Returns null if the pose is a rotation and a
+ * translation. */
 static const char *pose_fault(const double m[16]) {
   for (int i = 0; i < 12; i++)
-    if (!isfinite(m[i])) return "the pose holds a value that is not finite";
+    if (!isfinite(m[i]))
+      return "the pose holds a value that is not finite";
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
@@ -36,16 +42,20 @@ static const char *pose_fault(const double m[16]) {
   return vl_determinant3(m) > 0.0 ? NULL : "the pose is no rotation: it mirrors";
 }
 
-vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place, int32_t camera,
-                           const double m[16], double time) {
+vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place,
+                           int32_t camera, const double m[16], double time) {
   const char *fault = pose_fault(m);
-  if (fault) return vl_frame_wrong(file, place, "%s", fault);
-  if (t->frames.count == INT32_MAX) return vl_frame_wrong(file, place, "too many frames");
+  if (fault)
+    return vl_frame_wrong(file, place, "%s", fault);
+  if (t->frames.count == INT32_MAX)
+    return vl_frame_wrong(file, place, "too many frames");
   const char *name = place->name ? place->name : "";
   size_t length = strlen(name) + 1;
-  if (!VL_RESERVE(t->context, &t->names, length)) return vl_fail_memory(file->error);
+  if (!VL_RESERVE(t->context, &t->names, length))
+    return vl_fail_memory(file->error);
   vlStoredFrame *frame = VL_PUSH(t->context, &t->frames);
-  if (!frame) return vl_fail_memory(file->error);
+  if (!frame)
+    return vl_fail_memory(file->error);
   memcpy(frame->pose, m, sizeof frame->pose);
   frame->time = time;
   frame->camera = camera;
@@ -56,45 +66,58 @@ vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFr
   return VL_OK;
 }
 
-vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, const vlCameraRecord *record,
-                                  int32_t *index) {
+vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file,
+                                  const vlCameraRecord *record, int32_t *index) {
   if (t->cameras.count > 0) {
     vlCameraDef last = t->cameras.items[t->cameras.count - 1].camera;
     last.has_matrix = record->camera.has_matrix;
-    memcpy(last.world_from_camera, record->camera.world_from_camera, sizeof last.world_from_camera);
+    memcpy(last.world_from_camera, record->camera.world_from_camera,
+           sizeof last.world_from_camera);
     *index = (int32_t)t->cameras.count - 1;
-    if (memcmp(&last, &record->camera, sizeof last) == 0) return VL_OK;
+    if (memcmp(&last, &record->camera, sizeof last) == 0)
+      return VL_OK;
   }
-  if (t->cameras.count == INT32_MAX) return vl_camera_wrong(file, "too many cameras");
+  if (t->cameras.count == INT32_MAX)
+    return vl_camera_wrong(file, "too many cameras");
   vlCameraRecord *added = VL_PUSH(t->context, &t->cameras);
-  if (!added) return vl_fail_memory(file->error);
-  memcpy(added, record, sizeof *added); /* including padding, because records are compared bytewise */
+  if (!added)
+    return vl_fail_memory(file->error);
+  memcpy(added, record,
+         sizeof *added); /* including padding, because records are compared bytewise */
   *index = (int32_t)t->cameras.count - 1;
   return VL_OK;
 }
 
-/* ---- which file -------------------------------------------------------------------------------------------------- */
+/* ---- which file
+ * --------------------------------------------------------------------------------------------------
+ */
 
 /* Adds a camera with its pose as a frame. */
-static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraRecord *record, uint32_t frame) {
+static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraRecord *record,
+                           uint32_t frame) {
   vlTrajectory *t = data;
   vlCamera camera;
   int32_t index;
   vlResult result = vl_camera_make(&record->camera, &camera, NULL, file->error);
   if (result == VL_ERROR_ARGUMENT)
-    result = vl_camera_wrong(file, "%s", file->error && file->error->message[0] ? file->error->message : "camera");
-  if (result == VL_OK) result = vl_trajectory_add_camera(t, file, record, &index);
+    result = vl_camera_wrong(
+        file, "%s", file->error && file->error->message[0] ? file->error->message : "camera");
+  if (result == VL_OK)
+    result = vl_trajectory_add_camera(t, file, record, &index);
   vlFramePlace place = {.name = record->name, .frame = frame};
-  if (result == VL_OK) result = vl_trajectory_add(t, file, &place, index, camera.world_from_camera, VL_UNSET);
+  if (result == VL_OK)
+    result = vl_trajectory_add(t, file, &place, index, camera.world_from_camera, VL_UNSET);
   return result;
 }
 
 /* Reads a JSON or YAML file. *single: the file has one camera, for vl_camera_read. */
-static vlResult read_tree(vlTrajectory *t, const vlCameraFile *file, const char *text, size_t size, bool *single) {
+static vlResult read_tree(vlTrajectory *t, const vlCameraFile *file, const char *text,
+                          size_t size, bool *single) {
   json_t *tree = NULL;
   vlResult result = vl_camera_tree(file, text, size, &tree);
   *single = false;
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (json_object_get(tree, "frames"))
     result = vl_trajectory_read_nerf(t, file, tree, text);
   else if (json_object_get(tree, "cam0"))
@@ -115,7 +138,8 @@ static bool is_tree(const char *path, const char *text) {
 
 /* Whether the file is a list of poses: CSV by its name, or text that begins like one. */
 static bool is_list(const char *path, const char *text) {
-  if (vl_ends_with(path, ".csv") || vl_ends_with(path, ".txt") || vl_ends_with(path, ".tsv")) return true;
+  if (vl_ends_with(path, ".csv") || vl_ends_with(path, ".txt") || vl_ends_with(path, ".tsv"))
+    return true;
   const char *first = text + strspn(text, " \t\r\n");
   return *first && strchr("+-.0123456789#", *first);
 }
@@ -132,8 +156,10 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
   char *text;
   size_t size;
   bool single = true;
-  vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
+  if (result != VL_OK)
+    return result;
   if (vl_camera_dialect_of_text(text, size)) {
     single = true; /* KITTI's calib.txt is not a list of poses */
   } else if (is_tree(file->path, text)) {
@@ -143,24 +169,30 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
     single = false;
   }
   vl_free(file->context, text);
-  return result == VL_OK && single ? vl_camera_read_each(file, &(vlCameraSink){add_record, t}) : result;
+  return result == VL_OK && single ? vl_camera_read_each(file, &(vlCameraSink){add_record, t})
+                                   : result;
 }
 
-/* ---- the public face --------------------------------------------------------------------------------------------- */
+/* ---- the public face
+ * ---------------------------------------------------------------------------------------------
+ */
 
-vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def, vlTrajectory **trajectory,
-                            vlError *error) {
+vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def,
+                            vlTrajectory **trajectory, vlError *error) {
   vl_error_clear(error);
   if (!context || !path || !trajectory)
     return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: context, path or trajectory is null");
   *trajectory = NULL;
   vlCameraFileDef plain = def ? *def : vl_default_camera_file_def();
-  if (plain.cookie != VL_COOKIE_CAMERA_FILE) return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: " VL_BAD_COOKIE);
+  if (plain.cookie != VL_COOKIE_CAMERA_FILE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: " VL_BAD_COOKIE);
   plain.frame = NULL;
   vlTrajectory *t = vl_alloc_zero(context, 1, sizeof *t);
-  if (!t) return vl_fail_memory(error);
+  if (!t)
+    return vl_fail_memory(error);
   t->context = context;
-  vlCameraFile file = {.context = context, .path = path, .dialect = "trajectory", .def = &plain, .error = error};
+  vlCameraFile file = {
+      .context = context, .path = path, .dialect = "trajectory", .def = &plain, .error = error};
   vlResult result = read_any(t, &file);
   if (result == VL_OK && t->frames.count == 0)
     result = vl_fail_at(error, VL_ERROR_SCENE, path, 0, 0, "the file holds no pose");
@@ -173,7 +205,8 @@ vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCamera
 }
 
 void vl_trajectory_destroy(vlTrajectory *t) {
-  if (!t) return;
+  if (!t)
+    return;
   vlContext *context = t->context;
   VL_ARRAY_FREE(context, &t->frames);
   VL_ARRAY_FREE(context, &t->cameras);
@@ -194,7 +227,8 @@ const vlCameraRecord *vl_trajectory_camera(const vlTrajectory *t, uint32_t index
 }
 
 vlResult vl_trajectory_frame(const vlTrajectory *t, uint32_t index, vlTrajectoryFrame *frame) {
-  if (!t || !frame || index >= t->frames.count) return VL_ERROR_ARGUMENT;
+  if (!t || !frame || index >= t->frames.count)
+    return VL_ERROR_ARGUMENT;
   const vlStoredFrame *stored = &t->frames.items[index];
   *frame = (vlTrajectoryFrame){.name = t->names.items + stored->name,
                                .camera = stored->camera,

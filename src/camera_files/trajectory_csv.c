@@ -1,8 +1,9 @@
-/* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns: CSV (separated by
- * comma, semicolon, tab or blanks). Without one: TUM's lists (8 numbers: seconds, position, quaternion x y z w) and
- * KITTI's (12 numbers: three rows of a matrix). EuRoC's ground truth has its header in a comment, with units:
- * "#timestamp [ns], p_RS_R_x [m], ...". All are world from camera, x right, y down, z forward, unless a comment before
- * the header says "axes: opengl" or "pose: camera_from_world". */
+/* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns:
+ * CSV (separated by comma, semicolon, tab or blanks). Without one: TUM's lists (8 numbers:
+ * seconds, position, quaternion x y z w) and KITTI's (12 numbers: three rows of a matrix).
+ * EuRoC's ground truth has its header in a comment, with units:
+ * "#timestamp [ns], p_RS_R_x [m], ...". All are world from camera, x right, y down, z forward,
+ * unless a comment before the header says "axes: opengl" or "pose: camera_from_world". */
 #include <math.h>
 #include <stdlib.h>
 
@@ -40,16 +41,18 @@ enum Column {
 };
 
 static const char *const names[COLUMNS] = {
-    "name",  "number", "time",     "tx",       "ty",       "tz",   "qx",   "qy",   "qz",   "qw",  "eye_x",
-    "eye_y", "eye_z",  "lookat_x", "lookat_y", "lookat_z", "up_x", "up_y", "up_z", "roll", "m00", "m01",
-    "m02",   "m03",    "m10",      "m11",      "m12",      "m13",  "m20",  "m21",  "m22",  "m23"};
+    "name", "number", "time",  "tx",    "ty",    "tz",       "qx",       "qy",
+    "qz",   "qw",     "eye_x", "eye_y", "eye_z", "lookat_x", "lookat_y", "lookat_z",
+    "up_x", "up_y",   "up_z",  "roll",  "m00",   "m01",      "m02",      "m03",
+    "m10",  "m11",    "m12",   "m13",   "m20",   "m21",      "m22",      "m23"};
 static const struct {
   const char *alias;
   int column;
-} aliases[] = {{"image", NAME}, {"file", NAME},      {"filename", NAME}, {"frame", NUMBER}, {"index", NUMBER},
-               {"id", NUMBER},  {"timestamp", TIME}, {"t", TIME},        {"x", TX},         {"y", TY},
-               {"z", TZ},       {"p_rs_r_x", TX},    {"p_rs_r_y", TY},   {"p_rs_r_z", TZ},  {"q_rs_w", QW},
-               {"q_rs_x", QX},  {"q_rs_y", QY},      {"q_rs_z", QZ}};
+} aliases[] = {{"image", NAME},   {"file", NAME},   {"filename", NAME},  {"frame", NUMBER},
+               {"index", NUMBER}, {"id", NUMBER},   {"timestamp", TIME}, {"t", TIME},
+               {"x", TX},         {"y", TY},        {"z", TZ},           {"p_rs_r_x", TX},
+               {"p_rs_r_y", TY},  {"p_rs_r_z", TZ}, {"q_rs_w", QW},      {"q_rs_x", QX},
+               {"q_rs_y", QY},    {"q_rs_z", QZ}};
 
 typedef struct Csv {
   vlTrajectory *trajectory;
@@ -64,16 +67,19 @@ typedef struct Csv {
 } Csv;
 
 static vlResult wrong(const Csv *csv, uint32_t column, const char *format, const char *word) {
-  return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, column + 1, format, word);
+  return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, column + 1,
+                    format, word);
 }
 
-/* Splits a line in place; removes surrounding blanks and quotes. Returns the number of fields; MOST_COLUMNS + 1: too
- * many. */
+/* Splits a line in place; removes surrounding blanks and quotes. Returns the number of fields;
+ * MOST_COLUMNS + 1: too many. */
 static int split(char *line, char separator, char *fields[MOST_COLUMNS]) {
   int count = 0;
   for (char *at = line; at;) {
-    if (!separator) at += strspn(at, " \t");
-    if (!separator && !*at) break;
+    if (!separator)
+      at += strspn(at, " \t");
+    if (!separator && !*at)
+      break;
     char *field = at + strspn(at, " \t");
     bool quoted = *field == '"';
     char *end = quoted ? strchr(field + 1, '"') : NULL;
@@ -88,8 +94,10 @@ static int split(char *line, char separator, char *fields[MOST_COLUMNS]) {
     bool more = *at != 0;
     *at = 0;
     at = more ? at + 1 : NULL;
-    for (size_t n = strlen(field); n && (field[n - 1] == ' ' || field[n - 1] == '\t'); n--) field[n - 1] = 0;
-    if (count == MOST_COLUMNS) return MOST_COLUMNS + 1;
+    for (size_t n = strlen(field); n && (field[n - 1] == ' ' || field[n - 1] == '\t'); n--)
+      field[n - 1] = 0;
+    if (count == MOST_COLUMNS)
+      return MOST_COLUMNS + 1;
     fields[count++] = field;
   }
   return count;
@@ -111,11 +119,13 @@ static bool take_comment(Csv *csv, const char *comment) {
   comment += strspn(comment, "# \t");
   for (int i = 0; i < 2; i++) {
     size_t n = strlen(settings[i].key);
-    if (strncmp(comment, settings[i].key, n) != 0) continue;
+    if (strncmp(comment, settings[i].key, n) != 0)
+      continue;
     const char *word = comment + n + strspn(comment + n, " \t");
     size_t length = strcspn(word, " \t\r");
     for (int k = 0; k < 2; k++)
-      if (strlen(settings[i].words[k]) == length && strncmp(word, settings[i].words[k], length) == 0) {
+      if (strlen(settings[i].words[k]) == length &&
+          strncmp(word, settings[i].words[k], length) == 0) {
         *settings[i].flag = k == 1;
         return true;
       }
@@ -126,12 +136,14 @@ static bool take_comment(Csv *csv, const char *comment) {
 
 static bool whole(const Csv *csv, int first, int last) {
   for (int i = first; i <= last; i++)
-    if (!csv->has[i]) return false;
+    if (!csv->has[i])
+      return false;
   return true;
 }
 static bool any(const Csv *csv, int first, int last) {
   for (int i = first; i <= last; i++)
-    if (csv->has[i]) return true;
+    if (csv->has[i])
+      return true;
   return false;
 }
 
@@ -140,18 +152,22 @@ static vlResult check_columns(const Csv *csv) {
   static const struct { int first, last; } ways[] = {{TX, QW}, {EYE_X, LOOKAT_Z}, {M00, M23}};
   int found = 0;
   for (int i = 0; i < 3; i++) {
-    if (!any(csv, ways[i].first, ways[i].last)) continue;
+    if (!any(csv, ways[i].first, ways[i].last))
+      continue;
     for (int k = ways[i].first; k <= ways[i].last; k++)
-      if (!csv->has[k]) return wrong(csv, 0, "the column \"%s\" is missing", names[k]);
+      if (!csv->has[k])
+        return wrong(csv, 0, "the column \"%s\" is missing", names[k]);
     found++;
   }
   if (found != 1)
     return wrong(csv, 0,
                  found ? "the columns say a pose in two ways%s"
-                       : "the columns say no pose: tx ty tz qx qy qz qw, or eye_x eye_y eye_z lookat_x lookat_y "
+                       : "the columns say no pose: tx ty tz qx qy qz qw, or eye_x eye_y eye_z "
+                         "lookat_x lookat_y "
                          "lookat_z, or m00 to m23%s",
                  "");
-  if (any(csv, UP_X, UP_Z) && !whole(csv, UP_X, UP_Z)) return wrong(csv, 0, "\"up\" has not all of its columns%s", "");
+  if (any(csv, UP_X, UP_Z) && !whole(csv, UP_X, UP_Z))
+    return wrong(csv, 0, "\"up\" has not all of its columns%s", "");
   if (any(csv, UP_X, ROLL) && !csv->has[EYE_X])
     return wrong(csv, 0, "\"up\" and \"roll\" go with eye and lookat only%s", "");
   return VL_OK;
@@ -163,71 +179,85 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
   for (int i = 0; i < count; i++) {
     int column = 0;
     for (char *c = fields[i]; *c; c++)
-      if (*c >= 'A' && *c <= 'Z') *c = (char)(*c + 'a' - 'A');
-    while (column < COLUMNS && !vl_text_is(names[column], fields[i])) column++;
+      if (*c >= 'A' && *c <= 'Z')
+        *c = (char)(*c + 'a' - 'A');
+    while (column < COLUMNS && !vl_text_is(names[column], fields[i]))
+      column++;
     for (size_t k = 0; k < VL_LENGTH(aliases); k++)
-      if (vl_text_is(aliases[k].alias, fields[i])) column = aliases[k].column;
-    bool lens = vl_text_is(fields[i], "fx") || vl_text_is(fields[i], "fy") || vl_text_is(fields[i], "cx") ||
+      if (vl_text_is(aliases[k].alias, fields[i]))
+        column = aliases[k].column;
+    bool lens = vl_text_is(fields[i], "fx") || vl_text_is(fields[i], "fy") ||
+                vl_text_is(fields[i], "cx") ||
                 vl_text_is(fields[i], "cy"); /* Stray Scanner's */
     if (lens && column == COLUMNS)
-      vl_log(csv->file->context, VL_LOG_WARNING, NULL, "%s: the column \"%s\" is ignored: the file has poses only",
-             csv->file->path, fields[i]);
+      vl_log(csv->file->context, VL_LOG_WARNING, NULL,
+             "%s: the column \"%s\" is ignored: the file has poses only", csv->file->path,
+             fields[i]);
     if (column == COLUMNS && (csv->euroc || lens)) {
       csv->of[i] = IGNORED;
       continue;
     }
     if (column == COLUMNS) {
       const char *near = vl_nearest_name(fields[i], names, COLUMNS);
-      return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1, "unknown column \"%s\"%s%s%s",
-                        vl_short_text(fields[i]).text, near ? "; did you mean \"" : "", near ? near : "",
-                        near ? "\"?" : "");
+      return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1,
+                        "unknown column \"%s\"%s%s%s", vl_short_text(fields[i]).text,
+                        near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
     }
-    if (csv->has[column]) return wrong(csv, 0, "the column \"%s\" stands twice", names[column]);
+    if (csv->has[column])
+      return wrong(csv, 0, "the column \"%s\" stands twice", names[column]);
     csv->has[column] = true;
     csv->of[i] = column;
   }
   return check_columns(csv);
 }
 
-/* EuRoC's header: "timestamp [ns], p_RS_R_x [m], ..., q_RS_w [], ...": the body's (IMU's) pose in the reference frame,
- * times in nanoseconds. */
+/* EuRoC's header: "timestamp [ns], p_RS_R_x [m], ..., q_RS_w [], ...": the body's (IMU's) pose
+ * in the reference frame, times in nanoseconds. */
 static vlResult read_euroc_header(Csv *csv, char *line) {
   char *fields[MOST_COLUMNS];
   csv->euroc = true;
   csv->separator = ',';
   csv->time_unit = 1e-9;
   int count = split(line, csv->separator, fields);
-  if (count > MOST_COLUMNS) return wrong(csv, 0, "more than 64 columns%s", "");
-  for (int i = 0; i < count; i++) fields[i][strcspn(fields[i], " [")] = 0; /* the unit */
+  if (count > MOST_COLUMNS)
+    return wrong(csv, 0, "more than 64 columns%s", "");
+  for (int i = 0; i < count; i++)
+    fields[i][strcspn(fields[i], " [")] = 0; /* the unit */
   return read_header(csv, fields, count);
 }
 
-/* Sets the columns of a file without header from the count of numbers per line. 16 numbers are a matrix with its last
- * row (Replica). */
+/* Sets the columns of a file without header from the count of numbers per line. 16 numbers are
+ * a matrix with its last row (Replica). */
 static bool headless(Csv *csv, int count) {
   static const int tum[8] = {TIME, TX, TY, TZ, QX, QY, QZ, QW};
-  if (count != 8 && count != 12 && count != 16) return false;
+  if (count != 8 && count != 12 && count != 16)
+    return false;
   csv->header = true;
   csv->columns = count;
   for (int i = 0; i < count; i++) {
     csv->of[i] = count == 8 ? tum[i] : i < 12 ? M00 + i : IGNORED;
-    if (csv->of[i] == IGNORED) continue;
+    if (csv->of[i] == IGNORED)
+      continue;
     csv->has[csv->of[i]] = true;
   }
   return true;
 }
 
-static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double v[COLUMNS], double m[16]) {
+static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double v[COLUMNS],
+                        double m[16]) {
   vlCameraDef def = vl_default_camera_def(1, 1);
   vlCamera camera = {.width = 1};
   vlError error;
   if (csv->has[EYE_X]) {
     memcpy(def.eye, v + EYE_X, sizeof def.eye);
     memcpy(def.lookat, v + LOOKAT_X, sizeof def.lookat);
-    if (csv->has[UP_X]) memcpy(def.up, v + UP_X, sizeof def.up);
-    if (csv->has[ROLL]) def.roll = v[ROLL] * 3.14159265358979323846 / 180.0;
+    if (csv->has[UP_X])
+      memcpy(def.up, v + UP_X, sizeof def.up);
+    if (csv->has[ROLL])
+      def.roll = v[ROLL] * 3.14159265358979323846 / 180.0;
     if (vl_camera_make(&def, &camera, NULL, &error) != VL_OK) {
-      const char *text = strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
+      const char *text =
+          strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
       return vl_frame_wrong(csv->file, place, "%s", text);
     }
     memcpy(m, camera.world_from_camera, sizeof camera.world_from_camera);
@@ -238,7 +268,8 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
     const double q[4] = {v[QW], v[QX], v[QY], v[QZ]};
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(fabs(length - 1.0) < 0.01) || !vl_rotation_from_quaternion(q, r))
-      return vl_frame_wrong(csv->file, place, "the quaternion's length is %g; a rotation's is 1", length);
+      return vl_frame_wrong(csv->file, place,
+                            "the quaternion's length is %g; a rotation's is 1", length);
     memcpy(t, v + TX, sizeof t);
   } else {
     for (int i = 0; i < 3; i++) {
@@ -249,7 +280,8 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
   double axes = csv->opengl ? -1.0 : 1.0; /* y up, z back: negates the camera's y and z axes */
   if (csv->from_world) {
     for (int i = 1; i < 3; i++) {
-      for (int k = 0; k < 3; k++) r[3 * i + k] *= axes;
+      for (int k = 0; k < 3; k++)
+        r[3 * i + k] *= axes;
       t[i] *= axes;
     }
     vl_camera_set_pose(&def, r, t);
@@ -257,7 +289,8 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
     return VL_OK;
   }
   for (int i = 0; i < 3; i++) {
-    for (int k = 0; k < 3; k++) m[4 * i + k] = r[3 * i + k] * (k ? axes : 1.0) + 0.0;
+    for (int k = 0; k < 3; k++)
+      m[4 * i + k] = r[3 * i + k] * (k ? axes : 1.0) + 0.0;
     m[4 * i + 3] = t[i];
     m[12 + i] = 0.0;
   }
@@ -267,60 +300,78 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
 
 static vlResult read_line(Csv *csv, char *line) {
   char *fields[MOST_COLUMNS];
-  if (!csv->header) csv->separator = strchr(line, ',') ? ',' : strchr(line, ';') ? ';' : strchr(line, '\t') ? '\t' : 0;
+  if (!csv->header)
+    csv->separator = strchr(line, ',')    ? ','
+                     : strchr(line, ';')  ? ';'
+                     : strchr(line, '\t') ? '\t'
+                                          : 0;
   int count = split(line, csv->separator, fields);
-  if (count > MOST_COLUMNS) return wrong(csv, 0, "more than 64 columns%s", "");
+  if (count > MOST_COLUMNS)
+    return wrong(csv, 0, "more than 64 columns%s", "");
   double v[COLUMNS] = {0}, m[16], unused;
   if (!csv->header) {
     bool numbers = true;
-    for (int i = 0; i < count; i++) numbers = numbers && to_number(fields[i], &unused);
-    if (!numbers) return read_header(csv, fields, count);
+    for (int i = 0; i < count; i++)
+      numbers = numbers && to_number(fields[i], &unused);
+    if (!numbers)
+      return read_header(csv, fields, count);
     if (!headless(csv, count))
       return wrong(
           csv, 0,
-          "%snumbers without a header: lists of TUM have 8 in a line (seconds, tx ty tz, qx qy qz qw), those of "
+          "%snumbers without a header: lists of TUM have 8 in a line (seconds, tx ty tz, "
+          "qx qy qz qw), those of "
           "KITTI 12 (three rows of a matrix), those of Replica 16 (four rows)",
           "");
   }
   vlFramePlace place = {NULL, csv->line, (uint32_t)csv->trajectory->frames.count, NULL};
   if (count != csv->columns)
-    return vl_frame_wrong(csv->file, &place, "the line has %d fields; the header has %d", count, csv->columns);
+    return vl_frame_wrong(csv->file, &place, "the line has %d fields; the header has %d", count,
+                          csv->columns);
   for (int i = 0; i < count; i++) {
     int column = csv->of[i];
     if (column == NAME)
       place.name = fields[i];
-    else if (column != NUMBER && column != IGNORED && (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
-      return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%s\"; it must be a finite number", names[column],
-                            vl_short_text(fields[i]).text);
+    else if (column != NUMBER && column != IGNORED &&
+             (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
+      return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%s\"; it must be a finite number",
+                            names[column], vl_short_text(fields[i]).text);
   }
   vlResult result = pose_of(csv, &place, v, m);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   return vl_trajectory_add(csv->trajectory, csv->file, &place, VL_NO_CAMERA, m,
                            csv->has[TIME] ? v[TIME] * csv->time_unit : VL_UNSET);
 }
 
-vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text, size_t size) {
+vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text,
+                                size_t size) {
   Csv csv = {.trajectory = t, .file = file, .time_unit = 1.0};
   char *end = text + size;
-  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3; /* byte order mark */
+  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
+    text += 3; /* byte order mark */
   for (char *line = text; line < end;) {
     char *stop = memchr(line, '\n', (size_t)(end - line)), *next = stop ? stop + 1 : end;
-    if (stop) *stop = 0;
+    if (stop)
+      *stop = 0;
     csv.line++;
     size_t n = strlen(line);
-    if (n && line[n - 1] == '\r') line[n - 1] = 0;
+    if (n && line[n - 1] == '\r')
+      line[n - 1] = 0;
     const char *first = line + strspn(line, " \t");
     vlResult result = VL_OK;
     if (*first == '#' && strstr(first, "p_RS_R_x")) {
       result = read_euroc_header(&csv, line + (first - line) + 1);
     } else if (*first == '#') {
       if (!take_comment(&csv, first))
-        result = wrong(&csv, 0, "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
-                       vl_short_text(first).text);
+        result = wrong(
+            &csv, 0,
+            "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
+            vl_short_text(first).text);
     } else if (*first) {
       result = read_line(&csv, line);
     }
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     line = next;
   }
   return VL_OK;

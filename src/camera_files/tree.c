@@ -1,4 +1,5 @@
-/* camera_files/tree.c: reads values from a file's tree, with errors that name the field; collects text for writing. */
+/* camera_files/tree.c: reads values from a file's tree, with errors that name the field;
+ * collects text for writing. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,14 +15,15 @@ vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, 0, 0, "%s", message);
 }
 
-vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...) {
+vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column,
+                            const char *format, ...) {
   char message[400];
   VL_FORMAT(message, format);
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, line, column, "%s", message);
 }
 
-/* Records the positions of the values of a valid JSON text. The position of a value is its first character; keys have
- * none. */
+/* Records the positions of the values of a valid JSON text. The position of a value is its
+ * first character; keys have none. */
 static bool place_json(const vlCameraFile *file, const char *text, size_t size) {
   const char *end = text + size, *line_start = text;
   uint32_t line = 1;
@@ -36,40 +38,49 @@ static bool place_json(const vlCameraFile *file, const char *text, size_t size) 
       continue;
     }
     if (*at == '"') {
-      for (at++; at < end && *at != '"'; at++) at += *at == '\\';
+      for (at++; at < end && *at != '"'; at++)
+        at += *at == '\\';
       at++;
       const char *next = at < end ? at + strspn(at, " \t\r\n") : at;
-      if (next < end && *next == ':') continue; /* a key */
+      if (next < end && *next == ':')
+        continue; /* a key */
     } else if (*at == '[' || *at == '{') {
       at++;
     } else {
       at += strcspn(at, " \t\r\n,:]}");
     }
-    if (!vl_camera_place(file, line, (uint32_t)(first - line_start) + 1)) return false;
+    if (!vl_camera_place(file, line, (uint32_t)(first - line_start) + 1))
+      return false;
   }
   return true;
 }
 
-static vlResult parse_json(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+static vlResult parse_json(const vlCameraFile *file, const char *text, size_t size,
+                           json_t **tree) {
   json_error_t place;
   *tree = vl_json_parse(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
-  if (!*tree && vl_json_lacks_memory(&place)) return vl_fail_memory(file->error);
+  if (!*tree && vl_json_lacks_memory(&place))
+    return vl_fail_memory(file->error);
   if (!*tree)
-    return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, place.line > 0 ? (uint32_t)place.line : 0,
+    return vl_fail_at(file->error, VL_ERROR_SCENE, file->path,
+                      place.line > 0 ? (uint32_t)place.line : 0,
                       place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %.*s",
                       (int)vl_json_problem_length(place.text), place.text);
   return place_json(file, text, size) ? VL_OK : vl_fail_memory(file->error);
 }
 
-vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
+                        json_t **tree) {
   size_t first = strspn(text, " \t\r\n");
   vlResult result;
   *tree = NULL;
-  /* .glb: a header of 12 bytes, then a JSON chunk, which consists of its length, "JSON" and the text */
+  /* .glb: a header of 12 bytes, then a JSON chunk, which consists of its length, "JSON" and the
+   * text */
   if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
     const unsigned char *b = (const unsigned char *)text + 12;
     size_t length = (size_t)b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
-    if (length > size - 20) return vl_camera_wrong(file, "not glTF: the file is cut off");
+    if (length > size - 20)
+      return vl_camera_wrong(file, "not glTF: the file is cut off");
     text += 20;
     size = length;
     first = 0;
@@ -79,9 +90,11 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
     size -= 3;
     first = strspn(text, " \t\r\n");
   }
-  if (first >= size) return vl_camera_wrong(file, "the file is empty");
+  if (first >= size)
+    return vl_camera_wrong(file, "the file is empty");
   bool list = text[first] == '[';
-  if (list && !vl_camera_place(file, 1, 1)) return vl_fail_memory(file->error);
+  if (list && !vl_camera_place(file, 1, 1))
+    return vl_fail_memory(file->error);
   if (text[first] == '{' || list)
     result = parse_json(file, text, size, tree);
   else if (text[first] == '<')
@@ -90,7 +103,8 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
     result = vl_camera_yaml(file, text, size, tree);
   if (result == VL_OK && list) {
     json_t *wrapped = json_object();
-    if (json_object_set_new(wrapped, "[]", *tree) != 0) result = vl_fail_memory(file->error);
+    if (json_object_set_new(wrapped, "[]", *tree) != 0)
+      result = vl_fail_memory(file->error);
     *tree = wrapped;
   } else if (result == VL_OK && !json_is_object(*tree)) {
     result = vl_camera_wrong(file, "no camera file: it holds no named fields");
@@ -110,68 +124,82 @@ bool vl_camera_has(const json_t *object, const char *key) {
 
 bool vl_camera_has_in(const json_t *object, const char *key, const char *inner) {
   const json_t *value = json_object_get(object, key);
-  if (json_is_array(value)) value = json_array_get(value, 0);
+  if (json_is_array(value))
+    value = json_array_get(value, 0);
   return json_object_get(value, inner) != NULL;
 }
 
-vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key, const json_t **value) {
+vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key,
+                         const json_t **value) {
   *value = json_object_get(object, key);
-  if (*value) return VL_OK;
+  if (*value)
+    return VL_OK;
   const char *names[64], *other;
   size_t count = 0;
   json_t *unused;
   json_object_foreach((json_t *)object, other, unused) if (count < 64) names[count++] = other;
   const char *near = vl_nearest_name(key, names, count);
-  return vl_camera_wrong_in(file, object, NULL, "%s: the field \"%s\" is missing%s%.60s%s", file->dialect, key,
-                            near ? "; did you mean it by \"" : "", near ? near : "", near ? "\"?" : "");
+  return vl_camera_wrong_in(file, object, NULL, "%s: the field \"%s\" is missing%s%.60s%s",
+                            file->dialect, key, near ? "; did you mean it by \"" : "",
+                            near ? near : "", near ? "\"?" : "");
 }
 
 double vl_camera_parse(const char *text, char **end) {
   const char *first = text + strspn(text, " \t\r\n,;");
   double value = strtod(first, end);
-  if (*end == first) *end = (char *)text;
+  if (*end == first)
+    *end = (char *)text;
   return value;
 }
 
 /* Reads a number at object[key], or in a list of lists there. */
-static vlResult number_of(const vlCameraFile *file, const json_t *object, const json_t *value, const char *key,
-                          double *number) {
+static vlResult number_of(const vlCameraFile *file, const json_t *object, const json_t *value,
+                          const char *key, double *number) {
   bool own = json_is_string(value) || json_is_array(value) || json_is_object(value);
   if (json_is_number(value)) {
     *number = json_number_value(value);
     return VL_OK;
   }
   if (json_is_string(value))
-    return vl_camera_wrong_in(file, value, NULL, "%s: \"%s\" holds \"%s\", which is no finite number", file->dialect,
-                              key, vl_short_text(json_string_value(value)).text);
-  return vl_camera_wrong_in(file, own ? value : object, own ? NULL : key, "%s: \"%s\" must be a number", file->dialect,
-                            key);
+    return vl_camera_wrong_in(file, value, NULL,
+                              "%s: \"%s\" holds \"%s\", which is no finite number",
+                              file->dialect, key, vl_short_text(json_string_value(value)).text);
+  return vl_camera_wrong_in(file, own ? value : object, own ? NULL : key,
+                            "%s: \"%s\" must be a number", file->dialect, key);
 }
 
-vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key, double *value) {
+vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key,
+                          double *value) {
   const json_t *field;
   vlResult result = vl_camera_field(file, object, key, &field);
   return result == VL_OK ? number_of(file, object, field, key, value) : result;
 }
 
-vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value) {
+vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key,
+                            double *value) {
   const json_t *field = json_object_get(object, key);
   return field ? number_of(file, object, field, key, value) : VL_OK;
 }
 
 vlGiven vl_json_given(const json_t *item) {
-  if (json_is_null(item)) return (vlGiven){.kind = VL_GIVEN_NOTHING};
-  if (json_is_boolean(item)) return (vlGiven){.kind = VL_GIVEN_FLAG, .number = json_is_true(item)};
-  if (json_is_number(item)) return (vlGiven){.kind = VL_GIVEN_NUMBER, .number = json_number_value(item)};
-  if (json_is_string(item)) return (vlGiven){.kind = VL_GIVEN_TEXT, .text = json_string_value(item)};
+  if (json_is_null(item))
+    return (vlGiven){.kind = VL_GIVEN_NOTHING};
+  if (json_is_boolean(item))
+    return (vlGiven){.kind = VL_GIVEN_FLAG, .number = json_is_true(item)};
+  if (json_is_number(item))
+    return (vlGiven){.kind = VL_GIVEN_NUMBER, .number = json_number_value(item)};
+  if (json_is_string(item))
+    return (vlGiven){.kind = VL_GIVEN_TEXT, .text = json_string_value(item)};
   return (vlGiven){.kind = VL_GIVEN_OTHER};
 }
 
-vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value) {
+vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key,
+                        uint32_t *value) {
   const json_t *field;
   double number;
   vlResult result = vl_camera_field(file, object, key, &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const vlGiven given = vl_json_given(field);
   char name[120];
   char message[VL_GIVEN_MESSAGE];
@@ -191,15 +219,16 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
     width = floor(720.0 * aspect + 0.5);
   }
   if (!(width >= 1.0 && width <= 1 << 24))
-    return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no image", file->dialect, aspect);
+    return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no image", file->dialect,
+                           aspect);
   record->camera.width = (uint32_t)width;
   record->camera.height = (uint32_t)height;
   return VL_OK;
 }
 
 /* Appends the numbers of a list; nested lists to a depth of two. */
-static vlResult collect(const vlCameraFile *file, const json_t *list, const char *key, int depth, double *values,
-                        uint32_t most, uint32_t *count) {
+static vlResult collect(const vlCameraFile *file, const json_t *list, const char *key,
+                        int depth, double *values, uint32_t most, uint32_t *count) {
   size_t i;
   json_t *item;
   json_array_foreach((json_t *)list, i, item) {
@@ -208,39 +237,47 @@ static vlResult collect(const vlCameraFile *file, const json_t *list, const char
       result = collect(file, item, key, depth - 1, values, most, count);
     } else {
       if (*count == most)
-        return vl_camera_wrong_in(file, list, NULL, "%s: \"%s\" holds more than %u numbers", file->dialect, key, most);
+        return vl_camera_wrong_in(file, list, NULL, "%s: \"%s\" holds more than %u numbers",
+                                  file->dialect, key, most);
       result = number_of(file, list, item, key, &values[*count]);
       ++*count;
     }
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
   return VL_OK;
 }
 
-vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
-                           uint32_t least, uint32_t most, uint32_t *count) {
+vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
+                           double *values, uint32_t least, uint32_t most, uint32_t *count) {
   const json_t *field;
   uint32_t found = 0;
   vlResult result = vl_camera_field(file, object, key, &field);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   double rows = VL_UNSET, columns = VL_UNSET;
   if (json_is_object(field)) {
     result = vl_camera_number(file, field, "rows", &rows);
-    if (result == VL_OK) result = vl_camera_number(file, field, "cols", &columns);
-    if (result != VL_OK) return result;
+    if (result == VL_OK)
+      result = vl_camera_number(file, field, "cols", &columns);
+    if (result != VL_OK)
+      return result;
     field = json_object_get(field, "data");
   }
   if (!json_is_array(field))
-    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be a list of numbers", file->dialect, key);
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be a list of numbers",
+                              file->dialect, key);
   result = collect(file, field, key, 1, values, most, &found);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (found < least)
-    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" holds %u numbers; it must hold %u", file->dialect, key,
-                              found, least);
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" holds %u numbers; it must hold %u",
+                              file->dialect, key, found, least);
   if (!vl_is_unset(rows) && rows * columns != found)
-    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" says %g x %g and holds %u numbers", file->dialect, key,
-                              rows, columns, found);
-  if (count) *count = found;
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" says %g x %g and holds %u numbers",
+                              file->dialect, key, rows, columns, found);
+  if (count)
+    *count = found;
   return VL_OK;
 }
 
@@ -251,9 +288,12 @@ const char *vl_camera_text(const json_t *object, const char *key) {
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name) {
   const char *wish = file->def->frame;
   char number[16];
-  if (file->ordinal) return index == *file->ordinal;
-  if (!wish) return index == 0;
-  if (name && vl_text_is(wish, name)) return true;
+  if (file->ordinal)
+    return index == *file->ordinal;
+  if (!wish)
+    return index == 0;
+  if (name && vl_text_is(wish, name))
+    return true;
   snprintf(number, sizeof number, "%u", index);
   return vl_text_is(wish, number);
 }
@@ -271,10 +311,11 @@ vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t
                          vl_camera_asked(file, "0").text, count);
 }
 
-vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key, const double k[9],
-                         vlCameraDef *def) {
+vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key,
+                         const double k[9], vlCameraDef *def) {
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be fx skew cx, 0 fy cy, 0 0 1", file->dialect, key);
+    return vl_camera_wrong_in(
+        file, object, key, "%s: \"%s\" must be fx skew cx, 0 fy cy, 0 0 1", file->dialect, key);
   vl_camera_set_centred(def, k[0], k[4], k[2], k[5]);
   def->skew = k[1];
   return VL_OK;
@@ -297,7 +338,8 @@ void vl_camera_put(vlCameraText *text, const char *format, ...) {
 
 void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count) {
   text->failed = text->failed || !VL_RESERVE(text->context, &text->text, count + 1);
-  if (text->failed) return;
+  if (text->failed)
+    return;
   memcpy(text->text.items + text->text.count, bytes, count);
   text->text.count += count;
   text->text.items[text->text.count] = 0;
@@ -305,11 +347,13 @@ void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count) {
 
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other) {
   text->failed = text->failed || other->failed;
-  if (!text->failed && other->text.count) vl_camera_put(text, "%.*s", (int)other->text.count, other->text.items);
+  if (!text->failed && other->text.count)
+    vl_camera_put(text, "%.*s", (int)other->text.count, other->text.items);
 }
 
 void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++) vl_camera_put(text, "%s%.17g", i ? ", " : "", values[i] + 0.0);
+  for (uint32_t i = 0; i < count; i++)
+    vl_camera_put(text, "%s%.17g", i ? ", " : "", values[i] + 0.0);
 }
 
 void vl_camera_put_rows(vlCameraText *text, const double m[16]) {

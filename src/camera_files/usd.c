@@ -1,7 +1,8 @@
-/* camera_files/usd.c: USD's camera (UsdGeomCamera, UsdGeomXformable) in its text form, .usda. Camera axes x right, y
- * up, z back; matrices act on row vectors, world from camera. Focal length, apertures and their offsets are in
- * tenths of a scene unit. The aperture's offset moves the window, so the principal point moves the other way; y is
- * up. The image's size is the resolution of the file's RenderSettings or RenderProduct. */
+/* camera_files/usd.c: USD's camera (UsdGeomCamera, UsdGeomXformable) in its text form, .usda.
+ * Camera axes x right, y up, z back; matrices act on row vectors, world from camera. Focal
+ * length, apertures and their offsets are in tenths of a scene unit. The aperture's offset
+ * moves the window, so the principal point moves the other way; y is up. The image's size is
+ * the resolution of the file's RenderSettings or RenderProduct. */
 #include <math.h>
 
 #include "base/text.h"
@@ -11,7 +12,9 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- transforms: matrices for column vectors; the first operation of an order is the outermost ------------------- */
+/* ---- transforms: matrices for column vectors; the first operation of an order is the
+ * outermost
+ * ------------------- */
 
 typedef struct {
   const vlCameraFile *file;
@@ -19,7 +22,8 @@ typedef struct {
   const char *name; /* of the operation */
 } Operation;
 
-static vlResult op_numbers(const Operation *op, const char *key, double *values, uint32_t count) {
+static vlResult op_numbers(const Operation *op, const char *key, double *values,
+                           uint32_t count) {
   return vl_camera_numbers(op->file, op->prim, key, values, count, count, NULL);
 }
 
@@ -35,39 +39,48 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   vlResult result = VL_OK;
   *m = vl_mat4_identity();
   if (strncmp(key, "xformOp:", 8) != 0)
-    return vl_camera_wrong(op->file, "usd: \"%s\" in xformOpOrder is no xformOp", vl_short_text(op->name).text);
+    return vl_camera_wrong(op->file, "usd: \"%s\" in xformOpOrder is no xformOp",
+                           vl_short_text(op->name).text);
   size_t n = strcspn(kind, ":");
   if (n == 9 && strncmp(kind, "transform", n) == 0) {
     result = op_numbers(op, key, v, 16);
-    for (int i = 0; i < 16 && result == VL_OK; i++) m->m[i] = v[4 * (i % 4) + i / 4];
+    for (int i = 0; i < 16 && result == VL_OK; i++)
+      m->m[i] = v[4 * (i % 4) + i / 4];
   } else if (n == 9 && strncmp(kind, "translate", n) == 0) {
     result = op_numbers(op, key, v, 3);
-    if (result == VL_OK) *m = vl_mat4_translate(v[0], v[1], v[2]);
+    if (result == VL_OK)
+      *m = vl_mat4_translate(v[0], v[1], v[2]);
   } else if (n == 5 && strncmp(kind, "scale", n) == 0) {
     result = op_numbers(op, key, v, 3);
-    if (result == VL_OK) *m = vl_mat4_scale(v[0], v[1], v[2]);
+    if (result == VL_OK)
+      *m = vl_mat4_scale(v[0], v[1], v[2]);
   } else if (n == 6 && strncmp(kind, "orient", n) == 0) {
     result = op_numbers(op, key, v, 4); /* w x y z */
     if (result == VL_OK && !vl_rotation_from_quaternion(v, r))
       result = vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text);
-    for (int i = 0; i < 9 && result == VL_OK; i++) m->m[4 * (i / 3) + i % 3] = r[i];
+    for (int i = 0; i < 9 && result == VL_OK; i++)
+      m->m[4 * (i / 3) + i % 3] = r[i];
   } else if (n == 7 && strncmp(kind, "rotate", 6) == 0 && kind[6] >= 'X' && kind[6] <= 'Z') {
     result = vl_camera_number(op->file, op->prim, key, v);
-    if (result == VL_OK) *m = turn(kind[6] - 'X', v[0]);
+    if (result == VL_OK)
+      *m = turn(kind[6] - 'X', v[0]);
   } else if (n == 9 && strncmp(kind, "rotate", 6) == 0 && strspn(kind + 6, "XYZ") == 3) {
-    result = op_numbers(op, key, v, 3); /* rotateXYZ: about x first, angles in the order x y z */
+    result =
+        op_numbers(op, key, v, 3); /* rotateXYZ: about x first, angles in the order x y z */
     for (int i = 0; i < 3 && result == VL_OK; i++)
       *m = vl_mat4_multiply(turn(kind[6 + i] - 'X', v[kind[6 + i] - 'X']), *m);
   } else {
     return vl_camera_wrong(op->file, "usd: unknown xformOp \"%s\"", vl_short_text(key).text);
   }
   if (result == VL_OK && inverted && !vl_mat4_inverse(*m, m))
-    result = vl_camera_wrong(op->file, "usd: \"%s\" cannot be inverted", vl_short_text(key).text);
+    result =
+        vl_camera_wrong(op->file, "usd: \"%s\" cannot be inverted", vl_short_text(key).text);
   return result;
 }
 
 /* Transform of one prim. *reset: the transforms of its parents do not apply. */
-static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat4 *m, bool *reset) {
+static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat4 *m,
+                             bool *reset) {
   const json_t *order = json_object_get(prim, "xformOpOrder"), *item;
   size_t i;
   *reset = false;
@@ -82,13 +95,16 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
     Operation op = {file, prim, name ? name : ""};
     vlMat4 one;
     vlResult result = operation(&op, &one);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     *m = vl_mat4_multiply(*m, one);
   }
   return VL_OK;
 }
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* Refuses values that change with time. */
 static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
@@ -97,7 +113,8 @@ static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
   json_t *unused;
   json_object_foreach((json_t *)prim, key, unused) {
     if (vl_ends_with(key, ".timeSamples"))
-      return vl_camera_wrong_at(file, line, 0, "usd: \"%s\": values that change with time are not taken",
+      return vl_camera_wrong_at(file, line, 0,
+                                "usd: \"%s\": values that change with time are not taken",
                                 vl_short_text(key).text);
   }
   return VL_OK;
@@ -112,16 +129,18 @@ typedef struct {
   int depth;
 } Search;
 
-/* Computes the pose of the last prim of the path. Only the chosen camera and its parents must have supported,
- * constant transforms. */
+/* Computes the pose of the last prim of the path. Only the chosen camera and its parents must
+ * have supported, constant transforms. */
 static vlResult pose_of(Search *s) {
   s->pose = vl_mat4_identity();
   for (int i = 0; i < s->depth; i++) {
     vlMat4 own;
     bool reset;
     vlResult result = check_still(s->file, s->path[i]);
-    if (result == VL_OK) result = local_matrix(s->file, s->path[i], &own, &reset);
-    if (result != VL_OK) return result;
+    if (result == VL_OK)
+      result = local_matrix(s->file, s->path[i], &own, &reset);
+    if (result != VL_OK)
+      return result;
     s->pose = reset ? own : vl_mat4_multiply(s->pose, own);
   }
   return VL_OK;
@@ -133,7 +152,8 @@ static vlResult walk(Search *s, const json_t *prim) {
   vlResult result = VL_OK;
   size_t i;
   if (vl_text_is(type, "Camera")) {
-    bool wanted = !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
+    bool wanted =
+        !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
     if (wanted) {
       s->camera = prim;
       result = pose_of(s);
@@ -142,7 +162,8 @@ static vlResult walk(Search *s, const json_t *prim) {
     s->resolution = json_object_get(prim, "resolution") ? prim : NULL;
   }
   json_array_foreach(json_object_get(prim, "/"), i, child) {
-    if (result != VL_OK || s->depth == 64) break; /* the parser's depth is smaller */
+    if (result != VL_OK || s->depth == 64)
+      break; /* the parser's depth is smaller */
     s->path[s->depth++] = child;
     result = walk(s, child);
     s->depth--;
@@ -153,13 +174,16 @@ static vlResult walk(Search *s, const json_t *prim) {
 /* The image's size; aspect: of the aperture, for a file without a resolution. */
 static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *record) {
   double size[2];
-  if (!s->resolution) return vl_camera_size(s->file, aspect, record);
+  if (!s->resolution)
+    return vl_camera_size(s->file, aspect, record);
   vlResult result = vl_camera_numbers(s->file, s->resolution, "resolution", size, 2, 2, NULL);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
-      return vl_camera_wrong(s->file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels",
-                             size[i]);
+      return vl_camera_wrong(
+          s->file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels",
+          size[i]);
   record->camera.width = (uint32_t)size[0];
   record->camera.height = (uint32_t)size[1];
   return VL_OK;
@@ -169,15 +193,20 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   const vlCameraFile *file = s->file;
   const json_t *prim = s->camera;
   vlCameraDef *d = &record->camera;
-  double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0, stop = 0.0, focus = 0.0;
+  double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0,
+         stop = 0.0, focus = 0.0;
   double range[2], exposure = 0.0, rate = 24.0;
   vlResult result = VL_READ_FIELDS(
-      file, prim, VL_FIELD_OPTIONAL("focalLength", &focal), VL_FIELD_OPTIONAL("horizontalAperture", &across),
-      VL_FIELD_OPTIONAL("verticalAperture", &down), VL_FIELD_OPTIONAL("horizontalApertureOffset", &offset_x),
+      file, prim, VL_FIELD_OPTIONAL("focalLength", &focal),
+      VL_FIELD_OPTIONAL("horizontalAperture", &across),
+      VL_FIELD_OPTIONAL("verticalAperture", &down),
+      VL_FIELD_OPTIONAL("horizontalApertureOffset", &offset_x),
       VL_FIELD_OPTIONAL("verticalApertureOffset", &offset_y), VL_FIELD_OPTIONAL("fStop", &stop),
       VL_FIELD_OPTIONAL("focusDistance", &focus), VL_FIELD_OPTIONAL("exposure", &exposure),
-      VL_FIELD_OPTIONAL("shutter:open", &d->shutter_open), VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close));
-  if (result == VL_OK) result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
+      VL_FIELD_OPTIONAL("shutter:open", &d->shutter_open),
+      VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close));
+  if (result == VL_OK)
+    result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
   if (result == VL_OK && json_object_get(prim, "clippingRange")) {
     result = vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL);
     if (result == VL_OK) {
@@ -185,16 +214,20 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
       d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
     }
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const char *projection = vl_camera_text(prim, "projection");
   bool flat = vl_text_is(projection, "orthographic");
   if (projection && !flat && !vl_text_is(projection, "perspective"))
-    return vl_camera_wrong(file, "usd: unknown projection \"%s\"; there are perspective, orthographic",
-                           vl_short_text(projection).text);
+    return vl_camera_wrong(
+        file, "usd: unknown projection \"%s\"; there are perspective, orthographic",
+        vl_short_text(projection).text);
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))
-    return vl_camera_wrong(file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
+    return vl_camera_wrong(
+        file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
   result = read_resolution(s, across / down, record);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   double w = d->width, h = d->height;
   /* orthographic apertures are in tenths of a unit too */
   d->fx = flat ? 10.0 * (w / across) : focal * (w / across);
@@ -202,26 +235,34 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   d->cx = 0.5 * w - offset_x * (w / across);
   d->cy = 0.5 * h + offset_y * (h / down);
   d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
-  if (stop > 0.0 && !flat) d->lens_radius = 0.1 * focal / (2.0 * stop);
-  if (focus > 0.0) d->focus_distance = focus;
-  if (exposure != 0.0) d->exposure_time = vl_precise_exp2(exposure);
-  if (json_object_get(prim, "shutter:open")) d->shutter_open /= rate;
-  if (json_object_get(prim, "shutter:close")) d->shutter_close /= rate;
+  if (stop > 0.0 && !flat)
+    d->lens_radius = 0.1 * focal / (2.0 * stop);
+  if (focus > 0.0)
+    d->focus_distance = focus;
+  if (exposure != 0.0)
+    d->exposure_time = vl_precise_exp2(exposure);
+  if (json_object_get(prim, "shutter:open"))
+    d->shutter_open /= rate;
+  if (json_object_get(prim, "shutter:close"))
+    d->shutter_close /= rate;
   d->has_matrix = true;
   vl_camera_flip_axes(s->pose.m, d->world_from_camera);
   vl_camera_name(record, vl_camera_text(prim, "@"));
   return VL_OK;
 }
 
-static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size,
+                         vlCameraRecord *record) {
   json_t *tree;
   vlResult result = vl_camera_usda(file, text, size, &tree);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   Search search = {.file = file, .pose = vl_mat4_identity()};
   result = walk(&search, tree);
   record->frames = search.frames;
   if (result == VL_OK && !search.frames)
-    result = vl_camera_wrong(file, "usd: the file holds no Camera (references and payloads are not followed)");
+    result = vl_camera_wrong(
+        file, "usd: the file holds no Camera (references and payloads are not followed)");
   else if (result == VL_OK && !search.camera)
     result = vl_camera_no_frame(file, "Camera", search.frames);
   else if (result == VL_OK)
@@ -236,31 +277,42 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
   return result;
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* Names in USD consist of letters, digits and _. */
 static void put_name(vlCameraText *text, const char *name) {
-  if (!*name || (*name >= '0' && *name <= '9')) vl_camera_put(text, "Camera%s", *name ? "_" : "");
+  if (!*name || (*name >= '0' && *name <= '9'))
+    vl_camera_put(text, "Camera%s", *name ? "_" : "");
   for (; *name; name++) {
-    bool good = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') || (*name >= '0' && *name <= '9');
+    bool good = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') ||
+                (*name >= '0' && *name <= '9');
     vl_camera_put(text, "%c", good ? *name : '_');
   }
 }
 
-static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record,
+                          vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
-  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME | VL_HOLDS_EXPOSURE;
+  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_PLANES |
+                   VL_HOLDS_TIME | VL_HOLDS_EXPOSURE;
   vlResult result = vl_camera_fit(file, record, holds, &c);
-  if (result != VL_OK) return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  if (result != VL_OK)
+    return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_camera_no_model(file, d);
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
   result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result == VL_OK) result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
+  if (result != VL_OK)
+    return result;
   double w = c.width, h = c.height, m[16];
   /* the scene unit is a metre: 36 mm are 0.36 tenths of it */
-  double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0), focal = c.fx * (across / w);
+  double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0),
+         focal = c.fx * (across / w);
   if (flat) {
     across = 10.0 * w / c.fx;
     focal = 0.5;
@@ -270,38 +322,52 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
   vl_camera_flip_axes(c.world_from_camera, m);
   vl_camera_put(text, "#usda 1.0\n(\n    defaultPrim = \"");
   put_name(text, record->name);
-  vl_camera_put(text,
-                "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x right, y up, z "
-                "back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
-  if (timed) vl_camera_put(text, "    timeCodesPerSecond = 1\n");
+  vl_camera_put(
+      text,
+      "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x "
+      "right, y up, z "
+      "back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
+  if (timed)
+    vl_camera_put(text, "    timeCodesPerSecond = 1\n");
   vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");
   put_name(text, record->name);
-  const double film[] = {focal, across, down, (0.5 * w - c.cx) * (across / w), (c.cy - 0.5 * h) * (down / h)};
+  const double film[] = {focal, across, down, (0.5 * w - c.cx) * (across / w),
+                         (c.cy - 0.5 * h) * (down / h)};
   VL_PUT_FORM(text, record, &c,
               "\"\n{\n    token projection = \"$kind\"\n    float focalLength = $film@0\n"
               "    float horizontalAperture = $film@1\n    float verticalAperture = $film@2\n"
-              "    float horizontalApertureOffset = $film@3\n    float verticalApertureOffset = $film@4\n",
-              VL_WORD("kind", flat ? "orthographic" : "perspective"), VL_VALUES("film", film, 5));
+              "    float horizontalApertureOffset = $film@3\n    float verticalApertureOffset "
+              "= $film@4\n",
+              VL_WORD("kind", flat ? "orthographic" : "perspective"),
+              VL_VALUES("film", film, 5));
   if (c.near_plane > 0.0 || !isinf(c.far_plane))
     vl_camera_put(text, "    float2 clippingRange = (%.17g, %.17g)\n", c.near_plane,
                   isinf(c.far_plane) ? 1e38 : c.far_plane);
   if (c.lens_radius > 0.0 && !flat)
     vl_camera_put(text, "    float fStop = %.17g\n", 0.1 * focal / (2.0 * c.lens_radius));
-  if (!isinf(c.focus_distance)) vl_camera_put(text, "    float focusDistance = %.17g\n", c.focus_distance);
-  if (c.exposure_time != 1.0) vl_camera_put(text, "    float exposure = %.17g\n", vl_precise_log2(c.exposure_time));
+  if (!isinf(c.focus_distance))
+    vl_camera_put(text, "    float focusDistance = %.17g\n", c.focus_distance);
+  if (c.exposure_time != 1.0)
+    vl_camera_put(text, "    float exposure = %.17g\n", vl_precise_log2(c.exposure_time));
   if (timed)
-    vl_camera_put(text, "    double shutter:open = %.17g\n    double shutter:close = %.17g\n", c.shutter_open,
-                  c.shutter_close);
+    vl_camera_put(text, "    double shutter:open = %.17g\n    double shutter:close = %.17g\n",
+                  c.shutter_open, c.shutter_close);
   vl_camera_put(text, "    matrix4d xformOp:transform = (");
   for (int row = 0; row < 4; row++) {
     vl_camera_put(text, "%s(", row ? ", " : " ");
-    for (int i = 0; i < 4; i++) vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * i + row]);
+    for (int i = 0; i < 4; i++)
+      vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * i + row]);
     vl_camera_put(text, ")");
   }
   vl_camera_put(text, " )\n    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}\n\n");
-  vl_camera_put(text, "def Scope \"Render\"\n{\n    def RenderSettings \"Settings\"\n    {\n        rel camera = </");
+  vl_camera_put(
+      text,
+      "def Scope \"Render\"\n{\n    def RenderSettings \"Settings\"\n    {\n        rel "
+      "camera = </");
   put_name(text, record->name);
-  vl_camera_put(text, ">\n        uniform int2 resolution = (%u, %u)\n        uniform float pixelAspectRatio = %.17g\n",
+  vl_camera_put(text,
+                ">\n        uniform int2 resolution = (%u, %u)\n        uniform float "
+                "pixelAspectRatio = %.17g\n",
                 c.width, c.height, c.fy / c.fx);
   vl_camera_put(text, "    }\n}\n");
   return VL_OK;
@@ -311,4 +377,5 @@ static bool is_usd(const char *text, size_t size) {
   return size >= 5 && memcmp(text, "#usda", 5) == 0;
 }
 
-const vlCameraFormat vl_format_usd = {.name = "usd", .is_text = is_usd, .read_text = read_usd, .write = write_usd};
+const vlCameraFormat vl_format_usd = {
+    .name = "usd", .is_text = is_usd, .read_text = read_usd, .write = write_usd};

@@ -1,7 +1,8 @@
-/* camera_files/usda.c: parses USD's text form, as far as cameras need it, into a tree. A prim is an object with its
- * properties by name (numbers, words and lists of them; tuples are lists), "<": its type, "@": its name, "#": its
- * line, "/": its child prims. The root holds the layer's metadata by name. Properties of cameras, render settings
- * and transforms are kept; all others, above all meshes, are skipped without being stored. */
+/* camera_files/usda.c: parses USD's text form, as far as cameras need it, into a tree. A prim
+ * is an object with its properties by name (numbers, words and lists of them; tuples are
+ * lists), "<": its type, "@": its name, "#": its line, "/": its child prims. The root holds the
+ * layer's metadata by name. Properties of cameras, render settings and transforms are kept; all
+ * others, above all meshes, are skipped without being stored. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -21,14 +22,17 @@ typedef struct {
 
 static bool fail(Parser *p, const char *what) {
   const char *first = p->at;
-  while (first > p->start && first[-1] != '\n') first--;
+  while (first > p->start && first[-1] != '\n')
+    first--;
   if (p->result == VL_OK)
-    p->result = vl_camera_wrong_at(p->file, p->line, (uint32_t)(p->at - first) + 1, "not USD: %s", what);
+    p->result = vl_camera_wrong_at(p->file, p->line, (uint32_t)(p->at - first) + 1,
+                                   "not USD: %s", what);
   return false;
 }
 
 static bool memory(Parser *p) {
-  if (p->result == VL_OK) p->result = vl_fail_memory(p->file->error);
+  if (p->result == VL_OK)
+    p->result = vl_fail_memory(p->file->error);
   return false;
 }
 
@@ -38,7 +42,8 @@ static bool skip(Parser *p) {
     if (*p->at == '\n') {
       p->line++;
     } else if (*p->at == '#') {
-      while (p->at + 1 < p->end && p->at[1] != '\n') p->at++;
+      while (p->at + 1 < p->end && p->at[1] != '\n')
+        p->at++;
     } else if (!isspace((unsigned char)*p->at) && *p->at != ';') {
       return true;
     }
@@ -51,7 +56,8 @@ static bool next_is(Parser *p, char c) {
 }
 
 static bool take(Parser *p, char c) {
-  if (!next_is(p, c)) return false;
+  if (!next_is(p, c))
+    return false;
   p->at++;
   return true;
 }
@@ -59,7 +65,8 @@ static bool take(Parser *p, char c) {
 /* Length of the identifier at the current position: xformOp:translate, double3, camera.name. */
 static size_t word(Parser *p) {
   const char *s = p->at;
-  while (s < p->end && (isalnum((unsigned char)*s) || strchr("_:.!", *s)) && *s) s++;
+  while (s < p->end && (isalnum((unsigned char)*s) || strchr("_:.!", *s)) && *s)
+    s++;
   return (size_t)(s - p->at);
 }
 
@@ -75,19 +82,22 @@ static bool string(Parser *p, const char **text, size_t *length) {
   for (; p->at < p->end; p->at++) {
     if (*p->at == '\\' && p->at + 1 < p->end) {
       p->at++;
-    } else if (*p->at == quote && (quotes == 1 || (p->end - p->at >= 3 && p->at[1] == quote && p->at[2] == quote))) {
+    } else if (*p->at == quote && (quotes == 1 || (p->end - p->at >= 3 && p->at[1] == quote &&
+                                                   p->at[2] == quote))) {
       *length = (size_t)(p->at - *text);
       p->at += quotes;
       return true;
     } else if (*p->at == '\n' && quotes == 1) {
       break;
     }
-    if (*p->at == '\n') p->line++;
+    if (*p->at == '\n')
+      p->line++;
   }
   return fail(p, "a string has no end");
 }
 
-/* Parses any value. *value (may be null: not stored) is a new reference, or null for values that are not kept. */
+/* Parses any value. *value (may be null: not stored) is a new reference, or null for values
+ * that are not kept. */
 static bool value(Parser *p, int depth, json_t **result);
 
 static bool list(Parser *p, int depth, char close, json_t **result) {
@@ -95,8 +105,10 @@ static bool list(Parser *p, int depth, char close, json_t **result) {
   p->at++;
   while (!take(p, close)) {
     json_t *item = NULL;
-    if (p->at >= p->end) fail(p, "a list has no end");
-    if (p->result == VL_OK && depth == 0) fail(p, "lists are nested too deeply");
+    if (p->at >= p->end)
+      fail(p, "a list has no end");
+    if (p->result == VL_OK && depth == 0)
+      fail(p, "lists are nested too deeply");
     if (p->result != VL_OK || !value(p, depth - 1, items ? &item : NULL)) {
       json_decref(item);
       break;
@@ -107,7 +119,8 @@ static bool list(Parser *p, int depth, char close, json_t **result) {
       json_decref(item);
     take(p, ',');
   }
-  if (result) *result = items;
+  if (result)
+    *result = items;
   return p->result == VL_OK;
 }
 
@@ -117,9 +130,11 @@ static bool braces(Parser *p) {
   do {
     const char *text;
     size_t length;
-    if (!skip(p)) return fail(p, "a brace is not closed");
+    if (!skip(p))
+      return fail(p, "a brace is not closed");
     if (*p->at == '"' || *p->at == '\'') {
-      if (!string(p, &text, &length)) return false;
+      if (!string(p, &text, &length))
+        return false;
       continue;
     }
     depth += (*p->at == '{') - (*p->at == '}');
@@ -131,75 +146,97 @@ static bool braces(Parser *p) {
 static bool value(Parser *p, int depth, json_t **result) {
   const char *text = NULL;
   size_t length = 0;
-  if (!skip(p)) return fail(p, "a value is missing");
+  if (!skip(p))
+    return fail(p, "a value is missing");
   char c = *p->at;
-  if (c == '(' || c == '[') return list(p, depth, c == '(' ? ')' : ']', result);
+  if (c == '(' || c == '[')
+    return list(p, depth, c == '(' ? ')' : ']', result);
   if (c == '{') {
-    if (result) *result = json_true(); /* time samples: only their presence is recorded */
+    if (result)
+      *result = json_true(); /* time samples: only their presence is recorded */
     return braces(p);
   }
   if (c == '"' || c == '\'') {
-    if (!string(p, &text, &length)) return false;
-    if (result) *result = json_stringn(text, length);
+    if (!string(p, &text, &length))
+      return false;
+    if (result)
+      *result = json_stringn(text, length);
     return true;
   }
   if (c == '<' || c == '@') {
     char close = c == '<' ? '>' : '@';
     text = ++p->at;
-    while (p->at < p->end && *p->at != close && *p->at != '\n') p->at++;
-    if (p->at == p->end || *p->at != close) return fail(p, "a path has no end");
-    if (result) *result = json_stringn(text, (size_t)(p->at - text));
+    while (p->at < p->end && *p->at != close && *p->at != '\n')
+      p->at++;
+    if (p->at == p->end || *p->at != close)
+      return fail(p, "a path has no end");
+    if (result)
+      *result = json_stringn(text, (size_t)(p->at - text));
     p->at++;
     return true;
   }
   if (isdigit((unsigned char)c) || strchr("+-.", c)) {
     char *end;
     double number = strtod(p->at, &end); /* the text is zero-terminated */
-    if (end == p->at) return fail(p, "a value is missing");
-    if (result) *result = isfinite(number) ? json_real(number) : json_stringn(p->at, (size_t)(end - p->at));
+    if (end == p->at)
+      return fail(p, "a value is missing");
+    if (result)
+      *result =
+          isfinite(number) ? json_real(number) : json_stringn(p->at, (size_t)(end - p->at));
     p->at = end;
     return true;
   }
   length = word(p);
-  if (length == 0) return fail(p, "a value is missing");
-  if (result) *result = json_stringn(p->at, length);
+  if (length == 0)
+    return fail(p, "a value is missing");
+  if (result)
+    *result = json_stringn(p->at, length);
   p->at += length;
   return true;
 }
 
-/* Parses ( ... ) after a prim or property, or at the layer's head; values of the head are stored in `into`. */
+/* Parses ( ... ) after a prim or property, or at the layer's head; values of the head are
+ * stored in `into`. */
 static bool metadata(Parser *p, json_t *into) {
-  if (!take(p, '(')) return p->result == VL_OK;
+  if (!take(p, '('))
+    return p->result == VL_OK;
   while (!take(p, ')')) {
     const char *name;
     size_t length;
-    if (!skip(p)) return fail(p, "a parenthesis is not closed");
+    if (!skip(p))
+      return fail(p, "a parenthesis is not closed");
     if (*p->at == '"' || *p->at == '\'') { /* a comment string */
-      if (!string(p, &name, &length)) return false;
+      if (!string(p, &name, &length))
+        return false;
       continue;
     }
     name = p->at;
     length = word(p);
-    if (length == 0) return fail(p, "a name is missing in parentheses");
+    if (length == 0)
+      return fail(p, "a name is missing in parentheses");
     p->at += length;
-    if (!take(p, '=')) continue; /* `prepend`, `delete`, ... precede the name */
+    if (!take(p, '='))
+      continue; /* `prepend`, `delete`, ... precede the name */
     json_t *item = NULL;
     if (!value(p, 4, into ? &item : NULL)) {
       json_decref(item);
       return false;
     }
-    if (item && json_object_setn_new(into, name, length, item) != 0) return memory(p);
+    if (item && json_object_setn_new(into, name, length, item) != 0)
+      return memory(p);
   }
   return true;
 }
 
 static bool is_kept(const json_t *prim, const char *name, size_t length) {
   const char *type = json_string_value(json_object_get(prim, "<"));
-  if (length >= 7 && memcmp(name, "xformOp", 7) == 0) return true;
+  if (length >= 7 && memcmp(name, "xformOp", 7) == 0)
+    return true;
   return type && (vl_text_is(type, "Camera") || strncmp(type, "Render", 6) == 0);
 }
 
-/* Parses [custom] [uniform] type name [= value] [(metadata)]: the last word before = or ( is the name. */
+/* Parses [custom] [uniform] type name [= value] [(metadata)]: the last word before = or ( is
+ * the name. */
 static bool property(Parser *p, json_t *prim) {
   const char *name = p->at;
   size_t length = 0;
@@ -221,7 +258,8 @@ static bool property(Parser *p, json_t *prim) {
       json_decref(item);
       return false;
     }
-    if (item && json_object_setn_new(prim, name, length, item) != 0) return memory(p);
+    if (item && json_object_setn_new(prim, name, length, item) != 0)
+      return memory(p);
   }
   return metadata(p, NULL);
 }
@@ -230,16 +268,22 @@ static bool prim(Parser *p, json_t *parent, int depth);
 
 static bool body(Parser *p, json_t *self, int depth) {
   while (!take(p, '}')) {
-    if (!skip(p)) return fail(p, "a prim is not closed");
+    if (!skip(p))
+      return fail(p, "a prim is not closed");
     size_t length = word(p);
-    if (length == 0) return fail(p, "something stands where a property or a prim should");
-    bool is_prim = equals(p->at, length, "def") || equals(p->at, length, "over") || equals(p->at, length, "class");
+    if (length == 0)
+      return fail(p, "something stands where a property or a prim should");
+    bool is_prim = equals(p->at, length, "def") || equals(p->at, length, "over") ||
+                   equals(p->at, length, "class");
     if (equals(p->at, length, "variantSet")) {
       p->at += length;
       const char *text;
-      if (!skip(p) || (*p->at != '"' && *p->at != '\'')) return fail(p, "a variant set has no name");
-      if (!string(p, &text, &length) || !take(p, '=') || !next_is(p, '{')) return fail(p, "a variant set is empty");
-      if (!braces(p)) return false;
+      if (!skip(p) || (*p->at != '"' && *p->at != '\''))
+        return fail(p, "a variant set has no name");
+      if (!string(p, &text, &length) || !take(p, '=') || !next_is(p, '{'))
+        return fail(p, "a variant set is empty");
+      if (!braces(p))
+        return false;
     } else if (!(is_prim ? prim(p, self, depth) : property(p, self))) {
       return false;
     }
@@ -252,37 +296,49 @@ static bool prim(Parser *p, json_t *parent, int depth) {
   const char *text = "", *type;
   size_t length = word(p), type_length;
   bool stored = !equals(p->at, length, "class");
-  if (depth == 0 || ++p->prims > MAX_PRIMS) return fail(p, depth == 0 ? "nested too deeply" : "too many prims");
+  if (depth == 0 || ++p->prims > MAX_PRIMS)
+    return fail(p, depth == 0 ? "nested too deeply" : "too many prims");
   p->at += length;
-  if (!skip(p)) return fail(p, "a prim has no name");
+  if (!skip(p))
+    return fail(p, "a prim has no name");
   type = p->at;
   type_length = word(p);
   p->at += type_length;
   uint32_t line = p->line;
-  if (!skip(p) || (*p->at != '"' && *p->at != '\'')) return fail(p, "a prim has no name");
-  if (!string(p, &text, &length)) return false;
+  if (!skip(p) || (*p->at != '"' && *p->at != '\''))
+    return fail(p, "a prim has no name");
+  if (!string(p, &text, &length))
+    return false;
   json_t *self = json_object();
   int failed = json_object_set_new(self, "<", json_stringn(type, type_length));
   failed |= json_object_set_new(self, "@", json_stringn(text, length));
   failed |= json_object_set_new(self, "#", json_real(line));
   failed |= json_object_set_new(self, "/", json_array());
-  if (stored && !failed) failed = json_array_append(json_object_get(parent, "/"), self);
+  if (stored && !failed)
+    failed = json_array_append(json_object_get(parent, "/"), self);
   bool good = failed ? memory(p) : metadata(p, NULL);
-  if (good && !take(p, '{')) good = fail(p, "a prim has no body");
-  if (good) good = body(p, self, depth - 1);
+  if (good && !take(p, '{'))
+    good = fail(p, "a prim has no body");
+  if (good)
+    good = body(p, self, depth - 1);
   json_decref(self);
   return good;
 }
 
-vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
-  Parser p = {.file = file, .start = text, .at = text, .end = text + size, .line = 1, .result = VL_OK};
+vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size,
+                        json_t **tree) {
+  Parser p = {
+      .file = file, .start = text, .at = text, .end = text + size, .line = 1, .result = VL_OK};
   json_t *root = json_object();
   *tree = NULL;
-  if (!root || json_object_set_new(root, "/", json_array()) != 0) memory(&p);
-  if (p.result == VL_OK) metadata(&p, root);
+  if (!root || json_object_set_new(root, "/", json_array()) != 0)
+    memory(&p);
+  if (p.result == VL_OK)
+    metadata(&p, root);
   while (p.result == VL_OK && skip(&p)) {
     size_t length = word(&p);
-    if (equals(p.at, length, "def") || equals(p.at, length, "over") || equals(p.at, length, "class"))
+    if (equals(p.at, length, "def") || equals(p.at, length, "over") ||
+        equals(p.at, length, "class"))
       prim(&p, root, MAX_DEPTH);
     else
       fail(&p, "something stands where a prim should");

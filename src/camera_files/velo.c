@@ -1,5 +1,6 @@
-/* camera_files/velo.c: velo's own JSON: every parameter of the cameras' rows (velo/schema.h) by the name of its member,
- * exactly, in the unit of the def. Fields that have their defaults are not written. Unknown fields are errors. */
+/* camera_files/velo.c: velo's own JSON: every parameter of the cameras' rows (velo/schema.h) by
+ * the name of its member, exactly, in the unit of the def. Fields that have their defaults are
+ * not written. Unknown fields are errors. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -18,18 +19,23 @@ static const char *projection_key(vlProjection kind) {
 }
 static const char *const distortions[] = {"none", "opencv", "radial", "thin-prism"};
 
-/* ---- fields ------------------------------------------------------------------------------------------------------ */
+/* ---- fields
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Field Field;
 typedef void Put(vlCameraText *text, const Field *field, const vlCameraDef *def);
-typedef vlResult Read(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *def);
-static Put put_fov_axis, put_curve, put_shape, put_distortion, put_vector, put_pose, put_pose_close;
+typedef vlResult Read(const vlCameraFile *file, const json_t *tree, const Field *field,
+                      vlCameraDef *def);
+static Put put_fov_axis, put_curve, put_shape, put_distortion, put_vector, put_pose,
+    put_pose_close;
 static Read read_curve, read_shape, read_distortion, read_pose, read_pose_close;
 
 /* How the file holds a parameter. */
 typedef enum Form { NOT_HELD, NUMBERS, COUNT, CHOICE, BOOL } Form;
 
-/* A field of the file: a parameter of a row, or numbers that no row holds, or what a function writes and reads. */
+/* A field of the file: a parameter of a row, or numbers that no row holds, or what a function
+ * writes and reads. */
 struct Field {
   const char *member;     /* of the row's parameter; null: no row holds it */
   const char *name;       /* in the file; null: the last word of member */
@@ -44,37 +50,45 @@ struct Field {
   { .member = path }
 #define FIELD_AS(path, file_name) \
   { .member = path, .name = file_name }
-#define DOUBLES(file_name, path) \
-  { .name = file_name, .offset = offsetof(vlCameraDef, path), .count = sizeof((vlCameraDef *)0)->path / sizeof(double) }
+#define DOUBLES(file_name, path)                              \
+  {                                                           \
+    .name = file_name, .offset = offsetof(vlCameraDef, path), \
+    .count = sizeof((vlCameraDef *)0)->path / sizeof(double)  \
+  }
 #define FIELD_BY(path, putter) \
   { .member = path, .put = putter }
 #define RULE(file_name, putter, reader) \
   { .name = file_name, .put = putter, .read = reader }
 
-/* The fields in the order in which they are written. Parameters of the rows that are not here follow by themselves. */
+/* The fields in the order in which they are written. Parameters of the rows that are not here
+ * follow by themselves. */
 static const Field known_fields[] = {
     FIELD("fov"), FIELD("view_distance"), FIELD("zoom"), FIELD("pixel_size"), FIELD("focal_mm"),
     FIELD("sensor_width_mm"), FIELD("fx"), FIELD("fy"), FIELD("skew"), FIELD("cx"), FIELD("cy"),
-    DOUBLES("screen_min_x", screen_min_x), DOUBLES("screen_max_x", screen_max_x), DOUBLES("screen_min_y", screen_min_y),
-    DOUBLES("screen_max_y", screen_max_y), FIELD("roll"), FIELD("lens_radius"), FIELD("focus_distance"),
-    FIELD("shutter_open"), FIELD("shutter_close"), FIELD("exposure_time"), FIELD("near_plane"), FIELD("far_plane"),
+    DOUBLES("screen_min_x", screen_min_x), DOUBLES("screen_max_x", screen_max_x),
+    DOUBLES("screen_min_y", screen_min_y), DOUBLES("screen_max_y", screen_max_y), FIELD("roll"),
+    FIELD("lens_radius"), FIELD("focus_distance"), FIELD("shutter_open"),
+    FIELD("shutter_close"), FIELD("exposure_time"), FIELD("near_plane"), FIELD("far_plane"),
     FIELD("max_angle"),
     /* the lens */
-    FIELD("lens.f_number"), FIELD("lens.unit_mm"), FIELD("lens.focus_point"), DOUBLES("focus_pixel", lens.focus_pixel),
-    FIELD_AS("lens.rotation", "aperture_rotation"), FIELD_AS("lens.ratio", "aperture_ratio"), FIELD("lens.tilt_x"),
-    FIELD("lens.tilt_y"), FIELD("lens.lens_tilt_x"), FIELD("lens.lens_tilt_y"), FIELD("lens.iso"),
+    FIELD("lens.f_number"), FIELD("lens.unit_mm"), FIELD("lens.focus_point"),
+    DOUBLES("focus_pixel", lens.focus_pixel), FIELD_AS("lens.rotation", "aperture_rotation"),
+    FIELD_AS("lens.ratio", "aperture_ratio"), FIELD("lens.tilt_x"), FIELD("lens.tilt_y"),
+    FIELD("lens.lens_tilt_x"), FIELD("lens.lens_tilt_y"), FIELD("lens.iso"),
     FIELD_AS("lens.seconds", "exposure_seconds"),
     /* time */
-    FIELD("readout"), FIELD("eye_close"), FIELD("lookat_close"), FIELD("up_close"), FIELD("roll_close"),
-    DOUBLES("pose_times", pose_times),
+    FIELD("readout"), FIELD("eye_close"), FIELD("lookat_close"), FIELD("up_close"),
+    FIELD("roll_close"), DOUBLES("pose_times", pose_times),
     /* stereo */
     FIELD("stereo.interocular"), FIELD("stereo.convergence"),
     /* not numbers, or not one by one */
-    FIELD_BY("fov_axis", put_fov_axis), FIELD("lens.blades"), FIELD("lens.vignetting"), FIELD("readout_direction"),
-    RULE("shutter_curve", put_curve, read_curve), FIELD_AS("stereo.mode", "stereo"), FIELD("stereo_eye"),
+    FIELD_BY("fov_axis", put_fov_axis), FIELD("lens.blades"), FIELD("lens.vignetting"),
+    FIELD("readout_direction"), RULE("shutter_curve", put_curve, read_curve),
+    FIELD_AS("stereo.mode", "stereo"), FIELD("stereo_eye"),
     RULE("shape", put_shape, read_shape), RULE("distortion", put_distortion, read_distortion),
     FIELD_BY("eye", put_vector), FIELD_BY("lookat", put_vector), FIELD_BY("up", put_vector),
-    RULE("world_from_camera", put_pose, read_pose), RULE("world_from_camera_close", put_pose_close, read_pose_close)};
+    RULE("world_from_camera", put_pose, read_pose),
+    RULE("world_from_camera_close", put_pose_close, read_pose_close)};
 
 enum { MOST_FIELDS = 128 };
 typedef struct {
@@ -84,13 +98,18 @@ typedef struct {
 
 /* Functions write and read blocks and the list `shape`. */
 static Form form_of(const vlParameter *p) {
-  if (p->flags & VL_PARAMETER_SHORTHAND || strncmp(p->member, "shape[", 6) == 0) return NOT_HELD;
+  if (p->flags & VL_PARAMETER_SHORTHAND || strncmp(p->member, "shape[", 6) == 0)
+    return NOT_HELD;
   switch (p->type) {
-    case VL_PARAMETER_BOOL: return BOOL;
-    case VL_PARAMETER_COUNT: return COUNT;
-    case VL_PARAMETER_CHOICE: return CHOICE;
+    case VL_PARAMETER_BOOL:
+      return BOOL;
+    case VL_PARAMETER_COUNT:
+      return COUNT;
+    case VL_PARAMETER_CHOICE:
+      return CHOICE;
     case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_DOUBLE3: return NUMBERS;
+    case VL_PARAMETER_DOUBLE3:
+      return NUMBERS;
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_FLOAT3:
     case VL_PARAMETER_STRING:
@@ -100,20 +119,25 @@ static Form form_of(const vlParameter *p) {
     case VL_PARAMETER_SPECTRUM_INPUT:
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: return NOT_HELD;
+    case VL_PARAMETER_BLOCK:
+      return NOT_HELD;
   }
   return NOT_HELD;
 }
 
 static void add_parameter(Fields *fields, const vlParameter *p) {
-  if (form_of(p) == NOT_HELD) return;
+  if (form_of(p) == NOT_HELD)
+    return;
   for (size_t i = 0; i < fields->count; i++) {
     Field *field = &fields->items[i];
-    if (!vl_text_is(field->member, p->member)) continue;
-    if (!field->row) field->row = p;
+    if (!vl_text_is(field->member, p->member))
+      continue;
+    if (!field->row)
+      field->row = p;
     return;
   }
-  if (fields->count < MOST_FIELDS) fields->items[fields->count++] = (Field){.member = p->member, .row = p};
+  if (fields->count < MOST_FIELDS)
+    fields->items[fields->count++] = (Field){.member = p->member, .row = p};
 }
 
 static const char *last_word(const char *member) {
@@ -121,7 +145,8 @@ static const char *last_word(const char *member) {
   return dot ? dot + 1 : member;
 }
 
-/* From the last row on: the first rows are pbrt's cameras, in which some parameters have other defaults. */
+/* From the last row on: the first rows are pbrt's cameras, in which some parameters have other
+ * defaults. */
 static void list_fields(Fields *fields) {
   const vlKindFamily *cameras = vl_kind_family_find("cameras");
   fields->count = VL_LENGTH(known_fields);
@@ -131,29 +156,39 @@ static void list_fields(Fields *fields) {
       add_parameter(fields, &cameras->rows[i]->parameters[k]);
   for (size_t i = 0; i < fields->count; i++) {
     Field *field = &fields->items[i];
-    if (!field->name) field->name = last_word(field->member);
+    if (!field->name)
+      field->name = last_word(field->member);
     field->form = NUMBERS;
-    if (!field->row) continue;
+    if (!field->row)
+      continue;
     field->form = form_of(field->row);
     field->offset = field->row->offset;
     field->count = field->row->type == VL_PARAMETER_DOUBLE3 ? 3 : 1;
   }
 }
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult check_names(const vlCameraFile *file, const json_t *tree, const Fields *fields) {
-  static const char *const others[] = {"velo_camera", "name", "pixel_origin", "axes", "projection", "width", "height"};
+static vlResult check_names(const vlCameraFile *file, const json_t *tree,
+                            const Fields *fields) {
+  static const char *const others[] = {"velo_camera", "name",  "pixel_origin", "axes",
+                                       "projection",  "width", "height"};
   enum { OTHERS = VL_LENGTH(others) };
   const char *known[MOST_FIELDS + OTHERS], *key;
   size_t count = 0;
   json_t *unused;
-  for (size_t i = 0; i < fields->count; i++) known[count++] = fields->items[i].name;
-  for (size_t i = 0; i < OTHERS; i++) known[count++] = others[i];
+  for (size_t i = 0; i < fields->count; i++)
+    known[count++] = fields->items[i].name;
+  for (size_t i = 0; i < OTHERS; i++)
+    known[count++] = others[i];
   json_object_foreach((json_t *)tree, key, unused) {
     bool found = false;
-    for (size_t i = 0; i < count; i++) found |= vl_text_is(key, known[i]);
-    if (found) continue;
+    for (size_t i = 0; i < count; i++)
+      found |= vl_text_is(key, known[i]);
+    if (found)
+      continue;
     char message[VL_GIVEN_MESSAGE];
     vl_unknown_name("field", "", vl_short_text(key).text, known, count, message);
     return vl_camera_wrong(file, "velo: %s", message);
@@ -162,11 +197,13 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree, const 
 }
 
 /* Index of a field's word in a list; *index is unchanged if the field is missing. */
-static vlResult word(const vlCameraFile *file, const json_t *object, const char *key, const char *const *names,
-                     uint32_t count, uint32_t *index) {
-  if (!json_object_get(object, key)) return VL_OK;
+static vlResult word(const vlCameraFile *file, const json_t *object, const char *key,
+                     const char *const *names, uint32_t count, uint32_t *index) {
+  if (!json_object_get(object, key))
+    return VL_OK;
   const char *text = vl_camera_text(object, key);
-  if (!text) return vl_camera_wrong(file, "velo: \"%s\" must be a word", key);
+  if (!text)
+    return vl_camera_wrong(file, "velo: \"%s\" must be a word", key);
   for (uint32_t i = 0; i < count; i++)
     if (vl_text_is(text, names[i])) {
       *index = i;
@@ -174,34 +211,47 @@ static vlResult word(const vlCameraFile *file, const json_t *object, const char 
     }
   char known[300];
   vl_tell_names(known, sizeof known, text, names, count);
-  return vl_camera_wrong(file, "velo: unknown %s \"%s\"%s", key, vl_short_text(text).text, known);
+  return vl_camera_wrong(file, "velo: unknown %s \"%s\"%s", key, vl_short_text(text).text,
+                         known);
 }
 
-static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+static vlResult read_distortion(const vlCameraFile *file, const json_t *tree,
+                                const Field *field, vlCameraDef *d) {
   const json_t *lens = json_object_get(tree, field->name);
   uint32_t kind = 0;
-  if (!lens) return VL_OK;
-  if (!json_is_object(lens)) return vl_camera_wrong(file, "velo: \"distortion\" must have a model and coefficients");
+  if (!lens)
+    return VL_OK;
+  if (!json_is_object(lens))
+    return vl_camera_wrong(file, "velo: \"distortion\" must have a model and coefficients");
   vlResult result = word(file, lens, "model", distortions, 4, &kind);
   d->distortion = (vlDistortion)kind;
   if (result == VL_OK && kind)
-    result = vl_camera_numbers(file, lens, "coefficients", d->distortion_coefficients, 1, 14, &d->distortion_count);
+    result = vl_camera_numbers(file, lens, "coefficients", d->distortion_coefficients, 1, 14,
+                               &d->distortion_count);
   return result;
 }
 
-static vlResult read_shape(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+static vlResult read_shape(const vlCameraFile *file, const json_t *tree, const Field *field,
+                           vlCameraDef *d) {
   uint32_t count = 0;
-  return json_object_get(tree, field->name) ? vl_camera_numbers(file, tree, field->name, d->shape, 1, 2, &count)
-                                            : VL_OK;
+  return json_object_get(tree, field->name)
+             ? vl_camera_numbers(file, tree, field->name, d->shape, 1, 2, &count)
+             : VL_OK;
 }
 
-static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const Field *field,
+                           vlCameraDef *d) {
   uint32_t count = 0;
   double curve[2 * VL_SHUTTER_POINTS];
-  if (!json_object_get(tree, field->name)) return VL_OK;
-  vlResult result = vl_camera_numbers(file, tree, field->name, curve, 2, 2 * VL_SHUTTER_POINTS, &count);
-  if (result != VL_OK) return result;
-  if (count % 2) return vl_camera_wrong(file, "velo: \"%s\" must be a list of pairs, time and value", field->name);
+  if (!json_object_get(tree, field->name))
+    return VL_OK;
+  vlResult result =
+      vl_camera_numbers(file, tree, field->name, curve, 2, 2 * VL_SHUTTER_POINTS, &count);
+  if (result != VL_OK)
+    return result;
+  if (count % 2)
+    return vl_camera_wrong(file, "velo: \"%s\" must be a list of pairs, time and value",
+                           field->name);
   d->shutter_points = count / 2;
   for (uint32_t i = 0; i < d->shutter_points; i++) {
     d->shutter_at[i] = curve[2 * i];
@@ -210,36 +260,44 @@ static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const F
   return VL_OK;
 }
 
-static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, bool *given, double *m) {
+static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
+                            bool *given, double *m) {
   *given = json_object_get(tree, key) != NULL;
   return *given ? vl_camera_numbers(file, tree, key, m, 16, 16, NULL) : VL_OK;
 }
 
-static vlResult read_pose(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+static vlResult read_pose(const vlCameraFile *file, const json_t *tree, const Field *field,
+                          vlCameraDef *d) {
   return read_matrix(file, tree, field->name, &d->has_matrix, d->world_from_camera);
 }
 
-static vlResult read_pose_close(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+static vlResult read_pose_close(const vlCameraFile *file, const json_t *tree,
+                                const Field *field, vlCameraDef *d) {
   return read_matrix(file, tree, field->name, &d->has_matrix_close, d->world_from_camera_close);
 }
 
-/* Checks one value by the field's row, or a finite number where no row holds it; null is unset. */
-static vlResult read_item(const vlCameraFile *file, const json_t *item, const Field *field, double *number) {
+/* Checks one value by the field's row, or a finite number where no row holds it; null is unset.
+ */
+static vlResult read_item(const vlCameraFile *file, const json_t *item, const Field *field,
+                          double *number) {
   static const vlParameter any = {.type = VL_PARAMETER_DOUBLE, .flags = VL_PARAMETER_UNSET};
   char name[80];
   char message[VL_GIVEN_MESSAGE];
   const vlGiven given = vl_json_given(item);
   snprintf(name, sizeof name, "velo: \"%s\"", field->name);
-  if (vl_given_check(field->row ? field->row : &any, name, &given, number, message)) return VL_OK;
+  if (vl_given_check(field->row ? field->row : &any, name, &given, number, message))
+    return VL_OK;
   return vl_camera_wrong_in(file, item, NULL, "%s", message);
 }
 
 /* Reads one number, or a list with null for unset. */
-static vlResult read_numbers(const vlCameraFile *file, const json_t *value, const Field *field, double *values) {
-  if (field->count == 1) return read_item(file, value, field, values);
+static vlResult read_numbers(const vlCameraFile *file, const json_t *value, const Field *field,
+                             double *values) {
+  if (field->count == 1)
+    return read_item(file, value, field, values);
   if (json_array_size(value) != field->count)
-    return vl_camera_wrong_in(file, value, NULL, "velo: \"%s\" must be a list of %u numbers", field->name,
-                              field->count);
+    return vl_camera_wrong_in(file, value, NULL, "velo: \"%s\" must be a list of %u numbers",
+                              field->name, field->count);
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < field->count && result == VL_OK; i++)
     result = read_item(file, json_array_get(value, i), field, &values[i]);
@@ -247,32 +305,43 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *value, cons
 }
 
 /* The def is unchanged if the field is missing. */
-static vlResult read_field(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *def) {
+static vlResult read_field(const vlCameraFile *file, const json_t *tree, const Field *field,
+                           vlCameraDef *def) {
   const json_t *value = json_object_get(tree, field->name);
-  if (field->read) return field->read(file, tree, field, def);
-  if (!value) return VL_OK;
-  if (field->form == NUMBERS) return read_numbers(file, value, field, (double *)(void *)((char *)def + field->offset));
+  if (field->read)
+    return field->read(file, tree, field, def);
+  if (!value)
+    return VL_OK;
+  if (field->form == NUMBERS)
+    return read_numbers(file, value, field, (double *)(void *)((char *)def + field->offset));
   double number;
   vlResult result = read_item(file, value, field, &number);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vl_given_put(field->row, number, def);
   return VL_OK;
 }
 
-vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
   static const char *const origins[] = {"corner", "center"};
   vlCameraDef *d = &record->camera;
   uint32_t projection = 0, origin = 0;
   const char *projections[PROJECTIONS];
-  for (int i = 0; i < PROJECTIONS; i++) projections[i] = projection_key((vlProjection)i);
+  for (int i = 0; i < PROJECTIONS; i++)
+    projections[i] = projection_key((vlProjection)i);
   Fields fields;
   list_fields(&fields);
   vlResult result = check_names(file, tree, &fields);
   if (result == VL_OK)
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height));
-  if (result == VL_OK) result = word(file, tree, "projection", projections, PROJECTIONS, &projection);
-  if (result == VL_OK) result = word(file, tree, "pixel_origin", origins, 2, &origin);
-  for (size_t i = 0; i < fields.count && result == VL_OK; i++) result = read_field(file, tree, &fields.items[i], d);
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width),
+                            VL_FIELD_SIDE("height", &d->height));
+  if (result == VL_OK)
+    result = word(file, tree, "projection", projections, PROJECTIONS, &projection);
+  if (result == VL_OK)
+    result = word(file, tree, "pixel_origin", origins, 2, &origin);
+  for (size_t i = 0; i < fields.count && result == VL_OK; i++)
+    result = read_field(file, tree, &fields.items[i], d);
   d->projection = (vlProjection)projection;
   if (origin) { /* unset values stay unset */
     d->cx += 0.5;
@@ -284,44 +353,55 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   return result;
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void put_fov_axis(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (!vl_is_unset(d->fov)) vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name, field->row->choices[d->fov_axis]);
+  if (!vl_is_unset(d->fov))
+    vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name, field->row->choices[d->fov_axis]);
 }
 
 static void put_curve(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->shutter_points) vl_camera_put(text, ",\n  \"%s\": [", field->name);
+  if (d->shutter_points)
+    vl_camera_put(text, ",\n  \"%s\": [", field->name);
   for (uint32_t i = 0; i < d->shutter_points; i++)
-    vl_camera_put(text, "%s[%.17g, %.17g]", i ? ", " : "", d->shutter_at[i], d->shutter_value[i]);
-  if (d->shutter_points) vl_camera_put(text, "]");
+    vl_camera_put(text, "%s[%.17g, %.17g]", i ? ", " : "", d->shutter_at[i],
+                  d->shutter_value[i]);
+  if (d->shutter_points)
+    vl_camera_put(text, "]");
 }
 
 static void put_list(vlCameraText *text, const double *values, uint32_t count) {
   for (uint32_t i = 0; i < count; i++) {
-    if (i) vl_camera_put(text, ", ");
+    if (i)
+      vl_camera_put(text, ", ");
     vl_camera_put(text, vl_is_unset(values[i]) ? "null" : "%.17g", values[i]);
   }
 }
 
 static void put_shape(vlCameraText *text, const Field *field, const vlCameraDef *d) {
   uint32_t count = vl_is_unset(d->shape[0]) ? 0 : vl_is_unset(d->shape[1]) ? 1 : 2;
-  if (!count) return;
+  if (!count)
+    return;
   vl_camera_put(text, ",\n  \"%s\": [", field->name);
   put_list(text, d->shape, count);
   vl_camera_put(text, "]");
 }
 
 static void put_distortion(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->distortion == VL_DISTORTION_NONE) return;
-  vl_camera_put(text, ",\n  \"%s\": {\"model\": \"%s\", \"coefficients\": [", field->name, distortions[d->distortion]);
+  if (d->distortion == VL_DISTORTION_NONE)
+    return;
+  vl_camera_put(text, ",\n  \"%s\": {\"model\": \"%s\", \"coefficients\": [", field->name,
+                distortions[d->distortion]);
   put_list(text, d->distortion_coefficients, d->distortion_count);
   vl_camera_put(text, "]}");
 }
 
 /* A vector of the pose, also where it is the default; not beside a matrix. */
 static void put_vector(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->has_matrix) return;
+  if (d->has_matrix)
+    return;
   vl_camera_put(text, ",\n  \"%s\": [", field->name);
   put_list(text, (const double *)(const void *)((const char *)d + field->offset), 3);
   vl_camera_put(text, "]");
@@ -331,36 +411,45 @@ static void put_matrix(vlCameraText *text, const char *name, const double m[16])
   vl_camera_put(text, ",\n  \"%s\": [", name);
   for (int i = 0; i < 16; i++) {
     vl_camera_put(text, "%s%.17g", i % 4 ? ", " : "\n    [", m[i]);
-    if (i % 4 == 3) vl_camera_put(text, i < 15 ? "]," : "]");
+    if (i % 4 == 3)
+      vl_camera_put(text, i < 15 ? "]," : "]");
   }
   vl_camera_put(text, "\n  ]");
 }
 
 static void put_pose(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->has_matrix) put_matrix(text, field->name, d->world_from_camera);
+  if (d->has_matrix)
+    put_matrix(text, field->name, d->world_from_camera);
 }
 
 static void put_pose_close(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->has_matrix_close) put_matrix(text, field->name, d->world_from_camera_close);
+  if (d->has_matrix_close)
+    put_matrix(text, field->name, d->world_from_camera_close);
 }
 
 static double default_of(const Field *field, const vlCameraDef *standard, uint32_t i) {
-  if (!field->row) return ((const double *)(const void *)((const char *)standard + field->offset))[i];
+  if (!field->row)
+    return ((const double *)(const void *)((const char *)standard + field->offset))[i];
   return field->row->flags & VL_PARAMETER_UNSET ? VL_UNSET : field->row->value[i];
 }
 
-static void put_numbers(vlCameraText *text, const Field *field, const double *values, const vlCameraDef *standard) {
+static void put_numbers(vlCameraText *text, const Field *field, const double *values,
+                        const vlCameraDef *standard) {
   bool differs = false;
   for (uint32_t i = 0; i < field->count; i++)
-    differs = differs || (!vl_is_unset(values[i]) && !isinf(values[i]) && values[i] != default_of(field, standard, i));
-  if (!differs) return;
+    differs = differs || (!vl_is_unset(values[i]) && !isinf(values[i]) &&
+                          values[i] != default_of(field, standard, i));
+  if (!differs)
+    return;
   vl_camera_put(text, field->count > 1 ? ",\n  \"%s\": [" : ",\n  \"%s\": ", field->name);
   put_list(text, values, field->count);
-  if (field->count > 1) vl_camera_put(text, "]");
+  if (field->count > 1)
+    vl_camera_put(text, "]");
 }
 
 /* Writes a field if it differs from its default. */
-static void put_field(vlCameraText *text, const Field *field, const vlCameraDef *def, const vlCameraDef *standard) {
+static void put_field(vlCameraText *text, const Field *field, const vlCameraDef *def,
+                      const vlCameraDef *standard) {
   const void *at = (const char *)def + field->offset;
   if (field->put) {
     field->put(text, field, def);
@@ -368,20 +457,25 @@ static void put_field(vlCameraText *text, const Field *field, const vlCameraDef 
   }
   double usual = field->row ? field->row->value[0] : 0.0;
   switch (field->form) {
-    case NUMBERS: put_numbers(text, field, at, standard); break;
+    case NUMBERS:
+      put_numbers(text, field, at, standard);
+      break;
     case COUNT:
       if (*(const uint32_t *)at != (uint32_t)usual)
         vl_camera_put(text, ",\n  \"%s\": %u", field->name, *(const uint32_t *)at);
       break;
     case BOOL:
       if (*(const bool *)at != (usual != 0))
-        vl_camera_put(text, ",\n  \"%s\": %s", field->name, *(const bool *)at ? "true" : "false");
+        vl_camera_put(text, ",\n  \"%s\": %s", field->name,
+                      *(const bool *)at ? "true" : "false");
       break;
     case CHOICE:
       if (*(const int *)at != (int)usual)
-        vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name, field->row->choices[*(const int *)at]);
+        vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name,
+                      field->row->choices[*(const int *)at]);
       break;
-    case NOT_HELD: break;
+    case NOT_HELD:
+      break;
   }
 }
 
@@ -395,23 +489,31 @@ void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
     vl_camera_put_string(text, record->name);
     vl_camera_put(text, ",\n");
   }
-  vl_camera_put(text, "  \"pixel_origin\": \"corner\",\n  \"axes\": \"x right, y down, z forward\",\n");
+  vl_camera_put(
+      text, "  \"pixel_origin\": \"corner\",\n  \"axes\": \"x right, y down, z forward\",\n");
   const char *key = projection_key(d->projection);
   vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u",
                 *key ? key : vl_projection_name(d->projection), d->width, d->height);
-  for (size_t i = 0; i < fields.count; i++) put_field(text, &fields.items[i], d, &standard);
+  for (size_t i = 0; i < fields.count; i++)
+    put_field(text, &fields.items[i], d, &standard);
   vl_camera_put(text, "\n}\n");
 }
 
-vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *record,
+                              vlCameraText *text) {
   vlCamera camera;
   vlResult result = vl_camera_make(&record->camera, &camera, NULL, file->error);
-  if (result == VL_OK) result = vl_camera_refuse(file, "aperture", record->camera.lens.aperture != NULL);
+  if (result == VL_OK)
+    result = vl_camera_refuse(file, "aperture", record->camera.lens.aperture != NULL);
   if (result == VL_OK && record->camera.projection == VL_PROJECTION_OPTICS)
-    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0, "velo cannot hold a lens of many elements");
-  if (result == VL_OK) vl_camera_put_velo(record, text);
+    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                      "velo cannot hold a lens of many elements");
+  if (result == VL_OK)
+    vl_camera_put_velo(record, text);
   return result;
 }
 
-const vlCameraFormat vl_format_velo = {
-    .name = "velo", .marks = {"velo_camera"}, .read = vl_camera_read_velo, .write = vl_camera_write_velo};
+const vlCameraFormat vl_format_velo = {.name = "velo",
+                                       .marks = {"velo_camera"},
+                                       .read = vl_camera_read_velo,
+                                       .write = vl_camera_write_velo};

@@ -1,7 +1,8 @@
-/* camera_files/visp.c: ViSP's camera XML: <root> with cameras, each with an image size and models. Camera axes: x
- * right, y down, z forward. There is no pose. The first pixel's centre is (0, 0). The distortion kud maps the ideal
- * point to the distorted one and equals OpenCV's k1. kdu, the inverse, is not used. k1 to k4 of Kannala-Brandt are
- * those of OpenCV's fisheye model; ViSP writes a k5 and does not use it. */
+/* camera_files/visp.c: ViSP's camera XML: <root> with cameras, each with an image size and
+ * models. Camera axes: x right, y down, z forward. There is no pose. The first pixel's centre
+ * is (0, 0). The distortion kud maps the ideal point to the distorted one and equals OpenCV's
+ * k1. kdu, the inverse, is not used. k1 to k4 of Kannala-Brandt are those of OpenCV's fisheye
+ * model; ViSP writes a k5 and does not use it. */
 #include <math.h>
 
 #include "base/text.h"
@@ -15,22 +16,27 @@ static const char kannala_brandt[] = "ProjWithKannalaBrandtDistortion";
 static void child_text(const json_t *element, const char *tag, char text[64]) {
   const char *from = vl_camera_text(vl_camera_child(element, tag), "$");
   text[0] = 0;
-  if (!from) return;
+  if (!from)
+    return;
   from += strspn(from, " \t\r\n\"");
   size_t length = strcspn(from, " \t\r\n\"");
-  if (length > 63) length = 63;
+  if (length > 63)
+    length = 63;
   memcpy(text, from, length);
   text[length] = 0;
 }
 
 static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCameraDef *d) {
-  static const char *const names[] = {"px", "py", "u0", "v0"}, *const radial[] = {"k1", "k2", "k3", "k4"};
+  static const char *const names[] = {"px", "py", "u0", "v0"}, *const radial[] = {"k1", "k2",
+                                                                                  "k3", "k4"};
   double f[4], k[4];
   char type[64];
   vlResult result = VL_OK;
   child_text(model, "type", type);
-  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, names[i], true, &f[i]);
-  if (result != VL_OK) return result;
+  for (int i = 0; i < 4 && result == VL_OK; i++)
+    result = vl_camera_child_number(file, model, names[i], true, &f[i]);
+  if (result != VL_OK)
+    return result;
   if (vl_text_is(type, with_distortion)) {
     result = vl_camera_child_number(file, model, "kud", true, &k[0]);
     if (result == VL_OK && k[0] != 0.0) {
@@ -39,12 +45,15 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
       d->distortion_coefficients[0] = k[0];
     }
   } else if (vl_text_is(type, kannala_brandt)) {
-    for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, radial[i], true, &k[i]);
-    if (result != VL_OK) return result;
+    for (int i = 0; i < 4 && result == VL_OK; i++)
+      result = vl_camera_child_number(file, model, radial[i], true, &k[i]);
+    if (result != VL_OK)
+      return result;
     vl_camera_set_fisheye(d, k);
   } else if (!vl_text_is(type, without_distortion)) {
-    return vl_camera_wrong_element(file, model, "unknown model \"%s\"; there are %s, %s, %s", vl_short_text(type).text,
-                                   without_distortion, with_distortion, kannala_brandt);
+    return vl_camera_wrong_element(file, model, "unknown model \"%s\"; there are %s, %s, %s",
+                                   vl_short_text(type).text, without_distortion,
+                                   with_distortion, kannala_brandt);
   }
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
   return result;
@@ -57,27 +66,36 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   char name[64];
   vlResult result = VL_READ_CHILDREN(file, camera, VL_FIELD_OPTIONAL("image_width", &size[0]),
                                      VL_FIELD_OPTIONAL("image_height", &size[1]));
-  if (result == VL_OK) result = read_model(file, model, d);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = read_model(file, model, d);
+  if (result != VL_OK)
+    return result;
   vl_camera_set_origin(d);
   child_text(camera, "name", name);
   vl_camera_name(record, name);
-  if (size[0] == 0.0 && size[1] == 0.0) return vl_camera_size_beside(file, NULL, record);
-  if (vl_camera_set_sides(d, size)) return VL_OK;
-  return vl_camera_wrong_element(file, camera, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
+  if (size[0] == 0.0 && size[1] == 0.0)
+    return vl_camera_size_beside(file, NULL, record);
+  if (vl_camera_set_sides(d, size))
+    return VL_OK;
+  return vl_camera_wrong_element(file, camera, "the image is %g x %g; it must be whole pixels",
+                                 size[0], size[1]);
 }
 
-/* Each model of each camera counts as one camera, which is chosen by the camera's name or its number. */
-static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
+/* Each model of each camera counts as one camera, which is chosen by the camera's name or its
+ * number. */
+static vlResult read_visp(const vlCameraFile *file, const json_t *root,
+                          vlCameraRecord *record) {
   const json_t *camera, *model, *chosen = NULL, *of = NULL;
   size_t i, k;
   record->frames = 0;
   json_array_foreach(json_object_get(root, "/"), i, camera) {
     char name[64];
-    if (!vl_text_is(vl_camera_text(camera, "<"), "camera")) continue;
+    if (!vl_text_is(vl_camera_text(camera, "<"), "camera"))
+      continue;
     child_text(camera, "name", name);
     json_array_foreach(json_object_get(camera, "/"), k, model) {
-      if (!vl_text_is(vl_camera_text(model, "<"), "model")) continue;
+      if (!vl_text_is(vl_camera_text(model, "<"), "model"))
+        continue;
       if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
         chosen = model;
         of = camera;
@@ -85,9 +103,10 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCamera
       record->frames++;
     }
   }
-  if (chosen) return read_camera(file, of, chosen, record);
-  return vl_camera_wrong_element(file, root, "there is no camera \"%s\" among the %u", vl_camera_asked(file, "0").text,
-                                 record->frames);
+  if (chosen)
+    return read_camera(file, of, chosen, record);
+  return vl_camera_wrong_element(file, root, "there is no camera \"%s\" among the %u",
+                                 vl_camera_asked(file, "0").text, record->frames);
 }
 
 static bool is_visp(const json_t *tree) {
@@ -96,33 +115,41 @@ static bool is_visp(const json_t *tree) {
   return vl_text_is(tag, "root") && vl_camera_child(model, "px");
 }
 
-static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *record,
+                           vlCameraText *text) {
   vlCamera c;
   double k[14];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool fits = family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV || family == VL_LENS_FISHEYE;
+  bool fits =
+      family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV || family == VL_LENS_FISHEYE;
   bool fisheye = family == VL_LENS_FISHEYE;
-  for (int i = 1; i < 14 && !fisheye; i++) fits = fits && k[i] == 0.0; /* ViSP's model has k1 only */
-  if (!fits) return vl_camera_no_model(file, &record->camera);
+  for (int i = 1; i < 14 && !fisheye; i++)
+    fits = fits && k[i] == 0.0; /* ViSP's model has k1 only */
+  if (!fits)
+    return vl_camera_no_model(file, &record->camera);
   bool bent = !fisheye && k[0] != 0.0;
   const char *name = record->name[0] && !strpbrk(record->name, "<>&") ? record->name : "Camera";
-  VL_PUT_FORM(text, record, &c,
-              "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>$own</name>\n"
-              "    <image_width>$width</image_width>\n    <image_height>$height</image_height>\n"
-              "    <model>\n      <type>$type</type>\n      <px>$fx</px>\n      <py>$fy</py>\n"
-              "      <u0>$cx0</u0>\n      <v0>$cy0</v0>\n",
-              VL_WORD("own", name),
-              VL_WORD("type", fisheye ? kannala_brandt
-                              : bent  ? with_distortion
-                                      : without_distortion));
-  if (bent) vl_camera_put(text, "      <kud>%.17g</kud>\n      <kdu>%.17g</kdu>\n", k[0], -k[0]);
+  VL_PUT_FORM(
+      text, record, &c,
+      "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>$own</name>\n"
+      "    <image_width>$width</image_width>\n    <image_height>$height</image_height>\n"
+      "    <model>\n      <type>$type</type>\n      <px>$fx</px>\n      <py>$fy</py>\n"
+      "      <u0>$cx0</u0>\n      <v0>$cy0</v0>\n",
+      VL_WORD("own", name),
+      VL_WORD("type", fisheye ? kannala_brandt
+                      : bent  ? with_distortion
+                              : without_distortion));
+  if (bent)
+    vl_camera_put(text, "      <kud>%.17g</kud>\n      <kdu>%.17g</kdu>\n", k[0], -k[0]);
   for (int i = 0; i < 5 && fisheye; i++)
     vl_camera_put(text, "      <k%d>%.17g</k%d>\n", i + 1, i < 4 ? k[i] + 0.0 : 0.0, i + 1);
   vl_camera_put(text, "    </model>\n  </camera>\n</root>\n");
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_visp = {.name = "visp", .is_tree = is_visp, .read = read_visp, .write = write_visp};
+const vlCameraFormat vl_format_visp = {
+    .name = "visp", .is_tree = is_visp, .read = read_visp, .write = write_visp};

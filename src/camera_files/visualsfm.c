@@ -1,10 +1,12 @@
-/* camera_files/visualsfm.c: VisualSFM's .nvm (NVM_V3): a line for each camera: image, focal length, quaternion w x y z
- * (camera from world), the camera's centre, radial distortion r, 0. Camera axes: x right, y down, z forward. The
- * principal point is the image's middle, or that of FixedK in the first line. The file has no image size.
+/* camera_files/visualsfm.c: VisualSFM's .nvm (NVM_V3): a line for each camera: image, focal
+ * length, quaternion w x y z (camera from world), the camera's centre, radial distortion r, 0.
+ * Camera axes: x right, y down, z forward. The principal point is the image's middle, or that
+ * of FixedK in the first line. The file has no image size.
  *
- * r maps pixels to rays: with m the pixel's point in units of f, the ray is (1 + r |m|^2) m. The opposite direction, m
- * = g(r |u|^2) u with g (1 + s g^2) = 1, is OpenCV's rational model with the coefficients of g's Pade approximant
- * [3/3]: its relative error is 8e-9 at r |u|^2 = 0.05 and 5e-7 at 0.1. */
+ * r maps pixels to rays: with m the pixel's point in units of f, the ray is (1 + r |m|^2) m.
+ * The opposite direction, m = g(r |u|^2) u with g (1 + s g^2) = 1, is OpenCV's rational model
+ * with the coefficients of g's Pade approximant [3/3]: its relative error is 8e-9 at r |u|^2 =
+ * 0.05 and 5e-7 at 0.1. */
 #include <string.h>
 
 #include "camera_files/fields.h"
@@ -17,7 +19,8 @@ static const double below[3] = {126.0 / 13.0, 330.0 / 13.0, 193.0 / 13.0};
 static void set_distortion(double r, vlCameraDef *d) {
   double k[8] = {0.0}, power = 1.0;
   static const int places[3] = {0, 1, 4}; /* k1, k2, k3 */
-  if (r == 0.0) return;
+  if (r == 0.0)
+    return;
   for (int i = 0; i < 3; i++) {
     power *= r;
     k[places[i]] = above[i] * power;
@@ -27,20 +30,24 @@ static void set_distortion(double r, vlCameraDef *d) {
 }
 
 /* A camera's line: the name is in front of the last ten numbers. */
-static vlResult read_camera(const vlCameraFile *file, const vlCameraLines *lines, size_t name, double v[10]) {
+static vlResult read_camera(const vlCameraFile *file, const vlCameraLines *lines, size_t name,
+                            double v[10]) {
   uint32_t count;
   return vl_camera_line_numbers(file, lines, lines->text + name, v, 10, 10, &count);
 }
 
-/* The length of the name: up to the tab, or to the first blank after a possible quotation mark. */
+/* The length of the name: up to the tab, or to the first blank after a possible quotation mark.
+ */
 static size_t name_length(const char *line) {
   const char *quote = *line == '"' ? strchr(line + 1, '"') : NULL;
-  if (quote) return (size_t)(quote + 1 - line);
+  if (quote)
+    return (size_t)(quote + 1 - line);
   size_t tab = strcspn(line, "\t");
   return line[tab] ? tab : strcspn(line, " ");
 }
 
-static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_t size,
+                               vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
   vlCameraDef *d = &record->camera;
   double fixed[5] = {0.0}, count = 0.0, v[10], r[9];
@@ -49,27 +56,36 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   vlResult result = VL_OK;
   vl_camera_next_line(&lines);
   const char *k = strstr(lines.text, "FixedK");
-  if (k) result = vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, &n);
+  if (k)
+    result = vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, &n);
   if (result == VL_OK && !vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "visualsfm: the file has no camera");
-  if (result == VL_OK) result = vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, &n);
-  if (result != VL_OK) return result;
-  if (!(count >= 1.0 && count <= 1e7)) return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
+  if (result == VL_OK)
+    result = vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, &n);
+  if (result != VL_OK)
+    return result;
+  if (!(count >= 1.0 && count <= 1e7))
+    return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = (uint32_t)count;
   for (uint32_t i = 0; result == VL_OK && i < record->frames && !taken; i++) {
     char name[sizeof record->name];
-    if (!vl_camera_next_line(&lines)) return vl_camera_wrong(file, "visualsfm: the file ends within the cameras");
+    if (!vl_camera_next_line(&lines))
+      return vl_camera_wrong(file, "visualsfm: the file ends within the cameras");
     size_t length = name_length(lines.text), bare = lines.text[0] == '"' ? length - 2 : length;
-    if (bare > sizeof name - 1) bare = sizeof name - 1;
+    if (bare > sizeof name - 1)
+      bare = sizeof name - 1;
     memcpy(name, lines.text + (bare < length ? 1 : 0), bare);
     name[bare] = 0;
     taken = vl_camera_is_frame(file, i, name);
-    if (!taken) continue;
+    if (!taken)
+      continue;
     result = read_camera(file, &lines, length, v);
     vl_camera_name(record, name);
   }
-  if (result != VL_OK) return result;
-  if (!taken) return vl_camera_no_frame(file, "camera", record->frames);
+  if (result != VL_OK)
+    return result;
+  if (!taken)
+    return vl_camera_no_frame(file, "camera", record->frames);
   if (!vl_rotation_from_quaternion(v + 1, r))
     return vl_camera_wrong_line(file, &lines, lines.text, "the quaternion is no rotation");
   vl_camera_set_centre(d, r, v + 5);
@@ -92,17 +108,24 @@ static bool is_visualsfm(const char *text, size_t size) {
   return strncmp(text, "NVM_V3", 6) == 0;
 }
 
-static vlResult write_visualsfm(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_visualsfm(const vlCameraFile *file, const vlCameraRecord *record,
+                                vlCameraText *text) {
   vlCamera c;
   double r[9], t[3], q[4];
   vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vl_camera_get_pose(&c, r, t);
   vl_rotation_to_quaternion(r, q);
-  const char *name = record->name[0] && !strpbrk(record->name, "\"\n") ? record->name : "image.jpg";
-  return VL_PUT_FORM(text, record, &c, "NVM_V3 FixedK $fx $cx $fy $cy 0\n\n1\n\"$own\"\t$fx $q:s $centre:s 0 0\n\n0\n",
-                     VL_WORD("own", name), VL_VALUES("q", q, 4));
+  const char *name =
+      record->name[0] && !strpbrk(record->name, "\"\n") ? record->name : "image.jpg";
+  return VL_PUT_FORM(
+      text, record, &c,
+      "NVM_V3 FixedK $fx $cx $fy $cy 0\n\n1\n\"$own\"\t$fx $q:s $centre:s 0 0\n\n0\n",
+      VL_WORD("own", name), VL_VALUES("q", q, 4));
 }
 
-const vlCameraFormat vl_format_visualsfm = {
-    .name = "visualsfm", .is_text = is_visualsfm, .read_text = read_visualsfm, .write = write_visualsfm};
+const vlCameraFormat vl_format_visualsfm = {.name = "visualsfm",
+                                            .is_text = is_visualsfm,
+                                            .read_text = read_visualsfm,
+                                            .write = write_visualsfm};

@@ -1,6 +1,7 @@
-/* camera_files/xml.c: parses XML by expat into a tree: an element is an object with its attributes by name, "<": its
- * tag, "#": its line, "|": its column, "/": its child elements; "$": its text, where that is wanted. A document type is
- * refused, and with it every entity that a file could define; depth and number of elements are bounded. */
+/* camera_files/xml.c: parses XML by expat into a tree: an element is an object with its
+ * attributes by name, "<": its tag, "#": its line, "|": its column, "/": its child elements;
+ * "$": its text, where that is wanted. A document type is refused, and with it every entity
+ * that a file could define; depth and number of elements are bounded. */
 #include <expat.h>
 #include <math.h>
 
@@ -12,7 +13,8 @@ enum { MAX_DEPTH = 32, MAX_ELEMENTS = 2000000, MAX_WANTED = 20000 };
 typedef struct {
   const vlCameraFile *file;
   XML_Parser parser;
-  const char *const *wanted; /* tags of the root, or below it; other elements there are ignored with their contents */
+  const char *const *wanted; /* tags of the root, or below it; other elements there are ignored
+                                with their contents */
   VL_ARRAY(char) text;       /* of the innermost element so far */
   json_t *open[MAX_DEPTH];   /* each is owned by the one before it */
   int depth, skipped;        /* skipped: open elements that are ignored */
@@ -30,26 +32,30 @@ static void stop(Builder *b, vlResult result) {
 }
 
 static bool is_among(const char *const *tags, const char *tag) {
-  while (*tags && !vl_text_is(*tags, tag)) tags++;
+  while (*tags && !vl_text_is(*tags, tag))
+    tags++;
   return *tags != NULL;
 }
 
 static bool is_wanted(const Builder *b, const char *tag) {
-  if (!b->wanted || b->depth != 1 || is_among(b->wanted, tag)) return true;
+  if (!b->wanted || b->depth != 1 || is_among(b->wanted, tag))
+    return true;
   return is_among(b->wanted, json_string_value(json_object_get(b->open[0], "<")));
 }
 
 static void on_start(void *data, const char *tag, const char **attributes) {
   Builder *b = data;
-  if (b->result != VL_OK) return; /* expat may continue to the end of its buffer */
+  if (b->result != VL_OK)
+    return; /* expat may continue to the end of its buffer */
   if (b->skipped || !is_wanted(b, tag)) {
     b->skipped++;
     return;
   }
   uint32_t line = line_of(b), column = (uint32_t)XML_GetCurrentColumnNumber(b->parser) + 1;
   if (b->depth == MAX_DEPTH || ++b->elements > (b->wanted ? MAX_WANTED : MAX_ELEMENTS)) {
-    stop(b, vl_camera_wrong_at(b->file, line, column, "%s for a camera",
-                               b->depth == MAX_DEPTH ? "nested too deeply" : "too many elements"));
+    stop(b,
+         vl_camera_wrong_at(b->file, line, column, "%s for a camera",
+                            b->depth == MAX_DEPTH ? "nested too deeply" : "too many elements"));
     return;
   }
   json_t *element = json_object();
@@ -60,16 +66,21 @@ static void on_start(void *data, const char *tag, const char **attributes) {
   b->text.count = 0;
   for (; *attributes && !failed; attributes += 2)
     failed |= json_object_set_new(element, attributes[0], json_string(attributes[1]));
-  if (!failed && b->depth > 0) failed = json_array_append(json_object_get(b->open[b->depth - 1], "/"), element);
-  if (failed) stop(b, vl_fail_memory(b->file->error));
-  if (b->depth > 0 || failed) json_decref(element); /* the builder owns the root */
-  if (!failed) b->open[b->depth++] = element;
+  if (!failed && b->depth > 0)
+    failed = json_array_append(json_object_get(b->open[b->depth - 1], "/"), element);
+  if (failed)
+    stop(b, vl_fail_memory(b->file->error));
+  if (b->depth > 0 || failed)
+    json_decref(element); /* the builder owns the root */
+  if (!failed)
+    b->open[b->depth++] = element;
 }
 
 static void on_end(void *data, const char *tag) {
   Builder *b = data;
   (void)tag;
-  if (b->result != VL_OK) return;
+  if (b->result != VL_OK)
+    return;
   if (b->skipped) {
     b->skipped--;
     return;
@@ -80,12 +91,14 @@ static void on_end(void *data, const char *tag) {
       stop(b, vl_fail_memory(b->file->error));
   }
   b->text.count = 0;
-  if (b->depth > 1) b->depth--;
+  if (b->depth > 1)
+    b->depth--;
 }
 
 static void on_text(void *data, const char *text, int length) {
   Builder *b = data;
-  if (b->result != VL_OK || b->wanted || b->skipped || length <= 0) return;
+  if (b->result != VL_OK || b->wanted || b->skipped || length <= 0)
+    return;
   if (!VL_RESERVE(b->file->context, &b->text, (size_t)length)) {
     stop(b, vl_fail_memory(b->file->error));
     return;
@@ -94,22 +107,25 @@ static void on_text(void *data, const char *text, int length) {
   b->text.count += (size_t)length;
 }
 
-static void on_document_type(void *data, const char *name, const char *system, const char *public_id, int internal) {
+static void on_document_type(void *data, const char *name, const char *system,
+                             const char *public_id, int internal) {
   Builder *b = data;
   (void)name;
   (void)system;
   (void)public_id;
   (void)internal;
   if (b->result == VL_OK)
-    stop(b, vl_camera_wrong_at(b->file, line_of(b), 1, "a document type (DOCTYPE, entities) is not taken"));
+    stop(b, vl_camera_wrong_at(b->file, line_of(b), 1,
+                               "a document type (DOCTYPE, entities) is not taken"));
 }
 
-vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, const char *const *wanted,
-                       json_t **tree) {
+vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size,
+                       const char *const *wanted, json_t **tree) {
   Builder b = {.file = file, .wanted = wanted, .result = VL_OK};
   *tree = NULL;
   b.parser = XML_ParserCreate(NULL);
-  if (!b.parser) return vl_fail_memory(file->error);
+  if (!b.parser)
+    return vl_fail_memory(file->error);
   XML_SetUserData(b.parser, &b);
   XML_SetElementHandler(b.parser, on_start, on_end);
   XML_SetCharacterDataHandler(b.parser, on_text);
@@ -125,7 +141,8 @@ vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, 
     enum XML_Error code = XML_GetErrorCode(b.parser);
     b.result = code == XML_ERROR_NO_MEMORY
                    ? vl_fail_memory(file->error)
-                   : vl_camera_wrong_at(file, line_of(&b), (uint32_t)XML_GetCurrentColumnNumber(b.parser) + 1,
+                   : vl_camera_wrong_at(file, line_of(&b),
+                                        (uint32_t)XML_GetCurrentColumnNumber(b.parser) + 1,
                                         "not XML: %s", XML_ErrorString(code));
   }
   XML_ParserFree(b.parser);
@@ -147,12 +164,15 @@ bool vl_camera_xml_root(const char *text, char tag[64]) {
       end = strstr(text, "-->");
     else
       break;
-    if (!end) return false;
+    if (!end)
+      return false;
     text = end + (*end == '?' ? 2 : 3);
   }
-  if (*text++ != '<') return false;
+  if (*text++ != '<')
+    return false;
   size_t length = strcspn(text, " \t\r\n/>");
-  if (length == 0 || length > 63) return false;
+  if (length == 0 || length > 63)
+    return false;
   memcpy(tag, text, length);
   tag[length] = 0;
   return true;
@@ -162,38 +182,46 @@ const json_t *vl_camera_child(const json_t *element, const char *tag) {
   size_t i;
   const json_t *child;
   json_array_foreach(json_object_get(element, "/"), i, child) {
-    if (vl_text_is(json_string_value(json_object_get(child, "<")), tag)) return child;
+    if (vl_text_is(json_string_value(json_object_get(child, "<")), tag))
+      return child;
   }
   return NULL;
 }
 
-vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element, const char *format, ...) {
+vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element,
+                                 const char *format, ...) {
   char message[300];
   VL_FORMAT(message, format);
   return vl_camera_wrong_at(file, (uint32_t)json_number_value(json_object_get(element, "#")),
-                            (uint32_t)json_number_value(json_object_get(element, "|")), "%s: %s", file->dialect,
-                            message);
+                            (uint32_t)json_number_value(json_object_get(element, "|")),
+                            "%s: %s", file->dialect, message);
 }
 
-vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element, double *values, uint32_t count) {
+vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element,
+                                   double *values, uint32_t count) {
   const char *text = vl_camera_text(element, "$"), *tag = vl_camera_text(element, "<");
   uint32_t found = 0;
   for (char *end; text && found <= count; text = end) {
     double value = vl_camera_parse(text, &end);
-    if (end == text) break;
-    if (!isfinite(value)) found = count;
-    if (found < count) values[found] = value;
+    if (end == text)
+      break;
+    if (!isfinite(value))
+      found = count;
+    if (found < count)
+      values[found] = value;
     found++;
   }
-  if (found == count && text && text[strspn(text, " \t\r\n,;")] == 0) return VL_OK;
-  return vl_camera_wrong_element(file, element, "<%s> must hold %u finite number%s", vl_short_text(tag).text, count,
-                                 count == 1 ? "" : "s");
+  if (found == count && text && text[strspn(text, " \t\r\n,;")] == 0)
+    return VL_OK;
+  return vl_camera_wrong_element(file, element, "<%s> must hold %u finite number%s",
+                                 vl_short_text(tag).text, count, count == 1 ? "" : "s");
 }
 
-vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element, const char *tag, bool needed,
-                                double *value) {
+vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element,
+                                const char *tag, bool needed, double *value) {
   const json_t *child = vl_camera_child(element, tag);
-  if (child) return vl_camera_element_numbers(file, child, value, 1);
+  if (child)
+    return vl_camera_element_numbers(file, child, value, 1);
   return needed ? vl_camera_wrong_element(file, element, "<%s> has no <%s>",
                                           vl_short_text(vl_camera_text(element, "<")).text, tag)
                 : VL_OK;

@@ -1,7 +1,8 @@
-/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias becomes a copy of the value that
- * its anchor names. The number of values in a file with aliases is limited, since a small file could otherwise
- * expand without bound. "<<" merges maps. OpenCV's first line "%YAML:1.0" is not a valid YAML directive and is
- * ignored, and its tabs count as blanks. */
+/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias becomes a
+ * copy of the value that its anchor names. The number of values in a file with aliases is
+ * limited, since a small file could otherwise expand without bound. "<<" merges maps. OpenCV's
+ * first line
+ * "%YAML:1.0" is not a valid YAML directive and is ignored, and its tabs count as blanks. */
 #include <math.h>
 #include <stdlib.h>
 #include <yaml.h>
@@ -22,8 +23,8 @@ typedef struct {
 } Builder;
 
 static vlResult wrong_at(const vlCameraFile *file, yaml_mark_t mark, const char *what) {
-  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)mark.line + 1, (uint32_t)mark.column + 1, "%s",
-                    what);
+  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)mark.line + 1,
+                    (uint32_t)mark.column + 1, "%s", what);
 }
 
 /* Converts plain numbers, booleans and null; everything else is text. */
@@ -32,12 +33,16 @@ static json_t *scalar(const yaml_event_t *event) {
   size_t length = event->data.scalar.length;
   if (event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE) {
     char *end;
-    if (length == 0 || vl_text_is(text, "~") || vl_text_is(text, "null")) return json_null();
-    if (vl_text_is(text, "true")) return json_true();
-    if (vl_text_is(text, "false")) return json_false();
+    if (length == 0 || vl_text_is(text, "~") || vl_text_is(text, "null"))
+      return json_null();
+    if (vl_text_is(text, "true"))
+      return json_true();
+    if (vl_text_is(text, "false"))
+      return json_false();
     if (strchr("+-.0123456789", text[0])) {
       double value = strtod(text, &end);
-      if (end == text + length && isfinite(value)) return json_real(value);
+      if (end == text + length && isfinite(value))
+        return json_real(value);
     }
   }
   return json_stringn(text, length);
@@ -45,19 +50,22 @@ static json_t *scalar(const yaml_event_t *event) {
 
 /* Adds a value to the innermost open list or map; takes the reference. */
 static vlResult add(const vlCameraFile *file, Builder *b, json_t *value, yaml_mark_t mark) {
-  if (!value) return vl_fail_memory(file->error);
+  if (!value)
+    return vl_fail_memory(file->error);
   if (b->depth == 0) {
     b->root = value;
     return VL_OK;
   }
   json_t *parent = b->tree[b->depth - 1];
   char **key = &b->key[b->depth - 1];
-  if (json_is_array(parent)) return json_array_append_new(parent, value) == 0 ? VL_OK : vl_fail_memory(file->error);
+  if (json_is_array(parent))
+    return json_array_append_new(parent, value) == 0 ? VL_OK : vl_fail_memory(file->error);
   bool twice = json_object_get(parent, *key) != NULL;
   int failed = json_object_set_new(parent, *key, value);
   vl_free(file->context, *key);
   *key = NULL;
-  if (twice) return wrong_at(file, mark, "a key stands twice in one map");
+  if (twice)
+    return wrong_at(file, mark, "a key stands twice in one map");
   return failed ? vl_fail_memory(file->error) : VL_OK;
 }
 
@@ -67,29 +75,37 @@ static vlResult place(const vlCameraFile *file, yaml_mark_t mark) {
 }
 
 /* Counts the values of a copy, which are all at the place of the alias. */
-static vlResult place_copy(const vlCameraFile *file, Builder *b, const json_t *value, yaml_mark_t mark) {
+static vlResult place_copy(const vlCameraFile *file, Builder *b, const json_t *value,
+                           yaml_mark_t mark) {
   const char *key;
   json_t *child;
   size_t i;
-  if (++b->copies > MAX_COPIES) return wrong_at(file, mark, "the aliases make more than 100,000 values");
+  if (++b->copies > MAX_COPIES)
+    return wrong_at(file, mark, "the aliases make more than 100,000 values");
   vlResult result = place(file, mark);
   if (json_is_object(value)) {
-    json_object_foreach((json_t *)value, key, child) if (result == VL_OK) result = place_copy(file, b, child, mark);
+    json_object_foreach((json_t *)value, key, child) if (result == VL_OK) result =
+        place_copy(file, b, child, mark);
   } else {
-    json_array_foreach((json_t *)value, i, child) if (result == VL_OK) result = place_copy(file, b, child, mark);
+    json_array_foreach((json_t *)value, i, child) if (result == VL_OK) result =
+        place_copy(file, b, child, mark);
   }
   return result;
 }
 
-static vlResult remember(const vlCameraFile *file, Builder *b, const yaml_char_t *name, json_t *value,
-                         yaml_mark_t mark) {
-  if (!name) return VL_OK;
+static vlResult remember(const vlCameraFile *file, Builder *b, const yaml_char_t *name,
+                         json_t *value, yaml_mark_t mark) {
+  if (!name)
+    return VL_OK;
   uint32_t i = 0;
-  while (i < b->anchors && !vl_text_is(b->anchor[i], (const char *)name)) i++; /* an anchor may be used again */
-  if (i == MAX_ANCHORS) return wrong_at(file, mark, "more than 256 anchors");
+  while (i < b->anchors && !vl_text_is(b->anchor[i], (const char *)name))
+    i++; /* an anchor may be used again */
+  if (i == MAX_ANCHORS)
+    return wrong_at(file, mark, "more than 256 anchors");
   if (i == b->anchors) {
     b->anchor[i] = vl_strdup(file->context, (const char *)name);
-    if (!b->anchor[i]) return vl_fail_memory(file->error);
+    if (!b->anchor[i])
+      return vl_fail_memory(file->error);
     b->anchors++;
   }
   b->anchored[i] = value;
@@ -97,16 +113,20 @@ static vlResult remember(const vlCameraFile *file, Builder *b, const yaml_char_t
 }
 
 /* Adds the fields of a map that the open one does not have: "<<: *name". */
-static vlResult merge(const vlCameraFile *file, Builder *b, const json_t *from, yaml_mark_t mark) {
+static vlResult merge(const vlCameraFile *file, Builder *b, const json_t *from,
+                      yaml_mark_t mark) {
   json_t *into = b->tree[b->depth - 1], *child;
   const char *key;
-  if (!json_is_object(from)) return wrong_at(file, mark, "\"<<\" needs an alias of a map");
+  if (!json_is_object(from))
+    return wrong_at(file, mark, "\"<<\" needs an alias of a map");
   json_object_foreach((json_t *)from, key, child) {
-    if (json_object_get(into, key)) continue;
+    if (json_object_get(into, key))
+      continue;
     vlResult result = place_copy(file, b, child, mark);
     if (result == VL_OK && json_object_set_new(into, key, json_deep_copy(child)) != 0)
       result = vl_fail_memory(file->error);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
   vl_free(file->context, b->key[b->depth - 1]);
   b->key[b->depth - 1] = NULL;
@@ -117,18 +137,22 @@ static vlResult alias(const vlCameraFile *file, Builder *b, const yaml_event_t *
   const char *name = (const char *)event->data.alias.anchor;
   json_t *value = NULL;
   for (uint32_t i = 0; i < b->anchors; i++)
-    if (vl_text_is(b->anchor[i], name)) value = b->anchored[i];
-  if (!value) return wrong_at(file, event->start_mark, "an alias whose anchor is not there");
+    if (vl_text_is(b->anchor[i], name))
+      value = b->anchored[i];
+  if (!value)
+    return wrong_at(file, event->start_mark, "an alias whose anchor is not there");
   for (int i = 0; i < b->depth; i++)
-    if (b->tree[i] == value) return wrong_at(file, event->start_mark, "an alias inside of its own anchor");
+    if (b->tree[i] == value)
+      return wrong_at(file, event->start_mark, "an alias inside of its own anchor");
   const char *key = b->depth ? b->key[b->depth - 1] : NULL;
-  if (vl_text_is(key, "<<")) return merge(file, b, value, event->start_mark);
+  if (vl_text_is(key, "<<"))
+    return merge(file, b, value, event->start_mark);
   vlResult result = place_copy(file, b, value, event->start_mark);
   return result == VL_OK ? add(file, b, json_deep_copy(value), event->start_mark) : result;
 }
 
-static vlResult take_value(const vlCameraFile *file, Builder *b, json_t *value, const yaml_char_t *anchor,
-                           yaml_mark_t mark) {
+static vlResult take_value(const vlCameraFile *file, Builder *b, json_t *value,
+                           const yaml_char_t *anchor, yaml_mark_t mark) {
   vlResult result = place(file, mark);
   if (result != VL_OK)
     json_decref(value);
@@ -138,34 +162,44 @@ static vlResult take_value(const vlCameraFile *file, Builder *b, json_t *value, 
 }
 
 static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *event) {
-  bool key_next = b->depth > 0 && json_is_object(b->tree[b->depth - 1]) && !b->key[b->depth - 1];
+  bool key_next =
+      b->depth > 0 && json_is_object(b->tree[b->depth - 1]) && !b->key[b->depth - 1];
   switch (event->type) {
     case YAML_SCALAR_EVENT:
-      if (!key_next) return take_value(file, b, scalar(event), event->data.scalar.anchor, event->start_mark);
+      if (!key_next)
+        return take_value(file, b, scalar(event), event->data.scalar.anchor, event->start_mark);
       b->key[b->depth - 1] = vl_strdup(file->context, (const char *)event->data.scalar.value);
       return b->key[b->depth - 1] ? VL_OK : vl_fail_memory(file->error);
     case YAML_SEQUENCE_START_EVENT:
     case YAML_MAPPING_START_EVENT: {
-      if (key_next) return wrong_at(file, event->start_mark, "a key must be a word");
-      if (b->depth == MAX_DEPTH) return wrong_at(file, event->start_mark, "nested too deeply for a camera");
+      if (key_next)
+        return wrong_at(file, event->start_mark, "a key must be a word");
+      if (b->depth == MAX_DEPTH)
+        return wrong_at(file, event->start_mark, "nested too deeply for a camera");
       bool list = event->type == YAML_SEQUENCE_START_EVENT;
       json_t *value = list ? json_array() : json_object();
-      vlResult result =
-          take_value(file, b, value, list ? event->data.sequence_start.anchor : event->data.mapping_start.anchor,
-                     event->start_mark);
-      if (result == VL_OK) b->tree[b->depth++] = value;
+      vlResult result = take_value(
+          file, b, value,
+          list ? event->data.sequence_start.anchor : event->data.mapping_start.anchor,
+          event->start_mark);
+      if (result == VL_OK)
+        b->tree[b->depth++] = value;
       return result;
     }
     case YAML_SEQUENCE_END_EVENT:
-    case YAML_MAPPING_END_EVENT: b->depth--; return VL_OK;
+    case YAML_MAPPING_END_EVENT:
+      b->depth--;
+      return VL_OK;
     case YAML_ALIAS_EVENT:
-      if (key_next) return wrong_at(file, event->start_mark, "a key must be a word");
+      if (key_next)
+        return wrong_at(file, event->start_mark, "a key must be a word");
       return alias(file, b, event);
     case YAML_NO_EVENT:
     case YAML_STREAM_START_EVENT:
     case YAML_STREAM_END_EVENT:
     case YAML_DOCUMENT_START_EVENT:
-    case YAML_DOCUMENT_END_EVENT: break;
+    case YAML_DOCUMENT_END_EVENT:
+      break;
   }
   return VL_OK;
 }
@@ -173,19 +207,23 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
 /* OpenCV's own parser takes tabs for blanks. */
 static char *without_tabs(const vlCameraFile *file, const char *text, size_t size) {
   char *copy = vl_alloc(file->context, size + 1);
-  for (size_t i = 0; copy && i < size; i++) copy[i] = text[i] == '\t' ? ' ' : text[i];
-  if (copy) copy[size] = 0;
+  for (size_t i = 0; copy && i < size; i++)
+    copy[i] = text[i] == '\t' ? ' ' : text[i];
+  if (copy)
+    copy[size] = 0;
   return copy;
 }
 
-vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
+                        json_t **tree) {
   Builder b = {.depth = 0};
   yaml_parser_t parser;
   *tree = NULL;
   /* the line end is kept, for line numbers */
   size_t skip = size >= 6 && memcmp(text, "%YAML:", 6) == 0 ? strcspn(text, "\n") : 0;
   char *copy = skip ? without_tabs(file, text, size) : NULL;
-  if (skip && !copy) return vl_fail_memory(file->error);
+  if (skip && !copy)
+    return vl_fail_memory(file->error);
   if (!yaml_parser_initialize(&parser)) {
     vl_free(file->context, copy);
     return vl_fail_memory(file->error);
@@ -200,7 +238,8 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
       if (parser.error == YAML_MEMORY_ERROR)
         result = vl_fail_memory(file->error);
       else
-        result = vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)parser.problem_mark.line + 1,
+        result = vl_fail_at(file->error, VL_ERROR_SCENE, file->path,
+                            (uint32_t)parser.problem_mark.line + 1,
                             (uint32_t)parser.problem_mark.column + 1, "not YAML: %s",
                             parser.problem ? parser.problem : "cannot be read");
       break;
@@ -218,8 +257,10 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
   }
   yaml_parser_delete(&parser);
   vl_free(file->context, copy);
-  for (int i = 0; i < MAX_DEPTH; i++) vl_free(file->context, b.key[i]);
-  for (uint32_t i = 0; i < b.anchors; i++) vl_free(file->context, b.anchor[i]);
+  for (int i = 0; i < MAX_DEPTH; i++)
+    vl_free(file->context, b.key[i]);
+  for (uint32_t i = 0; i < b.anchors; i++)
+    vl_free(file->context, b.anchor[i]);
   if (result != VL_OK)
     json_decref(b.root);
   else

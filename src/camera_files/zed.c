@@ -1,8 +1,9 @@
-/* camera_files/zed.c: the calibration of a ZED stereo camera (SN….conf): sections like [LEFT_CAM_HD] with fx fy cx cy
- * and k1 k2 p1 p2 k3, and [STEREO] with Baseline, TY, TZ (millimetres, which stay) and the rotation vector RX, CV, RZ
- * of each resolution. Axes: x right, y down, z forward; the first pixel's centre is (0, 0). The world's space is the
- * left camera's: x' = R x - (Baseline, TY, TZ) is camera from world of the right one. The sections' names tell the
- * image's size. */
+/* camera_files/zed.c: the calibration of a ZED stereo camera (SN….conf): sections like
+ * [LEFT_CAM_HD] with fx fy cx cy and k1 k2 p1 p2 k3, and [STEREO] with Baseline, TY, TZ
+ * (millimetres, which stay) and the rotation vector RX, CV, RZ of each resolution. Axes: x
+ * right, y down, z forward; the first pixel's centre is (0, 0). The world's space is the left
+ * camera's: x' = R x - (Baseline, TY, TZ) is camera from world of the right one. The sections'
+ * names tell the image's size. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -18,61 +19,73 @@ static const struct {
 /* Returns the number of the section's resolution; -1: it is no camera. */
 static int mode_of(const char *section, bool *right) {
   *right = strncmp(section, "RIGHT_CAM_", 10) == 0;
-  if (!*right && strncmp(section, "LEFT_CAM_", 9) != 0) return -1;
+  if (!*right && strncmp(section, "LEFT_CAM_", 9) != 0)
+    return -1;
   const char *name = section + (*right ? 10 : 9);
   for (size_t i = 0; i < VL_LENGTH(modes); i++)
-    if (vl_text_is(name, modes[i].name)) return (int)i;
+    if (vl_text_is(name, modes[i].name))
+      return (int)i;
   return -1;
 }
 
 /* Reads [NAME]; false: the line is another one. */
 static bool is_section(const char *line, char name[64]) {
   size_t length = strcspn(line, "]");
-  if (line[0] != '[' || !line[length] || length > 64) return false;
+  if (line[0] != '[' || !line[length] || length > 64)
+    return false;
   memcpy(name, line + 1, length - 1);
   name[length - 1] = 0;
   return true;
 }
 
 /* Reads key=value in a section. *found is false if it is not there. */
-static vlResult find_value(const vlCameraFile *file, const char *text, size_t size, const char *section,
-                           const char *key, double *value, bool *found) {
+static vlResult find_value(const vlCameraFile *file, const char *text, size_t size,
+                           const char *section, const char *key, double *value, bool *found) {
   vlCameraLines lines = {.at = text, .end = text + size};
   char name[64] = "";
   size_t length = strlen(key);
   uint32_t count;
   *found = false;
   while (vl_camera_next_line(&lines)) {
-    if (is_section(lines.text, name) || !vl_text_is(name, section)) continue;
-    if (strncmp(lines.text, key, length) != 0) continue;
+    if (is_section(lines.text, name) || !vl_text_is(name, section))
+      continue;
+    if (strncmp(lines.text, key, length) != 0)
+      continue;
     const char *sign = lines.text + length + strspn(lines.text + length, " \t");
-    if (*sign != '=') continue;
+    if (*sign != '=')
+      continue;
     *found = true;
     return vl_camera_line_numbers(file, &lines, sign + 1, value, 1, 1, &count);
   }
   return VL_OK;
 }
 
-static vlResult read_right(const vlCameraFile *file, const char *text, size_t size, int mode, vlCameraDef *d) {
-  static const char *const shifts[] = {"Baseline", "TY", "TZ"}, *const turns[] = {"RX", "CV", "RZ"};
+static vlResult read_right(const vlCameraFile *file, const char *text, size_t size, int mode,
+                           vlCameraDef *d) {
+  static const char *const shifts[] = {"Baseline", "TY", "TZ"}, *const turns[] = {"RX", "CV",
+                                                                                  "RZ"};
   double t[3] = {0.0}, v[3] = {0.0}, r[9];
   bool found;
   vlResult result = VL_OK;
   for (int i = 0; i < 3 && result == VL_OK; i++) {
     char key[32];
     result = find_value(file, text, size, "STEREO", shifts[i], &t[i], &found);
-    if (result == VL_OK && i == 0 && !found) return vl_camera_wrong(file, "zed: [STEREO] has no Baseline");
+    if (result == VL_OK && i == 0 && !found)
+      return vl_camera_wrong(file, "zed: [STEREO] has no Baseline");
     snprintf(key, sizeof key, "%s_%s", turns[i], modes[mode].name);
-    if (result == VL_OK) result = find_value(file, text, size, "STEREO", key, &v[i], &found);
+    if (result == VL_OK)
+      result = find_value(file, text, size, "STEREO", key, &v[i], &found);
     t[i] = 0.0 - t[i];
   }
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
 }
 
-static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size,
+                         vlCameraRecord *record) {
   static const char *const keys[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
   vlCameraLines lines = {.at = text, .end = text + size};
   vlCameraDef *d = &record->camera;
@@ -82,7 +95,8 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   double v[9] = {0.0};
   record->frames = 0;
   while (vl_camera_next_line(&lines)) {
-    if (!is_section(lines.text, name) || (found = mode_of(name, &other)) < 0) continue;
+    if (!is_section(lines.text, name) || (found = mode_of(name, &other)) < 0)
+      continue;
     if (mode < 0 && vl_camera_is_frame(file, record->frames, name)) {
       mode = found;
       right = other;
@@ -90,18 +104,22 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
     }
     record->frames++;
   }
-  if (mode < 0) return vl_camera_no_frame(file, "camera", record->frames);
+  if (mode < 0)
+    return vl_camera_no_frame(file, "camera", record->frames);
   for (int i = 0; i < 9; i++) {
     bool there;
     vlResult result = find_value(file, text, size, section, keys[i], &v[i], &there);
-    if (result != VL_OK) return result;
-    if (!there && i < 4) return vl_camera_wrong(file, "zed: [%s] has no %s", section, keys[i]);
+    if (result != VL_OK)
+      return result;
+    if (!there && i < 4)
+      return vl_camera_wrong(file, "zed: [%s] has no %s", section, keys[i]);
   }
   d->width = modes[mode].width;
   d->height = modes[mode].height;
   vl_camera_set_centred(d, v[0], v[1], v[2], v[3]);
   bool bent = false;
-  for (int i = 4; i < 9; i++) bent = bent || v[i] != 0.0;
+  for (int i = 4; i < 9; i++)
+    bent = bent || v[i] != 0.0;
   vl_camera_set_opencv(d, v + 4, bent ? 5 : 0);
   vl_camera_name(record, section);
   vl_camera_set_origin(d);
@@ -113,11 +131,13 @@ static bool is_zed(const char *text, size_t size) {
   char name[64];
   bool right;
   while (vl_camera_next_line(&lines))
-    if (is_section(lines.text, name) && mode_of(name, &right) >= 0) return true;
+    if (is_section(lines.text, name) && mode_of(name, &right) >= 0)
+      return true;
   return false;
 }
 
-const vlCameraFormat vl_format_zed = {.name = "zed",
-                                      .is_text = is_zed,
-                                      .read_text = read_zed,
-                                      .not_written = "it is the factory calibration of a stereo pair"};
+const vlCameraFormat vl_format_zed = {
+    .name = "zed",
+    .is_text = is_zed,
+    .read_text = read_zed,
+    .not_written = "it is the factory calibration of a stereo pair"};

@@ -1,7 +1,7 @@
 /* color/color.h: spectra, colour spaces, and conversion between spectra and RGB.
- * Wavelengths are in nm, from 360 to 830. A dense spectrum is an array of 471 floats, one per nm, interpolated
- * linearly. RGB reflectances become smooth spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019). The
- * coefficients come from a table made at build time. */
+ * Wavelengths are in nm, from 360 to 830. A dense spectrum is an array of 471 floats, one per
+ * nm, interpolated linearly. RGB reflectances become smooth spectra s(l) = sigmoid(c0 l^2 + c1
+ * l + c2) (Jakob and Hanika 2019). The coefficients come from a table made at build time. */
 #ifndef COLOR_COLOR_H
 #define COLOR_COLOR_H
 
@@ -18,44 +18,54 @@ typedef struct vlSigmoid {
 static inline float vl_sigmoid(vlSigmoid s, float lambda) {
   float t = (lambda - 360.0f) * (1.0f / 470.0f);
   float x = (s.c0 * t + s.c1) * t + s.c2;
-  return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x)); /* within [0,1]: the root is never below |x| */
+  return 0.5f + 0.5f * (x / __builtin_sqrtf(
+                                1.0f + x * x)); /* within [0,1]: the root is never below |x| */
 }
-/* Coefficients of the reflectance spectrum of an RGB colour. r, g and b are clamped to [0,1]. Black, white and greys
- * give constant spectra. A call takes some microseconds. The result is exact to 1e-6 for colours that a reflectance can
- * have. For texels use the faster vl_rgb_table_lookup (color/rgb_table.h). */
+/* Coefficients of the reflectance spectrum of an RGB colour. r, g and b are clamped to [0,1].
+ * Black, white and greys give constant spectra. A call takes some microseconds. The result is
+ * exact to 1e-6 for colours that a reflectance can have. For texels use the faster
+ * vl_rgb_table_lookup (color/rgb_table.h). */
 vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b);
 
-/* Dense spectra of VL_LAMBDA_COUNT floats in static storage: the CIE 1931 2-degree observer and the standard illuminant
- * of a colour space. */
+/* Dense spectra of VL_LAMBDA_COUNT floats in static storage: the CIE 1931 2-degree observer and
+ * the standard illuminant of a colour space. */
 const float *vl_cie_x(void);
 const float *vl_cie_y(void);
 const float *vl_cie_z(void);
 const float *vl_space_illuminant(vlColorSpace space);
 
 /* The role of a spectrum, which determines how RGB becomes a spectrum (pbrt book 4.6.6). */
-typedef enum vlSpectrumRole { VL_ROLE_ALBEDO, VL_ROLE_UNBOUNDED, VL_ROLE_ILLUMINANT } vlSpectrumRole;
+typedef enum vlSpectrumRole {
+  VL_ROLE_ALBEDO,
+  VL_ROLE_UNBOUNDED,
+  VL_ROLE_ILLUMINANT
+} vlSpectrumRole;
 
-/* Writes the spectrum, including its scale, to `dense` (VL_LAMBDA_COUNT floats). RGB illuminants are multiplied by the
- * illuminant of the colour space. Errors: SCENE for an unknown name (with the nearest one), wavelengths not ascending,
- * values not finite. */
-vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense, vlError *error);
+/* Writes the spectrum, including its scale, to `dense` (VL_LAMBDA_COUNT floats). RGB
+ * illuminants are multiplied by the illuminant of the colour space. Errors: SCENE for an
+ * unknown name (with the nearest one), wavelengths not ascending, values not finite. */
+vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense,
+                           vlError *error);
 /* Whether the spectrum is constant over all wavelengths; *value is then that constant. */
 bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value);
-/* Integral of Y times the spectrum, as pbrt's SpectrumToPhotometric. For RGB illuminants it is the integral of Y times
- * the colour space's illuminant alone. Lights are divided by it, so that an RGB light of (1,1,1) has luminance 1. */
+/* Integral of Y times the spectrum, as pbrt's SpectrumToPhotometric. For RGB illuminants it is
+ * the integral of Y times the colour space's illuminant alone. Lights are divided by it, so
+ * that an RGB light of (1,1,1) has luminance 1. */
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
-/* Converts a spectrum to linear RGB of a colour space, for VL_COLOR_RGB mode. For the roles albedo and unbounded, the
- * result is the colour under the space's illuminant; RGB spectra are converted between spaces exactly. For the role
- * illuminant, the result is the light's own colour, with the same luminance as in spectral mode after the division by
+/* Converts a spectrum to linear RGB of a colour space, for VL_COLOR_RGB mode. For the roles
+ * albedo and unbounded, the result is the colour under the space's illuminant; RGB spectra are
+ * converted between spaces exactly. For the role illuminant, the result is the light's own
+ * colour, with the same luminance as in spectral mode after the division by
  * vl_spectrum_photometric. */
-vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3],
-                            vlError *error);
+vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space,
+                            float rgb[3], vlError *error);
 
-/* Share of each channel of linear sRGB at each wavelength (Mallett and Yuksel 2019): three spectra within [0, 1] with
- * sum 1, whose colours under the space's illuminant are (1,0,0), (0,1,0), (0,0,1). The array holds r, g, b, 0 for each
- * nm. A medium with the channel transmittances T_r, T_g, T_b has the spectral transmittance T(lambda) = sum_i
- * share_i(lambda) T_i. It lies in [0, 1] if all T_i do, and its colour is exactly T_r, T_g, T_b, even for very small
- * values. */
+/* Share of each channel of linear sRGB at each wavelength (Mallett and Yuksel 2019): three
+ * spectra within [0, 1] with sum 1, whose colours under the space's illuminant are (1,0,0),
+ * (0,1,0), (0,0,1). The array holds r, g, b, 0 for each nm. A medium with the channel
+ * transmittances T_r, T_g, T_b has the spectral transmittance T(lambda) = sum_i share_i(lambda)
+ * T_i. It lies in [0, 1] if all T_i do, and its colour is exactly T_r, T_g, T_b, even for very
+ * small values. */
 extern const float vl_channel_shares[VL_LAMBDA_COUNT * 4];
 
 /* Matrix from XYZ to linear RGB of the space, row-major 3x3. */
@@ -64,8 +74,8 @@ void vl_xyz_from_rgb(vlColorSpace space, float m[9]);
 /* xy chromaticities of red, green, blue and white: r_x r_y g_x g_y b_x b_y w_x w_y. */
 void vl_space_chromaticities(vlColorSpace space, float xy[8]);
 
-/* Interpolates linearly in a dense spectrum; 0 outside of 360 to 830 nm. (The index is clamped as an integer: if it
- * were clamped as a float, gcc would not make a gather.) */
+/* Interpolates linearly in a dense spectrum; 0 outside of 360 to 830 nm. (The index is clamped
+ * as an integer: if it were clamped as a float, gcc would not make a gather.) */
 static inline float vl_dense_at(const float *dense, float lambda) {
   float x = lambda - 360.0f;
   int i = (int)x;
@@ -77,31 +87,34 @@ static inline float vl_dense_at(const float *dense, float lambda) {
   return x <= 470.0f ? value : 0.0f;
 }
 
-/* Transmittance at a wavelength from the transmittances t of linear sRGB's channels (vl_channel_shares), interpolated
- * linearly between integer nm. */
+/* Transmittance at a wavelength from the transmittances t of linear sRGB's channels
+ * (vl_channel_shares), interpolated linearly between integer nm. */
 static inline float vl_channels_at(const float t[3], float lambda) {
   float x = lambda - 360.0f;
   int i = (int)x;
   i = i < VL_LAMBDA_COUNT - 2 ? i : VL_LAMBDA_COUNT - 2;
   i = i > 0 ? i : 0;
   const float *s = vl_channel_shares + 4 * i;
-  float a = s[0] * t[0] + s[1] * t[1] + s[2] * t[2], b = s[4] * t[0] + s[5] * t[1] + s[6] * t[2];
+  float a = s[0] * t[0] + s[1] * t[1] + s[2] * t[2],
+        b = s[4] * t[0] + s[5] * t[1] + s[6] * t[2];
   return a + (x - (float)i) * (b - a);
 }
 
-/* The density of sampled wavelengths is piecewise linear between VL_VISIBLE_KNOTS wavelengths. Its values are found by
- * numerical minimisation: four wavelengths, rotated by quarters through the cumulative distribution, have nearly the
- * same sum of RGB for usual lights and reflectances (docs/tracers.md). Each row: the cumulative distribution at the
- * wavelength, the wavelength (nm), the density (1 / nm), twice the slope up to the next row. */
+/* The density of sampled wavelengths is piecewise linear between VL_VISIBLE_KNOTS wavelengths.
+ * Its values are found by numerical minimisation: four wavelengths, rotated by quarters through
+ * the cumulative distribution, have nearly the same sum of RGB for usual lights and
+ * reflectances (docs/tracers.md). Each row: the cumulative distribution at the wavelength, the
+ * wavelength (nm), the density (1 / nm), twice the slope up to the next row. */
 enum { VL_VISIBLE_KNOTS = 12 };
 extern const float vl_visible_knots[VL_VISIBLE_KNOTS * 4];
 
-/* Samples a wavelength by inverting the cumulative distribution: with t the rest of u within a segment that starts with
- * density p and has slope s, the density is sqrt(p^2 + 2 s t). u in [0,1). Writes 1 / density (nm). */
+/* Samples a wavelength by inverting the cumulative distribution: with t the rest of u within a
+ * segment that starts with density p and has slope s, the density is sqrt(p^2 + 2 s t). u in
+ * [0,1). Writes 1 / density (nm). */
 static inline float vl_visible_lambda(float u, float *inv_pdf) {
   const float *k = vl_visible_knots;
-  int i = (u >= k[4]) + (u >= k[8]) + (u >= k[12]) + (u >= k[16]) + (u >= k[20]) + (u >= k[24]) + (u >= k[28]) +
-          (u >= k[32]) + (u >= k[36]) + (u >= k[40]);
+  int i = (u >= k[4]) + (u >= k[8]) + (u >= k[12]) + (u >= k[16]) + (u >= k[20]) +
+          (u >= k[24]) + (u >= k[28]) + (u >= k[32]) + (u >= k[36]) + (u >= k[40]);
   i = 4 * i;
   float t = u - k[i], from = k[i + 2];
   float pdf = __builtin_sqrtf(from * from + k[i + 3] * t);
@@ -114,7 +127,8 @@ static inline float vl_visible_lambda(float u, float *inv_pdf) {
 static inline float vl_visible_pdf(float lambda) {
   const float *k = vl_visible_knots;
   int i = 0;
-  while (i < VL_VISIBLE_KNOTS - 2 && lambda >= k[4 * i + 5]) i++;
+  while (i < VL_VISIBLE_KNOTS - 2 && lambda >= k[4 * i + 5])
+    i++;
   float pdf = k[4 * i + 2] + 0.5f * k[4 * i + 3] * (lambda - k[4 * i + 1]);
   return lambda < 360.0f || lambda > 830.0f ? 0.0f : pdf;
 }

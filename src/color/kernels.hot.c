@@ -1,4 +1,5 @@
-/* color/kernels.hot.c: spectra and colour over batches of paths (color/kernels.h). Compiled once per instruction set.
+/* color/kernels.hot.c: spectra and colour over batches of paths (color/kernels.h). Compiled
+ * once per instruction set.
  */
 #include "color/kernels.h"
 
@@ -9,17 +10,19 @@ static inline float turned(float u, int channel) {
 }
 
 /* The four wavelengths are u rotated by quarters, so that they stratify the range. */
-static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]) {
+static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4],
+                                float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     float *l = lambda[c], *p = inv_pdf[c];
     /* must vectorise */
-    VL_SIMD for (uint32_t i = 0; i < count; i++) l[i] = vl_visible_lambda(turned(u[i], c), &p[i]);
+    VL_SIMD for (uint32_t i = 0; i < count; i++) l[i] =
+        vl_visible_lambda(turned(u[i], c), &p[i]);
   }
 }
 
-static void uniform_wavelengths(float low, float span, uint32_t n, const float *u, float *const lambda[4],
-                                float *const inv_pdf[4]) {
+static void uniform_wavelengths(float low, float span, uint32_t n, const float *u,
+                                float *const lambda[4], float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     float *l = lambda[c], *p = inv_pdf[c];
@@ -36,7 +39,8 @@ typedef struct xyz {
   float x, y, z;
 } xyz;
 
-static inline xyz add_wavelength(const float *cmf, xyz s, float radiance, float lambda, float inv_pdf) {
+static inline xyz add_wavelength(const float *cmf, xyz s, float radiance, float lambda,
+                                 float inv_pdf) {
   float p = lambda - 360.0f;
   int j = (int)p;
   j = j < VL_LAMBDA_COUNT - 2 ? j : VL_LAMBDA_COUNT - 2;
@@ -50,12 +54,13 @@ static inline xyz add_wavelength(const float *cmf, xyz s, float radiance, float 
   return s;
 }
 
-static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n, const float *const radiance[4],
-                              const float *const lambda[4], const float *const inv_pdf[4], float *r, float *g,
-                              float *b) {
+static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n,
+                              const float *const radiance[4], const float *const lambda[4],
+                              const float *const inv_pdf[4], float *r, float *g, float *b) {
   uint32_t count = VL_PAD(n);
   float q[9];
-  for (int i = 0; i < 9; i++) q[i] = 0.25f * m[i];
+  for (int i = 0; i < 9; i++)
+    q[i] = 0.25f * m[i];
   const float *l0 = radiance[0], *l1 = radiance[1], *l2 = radiance[2], *l3 = radiance[3];
   const float *w0 = lambda[0], *w1 = lambda[1], *w2 = lambda[2], *w3 = lambda[3];
   const float *p0 = inv_pdf[0], *p1 = inv_pdf[1], *p2 = inv_pdf[2], *p3 = inv_pdf[3];
@@ -72,8 +77,9 @@ static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n, co
   }
 }
 
-static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const float *c2, const float *scale,
-                         const float *const lambda[4], float *const out[4]) {
+static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const float *c2,
+                         const float *scale, const float *const lambda[4],
+                         float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     const float *l = lambda[c];
@@ -92,8 +98,9 @@ static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const flo
   }
 }
 
-static void light_eval(uint32_t n, const float *c0, const float *c1, const float *c2, const float *scale,
-                       const float *dense, const float *const lambda[4], float *const out[4]) {
+static void light_eval(uint32_t n, const float *c0, const float *c1, const float *c2,
+                       const float *scale, const float *dense, const float *const lambda[4],
+                       float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     const float *l = lambda[c];
@@ -101,7 +108,8 @@ static void light_eval(uint32_t n, const float *c0, const float *c1, const float
     if (scale) {
       /* must vectorise */
       VL_SIMD for (uint32_t i = 0; i < count; i++) {
-        o[i] = scale[i] * vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]) * vl_dense_at(dense, l[i]);
+        o[i] = scale[i] * vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]) *
+               vl_dense_at(dense, l[i]);
       }
     } else {
       /* must vectorise */
@@ -112,7 +120,8 @@ static void light_eval(uint32_t n, const float *c0, const float *c1, const float
   }
 }
 
-static void dense_eval(uint32_t n, const float *dense, const float *const lambda[4], float *const out[4]) {
+static void dense_eval(uint32_t n, const float *dense, const float *const lambda[4],
+                       float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     const float *l = lambda[c];
@@ -122,8 +131,8 @@ static void dense_eval(uint32_t n, const float *dense, const float *const lambda
   }
 }
 
-static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset, const float *const lambda[4],
-                         float *const out[4]) {
+static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset,
+                         const float *const lambda[4], float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     const float *l = lambda[c];
@@ -143,8 +152,8 @@ static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset,
   }
 }
 
-static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
-                             float *c0, float *c1, float *c2) {
+static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r,
+                             const float *g, const float *b, float *c0, float *c1, float *c2) {
   uint32_t count = VL_PAD(n);
   const float *p = table->coefficients;
   /* must vectorise */
@@ -156,8 +165,9 @@ static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r
   }
 }
 
-static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
-                               float *scale, float *c0, float *c1, float *c2) {
+static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float *r,
+                               const float *g, const float *b, float *scale, float *c0,
+                               float *c1, float *c2) {
   uint32_t count = VL_PAD(n);
   const float *p = table->coefficients;
   /* must vectorise */

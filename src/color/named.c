@@ -9,9 +9,11 @@ const char *vl_named_spectrum_name(unsigned index) {
 }
 
 const float *vl_named_spectrum(const char *name) {
-  if (!name) return NULL;
+  if (!name)
+    return NULL;
   for (uint32_t i = 0; i < vl_table_named_count; i++) {
-    if (vl_text_is(vl_table_named[i].name, name)) return vl_table_named[i].values;
+    if (vl_text_is(vl_table_named[i].name, name))
+      return vl_table_named[i].values;
   }
   return NULL;
 }

@@ -4,7 +4,8 @@
 
 /* Name of the spectrum at an index, counted from 0; null past the end. */
 const char *vl_named_spectrum_name(unsigned index);
-/* Dense spectrum of that name (471 values, 360 to 830 nm) in static storage; null for an unknown name. */
+/* Dense spectrum of that name (471 values, 360 to 830 nm) in static storage; null for an
+ * unknown name. */
 const float *vl_named_spectrum(const char *name);
 
 #endif

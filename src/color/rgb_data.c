@@ -1,4 +1,5 @@
-/* color/rgb_data.c: the coefficient tables, included by the assembler as read-only data of the object file. */
+/* color/rgb_data.c: the coefficient tables, included by the assembler as read-only data of the
+ * object file. */
 #include "color/color.h"
 #include "color/rgb_table.h"
 
@@ -21,6 +22,7 @@ TABLE(3);
 extern const float vl_table_rgb_0[], vl_table_rgb_1[], vl_table_rgb_2[], vl_table_rgb_3[];
 
 const vlRgbTable *vl_rgb_table(vlColorSpace space) {
-  static const vlRgbTable tables[4] = {{vl_table_rgb_0}, {vl_table_rgb_1}, {vl_table_rgb_2}, {vl_table_rgb_3}};
+  static const vlRgbTable tables[4] = {
+      {vl_table_rgb_0}, {vl_table_rgb_1}, {vl_table_rgb_2}, {vl_table_rgb_3}};
   return &tables[(unsigned)space < 4 ? space : VL_SPACE_SRGB];
 }

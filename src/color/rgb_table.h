@@ -1,13 +1,15 @@
-/* color/rgb_table.h: lookup in the RGB to spectrum table (Jakob and Hanika 2019) for hot loops. The code has no
- * branches, vectorises with gathers and gives the same bits on every machine. The tables are constant data that
- * tools/color_tables makes when velo is built.
- * Three differences from the paper make a small table exact to 1e-3:
- * - Light colours use the complement, sigmoid(-x) = 1 - sigmoid(x), so that one table of dark colours serves both. Its
- * resolution increases towards black, where the coefficients vary most.
- * - The table stores c sqrt(m (1 - m)), where m is the mean of r, g, b. Near black c grows as m^-1/2, while this
- * product stays smooth. Along the greys it is linear, so that greys become constant spectra.
- * - The nodes of the axes are denser towards both ends (2 u^2). Interpolation weights are linear in the colour
- * itself. */
+/* color/rgb_table.h: lookup in the RGB to spectrum table (Jakob and Hanika 2019) for hot loops.
+ * The code has no branches, vectorises with gathers and gives the same bits on every machine.
+ * The tables are constant data that tools/color_tables makes when velo is built. Three
+ * differences from the paper make a small table exact to 1e-3:
+ * - Light colours use the complement, sigmoid(-x) = 1 - sigmoid(x), so that one table of dark
+ * colours serves both. Its resolution increases towards black, where the coefficients vary
+ * most.
+ * - The table stores c sqrt(m (1 - m)), where m is the mean of r, g, b. Near black c grows as
+ * m^-1/2, while this product stays smooth. Along the greys it is linear, so that greys become
+ * constant spectra.
+ * - The nodes of the axes are denser towards both ends (2 u^2). Interpolation weights are
+ * linear in the colour itself. */
 #ifndef COLOR_RGB_TABLE_H
 #define COLOR_RGB_TABLE_H
 
@@ -16,14 +18,14 @@
 enum { VL_RGB_TABLE_XY = 40, VL_RGB_TABLE_Z = 48 };
 
 typedef struct vlRgbTable {
-  const float *coefficients; /* [largest component 3][z][y][x][3]; z: the largest component; x, y: the other two divided
-                                by it, in cyclic order */
+  const float *coefficients; /* [largest component 3][z][y][x][3]; z: the largest component; x,
+                                y: the other two divided by it, in cyclic order */
 } vlRgbTable;
 /* Static storage. */
 const vlRgbTable *vl_rgb_table(vlColorSpace space);
 
-/* Converts the value v in [0,1] of a component to its position u in [0,1] on a table axis; the second function is the
- * inverse. */
+/* Converts the value v in [0,1] of a component to its position u in [0,1] on a table axis; the
+ * second function is the inverse. */
 static inline float vl_rgb_axis(float v) {
   float w = 1.0f - v, near = v < w ? v : w;
   float u = __builtin_sqrtf(0.5f * near);
@@ -42,17 +44,19 @@ static inline vlRgbCell vl_rgb_cell(float v, int size) {
   int i = (int)(vl_rgb_axis(v) * (float)(size - 1));
   i = i < size - 2 ? i : size - 2;
   float step = 1.0f / (float)(size - 1);
-  float low = vl_rgb_axis_value((float)i * step), high = vl_rgb_axis_value((float)(i + 1) * step);
+  float low = vl_rgb_axis_value((float)i * step),
+        high = vl_rgb_axis_value((float)(i + 1) * step);
   return (vlRgbCell){i, (v - low) / (high - low)};
 }
 
-/* Position of a colour in the table: its cell, the weights of the cell's upper nodes, and the factor on the stored
- * coefficients. The computation reads no memory. */
+/* Position of a colour in the table: its cell, the weights of the cell's upper nodes, and the
+ * factor on the stored coefficients. The computation reads no memory. */
 typedef struct vlRgbPlace {
   int index;
   float x, y, z, scale;
 } vlRgbPlace;
-static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, float g, float b) {
+static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, float g,
+                                                                     float b) {
   r = r > 0.0f ? r : 0.0f;
   g = g > 0.0f ? g : 0.0f;
   b = b > 0.0f ? b : 0.0f;
@@ -78,7 +82,9 @@ static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, fl
   y = z > 0.0f ? y : 1.0f;
   vlRgbCell cx = vl_rgb_cell(x, VL_RGB_TABLE_XY), cy = vl_rgb_cell(y, VL_RGB_TABLE_XY);
   vlRgbCell cz = vl_rgb_cell(z, VL_RGB_TABLE_Z);
-  int i = 3 * (((face * VL_RGB_TABLE_Z + cz.index) * VL_RGB_TABLE_XY + cy.index) * VL_RGB_TABLE_XY + cx.index);
+  int i =
+      3 * (((face * VL_RGB_TABLE_Z + cz.index) * VL_RGB_TABLE_XY + cy.index) * VL_RGB_TABLE_XY +
+           cx.index);
   float m = (r + g + b) * (1.0f / 3.0f);
   float k = __builtin_sqrtf(m * (1.0f - m));
   /* black: exactly -2^30, for which the sigmoid is exactly 0 */
@@ -88,7 +94,8 @@ static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, fl
 }
 
 /* Interpolates one of the three coefficients; k is its index. */
-static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k, vlRgbPlace at) {
+static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k,
+                                                                      vlRgbPlace at) {
   enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
   int i = at.index + k;
   float a = p[i], b = p[i + Y], c = p[i + Z], d = p[i + Z + Y];
@@ -101,14 +108,15 @@ static inline __attribute__((always_inline)) float vl_rgb_coefficient(const floa
   return at.scale * (a + at.z * (c - a));
 }
 
-/* Coefficients of the reflectance with colour r, g, b (clamped to [0,1]) under the space's illuminant. Loops that must
- * vectorise under clang call the functions above instead, since clang loses the simd pragma when this function is
- * inlined through another. */
-static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g,
-                                                                           float b) {
+/* Coefficients of the reflectance with colour r, g, b (clamped to [0,1]) under the space's
+ * illuminant. Loops that must vectorise under clang call the functions above instead, since
+ * clang loses the simd pragma when this function is inlined through another. */
+static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(
+    const vlRgbTable *table, float r, float g, float b) {
   vlRgbPlace at = vl_rgb_place(r, g, b);
   const float *p = table->coefficients;
-  return (vlSigmoid){vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
+  return (vlSigmoid){vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at),
+                     vl_rgb_coefficient(p, 2, at)};
 }
 
 #endif

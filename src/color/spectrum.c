@@ -10,21 +10,25 @@
 static vlResult unknown_name(const char *name, vlError *error) {
   const char *names[128];
   uint32_t count = vl_table_named_count < 128 ? vl_table_named_count : 128;
-  for (uint32_t i = 0; i < count; i++) names[i] = vl_table_named[i].name;
+  for (uint32_t i = 0; i < count; i++)
+    names[i] = vl_table_named[i].name;
   const char *nearest = name ? vl_nearest_name(name, names, count) : NULL;
   if (nearest)
-    return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"; did you mean \"%s\"?", vl_argument_text(name).text,
-                   nearest);
+    return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"; did you mean \"%s\"?",
+                   vl_argument_text(name).text, nearest);
   return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"", vl_argument_text(name).text);
 }
 
 /* Validates a spectrum. */
 static vlResult check(const vlSpectrum *s, vlError *error) {
-  if (!s) return vl_fail(error, VL_ERROR_ARGUMENT, "spectrum is null");
-  if (!isfinite(s->scale)) return vl_fail(error, VL_ERROR_SCENE, "the spectrum's scale is not finite");
+  if (!s)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "spectrum is null");
+  if (!isfinite(s->scale))
+    return vl_fail(error, VL_ERROR_SCENE, "the spectrum's scale is not finite");
   switch (s->kind) {
     case VL_SPECTRUM_CONSTANT:
-      if (!isfinite(s->value)) return vl_fail(error, VL_ERROR_SCENE, "the spectrum's value is not finite");
+      if (!isfinite(s->value))
+        return vl_fail(error, VL_ERROR_SCENE, "the spectrum's value is not finite");
       return VL_OK;
     case VL_SPECTRUM_RGB:
       if (!isfinite(s->rgb[0]) || !isfinite(s->rgb[1]) || !isfinite(s->rgb[2]))
@@ -34,7 +38,8 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
       return VL_OK;
     case VL_SPECTRUM_BLACKBODY:
       if (!(s->kelvin > 0) || !isfinite(s->kelvin))
-        return vl_fail(error, VL_ERROR_SCENE, "a black body needs a temperature above 0 kelvin, not %g",
+        return vl_fail(error, VL_ERROR_SCENE,
+                       "a black body needs a temperature above 0 kelvin, not %g",
                        (double)s->kelvin);
       return VL_OK;
     case VL_SPECTRUM_SAMPLED:
@@ -42,20 +47,25 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
         return vl_fail(error, VL_ERROR_SCENE, "the spectrum has no samples");
       for (uint32_t i = 0; i < s->count; i++) {
         if (!isfinite(s->wavelengths[i]) || !isfinite(s->values[i]))
-          return vl_fail(error, VL_ERROR_SCENE, "the spectrum's sample %u is not finite", i + 1);
+          return vl_fail(error, VL_ERROR_SCENE, "the spectrum's sample %u is not finite",
+                         i + 1);
         if (i > 0 && !(s->wavelengths[i] > s->wavelengths[i - 1]))
-          return vl_fail(error, VL_ERROR_SCENE, "the spectrum's wavelengths must ascend: %g after %g",
+          return vl_fail(error, VL_ERROR_SCENE,
+                         "the spectrum's wavelengths must ascend: %g after %g",
                          (double)s->wavelengths[i], (double)s->wavelengths[i - 1]);
       }
       return VL_OK;
-    case VL_SPECTRUM_NAMED: return vl_named_spectrum(s->name) ? VL_OK : unknown_name(s->name, error);
+    case VL_SPECTRUM_NAMED:
+      return vl_named_spectrum(s->name) ? VL_OK : unknown_name(s->name, error);
   }
   return vl_fail(error, VL_ERROR_ARGUMENT, "unknown kind of spectrum %d", (int)s->kind);
 }
 
-/* Planck's law divided by its maximum (at Wien's wavelength): (lm / l)^5 (e^xm - 1) / (e^x - 1), x = hc / (l k T). */
+/* Planck's law divided by its maximum (at Wien's wavelength): (lm / l)^5 (e^xm - 1) / (e^x -
+ * 1), x = hc / (l k T). */
 static float blackbody(double lambda, double kelvin) {
-  const double xm = 4.965114231744276, hc_k = 1.438776877e7 /* nm K */, peak = 142.32492159405578; /* e^xm - 1 */
+  const double xm = 4.965114231744276, hc_k = 1.438776877e7 /* nm K */,
+               peak = 142.32492159405578; /* e^xm - 1 */
   double x = hc_k / (lambda * kelvin);
   double u = x / xm, value = u * u * (u * u) * u * peak / vl_precise_expm1(x);
   return isfinite(value) ? (float)value : 0.0f; /* low temperatures give infinity / infinity */
@@ -65,7 +75,8 @@ static void sampled(const vlSpectrum *s, float *dense) {
   uint32_t j = 0;
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
     double l = VL_LAMBDA_MIN + i;
-    while (j + 1 < s->count && (double)s->wavelengths[j + 1] <= l) j++;
+    while (j + 1 < s->count && (double)s->wavelengths[j + 1] <= l)
+      j++;
     double low = (double)s->wavelengths[j], value = 0;
     if (l == low) {
       value = (double)s->values[j];
@@ -77,9 +88,9 @@ static void sampled(const vlSpectrum *s, float *dense) {
   }
 }
 
-/* Converts RGB to a spectrum by its role. Albedo: a reflectance. Unbounded: scale * reflectance with scale = 2 max(r,
- * g, b), which keeps the sigmoid in its accurate range. Illuminant: the unbounded spectrum times the illuminant of the
- * colour space (pbrt book 4.6.6). */
+/* Converts RGB to a spectrum by its role. Albedo: a reflectance. Unbounded: scale * reflectance
+ * with scale = 2 max(r, g, b), which keeps the sigmoid in its accurate range. Illuminant: the
+ * unbounded spectrum times the illuminant of the colour space (pbrt book 4.6.6). */
 static void from_rgb(const vlSpectrum *s, vlSpectrumRole role, float *dense) {
   float rgb[3], scale = s->scale, high = 0;
   for (int i = 0; i < 3; i++) {
@@ -87,7 +98,8 @@ static void from_rgb(const vlSpectrum *s, vlSpectrumRole role, float *dense) {
     high = rgb[i] > high ? rgb[i] : high;
   }
   if (role != VL_ROLE_ALBEDO) {
-    for (int i = 0; i < 3 && high > 0; i++) rgb[i] = 0.5f * (rgb[i] / high);
+    for (int i = 0; i < 3 && high > 0; i++)
+      rgb[i] = 0.5f * (rgb[i] / high);
     scale = 2 * high * s->scale;
   }
   vlSigmoid c = vl_sigmoid_from_rgb(s->space, rgb[0], rgb[1], rgb[2]);
@@ -98,34 +110,45 @@ static void from_rgb(const vlSpectrum *s, vlSpectrumRole role, float *dense) {
   }
 }
 
-vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense, vlError *error) {
+vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense,
+                           vlError *error) {
   vlResult result = check(spectrum, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   switch (spectrum->kind) {
     case VL_SPECTRUM_CONSTANT:
-      for (int i = 0; i < VL_LAMBDA_COUNT; i++) dense[i] = spectrum->value * spectrum->scale;
+      for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+        dense[i] = spectrum->value * spectrum->scale;
       break;
-    case VL_SPECTRUM_RGB: from_rgb(spectrum, role, dense); break;
+    case VL_SPECTRUM_RGB:
+      from_rgb(spectrum, role, dense);
+      break;
     case VL_SPECTRUM_BLACKBODY:
       for (int i = 0; i < VL_LAMBDA_COUNT; i++)
-        dense[i] = spectrum->scale * blackbody((double)(VL_LAMBDA_MIN + i), (double)spectrum->kelvin);
+        dense[i] =
+            spectrum->scale * blackbody((double)(VL_LAMBDA_MIN + i), (double)spectrum->kelvin);
       break;
-    case VL_SPECTRUM_SAMPLED: sampled(spectrum, dense); break;
+    case VL_SPECTRUM_SAMPLED:
+      sampled(spectrum, dense);
+      break;
     case VL_SPECTRUM_NAMED: {
       const float *values = vl_named_spectrum(spectrum->name);
-      for (int i = 0; i < VL_LAMBDA_COUNT; i++) dense[i] = spectrum->scale * values[i];
+      for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+        dense[i] = spectrum->scale * values[i];
       break;
     }
   }
   /* finite samples may overflow when scaled */
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    if (!isfinite(dense[i])) return vl_fail(error, VL_ERROR_SCENE, "the spectrum's values are too large");
+    if (!isfinite(dense[i]))
+      return vl_fail(error, VL_ERROR_SCENE, "the spectrum's values are too large");
   }
   return VL_OK;
 }
 
 bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value) {
-  if (!spectrum) return false;
+  if (!spectrum)
+    return false;
   const vlSpectrum *s = spectrum;
   if (s->kind == VL_SPECTRUM_CONSTANT) {
     *value = s->value * s->scale;
@@ -134,15 +157,18 @@ bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value) {
   if (s->kind == VL_SPECTRUM_SAMPLED && s->count > 1 && s->wavelengths && s->values &&
       s->wavelengths[0] <= VL_LAMBDA_MIN && s->wavelengths[s->count - 1] >= VL_LAMBDA_MAX) {
     for (uint32_t i = 1; i < s->count; i++) {
-      if (s->values[i] != s->values[0]) return false;
+      if (s->values[i] != s->values[0])
+        return false;
     }
     *value = s->values[0] * s->scale;
     return true;
   }
   const float *named = s->kind == VL_SPECTRUM_NAMED ? vl_named_spectrum(s->name) : NULL;
-  if (!named) return false;
+  if (!named)
+    return false;
   for (int i = 1; i < VL_LAMBDA_COUNT; i++) {
-    if (named[i] != named[0]) return false;
+    if (named[i] != named[0])
+      return false;
   }
   *value = named[0] * s->scale;
   return true;
@@ -152,7 +178,8 @@ static void integrate(const float *dense, const float *light, double xyz[3]) {
   for (int k = 0; k < 3; k++) {
     xyz[k] = 0;
     for (int i = 0; i < VL_LAMBDA_COUNT; i++)
-      xyz[k] += (double)vl_table_cie[k][i] * (double)dense[i] * (light ? (double)light[i] : 1.0);
+      xyz[k] +=
+          (double)vl_table_cie[k][i] * (double)dense[i] * (light ? (double)light[i] : 1.0);
   }
 }
 
@@ -160,18 +187,23 @@ double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error) {
   float dense[VL_LAMBDA_COUNT];
   double xyz[3];
   if (spectrum->kind == VL_SPECTRUM_RGB) {
-    if (check(spectrum, error) != VL_OK) return 0;
+    if (check(spectrum, error) != VL_OK)
+      return 0;
     return vl_table_named[vl_table_spaces[spectrum->space].illuminant].y;
   }
-  if (vl_spectrum_dense(spectrum, VL_ROLE_ILLUMINANT, dense, error) != VL_OK) return 0;
+  if (vl_spectrum_dense(spectrum, VL_ROLE_ILLUMINANT, dense, error) != VL_OK)
+    return 0;
   integrate(dense, NULL, xyz);
   return xyz[1];
 }
 
-/* Converts RGB between colour spaces. Reflectances are adapted to the white of the new space (Bradford cone responses,
- * von Kries scaling). Lights are not adapted. If the whites are equal, there is no difference. */
-static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double rgb[3], double out[3]) {
-  static const double cone[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
+/* Converts RGB between colour spaces. Reflectances are adapted to the white of the new space
+ * (Bradford cone responses, von Kries scaling). Lights are not adapted. If the whites are
+ * equal, there is no difference. */
+static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double rgb[3],
+                    double out[3]) {
+  static const double cone[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135,
+                                 0.0367, 0.0389, -0.0685, 1.0296};
   static const double back[9] = {0.9869929, -0.1470543, 0.1599627, 0.4323053, 0.5183603,
                                  0.0492912, -0.0085287, 0.0400428, 0.9684867};
   const vlSpaceTable *a = &vl_table_spaces[from], *b = &vl_table_spaces[to];
@@ -192,7 +224,8 @@ static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double
       }
       lms[i] *= new_white / old_white;
     }
-    for (int i = 0; i < 3; i++) xyz[i] = back[3 * i] * lms[0] + back[3 * i + 1] * lms[1] + back[3 * i + 2] * lms[2];
+    for (int i = 0; i < 3; i++)
+      xyz[i] = back[3 * i] * lms[0] + back[3 * i + 1] * lms[1] + back[3 * i + 2] * lms[2];
   }
   for (int i = 0; i < 3; i++) {
     const double *m = b->rgb_from_xyz + 3 * i;
@@ -200,20 +233,24 @@ static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double
   }
 }
 
-vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3],
-                            vlError *error) {
+vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space,
+                            float rgb[3], vlError *error) {
   float dense[VL_LAMBDA_COUNT], constant;
   vlResult result = vl_spectrum_dense(spectrum, role, dense, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if ((unsigned)space > VL_SPACE_ACES2065_1)
     return vl_fail(error, VL_ERROR_ARGUMENT, "unknown colour space %d", (int)space);
   double out[3];
   if (spectrum->kind == VL_SPECTRUM_RGB) {
     double in[3];
-    for (int i = 0; i < 3; i++) in[i] = out[i] = (double)spectrum->rgb[i] * (double)spectrum->scale;
-    if (spectrum->space != space) convert(spectrum->space, space, role != VL_ROLE_ILLUMINANT, in, out);
+    for (int i = 0; i < 3; i++)
+      in[i] = out[i] = (double)spectrum->rgb[i] * (double)spectrum->scale;
+    if (spectrum->space != space)
+      convert(spectrum->space, space, role != VL_ROLE_ILLUMINANT, in, out);
   } else if (role != VL_ROLE_ILLUMINANT && vl_spectrum_is_constant(spectrum, &constant)) {
-    for (int i = 0; i < 3; i++) out[i] = (double)constant;
+    for (int i = 0; i < 3; i++)
+      out[i] = (double)constant;
   } else {
     double xyz[3];
     integrate(dense, role == VL_ROLE_ILLUMINANT ? NULL : vl_space_illuminant(space), xyz);

@@ -1,4 +1,5 @@
-/* export/export.c: the interface of this room: chooses the format, counts losses, writes files. */
+/* export/export.c: the interface of this room: chooses the format, counts losses, writes files.
+ */
 #include "export/export.h"
 
 #include <stdarg.h>
@@ -27,10 +28,12 @@ void vl_export_lose(vlExport *x, const char *format, ...) {
 }
 
 static void lose_many(vlExport *x, uint64_t count, const char *text) {
-  if (!count) return;
+  if (!count)
+    return;
   vl_export_lose(x, "%s", text);
   for (uint32_t i = 0; i < x->loss_count; i++)
-    if (vl_text_is(x->losses[i].text, text)) x->losses[i].count += count - 1;
+    if (vl_text_is(x->losses[i].text, text))
+      x->losses[i].count += count - 1;
 }
 
 static uint32_t beyond_first(const vlScene *scene, vlChoiceKind kind) {
@@ -41,30 +44,36 @@ static uint32_t beyond_first(const vlScene *scene, vlChoiceKind kind) {
 void vl_export_lose_choices(vlExport *x) {
   const vlScene *s = x->scene;
   lose_many(x, vl_scene_choice_count(s, VL_CHOICE_ANIMATION), "animations: one moment of them");
-  lose_many(x, vl_scene_choice_count(s, VL_CHOICE_VARIANT), "variants of materials: the chosen one");
+  lose_many(x, vl_scene_choice_count(s, VL_CHOICE_VARIANT),
+            "variants of materials: the chosen one");
   lose_many(x, beyond_first(s, VL_CHOICE_SCENE), "scenes: the chosen one");
   lose_many(x, beyond_first(s, VL_CHOICE_CAMERA), "cameras: the chosen one");
   lose_many(x, s->skinned, "skins: vertices as they pose them");
   lose_many(x, s->morphed, "morph targets: vertices as they pose them");
-  for (size_t i = 0; i < s->unread.count; i++) lose_many(x, s->unread.items[i].count, s->unread.items[i].what);
+  for (size_t i = 0; i < s->unread.count; i++)
+    lose_many(x, s->unread.items[i].count, s->unread.items[i].what);
 }
 
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
-  if (x->result != VL_OK) return false;
+  if (x->result != VL_OK)
+    return false;
   char text[400];
   VL_FORMAT(text, format);
   x->result = vl_fail(x->error, result, "%s", text);
   return false;
 }
 
-/* ---- bytes ------------------------------------------------------------------------------------------------------- */
+/* ---- bytes
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size) {
   if (bytes->full || !VL_RESERVE(context, &bytes->data, size + 1)) {
     bytes->full = true;
     return;
   }
-  if (size) memcpy(bytes->data.items + bytes->data.count, data, size);
+  if (size)
+    memcpy(bytes->data.items + bytes->data.count, data, size);
   bytes->data.count += size;
 }
 
@@ -74,27 +83,36 @@ void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
   va_start(args, format);
   int n = vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  vl_bytes_put(context, bytes, text, n < 0 ? 0 : (size_t)n < sizeof text ? (size_t)n : sizeof text - 1);
+  vl_bytes_put(context, bytes, text,
+               n < 0                     ? 0
+               : (size_t)n < sizeof text ? (size_t)n
+                                         : sizeof text - 1);
 }
 
-/* ---- files ------------------------------------------------------------------------------------------------------- */
+/* ---- files
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size) {
-  return vl_path_join(x->path, name, path, size) || vl_export_fail(x, VL_ERROR_IO, "the file's name is too long");
+  return vl_path_join(x->path, name, path, size) ||
+         vl_export_fail(x, VL_ERROR_IO, "the file's name is too long");
 }
 
 static bool take(vlExport *x, vlResult result) {
-  if (result != VL_OK && x->result == VL_OK) x->result = result;
+  if (result != VL_OK && x->result == VL_OK)
+    x->result = result;
   return result == VL_OK;
 }
 
 bool vl_export_main(vlExport *x, const void *data, size_t size) {
-  if (x->result != VL_OK) return false; /* whatever became of the part that failed */
+  if (x->result != VL_OK)
+    return false; /* whatever became of the part that failed */
   return x->dry || take(x, vl_file_set_main(&x->files, data, size, x->error));
 }
 
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size) {
-  if (x->dry) return true;
+  if (x->dry)
+    return true;
   return take(x, vl_file_set_name(&x->files, name, 300, data, size, x->error)) &&
          take(x, vl_file_set_write(&x->files, name, data, size, x->error));
 }
@@ -103,15 +121,18 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vlImage *image = NULL;
   vlError error;
   vl_error_clear(&error);
-  vlResult r =
-      t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data, t->data_size, &image, &error)
-              : vl_image_read_named(x->context, NULL, t->path, &image, &error);
-  if (r != VL_OK && x->result == VL_OK) /* the scene's image is at fault, not the file being written */
-    x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s", error.message);
+  vlResult r = t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data,
+                                              t->data_size, &image, &error)
+                       : vl_image_read_named(x->context, NULL, t->path, &image, &error);
+  if (r != VL_OK &&
+      x->result == VL_OK) /* the scene's image is at fault, not the file being written */
+    x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s",
+                           error.message);
   return image;
 }
 
-bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data, size_t *size) {
+bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data,
+                    size_t *size) {
   void *bytes = NULL;
   vlError error;
   vl_error_clear(&error);
@@ -121,44 +142,55 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
 }
 
 static const char *kind_of(const char *data, size_t size) {
-  if (size > 8 && memcmp(data, "\x89PNG\r\n\x1a\n", 8) == 0) return ".png";
-  if (size > 3 && memcmp(data, "\xff\xd8\xff", 3) == 0) return ".jpg";
+  if (size > 8 && memcmp(data, "\x89PNG\r\n\x1a\n", 8) == 0)
+    return ".png";
+  if (size > 3 && memcmp(data, "\xff\xd8\xff", 3) == 0)
+    return ".jpg";
   return NULL;
 }
 
-bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix) {
+bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size,
+                     const char **suffix) {
   *data = NULL;
   if (t->data) {
     *data = vl_alloc_array(x->context, t->data_size + 1, 1);
-    if (!*data) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    if (!*data)
+      return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
     memcpy(*data, t->data, t->data_size);
     *size = t->data_size;
   } else if (t->path) {
     vlError error;
     vl_error_clear(&error);
     vlResult r = vl_file_read(x->context, t->path, false, data, size, &error);
-    if (r != VL_OK) return vl_export_fail(x, r, "%s", error.message);
+    if (r != VL_OK)
+      return vl_export_fail(x, r, "%s", error.message);
   }
   *suffix = *data ? kind_of(*data, *size) : NULL;
-  if (*suffix) return true;
+  if (*suffix)
+    return true;
   vl_free(x->context, *data);
   *data = NULL;
   *suffix = ".png";
   vl_export_lose(x, "image of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
-  if (t->image) return vl_export_pack(x, t->image, ".png", data, size);
+  if (t->image)
+    return vl_export_pack(x, t->image, ".png", data, size);
   vlImage *image = vl_export_decode(x, t);
   bool fine = image && vl_export_pack(x, image, ".png", data, size);
   vl_image_destroy(image);
   return fine;
 }
 
-/* ---- the face ---------------------------------------------------------------------------------------------------- */
+/* ---- the face
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void start(vlExport *x, bool dry) {
   x->dry = dry;
   x->loss_count = 0;
-  const char *slash = strrchr(x->path, '/'), *name = slash ? slash + 1 : x->path, *dot = strrchr(name, '.');
-  snprintf(x->stem, sizeof x->stem, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
+  const char *slash = strrchr(x->path, '/'), *name = slash ? slash + 1 : x->path,
+             *dot = strrchr(name, '.');
+  snprintf(x->stem, sizeof x->stem, "%.*s",
+           dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
 }
 
 static void finish(vlExport *x) {
@@ -171,17 +203,23 @@ static void finish(vlExport *x) {
   x->root = NULL;
 }
 
-vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def, vlError *error) {
+vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def,
+                       vlError *error) {
   vl_error_clear(error);
   vlSaveDef plain = vl_default_save_def();
-  if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: scene or path is null");
-  if (def && def->cookie != VL_COOKIE_SAVE) return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: " VL_BAD_COOKIE);
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  if (!scene || !path)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: scene or path is null");
+  if (def && def->cookie != VL_COOKIE_SAVE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: " VL_BAD_COOKIE);
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
   bool pbrt = vl_ends_with(path, ".pbrt"), binary = vl_ends_with(path, ".glb");
   if (!pbrt && !binary && !vl_ends_with(path, ".gltf"))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%.300s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", path);
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "%.300s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", path);
   vlExport *x = vl_alloc_zero(scene->context, 1, sizeof *x);
-  if (!x) return vl_fail_memory(error);
+  if (!x)
+    return vl_fail_memory(error);
   x->context = scene->context;
   x->scene = scene;
   x->path = path;
@@ -194,9 +232,10 @@ vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *
     fine = pbrt ? vl_export_pbrt(x) : vl_export_gltf(x);
     finish(x);
     if (fine && x->loss_count)
-      fine = vl_export_fail(x, VL_ERROR_UNSUPPORTED, "%s cannot hold: %s (%llu); %u kinds of loss in all",
-                            pbrt ? "pbrt" : "glTF", x->losses[0].text, (unsigned long long)x->losses[0].count,
-                            x->loss_count);
+      fine = vl_export_fail(x, VL_ERROR_UNSUPPORTED,
+                            "%s cannot hold: %s (%llu); %u kinds of loss in all",
+                            pbrt ? "pbrt" : "glTF", x->losses[0].text,
+                            (unsigned long long)x->losses[0].count, x->loss_count);
   }
   if (fine) {
     vl_file_set_begin(&x->files, x->context, x->path);

@@ -1,5 +1,6 @@
-/* export/export.h: exporters write scenes to files of other formats. export.c (interface, losses, files) calls gltf*.c
- * or pbrt*.c. Whatever a format cannot represent is counted as a loss, with one line of text per kind of loss. */
+/* export/export.h: exporters write scenes to files of other formats. export.c (interface,
+ * losses, files) calls gltf*.c or pbrt*.c. Whatever a format cannot represent is counted as a
+ * loss, with one line of text per kind of loss. */
 #ifndef EXPORT_EXPORT_H
 #define EXPORT_EXPORT_H
 
@@ -52,7 +53,8 @@ typedef struct vlExport {
   vlLoss losses[VL_EXPORT_LOSSES];
   uint32_t loss_count;
   vlFileSet files;
-  char stem[200]; /* the scene's file name without suffix; names of further files start with it */
+  char stem[200]; /* the scene's file name without suffix; names of further files start with it
+                   */
   VL_ARRAY(vlExportImage) images;
   /* glTF */
   bool binary;
@@ -63,32 +65,43 @@ typedef struct vlExport {
   vlBytes text;
 } vlExport;
 
-/* ---- export.c ---------------------------------------------------------------------------------------------------- */
+/* ---- export.c
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Stores the error if it is the first one. Always returns false. */
-bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) __attribute__((format(printf, 3, 4)));
+bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
-void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Writes the scene file, which comes last: until then the earlier one and its files are as they were. */
+void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Writes the scene file, which comes last: until then the earlier one and its files are as they
+ * were. */
 bool vl_export_main(vlExport *x, const void *data, size_t size);
-/* Writes a file beside the scene file. No file is overwritten: where another has the name, `name` becomes a free one
+/* Writes a file beside the scene file. No file is overwritten: where another has the name,
+ * `name` becomes a free one
  * ("room-2.bin"). A file that has these bytes already is taken as it is. */
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size);
 /* Path of a file in the folder of the scene file. */
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
 /* The decoded image of a texture. */
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t);
-/* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise the image encoded as
- * PNG. *suffix receives the format. The bytes are a block of the context. */
-bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix);
+/* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise
+ * the image encoded as PNG. *suffix receives the format. The bytes are a block of the context.
+ */
+bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size,
+                     const char **suffix);
 /* Encodes an image in the format that the suffix names. */
-bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data, size_t *size);
+bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data,
+                    size_t *size);
 
-/* ---- values.c ---------------------------------------------------------------------------------------------------- */
+/* ---- values.c
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-/* Converts the input to linear sRGB. Lights are divided by their luminance, as in the tracer. A textured input gives
- * the mean of its texture if that is easily computed. */
+/* Converts the input to linear sRGB. Lights are divided by their luminance, as in the tracer. A
+ * textured input gives the mean of its texture if that is easily computed. */
 void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]);
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]);
 float vl_export_number(vlExport *x, const vlFloatInput *input);
@@ -100,16 +113,19 @@ void vl_export_st_from_uv(const vlTextureDef *t, double m[6]);
 void vl_export_metal_rgb(vlExport *x, const vlMaterialDef *m, float rgb[3]);
 /* Index of refraction at 589 nm. */
 float vl_export_eta(const vlSpectrum *eta);
-/* The mean of the squares of an input: of an image over all its pixels. Principled materials have alpha = roughness^2.
+/* The mean of the squares of an input: of an image over all its pixels. Principled materials
+ * have alpha = roughness^2.
  */
 float vl_export_mean_square(vlExport *x, const vlFloatInput *input);
 /* GGX alpha from the roughness of a pbrt material. */
 float vl_export_alpha(vlExport *x, const vlMaterialDef *m, const vlFloatInput *roughness);
 
-/* ---- meshes.c ---------------------------------------------------------------------------------------------------- */
+/* ---- meshes.c
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-/* A shape as triangles. vl_export_free_mesh frees the blocks in `own`. The function returns false when there is no
- * mesh; it has then reported an error or counted a loss. */
+/* A shape as triangles. vl_export_free_mesh frees the blocks in `own`. The function returns
+ * false when there is no mesh; it has then reported an error or counted a loss. */
 typedef struct vlExportMesh {
   uint32_t vertices, faces;
   const float *positions, *normals, *tangents, *uvs[4], *colors, *signs;
@@ -118,16 +134,21 @@ typedef struct vlExportMesh {
 } vlExportMesh;
 bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh);
 void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh);
-/* Makes the uv sets 0 to `last` complete, for formats that require them. A mesh without uvs gets those that velo's
- * surfaces have by themselves, so that its faces no longer share vertices; other missing sets equal set 0. */
+/* Makes the uv sets 0 to `last` complete, for formats that require them. A mesh without uvs
+ * gets those that velo's surfaces have by themselves, so that its faces no longer share
+ * vertices; other missing sets equal set 0. */
 bool vl_export_make_uvs(vlExport *x, const vlShapeDef *d, uint32_t last, vlExportMesh *mesh);
-/* Counts as losses what the file lets one choose and what moves: formats hold the scene as it was loaded. */
+/* Counts as losses what the file lets one choose and what moves: formats hold the scene as it
+ * was loaded. */
 void vl_export_lose_choices(vlExport *x);
 
-/* ---- glTF, pbrt -------------------------------------------------------------------------------------------------- */
+/* ---- glTF, pbrt
+ * --------------------------------------------------------------------------------------------------
+ */
 
 bool vl_export_gltf(vlExport *x);
-/* Appends bytes to the buffer and returns the index of their bufferView. target 0: the bufferView has no target. */
+/* Appends bytes to the buffer and returns the index of their bufferView. target 0: the
+ * bufferView has no target. */
 json_int_t vl_gltf_put_view(vlExport *x, const void *data, size_t size, int target);
 /* Appends to the array `key` of the root and returns the index. Takes ownership of value. */
 json_int_t vl_gltf_put(vlExport *x, const char *key, json_t *value);
@@ -138,11 +159,14 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
 bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d);
 /* A textureInfo object for an image; null: none. */
 json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear);
-/* Writes an image file, of which these are the bytes. Returns its index in "images"; -1 after an error. */
+/* Writes an image file, of which these are the bytes. Returns its index in "images"; -1 after
+ * an error. */
 json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const char *suffix);
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror);
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes);
-/* Gives the scene the sum of the infinite lights. mirror: the nodes have a parent that mirrors z. */
+/* Gives the scene the sum of the infinite lights. mirror: the nodes have a parent that mirrors
+ * z.
+ */
 bool vl_gltf_put_environment(vlExport *x, json_t *scene, bool mirror);
 
 bool vl_export_pbrt(vlExport *x);

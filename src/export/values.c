@@ -1,4 +1,5 @@
-/* export/values.c: the scene's spectra, textures and roughnesses as the plain numbers of other formats. */
+/* export/values.c: the scene's spectra, textures and roughnesses as the plain numbers of other
+ * formats. */
 #include <math.h>
 
 #include "color/color.h"
@@ -9,15 +10,18 @@
 
 static void to_rgb(const vlSpectrum *s, vlSpectrumRole role, float rgb[3]) {
   if (s->kind == VL_SPECTRUM_RGB && s->space == VL_SPACE_SRGB) {
-    for (int i = 0; i < 3; i++) rgb[i] = s->rgb[i] * s->scale;
+    for (int i = 0; i < 3; i++)
+      rgb[i] = s->rgb[i] * s->scale;
     return;
   }
   if (s->kind == VL_SPECTRUM_CONSTANT && role != VL_ROLE_ILLUMINANT) {
     rgb[0] = rgb[1] = rgb[2] = s->value * s->scale;
     return;
   }
-  if (vl_spectrum_to_rgb(s, role, VL_SPACE_SRGB, rgb, NULL) != VL_OK) rgb[0] = rgb[1] = rgb[2] = 0;
-  for (int i = 0; i < 3; i++) rgb[i] = isfinite(rgb[i]) && rgb[i] > 0 ? rgb[i] : 0;
+  if (vl_spectrum_to_rgb(s, role, VL_SPACE_SRGB, rgb, NULL) != VL_OK)
+    rgb[0] = rgb[1] = rgb[2] = 0;
+  for (int i = 0; i < 3; i++)
+    rgb[i] = isfinite(rgb[i]) && rgb[i] > 0 ? rgb[i] : 0;
 }
 
 void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]) {
@@ -25,40 +29,51 @@ void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]) {
 }
 
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
-  if (!id.index) return NULL;
+  if (!id.index)
+    return NULL;
   const vlTextureDef *t = &x->scene->textures.items[id.index - 1];
   return t->kind == VL_TEXTURE_IMAGE ? t : NULL;
 }
 
-/* The approximate mean of a texture that is not an image. depth limits the nesting of textures. */
+/* The approximate mean of a texture that is not an image. depth limits the nesting of textures.
+ */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
-  const vlTextureDef *t = input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
+  const vlTextureDef *t =
+      input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
   float a[3], b[3];
   if (!t || depth > 8) {
     to_rgb(&input->value, VL_ROLE_ALBEDO, rgb);
   } else if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR) {
-    for (int i = 0; i < 3; i++) rgb[i] = t->tint[i] * (t->kind == VL_TEXTURE_IMAGE ? t->scale : 1);
+    for (int i = 0; i < 3; i++)
+      rgb[i] = t->tint[i] * (t->kind == VL_TEXTURE_IMAGE ? t->scale : 1);
   } else if (t->kind == VL_TEXTURE_CONSTANT || t->kind == VL_TEXTURE_SCALE) {
     mean_rgb(x, &t->spectrum_a, depth + 1, rgb);
-    for (int i = 0; i < 3 && t->kind == VL_TEXTURE_SCALE; i++) rgb[i] *= t->amount.value;
+    for (int i = 0; i < 3 && t->kind == VL_TEXTURE_SCALE; i++)
+      rgb[i] *= t->amount.value;
   } else {
     mean_rgb(x, &t->spectrum_a, depth + 1, a);
     mean_rgb(x, &t->spectrum_b, depth + 1, b);
-    for (int i = 0; i < 3; i++) rgb[i] = 0.5f * (a[i] + b[i]);
+    for (int i = 0; i < 3; i++)
+      rgb[i] = 0.5f * (a[i] + b[i]);
   }
 }
 
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]) {
-  const vlTextureDef *t = input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
-  if (t && t->kind != VL_TEXTURE_IMAGE && t->kind != VL_TEXTURE_VERTEX_COLOR && t->kind != VL_TEXTURE_CONSTANT)
+  const vlTextureDef *t =
+      input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
+  if (t && t->kind != VL_TEXTURE_IMAGE && t->kind != VL_TEXTURE_VERTEX_COLOR &&
+      t->kind != VL_TEXTURE_CONSTANT)
     vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
   mean_rgb(x, input, 0, rgb);
 }
 
 float vl_export_number(vlExport *x, const vlFloatInput *input) {
-  const vlTextureDef *t = input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
-  if (!t) return input->value;
-  if (t->kind == VL_TEXTURE_CONSTANT) return t->float_a.value;
+  const vlTextureDef *t =
+      input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
+  if (!t)
+    return input->value;
+  if (t->kind == VL_TEXTURE_CONSTANT)
+    return t->float_a.value;
   if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR)
     return t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
   vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
@@ -70,19 +85,24 @@ float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
   const float value = vl_export_number(x, input);
   vlImage *image = t && !t->image ? vl_export_decode(x, t) : NULL;
   const vlImage *from = t && t->image ? t->image : image;
-  if (!from) return value * value;
+  if (!from)
+    return value * value;
   uint32_t channel[4], have = vl_image_color(from, channel);
   float *row = vl_alloc_array(x->context, from->width, 4 * sizeof *row);
   double sum = 0;
-  const uint32_t use = t->channel < 0 ? 0 : (uint32_t)t->channel < have ? (uint32_t)t->channel : have - 1;
+  const uint32_t use = t->channel < 0                ? 0
+                       : (uint32_t)t->channel < have ? (uint32_t)t->channel
+                                                     : have - 1;
   for (uint32_t y = 0; row && y < from->height; y++) {
     vl_image_row_to_float(from, y, channel, have, row);
     for (size_t i = 0; i < from->width; i++) {
-      const double v = (double)t->bias + (double)t->scale * (double)t->tint[use] * (double)row[i * have + use];
+      const double v = (double)t->bias +
+                       (double)t->scale * (double)t->tint[use] * (double)row[i * have + use];
       sum += v * v;
     }
   }
-  const double mean = row ? sum / ((double)from->width * from->height) : (double)value * (double)value;
+  const double mean =
+      row ? sum / ((double)from->width * from->height) : (double)value * (double)value;
   vl_free(x->context, row);
   vl_image_destroy(image);
   return (float)mean;
@@ -90,13 +110,16 @@ float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
 
 void vl_export_st_from_uv(const vlTextureDef *t, double m[6]) {
   const double plain[6] = {t->su, 0, t->du, 0, t->sv, t->dv};
-  for (int i = 0; i < 6; i++) m[i] = t->st_from_uv_given ? t->st_from_uv[i] : plain[i];
+  for (int i = 0; i < 6; i++)
+    m[i] = t->st_from_uv_given ? t->st_from_uv[i] : plain[i];
 }
 
 float vl_export_eta(const vlSpectrum *eta) {
   float dense[VL_LAMBDA_COUNT];
-  if (eta->kind == VL_SPECTRUM_CONSTANT) return eta->value * eta->scale;
-  if (vl_spectrum_dense(eta, VL_ROLE_UNBOUNDED, dense, NULL) != VL_OK) return 1.5f;
+  if (eta->kind == VL_SPECTRUM_CONSTANT)
+    return eta->value * eta->scale;
+  if (vl_spectrum_dense(eta, VL_ROLE_UNBOUNDED, dense, NULL) != VL_OK)
+    return 1.5f;
   return vl_dense_at(dense, 589.3f);
 }
 
@@ -124,7 +147,8 @@ void vl_export_metal_rgb(vlExport *x, const vlMaterialDef *m, float rgb[3]) {
 }
 
 float vl_export_alpha(vlExport *x, const vlMaterialDef *m, const vlFloatInput *roughness) {
-  if (roughness->texture.index) vl_export_lose(x, "textured roughness: its largest value stands in");
+  if (roughness->texture.index)
+    vl_export_lose(x, "textured roughness: its largest value stands in");
   float v = vl_export_number(x, roughness);
   v = v > 0 ? v : 0;
   return m->remap_roughness ? sqrtf(v) : v;

@@ -1,5 +1,6 @@
-/* film/add.c: adds samples to the exact sums, with integers only. The product of the float's mantissa and the weight's
- * is exact; one multiplication shifts it to its place in the 128-bit sum. There are no branches on the values. */
+/* film/add.c: adds samples to the exact sums, with integers only. The product of the float's
+ * mantissa and the weight's is exact; one multiplication shifts it to its place in the 128-bit
+ * sum. There are no branches on the values. */
 #include "film/sums.h"
 
 enum {
@@ -10,15 +11,18 @@ enum {
 /* Copies a pixel's sums from the front when it is new in the pass. */
 static inline void begin_pixel(vlFilm *film, size_t at) {
   static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
-  if (film->stamp[at] == film->pass) return;
+  if (film->stamp[at] == film->pass)
+    return;
   film->stamp[at] = film->pass;
   film->back[at] = film->front ? film->front[at] : zero;
-  if (film->def.errors) vl_film_begin_moments(film, at);
+  if (film->def.errors)
+    vl_film_begin_moments(film, at);
 }
 
 void vl_film_miss(vlFilm *film, int32_t px, int32_t py) {
   uint32_t x = (uint32_t)px - film->def.crop[0], y = (uint32_t)py - film->def.crop[1];
-  if (x < film->width && y < film->height && film->in_pass) begin_pixel(film, (size_t)y * film->width + x);
+  if (x < film->width && y < film->height && film->in_pass)
+    begin_pixel(film, (size_t)y * film->width + x);
 }
 
 uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32_t *bad_y) {
@@ -30,12 +34,14 @@ uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32
     uint32_t r = vl_float_bits(s->r[i]) & 0x7fffffffu, g = vl_float_bits(s->g[i]) & 0x7fffffffu;
     uint32_t b = vl_float_bits(s->b[i]) & 0x7fffffffu, largest = r > g ? r : g;
     largest = largest > b ? largest : b;
-    bool fits = largest < COLOR_LIMIT && (vl_float_bits(w) & 0x7fffffffu) < WEIGHT_LIMIT && a - a == 0.0f &&
-                x < width && y < film->height && film->in_pass;
+    bool fits = largest < COLOR_LIMIT && (vl_float_bits(w) & 0x7fffffffu) < WEIGHT_LIMIT &&
+                a - a == 0.0f && x < width && y < film->height && film->in_pass;
     if (!fits) {
       if (bad++ == 0) {
-        if (bad_x) *bad_x = s->px[i];
-        if (bad_y) *bad_y = s->py[i];
+        if (bad_x)
+          *bad_x = s->px[i];
+        if (bad_y)
+          *bad_y = s->py[i];
       }
       vl_film_miss(film, s->px[i], s->py[i]);
       continue;

@@ -4,33 +4,43 @@
 #include "film/sums.h"
 #include "velo/image.h"
 
-static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType type, const double *numbers, int count) {
+static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType type,
+                            const double *numbers, int count) {
   vlAttribute a = {.name = name, .type = type};
-  for (int i = 0; i < count; i++) a.numbers[i] = numbers[i];
+  for (int i = 0; i < count; i++)
+    a.numbers[i] = numbers[i];
   return vl_image_set_attribute(image, &a);
 }
 
-/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's place in the whole image (inclusive). */
+/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's place in the whole
+ * image (inclusive). */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
   float xy[8];
   double numbers[8];
   vl_space_chromaticities(film->def.space, xy);
-  for (int i = 0; i < 8; i++) numbers[i] = xy[i];
-  vlResult result = set_numbers(image, "chromaticities", VL_ATTRIBUTE_CHROMATICITIES, numbers, 8);
-  if (film->width == film->def.width && film->height == film->def.height) return result;
+  for (int i = 0; i < 8; i++)
+    numbers[i] = xy[i];
+  vlResult result =
+      set_numbers(image, "chromaticities", VL_ATTRIBUTE_CHROMATICITIES, numbers, 8);
+  if (film->width == film->def.width && film->height == film->def.height)
+    return result;
   const uint32_t *c = film->def.crop;
   double data[4] = {c[0], c[1], c[2] - 1.0, c[3] - 1.0},
          display[4] = {0, 0, film->def.width - 1.0, film->def.height - 1.0};
-  if (result == VL_OK) result = set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4);
-  if (result == VL_OK) result = set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
+  if (result == VL_OK)
+    result = set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4);
+  if (result == VL_OK)
+    result = set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
   return result;
 }
 
 vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {
-  if (!image) return VL_ERROR_ARGUMENT;
+  if (!image)
+    return VL_ERROR_ARGUMENT;
   *image = NULL;
   vlDevelopDef d = def ? *def : vl_default_develop_def();
-  if (!film || d.cookie != VL_COOKIE_DEVELOP) return VL_ERROR_ARGUMENT;
+  if (!film || d.cookie != VL_COOKIE_DEVELOP)
+    return VL_ERROR_ARGUMENT;
   static const char *const names[4] = {"R", "G", "B", "A"};
   vlImageDef image_def = vl_default_image_def(film->width, film->height, 4);
   image_def.names = names;
@@ -38,23 +48,28 @@ vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **
   image_def.encoding = VL_ENCODING_LINEAR;
   vlImage *made;
   vlResult result = vl_image_create(film->context, &image_def, &made);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   result = set_attributes(film, made);
   if (result != VL_OK) {
     vl_image_destroy(made);
     return result;
   }
-  /* The quotient of the sums is accurate to 2^-51: where all samples of a pixel are the same float, rounding gives that
-   * float. */
+  /* The quotient of the sums is accurate to 2^-51: where all samples of a pixel are the same
+   * float, rounding gives that float. */
   float *out = vl_image_pixels(made);
-  double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)), exposure = d.exposure;
+  double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)),
+         exposure = d.exposure;
   double alpha_unit = 1.0 / (double)(1 << (VL_ALPHA_BITS - VL_WEIGHT_BITS));
-  size_t count = film->front ? vl_film_pixels(film) : 0; /* without samples the image stays zero */
+  size_t count =
+      film->front ? vl_film_pixels(film) : 0; /* without samples the image stays zero */
   for (size_t i = 0; i < count; i++) {
     const vlFilmPixel *p = film->front + i;
-    if (p->weight <= 0) continue;
+    if (p->weight <= 0)
+      continue;
     double weight = (double)p->weight;
-    for (int c = 0; c < 3; c++) out[4 * i + c] = (float)((double)p->color[c] / weight * color_unit * exposure);
+    for (int c = 0; c < 3; c++)
+      out[4 * i + c] = (float)((double)p->color[c] / weight * color_unit * exposure);
     double alpha = (double)p->alpha / weight * alpha_unit;
     out[4 * i + 3] = (float)(alpha > 0.0 ? (alpha < 1.0 ? alpha : 1.0) : 0.0);
   }

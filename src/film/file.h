@@ -1,5 +1,5 @@
-/* film/file.h: film files (docs/film-files.md): a preamble, a header of JSON, then blocks of pixels with their sums.
- * Numbers are little-endian; sums are stored as they are in memory. */
+/* film/file.h: film files (docs/film-files.md): a preamble, a header of JSON, then blocks of
+ * pixels with their sums. Numbers are little-endian; sums are stored as they are in memory. */
 #ifndef FILM_FILE_H
 #define FILM_FILE_H
 
@@ -43,7 +43,9 @@ typedef struct vlFilmShape {
   vlFilmOwn own;
 } vlFilmShape;
 
-enum { VL_FILM_OLD_MEAN = 16 }; /* bytes of a pixel's mean, which blocks of format 2 with a comparison have */
+enum {
+  VL_FILM_OLD_MEAN = 16
+}; /* bytes of a pixel's mean, which blocks of format 2 with a comparison have */
 /* Bytes of a pixel's sums in a file. */
 static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
   return sizeof(vlFilmPixel) + (def->errors ? sizeof(vlFilmMoments) : 0) +
@@ -55,7 +57,9 @@ static inline size_t vl_film_most_data(const vlFilmDef *def) {
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
 
-/* ---- header ------------------------------------------------------------------------------------------------------ */
+/* ---- header
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* What a header has beside the shape: JSON texts, each of which may be null. */
 typedef struct vlFilmTexts {
@@ -63,16 +67,21 @@ typedef struct vlFilmTexts {
 } vlFilmTexts;
 
 /* The text of a header. Null: out of memory. */
-char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const vlFilmTexts *texts);
+char *vl_film_header_make(vlContext *context, const vlFilmShape *shape,
+                          const vlFilmTexts *texts);
 /* Reads a header. The caller frees the texts. Errors: SCENE, MEMORY. */
-vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
-                             vlFilmTexts *texts, vlError *error);
+vlResult vl_film_header_read(vlContext *context, const char *path, const char *text,
+                             size_t size, vlFilmShape *shape, vlFilmTexts *texts,
+                             vlError *error);
 /* The attributes of an image as JSON: {"name": ["type", value, ...]}. Null: out of memory. */
 char *vl_film_attributes_make(vlContext *context, const vlImage *image);
 /* Sets the attributes of such a text on an image. Errors: SCENE, MEMORY. */
-vlResult vl_film_attributes_set(const char *path, const char *text, vlImage *image, vlError *error);
+vlResult vl_film_attributes_set(const char *path, const char *text, vlImage *image,
+                                vlError *error);
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 typedef struct vlFilmReader {
   vlContext *context;
@@ -94,33 +103,43 @@ typedef struct vlFilmReader {
   uint32_t crc; /* of head and ranges */
 } vlFilmReader;
 
-vlResult vl_film_reader_open(vlFilmReader *reader, vlContext *context, const char *path, vlError *error);
+vlResult vl_film_reader_open(vlFilmReader *reader, vlContext *context, const char *path,
+                             vlError *error);
 /* Whether a file begins as film files do, damaged or not. */
 bool vl_film_begins_as_film(const char *path);
 void vl_film_reader_close(vlFilmReader *reader);
 /* Reads the head and the ranges of the next block; reader->next <= reader->blocks. */
 vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
-/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra. data: of vl_film_most_data
- * bytes. */
+/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra.
+ * data: of vl_film_most_data bytes. */
 vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
 /* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
 
-/* ---- merging ----------------------------------------------------------------------------------------------------- */
+/* ---- merging
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-/* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file. to_end, from_end: the
- * indices behind their last samples. */
-void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, uint32_t to_end, const void *from,
-                       uint32_t from_end);
+/* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file.
+ * to_end, from_end: the indices behind their last samples. */
+void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, uint32_t to_end,
+                       const void *from, uint32_t from_end);
 
-/* ---- earlier formats --------------------------------------------------------------------------------------------- */
+/* ---- earlier formats
+ * ---------------------------------------------------------------------------------------------
+ */
 
-/* The size of a block's data in a file of format 1 or 2. compared: it has a comparison, and means with it. */
-size_t vl_film_old_data_size(const vlFilmDef *def, uint32_t format, size_t pixels, bool compared);
-/* Brings a block's data of format 1 or 2 into the present form, in place; data has room for vl_film_most_data bytes. */
+/* The size of a block's data in a file of format 1 or 2. compared: it has a comparison, and
+ * means with it. */
+size_t vl_film_old_data_size(const vlFilmDef *def, uint32_t format, size_t pixels,
+                             bool compared);
+/* Brings a block's data of format 1 or 2 into the present form, in place; data has room for
+ * vl_film_most_data bytes. */
 void vl_film_convert_old_data(const vlFilmDef *def, size_t pixels, void *data);
 
-/* ---- locks ------------------------------------------------------------------------------------------------------- */
+/* ---- locks
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 struct vlFilmLock {
   vlContext *context;
@@ -128,15 +147,19 @@ struct vlFilmLock {
 };
 
 /* As vl_film_lock; where another has the lock: IO. */
-vlResult vl_film_lock_write(vlContext *context, const char *path, vlFilmLock **lock, vlError *error);
+vlResult vl_film_lock_write(vlContext *context, const char *path, vlFilmLock **lock,
+                            vlError *error);
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* The number of samples of a block. */
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);
 /* Writes preamble and header. */
 vlResult vl_film_put_header(vlFileWriter *writer, const char *header);
-/* Fills a block's head. compared: null: none. Returns the size of the block in the file, bytes. */
+/* Fills a block's head. compared: null: none. Returns the size of the block in the file, bytes.
+ */
 size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count,
                           const vlComparedNoise *compared, vlFilmBlockHead *head);
 

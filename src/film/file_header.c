@@ -1,4 +1,5 @@
-/* film/file_header.c: the header of a film file as JSON: the film's def and the receipt of its render. */
+/* film/file_header.c: the header of a film file as JSON: the film's def and the receipt of its
+ * render. */
 #include <math.h>
 #include <stddef.h>
 
@@ -38,7 +39,9 @@ static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
 }
 
-/* ---- making ------------------------------------------------------------------------------------------------------ */
+/* ---- making
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static json_t *number(double value) {
   return isinf(value) ? json_string("infinity") : json_real(value);
@@ -47,10 +50,14 @@ static json_t *number(double value) {
 static json_t *field_value(const vlFilmDef *def, const Field *field) {
   const char *at = (const char *)def + field->offset;
   switch (field->type) {
-    case COUNT: return json_integer(*(const uint32_t *)(const void *)at);
-    case FLOAT: return number((double)*(const float *)(const void *)at);
-    case DOUBLE: return number(*(const double *)(const void *)at);
-    case BOOL: return json_boolean(*(const bool *)(const void *)at);
+    case COUNT:
+      return json_integer(*(const uint32_t *)(const void *)at);
+    case FLOAT:
+      return number((double)*(const float *)(const void *)at);
+    case DOUBLE:
+      return number(*(const double *)(const void *)at);
+    case BOOL:
+      return json_boolean(*(const bool *)(const void *)at);
   }
   return NULL;
 }
@@ -59,9 +66,12 @@ static json_t *field_value(const vlFilmDef *def, const Field *field) {
 static bool put_own(json_t *film, const vlFilmOwn *own) {
   json_t *names = NULL;
   for (int i = 0; i < VL_OWN_KINDS; i++) {
-    if (!own->name[i][0]) continue;
-    if (!names && !put(film, "own", names = json_object())) return false;
-    if (!put(names, vl_own_words[i], json_string(own->name[i]))) return false;
+    if (!own->name[i][0])
+      continue;
+    if (!names && !put(film, "own", names = json_object()))
+      return false;
+    if (!put(names, vl_own_words[i], json_string(own->name[i])))
+      return false;
   }
   return true;
 }
@@ -70,12 +80,15 @@ static json_t *film_tree(const vlFilmShape *shape) {
   const vlFilmDef *def = &shape->def;
   json_t *film = json_object();
   bool good = film != NULL;
-  for (size_t i = 0; i < FIELDS && good; i++) good = put(film, fields[i].name, field_value(def, &fields[i]));
+  for (size_t i = 0; i < FIELDS && good; i++)
+    good = put(film, fields[i].name, field_value(def, &fields[i]));
   const uint32_t *c = def->crop;
   good = good &&
          put(film, "crop",
-             json_pack("[I,I,I,I]", (json_int_t)c[0], (json_int_t)c[1], (json_int_t)c[2], (json_int_t)c[3])) &&
-         put(film, "filter", json_string(vl_kind_family_find("filters")->rows[def->filter.kind]->name)) &&
+             json_pack("[I,I,I,I]", (json_int_t)c[0], (json_int_t)c[1], (json_int_t)c[2],
+                       (json_int_t)c[3])) &&
+         put(film, "filter",
+             json_string(vl_kind_family_find("filters")->rows[def->filter.kind]->name)) &&
          put(film, "space", json_string(spaces[def->space])) &&
          put(film, "sensor", json_string(def->sensor ? def->sensor : vl_sensor_name(0))) &&
          put(film, "sequence", json_integer(shape->sequence)) && put_own(film, &shape->own);
@@ -88,26 +101,34 @@ static json_t *film_tree(const vlFilmShape *shape) {
 
 static bool put_text(json_t *tree, const char *key, const char *text) {
   json_error_t place;
-  return !text || put(tree, key, vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &place));
+  return !text ||
+         put(tree, key, vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &place));
 }
 
-char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const vlFilmTexts *texts) {
+char *vl_film_header_make(vlContext *context, const vlFilmShape *shape,
+                          const vlFilmTexts *texts) {
   json_t *tree = json_object(), *film = film_tree(shape);
   bool good = put(tree, "film", film) && put_text(tree, "receipt", texts->receipt) &&
               put_text(tree, "attributes", texts->attributes);
-  char *text = good ? vl_json_text(context, tree, JSON_INDENT(1) | JSON_PRESERVE_ORDER, "\n") : NULL;
+  char *text =
+      good ? vl_json_text(context, tree, JSON_INDENT(1) | JSON_PRESERVE_ORDER, "\n") : NULL;
   json_decref(tree);
   return text;
 }
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static vlResult wrong(const char *path, const char *what, vlError *error) {
-  return vl_fail(error, VL_ERROR_SCENE, "%s: film file: \"%s\" of the header is missing or wrong", path, what);
+  return vl_fail(error, VL_ERROR_SCENE,
+                 "%s: film file: \"%s\" of the header is missing or wrong", path, what);
 }
 
 static bool count_of(const json_t *value, uint32_t *count) {
-  if (!json_is_integer(value) || json_integer_value(value) < 0 || json_integer_value(value) > UINT32_MAX) return false;
+  if (!json_is_integer(value) || json_integer_value(value) < 0 ||
+      json_integer_value(value) > UINT32_MAX)
+    return false;
   *count = (uint32_t)json_integer_value(value);
   return true;
 }
@@ -127,12 +148,17 @@ static bool take_field(const json_t *film, const Field *field, vlFilmDef *def) {
   const json_t *value = json_object_get(film, field->name);
   double number = 0;
   switch (field->type) {
-    case COUNT: return count_of(value, (uint32_t *)(void *)at);
-    case BOOL: *(bool *)(void *)at = json_is_true(value); return json_is_boolean(value);
+    case COUNT:
+      return count_of(value, (uint32_t *)(void *)at);
+    case BOOL:
+      *(bool *)(void *)at = json_is_true(value);
+      return json_is_boolean(value);
     case FLOAT:
-    case DOUBLE: break;
+    case DOUBLE:
+      break;
   }
-  if (!number_of(value, &number)) return false;
+  if (!number_of(value, &number))
+    return false;
   if (field->type == DOUBLE)
     *(double *)(void *)at = number;
   else
@@ -169,55 +195,73 @@ static bool take_own(const json_t *names, vlFilmOwn *own) {
   for (int i = 0; i < VL_OWN_KINDS; i++) {
     const json_t *value = json_object_get(names, vl_own_words[i]);
     const char *name = json_string_value(value);
-    if (value && (!name || strlen(name) >= VL_OWN_NAME)) return false;
-    if (name) memcpy(own->name[i], name, strlen(name) + 1);
+    if (value && (!name || strlen(name) >= VL_OWN_NAME))
+      return false;
+    if (name)
+      memcpy(own->name[i], name, strlen(name) + 1);
   }
   return !names || json_is_object(names);
 }
 
-static vlResult take_film(const char *path, const json_t *film, vlFilmShape *shape, vlError *error) {
+static vlResult take_film(const char *path, const json_t *film, vlFilmShape *shape,
+                          vlError *error) {
   vlFilmDef *def = &shape->def;
   *def = vl_default_film_def(1, 1);
   for (size_t i = 0; i < FIELDS; i++)
-    if (!take_field(film, &fields[i], def)) return wrong(path, fields[i].name, error);
+    if (!take_field(film, &fields[i], def))
+      return wrong(path, fields[i].name, error);
   const json_t *crop = json_object_get(film, "crop");
   for (size_t i = 0; i < 4; i++)
-    if (!count_of(json_array_get(crop, i), &def->crop[i])) return wrong(path, "crop", error);
-  if (!take_names(film, def)) return wrong(path, "filter, space or sensor", error);
+    if (!count_of(json_array_get(crop, i), &def->crop[i]))
+      return wrong(path, "crop", error);
+  if (!take_names(film, def))
+    return wrong(path, "filter, space or sensor", error);
   if (!count_of(json_object_get(film, "sequence"), &shape->sequence) || !shape->sequence)
     return wrong(path, "sequence", error);
-  if (!take_own(json_object_get(film, "own"), &shape->own)) return wrong(path, "own", error);
+  if (!take_own(json_object_get(film, "own"), &shape->own))
+    return wrong(path, "own", error);
   return VL_OK;
 }
 
 /* Takes a member of the header as text; *text null: it has none. */
-static vlResult take_text(vlContext *context, const char *path, const json_t *tree, const char *key, char **text,
-                          vlError *error) {
+static vlResult take_text(vlContext *context, const char *path, const json_t *tree,
+                          const char *key, char **text, vlError *error) {
   const json_t *held = json_object_get(tree, key);
-  if (!held) return VL_OK;
-  if (!json_is_object(held)) return wrong(path, key, error);
+  if (!held)
+    return VL_OK;
+  if (!json_is_object(held))
+    return wrong(path, key, error);
   *text = vl_json_text(context, held, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
   return *text ? VL_OK : vl_fail_memory(error);
 }
 
-vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
-                             vlFilmTexts *texts, vlError *error) {
+vlResult vl_film_header_read(vlContext *context, const char *path, const char *text,
+                             size_t size, vlFilmShape *shape, vlFilmTexts *texts,
+                             vlError *error) {
   *texts = (vlFilmTexts){NULL, NULL};
   json_error_t place;
   json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &place);
-  if (!tree && vl_json_lacks_memory(&place)) return vl_fail_memory(error);
-  if (!tree) return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path, place.line, place.text);
+  if (!tree && vl_json_lacks_memory(&place))
+    return vl_fail_memory(error);
+  if (!tree)
+    return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path,
+                   place.line, place.text);
   vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
-  if (result == VL_OK) result = take_text(context, path, tree, "receipt", &texts->receipt, error);
-  if (result == VL_OK) result = take_text(context, path, tree, "attributes", &texts->attributes, error);
+  if (result == VL_OK)
+    result = take_text(context, path, tree, "receipt", &texts->receipt, error);
+  if (result == VL_OK)
+    result = take_text(context, path, tree, "attributes", &texts->attributes, error);
   json_decref(tree);
-  vlFilm *film = NULL; /* vl_film_create checks the def; it allocates no memory for pixels yet */
+  vlFilm *film =
+      NULL; /* vl_film_create checks the def; it allocates no memory for pixels yet */
   if (result == VL_OK) {
     result = vl_film_create(context, &shape->def, &film);
     vl_film_destroy(film);
-    if (result != VL_OK) result = result == VL_ERROR_MEMORY ? vl_fail_memory(error) : wrong(path, "film", error);
+    if (result != VL_OK)
+      result = result == VL_ERROR_MEMORY ? vl_fail_memory(error) : wrong(path, "film", error);
   }
-  if (result == VL_OK) return VL_OK;
+  if (result == VL_OK)
+    return VL_OK;
   vl_free(context, texts->receipt);
   vl_free(context, texts->attributes);
   *texts = (vlFilmTexts){NULL, NULL};

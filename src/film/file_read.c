@@ -5,19 +5,21 @@
 #include "film/file.h"
 #include "velo/film.h"
 
-/* Summary of all blocks that have samples. crop: their bounding box, pixels; range: the samples of the first;
- * pixels: their number; least: the smallest number of samples of a block. */
+/* Summary of all blocks that have samples. crop: their bounding box, pixels; range: the samples
+ * of the first; pixels: their number; least: the smallest number of samples of a block. */
 typedef struct Extent {
   uint32_t crop[4];
   vlSampleSpan range;
-  /* even: all pixels of the crop have the samples of `range`; joined: all have a single range with the same first */
+  /* even: all pixels of the crop have the samples of `range`; joined: all have a single range
+   * with the same first */
   bool any, even, joined;
   uint64_t pixels, least;
 } Extent;
 
 static void add_block(Extent *e, const vlFilmReader *r) {
   const vlFilmBlockHead *h = &r->head;
-  if (!h->range_count) return;
+  if (!h->range_count)
+    return;
   uint64_t samples = vl_film_samples(r->ranges, h->range_count);
   if (!e->any)
     *e = (Extent){.crop = {h->x0, h->y0, h->x1, h->y1},
@@ -42,20 +44,25 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
   while (r->next <= r->blocks) {
     bool last = r->next == r->blocks;
     vlResult result = vl_film_reader_next(r, error);
-    if (result != VL_OK) return result;
-    if (!last) add_block(e, r);
+    if (result != VL_OK)
+      return result;
+    if (!last)
+      add_block(e, r);
   }
   r->next = 0;
   r->at = at;
-  if (!e->any) return vl_fail(error, VL_ERROR_SCENE, "%s: the film has no samples", r->path);
+  if (!e->any)
+    return vl_fail(error, VL_ERROR_SCENE, "%s: the film has no samples", r->path);
   uint64_t area = (uint64_t)(e->crop[2] - e->crop[0]) * (e->crop[3] - e->crop[1]);
   if (e->pixels != area) {
     e->even = e->joined = false;
     e->least = 0;
   }
-  if (partial || e->joined) return VL_OK;
+  if (partial || e->joined)
+    return VL_OK;
   return vl_fail(error, VL_ERROR_SCENE,
-                 "%s: its pixels do not all begin with the same samples; \"velo film info --missing\" lists what is "
+                 "%s: its pixels do not all begin with the same samples; \"velo film info "
+                 "--missing\" lists what is "
                  "missing",
                  r->path);
 }
@@ -69,13 +76,18 @@ static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data
   const char *weights = sums + pixels * n * sizeof(vlInt128);
   for (uint32_t y = 0; y < height; y++) {
     size_t from = (size_t)y * width;
-    size_t to = (size_t)(h->y0 + y - film->def.crop[1]) * film->width + (h->x0 - film->def.crop[0]);
+    size_t to =
+        (size_t)(h->y0 + y - film->def.crop[1]) * film->width + (h->x0 - film->def.crop[0]);
     memcpy(film->front + to, data + from * sizeof(vlFilmPixel), width * sizeof(vlFilmPixel));
     if (film->def.errors)
-      memcpy(film->moments[0] + to, moments + from * sizeof(vlFilmMoments), width * sizeof(vlFilmMoments));
-    if (!n) continue;
-    memcpy(film->spectrum.sums[0] + to * n, sums + from * n * sizeof(vlInt128), width * n * sizeof(vlInt128));
-    memcpy(film->spectrum.weights[0] + to * n, weights + from * n * sizeof(int64_t), width * n * sizeof(int64_t));
+      memcpy(film->moments[0] + to, moments + from * sizeof(vlFilmMoments),
+             width * sizeof(vlFilmMoments));
+    if (!n)
+      continue;
+    memcpy(film->spectrum.sums[0] + to * n, sums + from * n * sizeof(vlInt128),
+           width * n * sizeof(vlInt128));
+    memcpy(film->spectrum.weights[0] + to * n, weights + from * n * sizeof(int64_t),
+           width * n * sizeof(int64_t));
   }
 }
 
@@ -88,16 +100,20 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
     good = film->moments[0] != NULL;
   }
   if (good && n) {
-    film->spectrum.sums[0] = vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.sums[0]);
-    film->spectrum.weights[0] = vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.weights[0]);
+    film->spectrum.sums[0] =
+        vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.sums[0]);
+    film->spectrum.weights[0] =
+        vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.weights[0]);
     good = film->spectrum.sums[0] && film->spectrum.weights[0];
   }
   char *data = good ? vl_alloc(film->context, vl_film_most_data(&film->def)) : NULL;
   vlResult result = data ? VL_OK : vl_fail_memory(error);
   while (result == VL_OK && r->next < r->blocks) {
     result = vl_film_reader_next(r, error);
-    if (result == VL_OK) result = vl_film_reader_data(r, data, error);
-    if (result != VL_OK || !r->head.range_count) continue;
+    if (result == VL_OK)
+      result = vl_film_reader_data(r, data, error);
+    if (result != VL_OK || !r->head.range_count)
+      continue;
     uint32_t block = vl_film_block_at(film->def.crop, r->head.x0, r->head.y0);
     if (r->head.compared.spp) {
       if (!vl_film_compared(film)) {
@@ -108,22 +124,28 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
     }
     place_block(film, &r->head, data);
     uint32_t end = r->ranges[r->head.range_count - 1].end;
-    if (film->end < end) film->end = end;
-    if (blocks_differ && vl_film_set_block_spp(film, block, r->ranges[0].end - r->ranges[0].first) != VL_OK)
+    if (film->end < end)
+      film->end = end;
+    if (blocks_differ &&
+        vl_film_set_block_spp(film, block, r->ranges[0].end - r->ranges[0].first) != VL_OK)
       result = vl_fail_memory(error);
   }
   vl_free(film->context, data);
   return result;
 }
 
-vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film, vlError *error) {
+vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film,
+                      vlError *error) {
   vl_error_clear(error);
-  if (film) *film = NULL;
-  if (!context || !path || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or film is null");
+  if (film)
+    *film = NULL;
+  if (!context || !path || !film)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or film is null");
   vlFilmReader reader;
   Extent extent;
   vlResult result = vl_film_reader_open(&reader, context, path, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   result = find_extent(&reader, partial, &extent, error);
   vlFilm *made = NULL;
   if (result == VL_OK) {
@@ -131,14 +153,17 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
     memcpy(def.crop, extent.crop, sizeof def.crop);
     result = vl_film_create(context, &def, &made);
     if (result != VL_OK)
-      result = vl_fail_memory(error); /* the def was checked with the header, so only memory can be missing */
+      result = vl_fail_memory(
+          error); /* the def was checked with the header, so only memory can be missing */
   }
   bool blocks_differ = extent.joined && !extent.even;
-  if (result == VL_OK) result = fill(&reader, made, blocks_differ, error);
+  if (result == VL_OK)
+    result = fill(&reader, made, blocks_differ, error);
   if (result == VL_OK) {
-    if (!blocks_differ) vl_film_set_spp(made, (uint32_t)extent.least);
-    vl_film_set_sequence(made,
-                         (vlFilmSequence){reader.shape.sequence, extent.range.first, !extent.joined, reader.shape.own});
+    if (!blocks_differ)
+      vl_film_set_spp(made, (uint32_t)extent.least);
+    vl_film_set_sequence(made, (vlFilmSequence){reader.shape.sequence, extent.range.first,
+                                                !extent.joined, reader.shape.own});
   } else {
     vl_film_destroy(made);
     made = NULL;

@@ -1,5 +1,5 @@
-/* film/file_write.c: vl_film_write: writes a film to a file. All workers write blocks, each block at its own
- * offset. */
+/* film/file_write.c: vl_film_write: writes a film to a file. All workers write blocks, each
+ * block at its own offset. */
 #include <errno.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -24,7 +24,8 @@ typedef struct Run {
   char *buffers;     /* of buffer_size bytes, one for each worker */
   size_t buffer_size;
   int descriptor;
-  char *memory; /* of a film that is written as a stream: the whole file; null: it has a descriptor */
+  char *memory; /* of a film that is written as a stream: the whole file; null: it has a
+                   descriptor */
   atomic_int failed_errno;
 } Run;
 
@@ -35,29 +36,38 @@ vlFilmWriteDef vl_default_film_write_def(void) {
 /* The samples of the film's pixels in a block of the window. Empty: none. */
 static vlSampleSpan samples_of(const vlFilm *film, const uint32_t place[4]) {
   const uint32_t *c = film->def.crop, first = film->sequence.first;
-  if (place[0] < c[0] || place[1] < c[1] || place[2] > c[2] || place[3] > c[3]) return (vlSampleSpan){first, first};
-  return (vlSampleSpan){first, first + vl_film_block_spp(film, vl_film_block_at(c, place[0], place[1]))};
+  if (place[0] < c[0] || place[1] < c[1] || place[2] > c[2] || place[3] > c[3])
+    return (vlSampleSpan){first, first};
+  return (vlSampleSpan){
+      first, first + vl_film_block_spp(film, vl_film_block_at(c, place[0], place[1]))};
 }
 
 /* The head of a block of the window. Returns the size of the block in the file, bytes. */
-static size_t head_of(const vlFilm *film, const uint32_t place[4], vlSampleSpan samples, vlFilmBlockHead *head) {
+static size_t head_of(const vlFilm *film, const uint32_t place[4], vlSampleSpan samples,
+                      vlFilmBlockHead *head) {
   bool filled = samples.first < samples.end;
   const vlComparedNoise *compared =
-      filled && film->compared ? film->compared + vl_film_block_at(film->def.crop, place[0], place[1]) : NULL;
+      filled && film->compared
+          ? film->compared + vl_film_block_at(film->def.crop, place[0], place[1])
+          : NULL;
   return vl_film_block_head(&film->def, place, filled, compared, head);
 }
 
 /* Whether the crop lies in the window and no block of the window is partly inside the crop. */
 static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
   for (int i = 0; i < 4; i++)
-    if (crop[i] != window[i] && crop[i] % VL_FILM_BLOCK != 0) return false;
-  return crop[0] >= window[0] && crop[1] >= window[1] && crop[2] <= window[2] && crop[3] <= window[3];
+    if (crop[i] != window[i] && crop[i] % VL_FILM_BLOCK != 0)
+      return false;
+  return crop[0] >= window[0] && crop[1] >= window[1] && crop[2] <= window[2] &&
+         crop[3] <= window[3];
 }
 
-/* Copies a block's data to `to`, in the order of the file. Returns the end of the copied data. */
+/* Copies a block's data to `to`, in the order of the file. Returns the end of the copied data.
+ */
 static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
   uint32_t width = place[2] - place[0], n = film->def.buckets;
-  size_t first = (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
+  size_t first =
+      (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
   size_t rows = place[3] - place[1], line = film->width;
   for (size_t y = 0; y < rows; y++, to += width * sizeof(vlFilmPixel))
     memcpy(to, film->front + first + y * line, width * sizeof(vlFilmPixel));
@@ -72,7 +82,8 @@ static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
 
 static void write_block(void *user, uint32_t block, uint32_t worker) {
   Run *run = user;
-  if (atomic_load(&run->failed_errno)) return;
+  if (atomic_load(&run->failed_errno))
+    return;
   char *buffer = run->buffers + worker * run->buffer_size, *to = buffer;
   uint32_t place[4];
   vl_film_block_place(run->window, block, place);
@@ -95,7 +106,8 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   }
   for (const char *from = buffer; from < to;) {
     ssize_t n = pwrite(run->descriptor, from, (size_t)(to - from), (off_t)at);
-    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EINTR)
+      continue;
     if (n < 0) {
       atomic_store(&run->failed_errno, errno);
       return;
@@ -106,9 +118,10 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
 }
 
 static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlError *error) {
-  uint32_t count = vl_film_block_count(run->window), threads = vl_context_threads(writer->context);
-  run->buffer_size =
-      sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan) + sizeof(uint32_t) + vl_film_most_data(&run->film->def);
+  uint32_t count = vl_film_block_count(run->window),
+           threads = vl_context_threads(writer->context);
+  run->buffer_size = sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan) + sizeof(uint32_t) +
+                     vl_film_most_data(&run->film->def);
   run->buffer_size = (run->buffer_size + 63) & ~(size_t)63;
   run->offsets = vl_alloc_array(writer->context, count, sizeof *run->offsets);
   run->buffers = vl_alloc_array(writer->context, threads, run->buffer_size);
@@ -120,63 +133,82 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
     run->offsets[i] = at;
     at += head_of(run->film, place, samples_of(run->film, place), &head);
   }
-  if (result == VL_OK && writer->file.in_memory && !vl_file_reserve(&writer->file, at)) result = vl_fail_memory(error);
+  if (result == VL_OK && writer->file.in_memory && !vl_file_reserve(&writer->file, at))
+    result = vl_fail_memory(error);
   if (writer->file.in_memory) {
     run->memory = writer->file.memory;
     writer->file.memory_size = at;
   }
-  if (result == VL_OK) vl_parallel_for(writer->context, count, write_block, run);
+  if (result == VL_OK)
+    vl_parallel_for(writer->context, count, write_block, run);
   vl_free(writer->context, run->offsets);
   vl_free(writer->context, run->buffers);
-  if (!writer->file.failed_errno) writer->file.failed_errno = atomic_load(&run->failed_errno);
+  if (!writer->file.failed_errno)
+    writer->file.failed_errno = atomic_load(&run->failed_errno);
   return result;
 }
 
-static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char *path, const uint32_t window[4],
-                      vlError *error) {
+static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char *path,
+                      const uint32_t window[4], vlError *error) {
   if (def->cookie != VL_COOKIE_FILM_WRITE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: def.cookie is not that of a default def of this version");
-  if (film->in_pass || film->sequence.uneven || !film->spp || !film->front)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: the film has no samples, or pixels with different samples", path);
-  if (window[2] > film->def.width || window[3] > film->def.height || !fits_grid(window, film->def.crop))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "%s: the film's crop must lie in the window and end at its sides or at multiples of %d pixels", path,
-                   VL_FILM_BLOCK);
+                   "film file: def.cookie is not that of a default def of this version");
+  if (film->in_pass || film->sequence.uneven || !film->spp || !film->front)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "%s: the film has no samples, or pixels with different samples", path);
+  if (window[2] > film->def.width || window[3] > film->def.height ||
+      !fits_grid(window, film->def.crop))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "%s: the film's crop must lie in the window and end at its sides or at "
+                   "multiples of %d pixels",
+                   path, VL_FILM_BLOCK);
   return VL_OK;
 }
 
 /* The header holds the receipt as a part of its JSON. */
 static vlResult check_receipt(const char *receipt, const char *path, vlError *error) {
-  if (!receipt) return VL_OK;
+  if (!receipt)
+    return VL_OK;
   json_error_t wrong;
   json_t *tree = vl_json_parse(receipt, strlen(receipt), JSON_REJECT_DUPLICATES, &wrong);
-  if (!tree && vl_json_lacks_memory(&wrong)) return vl_fail_memory(error);
-  if (!tree) return vl_fail(error, VL_ERROR_ARGUMENT, "%s: receipt: line %d: %s", path, wrong.line, wrong.text);
+  if (!tree && vl_json_lacks_memory(&wrong))
+    return vl_fail_memory(error);
+  if (!tree)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: receipt: line %d: %s", path, wrong.line,
+                   wrong.text);
   json_decref(tree);
   return VL_OK;
 }
 
-static char *make_header(vlContext *context, const vlFilmShape *shape, const vlFilmWriteDef *def) {
-  vlFilmTexts texts = {.attributes = def->attributes ? vl_film_attributes_make(context, def->attributes) : NULL};
+static char *make_header(vlContext *context, const vlFilmShape *shape,
+                         const vlFilmWriteDef *def) {
+  vlFilmTexts texts = {
+      .attributes = def->attributes ? vl_film_attributes_make(context, def->attributes) : NULL};
   char *header = NULL;
   texts.receipt = (char *)(uintptr_t)def->receipt; /* is not changed */
-  if (!def->attributes || texts.attributes) header = vl_film_header_make(context, shape, &texts);
+  if (!def->attributes || texts.attributes)
+    header = vl_film_header_make(context, shape, &texts);
   vl_free(context, texts.attributes);
   return header;
 }
 
-vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, const char *path, vlFilmWriter **writer,
-                             vlError *error) {
+vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, const char *path,
+                             vlFilmWriter **writer, vlError *error) {
   vl_error_clear(error);
   vlFilmWriteDef standard = vl_default_film_write_def();
-  if (!def) def = &standard;
-  if (writer) *writer = NULL;
-  if (!film || !path || !writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: film, path or writer is null");
+  if (!def)
+    def = &standard;
+  if (writer)
+    *writer = NULL;
+  if (!film || !path || !writer)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: film, path or writer is null");
   bool whole = !def->window[2] && !def->window[3];
   const uint32_t *window = whole ? film->def.crop : def->window;
   vlResult result = check(film, def, path, window, error);
-  if (result == VL_OK) result = check_receipt(def->receipt, path, error);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = check_receipt(def->receipt, path, error);
+  if (result != VL_OK)
+    return result;
   vlFilmShape shape = {film->def, film->sequence.length, film->sequence.own};
   memcpy(shape.def.crop, window, sizeof shape.def.crop);
   vlFilmWriter *made = vl_alloc_zero(film->context, 1, sizeof *made);
@@ -187,15 +219,20 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
     return vl_fail_memory(error);
   }
   made->context = film->context;
-  if (!def->lock) result = vl_film_lock_write(film->context, path, &made->lock, error);
-  if (result == VL_OK) result = vl_file_open_write(&made->file, film->context, path, VL_OUTPUT_FILM, error);
+  if (!def->lock)
+    result = vl_film_lock_write(film->context, path, &made->lock, error);
+  if (result == VL_OK)
+    result = vl_file_open_write(&made->file, film->context, path, VL_OUTPUT_FILM, error);
   if (result == VL_OK) {
     Run run = {.film = film, .window = window, .descriptor = made->file.descriptor};
     result = vl_film_put_header(&made->file, header);
-    if (result == VL_OK) result = write_blocks(made, &run, sizeof(vlFilmPreamble) + strlen(header), error);
+    if (result == VL_OK)
+      result = write_blocks(made, &run, sizeof(vlFilmPreamble) + strlen(header), error);
     if (result == VL_OK && made->file.failed_errno)
-      result = vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(made->file.failed_errno));
-    if (result != VL_OK) vl_file_abandon(&made->file);
+      result = vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path,
+                       strerror(made->file.failed_errno));
+    if (result != VL_OK)
+      vl_file_abandon(&made->file);
   }
   vl_free(film->context, header);
   if (result == VL_OK) {
@@ -209,14 +246,16 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
 
 vlResult vl_film_write_end(vlFilmWriter *writer, vlError *error) {
   vl_error_clear(error);
-  if (!writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: writer is null");
+  if (!writer)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: writer is null");
   vlResult result = vl_file_commit(&writer->file, error);
   vl_film_unlock(writer->lock);
   vl_free(writer->context, writer);
   return result;
 }
 
-vlResult vl_film_write(const vlFilm *film, const vlFilmWriteDef *def, const char *path, vlError *error) {
+vlResult vl_film_write(const vlFilm *film, const vlFilmWriteDef *def, const char *path,
+                       vlError *error) {
   vlFilmWriter *writer;
   vlResult result = vl_film_write_begin(film, def, path, &writer, error);
   return result == VL_OK ? vl_film_write_end(writer, error) : result;

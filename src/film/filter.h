@@ -1,7 +1,8 @@
-/* film/filter.h: a pixel filter compiled for sampling. Filters are even products f(x) f(y). Half an axis is described
- * by the inverse of the cumulated |f|. It is divided into segments: the lobes (f's sign is constant in each), divided
- * again near ends where f touches zero without a change of sign. A segment has bins of equal mass; within a bin the
- * density is linear from f at one edge to f at the other. */
+/* film/filter.h: a pixel filter compiled for sampling. Filters are even products f(x) f(y).
+ * Half an axis is described by the inverse of the cumulated |f|. It is divided into segments:
+ * the lobes (f's sign is constant in each), divided again near ends where f touches zero
+ * without a change of sign. A segment has bins of equal mass; within a bin the density is
+ * linear from f at one edge to f at the other. */
 #ifndef FILM_FILTER_H
 #define FILM_FILTER_H
 
@@ -34,8 +35,10 @@ struct vlFilterTable {
   vlFilterCurve curve[2]; /* along x and y; both have the same values if the radii are equal */
 };
 
-/* Errors: ARGUMENT if the parameters are not valid (not finite, radius not in (0, 32], no mass), MEMORY. */
-vlResult vl_filter_compile(vlContext *context, const vlPixelFilter *filter, vlFilterTable *table);
+/* Errors: ARGUMENT if the parameters are not valid (not finite, radius not in (0, 32], no
+ * mass), MEMORY. */
+vlResult vl_filter_compile(vlContext *context, const vlPixelFilter *filter,
+                           vlFilterTable *table);
 /* A table of zeros is allowed. */
 void vl_filter_free(vlContext *context, vlFilterTable *table);
 /* f of one axis, not normalised; 0 outside the radius. */
@@ -46,7 +49,8 @@ static inline double vl_filter_weight(const vlFilterTable *filter) {
   double weight = 1;
   for (int i = 0; i < 2; i++)
     if (filter->axis[i].segments)
-      weight *= filter->axis[i].sign[0] < 0 ? -filter->axis[i].sign[0] : filter->axis[i].sign[0];
+      weight *=
+          filter->axis[i].sign[0] < 0 ? -filter->axis[i].sign[0] : filter->axis[i].sign[0];
   return weight;
 }
 

@@ -22,7 +22,8 @@ static void sample_triangle(const vlFilterAxis *axis, uint32_t n, const float *u
   }
 }
 
-static void sample_table(const vlFilterAxis *axis, uint32_t n, const float *u, float *d, float *w) {
+static void sample_table(const vlFilterAxis *axis, uint32_t n, const float *u, float *d,
+                         float *w) {
   _Alignas(64) float start[CHUNK], scale[CHUNK];
   _Alignas(64) int32_t base[CHUNK], last[CHUNK];
   const float *edges = axis->x, *values = axis->f;
@@ -62,12 +63,13 @@ static void sample_table(const vlFilterAxis *axis, uint32_t n, const float *u, f
   }
 }
 
-static void sample(const vlFilterTable *filter, uint32_t n, const float *u, const float *v, float *dx, float *dy,
-                   float *weight) {
+static void sample(const vlFilterTable *filter, uint32_t n, const float *u, const float *v,
+                   float *dx, float *dy, float *weight) {
   uint32_t count = VL_PAD(n);
   const vlFilterAxis *x = &filter->axis[0], *y = &filter->axis[1];
   if (filter->kind == VL_PIXEL_FILTER_BOX || filter->kind == VL_PIXEL_FILTER_TRIANGLE) {
-    for (uint32_t i = 0; i < count; i++) weight[i] = 1.0f;
+    for (uint32_t i = 0; i < count; i++)
+      weight[i] = 1.0f;
     if (filter->kind == VL_PIXEL_FILTER_BOX) {
       sample_box(x, count, u, dx);
       sample_box(y, count, v, dy);
@@ -82,11 +84,13 @@ static void sample(const vlFilterTable *filter, uint32_t n, const float *u, cons
     _Alignas(64) float wx[CHUNK], wy[CHUNK];
     sample_table(x, m, u + k, dx + k, wx);
     sample_table(y, m, v + k, dy + k, wy);
-    for (uint32_t i = 0; i < m; i++) weight[k + i] = wx[i] * wy[i];
+    for (uint32_t i = 0; i < m; i++)
+      weight[k + i] = wx[i] * wy[i];
   }
 }
 
-static void curve(const vlFilterCurve *c, uint32_t n, const float *at, float shift, float *out) {
+static void curve(const vlFilterCurve *c, uint32_t n, const float *at, float shift,
+                  float *out) {
   const float *values = c->values;
   float per_step = c->per_step, steps = c->steps;
   uint32_t count = VL_PAD(n);

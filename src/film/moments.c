@@ -1,17 +1,19 @@
-/* film/moments.c: second moments of a pixel's samples, the sums of its first samples, and the standard error of
- * independent samples. The sums are exact, so that neither order nor grouping of the samples changes the result. */
+/* film/moments.c: second moments of a pixel's samples, the sums of its first samples, and the
+ * standard error of independent samples. The sums are exact, so that neither order nor grouping
+ * of the samples changes the result. */
 #include <math.h>
 
 #include "film/sums.h"
 
-/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their place among 192 bits. |value| <
- * 2^40: with 2^31 samples the sum stays below 2^191. */
+/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their place among
+ * 192 bits. |value| < 2^40: with 2^31 samples the sum stays below 2^191. */
 static inline void add_square(uint64_t sum[3], float value) {
   uint32_t bits = vl_float_bits(value);
   int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
   uint64_t mantissa = (uint64_t)(bits & 0x7fffffu) | (uint64_t)(field > 0) << 23;
   uint64_t square = mantissa * mantissa;
-  int32_t place = 2 * (exponent - 150) + VL_SQUARE_BITS; /* at most 2 * (166 - 150) + 80 = 112 */
+  int32_t place =
+      2 * (exponent - 150) + VL_SQUARE_BITS; /* at most 2 * (166 - 150) + 80 = 112 */
   if (place < 0) {
     square = place > -63 ? square >> -place : 0;
     place = 0;
@@ -24,13 +26,15 @@ static inline void add_square(uint64_t sum[3], float value) {
 }
 
 void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel) {
-  for (int c = 0; c < 3; c++) moments->first[c] = pixel->color[c];
+  for (int c = 0; c < 3; c++)
+    moments->first[c] = pixel->color[c];
   moments->first_weight = pixel->weight;
 }
 
 void vl_film_begin_moments(vlFilm *film, size_t at) {
   film->moments[1][at] = film->moments[0][at];
-  if (film->part_moves) vl_film_join_parts(&film->moments[1][at], &film->back[at]);
+  if (film->part_moves)
+    vl_film_join_parts(&film->moments[1][at], &film->back[at]);
 }
 
 void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]) {
@@ -61,23 +65,28 @@ void vl_film_sum_moments(vlFilmMoments *to, const vlFilmMoments *from) {
   to->first_weight += from->first_weight;
 }
 
-/* The pixel is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled). To first order
- * the variance of this ratio is sum(w^2 (v - mean)^2) / sum(w)^2, times n / (n - 1) because the mean is estimated from
- * the same samples. Squares are taken about the unweighted mean first, where cancellation is least. */
+/* The pixel is sum(w v) / sum(w), and |w| is the same in all samples (filters are
+ * importance-sampled). To first order the variance of this ratio is sum(w^2 (v - mean)^2) /
+ * sum(w)^2, times n / (n - 1) because the mean is estimated from the same samples. Squares are
+ * taken about the unweighted mean first, where cancellation is least. */
 double vl_film_independent_error(const vlFilm *film, size_t at, int c) {
-  if (!film->front) return INFINITY;
+  if (!film->front)
+    return INFINITY;
   const vlFilmPixel *p = film->front + at;
   const vlFilmMoments *m = film->moments[0] + at;
   double weight = vl_filter_weight(&film->filter);
-  if (m->samples < 2 || p->weight <= 0) return INFINITY;
+  if (m->samples < 2 || p->weight <= 0)
+    return INFINITY;
   double n = (double)m->samples, plain = (double)m->plain[c] * 0x1p-50 / n;
   double squares = ldexp((double)m->squares[c][2], 128 - VL_SQUARE_BITS) +
                    ldexp((double)m->squares[c][1], 64 - VL_SQUARE_BITS) +
                    ldexp((double)m->squares[c][0], -VL_SQUARE_BITS);
   double sum_w = (double)p->weight * 0x1p-24, mean = (double)p->color[c] * 0x1p-50 / sum_w;
   double spread = squares - n * plain * plain;
-  if (spread < squares * 0x1p-48) spread = 0; /* all samples are equal; the rest is rounding */
-  double off = plain - mean, variance = (spread + n * off * off) * (n / (n - 1)) * weight * weight / (sum_w * sum_w);
+  if (spread < squares * 0x1p-48)
+    spread = 0; /* all samples are equal; the rest is rounding */
+  double off = plain - mean, variance = (spread + n * off * off) * (n / (n - 1)) * weight *
+                                        weight / (sum_w * sum_w);
   return sqrt(variance);
 }
 

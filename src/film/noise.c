@@ -1,23 +1,28 @@
-/* film/noise.c: the noise of a block, in display values. Adaptive sampling compares it with its threshold.
+/* film/noise.c: the noise of a block, in display values. Adaptive sampling compares it with its
+ * threshold.
  *
- * The error e of a display value is half the distance between the display values one standard error above and below
- * the linear value. Where the view clips, this is smaller than the derivative of the view would give. The noise of a
- * block is the root of the mean of e^2. That mean is itself estimated from the same samples, and a block that happens
- * to look too clean would stop too early: the mean plus three of its standard errors replaces it, from the spread of
- * e^2 over the block's pixels. Where pixels share samples their e^2 are correlated, and the mean of them is less
- * certain.
+ * The error e of a display value is half the distance between the display values one standard
+ * error above and below the linear value. Where the view clips, this is smaller than the
+ * derivative of the view would give. The noise of a block is the root of the mean of e^2. That
+ * mean is itself estimated from the same samples, and a block that happens to look too clean
+ * would stop too early: the mean plus three of its standard errors replaces it, from the spread
+ * of e^2 over the block's pixels. Where pixels share samples their e^2 are correlated, and the
+ * mean of them is less certain.
  *
- * Where light is rare and bright, a few pixels have found it and the others have not. The view is steep in the dark and
- * flat in the bright, so the first look too clean, and the second have no error at all. There the means over 3 x 3
- * pixels are closer to the truth, of the linear values (between black and white) and of the squares of their errors.
- * The noise is computed both ways, and the larger one counts.
+ * Where light is rare and bright, a few pixels have found it and the others have not. The view
+ * is steep in the dark and flat in the bright, so the first look too clean, and the second have
+ * no error at all. There the means over 3 x 3 pixels are closer to the truth, of the linear
+ * values (between black and white) and of the squares of their errors. The noise is computed
+ * both ways, and the larger one counts.
  *
- * These errors treat a pixel's samples as independent, but they are better distributed than that. The difference D
- * between the display values of the first part, m samples (vl_first_part), and of all n samples shows it. Where D has
- * no correlation with the error after n, the variance after m is that after n plus the mean of D^2. So if the variance
- * falls at least as fast as 1 / n, D^2 m / (n - m) is in the mean at least the variance after n, and equal to it for
- * independent samples. The ratio of its mean to that of e^2, plus two standard errors, reduces the noise if it is
- * below 1. Rare bright samples that were not found are missing in both, so the ratio says nothing about them. */
+ * These errors treat a pixel's samples as independent, but they are better distributed than
+ * that. The difference D between the display values of the first part, m samples
+ * (vl_first_part), and of all n samples shows it. Where D has no correlation with the error
+ * after n, the variance after m is that after n plus the mean of D^2. So if the variance falls
+ * at least as fast as 1 / n, D^2 m / (n - m) is in the mean at least the variance after n, and
+ * equal to it for independent samples. The ratio of its mean to that of e^2, plus two standard
+ * errors, reduces the noise if it is below 1. Rare bright samples that were not found are
+ * missing in both, so the ratio says nothing about them. */
 #include <math.h>
 
 #include "film/sums.h"
@@ -30,9 +35,12 @@ typedef struct Block {
   double mean[VL_FILM_BLOCK][VL_FILM_BLOCK][3], square[VL_FILM_BLOCK][VL_FILM_BLOCK][3];
 } Block;
 
-/* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to e^2. */
+/* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to e^2.
+ */
 static const double ERRORS_OF_MEAN = 3, ERRORS_OF_RATIO = 2;
-enum { LEAST_FOR_RATIO = 12 }; /* samples; the mean of fewer than 8 says little about the distribution of more */
+enum {
+  LEAST_FOR_RATIO = 12
+}; /* samples; the mean of fewer than 8 says little about the distribution of more */
 
 typedef struct Display {
   vlView view;
@@ -57,8 +65,9 @@ static double display_square(const Display *d, const double mean[3], const doubl
   return e;
 }
 
-/* The linear values between black and white that a pixel's standard error leaves possible, as mean and square. Beyond
- * white an error is hardly seen in the pixel, and must not be seen in its neighbours. */
+/* The linear values between black and white that a pixel's standard error leaves possible, as
+ * mean and square. Beyond white an error is hardly seen in the pixel, and must not be seen in
+ * its neighbours. */
 static void limit(double white, double *mean, double *square) {
   double error = sqrt(*square), low = *mean - error, high = *mean + error;
   low = low < 0 ? 0 : low > white ? white : low;
@@ -67,12 +76,15 @@ static void limit(double white, double *mean, double *square) {
   *square = 0.25 * (high - low) * (high - low);
 }
 
-/* The limited values, each replaced by the mean over the pixels of the block that are next to it. */
+/* The limited values, each replaced by the mean over the pixels of the block that are next to
+ * it.
+ */
 static void pool(const Block *from, double white, Block *to) {
   Block limited = *from;
   for (uint32_t y = 0; y < from->height; y++)
     for (uint32_t x = 0; x < from->width; x++)
-      for (int c = 0; c < 3; c++) limit(white, &limited.mean[y][x][c], &limited.square[y][x][c]);
+      for (int c = 0; c < 3; c++)
+        limit(white, &limited.mean[y][x][c], &limited.square[y][x][c]);
   to->width = from->width;
   to->height = from->height;
   for (uint32_t y = 0; y < from->height; y++)
@@ -123,8 +135,10 @@ static double upper_limit(Mean mean) {
   return mean.value + ERRORS_OF_MEAN * mean.error;
 }
 
-/* The square of the difference between the display values of two linear values, the mean over R, G, B. */
-static double difference_square(const Display *d, const double mean[3], const double earlier[3]) {
+/* The square of the difference between the display values of two linear values, the mean over
+ * R, G, B. */
+static double difference_square(const Display *d, const double mean[3],
+                                const double earlier[3]) {
   float now[3], then[3];
   double sum = 0;
   for (int c = 0; c < 3; c++) {
@@ -133,23 +147,27 @@ static double difference_square(const Display *d, const double mean[3], const do
   }
   vl_view_display(d->view, now, now);
   vl_view_display(d->view, then, then);
-  for (int c = 0; c < 3; c++) sum += ((double)now[c] - (double)then[c]) * ((double)now[c] - (double)then[c]) / 3.0;
+  for (int c = 0; c < 3; c++)
+    sum += ((double)now[c] - (double)then[c]) * ((double)now[c] - (double)then[c]) / 3.0;
   return sum;
 }
 
-/* The upper limit of the ratio of the mean of D^2 m / (n - m) to that of e^2, at most 1. The errors of both means count
- * as independent, although both see the same rare bright samples: those that are missing are missing in both. first: of
- * the block's first pixel. */
-static double square_ratio(const vlFilm *film, size_t first, const Block *b, const Display *d, double correlation,
-                           Mean square) {
-  if (!(square.value > 0)) return 1;
+/* The upper limit of the ratio of the mean of D^2 m / (n - m) to that of e^2, at most 1. The
+ * errors of both means count as independent, although both see the same rare bright samples:
+ * those that are missing are missing in both. first: of the block's first pixel. */
+static double square_ratio(const vlFilm *film, size_t first, const Block *b, const Display *d,
+                           double correlation, Mean square) {
+  if (!(square.value > 0))
+    return 1;
   double sum = 0, squares = 0;
   for (uint32_t y = 0; y < b->height; y++)
     for (uint32_t x = 0; x < b->width; x++) {
       size_t at = first + (size_t)y * film->width + x;
       double share = vl_film_first_share(film, at), earlier[3]; /* m / n */
-      if (!(share > 0)) return 1;
-      for (int c = 0; c < 3; c++) earlier[c] = vl_film_first_mean(film, at, c);
+      if (!(share > 0))
+        return 1;
+      for (int c = 0; c < 3; c++)
+        earlier[c] = vl_film_first_mean(film, at, c);
       double p = share / (1 - share) * difference_square(d, b->mean[y][x], earlier);
       sum += p;
       squares += p * p;
@@ -165,9 +183,10 @@ double vl_film_view_factor(float exposure, float scale) {
   return (double)scale * vl_exp2_exact((double)exposure);
 }
 
-double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
-                           double correlation) {
-  if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2) return INFINITY;
+double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure,
+                           float scale, double correlation) {
+  if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2)
+    return INFINITY;
   Display d = {view, vl_film_view_factor(exposure, scale)};
   uint32_t place[4];
   vl_film_block_place(film->def.crop, block, place);
@@ -177,7 +196,8 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
     for (uint32_t x = 0; x < b.width; x++) {
       size_t at = (size_t)(place[1] + y - crop[1]) * film->width + (place[0] + x - crop[0]);
       const vlFilmPixel *p = film->front + at;
-      if (p->weight <= 0) return INFINITY;
+      if (p->weight <= 0)
+        return INFINITY;
       for (int c = 0; c < 3; c++) {
         double error = vl_film_independent_error(film, at, c);
         b.mean[y][x][c] = vl_film_linear_mean(p, c);
@@ -187,7 +207,8 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
   Block pooled;
   pool(&b, 1.0 / d.factor, &pooled);
   Mean square = block_square(&b, &d, correlation);
-  double each = upper_limit(square), together = upper_limit(block_square(&pooled, &d, correlation)), ratio = 1;
+  double each = upper_limit(square),
+         together = upper_limit(block_square(&pooled, &d, correlation)), ratio = 1;
   if (vl_film_block_spp(film, block) >= LEAST_FOR_RATIO) {
     size_t first = (size_t)(place[1] - crop[1]) * film->width + (place[0] - crop[0]);
     ratio = square_ratio(film, first, &b, &d, correlation, square);
@@ -195,10 +216,11 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
   return sqrt(ratio * (each > together ? each : together));
 }
 
-void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure, float scale, double correlation) {
-  film->compared[block] =
-      (vlComparedNoise){.spp = vl_film_block_spp(film, block),
-                        .noise = (float)vl_film_block_noise(film, block, view, exposure, scale, correlation),
-                        .factor = (float)vl_film_view_factor(exposure, scale),
-                        .view = (uint32_t)view};
+void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure,
+                           float scale, double correlation) {
+  film->compared[block] = (vlComparedNoise){
+      .spp = vl_film_block_spp(film, block),
+      .noise = (float)vl_film_block_noise(film, block, view, exposure, scale, correlation),
+      .factor = (float)vl_film_view_factor(exposure, scale),
+      .view = (uint32_t)view};
 }

@@ -11,16 +11,19 @@ enum { SIZE_MAX_PIXELS = 65536, MOST_BUCKETS = 1000 };
 
 vlFilmDef vl_coarse_film_def(const vlFilmDef *def, uint32_t factor) {
   vlFilmDef coarse = *def;
-  if (factor == 0) factor = 1;
+  if (factor == 0)
+    factor = 1;
   coarse.width = (def->width + factor - 1) / factor;
   coarse.height = (def->height + factor - 1) / factor;
-  for (int i = 0; i < 4; i++) coarse.crop[i] = (def->crop[i] + (i < 2 ? 0 : factor - 1)) / factor;
+  for (int i = 0; i < 4; i++)
+    coarse.crop[i] = (def->crop[i] + (i < 2 ? 0 : factor - 1)) / factor;
   coarse.errors = false;
   coarse.buckets = 0;
   return coarse;
 }
 
-/* Sets the sensor's response curves and matrix, its name (a static string), and pbrt's default white balance for it. */
+/* Sets the sensor's response curves and matrix, its name (a static string), and pbrt's default
+ * white balance for it. */
 static vlResult set_sensor(vlFilm *film) {
   vlFilmDef *def = &film->def;
   if (!def->sensor || vl_text_is(def->sensor, vl_sensor_name(0))) {
@@ -28,33 +31,44 @@ static vlResult set_sensor(vlFilm *film) {
     return VL_OK;
   }
   const vlSensorCurves *curves = vl_sensor_find(def->sensor);
-  if (!curves) return VL_ERROR_ARGUMENT;
+  if (!curves)
+    return VL_ERROR_ARGUMENT;
   film->sensor = vl_alloc_array(film->context, 1, sizeof *film->sensor);
-  if (!film->sensor) return VL_ERROR_MEMORY;
+  if (!film->sensor)
+    return VL_ERROR_MEMORY;
   def->sensor = curves->name;
-  if (def->white_balance == 0.0) def->white_balance = 6500.0;
+  if (def->white_balance == 0.0)
+    def->white_balance = 6500.0;
   double xyz[9];
   vl_sensor_make(curves, def->white_balance, def->space, film->sensor->curves, xyz);
-  for (int i = 0; i < 9; i++) film->sensor->xyz[i] = (float)xyz[i];
+  for (int i = 0; i < 9; i++)
+    film->sensor->xyz[i] = (float)xyz[i];
   return VL_OK;
 }
 
 vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film) {
-  if (!film) return VL_ERROR_ARGUMENT;
+  if (!film)
+    return VL_ERROR_ARGUMENT;
   *film = NULL;
-  if (!context || !def || def->cookie != VL_COOKIE_FILM) return VL_ERROR_ARGUMENT;
+  if (!context || !def || def->cookie != VL_COOKIE_FILM)
+    return VL_ERROR_ARGUMENT;
   const uint32_t *c = def->crop;
   if (def->white_balance != 0.0 && !(def->white_balance >= 1000.0 && def->white_balance <= 1e5))
     return VL_ERROR_ARGUMENT;
-  if (!(def->max_component >= 0.0f)) return VL_ERROR_ARGUMENT;
+  if (!(def->max_component >= 0.0f))
+    return VL_ERROR_ARGUMENT;
   if (def->buckets && (def->buckets > MOST_BUCKETS || !(def->lambda_min < def->lambda_max) ||
-                       !(def->lambda_min >= VL_LAMBDA_MIN && def->lambda_max <= VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1)))
+                       !(def->lambda_min >= VL_LAMBDA_MIN &&
+                         def->lambda_max <= VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1)))
     return VL_ERROR_ARGUMENT;
-  if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS || def->height > SIZE_MAX_PIXELS)
+  if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS ||
+      def->height > SIZE_MAX_PIXELS)
     return VL_ERROR_ARGUMENT;
-  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height) return VL_ERROR_ARGUMENT;
+  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height)
+    return VL_ERROR_ARGUMENT;
   vlFilm *made = vl_alloc_zero(context, 1, sizeof *made);
-  if (!made) return VL_ERROR_MEMORY;
+  if (!made)
+    return VL_ERROR_MEMORY;
   made->context = context;
   made->def = *def;
   made->width = c[2] - c[0];
@@ -65,7 +79,8 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
     vl_free(context, made);
     return result;
   }
-  if (made->def.white_balance > 0.0) vl_white_balance(made->def.white_balance, def->space, made->balance);
+  if (made->def.white_balance > 0.0)
+    vl_white_balance(made->def.white_balance, def->space, made->balance);
   result = vl_filter_compile(context, &def->filter, &made->filter);
   if (result != VL_OK) {
     vl_free(context, made->sensor);
@@ -79,16 +94,22 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
 uint64_t vl_film_memory(const vlFilmDef *def) {
   uint64_t pixels = (uint64_t)(def->crop[2] - def->crop[0]) * (def->crop[3] - def->crop[1]);
   uint64_t each = 2 * sizeof(vlFilmPixel) + sizeof(uint32_t);
-  if (def->errors) each += 2 * sizeof(vlFilmMoments);
-  if (def->buckets) each += 2 * (uint64_t)def->buckets * (sizeof(vlInt128) + sizeof(int64_t)) + sizeof(uint32_t);
+  if (def->errors)
+    each += 2 * sizeof(vlFilmMoments);
+  if (def->buckets)
+    each +=
+        2 * (uint64_t)def->buckets * (sizeof(vlInt128) + sizeof(int64_t)) + sizeof(uint32_t);
   return pixels * each;
 }
 
 void vl_film_destroy(vlFilm *film) {
-  if (!film) return;
+  if (!film)
+    return;
   vlContext *context = film->context;
-  VL_FREE(context, film->front, film->back, film->stamp, film->block_spp, film->compared, film->scratch, film->sensor);
-  for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
+  VL_FREE(context, film->front, film->back, film->stamp, film->block_spp, film->compared,
+          film->scratch, film->sensor);
+  for (int i = 0; i < 2; i++)
+    vl_free(context, film->moments[i]);
   vl_film_spectrum_free(film);
   vl_filter_free(context, &film->filter);
   vl_free(context, film);
@@ -106,12 +127,14 @@ const char *const vl_own_words[VL_OWN_KINDS] = {"camera", "sampler", "tracer"};
 
 vlOwnKind vl_film_own_differs(const vlFilmOwn *a, const vlFilmOwn *b) {
   int kind = 0;
-  while (kind < VL_OWN_KINDS && vl_text_is(a->name[kind], b->name[kind])) kind++;
+  while (kind < VL_OWN_KINDS && vl_text_is(a->name[kind], b->name[kind]))
+    kind++;
   return (vlOwnKind)kind;
 }
 
 const char *vl_film_own(const vlFilm *film, vlOwnKind kind) {
-  if (!film || (unsigned)kind >= VL_OWN_KINDS || !film->spp) return NULL;
+  if (!film || (unsigned)kind >= VL_OWN_KINDS || !film->spp)
+    return NULL;
   const char *name = film->sequence.own.name[kind];
   return *name ? name : NULL;
 }
@@ -136,14 +159,19 @@ const vlFilterTable *vl_film_filter(const vlFilm *film) {
 }
 
 vlResult vl_film_begin_pass(vlFilm *film) {
-  if (film->in_pass) return VL_ERROR_ARGUMENT;
+  if (film->in_pass)
+    return VL_ERROR_ARGUMENT;
   size_t count = vl_film_pixels(film);
-  if (!film->stamp) film->stamp = vl_alloc_zero(film->context, count, sizeof *film->stamp);
-  if (!film->back) film->back = vl_alloc_array(film->context, count, sizeof *film->back);
+  if (!film->stamp)
+    film->stamp = vl_alloc_zero(film->context, count, sizeof *film->stamp);
+  if (!film->back)
+    film->back = vl_alloc_array(film->context, count, sizeof *film->back);
   for (int i = 0; i < 2 && film->def.errors; i++)
-    if (!film->moments[i] && !(film->moments[i] = vl_alloc_zero(film->context, count, sizeof(vlFilmMoments))))
+    if (!film->moments[i] &&
+        !(film->moments[i] = vl_alloc_zero(film->context, count, sizeof(vlFilmMoments))))
       return VL_ERROR_MEMORY;
-  if (!film->stamp || !film->back || !vl_film_spectrum_begin(film)) return VL_ERROR_MEMORY;
+  if (!film->stamp || !film->back || !vl_film_spectrum_begin(film))
+    return VL_ERROR_MEMORY;
   film->in_pass = true;
   film->part = vl_first_part(film->end);
   film->pass_end = film->end;
@@ -157,25 +185,28 @@ void vl_film_set_pass_samples(vlFilm *film, uint32_t first, uint32_t end) {
   film->pass_end = end > film->end ? end : film->end;
 }
 
-/* Ends the running pass and advances the pass number. If the number wraps around, all stamps are cleared; otherwise
- * old stamps would count as current. */
+/* Ends the running pass and advances the pass number. If the number wraps around, all stamps
+ * are cleared; otherwise old stamps would count as current. */
 static void next_pass(vlFilm *film) {
   film->in_pass = false;
   if (++film->pass == 0) {
     memset(film->stamp, 0, vl_film_pixels(film) * sizeof *film->stamp);
-    if (film->spectrum.stamp) memset(film->spectrum.stamp, 0, vl_film_pixels(film) * sizeof *film->spectrum.stamp);
+    if (film->spectrum.stamp)
+      memset(film->spectrum.stamp, 0, vl_film_pixels(film) * sizeof *film->spectrum.stamp);
     film->pass = 1;
   }
 }
 
 void vl_film_commit_pass(vlFilm *film) {
-  if (!film->in_pass) return;
+  if (!film->in_pass)
+    return;
   size_t count = vl_film_pixels(film);
   static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
   for (size_t i = 0; i < count; i++)
     if (film->stamp[i] != film->pass) {
       film->back[i] = film->front ? film->front[i] : zero;
-      if (film->def.errors) film->moments[1][i] = film->moments[0][i];
+      if (film->def.errors)
+        film->moments[1][i] = film->moments[0][i];
     }
   vlFilmMoments *moments = film->moments[0];
   film->moments[0] = film->moments[1];
@@ -189,12 +220,15 @@ void vl_film_commit_pass(vlFilm *film) {
 }
 
 void vl_film_abandon_pass(vlFilm *film) {
-  if (film->in_pass) next_pass(film);
+  if (film->in_pass)
+    next_pass(film);
 }
 
-/* Clears the film. If there are two sets of sums, one of them is freed. The next pass then begins as in a new film. */
+/* Clears the film. If there are two sets of sums, one of them is freed. The next pass then
+ * begins as in a new film. */
 void vl_film_clear(vlFilm *film) {
-  if (!film || film->in_pass) return;
+  if (!film || film->in_pass)
+    return;
   vl_film_set_spp(film, 0);
   vl_film_forget_compared(film);
   film->sequence = (vlFilmSequence){0};
@@ -205,7 +239,8 @@ void vl_film_clear(vlFilm *film) {
     film->back = film->front;
   }
   film->front = NULL;
-  if (film->moments[0]) memset(film->moments[0], 0, vl_film_pixels(film) * sizeof *film->moments[0]);
+  if (film->moments[0])
+    memset(film->moments[0], 0, vl_film_pixels(film) * sizeof *film->moments[0]);
   vl_film_spectrum_clear(film);
 }
 
@@ -221,41 +256,56 @@ void *vl_film_scratch(vlFilm *film, size_t size) {
 /* Before the pixels' sums are added. */
 static void add_moments(vlFilm *film, const vlFilm *other) {
   uint32_t part = vl_first_part(film->end > other->end ? film->end : other->end);
-  bool moves = part != vl_first_part(film->end), other_moves = part != vl_first_part(other->end);
+  bool moves = part != vl_first_part(film->end),
+       other_moves = part != vl_first_part(other->end);
   for (size_t i = 0; i < vl_film_pixels(film); i++) {
     vlFilmMoments from = other->moments[0][i];
-    if (moves) vl_film_join_parts(&film->moments[0][i], &film->front[i]);
-    if (other_moves) vl_film_join_parts(&from, &other->front[i]);
+    if (moves)
+      vl_film_join_parts(&film->moments[0][i], &film->front[i]);
+    if (other_moves)
+      vl_film_join_parts(&from, &other->front[i]);
     vl_film_sum_moments(&film->moments[0][i], &from);
   }
 }
 
 vlResult vl_film_add_film(vlFilm *film, const vlFilm *other) {
-  if (!film || !other || film == other || film->in_pass || other->in_pass) return VL_ERROR_ARGUMENT;
-  if (film->block_spp || other->block_spp) return VL_ERROR_ARGUMENT;
+  if (!film || !other || film == other || film->in_pass || other->in_pass)
+    return VL_ERROR_ARGUMENT;
+  if (film->block_spp || other->block_spp)
+    return VL_ERROR_ARGUMENT;
   if (film->def.width != other->def.width || film->def.height != other->def.height ||
-      memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||
-      film->spp > UINT32_MAX - other->spp || (film->def.errors && !other->def.errors) ||
-      film->def.buckets != other->def.buckets || film->def.sensor != other->def.sensor ||
-      film->def.lambda_min != other->def.lambda_min || film->def.lambda_max != other->def.lambda_max)
+      memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 ||
+      film->def.space != other->def.space || film->spp > UINT32_MAX - other->spp ||
+      (film->def.errors && !other->def.errors) || film->def.buckets != other->def.buckets ||
+      film->def.sensor != other->def.sensor || film->def.lambda_min != other->def.lambda_min ||
+      film->def.lambda_max != other->def.lambda_max)
     return VL_ERROR_ARGUMENT;
   vl_film_forget_compared(film);
-  if (!vl_film_spectrum_merge(film, other)) return VL_ERROR_MEMORY;
+  if (!vl_film_spectrum_merge(film, other))
+    return VL_ERROR_MEMORY;
   if (film->def.errors && other->moments[0]) {
-    if (!film->moments[0]) film->moments[0] = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof(vlFilmMoments));
-    if (!film->moments[0]) return VL_ERROR_MEMORY;
+    if (!film->moments[0])
+      film->moments[0] =
+          vl_alloc_zero(film->context, vl_film_pixels(film), sizeof(vlFilmMoments));
+    if (!film->moments[0])
+      return VL_ERROR_MEMORY;
   }
   if (other->front) {
     size_t count = vl_film_pixels(film);
-    if (!film->front) film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
-    if (!film->front) return VL_ERROR_MEMORY;
-    if (film->def.errors && other->moments[0]) add_moments(film, other);
+    if (!film->front)
+      film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
+    if (!film->front)
+      return VL_ERROR_MEMORY;
+    if (film->def.errors && other->moments[0])
+      add_moments(film, other);
     for (size_t i = 0; i < count; i++) {
-      for (int c = 0; c < 3; c++) film->front[i].color[c] += other->front[i].color[c];
+      for (int c = 0; c < 3; c++)
+        film->front[i].color[c] += other->front[i].color[c];
       film->front[i].alpha += other->front[i].alpha;
       film->front[i].weight += other->front[i].weight;
     }
-    if (film->end < other->end) film->end = other->end;
+    if (film->end < other->end)
+      film->end = other->end;
   }
   film->spp += other->spp;
   return VL_OK;

@@ -1,6 +1,7 @@
-/* film/spectrum.c: spectra in addition to colours: buckets of wavelengths of equal width, each with its own exact sums
- * (docs/decisions/0002-exact-film-sums.md). Wavelengths are sampled uniformly (trace), so that the mean of the samples
- * in a bucket is the mean over the bucket. */
+/* film/spectrum.c: spectra in addition to colours: buckets of wavelengths of equal width, each
+ * with its own exact sums (docs/decisions/0002-exact-film-sums.md). Wavelengths are sampled
+ * uniformly (trace), so that the mean of the samples in a bucket is the mean over the bucket.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,15 +17,19 @@ static size_t cells(const vlFilm *film) {
 
 static bool make(vlFilm *film, int set) {
   vlFilmSpectrum *s = &film->spectrum;
-  if (!s->sums[set]) s->sums[set] = vl_alloc_zero(film->context, cells(film), sizeof *s->sums[set]);
-  if (!s->weights[set]) s->weights[set] = vl_alloc_zero(film->context, cells(film), sizeof *s->weights[set]);
+  if (!s->sums[set])
+    s->sums[set] = vl_alloc_zero(film->context, cells(film), sizeof *s->sums[set]);
+  if (!s->weights[set])
+    s->weights[set] = vl_alloc_zero(film->context, cells(film), sizeof *s->weights[set]);
   return s->sums[set] && s->weights[set];
 }
 
 bool vl_film_spectrum_begin(vlFilm *film) {
   vlFilmSpectrum *s = &film->spectrum;
-  if (!film->def.buckets) return true;
-  if (!s->stamp) s->stamp = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof *s->stamp);
+  if (!film->def.buckets)
+    return true;
+  if (!s->stamp)
+    s->stamp = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof *s->stamp);
   return s->stamp && make(film, 0) && make(film, 1);
 }
 
@@ -40,15 +45,16 @@ void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *a) {
   uint32_t width = film->width, n = film->def.buckets;
   double low = film->def.lambda_min, scale = n / (film->def.lambda_max - film->def.lambda_min);
   for (uint32_t i = 0; i < a->n; i++) {
-    uint32_t x = (uint32_t)a->px[i] - film->def.crop[0], y = (uint32_t)a->py[i] - film->def.crop[1];
+    uint32_t x = (uint32_t)a->px[i] - film->def.crop[0],
+             y = (uint32_t)a->py[i] - film->def.crop[1];
     float w = a->weight[i];
     uint32_t largest = 0;
     for (int c = 0; c < 4; c++) {
       uint32_t bits = vl_float_bits(a->radiance[c][i]) & 0x7fffffffu;
       largest = bits > largest ? bits : largest;
     }
-    if (largest >= LIMIT || (vl_float_bits(w) & 0x7fffffffu) >= WEIGHT_LIMIT || x >= width || y >= film->height ||
-        !film->in_pass)
+    if (largest >= LIMIT || (vl_float_bits(w) & 0x7fffffffu) >= WEIGHT_LIMIT || x >= width ||
+        y >= film->height || !film->in_pass)
       continue; /* vl_film_add counts it */
     size_t at = (size_t)y * width + x;
     if (s->stamp[at] != film->pass) {
@@ -68,9 +74,11 @@ void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *a) {
 
 void vl_film_spectrum_commit(vlFilm *film) {
   vlFilmSpectrum *s = &film->spectrum;
-  if (!film->def.buckets) return;
+  if (!film->def.buckets)
+    return;
   for (size_t i = 0; i < vl_film_pixels(film); i++)
-    if (s->stamp[i] != film->pass) copy_pixel(film, i);
+    if (s->stamp[i] != film->pass)
+      copy_pixel(film, i);
   vlInt128 *sums = s->sums[0];
   int64_t *weights = s->weights[0];
   s->sums[0] = s->sums[1];
@@ -81,8 +89,10 @@ void vl_film_spectrum_commit(vlFilm *film) {
 
 void vl_film_spectrum_clear(vlFilm *film) {
   vlFilmSpectrum *s = &film->spectrum;
-  if (s->sums[0]) memset(s->sums[0], 0, cells(film) * sizeof *s->sums[0]);
-  if (s->weights[0]) memset(s->weights[0], 0, cells(film) * sizeof *s->weights[0]);
+  if (s->sums[0])
+    memset(s->sums[0], 0, cells(film) * sizeof *s->sums[0]);
+  if (s->weights[0])
+    memset(s->weights[0], 0, cells(film) * sizeof *s->weights[0]);
 }
 
 void vl_film_spectrum_free(vlFilm *film) {
@@ -95,8 +105,10 @@ void vl_film_spectrum_free(vlFilm *film) {
 }
 
 bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other) {
-  if (!film->def.buckets || !other->spectrum.sums[0] || !other->spectrum.weights[0]) return true;
-  if (!make(film, 0)) return false;
+  if (!film->def.buckets || !other->spectrum.sums[0] || !other->spectrum.weights[0])
+    return true;
+  if (!make(film, 0))
+    return false;
   for (size_t i = 0; i < cells(film); i++) {
     film->spectrum.sums[0][i] += other->spectrum.sums[0][i];
     film->spectrum.weights[0][i] += other->spectrum.weights[0][i];
@@ -104,14 +116,19 @@ bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other) {
   return true;
 }
 
-/* ---- develop ----------------------------------------------------------------------------------------------------- */
+/* ---- develop
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-/* "S0.374,688nm": the middle of the bucket. The decimal sign is a comma, since a point separates layers. */
+/* "S0.374,688nm": the middle of the bucket. The decimal sign is a comma, since a point
+ * separates layers. */
 static void bucket_name(const vlFilm *film, uint32_t i, char name[32]) {
   const vlFilmDef *d = &film->def;
-  snprintf(name, 32, "S0.%.3fnm", d->lambda_min + (i + 0.5) / d->buckets * (d->lambda_max - d->lambda_min));
+  snprintf(name, 32, "S0.%.3fnm",
+           d->lambda_min + (i + 0.5) / d->buckets * (d->lambda_max - d->lambda_min));
   char *point = strchr(name + 3, '.');
-  if (point) *point = ',';
+  if (point)
+    *point = ',';
 }
 
 static vlResult make_image(const vlFilm *film, vlImage **image) {
@@ -127,27 +144,32 @@ static vlResult make_image(const vlFilm *film, vlImage **image) {
   def.names = names;
   def.type = VL_PIXEL_F32;
   def.encoding = VL_ENCODING_LINEAR;
-  if (result == VL_OK) result = vl_image_create(film->context, &def, image);
+  if (result == VL_OK)
+    result = vl_image_create(film->context, &def, image);
   vl_free(film->context, text);
   vl_free(film->context, names);
   static const vlAttribute attributes[2] = {
       {.name = "spectralLayoutVersion", .type = VL_ATTRIBUTE_STRING, .string = "1.0"},
       {.name = "emissiveUnits", .type = VL_ATTRIBUTE_STRING, .string = "W.m^-2.sr^-1"}};
-  for (int i = 0; i < 2 && result == VL_OK; i++) result = vl_image_set_attribute(*image, &attributes[i]);
+  for (int i = 0; i < 2 && result == VL_OK; i++)
+    result = vl_image_set_attribute(*image, &attributes[i]);
   return result;
 }
 
 /* The integral of the standard observer's Y, by which lights are normalised. */
 static double y_integral(void) {
   double sum = 0;
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)vl_cie_y()[i];
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    sum += (double)vl_cie_y()[i];
   return sum;
 }
 
 vlResult vl_film_spectrum(const vlFilm *film, vlImage **image) {
-  if (!image) return VL_ERROR_ARGUMENT;
+  if (!image)
+    return VL_ERROR_ARGUMENT;
   *image = NULL;
-  if (!film || !film->def.buckets) return VL_ERROR_ARGUMENT;
+  if (!film || !film->def.buckets)
+    return VL_ERROR_ARGUMENT;
   vlResult result = make_image(film, image);
   if (result != VL_OK) {
     vl_image_destroy(*image);
@@ -158,6 +180,7 @@ vlResult vl_film_spectrum(const vlFilm *film, vlImage **image) {
   float *out = vl_image_pixels(*image);
   double unit = y_integral() / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
   for (size_t i = 0; s->sums[0] && s->weights[0] && i < cells(film); i++)
-    if (s->weights[0][i] > 0) out[i] = (float)((double)s->sums[0][i] / (double)s->weights[0][i] * unit);
+    if (s->weights[0][i] > 0)
+      out[i] = (float)((double)s->sums[0][i] / (double)s->weights[0][i] * unit);
   return VL_OK;
 }

@@ -9,8 +9,9 @@
 
 __extension__ typedef __int128 vlInt128;
 
-/* Numbers of fraction bits of the sums. Colours have |value| < 2^40, |weight| < 2^4 and up to 2^31 samples: 75 integer
- * bits, a sign and 50 fraction bits. Sums of weights and alpha need 4 + 31 integer bits and a sign. */
+/* Numbers of fraction bits of the sums. Colours have |value| < 2^40, |weight| < 2^4 and up to
+ * 2^31 samples: 75 integer bits, a sign and 50 fraction bits. Sums of weights and alpha need 4
+ * + 31 integer bits and a sign. */
 enum { VL_COLOR_BITS = 50, VL_WEIGHT_BITS = 24, VL_ALPHA_BITS = 28 };
 
 /* Sums of weight * channel, and of weight: one cache line. */
@@ -20,10 +21,11 @@ typedef struct vlFilmPixel {
 } vlFilmPixel;
 _Static_assert(sizeof(vlFilmPixel) == 64, "a pixel's sums are one cache line");
 
-/* Additional sums for standard errors. Of all samples: of each channel the unweighted sum and the sum of squares, and
- * the number of samples. Squares are exact, too: 192-bit fixed point, the lowest limb first. Of the samples with
- * indices below vl_first_part(end): the sums of weight * channel and of weight, as in vlFilmPixel. Without padding,
- * since films with errors have one for each pixel. */
+/* Additional sums for standard errors. Of all samples: of each channel the unweighted sum and
+ * the sum of squares, and the number of samples. Squares are exact, too: 192-bit fixed point,
+ * the lowest limb first. Of the samples with indices below vl_first_part(end): the sums of
+ * weight * channel and of weight, as in vlFilmPixel. Without padding, since films with errors
+ * have one for each pixel. */
 enum { VL_SQUARE_BITS = 80 };
 __extension__ typedef __int128 vlPackedInt128 __attribute__((aligned(8)));
 typedef struct vlFilmMoments {
@@ -35,16 +37,19 @@ typedef struct vlFilmMoments {
 } vlFilmMoments;
 _Static_assert(sizeof(vlFilmMoments) == 184, "the compiler adds no bytes");
 
-/* The index at which the samples of a film divide into two parts, for standard errors; `end`: the index behind the last
- * sample. It is the largest power of two below `end`, so that the first part is a whole point set of a low-discrepancy
- * sequence, and so is the second when it is as large. It depends on `end` only, and a later one is the end of a part:
- * the first part of more samples is either the same or all earlier ones. 0 and 1: no first part. */
+/* The index at which the samples of a film divide into two parts, for standard errors; `end`:
+ * the index behind the last sample. It is the largest power of two below `end`, so that the
+ * first part is a whole point set of a low-discrepancy sequence, and so is the second when it
+ * is as large. It depends on `end` only, and a later one is the end of a part: the first part
+ * of more samples is either the same or all earlier ones. 0 and 1: no first part. */
 static inline uint32_t vl_first_part(uint32_t end) {
   return end > 1 ? 1u << (31 - __builtin_clz(end - 1)) : 0;
 }
 
-/* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): the front sums are committed; the
- * back sums belong to the running pass and are valid where stamp == pass. */
+/* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): the front
+ * sums are committed; the back sums belong to the running pass and are valid where stamp ==
+ * pass.
+ */
 typedef struct vlFilmSpectrum {
   vlInt128 *sums[2]; /* front, back; null: not allocated yet */
   int64_t *weights[2];
@@ -60,16 +65,17 @@ struct vlFilm {
   vlComparedNoise *compared; /* of each block; null: all 0 */
   vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
-  vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */
-  uint32_t *stamp;    /* the pass in which the pixel's back was last written */
-  uint32_t pass;      /* counts from 1 */
+  vlFilmPixel *
+      back; /* sums of the running pass, valid where stamp == pass; null until the first pass */
+  uint32_t *stamp; /* the pass in which the pixel's back was last written */
+  uint32_t pass;   /* counts from 1 */
   bool in_pass;
   uint32_t end;            /* index behind the last sample of any pixel, with def.errors */
   uint32_t part, pass_end; /* of the running pass: vl_first_part and `end` after it */
-  bool part_moves;         /* all samples before the running pass belong to the first part after it */
-  vlFilmMoments
-      *moments[2]; /* front and back, front and back, only with def.errors; valid where the pixel's sums are valid */
-  vlFilmSpectrum spectrum; /* with def.buckets */
+  bool part_moves; /* all samples before the running pass belong to the first part after it */
+  vlFilmMoments *moments[2]; /* front and back, front and back, only with def.errors; valid
+                                where the pixel's sums are valid */
+  vlFilmSpectrum spectrum;   /* with def.buckets */
   vlFilterTable filter;
   float balance[9]; /* white balance matrix for XYZ; only with def.white_balance */
   vlFilmSensor *sensor;
@@ -84,8 +90,8 @@ void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]);
 void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel);
 /* Adds moments; both have the same first part. */
 void vl_film_sum_moments(vlFilmMoments *to, const vlFilmMoments *from);
-/* The standard error of channel c of pixel `at`, if its samples were independent: of its linear value, without
- * exposure. Infinite below 2 samples. */
+/* The standard error of channel c of pixel `at`, if its samples were independent: of its linear
+ * value, without exposure. Infinite below 2 samples. */
 double vl_film_independent_error(const vlFilm *film, size_t at, int c);
 /* The share of a pixel's weights that its first part has; 0: there are not two parts. */
 double vl_film_first_share(const vlFilm *film, size_t at);
@@ -104,11 +110,13 @@ void vl_film_spectrum_clear(vlFilm *film);
 void vl_film_spectrum_free(vlFilm *film);
 bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other);
 
-/* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28 (units of 2^-24). */
+/* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28
+ * (units of 2^-24). */
 static inline vlInt128 vl_film_product(float value, int64_t weight) {
   uint32_t bits = vl_float_bits(value);
   int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
-  int64_t mantissa = (int64_t)(bits & 0x7fffffu) | (int64_t)(field > 0) << 23; /* value = mantissa 2^(exponent - 150) */
+  int64_t mantissa = (int64_t)(bits & 0x7fffffu) |
+                     (int64_t)(field > 0) << 23; /* value = mantissa 2^(exponent - 150) */
   int64_t p = (bits >> 31 ? -mantissa : mantissa) * weight;
   int32_t shift = exponent - 150 - VL_WEIGHT_BITS + VL_COLOR_BITS;
   int32_t left = shift > 0 ? shift : 0, right = shift < 0 ? -shift : 0;

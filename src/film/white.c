@@ -4,8 +4,11 @@
 #include "color/sensor.h"
 #include "math/transform.h"
 
-/* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened cones. */
-static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
+/* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened
+ * cones.
+ */
+static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135,
+                                0.0367, 0.0389, -0.0685, 1.0296};
 
 /* The chromaticity of vl_daylight, without the rounding of its table. */
 static void chromaticity(double kelvin, double xy[2]) {
@@ -26,7 +29,8 @@ static void chromaticity(double kelvin, double xy[2]) {
 
 static void response(double x, double y, double lms[3]) {
   double xyz[3] = {x / y, 1.0, (1.0 - x - y) / y};
-  for (int i = 0; i < 3; i++) lms[i] = cones[3 * i] * xyz[0] + cones[3 * i + 1] * xyz[1] + cones[3 * i + 2] * xyz[2];
+  for (int i = 0; i < 3; i++)
+    lms[i] = cones[3 * i] * xyz[0] + cones[3 * i + 1] * xyz[1] + cones[3 * i + 2] * xyz[2];
 }
 
 void vl_white_balance(double kelvin, vlColorSpace space, float m[9]) {
@@ -36,8 +40,10 @@ void vl_white_balance(double kelvin, vlColorSpace space, float m[9]) {
   chromaticity(kelvin, source);
   response(source[0], source[1], from);
   response((double)primaries[6], (double)primaries[7], to);
-  for (int i = 0; i < 9; i++) scaled[i] = cones[i] * to[i / 3] / from[i / 3];
+  for (int i = 0; i < 9; i++)
+    scaled[i] = cones[i] * to[i / 3] / from[i / 3];
   vl_mat3_inverse(cones, back);
   vl_mat3_multiply(back, scaled, whole);
-  for (int i = 0; i < 9; i++) m[i] = (float)whole[i];
+  for (int i = 0; i < 9; i++)
+    m[i] = (float)whole[i];
 }

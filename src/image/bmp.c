@@ -1,5 +1,5 @@
-/* image/bmp.c: Windows bitmaps: palettes of 1, 4 and 8 bits; 16, 24 and 32-bit colour; bit fields; rows from the bottom
- * or the top. Run-length encoding is not supported. */
+/* image/bmp.c: Windows bitmaps: palettes of 1, 4 and 8 bits; 16, 24 and 32-bit colour; bit
+ * fields; rows from the bottom or the top. Run-length encoding is not supported. */
 #include <string.h>
 
 #include "image/codec.h"
@@ -20,7 +20,8 @@ static uint32_t le32(const uint8_t *p) {
 }
 
 bool vl_bmp_probe(const uint8_t *data, size_t size) {
-  if (size < 26 || data[0] != 'B' || data[1] != 'M') return false;
+  if (size < 26 || data[0] != 'B' || data[1] != 'M')
+    return false;
   uint32_t head = le32(data + 14);
   return head == 12 || (head >= 40 && head <= 124);
 }
@@ -29,7 +30,8 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
   const uint8_t *d = file->data;
   uint32_t head = le32(d + 14), coding = 0;
   memset(b, 0, sizeof *b);
-  if ((size_t)14 + head > file->size) return vl_codec_broken(file, "BMP", "ends in its header");
+  if ((size_t)14 + head > file->size)
+    return vl_codec_broken(file, "BMP", "ends in its header");
   b->pixels_at = le32(d + 10);
   b->palette_at = (size_t)14 + head;
   if (head == 12) {
@@ -39,7 +41,8 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
     b->palette_bytes = 3;
   } else {
     int32_t width = (int32_t)le32(d + 18), height = (int32_t)le32(d + 22);
-    if (width <= 0 || height == 0 || height == INT32_MIN) return vl_codec_broken(file, "BMP", "its image is empty");
+    if (width <= 0 || height == 0 || height == INT32_MIN)
+      return vl_codec_broken(file, "BMP", "its image is empty");
     b->width = (uint32_t)width;
     b->from_top = height < 0;
     b->height = (uint32_t)(height < 0 ? -height : height);
@@ -48,19 +51,27 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
     b->palette_bytes = 4;
     b->palette_count = le32(d + 46);
   }
-  if (coding == 1 || coding == 2) return vl_codec_unsupported(file, "BMP", "run lengths");
-  if (coding != 0 && coding != 3 && coding != 6) return vl_codec_unsupported(file, "BMP", "this compression");
+  if (coding == 1 || coding == 2)
+    return vl_codec_unsupported(file, "BMP", "run lengths");
+  if (coding != 0 && coding != 3 && coding != 6)
+    return vl_codec_unsupported(file, "BMP", "this compression");
   if (b->depth <= 8) {
-    if (b->depth != 1 && b->depth != 4 && b->depth != 8) return vl_codec_broken(file, "BMP", "this number of bits");
-    if (b->palette_count == 0 || b->palette_count > 1u << b->depth) b->palette_count = 1u << b->depth;
+    if (b->depth != 1 && b->depth != 4 && b->depth != 8)
+      return vl_codec_broken(file, "BMP", "this number of bits");
+    if (b->palette_count == 0 || b->palette_count > 1u << b->depth)
+      b->palette_count = 1u << b->depth;
     if (b->palette_at + (size_t)b->palette_count * b->palette_bytes > file->size)
       return vl_codec_broken(file, "BMP", "ends in its palette");
     return VL_OK;
   }
-  if (b->depth != 16 && b->depth != 24 && b->depth != 32) return vl_codec_broken(file, "BMP", "this number of bits");
-  if (coding && b->depth != 24) { /* masks follow a 40-byte header; longer headers contain them at the same offset */
-    if (file->size < 70) return vl_codec_broken(file, "BMP", "ends in its header");
-    for (int i = 0; i < 4; i++) b->mask[i] = i < 3 || head >= 56 ? le32(d + 54 + 4 * i) : 0;
+  if (b->depth != 16 && b->depth != 24 && b->depth != 32)
+    return vl_codec_broken(file, "BMP", "this number of bits");
+  if (coding && b->depth != 24) { /* masks follow a 40-byte header; longer headers contain them
+                                     at the same offset */
+    if (file->size < 70)
+      return vl_codec_broken(file, "BMP", "ends in its header");
+    for (int i = 0; i < 4; i++)
+      b->mask[i] = i < 3 || head >= 56 ? le32(d + 54 + 4 * i) : 0;
   } else if (b->depth == 16) {
     b->mask[0] = 0x7c00;
     b->mask[1] = 0x03e0;
@@ -74,7 +85,8 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
 }
 
 static uint8_t field(uint32_t v, uint32_t mask) {
-  if (!mask) return 0;
+  if (!mask)
+    return 0;
   uint32_t shift = (uint32_t)__builtin_ctz(mask);
   uint64_t top = mask >> shift, x = (v & mask) >> shift;
   return (uint8_t)((x * 255u + top / 2) / top);
@@ -83,29 +95,37 @@ static uint8_t field(uint32_t v, uint32_t mask) {
 vlResult vl_bmp_read(const vlImageFile *file, vlImage **image) {
   Bmp b;
   vlResult result = parse(file, &b);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   size_t row = ((size_t)b.width * b.depth + 31) / 32 * 4;
-  result = vl_codec_promise(file, "BMP", b.width, b.height, (double)row * b.height + (double)b.pixels_at, 1.0);
+  result = vl_codec_promise(file, "BMP", b.width, b.height,
+                            (double)row * b.height + (double)b.pixels_at, 1.0);
   uint32_t channels = b.mask[3] ? 4 : 3;
   if (result == VL_OK)
-    result = vl_codec_create(file, b.width, b.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, image);
-  if (result != VL_OK) return result;
+    result = vl_codec_create(file, b.width, b.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB,
+                             image);
+  if (result != VL_OK)
+    return result;
   for (uint32_t y = 0; y < b.height; y++) {
     const uint8_t *p = file->data + b.pixels_at + row * y;
     uint8_t *out = vl_image_row(*image, b.from_top ? y : b.height - 1 - y);
     for (uint32_t x = 0; x < b.width; x++, out += channels) {
       if (b.depth <= 8) {
-        uint32_t at = x * b.depth, index = p[at / 8] >> (8 - b.depth - at % 8) & ((1u << b.depth) - 1);
-        if (index >= b.palette_count) return vl_codec_broken(file, "BMP", "a colour outside its palette");
+        uint32_t at = x * b.depth,
+                 index = p[at / 8] >> (8 - b.depth - at % 8) & ((1u << b.depth) - 1);
+        if (index >= b.palette_count)
+          return vl_codec_broken(file, "BMP", "a colour outside its palette");
         const uint8_t *c = file->data + b.palette_at + (size_t)index * b.palette_bytes;
         out[0] = c[2];
         out[1] = c[1];
         out[2] = c[0];
       } else {
-        uint32_t v = b.depth == 16   ? le16(p + 2 * (size_t)x)
-                     : b.depth == 32 ? le32(p + 4 * (size_t)x)
-                                     : le16(p + 3 * (size_t)x) | (uint32_t)p[3 * (size_t)x + 2] << 16;
-        for (uint32_t c = 0; c < channels; c++) out[c] = field(v, b.mask[c]);
+        uint32_t v = b.depth == 16 ? le16(p + 2 * (size_t)x)
+                     : b.depth == 32
+                         ? le32(p + 4 * (size_t)x)
+                         : le16(p + 3 * (size_t)x) | (uint32_t)p[3 * (size_t)x + 2] << 16;
+        for (uint32_t c = 0; c < channels; c++)
+          out[c] = field(v, b.mask[c]);
       }
     }
   }

@@ -1,4 +1,5 @@
-/* image/compare.c: measures of the difference between an image and a reference. Sums run in a fixed order. */
+/* image/compare.c: measures of the difference between an image and a reference. Sums run in a
+ * fixed order. */
 #include <math.h>
 
 #include "base/error.h"
@@ -6,11 +7,12 @@
 #include "image/image.h"
 #include "math/elementary.h"
 
-/* Loads R, G and B of every pixel; an image with only Y gives Y three times. The caller checks for values that are not
- * finite. */
+/* Loads R, G and B of every pixel; an image with only Y gives Y three times. The caller checks
+ * for values that are not finite. */
 static vlResult load(const vlImage *image, float **rgb) {
   uint32_t channel[4], count = vl_image_color(image, channel);
-  if (count < 3) channel[1] = channel[2] = channel[0];
+  if (count < 3)
+    channel[1] = channel[2] = channel[0];
   return vl_image_to_float(image, channel, 3, rgb);
 }
 
@@ -18,15 +20,20 @@ static bool finite3(const float *v) {
   return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-/* Magma (van der Walt and Smith, CC0) by Matt Zucker's polynomials of degree 6 (CC0); t in [0, 1]. */
+/* Magma (van der Walt and Smith, CC0) by Matt Zucker's polynomials of degree 6 (CC0); t in [0,
+ * 1].
+ */
 static void magma(float t, uint8_t out[3]) {
-  static const float C[3][7] = {
-      {-0.002136485f, 0.251660541f, 8.353717279f, -27.668733086f, 52.176139812f, -50.768525365f, 18.655705066f},
-      {-0.000749655f, 0.677523244f, -3.577719515f, 14.264730781f, -27.943606072f, 29.046582821f, -11.489773520f},
-      {-0.005386128f, 2.494026599f, 0.314467903f, -13.649213188f, 12.944169442f, 4.234152994f, -5.601961509f}};
+  static const float C[3][7] = {{-0.002136485f, 0.251660541f, 8.353717279f, -27.668733086f,
+                                 52.176139812f, -50.768525365f, 18.655705066f},
+                                {-0.000749655f, 0.677523244f, -3.577719515f, 14.264730781f,
+                                 -27.943606072f, 29.046582821f, -11.489773520f},
+                                {-0.005386128f, 2.494026599f, 0.314467903f, -13.649213188f,
+                                 12.944169442f, 4.234152994f, -5.601961509f}};
   for (int c = 0; c < 3; c++) {
     float v = C[c][6];
-    for (int k = 5; k >= 0; k--) v = v * t + C[c][k];
+    for (int k = 5; k >= 0; k--)
+      v = v * t + C[c][k];
     v = v > 0.0f ? v < 1.0f ? v : 1.0f : 0.0f;
     out[c] = (uint8_t)(v * 255.0f + 0.5f);
   }
@@ -50,7 +57,8 @@ static void numbers(Pair *p, vlImageDiff *diff) {
       diff->not_finite++;
       p->skip[n] = 1;
       for (int c = 0; c < 3; c++)
-        a[c] = b[c] = 0.0f; /* FLIP filters over neighbouring pixels, so this pixel must not differ */
+        a[c] = b[c] =
+            0.0f; /* FLIP filters over neighbouring pixels, so this pixel must not differ */
       continue;
     }
     used++;
@@ -62,7 +70,8 @@ static void numbers(Pair *p, vlImageDiff *diff) {
       light_a += LUMINANCE[c] * a[c];
       light_b += LUMINANCE[c] * b[c];
       d = d < 0.0 ? -d : d;
-      if (d > diff->max_abs) diff->max_abs = d;
+      if (d > diff->max_abs)
+        diff->max_abs = d;
       differs |= a[c] != b[c];
     }
     diff->differing += differs;
@@ -80,7 +89,8 @@ static vlResult false_color(const Pair *p, vlImage **heat) {
   def.type = VL_PIXEL_U8;
   def.encoding = VL_ENCODING_SRGB;
   vlResult result = vl_image_create(p->image->context, &def, heat);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   uint8_t *out = (*heat)->pixels;
   for (size_t n = 0; n < p->count; n++, out += 3) {
     magma(p->flip[n], out);
@@ -92,34 +102,45 @@ static vlResult false_color(const Pair *p, vlImage **heat) {
   return VL_OK;
 }
 
-static vlResult compare(Pair *p, const vlImage *a, const vlImage *b, vlImageDiff *diff, vlImage **heat) {
+static vlResult compare(Pair *p, const vlImage *a, const vlImage *b, vlImageDiff *diff,
+                        vlImage **heat) {
   vlContext *context = a->context;
   vlResult result = load(a, &p->a);
-  if (result == VL_OK) result = load(b, &p->b);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = load(b, &p->b);
+  if (result != VL_OK)
+    return result;
   p->flip = vl_alloc_array(context, p->count, sizeof *p->flip);
   p->skip = vl_alloc_zero(context, p->count, 1);
-  if (!p->flip || !p->skip) return VL_ERROR_MEMORY;
+  if (!p->flip || !p->skip)
+    return VL_ERROR_MEMORY;
   numbers(p, diff);
   result = vl_flip(context, a->width, a->height, p->a, p->b, p->flip);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   double sum = 0.0;
-  for (size_t n = 0; n < p->count; n++) sum += p->skip[n] ? 0.0 : p->flip[n];
-  if (p->count > diff->not_finite) diff->flip = sum / (double)(p->count - diff->not_finite);
+  for (size_t n = 0; n < p->count; n++)
+    sum += p->skip[n] ? 0.0 : p->flip[n];
+  if (p->count > diff->not_finite)
+    diff->flip = sum / (double)(p->count - diff->not_finite);
   return heat ? false_color(p, heat) : VL_OK;
 }
 
-vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff, vlImage **heat, vlError *error) {
-  if (heat) *heat = NULL;
-  if (!a || !b || !diff) return vl_fail(error, VL_ERROR_ARGUMENT, "image compare: a, b or diff is null");
+vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff, vlImage **heat,
+                          vlError *error) {
+  if (heat)
+    *heat = NULL;
+  if (!a || !b || !diff)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "image compare: a, b or diff is null");
   vl_error_clear(error);
   *diff = (vlImageDiff){0};
   if (a->width != b->width || a->height != b->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the images differ in size: %ux%u and %ux%u", a->width, a->height,
-                   b->width, b->height);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "the images differ in size: %ux%u and %ux%u",
+                   a->width, a->height, b->width, b->height);
   uint32_t channel[4];
   if (!vl_image_color(a, channel) || !vl_image_color(b, channel))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an image without channels R, G, B or Y cannot be compared");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "an image without channels R, G, B or Y cannot be compared");
   Pair p = {.image = a, .count = (size_t)a->width * a->height};
   vlResult result = compare(&p, a, b, diff, heat);
   vl_free(a->context, p.a);

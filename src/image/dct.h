@@ -1,5 +1,5 @@
-/* image/dct.h: the orthonormal inverse cosine transform of 8 x 8 values. Plain sums in a fixed order give the same bits
- * everywhere. */
+/* image/dct.h: the orthonormal inverse cosine transform of 8 x 8 values. Plain sums in a fixed
+ * order give the same bits everywhere. */
 #ifndef IMAGE_DCT_H
 #define IMAGE_DCT_H
 

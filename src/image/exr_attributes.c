@@ -7,25 +7,32 @@
 void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char *message) {
   void *user = NULL;
   (void)code;
-  if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
+  if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
+    return;
   vlExr *x = user;
-  if (!atomic_flag_test_and_set(&x->failed)) snprintf(x->message, sizeof x->message, "%s", message ? message : "");
+  if (!atomic_flag_test_and_set(&x->failed))
+    snprintf(x->message, sizeof x->message, "%s", message ? message : "");
 }
 
-/* Attributes that describe the file's layout. The reader skips them and the writer makes new ones. */
-static const char *const LAYOUT[] = {"channels",          "compression", "lineOrder", "tiles",   "type",
-                                     "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
-                                     "maxSamplesPerPixel"};
+/* Attributes that describe the file's layout. The reader skips them and the writer makes new
+ * ones.
+ */
+static const char *const LAYOUT[] = {
+    "channels",          "compression", "lineOrder", "tiles",   "type",
+    "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
+    "maxSamplesPerPixel"};
 
 static bool is_layout(const char *name) {
   for (size_t i = 0; i < VL_LENGTH(LAYOUT); i++)
-    if (vl_text_is(name, LAYOUT[i])) return true;
+    if (vl_text_is(name, LAYOUT[i]))
+      return true;
   return false;
 }
 
 static void copy_floats(vlAttribute *to, vlAttributeType type, const float *from, int count) {
   to->type = type;
-  for (int i = 0; i < count; i++) to->numbers[i] = from[i];
+  for (int i = 0; i < count; i++)
+    to->numbers[i] = from[i];
 }
 
 static void copy_box(vlAttribute *to, const exr_attr_box2i_t *box) {
@@ -42,13 +49,14 @@ static void join_strings(const exr_attr_string_vector_t *from, char *text, size_
   text[0] = 0;
   for (int32_t i = 0; i < from->n_strings && length + 1 < size; i++) {
     const char *string = from->strings[i].str ? from->strings[i].str : "";
-    int n = snprintf(text + length, size - length, "%s%.*s", i ? "\n" : "", (int)from->strings[i].length, string);
+    int n = snprintf(text + length, size - length, "%s%.*s", i ? "\n" : "",
+                     (int)from->strings[i].length, string);
     length += n > 0 ? (size_t)n : 0;
   }
 }
 
-/* Converts an attribute. Returns false for a type that vlAttribute does not support. `text` is a buffer for joined
- * strings. */
+/* Converts an attribute. Returns false for a type that vlAttribute does not support. `text` is
+ * a buffer for joined strings. */
 static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, size_t size) {
   memset(to, 0, sizeof *to);
   to->name = from->name;
@@ -74,32 +82,47 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, si
       join_strings(from->stringvector, text, size);
       to->string = text;
       return true;
-    case EXR_ATTR_V2F: copy_floats(to, VL_ATTRIBUTE_V2F, from->v2f->arr, 2); return true;
-    case EXR_ATTR_V3F: copy_floats(to, VL_ATTRIBUTE_V3F, from->v3f->arr, 3); return true;
-    case EXR_ATTR_M33F: copy_floats(to, VL_ATTRIBUTE_M33F, from->m33f->m, 9); return true;
-    case EXR_ATTR_M44F: copy_floats(to, VL_ATTRIBUTE_M44F, from->m44f->m, 16); return true;
+    case EXR_ATTR_V2F:
+      copy_floats(to, VL_ATTRIBUTE_V2F, from->v2f->arr, 2);
+      return true;
+    case EXR_ATTR_V3F:
+      copy_floats(to, VL_ATTRIBUTE_V3F, from->v3f->arr, 3);
+      return true;
+    case EXR_ATTR_M33F:
+      copy_floats(to, VL_ATTRIBUTE_M33F, from->m33f->m, 9);
+      return true;
+    case EXR_ATTR_M44F:
+      copy_floats(to, VL_ATTRIBUTE_M44F, from->m44f->m, 16);
+      return true;
     case EXR_ATTR_M44D:
       to->type = VL_ATTRIBUTE_M44D;
       memcpy(to->numbers, from->m44d->m, sizeof to->numbers);
       return true;
     case EXR_ATTR_CHROMATICITIES: {
       const exr_attr_chromaticities_t *c = from->chromaticities;
-      const float xy[8] = {c->red_x, c->red_y, c->green_x, c->green_y, c->blue_x, c->blue_y, c->white_x, c->white_y};
+      const float xy[8] = {c->red_x,  c->red_y,  c->green_x, c->green_y,
+                           c->blue_x, c->blue_y, c->white_x, c->white_y};
       copy_floats(to, VL_ATTRIBUTE_CHROMATICITIES, xy, 8);
       return true;
     }
-    case EXR_ATTR_BOX2I: copy_box(to, from->box2i); return true;
-    default: return false;
+    case EXR_ATTR_BOX2I:
+      copy_box(to, from->box2i);
+      return true;
+    default:
+      return false;
   }
 }
 
-/* Whether an attribute that every header has is at its default; such attributes are not kept. */
+/* Whether an attribute that every header has is at its default; such attributes are not kept.
+ */
 static bool is_default(const vlAttribute *a, const vlImage *image) {
-  if (vl_text_is(a->name, "pixelAspectRatio") || vl_text_is(a->name, "screenWindowWidth")) return a->numbers[0] == 1.0;
-  if (vl_text_is(a->name, "screenWindowCenter")) return a->numbers[0] == 0.0 && a->numbers[1] == 0.0;
+  if (vl_text_is(a->name, "pixelAspectRatio") || vl_text_is(a->name, "screenWindowWidth"))
+    return a->numbers[0] == 1.0;
+  if (vl_text_is(a->name, "screenWindowCenter"))
+    return a->numbers[0] == 0.0 && a->numbers[1] == 0.0;
   if (vl_text_is(a->name, "dataWindow") || vl_text_is(a->name, "displayWindow"))
-    return a->numbers[0] == 0.0 && a->numbers[1] == 0.0 && a->numbers[2] == image->width - 1.0 &&
-           a->numbers[3] == image->height - 1.0;
+    return a->numbers[0] == 0.0 && a->numbers[1] == 0.0 &&
+           a->numbers[2] == image->width - 1.0 && a->numbers[3] == image->height - 1.0;
   return false;
 }
 
@@ -112,20 +135,28 @@ vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
     const exr_attribute_t *from;
     vlAttribute to;
     char text[2048];
-    if (exr_get_attribute_by_index(exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &from) != EXR_ERR_SUCCESS) continue;
-    if (!from->name || !from->name[0] || is_layout(from->name) || !convert(from, &to, text, sizeof text)) continue;
+    if (exr_get_attribute_by_index(exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &from) !=
+        EXR_ERR_SUCCESS)
+      continue;
+    if (!from->name || !from->name[0] || is_layout(from->name) ||
+        !convert(from, &to, text, sizeof text))
+      continue;
     if (vl_text_is(to.name, "dataWindow") || vl_text_is(to.name, "displayWindow")) {
       windows[to.name[1] == 'a' ? 0 : 1] = to;
       plain += is_default(&to, image);
       continue;
     }
-    if (is_default(&to, image)) continue;
+    if (is_default(&to, image))
+      continue;
     vlResult result = vl_image_set_attribute(image, &to);
-    if (result == VL_ERROR_MEMORY) return result;
+    if (result == VL_ERROR_MEMORY)
+      return result;
   }
-  if (plain == 2) return VL_OK; /* both windows equal the image */
+  if (plain == 2)
+    return VL_OK; /* both windows equal the image */
   for (int i = 0; i < 2; i++)
-    if (vl_image_set_attribute(image, &windows[i]) == VL_ERROR_MEMORY) return VL_ERROR_MEMORY;
+    if (vl_image_set_attribute(image, &windows[i]) == VL_ERROR_MEMORY)
+      return VL_ERROR_MEMORY;
   return VL_OK;
 }
 
@@ -143,12 +174,15 @@ static exr_result_t set_strings(exr_context_t exr, const char *name, const char 
   const char *strings[MOST];
   char copy[2048];
   int count = 0;
-  if (strlen(text) >= sizeof copy) return EXR_ERR_INVALID_ATTR;
+  if (strlen(text) >= sizeof copy)
+    return EXR_ERR_INVALID_ATTR;
   memcpy(copy, text, strlen(text) + 1);
   for (char *at = copy; at;) {
     char *end = strchr(at, '\n');
-    if (end) *end = 0;
-    if (count == MOST) return EXR_ERR_INVALID_ATTR;
+    if (end)
+      *end = 0;
+    if (count == MOST)
+      return EXR_ERR_INVALID_ATTR;
     strings[count++] = at;
     at = end ? end + 1 : NULL;
   }
@@ -164,23 +198,34 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     exr_attr_m33f_t m33f;
     exr_attr_m44f_t m44f;
   } v;
-  for (int i = 0; i < 16; i++) f[i] = (float)n[i];
+  for (int i = 0; i < 16; i++)
+    f[i] = (float)n[i];
   memcpy(&v, f, sizeof f);
   switch (a->type) {
     case VL_ATTRIBUTE_FLOAT:
-      if (vl_text_is(a->name, "pixelAspectRatio")) return exr_set_pixel_aspect_ratio(exr, 0, f[0]);
-      if (vl_text_is(a->name, "screenWindowWidth")) return exr_set_screen_window_width(exr, 0, f[0]);
+      if (vl_text_is(a->name, "pixelAspectRatio"))
+        return exr_set_pixel_aspect_ratio(exr, 0, f[0]);
+      if (vl_text_is(a->name, "screenWindowWidth"))
+        return exr_set_screen_window_width(exr, 0, f[0]);
       return exr_attr_set_float(exr, 0, a->name, f[0]);
-    case VL_ATTRIBUTE_DOUBLE: return exr_attr_set_double(exr, 0, a->name, n[0]);
-    case VL_ATTRIBUTE_INT: return exr_attr_set_int(exr, 0, a->name, (int32_t)n[0]);
-    case VL_ATTRIBUTE_STRING: return exr_attr_set_string(exr, 0, a->name, a->string);
-    case VL_ATTRIBUTE_STRINGS: return set_strings(exr, a->name, a->string);
+    case VL_ATTRIBUTE_DOUBLE:
+      return exr_attr_set_double(exr, 0, a->name, n[0]);
+    case VL_ATTRIBUTE_INT:
+      return exr_attr_set_int(exr, 0, a->name, (int32_t)n[0]);
+    case VL_ATTRIBUTE_STRING:
+      return exr_attr_set_string(exr, 0, a->name, a->string);
+    case VL_ATTRIBUTE_STRINGS:
+      return set_strings(exr, a->name, a->string);
     case VL_ATTRIBUTE_V2F:
-      if (vl_text_is(a->name, "screenWindowCenter")) return exr_set_screen_window_center(exr, 0, &v.v2f);
+      if (vl_text_is(a->name, "screenWindowCenter"))
+        return exr_set_screen_window_center(exr, 0, &v.v2f);
       return exr_attr_set_v2f(exr, 0, a->name, &v.v2f);
-    case VL_ATTRIBUTE_V3F: return exr_attr_set_v3f(exr, 0, a->name, &v.v3f);
-    case VL_ATTRIBUTE_M33F: return exr_attr_set_m33f(exr, 0, a->name, &v.m33f);
-    case VL_ATTRIBUTE_M44F: return exr_attr_set_m44f(exr, 0, a->name, &v.m44f);
+    case VL_ATTRIBUTE_V3F:
+      return exr_attr_set_v3f(exr, 0, a->name, &v.v3f);
+    case VL_ATTRIBUTE_M33F:
+      return exr_attr_set_m33f(exr, 0, a->name, &v.m33f);
+    case VL_ATTRIBUTE_M44F:
+      return exr_attr_set_m44f(exr, 0, a->name, &v.m44f);
     case VL_ATTRIBUTE_M44D: {
       exr_attr_m44d_t m;
       memcpy(m.m, n, sizeof m.m);
@@ -192,8 +237,10 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     }
     case VL_ATTRIBUTE_BOX2I: {
       const exr_attr_box2i_t box = box_of(n);
-      if (vl_text_is(a->name, "displayWindow")) return exr_set_display_window(exr, 0, &box);
-      if (vl_text_is(a->name, "dataWindow")) return exr_set_data_window(exr, 0, &box);
+      if (vl_text_is(a->name, "displayWindow"))
+        return exr_set_display_window(exr, 0, &box);
+      if (vl_text_is(a->name, "dataWindow"))
+        return exr_set_data_window(exr, 0, &box);
       return exr_attr_set_box2i(exr, 0, a->name, &box);
     }
   }
@@ -202,7 +249,8 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
 
 static bool fits_int(const double *n, int count) {
   for (int i = 0; i < count; i++)
-    if (!(n[i] >= INT32_MIN && n[i] <= INT32_MAX)) return false;
+    if (!(n[i] >= INT32_MIN && n[i] <= INT32_MAX))
+      return false;
   return true;
 }
 
@@ -217,19 +265,27 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
                {"dataWindow", VL_ATTRIBUTE_BOX2I}};
   for (size_t i = 0; i < image->attributes.count; i++) {
     const vlImageAttribute *a = &image->attributes.items[i];
-    if (is_layout(a->name)) continue;
+    if (is_layout(a->name))
+      continue;
     bool ok = true;
     for (size_t k = 0; k < VL_LENGTH(FIXED); k++)
-      if (vl_text_is(a->name, FIXED[k].name) && a->type != FIXED[k].type) ok = false;
-    if (a->type == VL_ATTRIBUTE_BOX2I) ok = ok && fits_int(a->numbers, 4);
-    if (a->type == VL_ATTRIBUTE_INT) ok = ok && fits_int(a->numbers, 1);
+      if (vl_text_is(a->name, FIXED[k].name) && a->type != FIXED[k].type)
+        ok = false;
+    if (a->type == VL_ATTRIBUTE_BOX2I)
+      ok = ok && fits_int(a->numbers, 4);
+    if (a->type == VL_ATTRIBUTE_INT)
+      ok = ok && fits_int(a->numbers, 1);
     if (ok && vl_text_is(a->name, "dataWindow"))
-      ok = a->numbers[2] - a->numbers[0] + 1.0 == image->width && a->numbers[3] - a->numbers[1] + 1.0 == image->height;
+      ok = a->numbers[2] - a->numbers[0] + 1.0 == image->width &&
+           a->numbers[3] - a->numbers[1] + 1.0 == image->height;
     exr_result_t code = ok ? set_attribute(exr, a) : EXR_ERR_INVALID_ATTR;
-    if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(error);
+    if (code == EXR_ERR_OUT_OF_MEMORY)
+      return vl_fail_memory(error);
     if (code != EXR_ERR_SUCCESS)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write the attribute \"%s\": %s", vl_short_text(a->name).text,
-                     ok ? exr_get_default_error_message(code) : "its type or values do not suit its name");
+      return vl_fail(
+          error, VL_ERROR_ARGUMENT, "cannot write the attribute \"%s\": %s",
+          vl_short_text(a->name).text,
+          ok ? exr_get_default_error_message(code) : "its type or values do not suit its name");
   }
   return VL_OK;
 }

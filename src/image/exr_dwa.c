@@ -1,10 +1,10 @@
-/* image/exr_dwa.c: decoding of DWA (DreamWorks' lossy compression, OpenEXR 2.2), from its description in OpenEXR's
- * sources.
- * A chunk holds four streams: "unknown" channels (deflate); the DCT's AC coefficients as run lengths of zeros (Huffman
- * or deflate); the DC coefficients (ZIP); run-length encoded channels (deflate), usually alpha. Rules in the chunk
- * assign channels to streams by name and type, and say which three channels form one colour (stored as Y'CbCr,
- * Rec.709). Coefficients are halves. The DCT is applied to encoded values: a power curve of exponent 2.2 up to 1, an
- * exponential above. */
+/* image/exr_dwa.c: decoding of DWA (DreamWorks' lossy compression, OpenEXR 2.2), from its
+ * description in OpenEXR's sources. A chunk holds four streams: "unknown" channels (deflate);
+ * the DCT's AC coefficients as run lengths of zeros (Huffman or deflate); the DC coefficients
+ * (ZIP); run-length encoded channels (deflate), usually alpha. Rules in the chunk assign
+ * channels to streams by name and type, and say which three channels form one colour (stored as
+ * Y'CbCr, Rec.709). Coefficients are halves. The DCT is applied to encoded values: a power
+ * curve of exponent 2.2 up to 1, an exponential above. */
 #include "image/exr_dwa.h"
 
 #include <zlib.h>
@@ -42,7 +42,8 @@ typedef struct Dwa {
 
 static uint64_t le64(const uint8_t *p) {
   uint64_t v = 0;
-  for (int i = 7; i >= 0; i--) v = v << 8 | p[i];
+  for (int i = 7; i >= 0; i--)
+    v = v << 8 | p[i];
   return v;
 }
 
@@ -55,12 +56,16 @@ void vl_dwa_make_curve(uint16_t *curve) {
     bool finite = (i & 0x7c00u) != 0x7c00u;
     double x = finite ? vl_half_to_float((uint16_t)(i & 0x7fffu)) : 0.0;
     /* above 1: e^(2.2 (x - 1)) */
-    double y = x <= 1.0 ? vl_pow_exact(x, 2.2) : vl_exp2_exact((x > 100.0 ? 99.0 : x - 1.0) * 2.2 * 1.4426950408889634);
-    curve[i] = finite ? (uint16_t)(vl_float_to_half((float)(y < 1e30 ? y : 1e30)) | (i & 0x8000u)) : 0;
+    double y = x <= 1.0
+                   ? vl_pow_exact(x, 2.2)
+                   : vl_exp2_exact((x > 100.0 ? 99.0 : x - 1.0) * 2.2 * 1.4426950408889634);
+    curve[i] =
+        finite ? (uint16_t)(vl_float_to_half((float)(y < 1e30 ? y : 1e30)) | (i & 0x8000u)) : 0;
   }
 }
 
-/* ---- which channel is where -------------------------------------------------------------------------------------- */
+/* ---- which channel is where
+ * -------------------------------------------------------------------------------------- */
 
 typedef struct Rule {
   char suffix[129];
@@ -75,19 +80,23 @@ static const char *suffix_of(const char *name) {
 
 static bool rule_matches(const Rule *rule, const vlDwaChannel *channel) {
   const char *a = suffix_of(channel->name), *b = rule->suffix;
-  if (rule->type != channel->type) return false;
+  if (rule->type != channel->type)
+    return false;
   for (; *a && *b; a++, b++) {
     char c = rule->any_case && *a >= 'A' && *a <= 'Z' ? (char)(*a + 'a' - 'A') : *a;
-    if (c != *b) return false;
+    if (c != *b)
+      return false;
   }
   return !*a && !*b;
 }
 
 static void apply_rule(Dwa *d, const Rule *rule) { /* the last matching rule counts */
   for (uint32_t i = 0; i < d->count; i++) {
-    if (!rule_matches(rule, &d->channels[i])) continue;
+    if (!rule_matches(rule, &d->channels[i]))
+      continue;
     d->plans[i].scheme = rule->scheme;
-    if (rule->place >= 0) d->plans[i].place = rule->place;
+    if (rule->place >= 0)
+      d->plans[i].place = rule->place;
   }
 }
 
@@ -101,30 +110,34 @@ static void legacy_rules(Dwa *d) {
              {"y", LOSSY, -1},    {"by", LOSSY, -1}, {"ry", LOSSY, -1}, {"a", RUNS, -1}};
   for (size_t i = 0; i < VL_LENGTH(OLD); i++)
     for (int type = OLD[i].scheme == RUNS ? UINT : HALF; type <= FLOAT; type++) {
-      Rule rule = {.scheme = OLD[i].scheme, .place = OLD[i].place, .type = type, .any_case = true};
+      Rule rule = {
+          .scheme = OLD[i].scheme, .place = OLD[i].place, .type = type, .any_case = true};
       memcpy(rule.suffix, OLD[i].suffix, strlen(OLD[i].suffix) + 1);
       apply_rule(d, &rule);
     }
 }
 
-/* Reads the rules of a chunk. Each rule is a zero-terminated suffix, a byte with component, scheme and case, and a byte
- * with the pixel type. */
+/* Reads the rules of a chunk. Each rule is a zero-terminated suffix, a byte with component,
+ * scheme and case, and a byte with the pixel type. */
 static bool read_rules(Dwa *d, const uint8_t *p, size_t size) {
   size_t at = 0;
   while (at < size) {
     Rule rule;
     memset(&rule, 0, sizeof rule);
     for (size_t n = 0; at < size && p[at]; at++) {
-      if (n + 1 >= sizeof rule.suffix) return false;
+      if (n + 1 >= sizeof rule.suffix)
+        return false;
       rule.suffix[n++] = (char)p[at];
     }
-    if (size - at < 3) return false;
+    if (size - at < 3)
+      return false;
     rule.place = (p[at + 1] >> 4) - 1;
     rule.scheme = p[at + 1] >> 2 & 3;
     rule.any_case = p[at + 1] & 1;
     rule.type = p[at + 2];
     at += 3;
-    if (rule.place > 2 || rule.scheme > RUNS || rule.type > FLOAT) return false;
+    if (rule.place > 2 || rule.scheme > RUNS || rule.type > FLOAT)
+      return false;
     apply_rule(d, &rule);
   }
   return true;
@@ -138,7 +151,8 @@ static size_t lay_out(Dwa *d) {
     size_t size = type_size(d->channels[i].type);
     plan->line = d->line;
     d->line += size * d->width;
-    if (plan->scheme == LOSSY) lossy++;
+    if (plan->scheme == LOSSY)
+      lossy++;
     size_t *stream = plan->scheme == RUNS ? &d->runs_size : &d->unknown_size;
     if (plan->scheme != LOSSY) {
       plan->offset = *stream;
@@ -148,7 +162,9 @@ static size_t lay_out(Dwa *d) {
   return lossy * ((d->width + 7) / 8) * ((d->height + 7) / 8);
 }
 
-/* ---- streams ----------------------------------------------------------------------------------------------------- */
+/* ---- streams
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static bool inflate_exactly(const uint8_t *from, size_t from_size, void *to, size_t size) {
   uLongf length = size;
@@ -156,11 +172,15 @@ static bool inflate_exactly(const uint8_t *from, size_t from_size, void *to, siz
 }
 
 /* OpenEXR's ZIP: deflate of byte differences, with the even bytes before the odd ones. */
-static bool unzip(const uint8_t *from, size_t from_size, uint8_t *to, uint8_t *scratch, size_t size) {
-  if (!inflate_exactly(from, from_size, scratch, size)) return false;
-  for (size_t i = 1; i < size; i++) scratch[i] = (uint8_t)(scratch[i - 1] + scratch[i] - 128);
+static bool unzip(const uint8_t *from, size_t from_size, uint8_t *to, uint8_t *scratch,
+                  size_t size) {
+  if (!inflate_exactly(from, from_size, scratch, size))
+    return false;
+  for (size_t i = 1; i < size; i++)
+    scratch[i] = (uint8_t)(scratch[i - 1] + scratch[i] - 128);
   size_t half = (size + 1) / 2;
-  for (size_t i = 0; i < size; i++) to[i] = scratch[i / 2 + (i & 1 ? half : 0)];
+  for (size_t i = 0; i < size; i++)
+    to[i] = scratch[i / 2 + (i & 1 ? half : 0)];
   return true;
 }
 
@@ -170,7 +190,8 @@ static bool expand_runs(const uint8_t *from, size_t from_size, uint8_t *to, size
   while (at < from_size) {
     int n = (int8_t)from[at++];
     size_t length = n < 0 ? (size_t)-n : (size_t)n + 1;
-    if (length > size - out || (n < 0 ? length : 1) > from_size - at) return false;
+    if (length > size - out || (n < 0 ? length : 1) > from_size - at)
+      return false;
     if (n < 0)
       memcpy(to + out, from + at, length);
     else
@@ -181,18 +202,21 @@ static bool expand_runs(const uint8_t *from, size_t from_size, uint8_t *to, size
   return out == size;
 }
 
-/* ---- the DCT ----------------------------------------------------------------------------------------------------- */
+/* ---- the DCT
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static const uint8_t ZIGZAG[64] = {0,  1,  5,  6,  14, 15, 27, 28, 2,  4,  7,  13, 16, 26, 29, 42,
-                                   3,  8,  12, 17, 25, 30, 41, 43, 9,  11, 18, 24, 31, 40, 44, 53,
-                                   10, 19, 23, 32, 39, 45, 52, 54, 20, 22, 33, 38, 46, 51, 55, 60,
-                                   21, 34, 37, 47, 50, 56, 59, 61, 35, 36, 48, 49, 57, 58, 62, 63};
+static const uint8_t ZIGZAG[64] = {
+    0,  1,  5,  6,  14, 15, 27, 28, 2,  4,  7,  13, 16, 26, 29, 42, 3,  8,  12, 17, 25, 30,
+    41, 43, 9,  11, 18, 24, 31, 40, 44, 53, 10, 19, 23, 32, 39, 45, 52, 54, 20, 22, 33, 38,
+    46, 51, 55, 60, 21, 34, 37, 47, 50, 56, 59, 61, 35, 36, 48, 49, 57, 58, 62, 63};
 
 /* AC values of the next block: 0xff00 ends the block, 0xffnn stands for nn zeros. */
 static bool next_block(Dwa *d, uint16_t dc, const float matrix[8][8], float block[64]) {
   uint16_t zigzag[64] = {dc};
   for (uint32_t i = 1; i < 64;) {
-    if (d->ac_at >= d->ac_count) return false;
+    if (d->ac_at >= d->ac_count)
+      return false;
     uint16_t v = d->ac[d->ac_at++];
     if (v == 0xff00)
       i = 64;
@@ -201,18 +225,22 @@ static bool next_block(Dwa *d, uint16_t dc, const float matrix[8][8], float bloc
     else
       zigzag[i++] = v;
   }
-  for (int i = 0; i < 64; i++) block[i] = vl_half_to_float(zigzag[ZIGZAG[i]]);
+  for (int i = 0; i < 64; i++)
+    block[i] = vl_half_to_float(zigzag[ZIGZAG[i]]);
   vl_dct_inverse(block, matrix);
   return true;
 }
 
-static void store_block(Dwa *d, uint32_t channel, uint32_t bx, uint32_t by, bool curve, const float block[64]) {
+static void store_block(Dwa *d, uint32_t channel, uint32_t bx, uint32_t by, bool curve,
+                        const float block[64]) {
   const vlDwaChannel *c = &d->channels[channel];
   for (uint32_t y = by * 8; y < d->height && y < by * 8 + 8; y++)
     for (uint32_t x = bx * 8; x < d->width && x < bx * 8 + 8; x++) {
       uint16_t h = vl_float_to_half(block[(y & 7) * 8 + (x & 7)]);
-      if (curve) h = d->curve[h];
-      uint8_t *to = d->unpacked + (size_t)y * d->line + d->plans[channel].line + (size_t)x * type_size(c->type);
+      if (curve)
+        h = d->curve[h];
+      uint8_t *to = d->unpacked + (size_t)y * d->line + d->plans[channel].line +
+                    (size_t)x * type_size(c->type);
       float f = vl_half_to_float(h);
       if (c->type == HALF)
         memcpy(to, &h, 2);
@@ -221,18 +249,21 @@ static void store_block(Dwa *d, uint32_t channel, uint32_t bx, uint32_t by, bool
     }
 }
 
-/* Decodes one channel, or the three channels of a colour. The AC blocks of the three channels alternate; their DC
- * planes follow each other. */
+/* Decodes one channel, or the three channels of a colour. The AC blocks of the three channels
+ * alternate; their DC planes follow each other. */
 static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
   uint32_t blocks_x = (d->width + 7) / 8, blocks_y = (d->height + 7) / 8;
   size_t plane = (size_t)blocks_x * blocks_y;
   float matrix[8][8], block[3][64];
-  if (plane * count > d->dc_count - d->dc_at) return false;
+  if (plane * count > d->dc_count - d->dc_at)
+    return false;
   vl_dct_make(matrix);
   for (uint32_t by = 0; by < blocks_y; by++)
     for (uint32_t bx = 0; bx < blocks_x; bx++) {
       for (uint32_t c = 0; c < count; c++)
-        if (!next_block(d, d->dc[d->dc_at + c * plane + (size_t)by * blocks_x + bx], matrix, block[c])) return false;
+        if (!next_block(d, d->dc[d->dc_at + c * plane + (size_t)by * blocks_x + bx], matrix,
+                        block[c]))
+          return false;
       for (int i = 0; count == 3 && i < 64; i++) {
         float y = block[0][i], cb = block[1][i], cr = block[2][i];
         block[0][i] = y + 1.5747f * cr;
@@ -240,14 +271,18 @@ static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
         block[2][i] = y + 1.8556f * cb;
       }
       for (uint32_t c = 0; c < count; c++)
-        store_block(d, channel[c], bx, by, count == 3 || !d->channels[channel[c]].linear, block[c]);
+        store_block(d, channel[c], bx, by, count == 3 || !d->channels[channel[c]].linear,
+                    block[c]);
     }
   d->dc_at += plane * count;
-  for (uint32_t c = 0; c < count; c++) d->plans[channel[c]].done = true;
+  for (uint32_t c = 0; c < count; c++)
+    d->plans[channel[c]].done = true;
   return true;
 }
 
-/* Compares layers: the part of the name before the last dot. Channels without a layer come first. */
+/* Compares layers: the part of the name before the last dot. Channels without a layer come
+ * first.
+ */
 static int compare_layers(const char *a, const char *b) {
   size_t n = (size_t)(suffix_of(a) - a), m = (size_t)(suffix_of(b) - b);
   n -= n > 0;
@@ -260,13 +295,16 @@ static int compare_layers(const char *a, const char *b) {
 static bool unpack_color(Dwa *d, const char *layer) {
   uint32_t color[3] = {0}, found = 0;
   for (uint32_t k = 0; k < d->count; k++) {
-    if (compare_layers(d->channels[k].name, layer) != 0 || d->plans[k].place < 0) continue;
+    if (compare_layers(d->channels[k].name, layer) != 0 || d->plans[k].place < 0)
+      continue;
     color[d->plans[k].place] = k;
     found |= 1u << d->plans[k].place;
   }
-  if (found != 7) return true;
+  if (found != 7)
+    return true;
   for (int k = 0; k < 3; k++)
-    if (d->plans[color[k]].scheme != LOSSY || d->channels[color[k]].type == UINT) return false;
+    if (d->plans[color[k]].scheme != LOSSY || d->channels[color[k]].type == UINT)
+      return false;
   return unpack_lossy(d, color, 3);
 }
 
@@ -277,21 +315,28 @@ static bool unpack_channels(Dwa *d) {
     const char *next = NULL;
     for (uint32_t i = 0; i < d->count; i++) {
       const char *name = d->channels[i].name;
-      if ((!layer || compare_layers(name, layer) > 0) && (!next || compare_layers(name, next) < 0)) next = name;
+      if ((!layer || compare_layers(name, layer) > 0) &&
+          (!next || compare_layers(name, next) < 0))
+        next = name;
     }
-    if (!next) break;
+    if (!next)
+      break;
     layer = next;
-    if (!unpack_color(d, layer)) return false;
+    if (!unpack_color(d, layer))
+      return false;
   }
   for (uint32_t i = 0; i < d->count; i++) {
     const Plan *plan = &d->plans[i];
     size_t size = type_size(d->channels[i].type), pixels = (size_t)d->width * d->height;
-    if (plan->done) continue;
-    if (plan->scheme == LOSSY && (d->channels[i].type == UINT || !unpack_lossy(d, &i, 1))) return false;
+    if (plan->done)
+      continue;
+    if (plan->scheme == LOSSY && (d->channels[i].type == UINT || !unpack_lossy(d, &i, 1)))
+      return false;
     for (uint32_t y = 0; y < d->height && plan->scheme != LOSSY; y++) {
       uint8_t *to = d->unpacked + (size_t)y * d->line + plan->line;
       size_t at = plan->offset + (size_t)y * d->width * (plan->scheme == RUNS ? 1 : size);
-      if (plan->scheme == UNKNOWN) memcpy(to, d->unknown + at, d->width * size);
+      if (plan->scheme == UNKNOWN)
+        memcpy(to, d->unknown + at, d->width * size);
       for (size_t k = 0; plan->scheme == RUNS && k < d->width * size;
            k++) /* the first bytes of all values, then all second bytes, ... */
         to[k] = d->runs[at + k / size + k % size * pixels];
@@ -300,11 +345,13 @@ static bool unpack_channels(Dwa *d) {
   return true;
 }
 
-/* ---- a chunk ----------------------------------------------------------------------------------------------------- */
+/* ---- a chunk
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static vlResult unpack_streams(Dwa *d, const uint64_t *head, const uint8_t *p) {
-  const uint64_t unknown_packed = head[2], ac_packed = head[3], dc_packed = head[4], runs_packed = head[5],
-                 runs_middle = head[6];
+  const uint64_t unknown_packed = head[2], ac_packed = head[3], dc_packed = head[4],
+                 runs_packed = head[5], runs_middle = head[6];
   size_t dc_bytes = d->dc_count * 2;
   d->unknown = vl_alloc(d->context, d->unknown_size + 1);
   d->runs = vl_alloc(d->context, d->runs_size + 1);
@@ -312,9 +359,11 @@ static vlResult unpack_streams(Dwa *d, const uint64_t *head, const uint8_t *p) {
   d->dc = vl_alloc_array(d->context, d->dc_count + 1, 2);
   size_t scratch_size = dc_bytes > runs_middle ? dc_bytes : (size_t)runs_middle;
   uint8_t *scratch = vl_alloc(d->context, scratch_size + 1);
-  vlResult result = d->unknown && d->runs && d->ac && d->dc && scratch ? VL_OK : VL_ERROR_MEMORY;
+  vlResult result =
+      d->unknown && d->runs && d->ac && d->dc && scratch ? VL_OK : VL_ERROR_MEMORY;
   if (result == VL_OK) {
-    bool ok = unknown_packed == 0 || inflate_exactly(p, unknown_packed, d->unknown, d->unknown_size);
+    bool ok =
+        unknown_packed == 0 || inflate_exactly(p, unknown_packed, d->unknown, d->unknown_size);
     p += unknown_packed;
     if (ok && ac_packed && head[10] == 0) {
       result = vl_huffman_unpack(d->context, p, ac_packed, d->ac, d->ac_count);
@@ -325,49 +374,63 @@ static vlResult unpack_streams(Dwa *d, const uint64_t *head, const uint8_t *p) {
     p += ac_packed;
     ok = ok && (dc_packed == 0 || unzip(p, dc_packed, (uint8_t *)d->dc, scratch, dc_bytes));
     p += dc_packed;
-    ok = ok && (runs_packed == 0 || (inflate_exactly(p, runs_packed, scratch, (size_t)runs_middle) &&
-                                     expand_runs(scratch, (size_t)runs_middle, d->runs, d->runs_size)));
+    ok = ok && (runs_packed == 0 ||
+                (inflate_exactly(p, runs_packed, scratch, (size_t)runs_middle) &&
+                 expand_runs(scratch, (size_t)runs_middle, d->runs, d->runs_size)));
     ok = ok && unpack_channels(d);
-    if (!ok && result == VL_OK) result = VL_ERROR_SCENE;
+    if (!ok && result == VL_OK)
+      result = VL_ERROR_SCENE;
   }
   VL_FREE(d->context, scratch, d->unknown, d->runs, d->ac, d->dc);
   return result;
 }
 
-/* Reads header and rules. Every size must match the channels, and all streams must lie in the chunk. */
+/* Reads header and rules. Every size must match the channels, and all streams must lie in the
+ * chunk. */
 static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
   uint64_t head[HEAD_WORDS];
-  if (size < HEAD_WORDS * 8) return VL_ERROR_SCENE;
-  for (int i = 0; i < HEAD_WORDS; i++) head[i] = le64(packed + 8 * i);
+  if (size < HEAD_WORDS * 8)
+    return VL_ERROR_SCENE;
+  for (int i = 0; i < HEAD_WORDS; i++)
+    head[i] = le64(packed + 8 * i);
   size_t at = HEAD_WORDS * 8;
-  if (head[0] > 2) return VL_ERROR_SCENE;
+  if (head[0] > 2)
+    return VL_ERROR_SCENE;
   if (head[0] < 2) {
     legacy_rules(d);
   } else {
-    size_t rules = size - at >= 2 ? packed[at] | (size_t)packed[at + 1] << 8
-                                  : 0; /* size of the rules, including the two bytes of the size itself */
-    if (rules < 2 || rules > size - at || !read_rules(d, packed + at + 2, rules - 2)) return VL_ERROR_SCENE;
+    size_t rules = size - at >= 2
+                       ? packed[at] | (size_t)packed[at + 1] << 8
+                       : 0; /* size of the rules, including the two bytes of the size itself */
+    if (rules < 2 || rules > size - at || !read_rules(d, packed + at + 2, rules - 2))
+      return VL_ERROR_SCENE;
     at += rules;
   }
   size_t dc_count = lay_out(d), left = size - at;
   for (int i = 2; i <= 5; i++) {
-    if (head[i] > left) return VL_ERROR_SCENE;
+    if (head[i] > left)
+      return VL_ERROR_SCENE;
     left -= head[i];
   }
-  if (head[2] ? head[1] != d->unknown_size : d->unknown_size) return VL_ERROR_SCENE;
-  if (head[5] ? head[7] != d->runs_size || head[6] > 2 * head[7] + 1024 : d->runs_size) return VL_ERROR_SCENE;
-  if (head[9] != dc_count || (dc_count && !head[4]) || head[8] > 63 * (uint64_t)dc_count || head[10] > 1)
+  if (head[2] ? head[1] != d->unknown_size : d->unknown_size)
     return VL_ERROR_SCENE;
-  if (head[8] && !head[3]) return VL_ERROR_SCENE;
-  if (!head[5]) head[6] = 0;
+  if (head[5] ? head[7] != d->runs_size || head[6] > 2 * head[7] + 1024 : d->runs_size)
+    return VL_ERROR_SCENE;
+  if (head[9] != dc_count || (dc_count && !head[4]) || head[8] > 63 * (uint64_t)dc_count ||
+      head[10] > 1)
+    return VL_ERROR_SCENE;
+  if (head[8] && !head[3])
+    return VL_ERROR_SCENE;
+  if (!head[5])
+    head[6] = 0;
   d->ac_count = (size_t)head[8];
   d->dc_count = dc_count;
   return unpack_streams(d, head, packed + at);
 }
 
-vlResult vl_dwa_unpack(vlContext *context, const vlDwaChannel *channels, uint32_t count, uint32_t width,
-                       uint32_t height, const uint16_t *curve, const uint8_t *packed, size_t packed_size,
-                       uint8_t *unpacked) {
+vlResult vl_dwa_unpack(vlContext *context, const vlDwaChannel *channels, uint32_t count,
+                       uint32_t width, uint32_t height, const uint16_t *curve,
+                       const uint8_t *packed, size_t packed_size, uint8_t *unpacked) {
   Dwa d = {.context = context,
            .channels = channels,
            .count = count,
@@ -376,8 +439,10 @@ vlResult vl_dwa_unpack(vlContext *context, const vlDwaChannel *channels, uint32_
            .curve = curve,
            .unpacked = unpacked};
   d.plans = vl_alloc_zero(context, count, sizeof *d.plans);
-  if (!d.plans) return VL_ERROR_MEMORY;
-  for (uint32_t i = 0; i < count; i++) d.plans[i].place = -1;
+  if (!d.plans)
+    return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < count; i++)
+    d.plans[i].place = -1;
   vlResult result = unpack(&d, packed, packed_size);
   vl_free(context, d.plans);
   return result;

@@ -1,6 +1,6 @@
-/* image/exr_huffman.c: canonical Huffman codes of up to 58 bits. The symbols are the 65536 values and one more, which
- * is the largest symbol in use. It repeats the last value n times; the next eight bits hold n. Longer codes are
- * numerically lower. */
+/* image/exr_huffman.c: canonical Huffman codes of up to 58 bits. The symbols are the 65536
+ * values and one more, which is the largest symbol in use. It repeats the last value n times;
+ * the next eight bits hold n. Longer codes are numerically lower. */
 #include "image/exr_huffman.h"
 
 #include <string.h>
@@ -15,7 +15,8 @@ typedef struct Bits {
 /* Reads n <= 8 bits, most significant first. Past the end they are 0 and `at` exceeds `end`. */
 static uint32_t take(Bits *b, uint32_t n) {
   uint32_t v = 0;
-  for (; n; n--, b->at++) v = v << 1 | (b->at < b->end ? b->data[b->at >> 3] >> (7 - (b->at & 7)) & 1u : 0);
+  for (; n; n--, b->at++)
+    v = v << 1 | (b->at < b->end ? b->data[b->at >> 3] >> (7 - (b->at & 7)) & 1u : 0);
   return v;
 }
 
@@ -26,25 +27,28 @@ typedef struct Decoder {
   uint32_t count[LONGEST + 1], first[LONGEST + 1];
 } Decoder;
 
-/* Reads the lengths of the symbols in ascending order, six bits each. 59 to 62 stand for 2 to 5 zeros; 63 and a byte
- * for 6 or more. */
+/* Reads the lengths of the symbols in ascending order, six bits each. 59 to 62 stand for 2 to 5
+ * zeros; 63 and a byte for 6 or more. */
 static bool read_lengths(Decoder *d, Bits *b, uint32_t low, uint32_t high) {
   for (uint32_t i = low; i <= high;) {
-    if (b->at >= b->end) return false;
+    if (b->at >= b->end)
+      return false;
     uint32_t l = take(b, 6);
     if (l <= LONGEST) {
       d->length[i++] = (uint8_t)l;
       continue;
     }
     uint32_t zeros = l == 63 ? take(b, 8) + 6 : l - 59 + 2;
-    if (zeros > high + 1 - i) return false;
+    if (zeros > high + 1 - i)
+      return false;
     i += zeros;
   }
   return b->at <= b->end;
 }
 
 static void make_codes(Decoder *d) {
-  for (uint32_t i = 0; i < SYMBOLS; i++) d->count[d->length[i]]++;
+  for (uint32_t i = 0; i < SYMBOLS; i++)
+    d->count[d->length[i]]++;
   uint64_t code = 0;
   for (int l = LONGEST; l > 0; l--) {
     d->lowest[l] = code;
@@ -56,13 +60,15 @@ static void make_codes(Decoder *d) {
     at += d->count[l];
   }
   for (uint32_t i = 0; i < SYMBOLS; i++)
-    if (d->length[i]) d->symbols[next[d->length[i]]++] = i;
+    if (d->length[i])
+      d->symbols[next[d->length[i]]++] = i;
 }
 
 static bool next_symbol(const Decoder *d, Bits *b, uint32_t *symbol) {
   uint64_t code = 0;
   for (int l = 1; l <= LONGEST; l++) {
-    if (b->at >= b->end) return false;
+    if (b->at >= b->end)
+      return false;
     code = code << 1 | take(b, 1);
     if (code >= d->lowest[l] && code - d->lowest[l] < d->count[l]) {
       *symbol = d->symbols[d->first[l] + (uint32_t)(code - d->lowest[l])];
@@ -76,33 +82,44 @@ static uint32_t le32(const uint8_t *p) {
   return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-static bool unpack(Decoder *d, const uint8_t *packed, size_t size, uint16_t *values, size_t count) {
+static bool unpack(Decoder *d, const uint8_t *packed, size_t size, uint16_t *values,
+                   size_t count) {
   uint32_t low = le32(packed), high = le32(packed + 4), bit_count = le32(packed + 12), symbol;
-  if (low >= SYMBOLS || high >= SYMBOLS || low > high) return false;
+  if (low >= SYMBOLS || high >= SYMBOLS || low > high)
+    return false;
   Bits bits = {packed + 20, 0, (size - 20) * 8};
-  if (!read_lengths(d, &bits, low, high)) return false;
+  if (!read_lengths(d, &bits, low, high))
+    return false;
   make_codes(d);
   bits.at = (bits.at + 7) & ~(size_t)7;
-  if (bits.at > bits.end || bit_count > bits.end - bits.at) return false;
+  if (bits.at > bits.end || bit_count > bits.end - bits.at)
+    return false;
   bits.end = bits.at + bit_count;
   for (size_t i = 0; i < count;) {
-    if (!next_symbol(d, &bits, &symbol)) return false;
+    if (!next_symbol(d, &bits, &symbol))
+      return false;
     if (symbol != high) {
       values[i++] = (uint16_t)symbol;
       continue;
     }
     size_t n = take(&bits, 8);
-    if (i == 0 || n > count - i || bits.at > bits.end) return false;
-    for (; n; n--, i++) values[i] = values[i - 1];
+    if (i == 0 || n > count - i || bits.at > bits.end)
+      return false;
+    for (; n; n--, i++)
+      values[i] = values[i - 1];
   }
   return true;
 }
 
-vlResult vl_huffman_unpack(vlContext *context, const uint8_t *packed, size_t size, uint16_t *values, size_t count) {
-  if (count == 0) return VL_OK;
-  if (size < 20) return VL_ERROR_SCENE;
+vlResult vl_huffman_unpack(vlContext *context, const uint8_t *packed, size_t size,
+                           uint16_t *values, size_t count) {
+  if (count == 0)
+    return VL_OK;
+  if (size < 20)
+    return VL_ERROR_SCENE;
   Decoder *d = vl_alloc_zero(context, 1, sizeof *d);
-  if (!d) return VL_ERROR_MEMORY;
+  if (!d)
+    return VL_ERROR_MEMORY;
   bool ok = unpack(d, packed, size, values, count);
   vl_free(context, d);
   return ok ? VL_OK : VL_ERROR_SCENE;

@@ -5,6 +5,7 @@
 #include "base/context.h"
 
 /* Decodes exactly `count` values. Returns SCENE when the data is broken. */
-vlResult vl_huffman_unpack(vlContext *context, const uint8_t *packed, size_t size, uint16_t *values, size_t count);
+vlResult vl_huffman_unpack(vlContext *context, const uint8_t *packed, size_t size,
+                           uint16_t *values, size_t count);
 
 #endif

@@ -1,8 +1,10 @@
-/* image/exr_read.c: reads OpenEXR through OpenEXRCore: the first part, scanlines or tiles (finest level), all
- * compressions. The image is the data window. When the display window differs, both are kept as attributes.
+/* image/exr_read.c: reads OpenEXR through OpenEXRCore: the first part, scanlines or tiles
+ * (finest level), all compressions. The image is the data window. When the display window
+ * differs, both are kept as attributes.
  *
- * Channel order: R G B A (Y A) first, then the others in file order (alphabetical). All channels get one type: half or
- * integer when all channels of the file have it, otherwise float. */
+ * Channel order: R G B A (Y A) first, then the others in file order (alphabetical). All
+ * channels get one type: half or integer when all channels of the file have it, otherwise
+ * float. */
 
 #include "base/free.h"
 #include "base/text.h"
@@ -39,14 +41,16 @@ bool vl_exr_probe(const uint8_t *data, size_t size) {
   return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-static int64_t on_read(exr_const_context_t exr, void *user, void *buffer, uint64_t size, uint64_t offset,
-                       exr_stream_error_func_ptr_t fail) {
+static int64_t on_read(exr_const_context_t exr, void *user, void *buffer, uint64_t size,
+                       uint64_t offset, exr_stream_error_func_ptr_t fail) {
   const vlImageFile *file = ((vlExr *)user)->file;
   (void)exr;
   (void)fail;
-  if (offset >= file->size) return 0;
+  if (offset >= file->size)
+    return 0;
   uint64_t left = file->size - offset;
-  if (size > left) size = left;
+  if (size > left)
+    size = left;
   memcpy(buffer, file->data + offset, size);
   return (int64_t)size;
 }
@@ -60,59 +64,76 @@ static uint32_t le32(const uint8_t *p) {
   return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-/* Offset of the byte after the zero-terminated text of 1 to 255 characters at `at`; 0 when there is none. */
+/* Offset of the byte after the zero-terminated text of 1 to 255 characters at `at`; 0 when
+ * there is none. */
 static size_t after_text(const vlImageFile *file, size_t at) {
   size_t end = at;
-  while (end < file->size && end - at < 256 && file->data[end]) end++;
+  while (end < file->size && end - at < 256 && file->data[end])
+    end++;
   return end > at && end < file->size && !file->data[end] ? end + 1 : 0;
 }
 
-/* OpenEXRCore allocates whatever size an attribute claims before it checks the file. Therefore this function first
- * walks the headers (several in a multi-part file) and checks for each attribute that its bytes lie in the file. An
- * attribute is a name, a type, a size and that many bytes. */
+/* OpenEXRCore allocates whatever size an attribute claims before it checks the file. Therefore
+ * this function first walks the headers (several in a multi-part file) and checks for each
+ * attribute that its bytes lie in the file. An attribute is a name, a type, a size and that
+ * many bytes. */
 static bool headers_fit(const vlImageFile *file) {
-  if (file->size < 9) return false;
+  if (file->size < 9)
+    return false;
   bool parts = le32(file->data + 4) & 0x1000u;
   size_t at = 8;
   do {
     while (at < file->size && file->data[at]) {
       size_t type = after_text(file, at), size_at = type ? after_text(file, type) : 0;
-      if (!size_at || file->size - size_at < 4) return false;
+      if (!size_at || file->size - size_at < 4)
+        return false;
       uint32_t size = le32(file->data + size_at);
       at = size_at + 4;
-      if (size > file->size - at) return false;
-      if (vl_text_is((const char *)file->data + type, "preview")) { /* width, height, four bytes per pixel */
-        if (size < 8 || (double)le32(file->data + at) * le32(file->data + at + 4) * 4.0 > size - 8.0) return false;
+      if (size > file->size - at)
+        return false;
+      if (vl_text_is((const char *)file->data + type,
+                     "preview")) { /* width, height, four bytes per pixel */
+        if (size < 8 ||
+            (double)le32(file->data + at) * le32(file->data + at + 4) * 4.0 > size - 8.0)
+          return false;
       }
       at += size;
     }
-    if (at >= file->size) return false;
+    if (at >= file->size)
+      return false;
     at++;
   } while (parts && at < file->size && file->data[at]);
   return true;
 }
 
 static vlResult fail(Reader *r, exr_result_t code) {
-  /* The PIZ decoder reports "out of memory" for damaged data, too; the message tells the two apart. */
+  /* The PIZ decoder reports "out of memory" for damaged data, too; the message tells the two
+   * apart.
+   */
   bool damaged = strncmp(r->base.message, "Unable to decompress", 20) == 0;
   bool refused =
-      vl_text_is(r->base.message, exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)); /* hidden by `code` */
-  if ((code == EXR_ERR_OUT_OF_MEMORY && !damaged) || refused) return vl_fail_memory(r->base.file->error);
-  return vl_codec_broken(r->base.file, "OpenEXR",
-                         r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
+      vl_text_is(r->base.message,
+                 exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)); /* hidden by `code` */
+  if ((code == EXR_ERR_OUT_OF_MEMORY && !damaged) || refused)
+    return vl_fail_memory(r->base.file->error);
+  return vl_codec_broken(
+      r->base.file, "OpenEXR",
+      r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
 }
 
 /* Sort key of a channel: colours first. */
 static uint32_t rank(const char *name) {
   static const char *const FRONT[] = {"R", "G", "B", "Y", "A"};
   for (uint32_t i = 0; i < 5; i++)
-    if (vl_text_is(name, FRONT[i])) return i;
+    if (vl_text_is(name, FRONT[i]))
+      return i;
   return 5;
 }
 
 static bool is_wanted(const vlImageFile *file, const char *name) {
   for (uint32_t i = 0; i < file->wanted_count; i++)
-    if (vl_text_is(file->wanted[i], name)) return true;
+    if (vl_text_is(file->wanted[i], name))
+      return true;
   return !file->wanted;
 }
 
@@ -125,34 +146,44 @@ static vlResult read_storage(Reader *r) {
   const vlImageFile *file = r->base.file;
   exr_storage_t storage;
   exr_result_t code = exr_get_storage(r->exr, 0, &storage);
-  if (code == EXR_ERR_SUCCESS) code = exr_get_data_window(r->exr, 0, &r->window);
-  if (code == EXR_ERR_SUCCESS) code = exr_get_compression(r->exr, 0, &r->compression);
-  if (code == EXR_ERR_SUCCESS) code = exr_get_channels(r->exr, 0, &r->list);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (code == EXR_ERR_SUCCESS)
+    code = exr_get_data_window(r->exr, 0, &r->window);
+  if (code == EXR_ERR_SUCCESS)
+    code = exr_get_compression(r->exr, 0, &r->compression);
+  if (code == EXR_ERR_SUCCESS)
+    code = exr_get_channels(r->exr, 0, &r->list);
+  if (code != EXR_ERR_SUCCESS)
+    return fail(r, code);
   if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
     return vl_codec_unsupported(file, "OpenEXR", "deep pixels");
   r->tiled = storage == EXR_STORAGE_TILED;
   if ((unsigned)r->compression >= EXR_COMPRESSION_LAST_TYPE)
     return vl_codec_broken(file, "OpenEXR", "unknown compression");
   r->dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
-  if (r->list->num_channels < 1) return vl_codec_broken(file, "OpenEXR", "no channels");
-  if (r->list->num_channels > 1024) return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
+  if (r->list->num_channels < 1)
+    return vl_codec_broken(file, "OpenEXR", "no channels");
+  if (r->list->num_channels > 1024)
+    return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
   return VL_OK;
 }
 
-/* Counts the channels that are wanted and finds the type that holds them; bytes: of a pixel of all channels. */
+/* Counts the channels that are wanted and finds the type that holds them; bytes: of a pixel of
+ * all channels. */
 static vlResult read_channels(Reader *r, uint32_t *bytes) {
   const vlImageFile *file = r->base.file;
   *bytes = 0;
   uint32_t halves = 0, integers = 0, count = (uint32_t)r->list->num_channels;
   for (uint32_t i = 0; i < count; i++) {
     const exr_attr_chlist_entry_t *c = &r->list->entries[i];
-    if (c->x_sampling != 1 || c->y_sampling != 1) return vl_codec_unsupported(file, "OpenEXR", "subsampled channels");
+    if (c->x_sampling != 1 || c->y_sampling != 1)
+      return vl_codec_unsupported(file, "OpenEXR", "subsampled channels");
     if (!c->name.str || !c->name.str[0] || c->name.length > 255)
       return vl_codec_broken(file, "OpenEXR", "a channel without a name");
-    if ((unsigned)c->pixel_type >= EXR_PIXEL_LAST_TYPE) return vl_codec_broken(file, "OpenEXR", "unknown pixel type");
+    if ((unsigned)c->pixel_type >= EXR_PIXEL_LAST_TYPE)
+      return vl_codec_broken(file, "OpenEXR", "unknown pixel type");
     *bytes += c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
-    if (!is_wanted(file, c->name.str)) continue;
+    if (!is_wanted(file, c->name.str))
+      continue;
     r->count++;
     halves += c->pixel_type == EXR_PIXEL_HALF;
     integers += c->pixel_type == EXR_PIXEL_UINT;
@@ -160,11 +191,13 @@ static vlResult read_channels(Reader *r, uint32_t *bytes) {
   if (r->count == 0)
     return vl_fail(file->error, VL_ERROR_SCENE, "%s: has no channel \"%s\"", file->name,
                    file->wanted[0] ? file->wanted[0] : "");
-  r->user_type = halves == r->count ? EXR_PIXEL_HALF : integers == r->count ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+  r->user_type = halves == r->count     ? EXR_PIXEL_HALF
+                 : integers == r->count ? EXR_PIXEL_UINT
+                                        : EXR_PIXEL_FLOAT;
   r->user_size = halves == r->count ? 2 : 4;
   if (r->user_type == EXR_PIXEL_FLOAT && integers)
-    vl_log(file->context, VL_LOG_INFO, NULL, "%s: integers beside floats are read as floats, exact up to 2^24",
-           file->name);
+    vl_log(file->context, VL_LOG_INFO, NULL,
+           "%s: integers beside floats are read as floats, exact up to 2^24", file->name);
   return VL_OK;
 }
 
@@ -172,14 +205,16 @@ static vlResult read_chunks(Reader *r) {
   const vlImageFile *file = r->base.file;
   int32_t chunks;
   exr_result_t code = exr_get_chunk_count(r->exr, 0, &chunks);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (code != EXR_ERR_SUCCESS)
+    return fail(r, code);
   if (chunks < 1 || (uint64_t)chunks * 8 > file->size)
     return vl_codec_promise(file, "OpenEXR", r->width, r->height, 8.0 * chunks, 0.0);
   if (r->tiled)
     code = exr_get_tile_sizes(r->exr, 0, 0, 0, &r->tile_width, &r->tile_height);
   else
     code = exr_get_scanlines_per_chunk(r->exr, 0, &r->lines);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (code != EXR_ERR_SUCCESS)
+    return fail(r, code);
   if (r->tiled ? r->tile_width < 1 || r->tile_height < 1 : r->lines < 1)
     return vl_codec_broken(file, "OpenEXR", "empty chunks");
   return VL_OK;
@@ -189,29 +224,36 @@ static vlResult layout(Reader *r) {
   const vlImageFile *file = r->base.file;
   uint32_t bytes;
   vlResult result = read_storage(r);
-  if (result == VL_OK) result = read_channels(r, &bytes);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = read_channels(r, &bytes);
+  if (result != VL_OK)
+    return result;
   int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
           height = (int64_t)r->window.max.y - r->window.min.y + 1;
-  if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
+  if (width < 1 || height < 1)
+    return vl_codec_broken(file, "OpenEXR", "its data window is empty");
   if (width > INT32_MAX / (r->user_size * (int64_t)r->list->num_channels) || height > INT32_MAX)
     return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
-  /* Best compression ratios: 1032:1 for deflate; for DWA one value per block of 64 and run lengths. Each chunk is
-   * checked below, too. */
-  result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height, (double)width * (double)height * bytes,
-                            ratio(r));
-  if (result != VL_OK) return result;
+  /* Best compression ratios: 1032:1 for deflate; for DWA one value per block of 64 and run
+   * lengths. Each chunk is checked below, too. */
+  result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
+                            (double)width * (double)height * bytes, ratio(r));
+  if (result != VL_OK)
+    return result;
   r->width = (uint32_t)width;
   r->height = (uint32_t)height;
   return read_chunks(r);
 }
 
-/* Finds the chunk at column and row of the grid. Checks that it lies in the file and that its compression ratio is
- * possible. */
+/* Finds the chunk at column and row of the grid. Checks that it lies in the file and that its
+ * compression ratio is possible. */
 static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_info_t *chunk) {
-  exr_result_t code = r->tiled ? exr_read_tile_chunk_info(r->exr, 0, (int)column, (int)row, 0, 0, chunk)
-                               : exr_read_scanline_chunk_info(r->exr, 0, r->window.min.y + (int)row * r->lines, chunk);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  exr_result_t code =
+      r->tiled ? exr_read_tile_chunk_info(r->exr, 0, (int)column, (int)row, 0, 0, chunk)
+               : exr_read_scanline_chunk_info(r->exr, 0, r->window.min.y + (int)row * r->lines,
+                                              chunk);
+  if (code != EXR_ERR_SUCCESS)
+    return fail(r, code);
   const vlImageFile *file = r->base.file;
   if (chunk->data_offset > file->size || chunk->packed_size > file->size - chunk->data_offset ||
       chunk->packed_size == 0)
@@ -227,7 +269,8 @@ static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_i
 
 /* Grows a block to at least `size` bytes. */
 static bool grow(Reader *r, uint8_t **block, size_t *have, size_t size) {
-  if (*have >= size) return true;
+  if (*have >= size)
+    return true;
   vl_free(r->base.file->context, *block);
   *block = vl_alloc(r->base.file->context, size);
   *have = *block ? size : 0;
@@ -237,8 +280,10 @@ static bool grow(Reader *r, uint8_t **block, size_t *have, size_t size) {
 static vlResult start_dwa(Reader *r) {
   vlContext *context = r->base.file->context;
   r->dwa_curve = vl_alloc_array(context, 65536, sizeof *r->dwa_curve);
-  r->dwa_channels = vl_alloc_array(context, (size_t)r->list->num_channels, sizeof *r->dwa_channels);
-  if (!r->dwa_curve || !r->dwa_channels) return vl_fail_memory(r->base.file->error);
+  r->dwa_channels =
+      vl_alloc_array(context, (size_t)r->list->num_channels, sizeof *r->dwa_channels);
+  if (!r->dwa_curve || !r->dwa_channels)
+    return vl_fail_memory(r->base.file->error);
   vl_dwa_make_curve(r->dwa_curve);
   for (int i = 0; i < r->list->num_channels; i++) {
     const exr_attr_chlist_entry_t *c = &r->list->entries[i];
@@ -256,7 +301,8 @@ static void convert_value(int from, const uint8_t *p, int to, void *result) {
   uint16_t half = 0; /* the types differ, so the image holds floats */
   uint32_t integer = 0;
   memcpy(&half, p, 2);
-  if (from == EXR_PIXEL_UINT) memcpy(&integer, p, 4);
+  if (from == EXR_PIXEL_UINT)
+    memcpy(&integer, p, 4);
   float value = from == EXR_PIXEL_HALF ? vl_half_to_float(half) : (float)integer;
   memcpy(result, &value, 4);
 }
@@ -265,27 +311,33 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
   const vlImageFile *file = r->base.file;
   if (!r->dwa_channels) {
     vlResult result = start_dwa(r);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
   uint32_t count = (uint32_t)r->list->num_channels;
   size_t line = 0;
   for (uint32_t i = 0; i < count; i++)
     line += (size_t)chunk->width * (r->dwa_channels[i].type == EXR_PIXEL_HALF ? 2u : 4u);
   size_t size = line * (size_t)chunk->height;
-  if (size != chunk->unpacked_size) return vl_codec_broken(file, "OpenEXR", "a chunk of the wrong size");
+  if (size != chunk->unpacked_size)
+    return vl_codec_broken(file, "OpenEXR", "a chunk of the wrong size");
   if (!grow(r, &r->packed, &r->packed_size, (size_t)chunk->packed_size) ||
       !grow(r, &r->unpacked, &r->unpacked_size, size))
     return vl_fail_memory(file->error);
   exr_result_t code = exr_read_chunk(r->exr, 0, chunk, r->packed);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (code != EXR_ERR_SUCCESS)
+    return fail(r, code);
   vlResult result = VL_OK;
   if (chunk->packed_size == size) /* incompressible chunks are stored uncompressed */
     memcpy(r->unpacked, r->packed, size);
   else
-    result = vl_dwa_unpack(file->context, r->dwa_channels, count, (uint32_t)chunk->width, (uint32_t)chunk->height,
-                           r->dwa_curve, r->packed, (size_t)chunk->packed_size, r->unpacked);
-  if (result == VL_ERROR_MEMORY) return vl_fail_memory(file->error);
-  if (result != VL_OK) return vl_codec_broken(file, "OpenEXR", "a DWA chunk is damaged");
+    result = vl_dwa_unpack(file->context, r->dwa_channels, count, (uint32_t)chunk->width,
+                           (uint32_t)chunk->height, r->dwa_curve, r->packed,
+                           (size_t)chunk->packed_size, r->unpacked);
+  if (result == VL_ERROR_MEMORY)
+    return vl_fail_memory(file->error);
+  if (result != VL_OK)
+    return vl_codec_broken(file, "OpenEXR", "a DWA chunk is damaged");
   const uint8_t *from = r->unpacked;
   size_t pixel = (size_t)r->user_size * r->count;
   for (int32_t y = 0; y < chunk->height; y++)
@@ -305,21 +357,27 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
 static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   exr_chunk_info_t chunk;
   vlResult result = vl_codec_step(r->base.file);
-  if (result == VL_OK) result = find_chunk(r, column, row, &chunk);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = find_chunk(r, column, row, &chunk);
+  if (result != VL_OK)
+    return result;
   size_t pixel = (size_t)r->user_size * r->image->channels, line = pixel * r->width;
-  char *origin = (char *)r->image->pixels +
-                 (r->tiled ? row * (size_t)r->tile_height * line + column * (size_t)r->tile_width * pixel
-                           : row * (size_t)r->lines * line);
-  if (r->dwa) return decode_dwa_chunk(r, &chunk, origin);
+  char *origin =
+      (char *)r->image->pixels +
+      (r->tiled ? row * (size_t)r->tile_height * line + column * (size_t)r->tile_width * pixel
+                : row * (size_t)r->lines * line);
+  if (r->dwa)
+    return decode_dwa_chunk(r, &chunk, origin);
   exr_decode_pipeline_t *p = &r->pipeline;
-  exr_result_t code =
-      r->started ? exr_decoding_update(r->exr, 0, &chunk, p) : exr_decoding_initialize(r->exr, 0, &chunk, p);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  exr_result_t code = r->started ? exr_decoding_update(r->exr, 0, &chunk, p)
+                                 : exr_decoding_initialize(r->exr, 0, &chunk, p);
+  if (code != EXR_ERR_SUCCESS)
+    return fail(r, code);
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
     c->decode_to_ptr = NULL; /* not read */
-    if (r->place[i] == NOT_WANTED) continue;
+    if (r->place[i] == NOT_WANTED)
+      continue;
     c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->place[i];
     c->user_bytes_per_element = (int16_t)r->user_size;
     c->user_data_type = (uint16_t)r->user_type;
@@ -329,7 +387,8 @@ static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   if (!r->started) {
     r->started = true;
     code = exr_decoding_choose_default_routines(r->exr, 0, p);
-    if (code != EXR_ERR_SUCCESS) return fail(r, code);
+    if (code != EXR_ERR_SUCCESS)
+      return fail(r, code);
   }
   code = exr_decoding_run(r->exr, 0, p);
   return code == EXR_ERR_SUCCESS ? VL_OK : fail(r, code);
@@ -341,11 +400,13 @@ static vlResult create(Reader *r) {
   r->place = vl_alloc_array(context, count, sizeof *r->place);
   const char **names = vl_alloc_array(context, count, sizeof *names);
   vlResult result = r->place && names ? VL_OK : VL_ERROR_MEMORY;
-  for (uint32_t i = 0; result == VL_OK && i < count; i++) r->place[i] = NOT_WANTED;
+  for (uint32_t i = 0; result == VL_OK && i < count; i++)
+    r->place[i] = NOT_WANTED;
   for (uint32_t k = 0; result == VL_OK && k <= 5; k++)
     for (uint32_t i = 0; i < count; i++) {
       const char *name = r->list->entries[i].name.str;
-      if (rank(name) != k || next >= r->count || !is_wanted(r->base.file, name)) continue;
+      if (rank(name) != k || next >= r->count || !is_wanted(r->base.file, name))
+        continue;
       names[next] = name;
       r->place[i] = next++;
     }
@@ -362,22 +423,28 @@ static vlResult create(Reader *r) {
     }
   }
   vl_free(context, names);
-  if (result == VL_OK && !(r->image->stored = vl_alloc_zero(context, r->count, 1))) result = VL_ERROR_MEMORY;
+  if (result == VL_OK && !(r->image->stored = vl_alloc_zero(context, r->count, 1)))
+    result = VL_ERROR_MEMORY;
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     exr_pixel_type_t type = r->list->entries[i].pixel_type;
-    if (r->place[i] == NOT_WANTED) continue;
+    if (r->place[i] == NOT_WANTED)
+      continue;
     r->image->stored[r->place[i]] = type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
                                     : type == EXR_PIXEL_UINT ? VL_PIXEL_U32
                                                              : VL_PIXEL_F32;
   }
-  if (result == VL_OK) result = vl_exr_attributes_in(r->exr, r->image);
+  if (result == VL_OK)
+    result = vl_exr_attributes_in(r->exr, r->image);
   if (result == VL_OK && r->base.file->header) {
     *r->base.file->header = r->image;
     r->image = NULL;
     return VL_CANCELLED;
   }
-  if (result == VL_ERROR_MEMORY) return vl_fail_memory(r->base.file->error);
-  return result == VL_OK ? VL_OK : vl_codec_broken(r->base.file, "OpenEXR", "its channels are not possible");
+  if (result == VL_ERROR_MEMORY)
+    return vl_fail_memory(r->base.file->error);
+  return result == VL_OK
+             ? VL_OK
+             : vl_codec_broken(r->base.file, "OpenEXR", "its channels are not possible");
 }
 
 static vlResult read_all(Reader *r) {
@@ -386,7 +453,8 @@ static vlResult read_all(Reader *r) {
            step_y = (uint32_t)(r->tiled ? r->tile_height : r->lines);
   /* Checks that all chunks exist before the pixels are allocated. */
   for (uint32_t pass = r->base.file->header ? 1 : 0; pass < 2 && result == VL_OK; pass++) {
-    if (pass == 1) result = create(r);
+    if (pass == 1)
+      result = create(r);
     for (uint64_t y = 0, row = 0; y < r->height && result == VL_OK; y += step_y, row++)
       for (uint64_t x = 0, column = 0; x < r->width && result == VL_OK; x += step_x, column++) {
         exr_chunk_info_t chunk;
@@ -398,7 +466,8 @@ static vlResult read_all(Reader *r) {
 }
 
 vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
-  if (!headers_fit(file)) return vl_codec_broken(file, "OpenEXR", "ends in its header, or the header is damaged");
+  if (!headers_fit(file))
+    return vl_codec_broken(file, "OpenEXR", "ends in its header, or the header is damaged");
   Reader r;
   memset(&r, 0, sizeof r);
   r.base.file = file;
@@ -411,7 +480,8 @@ vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
   start.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
   exr_result_t code = exr_start_read(&r.exr, file->name, &start);
   vlResult result = code == EXR_ERR_SUCCESS ? read_all(&r) : fail(&r, code);
-  if (r.started) exr_decoding_destroy(r.exr, &r.pipeline);
+  if (r.started)
+    exr_decoding_destroy(r.exr, &r.pipeline);
   exr_finish(&r.exr);
   VL_FREE(file->context, r.place, r.dwa_channels, r.dwa_curve, r.packed, r.unpacked);
   if (result == VL_OK)

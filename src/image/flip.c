@@ -1,5 +1,6 @@
-/* image/flip.c: see flip.h. Section numbers are the paper's. Two pipelines are combined at the end: colour (contrast
- * sensitivity filter, Hunt-adjusted L*a*b*, HyAB distance) and features (edges and points of the luminance). */
+/* image/flip.c: see flip.h. Section numbers are the paper's. Two pipelines are combined at the
+ * end: colour (contrast sensitivity filter, Hunt-adjusted L*a*b*, HyAB distance) and features
+ * (edges and points of the luminance). */
 #include "image/flip.h"
 
 #include <string.h>
@@ -21,7 +22,8 @@ typedef struct Vec {
 typedef struct Flip {
   uint32_t width, height;
   float *color[2][3]; /* Y Cx Cz of both images; filtered in place */
-  float *feature[2];  /* [0]: edges of the first image, later the larger feature difference; [1]: points */
+  float *feature[2]; /* [0]: edges of the first image, later the larger feature difference; [1]:
+                        points */
   float *work[3];
 } Flip;
 
@@ -58,11 +60,14 @@ static Vec xyz_of_ycc(Vec c) {
 static float lab_curve(float t) {
   return t > 0.00885645168f ? vl_pow(t, 1.0f / 3.0f) : t * 7.78703704f + 0.137931034f;
 }
-/* Section 4.1.3: L*a*b* with Hunt's adjustment: colour differences are weaker at low luminance. */
+/* Section 4.1.3: L*a*b* with Hunt's adjustment: colour differences are weaker at low luminance.
+ */
 static Vec hunt_lab_of_xyz(Vec c) {
-  float x = lab_curve(c.x / WHITE.x), y = lab_curve(c.y / WHITE.y), z = lab_curve(c.z / WHITE.z);
+  float x = lab_curve(c.x / WHITE.x), y = lab_curve(c.y / WHITE.y),
+        z = lab_curve(c.z / WHITE.z);
   float lightness = 116.0f * y - 16.0f;
-  return (Vec){lightness, 0.01f * lightness * 500.0f * (x - y), 0.01f * lightness * 200.0f * (y - z)};
+  return (Vec){lightness, 0.01f * lightness * 500.0f * (x - y),
+               0.01f * lightness * 200.0f * (y - z)};
 }
 static float hyab(Vec a, Vec b) {
   float l = a.x - b.x, da = a.y - b.y, db = a.z - b.z;
@@ -72,12 +77,15 @@ static float hyab(Vec a, Vec b) {
 /* exp(x) in double by repeated squaring, for the weights of the kernels. */
 static double weight_exp(double x) {
   double y = x / 1024.0, sum = 1.0;
-  for (int k = 12; k >= 1; k--) sum = sum * y / k + 1.0;
-  for (int i = 0; i < 10; i++) sum *= sum;
+  for (int k = 12; k >= 1; k--)
+    sum = sum * y / k + 1.0;
+  for (int i = 0; i < 10; i++)
+    sum *= sum;
   return sum;
 }
 
-/* Gaussian exp(-pi^2 d^2 / b), d in degrees, normalised. Returns its sum before normalisation. */
+/* Gaussian exp(-pi^2 d^2 / b), d in degrees, normalised. Returns its sum before normalisation.
+ */
 static double csf_kernel(Kernel *k, int radius, double b) {
   const double pi = 3.14159265358979324;
   double sum = 0.0, w[2 * MAX_RADIUS + 1];
@@ -86,12 +94,13 @@ static double csf_kernel(Kernel *k, int radius, double b) {
     double d = i / VL_FLIP_PIXELS_PER_DEGREE;
     sum += w[i + radius] = weight_exp(-pi * pi * d * d / b);
   }
-  for (int i = 0; i <= 2 * radius; i++) k->w[i] = (float)(w[i] / sum);
+  for (int i = 0; i <= 2 * radius; i++)
+    k->w[i] = (float)(w[i] / sum);
   return sum;
 }
 
-/* Section 4.2: Gaussian of the feature width 0.082 degrees, its first derivative (edges) and second derivative
- * (points). Positive and negative weights each sum to one. */
+/* Section 4.2: Gaussian of the feature width 0.082 degrees, its first derivative (edges) and
+ * second derivative (points). Positive and negative weights each sum to one. */
 static void feature_kernels(Kernel *smooth, Kernel *edge, Kernel *point) {
   double deviation = 0.5 * 0.082 * VL_FLIP_PIXELS_PER_DEGREE;
   int radius = (int)__builtin_ceil(3.0 * deviation);
@@ -103,7 +112,8 @@ static void feature_kernels(Kernel *smooth, Kernel *edge, Kernel *point) {
     g[i + radius] = weight_exp(-0.5 * q);
     p[i + radius] = (q - 1.0) * g[i + radius];
     sum += g[i + radius];
-    if (i < 0) edge_sum += -i * g[i + radius];
+    if (i < 0)
+      edge_sum += -i * g[i + radius];
     *(p[i + radius] > 0.0 ? &plus : &minus) += p[i + radius];
   }
   for (int i = -radius; i <= radius; i++) {
@@ -113,10 +123,10 @@ static void feature_kernels(Kernel *smooth, Kernel *edge, Kernel *point) {
   }
 }
 
-/* Convolves along rows, then along columns; the border pixels repeat. from and to may be the same plane, work is
- * another. */
-static void convolve(const Flip *f, const float *from, const Kernel *kx, const Kernel *ky, float *work, float *to,
-                     float *padded) {
+/* Convolves along rows, then along columns; the border pixels repeat. from and to may be the
+ * same plane, work is another. */
+static void convolve(const Flip *f, const float *from, const Kernel *kx, const Kernel *ky,
+                     float *work, float *to, float *padded) {
   uint32_t w = f->width, h = f->height;
   for (uint32_t y = 0; y < h; y++) {
     const float *row = from + (size_t)y * w;
@@ -128,7 +138,8 @@ static void convolve(const Flip *f, const float *from, const Kernel *kx, const K
     memcpy(padded + kx->radius, row, w * sizeof *row);
     memset(out, 0, w * sizeof *out);
     for (int i = 0; i <= 2 * kx->radius; i++)
-      for (uint32_t x = 0; x < w; x++) out[x] += kx->w[i] * padded[(size_t)x + (size_t)i];
+      for (uint32_t x = 0; x < w; x++)
+        out[x] += kx->w[i] * padded[(size_t)x + (size_t)i];
   }
   for (uint32_t y = 0; y < h; y++) {
     float *out = to + (size_t)y * w;
@@ -138,7 +149,8 @@ static void convolve(const Flip *f, const float *from, const Kernel *kx, const K
       at = at < 0 ? 0 : at >= h ? (int64_t)h - 1 : at;
       const float *row = work + (size_t)at * w;
       float weight = ky->w[i + ky->radius];
-      for (uint32_t x = 0; x < w; x++) out[x] += weight * row[x];
+      for (uint32_t x = 0; x < w; x++)
+        out[x] += weight * row[x];
     }
   }
 }
@@ -146,12 +158,14 @@ static void convolve(const Flip *f, const float *from, const Kernel *kx, const K
 /* Section 4.1.2, table 1: contrast sensitivity of each channel as sums of Gaussians. */
 static void color_filter(Flip *f, float *padded) {
   const double pi = 3.14159265358979324;
-  int radius = (int)__builtin_ceil(3.0 * __builtin_sqrt(0.04 / (2.0 * pi * pi)) * VL_FLIP_PIXELS_PER_DEGREE);
+  int radius = (int)__builtin_ceil(3.0 * __builtin_sqrt(0.04 / (2.0 * pi * pi)) *
+                                   VL_FLIP_PIXELS_PER_DEGREE);
   Kernel luminance, red_green, narrow, wide;
   csf_kernel(&luminance, radius, 0.0047);
   csf_kernel(&red_green, radius, 0.0053);
   double s1 = csf_kernel(&wide, radius, 0.04), s2 = csf_kernel(&narrow, radius, 0.025);
-  double m1 = 34.1 * __builtin_sqrt(pi / 0.04) * s1 * s1, m2 = 13.5 * __builtin_sqrt(pi / 0.025) * s2 * s2;
+  double m1 = 34.1 * __builtin_sqrt(pi / 0.04) * s1 * s1,
+         m2 = 13.5 * __builtin_sqrt(pi / 0.025) * s2 * s2;
   float share = (float)(m1 / (m1 + m2));
   size_t count = (size_t)f->width * f->height;
   for (int i = 0; i < 2; i++) {
@@ -160,17 +174,19 @@ static void color_filter(Flip *f, float *padded) {
     convolve(f, c[1], &red_green, &red_green, f->work[0], c[1], padded);
     convolve(f, c[2], &wide, &wide, f->work[0], f->work[1], padded);
     convolve(f, c[2], &narrow, &narrow, f->work[0], c[2], padded);
-    for (size_t k = 0; k < count; k++) c[2][k] = share * f->work[1][k] + (1.0f - share) * c[2][k];
+    for (size_t k = 0; k < count; k++)
+      c[2][k] = share * f->work[1][k] + (1.0f - share) * c[2][k];
   }
 }
 
 /* Strength of a feature: length of the vector of its responses along x and y. */
-static void feature_strength(Flip *f, const float *luminance, const Kernel *shape, const Kernel *smooth, float *out,
-                             float *padded) {
+static void feature_strength(Flip *f, const float *luminance, const Kernel *shape,
+                             const Kernel *smooth, float *out, float *padded) {
   size_t count = (size_t)f->width * f->height;
   convolve(f, luminance, shape, smooth, f->work[0], f->work[1], padded);
   convolve(f, luminance, smooth, shape, f->work[0], out, padded);
-  for (size_t k = 0; k < count; k++) out[k] = __builtin_sqrtf(f->work[1][k] * f->work[1][k] + out[k] * out[k]);
+  for (size_t k = 0; k < count; k++)
+    out[k] = __builtin_sqrtf(f->work[1][k] * f->work[1][k] + out[k] * out[k]);
 }
 
 /* Writes the larger of the edge and the point difference to feature[0]. */
@@ -181,8 +197,10 @@ static void feature_difference(Flip *f, float *padded) {
   for (int shape = 0; shape < 2; shape++) {
     const Kernel *k = shape ? &point : &edge;
     for (int i = 0; i < 2; i++) {
-      for (size_t n = 0; n < count; n++) f->work[2][n] = (f->color[i][0][n] + 16.0f) / 116.0f;
-      /* work: 0 rows, 1 along x, 2 luminance; for the second image, its strength finally overwrites the luminance */
+      for (size_t n = 0; n < count; n++)
+        f->work[2][n] = (f->color[i][0][n] + 16.0f) / 116.0f;
+      /* work: 0 rows, 1 along x, 2 luminance; for the second image, its strength finally
+       * overwrites the luminance */
       feature_strength(f, f->work[2], k, &smooth, i ? f->work[2] : f->feature[1], padded);
     }
     for (size_t n = 0; n < count; n++) {
@@ -194,7 +212,8 @@ static void feature_difference(Flip *f, float *padded) {
 }
 
 static Vec filtered_lab(const Flip *f, int i, size_t n) {
-  Vec rgb = rgb_of_xyz(xyz_of_ycc((Vec){f->color[i][0][n], f->color[i][1][n], f->color[i][2][n]}));
+  Vec rgb =
+      rgb_of_xyz(xyz_of_ycc((Vec){f->color[i][0][n], f->color[i][1][n], f->color[i][2][n]}));
   return hunt_lab_of_xyz(xyz_of_rgb((Vec){clamp01(rgb.x), clamp01(rgb.y), clamp01(rgb.z)}));
 }
 
@@ -210,14 +229,17 @@ static void combine(const Flip *f, float *flip) {
     d = d < knee ? d * (pt / knee) : pt + (d - knee) / (most - knee) * (1.0f - pt);
     d = clamp01(d);
     float feature = clamp01(__builtin_sqrtf(f->feature[0][n] * 0.707106781186547524f));
-    flip[n] = vl_pow(d, 1.0f - feature); /* d = 0 gives 0, except when the feature difference is 1 */
+    flip[n] =
+        vl_pow(d, 1.0f - feature); /* d = 0 gives 0, except when the feature difference is 1 */
   }
 }
 
-vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const float *a, const float *b, float *flip) {
+vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const float *a,
+                 const float *b, float *flip) {
   Flip f = {.width = width, .height = height};
   size_t count = (size_t)width * height;
-  if (count > SIZE_MAX / 64) return VL_ERROR_MEMORY;
+  if (count > SIZE_MAX / 64)
+    return VL_ERROR_MEMORY;
   float *planes = vl_alloc_array(context, count, 11 * sizeof *planes);
   float *padded = vl_alloc_array(context, (size_t)width + 2 * MAX_RADIUS, sizeof *padded);
   if (!planes || !padded) {
@@ -225,19 +247,24 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
     vl_free(context, padded);
     return VL_ERROR_MEMORY;
   }
-  for (int i = 0; i < 6; i++) f.color[i / 3][i % 3] = planes + count * (size_t)i;
-  for (int i = 0; i < 2; i++) f.feature[i] = planes + count * (size_t)(6 + i);
-  for (int i = 0; i < 3; i++) f.work[i] = planes + count * (size_t)(8 + i);
+  for (int i = 0; i < 6; i++)
+    f.color[i / 3][i % 3] = planes + count * (size_t)i;
+  for (int i = 0; i < 2; i++)
+    f.feature[i] = planes + count * (size_t)(6 + i);
+  for (int i = 0; i < 3; i++)
+    f.work[i] = planes + count * (size_t)(8 + i);
   for (int i = 0; i < 2; i++) {
     const float *from = i ? b : a;
     for (size_t n = 0; n < count; n++) {
-      Vec c = ycc_of_xyz(xyz_of_rgb((Vec){clamp01(from[3 * n]), clamp01(from[3 * n + 1]), clamp01(from[3 * n + 2])}));
+      Vec c = ycc_of_xyz(xyz_of_rgb(
+          (Vec){clamp01(from[3 * n]), clamp01(from[3 * n + 1]), clamp01(from[3 * n + 2])}));
       f.color[i][0][n] = c.x;
       f.color[i][1][n] = c.y;
       f.color[i][2][n] = c.z;
     }
   }
-  feature_difference(&f, padded); /* before the filter: features are those of the unfiltered images */
+  feature_difference(
+      &f, padded); /* before the filter: features are those of the unfiltered images */
   color_filter(&f, padded);
   combine(&f, flip);
   vl_free(context, planes);

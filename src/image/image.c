@@ -26,7 +26,8 @@ vlImageDef vl_default_image_def(uint32_t width, uint32_t height, uint32_t channe
                       .gamma = 1.0f};
 }
 
-static const char *const DEFAULT_NAMES[4][4] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+static const char *const DEFAULT_NAMES[4][4] = {
+    {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
 
 static bool name_ok(const char *name) {
   return name && name[0] && strlen(name) <= NAME_MAX_LENGTH;
@@ -37,14 +38,17 @@ static int compare_names(const void *a, const void *b) {
 }
 
 /* Copies the names into one block (pointers first) and rejects duplicates. */
-static vlResult copy_names(vlContext *context, const char *const *names, uint32_t count, char ***result) {
+static vlResult copy_names(vlContext *context, const char *const *names, uint32_t count,
+                           char ***result) {
   size_t text = 0;
   for (uint32_t i = 0; i < count; i++) {
-    if (!name_ok(names[i])) return VL_ERROR_ARGUMENT;
+    if (!name_ok(names[i]))
+      return VL_ERROR_ARGUMENT;
     text += strlen(names[i]) + 1;
   }
   char **copy = vl_alloc(context, count * sizeof *copy + text);
-  if (!copy) return VL_ERROR_MEMORY;
+  if (!copy)
+    return VL_ERROR_MEMORY;
   char *at = (char *)(copy + count);
   if (count > 1) {
     memcpy(copy, names, count * sizeof *copy);
@@ -70,19 +74,27 @@ vlResult vl_image_create(vlContext *context, const vlImageDef *def, vlImage **im
   return vl_image_create_parts(context, def, true, image);
 }
 
-vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool pixels, vlImage **image) {
-  if (!image) return VL_ERROR_ARGUMENT;
+vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool pixels,
+                               vlImage **image) {
+  if (!image)
+    return VL_ERROR_ARGUMENT;
   *image = NULL;
   if (!context || !def || def->cookie != VL_COOKIE_IMAGE || def->width == 0 || def->height == 0)
     return VL_ERROR_ARGUMENT;
-  if (def->channels == 0 || def->channels > 1024 || (!def->names && def->channels > 4)) return VL_ERROR_ARGUMENT;
-  if ((unsigned)def->type > VL_PIXEL_U32 || (unsigned)def->encoding > VL_ENCODING_GAMMA) return VL_ERROR_ARGUMENT;
-  if (def->encoding == VL_ENCODING_GAMMA && !(def->gamma > 0.0f && def->gamma < 100.0f)) return VL_ERROR_ARGUMENT;
-  size_t row = (size_t)def->width * def->channels * vl_pixel_size(def->type); /* at most 2^32 * 2^10 * 2^2 */
-  if (row > SIZE_MAX / 4 / def->height) return VL_ERROR_MEMORY;
+  if (def->channels == 0 || def->channels > 1024 || (!def->names && def->channels > 4))
+    return VL_ERROR_ARGUMENT;
+  if ((unsigned)def->type > VL_PIXEL_U32 || (unsigned)def->encoding > VL_ENCODING_GAMMA)
+    return VL_ERROR_ARGUMENT;
+  if (def->encoding == VL_ENCODING_GAMMA && !(def->gamma > 0.0f && def->gamma < 100.0f))
+    return VL_ERROR_ARGUMENT;
+  size_t row = (size_t)def->width * def->channels *
+               vl_pixel_size(def->type); /* at most 2^32 * 2^10 * 2^2 */
+  if (row > SIZE_MAX / 4 / def->height)
+    return VL_ERROR_MEMORY;
 
   vlImage *made = vl_alloc_zero(context, 1, sizeof *made);
-  if (!made) return VL_ERROR_MEMORY;
+  if (!made)
+    return VL_ERROR_MEMORY;
   made->context = context;
   made->number = vl_context_number(context);
   made->width = def->width;
@@ -96,7 +108,8 @@ vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool p
   vlResult result = copy_names(context, names, def->channels, &made->names);
   if (result == VL_OK && pixels) {
     made->pixels = vl_alloc_zero(context, row, def->height);
-    if (!made->pixels) result = VL_ERROR_MEMORY;
+    if (!made->pixels)
+      result = VL_ERROR_MEMORY;
   }
   if (result != VL_OK) {
     vl_image_destroy(made);
@@ -107,7 +120,8 @@ vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool p
 }
 
 void vl_image_destroy(vlImage *image) {
-  if (!image) return;
+  if (!image)
+    return;
   vlContext *context = image->context;
   for (size_t i = 0; i < image->attributes.count; i++) {
     vl_free(context, image->attributes.items[i].name);
@@ -130,7 +144,8 @@ vlPixelType vl_image_type(const vlImage *image) {
   return image->type;
 }
 vlPixelType vl_image_stored_type(const vlImage *image, uint32_t channel) {
-  return image->stored && channel < image->channels ? (vlPixelType)image->stored[channel] : image->type;
+  return image->stored && channel < image->channels ? (vlPixelType)image->stored[channel]
+                                                    : image->type;
 }
 vlEncoding vl_image_encoding(const vlImage *image) {
   return image->encoding;
@@ -147,7 +162,8 @@ const void *vl_image_const_pixels(const vlImage *image) {
 
 int vl_image_find_channel(const vlImage *image, const char *name) {
   for (uint32_t i = 0; name && i < image->channels; i++)
-    if (vl_text_is(image->names[i], name)) return (int)i;
+    if (vl_text_is(image->names[i], name))
+      return (int)i;
   return -1;
 }
 
@@ -155,7 +171,8 @@ int vl_image_find_channel(const vlImage *image, const char *name) {
 static bool find_layer(const vlImage *image, uint32_t channel[4]) {
   for (uint32_t i = 0; i < image->channels; i++) {
     const char *name = image->names[i], *dot = strrchr(name, '.');
-    if (!vl_text_is(dot, ".R")) continue;
+    if (!vl_text_is(dot, ".R"))
+      continue;
     bool all = true;
     for (int c = 0; c < 3; c++) {
       char full[NAME_MAX_LENGTH + 1];
@@ -164,15 +181,18 @@ static bool find_layer(const vlImage *image, uint32_t channel[4]) {
       all = all && found >= 0;
       channel[c] = found >= 0 ? (uint32_t)found : 0;
     }
-    if (all) return true;
+    if (all)
+      return true;
   }
   return false;
 }
 
 uint32_t vl_image_shown(const vlImage *image, uint32_t channel[4]) {
   uint32_t count = vl_image_color(image, channel);
-  if (count) return count;
-  if (find_layer(image, channel)) return 3;
+  if (count)
+    return count;
+  if (find_layer(image, channel))
+    return 3;
   channel[0] = 0;
   return 1;
 }
@@ -190,13 +210,17 @@ uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]) {
   } else if (y >= 0 || image->channels == 1) {
     channel[0] = y >= 0 ? (uint32_t)y : 0;
     count = 1;
-    if (image->channels == 1) return count;
+    if (image->channels == 1)
+      return count;
   }
-  if (count && a >= 0) channel[count++] = (uint32_t)a;
+  if (count && a >= 0)
+    channel[count++] = (uint32_t)a;
   return count;
 }
 
-/* ---- values as light --------------------------------------------------------------------------------------------- */
+/* ---- values as light
+ * ---------------------------------------------------------------------------------------------
+ */
 
 size_t vl_image_row_size(const vlImage *image) {
   return (size_t)image->width * image->channels * vl_pixel_size(image->type);
@@ -215,32 +239,42 @@ static bool is_alpha(const char *name) {
 }
 
 static vlEncoding channel_encoding(const vlImage *image, uint32_t channel) {
-  return image->encoding != VL_ENCODING_LINEAR && is_alpha(image->names[channel]) ? VL_ENCODING_LINEAR
-                                                                                  : image->encoding;
+  return image->encoding != VL_ENCODING_LINEAR && is_alpha(image->names[channel])
+             ? VL_ENCODING_LINEAR
+             : image->encoding;
 }
 
 static float value_at(const vlImage *image, size_t index, vlEncoding encoding) {
   switch (image->type) {
     case VL_PIXEL_U8: {
       uint8_t v = ((const uint8_t *)image->pixels)[index];
-      return encoding == VL_ENCODING_SRGB ? vl_srgb8_to_linear[v] : (float)vl_decode(encoding, image->gamma, v / 255.0);
+      return encoding == VL_ENCODING_SRGB ? vl_srgb8_to_linear[v]
+                                          : (float)vl_decode(encoding, image->gamma, v / 255.0);
     }
     case VL_PIXEL_U16:
-      return (float)vl_decode(encoding, image->gamma, ((const uint16_t *)image->pixels)[index] / 65535.0);
-    case VL_PIXEL_F16: return vl_half_to_float(((const uint16_t *)image->pixels)[index]);
-    case VL_PIXEL_U32: return (float)((const uint32_t *)image->pixels)[index];
-    case VL_PIXEL_F32: break;
+      return (float)vl_decode(encoding, image->gamma,
+                              ((const uint16_t *)image->pixels)[index] / 65535.0);
+    case VL_PIXEL_F16:
+      return vl_half_to_float(((const uint16_t *)image->pixels)[index]);
+    case VL_PIXEL_U32:
+      return (float)((const uint32_t *)image->pixels)[index];
+    case VL_PIXEL_F32:
+      break;
   }
   return ((const float *)image->pixels)[index];
 }
 
 vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *name) {
-  if (!image || channel >= image->channels || !name_ok(name)) return VL_ERROR_ARGUMENT;
+  if (!image || channel >= image->channels || !name_ok(name))
+    return VL_ERROR_ARGUMENT;
   int found = vl_image_find_channel(image, name);
-  if (found >= 0) return (uint32_t)found == channel ? VL_OK : VL_ERROR_ARGUMENT;
+  if (found >= 0)
+    return (uint32_t)found == channel ? VL_OK : VL_ERROR_ARGUMENT;
   char **names, *before = image->names[channel];
-  image->names[channel] = (char *)name; /* the string is owned by the image like the other names */
-  vlResult result = copy_names(image->context, (const char *const *)image->names, image->channels, &names);
+  image->names[channel] =
+      (char *)name; /* the string is owned by the image like the other names */
+  vlResult result =
+      copy_names(image->context, (const char *const *)image->names, image->channels, &names);
   if (result == VL_OK) {
     vl_free(image->context, image->names);
     image->names = names;
@@ -251,11 +285,14 @@ vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *n
 }
 
 float vl_image_get(const vlImage *image, uint32_t x, uint32_t y, uint32_t channel) {
-  if (x >= image->width || y >= image->height || channel >= image->channels) return 0.0f;
-  return value_at(image, ((size_t)y * image->width + x) * image->channels + channel, channel_encoding(image, channel));
+  if (x >= image->width || y >= image->height || channel >= image->channels)
+    return 0.0f;
+  return value_at(image, ((size_t)y * image->width + x) * image->channels + channel,
+                  channel_encoding(image, channel));
 }
 
-static void row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *result) {
+static void row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count,
+                     float *result) {
   const uint8_t *row = vl_image_const_row(image, y);
   float table[256];
   for (uint32_t c = 0; c < count; c++) {
@@ -266,7 +303,8 @@ static void row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, 
   }
 }
 
-void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *result) {
+void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *channel,
+                           uint32_t count, float *result) {
   if (image->type == VL_PIXEL_U8 && image->encoding != VL_ENCODING_GAMMA) {
     row_8bit(image, y, channel, count, result);
     return;
@@ -275,33 +313,44 @@ void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *cha
   for (uint32_t c = 0; c < count; c++) {
     vlEncoding encoding = channel_encoding(image, channel[c]);
     for (uint32_t x = 0; x < image->width; x++)
-      result[(size_t)x * count + c] = value_at(image, at + (size_t)x * image->channels + channel[c], encoding);
+      result[(size_t)x * count + c] =
+          value_at(image, at + (size_t)x * image->channels + channel[c], encoding);
   }
 }
 
-vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count, float **result) {
+vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count,
+                           float **result) {
   size_t row = (size_t)image->width * count;
   *result = vl_alloc_array(image->context, row * image->height, sizeof **result);
-  if (!*result) return VL_ERROR_MEMORY;
-  for (uint32_t y = 0; y < image->height; y++) vl_image_row_to_float(image, y, channel, count, *result + row * y);
+  if (!*result)
+    return VL_ERROR_MEMORY;
+  for (uint32_t y = 0; y < image->height; y++)
+    vl_image_row_to_float(image, y, channel, count, *result + row * y);
   return VL_OK;
 }
 
-/* ---- attributes -------------------------------------------------------------------------------------------------- */
+/* ---- attributes
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static vlImageAttribute *find_attribute(const vlImage *image, const char *name) {
   for (size_t i = 0; i < image->attributes.count; i++)
-    if (vl_text_is(image->attributes.items[i].name, name)) return &image->attributes.items[i];
+    if (vl_text_is(image->attributes.items[i].name, name))
+      return &image->attributes.items[i];
   return NULL;
 }
 
 vlResult vl_image_set_attribute(vlImage *image, const vlAttribute *attribute) {
-  if (!image || !attribute || !name_ok(attribute->name)) return VL_ERROR_ARGUMENT;
-  if ((unsigned)attribute->type > VL_ATTRIBUTE_STRINGS) return VL_ERROR_ARGUMENT;
+  if (!image || !attribute || !name_ok(attribute->name))
+    return VL_ERROR_ARGUMENT;
+  if ((unsigned)attribute->type > VL_ATTRIBUTE_STRINGS)
+    return VL_ERROR_ARGUMENT;
   bool text = attribute->type == VL_ATTRIBUTE_STRING || attribute->type == VL_ATTRIBUTE_STRINGS;
-  if (text && !attribute->string) return VL_ERROR_ARGUMENT;
+  if (text && !attribute->string)
+    return VL_ERROR_ARGUMENT;
   char *string = NULL;
-  if (text && !(string = vl_strdup(image->context, attribute->string))) return VL_ERROR_MEMORY;
+  if (text && !(string = vl_strdup(image->context, attribute->string)))
+    return VL_ERROR_MEMORY;
   vlImageAttribute *kept = find_attribute(image, attribute->name);
   if (!kept) {
     char *name = vl_strdup(image->context, attribute->name);
@@ -332,15 +381,19 @@ static void attribute_out(const vlImageAttribute *kept, vlAttribute *attribute) 
 }
 
 vlResult vl_image_attribute(const vlImage *image, uint32_t index, vlAttribute *attribute) {
-  if (!image || !attribute || index >= image->attributes.count) return VL_ERROR_ARGUMENT;
+  if (!image || !attribute || index >= image->attributes.count)
+    return VL_ERROR_ARGUMENT;
   attribute_out(&image->attributes.items[index], attribute);
   return VL_OK;
 }
 
-vlResult vl_image_find_attribute(const vlImage *image, const char *name, vlAttribute *attribute) {
-  if (!image || !name || !attribute) return VL_ERROR_ARGUMENT;
+vlResult vl_image_find_attribute(const vlImage *image, const char *name,
+                                 vlAttribute *attribute) {
+  if (!image || !name || !attribute)
+    return VL_ERROR_ARGUMENT;
   const vlImageAttribute *kept = find_attribute(image, name);
-  if (!kept) return VL_ERROR_MISSING;
+  if (!kept)
+    return VL_ERROR_MISSING;
   attribute_out(kept, attribute);
   return VL_OK;
 }

@@ -1,5 +1,5 @@
-/* image/image.h: internal interface of images for the other rooms, beyond velo/image.h: the struct, rows as linear
- * floats, reading from memory. */
+/* image/image.h: internal interface of images for the other rooms, beyond velo/image.h: the
+ * struct, rows as linear floats, reading from memory. */
 #ifndef IMAGE_IMAGE_H
 #define IMAGE_IMAGE_H
 
@@ -24,12 +24,14 @@ struct vlImage {
   float gamma;
   char **names;    /* one block: `channels` pointers, then the strings */
   void *pixels;    /* interleaved, rows from the top, without padding */
-  uint8_t *stored; /* vlPixelType of each channel in the file that was read; null: the image's type */
+  uint8_t *stored; /* vlPixelType of each channel in the file that was read; null: the image's
+                      type */
   VL_ARRAY(vlImageAttribute) attributes;
 };
 
 /* Like vl_image_create. The image has no pixels (null) when `pixels` is false. */
-vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool pixels, vlImage **image);
+vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool pixels,
+                               vlImage **image);
 /* Bytes per value. */
 size_t vl_pixel_size(vlPixelType type);
 /* Bytes per row. */
@@ -37,22 +39,27 @@ size_t vl_image_row_size(const vlImage *image);
 void *vl_image_row(vlImage *image, uint32_t y);
 const void *vl_image_const_row(const vlImage *image, uint32_t y);
 
-/* Finds the colour channels, writes their indices to channel[] and returns their number: 1 for Y, 2 for Y A, 3 for R G
- * B, 4 for R G B A, 0 for an image without colour. The only channel of an image counts as Y, whatever its name is. */
+/* Finds the colour channels, writes their indices to channel[] and returns their number: 1 for
+ * Y, 2 for Y A, 3 for R G B, 4 for R G B A, 0 for an image without colour. The only channel of
+ * an image counts as Y, whatever its name is. */
 uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]);
 
-/* Converts row y of the chosen channels to interleaved linear floats: width*count values. Channels named A or ending in
- * .A are already linear. */
-void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *result);
-/* Converts the whole image like vl_image_row_to_float: width*height*count floats, which the caller frees with
- * vl_free. */
-vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count, float **result);
+/* Converts row y of the chosen channels to interleaved linear floats: width*count values.
+ * Channels named A or ending in .A are already linear. */
+void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *channel,
+                           uint32_t count, float *result);
+/* Converts the whole image like vl_image_row_to_float: width*height*count floats, which the
+ * caller frees with vl_free. */
+vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count,
+                           float **result);
 
-/* Like vl_image_read, for a file that a scene names: pipes are rejected, and the context's sandbox and pixel limit
- * apply. task: of the load or the build that reads it, which stops with CANCELLED; null: none. */
-vlResult vl_image_read_named(vlContext *context, vlTask *task, const char *path, vlImage **image, vlError *error);
+/* Like vl_image_read, for a file that a scene names: pipes are rejected, and the context's
+ * sandbox and pixel limit apply. task: of the load or the build that reads it, which stops with
+ * CANCELLED; null: none. */
+vlResult vl_image_read_named(vlContext *context, vlTask *task, const char *path,
+                             vlImage **image, vlError *error);
 /* Like vl_image_read_memory, with a task. */
-vlResult vl_image_decode(vlContext *context, vlTask *task, const char *name, const void *data, size_t size,
-                         vlImage **image, vlError *error);
+vlResult vl_image_decode(vlContext *context, vlTask *task, const char *name, const void *data,
+                         size_t size, vlImage **image, vlError *error);
 
 #endif

@@ -1,6 +1,6 @@
-/* image/jpeg.c: JPEG through libjpeg-turbo: grey and colour; CMYK is converted to RGB when read. libjpeg reports errors
- * by longjmp. Damage for which libjpeg only gives a warning is an error, too, since the rest of the image would be
- * grey. */
+/* image/jpeg.c: JPEG through libjpeg-turbo: grey and colour; CMYK is converted to RGB when
+ * read. libjpeg reports errors by longjmp. Damage for which libjpeg only gives a warning is an
+ * error, too, since the rest of the image would be grey. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
@@ -29,7 +29,9 @@ typedef struct Jpeg {
   uint8_t buffer[16384];
 } Jpeg;
 
-enum { MAX_SCANS = 200 }; /* limit of scans: each scan of a progressive file is a pass over the whole image */
+enum {
+  MAX_SCANS = 200
+}; /* limit of scans: each scan of a progressive file is a pass over the whole image */
 
 bool vl_jpeg_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 0xff && data[1] == 0xd8 && data[2] == 0xff;
@@ -42,9 +44,11 @@ static void on_exit_error(j_common_ptr info) {
   longjmp(j->jump, 1);
 }
 static void on_message(j_common_ptr info, int level) {
-  if (level >= 0) return; /* trace messages */
+  if (level >= 0)
+    return; /* trace messages */
   int code = info->err->msg_code;
-  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_BOGUS_PROGRESSION)
+  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE ||
+      code == JWRN_BOGUS_PROGRESSION)
     on_exit_error(info);
 }
 static void on_output(j_common_ptr info) {
@@ -80,13 +84,16 @@ static boolean source_fill(j_decompress_ptr d) {
   return FALSE;
 }
 static void source_skip(j_decompress_ptr d, long count) {
-  if (count <= 0) return;
-  if ((size_t)count > d->src->bytes_in_buffer) ERREXIT(d, JERR_INPUT_EOF);
+  if (count <= 0)
+    return;
+  if ((size_t)count > d->src->bytes_in_buffer)
+    ERREXIT(d, JERR_INPUT_EOF);
   d->src->next_input_byte += count;
   d->src->bytes_in_buffer -= (size_t)count;
 }
 
-/* Converts one row of CMYK to RGB. Adobe's programs write inverted CMYK; CMYK of other programs is inverted first. */
+/* Converts one row of CMYK to RGB. Adobe's programs write inverted CMYK; CMYK of other programs
+ * is inverted first. */
 static void cmyk_row(const uint8_t *line, uint32_t width, bool inverted, uint8_t *out) {
   for (uint32_t x = 0; x < width; x++) {
     unsigned k = inverted ? line[4 * x + 3] : 255u - line[4 * x + 3];
@@ -115,33 +122,43 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
   jpeg_read_header(d, TRUE);
   if (d->num_components != 1 && d->num_components != 3 && d->num_components != 4)
     return vl_codec_unsupported(file, "JPEG", "this number of components");
-  if (d->arith_code) return vl_codec_unsupported(file, "JPEG", "arithmetic coding");
+  if (d->arith_code)
+    return vl_codec_unsupported(file, "JPEG", "arithmetic coding");
   bool cmyk = d->num_components == 4;
   d->out_color_space = cmyk ? JCS_CMYK : d->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
   d->dct_method = JDCT_ISLOW;
   uint32_t channels = d->num_components == 1 ? 1 : 3;
-  /* Each 8x8 block takes at least one bit, and an MCU of 10 blocks covers at most 32x32 pixels of 3 components. */
+  /* Each 8x8 block takes at least one bit, and an MCU of 10 blocks covers at most 32x32 pixels
+   * of 3 components. */
   double need = (double)d->image_width * d->image_height * channels;
-  vlResult result = vl_codec_promise(file, "JPEG", d->image_width, d->image_height, need, 2500.0);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_codec_promise(file, "JPEG", d->image_width, d->image_height, need, 2500.0);
+  if (result != VL_OK)
+    return result;
   if (file->header) /* jpeg_start_decompress may read all of a progressive file */
-    return vl_codec_create(file, d->image_width, d->image_height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, &j->image);
+    return vl_codec_create(file, d->image_width, d->image_height, channels, VL_PIXEL_U8,
+                           VL_ENCODING_SRGB, &j->image);
   jpeg_start_decompress(d);
-  result = vl_codec_create(file, d->output_width, d->output_height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, &j->image);
-  if (result != VL_OK) return result;
-  if (cmyk && !(j->line = vl_alloc_array(file->context, d->output_width, 4))) return vl_fail_memory(file->error);
+  result = vl_codec_create(file, d->output_width, d->output_height, channels, VL_PIXEL_U8,
+                           VL_ENCODING_SRGB, &j->image);
+  if (result != VL_OK)
+    return result;
+  if (cmyk && !(j->line = vl_alloc_array(file->context, d->output_width, 4)))
+    return vl_fail_memory(file->error);
   while (d->output_scanline < d->output_height) {
     uint32_t y = d->output_scanline;
     JSAMPROW row = cmyk ? j->line : vl_image_row(j->image, y);
     jpeg_read_scanlines(d, &row, 1);
-    if (cmyk) cmyk_row(j->line, d->output_width, d->saw_Adobe_marker, vl_image_row(j->image, y));
+    if (cmyk)
+      cmyk_row(j->line, d->output_width, d->saw_Adobe_marker, vl_image_row(j->image, y));
   }
   return VL_OK; /* data after the last row is ignored */
 }
 
 vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image) {
   Jpeg *j = vl_alloc_zero(file->context, 1, sizeof *j);
-  if (!j) return vl_fail_memory(file->error);
+  if (!j)
+    return vl_fail_memory(file->error);
   struct jpeg_decompress_struct d;
   memset(&d, 0, sizeof d);
   start_errors(j);
@@ -158,7 +175,9 @@ vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image) {
   return result;
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void destination_start(j_compress_ptr c) {
   Jpeg *j = (Jpeg *)(void *)c->err;
@@ -176,18 +195,21 @@ static void destination_end(j_compress_ptr c) {
   vl_file_write(j->writer, j->buffer, sizeof j->buffer - c->dest->free_in_buffer);
 }
 
-static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *image, const vlWriteDef *def,
-                       vlError *error) {
+static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *image,
+                       const vlWriteDef *def, vlError *error) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1; /* JPEG has no alpha */
   if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: JPEG holds at most %ldx%ld pixels", j->writer->path,
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "cannot write %s: JPEG holds at most %ldx%ld pixels", j->writer->path,
                    (long)JPEG_MAX_DIMENSION, (long)JPEG_MAX_DIMENSION);
   j->line = vl_alloc_array(image->context, image->width, count);
   j->scratch = vl_alloc_array(image->context, image->width, count * sizeof(float));
-  if (!j->line || !j->scratch) return vl_fail_memory(error);
+  if (!j->line || !j->scratch)
+    return vl_fail_memory(error);
   if (setjmp(j->jump)) {
-    if (j->code == JERR_OUT_OF_MEMORY) return vl_fail_memory(error);
+    if (j->code == JERR_OUT_OF_MEMORY)
+      return vl_fail_memory(error);
     return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", j->writer->path, j->message);
   }
   jpeg_create_compress(c);
@@ -214,9 +236,11 @@ static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *i
   return VL_OK;
 }
 
-vlResult vl_jpeg_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
+vlResult vl_jpeg_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
+                       vlError *error) {
   Jpeg *j = vl_alloc_zero(image->context, 1, sizeof *j);
-  if (!j) return vl_fail_memory(error);
+  if (!j)
+    return vl_fail_memory(error);
   struct jpeg_compress_struct c;
   memset(&c, 0, sizeof c);
   start_errors(j);

@@ -10,7 +10,7 @@ enum { STARTS = 4096 };
 
 typedef struct Builder {
   vlMipmap *map;
-  float begin[4][256];      /* [c][code]: the smallest linear value whose nearest code is `code` */
+  float begin[4][256]; /* [c][code]: the smallest linear value whose nearest code is `code` */
   uint8_t start[4][STARTS]; /* [c][i]: code at i / STARTS, where the search starts */
   bool one_table;           /* all channels have the same decoding */
   float *column;            /* one row: weighted sum of source rows */
@@ -21,12 +21,14 @@ typedef struct Builder {
 size_t vl_mipmap_bytes(const vlMipmap *map) {
   size_t total = sizeof *map;
   for (uint32_t i = 0; i < map->level_count; i++)
-    total += (size_t)map->levels[i].width * map->levels[i].height * map->channels * (map->is_bytes ? 1 : 4);
+    total += (size_t)map->levels[i].width * map->levels[i].height * map->channels *
+             (map->is_bytes ? 1 : 4);
   return total;
 }
 
 void vl_mipmap_destroy(vlMipmap *map) {
-  if (!map) return;
+  if (!map)
+    return;
   for (uint32_t i = 0; i < map->level_count; i++) {
     vl_free(map->context, (void *)(uintptr_t)map->levels[i].bytes);
     vl_free(map->context, (void *)(uintptr_t)map->levels[i].floats);
@@ -37,7 +39,8 @@ void vl_mipmap_destroy(vlMipmap *map) {
 /* The code nearest to v. v lies in [0, 1], as means of decoded bytes do. */
 static uint8_t nearest_code(const Builder *b, uint32_t channel, float v) {
   uint32_t i = (uint32_t)(v * STARTS), code = b->start[channel][i < STARTS ? i : STARTS - 1];
-  while (code < 255 && v >= b->begin[channel][code + 1]) code++;
+  while (code < 255 && v >= b->begin[channel][code + 1])
+    code++;
   return (uint8_t)code;
 }
 
@@ -53,13 +56,16 @@ static void make_tables(Builder *b, const vlImage *image, const vlMipmapDef *def
   for (uint32_t c = 0; c < map->channels; c++) {
     vlEncoding encoding = def->own_encoding ? def->encoding : image->encoding;
     float gamma = def->own_encoding ? def->gamma : image->gamma;
-    if (!is_light(image, def->channel[c])) encoding = VL_ENCODING_LINEAR;
+    if (!is_light(image, def->channel[c]))
+      encoding = VL_ENCODING_LINEAR;
     vl_decode_table(encoding, gamma, map->decode[c]);
     for (int i = 1; i < 256; i++)
-      b->begin[c][i] =
-          encoding == VL_ENCODING_SRGB ? vl_srgb8_begin[i] : (float)vl_decode(encoding, gamma, (i - 0.5) / 255.0);
+      b->begin[c][i] = encoding == VL_ENCODING_SRGB
+                           ? vl_srgb8_begin[i]
+                           : (float)vl_decode(encoding, gamma, (i - 0.5) / 255.0);
     for (uint32_t i = 0, code = 0; i < STARTS; i++) {
-      while (code < 255 && (float)i / STARTS >= b->begin[c][code + 1]) code++;
+      while (code < 255 && (float)i / STARTS >= b->begin[c][code + 1])
+        code++;
       b->start[c][i] = (uint8_t)code;
     }
   }
@@ -74,25 +80,30 @@ static void row_16bit(const vlImage *image, const vlMipmapDef *def, uint32_t y, 
   for (uint32_t c = 0; c < def->count; c++) {
     vlEncoding encoding = is_light(image, def->channel[c]) ? def->encoding : VL_ENCODING_LINEAR;
     for (uint32_t x = 0; x < image->width; x++)
-      out[(size_t)x * def->count + c] =
-          (float)vl_decode(encoding, def->gamma, row[(size_t)x * image->channels + def->channel[c]] / 65535.0);
+      out[(size_t)x * def->count + c] = (float)vl_decode(
+          encoding, def->gamma, row[(size_t)x * image->channels + def->channel[c]] / 65535.0);
   }
 }
 
 static vlResult finest_level(vlMipmap *map, const vlImage *image, const vlMipmapDef *def) {
   uint32_t n = map->channels;
   size_t row = (size_t)image->width * n;
-  void *block = vl_alloc_array(map->context, row * image->height, map->is_bytes ? 1 : sizeof(float));
-  if (!block) return VL_ERROR_MEMORY;
+  void *block =
+      vl_alloc_array(map->context, row * image->height, map->is_bytes ? 1 : sizeof(float));
+  if (!block)
+    return VL_ERROR_MEMORY;
   vlMipLevel *level = &map->levels[map->level_count++];
-  *level = (vlMipLevel){image->width, image->height, map->is_bytes ? block : NULL, map->is_bytes ? NULL : block};
+  *level = (vlMipLevel){image->width, image->height, map->is_bytes ? block : NULL,
+                        map->is_bytes ? NULL : block};
   for (uint32_t y = 0; y < image->height; y++) {
-    if (vl_task_stopped(def->task, NULL, 0)) return VL_CANCELLED;
+    if (vl_task_stopped(def->task, NULL, 0))
+      return VL_CANCELLED;
     if (map->is_bytes) {
       const uint8_t *from = vl_image_const_row(image, y);
       uint8_t *to = (uint8_t *)block + row * y;
       for (uint32_t x = 0; x < image->width; x++)
-        for (uint32_t c = 0; c < n; c++) to[(size_t)x * n + c] = from[(size_t)x * image->channels + def->channel[c]];
+        for (uint32_t c = 0; c < n; c++)
+          to[(size_t)x * n + c] = from[(size_t)x * image->channels + def->channel[c]];
     } else if (image->type == VL_PIXEL_U16 && def->own_encoding) {
       row_16bit(image, def, y, (float *)block + row * y);
     } else {
@@ -109,19 +120,23 @@ static float share(uint32_t i, uint32_t d, uint32_t from, uint32_t to) {
   return b > a ? (float)((b - a) * to / from) : 0.0f;
 }
 
-/* Row y of the source as floats: from the floats of the level before when they exist, otherwise decoded from the finest
- * level. */
-static const float *source_row(Builder *b, const vlMipLevel *from, const float *floats, uint32_t y) {
+/* Row y of the source as floats: from the floats of the level before when they exist, otherwise
+ * decoded from the finest level. */
+static const float *source_row(Builder *b, const vlMipLevel *from, const float *floats,
+                               uint32_t y) {
   uint32_t n = b->map->channels;
   size_t row = (size_t)from->width * n;
-  if (floats) return floats + row * y;
+  if (floats)
+    return floats + row * y;
   const uint8_t *bytes = from->bytes + row * y;
   if (b->one_table) {
-    for (size_t i = 0; i < row; i++) b->line[i] = b->map->decode[0][bytes[i]];
+    for (size_t i = 0; i < row; i++)
+      b->line[i] = b->map->decode[0][bytes[i]];
     return b->line;
   }
   for (uint32_t c = 0; c < n; c++)
-    for (uint32_t x = 0; x < from->width; x++) b->line[(size_t)x * n + c] = b->map->decode[c][bytes[(size_t)x * n + c]];
+    for (uint32_t x = 0; x < from->width; x++)
+      b->line[(size_t)x * n + c] = b->map->decode[c][bytes[(size_t)x * n + c]];
   return b->line;
 }
 
@@ -129,25 +144,29 @@ static const float *source_row(Builder *b, const vlMipLevel *from, const float *
 static void shrink_pairs(const float *column, uint32_t width, uint32_t n, float *out) {
   for (uint32_t x = 0; x < width; x++)
     for (uint32_t c = 0; c < n; c++)
-      out[(size_t)x * n + c] = 0.5f * column[(size_t)2 * x * n + c] + 0.5f * column[((size_t)2 * x + 1) * n + c];
+      out[(size_t)x * n + c] =
+          0.5f * column[(size_t)2 * x * n + c] + 0.5f * column[((size_t)2 * x + 1) * n + c];
 }
 
 /* False: stopped. */
-static bool shrink(Builder *b, const vlMipLevel *from, const float *floats, uint32_t width, uint32_t height,
-                   float *out) {
+static bool shrink(Builder *b, const vlMipLevel *from, const float *floats, uint32_t width,
+                   uint32_t height, float *out) {
   uint32_t n = b->map->channels;
   size_t row = (size_t)from->width * n;
   for (uint32_t y = 0; y < height; y++, out += (size_t)width * n) {
-    if (vl_task_stopped(b->task, NULL, 0)) return false;
+    if (vl_task_stopped(b->task, NULL, 0))
+      return false;
     uint32_t first = (uint32_t)((uint64_t)y * from->height / height);
     uint32_t last = (uint32_t)(((uint64_t)(y + 1) * from->height + height - 1) / height);
     for (uint32_t i = first; i < last; i++) {
       float w = share(i, y, from->height, height);
       const float *line = source_row(b, from, floats, i);
       if (i == first)
-        for (size_t k = 0; k < row; k++) b->column[k] = w * line[k];
+        for (size_t k = 0; k < row; k++)
+          b->column[k] = w * line[k];
       else
-        for (size_t k = 0; k < row; k++) b->column[k] += w * line[k];
+        for (size_t k = 0; k < row; k++)
+          b->column[k] += w * line[k];
     }
     if (from->width == 2 * width) {
       shrink_pairs(b->column, width, n, out);
@@ -157,10 +176,12 @@ static bool shrink(Builder *b, const vlMipLevel *from, const float *floats, uint
       uint32_t left = (uint32_t)((uint64_t)x * from->width / width);
       uint32_t right = (uint32_t)(((uint64_t)(x + 1) * from->width + width - 1) / width);
       float *to = out + (size_t)x * n;
-      for (uint32_t c = 0; c < n; c++) to[c] = 0.0f;
+      for (uint32_t c = 0; c < n; c++)
+        to[c] = 0.0f;
       for (uint32_t i = left; i < right; i++) {
         float w = share(i, x, from->width, width);
-        for (uint32_t c = 0; c < n; c++) to[c] += w * b->column[(size_t)i * n + c];
+        for (uint32_t c = 0; c < n; c++)
+          to[c] += w * b->column[(size_t)i * n + c];
       }
     }
   }
@@ -171,39 +192,46 @@ static bool shrink(Builder *b, const vlMipLevel *from, const float *floats, uint
 static void store_codes(const Builder *b, const float *floats, size_t count, uint8_t *bytes) {
   const uint32_t n = b->map->channels;
   for (size_t i = 0; i < count; i += n)
-    for (uint32_t c = 0; c < n; c++) bytes[i + c] = nearest_code(b, c, floats[i + c]);
+    for (uint32_t c = 0; c < n; c++)
+      bytes[i + c] = nearest_code(b, c, floats[i + c]);
 }
 
-/* Makes the next coarser level. *kept holds the floats of the level before (null for 8-bit level 0) and is replaced by
- * the new level's. */
+/* Makes the next coarser level. *kept holds the floats of the level before (null for 8-bit
+ * level 0) and is replaced by the new level's. */
 static vlResult add_level(Builder *b, float **kept) {
   vlMipmap *map = b->map;
   const vlMipLevel *from = &map->levels[map->level_count - 1];
-  uint32_t width = from->width > 1 ? from->width / 2 : 1, height = from->height > 1 ? from->height / 2 : 1;
+  uint32_t width = from->width > 1 ? from->width / 2 : 1,
+           height = from->height > 1 ? from->height / 2 : 1;
   size_t count = (size_t)width * height * map->channels;
   float *floats = vl_alloc_array(map->context, count, sizeof *floats);
   uint8_t *bytes = map->is_bytes ? vl_alloc_array(map->context, count, 1) : NULL;
   vlResult result = floats && (!map->is_bytes || bytes) ? VL_OK : VL_ERROR_MEMORY;
-  if (result == VL_OK && !shrink(b, from, map->is_bytes ? *kept : from->floats, width, height, floats))
+  if (result == VL_OK &&
+      !shrink(b, from, map->is_bytes ? *kept : from->floats, width, height, floats))
     result = VL_CANCELLED;
   if (result != VL_OK) {
     vl_free(map->context, floats);
     vl_free(map->context, bytes);
     return result;
   }
-  if (bytes) store_codes(b, floats, count, bytes);
+  if (bytes)
+    store_codes(b, floats, count, bytes);
   if (map->is_bytes) {
     vl_free(map->context, *kept);
     *kept = floats;
   }
-  map->levels[map->level_count++] = (vlMipLevel){width, height, bytes, map->is_bytes ? NULL : floats};
+  map->levels[map->level_count++] =
+      (vlMipLevel){width, height, bytes, map->is_bytes ? NULL : floats};
   return VL_OK;
 }
 
 /* Finds the colour space whose chromaticities agree with the image's to 0.001, as in pbrt. */
 static void find_space(const vlImage *image, vlMipmap *map) {
   vlAttribute a;
-  if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK || a.type != VL_ATTRIBUTE_CHROMATICITIES) return;
+  if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK ||
+      a.type != VL_ATTRIBUTE_CHROMATICITIES)
+    return;
   for (int k = 0; k < 4; k++) {
     float xy[8];
     bool same = true;
@@ -219,23 +247,28 @@ static void find_space(const vlImage *image, vlMipmap *map) {
 
 vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap **mipmap) {
   *mipmap = NULL;
-  if (def->count < 1 || def->count > 4) return VL_ERROR_ARGUMENT;
+  if (def->count < 1 || def->count > 4)
+    return VL_ERROR_ARGUMENT;
   for (uint32_t c = 0; c < def->count; c++)
-    if (def->channel[c] >= image->channels) return VL_ERROR_ARGUMENT;
-  if (def->own_encoding && def->encoding == VL_ENCODING_GAMMA && !(def->gamma > 0.0f)) return VL_ERROR_ARGUMENT;
+    if (def->channel[c] >= image->channels)
+      return VL_ERROR_ARGUMENT;
+  if (def->own_encoding && def->encoding == VL_ENCODING_GAMMA && !(def->gamma > 0.0f))
+    return VL_ERROR_ARGUMENT;
   vlContext *context = image->context;
   Builder *b = vl_alloc_zero(context, 1, sizeof *b);
   vlMipmap *map = vl_alloc_zero(context, 1, sizeof *map);
   vlResult result = b && map ? VL_OK : VL_ERROR_MEMORY;
   float *kept = NULL;
-  if (map) map->context = context; /* vl_mipmap_destroy needs the context */
+  if (map)
+    map->context = context; /* vl_mipmap_destroy needs the context */
   if (result == VL_OK) {
     b->map = map;
     b->task = def->task;
     map->channels = def->count;
     find_space(image, map);
     map->is_bytes = image->type == VL_PIXEL_U8;
-    if (map->is_bytes) make_tables(b, image, def);
+    if (map->is_bytes)
+      make_tables(b, image, def);
     size_t row = (size_t)image->width * def->count;
     b->column = vl_alloc_array(context, row, sizeof(float));
     b->line = vl_alloc_array(context, row, sizeof(float));
@@ -243,7 +276,8 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
   }
   while (result == VL_OK && !def->only_finest && map->level_count < VL_MIP_LEVELS) {
     const vlMipLevel *last = &map->levels[map->level_count - 1];
-    if (last->width == 1 && last->height == 1) break;
+    if (last->width == 1 && last->height == 1)
+      break;
     result = add_level(b, &kept);
   }
   vl_free(context, kept);

@@ -1,5 +1,6 @@
-/* image/pixel.h: single values: half floats, the sRGB curve, and log and power in double. The results have the same
- * bits on every machine: only + - * / and integer operations are used (libm selects code by processor). */
+/* image/pixel.h: single values: half floats, the sRGB curve, and log and power in double. The
+ * results have the same bits on every machine: only + - * / and integer operations are used
+ * (libm selects code by processor). */
 #ifndef IMAGE_PIXEL_H
 #define IMAGE_PIXEL_H
 
@@ -8,10 +9,12 @@
 
 #include "velo/image.h"
 
-/* ---- half floats (IEEE 754 binary16) ----------------------------------------------------------------------------- */
+/* ---- half floats (IEEE 754 binary16)
+ * ----------------------------------------------------------------------------- */
 
 static inline float vl_half_to_float(uint16_t h) {
-  uint32_t sign = (uint32_t)(h & 0x8000u) << 16, exponent = (h >> 10) & 31u, mantissa = h & 0x3ffu, bits;
+  uint32_t sign = (uint32_t)(h & 0x8000u) << 16, exponent = (h >> 10) & 31u,
+           mantissa = h & 0x3ffu, bits;
   float f;
   if (exponent == 31u) {
     bits = sign | 0x7f800000u | mantissa << 13;
@@ -32,9 +35,12 @@ static inline uint16_t vl_float_to_half(float f) {
   memcpy(&bits, &f, 4);
   uint16_t sign = (uint16_t)(bits >> 16 & 0x8000u);
   uint32_t magnitude = bits & 0x7fffffffu;
-  if (magnitude > 0x7f800000u) return (uint16_t)(sign | 0x7e00u);
-  if (magnitude >= 0x477ff000u) return (uint16_t)(sign | 0x7c00u);
-  if (magnitude < 0x38800000u) { /* below 2^-14: a multiple of 2^-24; adding 0.5 makes the addition round */
+  if (magnitude > 0x7f800000u)
+    return (uint16_t)(sign | 0x7e00u);
+  if (magnitude >= 0x477ff000u)
+    return (uint16_t)(sign | 0x7c00u);
+  if (magnitude <
+      0x38800000u) { /* below 2^-14: a multiple of 2^-24; adding 0.5 makes the addition round */
     float a;
     memcpy(&a, &magnitude, 4);
     a += 0.5f;
@@ -45,14 +51,18 @@ static inline uint16_t vl_float_to_half(float f) {
   return (uint16_t)(sign | (magnitude - 0x38000000u) >> 13);
 }
 
-/* ---- curves ------------------------------------------------------------------------------------------------------ */
+/* ---- curves
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the range of linear values that rounds to each code: code c
- * stands for values from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1]. All values are correctly rounded floats. */
+/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the range of linear values that rounds
+ * to each code: code c stands for values from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1].
+ * All values are correctly rounded floats. */
 extern const float vl_srgb8_to_linear[256];
 extern const float vl_srgb8_begin[256];
 
-/* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives 0. */
+/* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives 0.
+ */
 uint8_t vl_linear_to_srgb8(float linear);
 /* The nearest of 256 equally spaced codes for a value clamped to [0, 1]; NaN gives 0. */
 static inline uint8_t vl_linear_to_unorm8(float x) {

@@ -14,12 +14,15 @@ static uint32_t be32(const uint8_t *p) {
 vlResult vl_qoi_read(const vlImageFile *file, vlImage **image) {
   const uint8_t *d = file->data;
   uint32_t width = be32(d + 4), height = be32(d + 8), channels = d[12];
-  if (channels != 3 && channels != 4) return vl_codec_broken(file, "QOI", "neither 3 nor 4 channels");
+  if (channels != 3 && channels != 4)
+    return vl_codec_broken(file, "QOI", "neither 3 nor 4 channels");
   vlResult result = vl_codec_promise(file, "QOI", width, height, (double)width * height,
                                      62.0); /* one byte encodes a run of up to 62 pixels */
   vlEncoding encoding = d[13] == 1 ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB;
-  if (result == VL_OK) result = vl_codec_create(file, width, height, channels, VL_PIXEL_U8, encoding, image);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = vl_codec_create(file, width, height, channels, VL_PIXEL_U8, encoding, image);
+  if (result != VL_OK)
+    return result;
   uint8_t seen[64][4], pixel[4] = {0, 0, 0, 255}, *out = (*image)->pixels;
   memset(seen, 0, sizeof seen);
   size_t at = 14, count = (size_t)width * height;
@@ -28,10 +31,12 @@ vlResult vl_qoi_read(const vlImageFile *file, vlImage **image) {
     if (run) {
       run--;
     } else {
-      if (at >= file->size) return vl_codec_broken(file, "QOI", "ends too early");
+      if (at >= file->size)
+        return vl_codec_broken(file, "QOI", "ends too early");
       uint8_t b = d[at++];
       uint32_t more = b == 0xfe ? 3 : b == 0xff ? 4 : b >> 6 == 2 ? 1 : 0;
-      if (more > file->size - at) return vl_codec_broken(file, "QOI", "ends too early");
+      if (more > file->size - at)
+        return vl_codec_broken(file, "QOI", "ends too early");
       if (b >= 0xfe) {
         memcpy(pixel, d + at, more);
       } else if (b >> 6 == 0) {

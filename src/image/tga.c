@@ -1,11 +1,19 @@
-/* image/tga.c: Truevision TGA: grey, palette and true colour of 8, 15, 16, 24 and 32 bits, uncompressed and run-length
- * encoded, all four origins. Written uncompressed, from the top. The format has no signature: the probe checks the
- * header for plausibility. */
+/* image/tga.c: Truevision TGA: grey, palette and true colour of 8, 15, 16, 24 and 32 bits,
+ * uncompressed and run-length encoded, all four origins. Written uncompressed, from the top.
+ * The format has no signature: the probe checks the header for plausibility. */
 #include <string.h>
 
 #include "image/codec.h"
 
-enum { HEAD = 18, PALETTE = 1, COLOR = 2, GREY = 3, RLE = 8, FROM_RIGHT = 0x10, FROM_TOP = 0x20 };
+enum {
+  HEAD = 18,
+  PALETTE = 1,
+  COLOR = 2,
+  GREY = 3,
+  RLE = 8,
+  FROM_RIGHT = 0x10,
+  FROM_TOP = 0x20
+};
 
 typedef struct Tga {
   uint32_t width, height, kind, depth, flags;
@@ -23,7 +31,8 @@ static bool depth_ok(uint32_t depth) {
 }
 
 static bool parse(const uint8_t *d, size_t size, Tga *t) {
-  if (size < HEAD) return false;
+  if (size < HEAD)
+    return false;
   uint32_t has_palette = d[1];
   t->kind = d[2] & ~(uint32_t)RLE;
   t->rle = (d[2] & RLE) != 0;
@@ -34,11 +43,16 @@ static bool parse(const uint8_t *d, size_t size, Tga *t) {
   t->height = le16(d + 14);
   t->depth = d[16];
   t->flags = d[17];
-  if (has_palette > 1 || t->kind < PALETTE || t->kind > GREY || (t->flags & 0xc0)) return false;
-  if (t->width == 0 || t->height == 0) return false;
-  if (t->kind == PALETTE && !(has_palette && t->depth == 8 && depth_ok(t->palette_depth))) return false;
-  if (t->kind == COLOR && !depth_ok(t->depth)) return false;
-  if (t->kind == GREY && t->depth != 8 && t->depth != 16) return false;
+  if (has_palette > 1 || t->kind < PALETTE || t->kind > GREY || (t->flags & 0xc0))
+    return false;
+  if (t->width == 0 || t->height == 0)
+    return false;
+  if (t->kind == PALETTE && !(has_palette && t->depth == 8 && depth_ok(t->palette_depth)))
+    return false;
+  if (t->kind == COLOR && !depth_ok(t->depth))
+    return false;
+  if (t->kind == GREY && t->depth != 8 && t->depth != 16)
+    return false;
   t->palette_at = (size_t)HEAD + d[0];
   t->pixels_at = t->palette_at + (size_t)t->palette_count * ((t->palette_depth + 7) / 8);
   return true;
@@ -49,8 +63,8 @@ bool vl_tga_probe(const uint8_t *data, size_t size) {
   return parse(data, size, &t);
 }
 
-/* Converts a stored colour of 2, 3 or 4 bytes (blue first) to R G B (A). The alpha bit of 16-bit colours is ignored,
- * since it is unreliable. */
+/* Converts a stored colour of 2, 3 or 4 bytes (blue first) to R G B (A). The alpha bit of
+ * 16-bit colours is ignored, since it is unreliable. */
 static void color_out(const uint8_t *p, uint32_t depth, uint8_t *out) {
   if (depth <= 16) {
     uint32_t v = le16(p);
@@ -62,7 +76,8 @@ static void color_out(const uint8_t *p, uint32_t depth, uint8_t *out) {
   out[0] = p[2];
   out[1] = p[1];
   out[2] = p[0];
-  if (depth == 32) out[3] = p[3];
+  if (depth == 32)
+    out[3] = p[3];
 }
 
 static bool pixel_out(const vlImageFile *file, const Tga *t, const uint8_t *p, uint8_t *out) {
@@ -72,8 +87,10 @@ static bool pixel_out(const vlImageFile *file, const Tga *t, const uint8_t *p, u
     memcpy(out, p, t->depth / 8);
   } else {
     uint32_t index = (uint32_t)p[0] - t->palette_first;
-    if (p[0] < t->palette_first || index >= t->palette_count) return false;
-    color_out(file->data + t->palette_at + (size_t)index * ((t->palette_depth + 7) / 8), t->palette_depth, out);
+    if (p[0] < t->palette_first || index >= t->palette_count)
+      return false;
+    color_out(file->data + t->palette_at + (size_t)index * ((t->palette_depth + 7) / 8),
+              t->palette_depth, out);
   }
   return true;
 }
@@ -89,7 +106,8 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
       bool fresh = true;
       if (t->rle) {
         if (run == 0) {
-          if (at >= file->size) return vl_codec_broken(file, "TGA", "ends too early");
+          if (at >= file->size)
+            return vl_codec_broken(file, "TGA", "ends too early");
           repeat = file->data[at] & 0x80;
           run = (file->data[at++] & 0x7fu) + 1;
         } else {
@@ -98,7 +116,8 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
         run--;
       }
       if (fresh) {
-        if (bytes > file->size || at > file->size - bytes) return vl_codec_broken(file, "TGA", "ends too early");
+        if (bytes > file->size || at > file->size - bytes)
+          return vl_codec_broken(file, "TGA", "ends too early");
         if (!pixel_out(file, t, file->data + at, value))
           return vl_codec_broken(file, "TGA", "a colour outside its palette");
         at += bytes;
@@ -111,51 +130,65 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
 
 /* Many writers leave the fourth byte 0 and declare no alpha bits: such images have no alpha. */
 static bool alpha_is_empty(const Tga *t, const vlImage *image) {
-  if (t->flags & 15) return false;
+  if (t->flags & 15)
+    return false;
   const uint8_t *p = image->pixels;
   for (size_t i = 0, n = (size_t)t->width * t->height; i < n; i++)
-    if (p[4 * i + 3]) return false;
+    if (p[4 * i + 3])
+      return false;
   return true;
 }
 
 vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
   Tga t;
-  if (!parse(file->data, file->size, &t)) return vl_codec_broken(file, "TGA", "its header is not understood");
-  if (t.pixels_at > file->size) return vl_codec_broken(file, "TGA", "ends in its palette");
+  if (!parse(file->data, file->size, &t))
+    return vl_codec_broken(file, "TGA", "its header is not understood");
+  if (t.pixels_at > file->size)
+    return vl_codec_broken(file, "TGA", "ends in its palette");
   uint32_t depth = t.kind == PALETTE ? t.palette_depth : t.depth;
   uint32_t channels = t.kind == GREY ? depth / 8 : depth == 32 ? 4 : 3;
-  double stored =
-      (double)t.width * t.height * ((t.depth + 7) / 8); /* a run: 128 pixels from a count byte and one pixel */
-  vlResult result = vl_codec_promise(file, "TGA", t.width, t.height, stored, t.rle ? 128.0 : 1.0);
+  double stored = (double)t.width * t.height *
+                  ((t.depth + 7) / 8); /* a run: 128 pixels from a count byte and one pixel */
+  vlResult result =
+      vl_codec_promise(file, "TGA", t.width, t.height, stored, t.rle ? 128.0 : 1.0);
   if (result == VL_OK)
-    result = vl_codec_create(file, t.width, t.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, image);
-  if (result == VL_OK) result = read_pixels(file, &t, *image);
-  if (result != VL_OK || channels != 4 || !alpha_is_empty(&t, *image)) return result;
+    result = vl_codec_create(file, t.width, t.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB,
+                             image);
+  if (result == VL_OK)
+    result = read_pixels(file, &t, *image);
+  if (result != VL_OK || channels != 4 || !alpha_is_empty(&t, *image))
+    return result;
   vlImage *opaque;
   result = vl_codec_create(file, t.width, t.height, 3, VL_PIXEL_U8, VL_ENCODING_SRGB, &opaque);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   const uint8_t *from = (*image)->pixels;
   uint8_t *to = opaque->pixels;
-  for (size_t i = 0, n = (size_t)t.width * t.height; i < n; i++) memcpy(to + 3 * i, from + 4 * i, 3);
+  for (size_t i = 0, n = (size_t)t.width * t.height; i < n; i++)
+    memcpy(to + 3 * i, from + 4 * i, 3);
   vl_image_destroy(*image);
   *image = opaque;
   return VL_OK;
 }
 
-vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
+vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
+                      vlError *error) {
   (void)def;
   uint32_t channel[4], count = vl_image_shown(image, channel);
   vlResult result = VL_OK;
   if (image->width > 65535 || image->height > 65535)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: TGA holds at most 65535x65535 pixels", writer->path);
-  if (count == 2) count = 1; /* few programs read grey with alpha */
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "cannot write %s: TGA holds at most 65535x65535 pixels", writer->path);
+  if (count == 2)
+    count = 1; /* few programs read grey with alpha */
   uint8_t *row = vl_alloc_array(image->context, image->width, count);
   float *scratch = vl_alloc_array(image->context, image->width, count * sizeof(float));
   if (row && scratch) {
-    const uint8_t head[HEAD] = {[2] = count == 1 ? GREY : COLOR,       [12] = (uint8_t)image->width,
-                                [13] = (uint8_t)(image->width >> 8),   [14] = (uint8_t)image->height,
-                                [15] = (uint8_t)(image->height >> 8),  [16] = (uint8_t)(count * 8),
-                                [17] = FROM_TOP | (count == 4 ? 8 : 0)};
+    const uint8_t head[HEAD] = {
+        [2] = count == 1 ? GREY : COLOR,       [12] = (uint8_t)image->width,
+        [13] = (uint8_t)(image->width >> 8),   [14] = (uint8_t)image->height,
+        [15] = (uint8_t)(image->height >> 8),  [16] = (uint8_t)(count * 8),
+        [17] = FROM_TOP | (count == 4 ? 8 : 0)};
     vl_file_write(writer, head, HEAD);
     for (uint32_t y = 0; y < image->height && !writer->failed_errno; y++) {
       vl_codec_row_8bit(image, y, channel, count, scratch, row);

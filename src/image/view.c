@@ -1,6 +1,6 @@
-/* image/view.c: view transforms: conversion of linear light to display values. The input is linear Rec.709 R G B, or Y;
- * the result is 8-bit sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used, so results are the same on
- * every machine. */
+/* image/view.c: view transforms: conversion of linear light to display values. The input is
+ * linear Rec.709 R G B, or Y; the result is 8-bit sRGB. Only arithmetic with fixed bits
+ * (math/approx.h, tables) is used, so results are the same on every machine. */
 #include "image/view.h"
 #include "base/error.h"
 #include "image/image.h"
@@ -20,9 +20,9 @@ static float smallest(Color c) {
   return m < c.b ? m : c.b;
 }
 
-/* Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral, specification of 2024). It subtracts the
- * Fresnel reflection of 0.04, compresses only above 0.8, and desaturates compressed colours towards white. Result in
- * [0, 1], linear. */
+/* Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral, specification of
+ * 2024). It subtracts the Fresnel reflection of 0.04, compresses only above 0.8, and
+ * desaturates compressed colours towards white. Result in [0, 1], linear. */
 static Color khronos_neutral(Color c) {
   const float f90 = 0.04f, start = 0.8f - 0.04f, desaturation = 0.15f;
   float x = smallest(c);
@@ -31,27 +31,31 @@ static Color khronos_neutral(Color c) {
   c.g -= offset;
   c.b -= offset;
   float peak = largest(c);
-  if (peak <= start) return c;
+  if (peak <= start)
+    return c;
   float d = 1.0f - start, to = 1.0f - d * d / (peak + d - start), scale = to / peak;
   float g = 1.0f / (desaturation * (peak - to) + 1.0f);
   float white = to * (1.0f - g);
   return (Color){c.r * scale * g + white, c.g * scale * g + white, c.b * scale * g + white};
 }
 
-/* AgX (Troy Sobotka, github.com/sobotka/AgX) with Benjamin Wrensch's polynomial for the contrast curve ("Minimal AgX
- * Implementation", iolite-engine.com, 2023): inset matrix, 16.5 stops of log2 around middle grey, curve, outset matrix.
- * The result is display-encoded. */
+/* AgX (Troy Sobotka, github.com/sobotka/AgX) with Benjamin Wrensch's polynomial for the
+ * contrast curve ("Minimal AgX Implementation", iolite-engine.com, 2023): inset matrix, 16.5
+ * stops of log2 around middle grey, curve, outset matrix. The result is display-encoded. */
 static float agx_curve(float v) {
   float stops = vl_ln(v > 1e-30f ? v : 1e-30f) * 1.44269504088896341f;
   float x = (stops + 12.47393f) / (4.026069f + 12.47393f);
   x = x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f;
   float x2 = x * x, x4 = x2 * x2;
-  return 15.5f * x4 * x2 - 40.14f * x4 * x + 31.96f * x4 - 6.868f * x2 * x + 0.4298f * x2 + 0.1191f * x - 0.00232f;
+  return 15.5f * x4 * x2 - 40.14f * x4 * x + 31.96f * x4 - 6.868f * x2 * x + 0.4298f * x2 +
+         0.1191f * x - 0.00232f;
 }
 
 static Color agx(Color c) {
-  float r = agx_curve(0.842479062253094f * c.r + 0.0784335999999992f * c.g + 0.0792237451477643f * c.b);
-  float g = agx_curve(0.0423282422610123f * c.r + 0.878468636469772f * c.g + 0.0791661274605434f * c.b);
+  float r = agx_curve(0.842479062253094f * c.r + 0.0784335999999992f * c.g +
+                      0.0792237451477643f * c.b);
+  float g = agx_curve(0.0423282422610123f * c.r + 0.878468636469772f * c.g +
+                      0.0791661274605434f * c.b);
   float b = agx_curve(0.0423756549057051f * c.r + 0.0784336f * c.g + 0.879142973793104f * c.b);
   return (Color){1.19687900512017f * r - 0.0980208811401368f * g - 0.0990297440797205f * b,
                  -0.0528968517574562f * r + 1.15190312990417f * g - 0.0989611768448433f * b,
@@ -63,7 +67,8 @@ static bool is_encoded(vlView view) {
 }
 
 static Color tone_map(vlView view, Color c) {
-  if (view != VL_VIEW_KHRONOS_NEUTRAL && view != VL_VIEW_AGX) return c;
+  if (view != VL_VIEW_KHRONOS_NEUTRAL && view != VL_VIEW_AGX)
+    return c;
   c.r = c.r > 0.0f ? c.r : 0.0f; /* both are defined for non-negative light */
   c.g = c.g > 0.0f ? c.g : 0.0f;
   c.b = c.b > 0.0f ? c.b : 0.0f;
@@ -82,7 +87,8 @@ static float srgb_curve(float x) {
 void vl_view_display(vlView view, const float linear[3], float display[3]) {
   Color c = tone_map(view, (Color){linear[0], linear[1], linear[2]});
   const float values[3] = {clamp_display(c.r), clamp_display(c.g), clamp_display(c.b)};
-  for (int i = 0; i < 3; i++) display[i] = is_encoded(view) ? values[i] : clamp_display(srgb_curve(values[i]));
+  for (int i = 0; i < 3; i++)
+    display[i] = is_encoded(view) ? values[i] : clamp_display(srgb_curve(values[i]));
 }
 
 static void to_bytes(vlView view, Color c, uint8_t out[3]) {
@@ -93,7 +99,8 @@ static void to_bytes(vlView view, Color c, uint8_t out[3]) {
   out[2] = encoded ? vl_linear_to_unorm8(c.b) : vl_linear_to_srgb8(c.b);
 }
 
-/* NaN and infinity become 0 and are counted. Values that only the exposure makes infinite are clamped. */
+/* NaN and infinity become 0 and are counted. Values that only the exposure makes infinite are
+ * clamped. */
 static float finite_value(float v, float scale, uint64_t *bad) {
   if (!(v - v == 0.0f)) {
     ++*bad;
@@ -103,9 +110,12 @@ static float finite_value(float v, float scale, uint64_t *bad) {
   return scaled < 1e30f ? scaled > -1e30f ? scaled : -1e30f : 1e30f;
 }
 
-vlResult vl_image_view(const vlImage *image, vlView view, float exposure, uint64_t *not_finite, vlImage **result) {
-  if (result) *result = NULL;
-  if (!image || !result || (unsigned)view > VL_VIEW_RAW || !(exposure > -200.0f && exposure < 200.0f))
+vlResult vl_image_view(const vlImage *image, vlView view, float exposure, uint64_t *not_finite,
+                       vlImage **result) {
+  if (result)
+    *result = NULL;
+  if (!image || !result || (unsigned)view > VL_VIEW_RAW ||
+      !(exposure > -200.0f && exposure < 200.0f))
     return VL_ERROR_ARGUMENT;
   uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1;
@@ -124,13 +134,16 @@ vlResult vl_image_view(const vlImage *image, vlView view, float exposure, uint64
       uint8_t bytes[3];
       const float *v = row + (size_t)x * count;
       float r = finite_value(v[0], scale, &bad);
-      Color c =
-          count == 1 ? (Color){r, r, r} : (Color){r, finite_value(v[1], scale, &bad), finite_value(v[2], scale, &bad)};
+      Color c = count == 1 ? (Color){r, r, r}
+                           : (Color){r, finite_value(v[1], scale, &bad),
+                                     finite_value(v[2], scale, &bad)};
       to_bytes(view, c, bytes);
-      for (uint32_t k = 0; k < count; k++) out[(size_t)x * count + k] = bytes[k];
+      for (uint32_t k = 0; k < count; k++)
+        out[(size_t)x * count + k] = bytes[k];
     }
   }
   vl_free(image->context, row);
-  if (not_finite) *not_finite = bad;
+  if (not_finite)
+    *not_finite = bad;
   return code;
 }

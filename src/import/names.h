@@ -1,4 +1,5 @@
-/* import/names.h: a small open-addressing hash table from strings to indices. The strings are not owned. */
+/* import/names.h: a small open-addressing hash table from strings to indices. The strings are
+ * not owned. */
 #ifndef IMPORT_NAMES_H
 #define IMPORT_NAMES_H
 
@@ -13,7 +14,8 @@ typedef struct vlNameTable {
   vlNamed *slots;
   uint32_t capacity, count;
 } vlNameTable;
-bool vl_names_add(vlContext *context, vlNameTable *table, const char *name, uint32_t index); /* false: out of memory */
+bool vl_names_add(vlContext *context, vlNameTable *table, const char *name,
+                  uint32_t index); /* false: out of memory */
 bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
 const char *vl_names_nearest(const vlNameTable *table, const char *name);
 

@@ -1,4 +1,6 @@
-/* import/plain.c: plain geometry: loads a PLY file as a scene, with default settings and material. */
+/* import/plain.c: plain geometry: loads a PLY file as a scene, with default settings and
+ * material.
+ */
 #include "import/plain.h"
 
 #include <string.h>
@@ -24,11 +26,14 @@ void vl_import_plain_settings(vlScene *scene) {
 
 /* Appends each quad to the triangles, as two triangles. */
 static bool split_quads(vlContext *context, vlPlyMesh *m) {
-  if (!m->quads) return true;
+  if (!m->quads)
+    return true;
   size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;
-  if (count > 0x7fffffff) return false;
+  if (count > 0x7fffffff)
+    return false;
   uint32_t *fresh = vl_realloc_array(context, m->triangle_indices, 3 * count, sizeof *fresh);
-  if (!fresh) return false;
+  if (!fresh)
+    return false;
   m->triangle_indices = fresh;
   uint32_t *to = fresh + 3 * (size_t)m->triangles;
   for (size_t i = 0; i < m->quads; i++, to += 6) {
@@ -40,7 +45,8 @@ static bool split_quads(vlContext *context, vlPlyMesh *m) {
   return true;
 }
 
-/* The default material: grey or the vertex colours, with the roughness of slightly polished plaster. */
+/* The default material: grey or the vertex colours, with the roughness of slightly polished
+ * plaster. */
 static vlMaterialId add_material(vlScene *scene, bool colors) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
   def.reflectance = vl_spectrum_input(vl_spectrum_rgb(0.8f, 0.8f, 0.8f));
@@ -58,9 +64,11 @@ static void free_mesh(vlContext *context, vlPlainMesh *m) {
   *m = (vlPlainMesh){0};
 }
 
-static float *copy_rows(vlContext *context, const float *from, uint32_t width, const uint32_t *rows, size_t count) {
+static float *copy_rows(vlContext *context, const float *from, uint32_t width,
+                        const uint32_t *rows, size_t count) {
   float *to = vl_alloc_array(context, count, width * sizeof *to);
-  for (size_t i = 0; to && i < count; i++) memcpy(to + i * width, from + (size_t)rows[i] * width, width * sizeof *to);
+  for (size_t i = 0; to && i < count; i++)
+    memcpy(to + i * width, from + (size_t)rows[i] * width, width * sizeof *to);
   return to;
 }
 
@@ -68,13 +76,17 @@ static float *copy_rows(vlContext *context, const float *from, uint32_t width, c
 static bool separate_faces(vlContext *context, vlPlainMesh *m) {
   size_t count = 3 * (size_t)m->triangles;
   vlPlainMesh made = {.vertices = (uint32_t)count, .triangles = m->triangles};
-  if (count > 0x7fffffff) return false;
+  if (count > 0x7fffffff)
+    return false;
   made.positions = copy_rows(context, m->positions, 3, m->indices, count);
-  if (m->normals) made.normals = copy_rows(context, m->normals, 3, m->indices, count);
-  if (m->uvs) made.uvs = copy_rows(context, m->uvs, 2, m->indices, count);
+  if (m->normals)
+    made.normals = copy_rows(context, m->normals, 3, m->indices, count);
+  if (m->uvs)
+    made.uvs = copy_rows(context, m->uvs, 2, m->indices, count);
   made.colors = vl_alloc_array(context, count, 4 * sizeof *made.colors);
   made.indices = vl_alloc_array(context, count, sizeof *made.indices);
-  bool ok = made.positions && made.colors && made.indices && (!m->normals || made.normals) && (!m->uvs || made.uvs);
+  bool ok = made.positions && made.colors && made.indices && (!m->normals || made.normals) &&
+            (!m->uvs || made.uvs);
   for (size_t i = 0; ok && i < count; i++) {
     memcpy(made.colors + 4 * i, m->face_colors + i / 3 * 3, 3 * sizeof *made.colors);
     made.colors[4 * i + 3] = 1;
@@ -89,7 +101,8 @@ static bool separate_faces(vlContext *context, vlPlainMesh *m) {
   return true;
 }
 
-vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load, vlPlainMesh *m, vlError *error) {
+vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,
+                              vlPlainMesh *m, vlError *error) {
   vlContext *context = scene->context;
   bool ok = true;
   if (!m->vertices) {
@@ -98,8 +111,10 @@ vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef 
                   "it has no faces and no points: there is nothing to draw");
     return vl_scene_result(scene, error);
   }
-  if (!m->triangles) ok = vl_import_points(context, path, m);
-  if (ok && m->face_colors && !m->colors) ok = separate_faces(context, m);
+  if (!m->triangles)
+    ok = vl_import_points(context, path, m);
+  if (ok && m->face_colors && !m->colors)
+    ok = separate_faces(context, m);
   if (!ok) {
     free_mesh(context, m);
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){.file = path}, "out of memory");
@@ -120,26 +135,30 @@ vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef 
   def.indices = m->indices;
   def.material = add_material(scene, m->colors != NULL);
   vlRepairs repairs = {0};
-  if (load && load->permissive) vl_repair_mesh(context, &repairs, &def); /* out of memory: the scene checks it */
+  if (load && load->permissive)
+    vl_repair_mesh(context, &repairs, &def); /* out of memory: the scene checks it */
   vl_repairs_report(context, &repairs, path);
   vl_scene_adopt_shape(scene, &def);
   *m = (vlPlainMesh){0};
   return vl_scene_result(scene, error);
 }
 
-vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
+vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
+                       vlError *error) {
   vlContext *context = scene->context;
   vl_import_plain_settings(scene);
   vlPlyMesh mesh = {0};
   vlError inside = {0};
-  vlResult r = vl_ply_read_given(context, scene->task, path, load && load->permissive, &mesh, &inside);
+  vlResult r =
+      vl_ply_read_given(context, scene->task, path, load && load->permissive, &mesh, &inside);
   if (r == VL_OK && !split_quads(context, &mesh)) {
     r = VL_ERROR_MEMORY;
     vl_ply_free(context, &mesh);
   }
   if (r != VL_OK) {
     vlSource source = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};
-    vl_scene_fail(scene, r, source, "%s", r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
+    vl_scene_fail(scene, r, source, "%s",
+                  r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
     return vl_scene_result(scene, error);
   }
   vl_free(context, mesh.quad_indices);

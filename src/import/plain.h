@@ -8,10 +8,11 @@
 /* Marks camera and lights as missing, so that vl_scene_complete adds them. */
 void vl_import_plain_settings(vlScene *scene);
 
-/* Adds the mesh to the scene. Without triangles its vertices are points: discs across their normals; without normals
- * small balls. The median distance to the fourth neighbour is their radius, within 1/2000 and 1/50 of the diagonal.
- * load: its permissive repairs normals and uvs; may be null. Returns vl_scene_result. */
-vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load, vlPlainMesh *mesh,
-                              vlError *error);
+/* Adds the mesh to the scene. Without triangles its vertices are points: discs across their
+ * normals; without normals small balls. The median distance to the fourth neighbour is their
+ * radius, within 1/2000 and 1/50 of the diagonal. load: its permissive repairs normals and uvs;
+ * may be null. Returns vl_scene_result. */
+vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,
+                              vlPlainMesh *mesh, vlError *error);
 
 #endif

@@ -23,7 +23,8 @@ static int ascending(const void *a, const void *b) {
 
 static double distance2(const float *a, const float *b) {
   double sum = 0;
-  for (int i = 0; i < 3; i++) sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+  for (int i = 0; i < 3; i++)
+    sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
   return sum;
 }
 
@@ -38,8 +39,8 @@ static double diagonal(const vlPlainMesh *m) {
   return sqrt(distance2(low, high));
 }
 
-/* The median distance of a point to its fourth neighbour, which in grids and in random surfaces is that of points side
- * by side; equal points are no neighbours. */
+/* The median distance of a point to its fourth neighbour, which in grids and in random surfaces
+ * is that of points side by side; equal points are no neighbours. */
 static double spacing(const vlPlainMesh *m) {
   double nearest[PROBES];
   size_t n = 0, step = m->vertices / PROBES + 1, others = m->vertices / MOST_POINTS + 1;
@@ -47,47 +48,61 @@ static double spacing(const vlPlainMesh *m) {
     double best[NEIGHBOURS] = {INFINITY, INFINITY, INFINITY, INFINITY};
     for (size_t k = 0; k < m->vertices; k += others) {
       double d = distance2(m->positions + 3 * i, m->positions + 3 * k);
-      if (!(d > 0 && d < best[NEIGHBOURS - 1])) continue;
+      if (!(d > 0 && d < best[NEIGHBOURS - 1]))
+        continue;
       int at = NEIGHBOURS - 1;
-      for (; at > 0 && best[at - 1] > d; at--) best[at] = best[at - 1];
+      for (; at > 0 && best[at - 1] > d; at--)
+        best[at] = best[at - 1];
       best[at] = d;
     }
     int last = NEIGHBOURS - 1;
-    while (last > 0 && !isfinite(best[last])) last--;
-    if (isfinite(best[last])) nearest[n++] = sqrt(best[last]);
+    while (last > 0 && !isfinite(best[last]))
+      last--;
+    if (isfinite(best[last]))
+      nearest[n++] = sqrt(best[last]);
   }
-  if (n == 0) return 0;
+  if (n == 0)
+    return 0;
   qsort(nearest, n, sizeof *nearest, ascending);
   return nearest[n / 2];
 }
 
 /* Six points around a normal. */
 static void disc(const float *n, float radius, float corners[CORNERS][3]) {
-  static const double turn[CORNERS][2] = {{1, 0},  {0.5, 0.8660254037844386},   {-0.5, 0.8660254037844386},
-                                          {-1, 0}, {-0.5, -0.8660254037844386}, {0.5, -0.8660254037844386}};
-  double l = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]), u[3], v[3], w[3], lu = 0;
-  for (int i = 0; i < 3; i++) w[i] = l > 0 ? n[i] / l : i == 2;
-  int least = fabs(w[0]) < fabs(w[1]) ? (fabs(w[0]) < fabs(w[2]) ? 0 : 2) : fabs(w[1]) < fabs(w[2]) ? 1 : 2;
+  static const double turn[CORNERS][2] = {
+      {1, 0},  {0.5, 0.8660254037844386},   {-0.5, 0.8660254037844386},
+      {-1, 0}, {-0.5, -0.8660254037844386}, {0.5, -0.8660254037844386}};
+  double l = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]), u[3], v[3],
+         w[3], lu = 0;
+  for (int i = 0; i < 3; i++)
+    w[i] = l > 0 ? n[i] / l : i == 2;
+  int least = fabs(w[0]) < fabs(w[1])   ? (fabs(w[0]) < fabs(w[2]) ? 0 : 2)
+              : fabs(w[1]) < fabs(w[2]) ? 1
+                                        : 2;
   for (int i = 0; i < 3; i++) {
     u[i] = (i == least) - w[least] * w[i];
     lu += u[i] * u[i];
   }
-  for (int i = 0; i < 3; i++) u[i] /= sqrt(lu);
+  for (int i = 0; i < 3; i++)
+    u[i] /= sqrt(lu);
   vl_cross3(w, u, v);
   for (int k = 0; k < CORNERS; k++)
-    for (int i = 0; i < 3; i++) corners[k][i] = radius * (float)(turn[k][0] * u[i] + turn[k][1] * v[i]);
+    for (int i = 0; i < 3; i++)
+      corners[k][i] = radius * (float)(turn[k][0] * u[i] + turn[k][1] * v[i]);
 }
 
 static void ball(float radius, float corners[CORNERS][3]) {
   for (int k = 0; k < CORNERS; k++)
-    for (int i = 0; i < 3; i++) corners[k][i] = i == k / 2 ? (k & 1 ? -radius : radius) : 0;
+    for (int i = 0; i < 3; i++)
+      corners[k][i] = i == k / 2 ? (k & 1 ? -radius : radius) : 0;
 }
 
 /* Writes the corners and faces of point i. */
 static void put_point(const vlPlainMesh *m, size_t i, float radius, vlPlainMesh *made) {
-  static const uint32_t disc_faces[DISC_FACES][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
-  static const uint32_t ball_faces[BALL_FACES][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  static const uint32_t disc_faces[DISC_FACES][3] = {
+      {0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+  static const uint32_t ball_faces[BALL_FACES][3] = {
+      {0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   size_t faces = m->normals ? DISC_FACES : BALL_FACES;
   float corners[CORNERS][3];
   if (m->normals)
@@ -100,7 +115,8 @@ static void put_point(const vlPlainMesh *m, size_t i, float radius, vlPlainMesh 
       made->positions[3 * at + c] = m->positions[3 * i + c] + corners[k][c];
       made->normals[3 * at + c] = m->normals ? m->normals[3 * i + c] : corners[k][c];
     }
-    if (m->colors) memcpy(made->colors + 4 * at, m->colors + 4 * i, 4 * sizeof(float));
+    if (m->colors)
+      memcpy(made->colors + 4 * at, m->colors + 4 * i, 4 * sizeof(float));
   }
   for (size_t f = 0; f < faces; f++)
     for (size_t k = 0; k < 3; k++)
@@ -110,26 +126,30 @@ static void put_point(const vlPlainMesh *m, size_t i, float radius, vlPlainMesh 
 
 bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
   size_t faces = m->normals ? DISC_FACES : BALL_FACES, count = m->vertices;
-  if (count * BALL_FACES > 0x3fffffff) return false;
+  if (count * BALL_FACES > 0x3fffffff)
+    return false;
   double size = diagonal(m), radius = spacing(m);
   radius = fmin(fmax(radius, size / 2000), size / 50);
   radius = radius > 0 ? radius : 1;
-  vlPlainMesh made = {.vertices = (uint32_t)(count * CORNERS), .triangles = (uint32_t)(count * faces)};
+  vlPlainMesh made = {.vertices = (uint32_t)(count * CORNERS),
+                      .triangles = (uint32_t)(count * faces)};
   made.positions = vl_alloc_array(context, count * CORNERS, 3 * sizeof(float));
   made.normals = vl_alloc_array(context, count * CORNERS, 3 * sizeof(float));
   made.indices = vl_alloc_array(context, count * faces, 3 * sizeof(uint32_t));
-  if (m->colors) made.colors = vl_alloc_array(context, count * CORNERS, 4 * sizeof(float));
+  if (m->colors)
+    made.colors = vl_alloc_array(context, count * CORNERS, 4 * sizeof(float));
   if (!made.positions || !made.normals || !made.indices || (m->colors && !made.colors)) {
     VL_FREE(context, made.positions, made.normals, made.indices, made.colors);
     return false;
   }
-  for (size_t i = 0; i < count; i++) put_point(m, i, (float)radius, &made);
+  for (size_t i = 0; i < count; i++)
+    put_point(m, i, (float)radius, &made);
   VL_FREE(context, m->positions, m->normals, m->uvs, m->colors, m->indices);
   made.face_colors = m->face_colors;
   *m = made;
   vlError where = {0};
   strncpy(where.file, path, sizeof where.file - 1);
-  vl_log(context, VL_LOG_INFO, &where, "it has no faces: its %zu points are %s of radius %.4g", count,
-         faces == DISC_FACES ? "discs" : "balls", radius);
+  vl_log(context, VL_LOG_INFO, &where, "it has no faces: its %zu points are %s of radius %.4g",
+         count, faces == DISC_FACES ? "discs" : "balls", radius);
   return true;
 }

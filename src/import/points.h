@@ -14,8 +14,8 @@ typedef struct vlPlainMesh {
   uint32_t *indices;                /* 3 per triangle */
 } vlPlainMesh;
 
-/* Replaces the vertices of a mesh without triangles by discs or balls. path: for the note. False: memory is
- * exhausted, or there are too many points; the mesh is as before. */
+/* Replaces the vertices of a mesh without triangles by discs or balls. path: for the note.
+ * False: memory is exhausted, or there are too many points; the mesh is as before. */
 bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *mesh);
 
 #endif

@@ -1,6 +1,7 @@
-/* math/approx.h: elementary functions in plain C that compilers vectorise, with the same bits on every machine (only
- * + - * / sqrt and integer operations). Polynomials after Moshier's Cephes (single precision). Errors are relative
- * to the exact value over the stated range. */
+/* math/approx.h: elementary functions in plain C that compilers vectorise, with the same bits
+ * on every machine (only
+ * + - * / sqrt and integer operations). Polynomials after Moshier's Cephes (single precision).
+ * Errors are relative to the exact value over the stated range. */
 #ifndef MATH_APPROX_H
 #define MATH_APPROX_H
 
@@ -26,7 +27,9 @@ typedef struct vlSinCos {
 static inline vlSinCos vl_sincos_kernel(float x) {
   float z = x * x;
   float s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * x + x;
-  float c = ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1.0f;
+  float c = ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) *
+                z * z -
+            0.5f * z + 1.0f;
   return (vlSinCos){s, c};
 }
 static inline vlSinCos vl_sincos_quadrant(vlSinCos k, int32_t q) {
@@ -46,13 +49,16 @@ static inline vlSinCos vl_sincos_turn(float u) {
   return vl_sincos_quadrant(vl_sincos_kernel((q - n) * 1.57079632679489662f), (int32_t)n);
 }
 
-/* Relative error < 2e-7 for results in the normal range; 0 below -87.3, saturates at exp(88.3). */
+/* Relative error < 2e-7 for results in the normal range; 0 below -87.3, saturates at exp(88.3).
+ */
 static inline float vl_exp(float x) {
   float y = x > 88.3f ? 88.3f : x;
   y = y < -87.3f ? -87.3f : y;
   float n = __builtin_floorf(y * 1.44269504088896341f + 0.5f);
   float r = (y - n * 0.693359375f) - n * -2.12194440e-4f;
-  float p = ((((1.9875691500e-4f * r + 1.3981999507e-3f) * r + 8.3334519073e-3f) * r + 4.1665795894e-2f) * r +
+  float p = ((((1.9875691500e-4f * r + 1.3981999507e-3f) * r + 8.3334519073e-3f) * r +
+              4.1665795894e-2f) *
+                 r +
              1.6666665459e-1f) *
                 r +
             5.0000001201e-1f;
@@ -61,7 +67,8 @@ static inline float vl_exp(float x) {
   return x < -87.3f ? 0.0f : x != x ? x : result;
 }
 
-/* Natural logarithm; relative error < 2e-7 for normal x > 0; -inf at 0 and for denormals below, NaN for x < 0. */
+/* Natural logarithm; relative error < 2e-7 for normal x > 0; -inf at 0 and for denormals below,
+ * NaN for x < 0. */
 static inline float vl_ln(float x) {
   uint32_t u = vl_float_bits(x);
   int32_t e = (int32_t)(u >> 23) - 126;
@@ -70,7 +77,9 @@ static inline float vl_ln(float x) {
   float f = small ? m + m - 1.0f : m - 1.0f;
   float ef = (float)(small ? e - 1 : e);
   float z = f * f;
-  float p = ((((((((7.0376836292e-2f * f - 1.1514610310e-1f) * f + 1.1676998740e-1f) * f - 1.2420140846e-1f) * f +
+  float p = ((((((((7.0376836292e-2f * f - 1.1514610310e-1f) * f + 1.1676998740e-1f) * f -
+                  1.2420140846e-1f) *
+                     f +
                  1.4249322787e-1f) *
                     f -
                 1.6668057665e-1f) *
@@ -103,7 +112,9 @@ static inline float vl_asin(float x) {
   int big = a > 0.5f;
   float z = big ? 0.5f * (1.0f - a) : a * a;
   float s = big ? __builtin_sqrtf(z) : a;
-  float p = ((((4.2163199048e-2f * z + 2.4181311049e-2f) * z + 4.5470025998e-2f) * z + 7.4953002686e-2f) * z +
+  float p = ((((4.2163199048e-2f * z + 2.4181311049e-2f) * z + 4.5470025998e-2f) * z +
+              7.4953002686e-2f) *
+                 z +
              1.6666752422e-1f) *
                 z * s +
             s;
@@ -125,7 +136,10 @@ static inline float vl_atan(float x) {
   float den = big ? a : mid ? a + 1.0f : 1.0f;
   float t = num / den;
   float z = t * t;
-  float p = (((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z - 3.33329491539e-1f) * z * t + t;
+  float p = (((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z -
+             3.33329491539e-1f) *
+                z * t +
+            t;
   return __builtin_copysignf(base + p, x);
 }
 /* Angle of (x, y) in (-pi, pi]; 0 at the origin. */

@@ -1,4 +1,5 @@
-/* math/cube_map.h: directions and the faces of a cube map, in the order and with the axes of OpenGL: +x -x +y -y +z -z.
+/* math/cube_map.h: directions and the faces of a cube map, in the order and with the axes of
+ * OpenGL: +x -x +y -y +z -z.
  */
 #ifndef VL_MATH_CUBE_MAP_H
 #define VL_MATH_CUBE_MAP_H
@@ -9,7 +10,8 @@
 
 /* The direction of a point (s, t) in [-1, 1] of a face; not normalized. */
 static inline vlVec3 vl_cube_map_direction(uint32_t face, float s, float t) {
-  const vlVec3 d[6] = {{1, -t, -s}, {-1, -t, s}, {s, 1, t}, {s, -1, -t}, {s, -t, 1}, {-s, -t, -1}};
+  const vlVec3 d[6] = {{1, -t, -s}, {-1, -t, s}, {s, 1, t},
+                       {s, -1, -t}, {s, -t, 1},  {-s, -t, -1}};
   return d[face];
 }
 

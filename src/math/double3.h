@@ -1,17 +1,21 @@
-/* math/double3.h: vectors of three doubles and affine maps (row-major, 3x4 or 4x4), for work outside of hot loops. */
+/* math/double3.h: vectors of three doubles and affine maps (row-major, 3x4 or 4x4), for work
+ * outside of hot loops. */
 #ifndef MATH_DOUBLE3_H
 #define MATH_DOUBLE3_H
 
 #include <math.h>
 
 static inline void vl_map_point(const double m[12], const double p[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+  for (int i = 0; i < 3; i++)
+    r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
 }
 static inline void vl_map_vector(const double m[12], const double v[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
+  for (int i = 0; i < 3; i++)
+    r[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
 }
 static inline void vl_map_normal(const double inverse[12], const double n[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = inverse[i] * n[0] + inverse[4 + i] * n[1] + inverse[8 + i] * n[2];
+  for (int i = 0; i < 3; i++)
+    r[i] = inverse[i] * n[0] + inverse[4 + i] * n[1] + inverse[8 + i] * n[2];
 }
 static inline double vl_dot3(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -31,7 +35,8 @@ static inline double vl_triple3(const double a[3], const double b[3], const doub
   return vl_dot3(a, n);
 }
 /* The normal of a triangle, by the order of its corners; its length is twice the area. */
-static inline void vl_triangle_normal(const float *a, const float *b, const float *c, double n[3]) {
+static inline void vl_triangle_normal(const float *a, const float *b, const float *c,
+                                      double n[3]) {
   double to_b[3], to_c[3];
   for (int i = 0; i < 3; i++) {
     to_b[i] = (double)b[i] - (double)a[i];
@@ -43,12 +48,14 @@ static inline void vl_triangle_normal(const float *a, const float *b, const floa
 static inline double vl_normalize3(double a[3]) {
   double l = vl_norm3(a);
   if (l > 0)
-    for (int i = 0; i < 3; i++) a[i] /= l;
+    for (int i = 0; i < 3; i++)
+      a[i] /= l;
   return l;
 }
 /* Of the upper left 3x3. */
 static inline double vl_determinant3(const double m[12]) {
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+         m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
 #endif

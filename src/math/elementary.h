@@ -1,9 +1,10 @@
-/* math/elementary.h: accurate elementary functions for values that are computed once, while a scene is loaded or a
- * world is built. They compute in pairs of doubles and round at the end. They use only + - * / sqrt and selections, so
- * unlike the C library they give the same bits on every machine. The result is the nearest double except in about one
- * case in 2^40 (error below 0.5000001 units in the last place, test/math/test_elementary.c). They cost some hundred
- * times as much as math/approx.h and math/approx_double.h, which are for loops. The result is NaN where the function
- * has no value. */
+/* math/elementary.h: accurate elementary functions for values that are computed once, while a
+ * scene is loaded or a world is built. They compute in pairs of doubles and round at the end.
+ * They use only + - * / sqrt and selections, so unlike the C library they give the same bits on
+ * every machine. The result is the nearest double except in about one case in 2^40 (error below
+ * 0.5000001 units in the last place, test/math/test_elementary.c). They cost some hundred times
+ * as much as math/approx.h and math/approx_double.h, which are for loops. The result is NaN
+ * where the function has no value. */
 #ifndef MATH_ELEMENTARY_H
 #define MATH_ELEMENTARY_H
 

@@ -1,7 +1,8 @@
-/* math/fresnel.h: reflectance of a smooth interface for unpolarised light. The functions work by value and have no
- * branches, because the hot loops inline them. Cosines refer to the (micro)normal on the incident side, so they are >=
- * 0. Source: pbrt book 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index;
- * the form without complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel
+/* math/fresnel.h: reflectance of a smooth interface for unpolarised light. The functions work
+ * by value and have no branches, because the hot loops inline them. Cosines refer to the
+ * (micro)normal on the incident side, so they are >= 0. Source: pbrt book 9.3.6 (dielectric:
+ * Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index; the form without
+ * complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel
  * equations). */
 #ifndef MATH_FRESNEL_H
 #define MATH_FRESNEL_H
@@ -10,11 +11,12 @@
 
 typedef struct vlFresnel {
   float reflected; /* reflectance in [0, 1]; 1 in total internal reflection */
-  float root;      /* eta times the cosine of the refracted direction; 0 in total internal reflection */
+  float root; /* eta times the cosine of the refracted direction; 0 in total internal reflection
+               */
 } vlFresnel;
 
-/* eta: index on the transmitted side over the index on the incident side, > 0. cos_i is clamped to [0, 1]. With root
- * = eta cos_t = sqrt(eta^2 - sin_i^2) a single division suffices. */
+/* eta: index on the transmitted side over the index on the incident side, > 0. cos_i is clamped
+ * to [0, 1]. With root = eta cos_t = sqrt(eta^2 - sin_i^2) a single division suffices. */
 static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   c = c > 0.0f ? c : 0.0f;
@@ -31,11 +33,12 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   return (vlFresnel){inside > 0.0f ? r : 1.0f, root};
 }
 
-/* Reflectance for the complex index eta + i k relative to vacuum, for one channel. Both are clamped to 1e6, since
- * their powers would overflow. With the usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2) and Rp = Rs (t3 - t4)/(t3 + t4),
- * so their mean is Rs t3/(t3 + t4). t1 is 0 for an index of 1 at grazing angles, and t3 is 0 for an index of 0 at
- * normal incidence. Adding `nonzero` gives the reflectance 1 in these cases instead of 0/0; in all others it is
- * smaller than the rounding. */
+/* Reflectance for the complex index eta + i k relative to vacuum, for one channel. Both are
+ * clamped to 1e6, since their powers would overflow. With the usual t1 ... t4: Rs = (t1 -
+ * t2)/(t1 + t2) and Rp = Rs (t3 - t4)/(t3 + t4), so their mean is Rs t3/(t3 + t4). t1 is 0 for
+ * an index of 1 at grazing angles, and t3 is 0 for an index of 0 at normal incidence. Adding
+ * `nonzero` gives the reflectance 1 in these cases instead of 0/0; in all others it is smaller
+ * than the rounding. */
 static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   const float nonzero = 1e-20f;
   float c = cos_i > 1.0f ? 1.0f : cos_i;
@@ -51,8 +54,9 @@ static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   return (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4));
 }
 
-/* A thin slab of two parallel interfaces, with all orders of interreflection: R + T^2 R + T^2 R^3 ... = 2R/(1+R) for
- * T = 1 - R (pbrt book 9.5.1). */
+/* A thin slab of two parallel interfaces, with all orders of interreflection: R + T^2 R + T^2
+ * R^3
+ * ... = 2R/(1+R) for T = 1 - R (pbrt book 9.5.1). */
 static inline float vl_fresnel_slab(float reflected) {
   return 2.0f * reflected / (1.0f + reflected);
 }

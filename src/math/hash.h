@@ -1,5 +1,5 @@
-/* math/hash.h: integer hashing, for random numbers that depend only on (seed, pixel, sample, dimension). All integers
- * have 32 bits, so that loops vectorise on every instruction set. */
+/* math/hash.h: integer hashing, for random numbers that depend only on (seed, pixel, sample,
+ * dimension). All integers have 32 bits, so that loops vectorise on every instruction set. */
 #ifndef MATH_HASH_H
 #define MATH_HASH_H
 

@@ -1,9 +1,11 @@
-/* math/lowdiscrepancy.h: building blocks of the samplers: digit reversal, Sobol's first two dimensions, nested uniform
- * (Owen) scrambling, Morton order, random permutations of any length, primes. All functions use 32-bit integers and no
- * tables in loops, so they vectorise on every instruction set.
+/* math/lowdiscrepancy.h: building blocks of the samplers: digit reversal, Sobol's first two
+ * dimensions, nested uniform (Owen) scrambling, Morton order, random permutations of any
+ * length, primes. All functions use 32-bit integers and no tables in loops, so they vectorise
+ * on every instruction set.
  *
- * A number u in [0,1) is stored as the 32-bit integer u 2^32 ("fraction"); an "index" counts samples. Bit reversal
- * converts one to the other: the radical inverse in base 2 of index i is the fraction reverse(i). */
+ * A number u in [0,1) is stored as the 32-bit integer u 2^32 ("fraction"); an "index" counts
+ * samples. Bit reversal converts one to the other: the radical inverse in base 2 of index i is
+ * the fraction reverse(i). */
 #ifndef MATH_LOWDISCREPANCY_H
 #define MATH_LOWDISCREPANCY_H
 
@@ -16,14 +18,16 @@ static inline uint32_t vl_reverse_bits(uint32_t x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-/* The top 24 bits of a fraction as a float in [0,1). Converts from signed, a single instruction on every set. */
+/* The top 24 bits of a fraction as a float in [0,1). Converts from signed, a single instruction
+ * on every set. */
 static inline float vl_fraction_float(uint32_t x) {
   return (float)(int32_t)(x >> 8) * 0x1p-24f;
 }
 
-/* Nested uniform scrambling of a bit-reversed fraction: a random permutation in which each bit is flipped or kept by
- * a hash of the lower bits alone (Laine and Karras 2011; Burley 2020, "Practical Hash-based Owen Scrambling";
- * constants found by search, Vegdahl 2021, "Building a Better LK Hash"). */
+/* Nested uniform scrambling of a bit-reversed fraction: a random permutation in which each bit
+ * is flipped or kept by a hash of the lower bits alone (Laine and Karras 2011; Burley 2020,
+ * "Practical Hash-based Owen Scrambling"; constants found by search, Vegdahl 2021, "Building a
+ * Better LK Hash"). */
 static inline uint32_t vl_owen_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -32,16 +36,16 @@ static inline uint32_t vl_owen_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x53a22864u;
   return x;
 }
-/* Nested uniform scrambling of a fraction (most significant bit first). Applied to an index, it shuffles indices so
- * that each aligned block of 2^k indices remains an aligned block. */
+/* Nested uniform scrambling of a fraction (most significant bit first). Applied to an index, it
+ * shuffles indices so that each aligned block of 2^k indices remains an aligned block. */
 static inline uint32_t vl_owen(uint32_t x, uint32_t seed) {
   return vl_reverse_bits(vl_owen_reversed(vl_reverse_bits(x), seed));
 }
 
-/* Sobol's second dimension, bit-reversed: its generator matrix is Pascal's triangle modulo 2, the Kronecker power of
- * (1 1; 0 1), so that five steps replace a loop over 32 columns (cf. Ahmed 2024, "An Implementation Algorithm of 2D
- * Sobol Sequence Fast, Elegant, and Compact"). With reverse(index) as the first dimension: a (0,2)-sequence in base
- * 2. */
+/* Sobol's second dimension, bit-reversed: its generator matrix is Pascal's triangle modulo 2,
+ * the Kronecker power of (1 1; 0 1), so that five steps replace a loop over 32 columns (cf.
+ * Ahmed 2024, "An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact").
+ * With reverse(index) as the first dimension: a (0,2)-sequence in base 2. */
 static inline uint32_t vl_sobol2_reversed(uint32_t index) {
   uint32_t x = index;
   x ^= (x >> 1) & 0x55555555u;
@@ -63,9 +67,10 @@ static inline uint32_t vl_morton(uint32_t x, uint32_t y) {
   return vl_spread_bits(x) | (vl_spread_bits(y) << 1);
 }
 
-/* A random permutation of [0, count). mask is the smallest 2^w - 1 >= count - 1. One application permutes [0, 2^w);
- * for [0, count) it is repeated while the result is outside ("cycle walking", Black and Rogaway 2002). Each round is
- * a bijection of w bits: add, multiply by an odd number, fold the upper half into the lower. */
+/* A random permutation of [0, count). mask is the smallest 2^w - 1 >= count - 1. One
+ * application permutes [0, 2^w); for [0, count) it is repeated while the result is outside
+ * ("cycle walking", Black and Rogaway 2002). Each round is a bijection of w bits: add, multiply
+ * by an odd number, fold the upper half into the lower. */
 typedef struct vlPermuteState {
   uint32_t i, key;
 } vlPermuteState;
@@ -73,9 +78,10 @@ static inline vlPermuteState vl_permute_round(vlPermuteState s, uint32_t mask, u
   uint32_t k = s.key, i = ((s.i ^ (k >> 4)) * ((k >> 15) | 1u) + (k >> 9)) & mask;
   return (vlPermuteState){i ^ (i >> shift), (k ^ (k >> 15)) * 0x2c9277b5u + 0xac564b05u};
 }
-/* Eight rounds, because fewer are visibly uneven for 4 and 5 elements. Unrolled by hand, because clang does not
- * vectorise nested loops. */
-static inline __attribute__((always_inline)) uint32_t vl_permute_step(uint32_t i, uint32_t mask, uint32_t shift,
+/* Eight rounds, because fewer are visibly uneven for 4 and 5 elements. Unrolled by hand,
+ * because clang does not vectorise nested loops. */
+static inline __attribute__((always_inline)) uint32_t vl_permute_step(uint32_t i, uint32_t mask,
+                                                                      uint32_t shift,
                                                                       uint32_t key) {
   vlPermuteState s = {i, vl_hash(key)};
   s = vl_permute_round(vl_permute_round(s, mask, shift), mask, shift);
@@ -89,17 +95,19 @@ typedef struct vlPermutation {
 } vlPermutation;
 static inline vlPermutation vl_permutation(uint32_t count) {
   uint32_t bits = count > 1 ? 32u - (uint32_t)__builtin_clz(count - 1) : 0;
-  return (vlPermutation){count, bits == 0 ? 0 : 0xffffffffu >> (32 - bits), bits < 2 ? 1 : (bits + 1) / 2};
+  return (vlPermutation){count, bits == 0 ? 0 : 0xffffffffu >> (32 - bits),
+                         bits < 2 ? 1 : (bits + 1) / 2};
 }
 /* The permutation of one element; i < count. */
 static inline uint32_t vl_permute(vlPermutation p, uint32_t i, uint32_t key) {
-  do i = vl_permute_step(i, p.mask, p.shift, key);
+  do
+    i = vl_permute_step(i, p.mask, p.shift, key);
   while (i >= p.count);
   return i;
 }
 
-/* Computes a / b and a % b where a whole batch has the same b, for a < 2^31 and a / b < 2^22. It multiplies by the
- * float reciprocal, then corrects the result. */
+/* Computes a / b and a % b where a whole batch has the same b, for a < 2^31 and a / b < 2^22.
+ * It multiplies by the float reciprocal, then corrects the result. */
 typedef struct vlDivision {
   uint32_t quotient, remainder;
 } vlDivision;

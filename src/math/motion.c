@@ -1,4 +1,5 @@
-/* math/motion.c: decomposition of matrices into translation, rotation and stretch. See motion.h. */
+/* math/motion.c: decomposition of matrices into translation, rotation and stretch. See
+ * motion.h. */
 #include "math/motion.h"
 
 #include <math.h>
@@ -10,32 +11,40 @@ typedef struct Mat3 {
 
 static double determinant(const Mat3 *a) {
   const double *m = a->m;
-  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+         m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
 /* Transpose of the inverse: cofactors over the determinant. */
 static Mat3 inverse_transpose(const Mat3 *a) {
   const double *m = a->m;
   double d = 1 / determinant(a);
-  return (Mat3){{(m[4] * m[8] - m[5] * m[7]) * d, (m[5] * m[6] - m[3] * m[8]) * d, (m[3] * m[7] - m[4] * m[6]) * d,
-                 (m[2] * m[7] - m[1] * m[8]) * d, (m[0] * m[8] - m[2] * m[6]) * d, (m[1] * m[6] - m[0] * m[7]) * d,
-                 (m[1] * m[5] - m[2] * m[4]) * d, (m[2] * m[3] - m[0] * m[5]) * d, (m[0] * m[4] - m[1] * m[3]) * d}};
+  return (Mat3){{(m[4] * m[8] - m[5] * m[7]) * d, (m[5] * m[6] - m[3] * m[8]) * d,
+                 (m[3] * m[7] - m[4] * m[6]) * d, (m[2] * m[7] - m[1] * m[8]) * d,
+                 (m[0] * m[8] - m[2] * m[6]) * d, (m[1] * m[6] - m[0] * m[7]) * d,
+                 (m[1] * m[5] - m[2] * m[4]) * d, (m[2] * m[3] - m[0] * m[5]) * d,
+                 (m[0] * m[4] - m[1] * m[3]) * d}};
 }
 
 static double largest(const Mat3 *a) {
   double most = 0;
-  for (int i = 0; i < 9; i++) most = fmax(most, fabs(a->m[i]));
+  for (int i = 0; i < 9; i++)
+    most = fmax(most, fabs(a->m[i]));
   return most;
 }
 
-/* The nearest rotation (a reflection if the matrix mirrors), by averaging with the inverse transpose until
- * convergence, with scaling at each step so that any stretch converges within about ten steps (Higham 1986). */
+/* The nearest rotation (a reflection if the matrix mirrors), by averaging with the inverse
+ * transpose until convergence, with scaling at each step so that any stretch converges within
+ * about ten steps (Higham 1986). */
 static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
   double size = largest(a);
-  if (!(size > 0) || !isfinite(size)) return false;
-  for (int i = 0; i < 9; i++) r->m[i] = a->m[i] / size;
+  if (!(size > 0) || !isfinite(size))
+    return false;
+  for (int i = 0; i < 9; i++)
+    r->m[i] = a->m[i] / size;
   for (int step = 0; step < 100; step++) {
-    if (!(fabs(determinant(r)) > 1e-30)) return false; /* singular: entries are 1 at most */
+    if (!(fabs(determinant(r)) > 1e-30))
+      return false; /* singular: entries are 1 at most */
     Mat3 b = inverse_transpose(r);
     double scale = sqrt(largest(&b) / largest(r)), change = 0;
     scale = step < 8 ? scale : 1;
@@ -44,45 +53,59 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
       change = fmax(change, fabs(next - r->m[i]));
       r->m[i] = next;
     }
-    if (change < 1e-15) return true; /* a few roundings of 1.1e-16 */
+    if (change < 1e-15)
+      return true; /* a few roundings of 1.1e-16 */
   }
-  return fabs(fabs(determinant(r)) - 1) < 1e-9; /* a rotation, though the last digits do not settle */
+  return fabs(fabs(determinant(r)) - 1) <
+         1e-9; /* a rotation, though the last digits do not settle */
 }
 
 /* Unit quaternion of a rotation; starts from its largest component (Shepperd 1978). */
 static void quaternion(const Mat3 *r, double q[4]) {
   const double *m = r->m;
-  double part[4] = {1 + m[0] - m[4] - m[8], 1 - m[0] + m[4] - m[8], 1 - m[0] - m[4] + m[8], 1 + m[0] + m[4] + m[8]};
+  double part[4] = {1 + m[0] - m[4] - m[8], 1 - m[0] + m[4] - m[8], 1 - m[0] - m[4] + m[8],
+                    1 + m[0] + m[4] + m[8]};
   int k = 0;
-  for (int i = 1; i < 4; i++) k = part[i] > part[k] ? i : k;
+  for (int i = 1; i < 4; i++)
+    k = part[i] > part[k] ? i : k;
   double s = sqrt(part[k]), f = 0.5 / s;
   q[k] = 0.5 * s;
   double xy = m[3] + m[1], xz = m[6] + m[2], yz = m[7] + m[5];
   double wx = m[7] - m[5], wy = m[2] - m[6], wz = m[3] - m[1];
-  const double others[4][4] = {{0, xy, xz, wx}, {xy, 0, yz, wy}, {xz, yz, 0, wz}, {wx, wy, wz, 0}};
+  const double others[4][4] = {
+      {0, xy, xz, wx}, {xy, 0, yz, wy}, {xz, yz, 0, wz}, {wx, wy, wz, 0}};
   for (int i = 0; i < 4; i++)
-    if (i != k) q[i] = others[k][i] * f;
+    if (i != k)
+      q[i] = others[k][i] * f;
   double length = 0;
-  for (int i = 0; i < 4; i++) length += q[i] * q[i];
+  for (int i = 0; i < 4; i++)
+    length += q[i] * q[i];
   length = sqrt(length);
-  for (int i = 0; i < 4; i++) q[i] /= length;
+  for (int i = 0; i < 4; i++)
+    q[i] /= length;
 }
 
 static bool split(const double m[16], double t[3], double q[4], double s[9], bool *mirrors) {
   for (int i = 0; i < 16; i++)
-    if (!isfinite(m[i])) return false;
-  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return false;
+    if (!isfinite(m[i]))
+      return false;
+  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+    return false;
   Mat3 a, r;
   for (int i = 0; i < 3; i++) {
     t[i] = m[4 * i + 3];
-    for (int j = 0; j < 3; j++) a.m[3 * i + j] = m[4 * i + j];
+    for (int j = 0; j < 3; j++)
+      a.m[3 * i + j] = m[4 * i + j];
   }
-  if (!nearest_rotation(&a, &r)) return false;
+  if (!nearest_rotation(&a, &r))
+    return false;
   *mirrors = determinant(&r) < 0;
-  for (int i = 0; i < 9 && *mirrors; i++) r.m[i] = -r.m[i];
+  for (int i = 0; i < 9 && *mirrors; i++)
+    r.m[i] = -r.m[i];
   quaternion(&r, q);
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) s[3 * i + j] = r.m[i] * a.m[j] + r.m[3 + i] * a.m[3 + j] + r.m[6 + i] * a.m[6 + j];
+    for (int j = 0; j < 3; j++)
+      s[3 * i + j] = r.m[i] * a.m[j] + r.m[3 + i] * a.m[3 + j] + r.m[6 + i] * a.m[6 + j];
   return true;
 }
 
@@ -90,11 +113,14 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
   bool mirrors[2];
   memset(motion, 0, sizeof *motion);
   if (!split(open, motion->t0, motion->q0, motion->s0, &mirrors[0]) ||
-      !split(close, motion->t1, motion->q1, motion->s1, &mirrors[1]) || mirrors[0] != mirrors[1])
+      !split(close, motion->t1, motion->q1, motion->s1, &mirrors[1]) ||
+      mirrors[0] != mirrors[1])
     return false;
   double dot = 0;
-  for (int i = 0; i < 4; i++) dot += motion->q0[i] * motion->q1[i];
-  for (int i = 0; i < 4 && dot < 0; i++) motion->q1[i] = -motion->q1[i];
+  for (int i = 0; i < 4; i++)
+    dot += motion->q0[i] * motion->q1[i];
+  for (int i = 0; i < 4 && dot < 0; i++)
+    motion->q1[i] = -motion->q1[i];
   double apart = 0, together = 0;
   for (int i = 0; i < 4; i++) {
     double a = motion->q0[i], b = motion->q1[i];
@@ -102,7 +128,9 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
     together += (b + a) * (b + a);
   }
   double angle = 2 * vl_atan2_double(sqrt(apart), sqrt(together));
-  bool turns = angle > 1e-9; /* below, linear interpolation errs by angle^2 = 1e-18, less than a rounding */
+  bool turns =
+      angle >
+      1e-9; /* below, linear interpolation errs by angle^2 = 1e-18, less than a rounding */
   motion->angle = turns ? angle : 0;
   motion->inv_sine = turns ? 1 / vl_sincos_double(angle).sin : 0;
   return true;
@@ -110,15 +138,19 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
 
 bool vl_motion_at(const double open[16], const double close[16], double f, double result[16]) {
   vlMotion motion;
-  if (!vl_motion_make(open, close, &motion)) return false;
+  if (!vl_motion_make(open, close, &motion))
+    return false;
   vlAffine a = vl_motion_between(&motion, f);
   for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) result[4 * i + j] = a.m[3 * i + j];
+    for (int j = 0; j < 3; j++)
+      result[4 * i + j] = a.m[3 * i + j];
     result[4 * i + 3] = a.p[i];
   }
   result[12] = result[13] = result[14] = 0;
   result[15] = 1;
-  if (f <= 0) memmove(result, open, 16 * sizeof *result);
-  if (f >= 1) memmove(result, close, 16 * sizeof *result);
+  if (f <= 0)
+    memmove(result, open, 16 * sizeof *result);
+  if (f >= 1)
+    memmove(result, close, 16 * sizeof *result);
   return true;
 }

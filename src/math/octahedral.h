@@ -1,5 +1,5 @@
-/* math/octahedral.h: the equal-area map between the unit square and the sphere (Clarberg 2008; pbrt book 3.8.3),
- * used for environment images. z > 0 is the inner diamond. */
+/* math/octahedral.h: the equal-area map between the unit square and the sphere (Clarberg 2008;
+ * pbrt book 3.8.3), used for environment images. z > 0 is the inner diamond. */
 #ifndef MATH_OCTAHEDRAL_H
 #define MATH_OCTAHEDRAL_H
 

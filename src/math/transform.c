@@ -12,7 +12,8 @@ vlMat4 vl_mat4_identity(void) {
 
 vlMat4 vl_mat4_load(const double m[16]) {
   vlMat4 r;
-  for (int i = 0; i < 16; i++) r.m[i] = m[i];
+  for (int i = 0; i < 16; i++)
+    r.m[i] = m[i];
   return r;
 }
 
@@ -21,7 +22,8 @@ vlMat4 vl_mat4_multiply(vlMat4 a, vlMat4 b) {
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) {
       double s = 0;
-      for (int k = 0; k < 4; k++) s += a.m[4 * i + k] * b.m[4 * k + j];
+      for (int k = 0; k < 4; k++)
+        s += a.m[4 * i + k] * b.m[4 * k + j];
       r.m[4 * i + j] = s;
     }
   return r;
@@ -31,28 +33,35 @@ bool vl_mat4_inverse(vlMat4 a, vlMat4 *inverse) {
   /* Gauss-Jordan elimination with row pivoting. */
   double w[4][8];
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 8; j++) w[i][j] = j < 4 ? a.m[4 * i + j] : (j - 4 == i);
+    for (int j = 0; j < 8; j++)
+      w[i][j] = j < 4 ? a.m[4 * i + j] : (j - 4 == i);
   *inverse = vl_mat4_identity();
   for (int c = 0; c < 4; c++) {
     int pivot = c;
     for (int r = c + 1; r < 4; r++)
-      if (fabs(w[r][c]) > fabs(w[pivot][c])) pivot = r;
-    if (!(fabs(w[pivot][c]) > 0) || !isfinite(w[pivot][c])) return false;
+      if (fabs(w[r][c]) > fabs(w[pivot][c]))
+        pivot = r;
+    if (!(fabs(w[pivot][c]) > 0) || !isfinite(w[pivot][c]))
+      return false;
     for (int j = 0; j < 8; j++) {
       double t = w[c][j];
       w[c][j] = w[pivot][j];
       w[pivot][j] = t;
     }
     double scale = 1 / w[c][c];
-    for (int j = 0; j < 8; j++) w[c][j] *= scale;
+    for (int j = 0; j < 8; j++)
+      w[c][j] *= scale;
     for (int r = 0; r < 4; r++) {
       double f = w[r][c];
-      if (r == c || f == 0) continue;
-      for (int j = 0; j < 8; j++) w[r][j] -= f * w[c][j];
+      if (r == c || f == 0)
+        continue;
+      for (int j = 0; j < 8; j++)
+        w[r][j] -= f * w[c][j];
     }
   }
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) inverse->m[4 * i + j] = w[i][j + 4];
+    for (int j = 0; j < 4; j++)
+      inverse->m[4 * i + j] = w[i][j + 4];
   return vl_mat4_is_finite(*inverse);
 }
 
@@ -66,13 +75,15 @@ vlMat4 vl_mat4_scale(double x, double y, double z) {
 
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z) {
   double length = sqrt(x * x + y * y + z * z);
-  if (!(length > 0)) return vl_mat4_identity();
+  if (!(length > 0))
+    return vl_mat4_identity();
   x /= length;
   y /= length;
   z /= length;
   double s = vl_precise_sin(radians), c = vl_precise_cos(radians), t = 1 - c;
-  return (vlMat4){{x * x * t + c, x * y * t - z * s, x * z * t + y * s, 0, x * y * t + z * s, y * y * t + c,
-                   y * z * t - x * s, 0, x * z * t - y * s, y * z * t + x * s, z * z * t + c, 0, 0, 0, 0, 1}};
+  return (vlMat4){{x * x * t + c, x * y * t - z * s, x * z * t + y * s, 0, x * y * t + z * s,
+                   y * y * t + c, y * z * t - x * s, 0, x * z * t - y * s, y * z * t + x * s,
+                   z * z * t + c, 0, 0, 0, 0, 1}};
 }
 
 double vl_mat4_determinant3(vlMat4 a) {
@@ -81,54 +92,65 @@ double vl_mat4_determinant3(vlMat4 a) {
 
 bool vl_mat4_is_finite(vlMat4 a) {
   for (int i = 0; i < 16; i++)
-    if (!isfinite(a.m[i])) return false;
+    if (!isfinite(a.m[i]))
+      return false;
   return true;
 }
 
 void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]) {
   const double *m = a->m;
   double r[4];
-  for (int i = 0; i < 4; i++) r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+  for (int i = 0; i < 4; i++)
+    r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
   double s = r[3] == 1 ? 1 : 1 / r[3];
-  for (int i = 0; i < 3; i++) result[i] = r[i] * s;
+  for (int i = 0; i < 3; i++)
+    result[i] = r[i] * s;
 }
 
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]) {
   const double *m = a->m;
   double r[3];
-  for (int i = 0; i < 3; i++) r[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
-  for (int i = 0; i < 3; i++) result[i] = r[i];
+  for (int i = 0; i < 3; i++)
+    r[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
+  for (int i = 0; i < 3; i++)
+    result[i] = r[i];
 }
 
 void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]) {
   const double *m = inverse->m;
   double r[3];
-  for (int i = 0; i < 3; i++) r[i] = m[i] * n[0] + m[4 + i] * n[1] + m[8 + i] * n[2];
-  for (int i = 0; i < 3; i++) result[i] = r[i];
+  for (int i = 0; i < 3; i++)
+    r[i] = m[i] * n[0] + m[4 + i] * n[1] + m[8 + i] * n[2];
+  for (int i = 0; i < 3; i++)
+    result[i] = r[i];
 }
 
 double vl_mat4_scale_of(const vlMat4 *a) {
   return vl_precise_cbrt(fabs(vl_mat4_determinant3(*a)));
 }
 
-void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3], float result[3]) {
+void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
+                           float result[3]) {
   const double rounding = 1e-4, most = 1e12;
   double given[3] = {(double)n[0], (double)n[1], (double)n[2]}, q[3];
   vl_mat4_normal(inverse, given, q);
   double length = vl_norm3(q), weight = length * scale;
-  if (fabs(weight - 1) <= rounding || !(weight >= 1 / most && weight <= most)) weight = 1;
+  if (fabs(weight - 1) <= rounding || !(weight >= 1 / most && weight <= most))
+    weight = 1;
   double factor = length > 0 ? weight / length : 0;
-  for (int k = 0; k < 3; k++) result[k] = (float)(q[k] * factor);
+  for (int k = 0; k < 3; k++)
+    result[k] = (float)(q[k] * factor);
 }
 
 void vl_mat3_multiply(const double a[9], const double b[9], double r[9]) {
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+    for (int j = 0; j < 3; j++)
+      r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
 void vl_mat3_inverse(const double a[9], double r[9]) {
-  double det =
-      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+  double det = a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) +
+               a[2] * (a[3] * a[7] - a[4] * a[6]);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;

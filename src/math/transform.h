@@ -1,4 +1,5 @@
-/* math/transform.h: 4x4 matrices, row-major, column vectors, double. Used while building, never in hot loops. */
+/* math/transform.h: 4x4 matrices, row-major, column vectors, double. Used while building, never
+ * in hot loops. */
 #ifndef MATH_TRANSFORM_H
 #define MATH_TRANSFORM_H
 
@@ -18,16 +19,22 @@ vlMat4 vl_mat4_scale(double x, double y, double z);
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z);
 double vl_mat4_determinant3(vlMat4 a); /* of the upper left 3x3 */
 bool vl_mat4_is_finite(vlMat4 a);
-void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]); /* divides by w if it is not 1 */
+void vl_mat4_point(const vlMat4 *a, const double p[3],
+                   double result[3]); /* divides by w if it is not 1 */
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
-/* Transforms a normal by the transpose of the inverse matrix, which the caller passes. The result is not normalised. */
+/* Transforms a normal by the transpose of the inverse matrix, which the caller passes. The
+ * result is not normalised. */
 void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]);
-/* The same for the normal of a mesh's vertex, whose length is a weight where normals are interpolated, as in pbrt: a
- * mesh looks the same whether it or its instance is stretched. scale: vl_mat4_scale_of the transform, which keeps unit
- * normals near length 1. A length of 1 but for rounding becomes 1, and so do lengths whose square a float cannot hold.
+/* The same for the normal of a mesh's vertex, whose length is a weight where normals are
+ * interpolated, as in pbrt: a mesh looks the same whether it or its instance is stretched.
+ * scale: vl_mat4_scale_of the transform, which keeps unit normals near length 1. A length of 1
+ * but for rounding becomes 1, and so do lengths whose square a float cannot hold.
  */
-void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3], float result[3]);
-/* The mean factor of the transform on lengths: the cube root of its determinant's absolute value. */
+void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
+                           float result[3]);
+/* The mean factor of the transform on lengths: the cube root of its determinant's absolute
+ * value.
+ */
 double vl_mat4_scale_of(const vlMat4 *a);
 
 /* 3x3, row-major. The inverse of a singular matrix is not finite. */

@@ -1,5 +1,5 @@
-/* math/vec.h: 3-D vectors, by value and inline, for the hot loops. Operations are evaluated in the order in which they
- * are written, without FMA and reassociation. */
+/* math/vec.h: 3-D vectors, by value and inline, for the hot loops. Operations are evaluated in
+ * the order in which they are written, without FMA and reassociation. */
 #ifndef MATH_VEC_H
 #define MATH_VEC_H
 
@@ -52,27 +52,35 @@ static inline float vl_abs(float x) {
 }
 /* Largest float below 1. */
 #define VL_ONE_MINUS_EPSILON 0x1.fffffep-1f
-/* Lower bounds for divisors and for arguments of logarithms. A value below its bound is 0 or has no correct digit left.
- * All are normal floats: those below 2^-126 (1.2e-38) have fewer digits, and quotients by them overflow. */
-/* For products and squares of cosines, and for densities. Values up to 1e8 have a finite quotient. */
+/* Lower bounds for divisors and for arguments of logarithms. A value below its bound is 0 or
+ * has no correct digit left. All are normal floats: those below 2^-126 (1.2e-38) have fewer
+ * digits, and quotients by them overflow. */
+/* For products and squares of cosines, and for densities. Values up to 1e8 have a finite
+ * quotient.
+ */
 #define VL_MIN_POSITIVE 1e-30f
-/* For squared lengths in scene units, which may be small. It is the smallest power of ten that is a normal float. */
+/* For squared lengths in scene units, which may be small. It is the smallest power of ten that
+ * is a normal float. */
 #define VL_MIN_NORMAL 1e-37f
-/* For cosines and differences of numbers near 1. They have an absolute error of about 2^-24 (6e-8), so values below 16
- * errors have few significant digits. A quotient of values up to 1 is at most 1e6. */
+/* For cosines and differences of numbers near 1. They have an absolute error of about 2^-24
+ * (6e-8), so values below 16 errors have few significant digits. A quotient of values up to 1
+ * is at most 1e6. */
 #define VL_MIN_FRACTION 1e-6f
 #define VL_PI 3.14159265358979323846f
 #define VL_INV_PI 0.31830988618379067154f
 #define VL_INFINITY __builtin_inff()
 
-/* Orthonormal basis around unit n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"). */
+/* Orthonormal basis around unit n (Duff et al. 2017, "Building an Orthonormal Basis,
+ * Revisited").
+ */
 typedef struct vlFrame {
   vlVec3 x, y, z;
 } vlFrame;
 static inline vlFrame vl_frame_from_z(vlVec3 n) {
   float sign = __builtin_copysignf(1.0f, n.z);
   float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-  return (vlFrame){{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+  return (vlFrame){
+      {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
 static inline vlVec3 vl_from_local(vlFrame f, vlVec3 v) {
   return vl_add(vl_add(vl_mul(f.x, v.x), vl_mul(f.y, v.y)), vl_mul(f.z, v.z));

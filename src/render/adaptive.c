@@ -8,8 +8,8 @@
 
 enum { FIRST_COMPARISON = 8 };
 
-/* The least number above spp (> 0) of the form n * 2^k, with n from `parts` to 2 * parts - 1; parts: a power of two.
- * spp >= parts. */
+/* The least number above spp (> 0) of the form n * 2^k, with n from `parts` to 2 * parts - 1;
+ * parts: a power of two. spp >= parts. */
 static uint32_t next_number(uint32_t spp, uint32_t parts) {
   uint32_t step = (1u << (31 - __builtin_clz(spp))) / parts;
   return spp < UINT32_MAX - step ? (spp / step + 1) * step : UINT32_MAX;
@@ -36,13 +36,15 @@ static const vlComparedNoise *last_comparison(const vlAdaptive *a, uint32_t bloc
   return holds ? last : NULL;
 }
 
-/* The number of samples at which a block ends by this comparison, which may be null; UINT32_MAX: not known yet. The
- * error falls as the square root of the number of samples. */
+/* The number of samples at which a block ends by this comparison, which may be null;
+ * UINT32_MAX: not known yet. The error falls as the square root of the number of samples. */
 static uint32_t end_by(const vlAdaptive *a, const vlComparedNoise *last) {
-  if (!last) return UINT32_MAX;
+  if (!last)
+    return UINT32_MAX;
   double ratio = (double)last->noise / a->noise, needed = (double)last->spp * ratio * ratio;
   uint32_t end = next_number(last->spp, 8), next = next_comparison(last->spp);
-  while (end < needed && end < next) end = next_number(end, 8);
+  while (end < needed && end < next)
+    end = next_number(end, 8);
   return end >= needed ? end : UINT32_MAX;
 }
 
@@ -55,7 +57,8 @@ static void compare_block(void *user, uint32_t block, uint32_t worker) {
   (void)worker;
   const Comparison *c = user;
   vlAdaptive *a = c->a;
-  if (c->wanted && !c->wanted[block]) return;
+  if (c->wanted && !c->wanted[block])
+    return;
   const vlComparedNoise *last = last_comparison(a, block);
   uint32_t spp = vl_film_block_spp(a->film, block);
   bool is_new = is_compared(spp) && (!last || last->spp < spp);
@@ -72,11 +75,12 @@ static bool is_done(const vlAdaptive *a, uint32_t block) {
 
 static void compare_blocks(vlAdaptive *a, const uint8_t *wanted) {
   Comparison c = {a, wanted};
-  if (a->noise > 0) vl_parallel_for(a->context, a->blocks, compare_block, &c);
+  if (a->noise > 0)
+    vl_parallel_for(a->context, a->blocks, compare_block, &c);
 }
 
-vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def,
-                            double correlation) {
+vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film,
+                            const vlRenderDef *def, double correlation) {
   *a = (vlAdaptive){.context = context,
                     .film = film,
                     .noise = def->noise,
@@ -91,14 +95,17 @@ vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, con
     a->compared = vl_film_compared(film);
   else
     vl_film_forget_compared(film);
-  if (!a->end || !a->pass || (a->noise > 0 && !a->compared)) return VL_ERROR_MEMORY;
-  for (uint32_t i = 0; i < a->blocks; i++) a->end[i] = UINT32_MAX;
+  if (!a->end || !a->pass || (a->noise > 0 && !a->compared))
+    return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < a->blocks; i++)
+    a->end[i] = UINT32_MAX;
   compare_blocks(a, NULL);
   return VL_OK;
 }
 
 void vl_adaptive_destroy(vlAdaptive *a) {
-  if (!a->context) return;
+  if (!a->context)
+    return;
   vl_free(a->context, a->end);
   vl_free(a->context, a->pass);
 }
@@ -106,16 +113,20 @@ void vl_adaptive_destroy(vlAdaptive *a) {
 bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *count) {
   uint32_t least = total, end = total;
   for (uint32_t i = 0; i < a->blocks; i++)
-    if (!is_done(a, i) && vl_film_block_spp(a->film, i) < least) least = vl_film_block_spp(a->film, i);
+    if (!is_done(a, i) && vl_film_block_spp(a->film, i) < least)
+      least = vl_film_block_spp(a->film, i);
   a->in_pass = 0;
   for (uint32_t i = 0; i < a->blocks; i++) {
     uint32_t spp = vl_film_block_spp(a->film, i);
     a->pass[i] = !is_done(a, i) && spp == least && spp < total;
     a->in_pass += a->pass[i];
-    if (a->pass[i] && a->end[i] < end) end = a->end[i];
-    if (!is_done(a, i) && spp > least && spp < end) end = spp;
+    if (a->pass[i] && a->end[i] < end)
+      end = a->end[i];
+    if (!is_done(a, i) && spp > least && spp < end)
+      end = spp;
   }
-  if (a->noise > 0 && next_comparison(least) < end) end = next_comparison(least);
+  if (a->noise > 0 && next_comparison(least) < end)
+    end = next_comparison(least);
   *first = least;
   *count = end - least;
   return a->in_pass > 0;
@@ -130,7 +141,8 @@ vlResult vl_adaptive_end_pass(vlAdaptive *a, uint32_t count) {
     vl_film_set_spp(a->film, vl_film_spp(a->film) + count);
   } else {
     for (uint32_t i = 0; i < a->blocks; i++)
-      if (a->pass[i] && vl_film_set_block_spp(a->film, i, vl_film_block_spp(a->film, i) + count) != VL_OK)
+      if (a->pass[i] &&
+          vl_film_set_block_spp(a->film, i, vl_film_block_spp(a->film, i) + count) != VL_OK)
         return VL_ERROR_MEMORY;
   }
   compare_blocks(a, a->pass);
@@ -139,7 +151,8 @@ vlResult vl_adaptive_end_pass(vlAdaptive *a, uint32_t count) {
 
 double vl_adaptive_mean_spp(const vlAdaptive *a) {
   double sum = 0;
-  for (uint32_t i = 0; i < a->blocks; i++) sum += vl_film_block_spp(a->film, i);
+  for (uint32_t i = 0; i < a->blocks; i++)
+    sum += vl_film_block_spp(a->film, i);
   return sum / a->blocks;
 }
 
@@ -158,6 +171,7 @@ double vl_adaptive_expected_spp(const vlAdaptive *a, uint32_t total) {
 
 uint32_t vl_adaptive_noisy(const vlAdaptive *a) {
   uint32_t count = 0;
-  for (uint32_t i = 0; i < a->blocks && a->noise > 0; i++) count += !is_done(a, i);
+  for (uint32_t i = 0; i < a->blocks && a->noise > 0; i++)
+    count += !is_done(a, i);
   return count;
 }

@@ -1,5 +1,5 @@
-/* render/autofocus.c: autofocus. One exact ray per pixel gives the distance of the visible surface; the focus distance
- * is chosen from these distances. */
+/* render/autofocus.c: autofocus. One exact ray per pixel gives the distance of the visible
+ * surface; the focus distance is chosen from these distances. */
 #include "velo/focus.h"
 
 #include <math.h>
@@ -9,9 +9,10 @@
 #include "camera/rays.h"
 #include "trace/ground_truth/ground_truth.h"
 
-/* The part of the ray between the near and far planes (t_min, t_max), from the kernel that makes the image's camera
- * rays. */
-static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, float *t_min, float *t_max) {
+/* The part of the ray between the near and far planes (t_min, t_max), from the kernel that
+ * makes the image's camera rays. */
+static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, float *t_min,
+                      float *t_max) {
   float rows[12][VL_LANES];
   int32_t px[VL_LANES], py[VL_LANES];
   vlCameraCompiled c;
@@ -39,15 +40,17 @@ static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, flo
   *t_max = rows[10][0];
 }
 
-static vlResult look(const vlWorld *world, const vlCamera *camera, double x, double y, double point[3],
-                     vlError *error) {
+static vlResult look(const vlWorld *world, const vlCamera *camera, double x, double y,
+                     double point[3], vlError *error) {
   vlIsa isa = vl_context_isa(world->context);
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
   double o[3], d[3];
   if (!vl_camera_unproject(&pinhole, x, y, o, d))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: the camera sees nothing there", x, y);
-  vlGroundTruthScratch *scratch = vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: focus on pixel %g, %g: the camera sees nothing there", x, y);
+  vlGroundTruthScratch *scratch =
+      vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
   vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
   vlResult result = scratch && batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
@@ -63,42 +66,51 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
     vl_ground_truth_kernels(isa)->trace(world, &def, scratch, batch);
     vl_accel_leave(state);
     double t = batch->distance[0];
-    for (int i = 0; i < 3; i++) point[i] = o[i] + t * d[i];
+    for (int i = 0; i < 3; i++)
+      point[i] = o[i] + t * d[i];
     if (batch->object[0] == 0 || !isfinite(t))
-      result = vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: nothing is seen there", x, y);
+      result = vl_fail(error, VL_ERROR_ARGUMENT,
+                       "camera: focus on pixel %g, %g: nothing is seen there", x, y);
   }
   vl_free(world->context, scratch);
   vl_free(world->context, batch);
   return result;
 }
 
-vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, double y, double *distance,
-                      vlError *error) {
+vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, double y,
+                      double *distance, vlError *error) {
   vl_error_clear(error);
   if (!world || !camera || !distance)
     return vl_fail(error, VL_ERROR_ARGUMENT, "autofocus: world, camera or distance is null");
   if (!(x >= 0 && y >= 0 && x <= camera->width && y <= camera->height))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
                    camera->width, camera->height);
   double point[3], f;
   vlResult result = look(world, camera, x, y, point, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (!vl_camera_focus_at(camera, point, &f))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focus on pixel %g, %g: no plane with the lens's tilt goes through what is seen there", x,
-                   y);
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "camera: focus on pixel %g, %g: no plane with the lens's tilt goes through what "
+        "is seen there",
+        x, y);
   *distance = f;
   return VL_OK;
 }
 
 vlResult vl_camera_autofocus(const vlWorld *world, vlCamera *camera, vlError *error) {
   vl_error_clear(error);
-  if (!world || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera autofocus: world or camera is null");
+  if (!world || !camera)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera autofocus: world or camera is null");
   double *pixel = camera->lens.focus_pixel;
   double distance = 0;
-  if (vl_is_unset(pixel[0]) || vl_is_unset(pixel[1])) return VL_OK;
+  if (vl_is_unset(pixel[0]) || vl_is_unset(pixel[1]))
+    return VL_OK;
   vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   camera->focus_distance = distance;
   pixel[0] = pixel[1] = VL_UNSET;
   return VL_OK;

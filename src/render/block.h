@@ -2,9 +2,9 @@
  *
  *   tile x samples -> film positions (filter) -> camera rays -> trace -> RGB -> film sums
  *
- * A batch is a tile of 16 x 16 pixels times up to 4 samples, or up to 4 tiles. Pixels are in Morton order, so that 16
- * neighbours make a packet. A sample depends on (seed, pixel, index) alone, and the film's sums are exact: the
- * grouping into batches does not change the image. */
+ * A batch is a tile of 16 x 16 pixels times up to 4 samples, or up to 4 tiles. Pixels are in
+ * Morton order, so that 16 neighbours make a packet. A sample depends on (seed, pixel, index)
+ * alone, and the film's sums are exact: the grouping into batches does not change the image. */
 #ifndef RENDER_BLOCK_H
 #define RENDER_BLOCK_H
 
@@ -20,7 +20,8 @@
 #include "velo/render.h"
 
 enum { VL_RENDER_TILE = 16, VL_RENDER_ROWS = VL_FILM_ROWS + 16 };
-/* Some of the rows after those of vlFilmRayRows: 4 wavelengths, 4 densities, 4 of radiance; red, green, blue. */
+/* Some of the rows after those of vlFilmRayRows: 4 wavelengths, 4 densities, 4 of radiance;
+ * red, green, blue. */
 enum {
   VL_ROW_LAMBDA = VL_FILM_ROWS,
   VL_ROW_INV_PDF = VL_ROW_LAMBDA + 4,
@@ -30,13 +31,15 @@ enum {
 
 typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
-  float *rows;                                      /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */
-  _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker; the progress report reads them */
-  vlSharedGrid *grids;                              /* VL_SHARED_SAMPLES of them; null: pixels share no samples */
-  uint64_t merge_work;                              /* as vlTraceBatch.merge_work */
+  float *rows; /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */
+  _Atomic uint64_t paths, bounce_rays,
+      shadow_rays;     /* written by the worker; the progress report reads them */
+  vlSharedGrid *grids; /* VL_SHARED_SAMPLES of them; null: pixels share no samples */
+  uint64_t merge_work; /* as vlTraceBatch.merge_work */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
-  struct vlPathRecorder *recorder; /* records the paths; the film then gets no samples. Null: none */
+  struct vlPathRecorder
+      *recorder; /* records the paths; the film then gets no samples. Null: none */
 } vlRenderWorker;
 
 typedef struct vlRenderRun {
@@ -49,7 +52,8 @@ typedef struct vlRenderRun {
   const vlTraceKernels *trace_kernels;
   vlTwoWayRun *two_way; /* null: a tracer without light paths */
   bool rgb_mode;
-  bool raced;        /* one of the race (choose.c), which has only tracers that lack nothing of the scene */
+  bool raced; /* one of the race (choose.c), which has only tracers that lack nothing of the
+                 scene */
   vlResult prepared; /* of vl_render_prepare: OK or MEMORY */
   bool shares;       /* pixels share samples */
   vlReconstruction reconstruction;
@@ -65,37 +69,39 @@ typedef struct vlRenderRun {
   vlLoopDef loop;
   double start;
   vlFilmSequence sequence;
-  /* Work in samples per pixel, the mean over all pixels: before this call, before the running pass, of the running
-   * pass, and at the end of this call (expected). */
+  /* Work in samples per pixel, the mean over all pixels: before this call, before the running
+   * pass, of the running pass, and at the end of this call (expected). */
   double work_before, work_done, work_pass, work_total;
 } vlRenderRun;
 
-/* Chooses the size of a block. In a pass with few samples a block has several tiles, so that batches are full, but not
- * so many that a worker is idle. */
+/* Chooses the size of a block. In a pass with few samples a block has several tiles, so that
+ * batches are full, but not so many that a worker is idle. */
 void vl_render_choose_blocks(vlRenderRun *r);
 uint32_t vl_render_block_count(const vlRenderRun *r);
 /* A render that only measures (choose.c). */
 typedef struct vlPilot {
-  float spread;         /* vlFilmRays.spread; texture footprints are smaller by the same factor */
-  uint32_t pass_seed;   /* of the wavelengths and times that all paths of a pass share */
-  const vlTails *tails; /* not null: VL_TRACER_LIGHT_PATH, and the film gets what vl_tails_measure finds */
-  uint64_t merge_work;  /* result: as vlTraceBatch.merge_work */
+  float spread;       /* vlFilmRays.spread; texture footprints are smaller by the same factor */
+  uint32_t pass_seed; /* of the wavelengths and times that all paths of a pass share */
+  const vlTails *
+      tails; /* not null: VL_TRACER_LIGHT_PATH, and the film gets what vl_tails_measure finds */
+  uint64_t merge_work; /* result: as vlTraceBatch.merge_work */
 } vlPilot;
 /* As vl_render. pilot may be null. In render.c. */
-vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                         vlPilot *pilot, vlRenderStats *stats, vlError *error);
+vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                         const vlRenderDef *def, vlPilot *pilot, vlRenderStats *stats,
+                         vlError *error);
 /* Makes a run from world, film, def and sequence: rays, sampler, tracer, crop. In render.c. */
 void vl_render_prepare(vlRenderRun *r, const vlCamera *camera);
 /* Checks the arguments of a render. In render.c. */
-vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                         vlError *error);
+vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                         const vlRenderDef *def, vlError *error);
 /* Traces and exposes the n samples that the worker's rows list, and adds them to the film. */
 void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n);
 /* A task of vl_parallel_for; user is the run. */
 void vl_render_block(void *user, uint32_t block, uint32_t worker);
 
-/* Reports the progress to the caller's callback. False: the callback asks to stop. Only on the thread that called
- * vl_render. work: as in vlRenderRun. In render.c. */
+/* Reports the progress to the caller's callback. False: the callback asks to stop. Only on the
+ * thread that called vl_render. work: as in vlRenderRun. In render.c. */
 bool vl_render_report(vlRenderRun *r, bool pass_done, double work);
 
 #endif

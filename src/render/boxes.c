@@ -1,7 +1,7 @@
-/* render/boxes.c: bounding boxes and pixel counts of each object and instance, both for its visible pixels and for
- * all pixels that it would cover if nothing were in front of it. Rays through the pixels' centres collect all
- * intersections, not only the first. Counts are sums and extremes of integers, so the result does not depend on the
- * order of work. */
+/* render/boxes.c: bounding boxes and pixel counts of each object and instance, both for its
+ * visible pixels and for all pixels that it would cover if nothing were in front of it. Rays
+ * through the pixels' centres collect all intersections, not only the first. Counts are sums
+ * and extremes of integers, so the result does not depend on the order of work. */
 #include "render/boxes.h"
 
 #include <stdatomic.h>
@@ -29,14 +29,15 @@ typedef struct Pass {
   vlIdBox *boxes[2];
   uint32_t ids[2];
   uint8_t *grouped; /* by object: it is in a group */
-  bool corners;     /* the instances have too many points in all: the corners of their boxes are used */
+  bool corners;     /* the instances have too many points in all: the corners of their boxes are
+                       used */
   float time;
 } Pass;
 
 static void raise(atomic_uint *value, uint32_t to) {
   unsigned now = atomic_load_explicit(value, memory_order_relaxed);
-  while (now < to &&
-         !atomic_compare_exchange_weak_explicit(value, &now, to, memory_order_relaxed, memory_order_relaxed)) {
+  while (now < to && !atomic_compare_exchange_weak_explicit(
+                         value, &now, to, memory_order_relaxed, memory_order_relaxed)) {
   }
 }
 
@@ -48,11 +49,12 @@ static void note(Extent *e, uint32_t x, uint32_t y) {
   raise(&e->high[1], y);
 }
 
-static void note_pixel(Pass *p, const vlGroundTruthBatch *b, uint32_t lane, const vlGroundTruthLayers *layers,
-                       uint32_t x, uint32_t y) {
+static void note_pixel(Pass *p, const vlGroundTruthBatch *b, uint32_t lane,
+                       const vlGroundTruthLayers *layers, uint32_t x, uint32_t y) {
   uint32_t first[2] = {b->object[lane], b->instance[lane]};
   for (int k = 0; k < 2; k++) {
-    if (!p->counts[k]) continue;
+    if (!p->counts[k])
+      continue;
     if (first[k]) {
       note(&p->counts[k][first[k] - 1].seen, x, y);
       note(&p->counts[k][first[k] - 1].all, x, y);
@@ -60,8 +62,10 @@ static void note_pixel(Pass *p, const vlGroundTruthBatch *b, uint32_t lane, cons
     const uint32_t *ids = k ? layers->instance : layers->object;
     for (uint32_t i = 0; i < layers->count; i++) {
       bool again = ids[i] == 0 || ids[i] == first[k];
-      for (uint32_t j = 0; j < i && !again; j++) again = ids[j] == ids[i];
-      if (!again) note(&p->counts[k][ids[i] - 1].all, x, y);
+      for (uint32_t j = 0; j < i && !again; j++)
+        again = ids[j] == ids[i];
+      if (!again)
+        note(&p->counts[k][ids[i] - 1].all, x, y);
     }
   }
 }
@@ -72,10 +76,13 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   vlChannelWorker *w = &c->workers[worker];
   vlGroundTruthBatch *b = w->batch;
   uint32_t n = 0, x, y;
-  if (vl_stop_check(c->stop)) return;
+  if (vl_stop_check(c->stop))
+    return;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     double o[3], d[3];
-    if (!vl_channel_pixel(c, tile, k, &x, &y) || !vl_camera_unproject(&c->camera, x + 0.5, y + 0.5, o, d)) continue;
+    if (!vl_channel_pixel(c, tile, k, &x, &y) ||
+        !vl_camera_unproject(&c->camera, x + 0.5, y + 0.5, o, d))
+      continue;
     for (int i = 0; i < 3; i++) {
       b->o[i][n] = o[i];
       b->d[i][n] = d[i];
@@ -87,14 +94,16 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   }
   b->n = n;
   b->time = p->time;
-  if (n == 0) return;
+  if (n == 0)
+    return;
   unsigned state = vl_accel_enter();
   vlChannelEnds ends = {&c->compiled, w->x, w->y, w->lane_x, w->lane_y};
   vl_channel_ends(c, w, n, &ends, b->t_min, b->t_max);
   c->ground_truth_kernels->trace(c->world, &c->ground_truth, w->scratch, b);
   for (uint32_t i = 0; i < n; i++) {
     vlGroundTruthLayers layers;
-    if (!b->object[i]) continue;
+    if (!b->object[i])
+      continue;
     c->ground_truth_kernels->layers(c->world, b, i, &layers);
     note_pixel(p, b, i, &layers, w->x[i], w->y[i]);
   }
@@ -114,29 +123,35 @@ static void put_box(void *user, uint32_t index, uint32_t worker) {
   Pass *p = user;
   (void)worker;
   const vlChannelPass *c = &p->channels;
-  if (vl_stop_check(c->stop)) return;
-  uint32_t objects = p->boxes[0] ? p->ids[0] : 0, k = index >= objects, id = index - (k ? objects : 0) + 1;
+  if (vl_stop_check(c->stop))
+    return;
+  uint32_t objects = p->boxes[0] ? p->ids[0] : 0, k = index >= objects,
+           id = index - (k ? objects : 0) + 1;
   vlIdBox *box = &p->boxes[k][id - 1];
   memset(box, 0, sizeof *box);
   Count *count = &p->counts[k][id - 1];
   put_extent(&count->seen, &box->seen, box->seen_box);
   put_extent(&count->all, &box->all, box->all_box);
-  if (!box->all) return;
+  if (!box->all)
+    return;
   if (k)
     vl_box_of_instance(c->world, &c->camera, p->time, id, p->corners, box);
   else
     vl_box_of_object(c->world, &c->camera, p->time, id, p->grouped[id - 1], box);
 }
 
-/* Finds which objects are in groups, and whether the instances in the image have too many points in all. */
+/* Finds which objects are in groups, and whether the instances in the image have too many
+ * points in all. */
 static void look_at_groups(Pass *p) {
   const vlWorld *world = p->channels.world;
   const uint64_t most = 1 << 26;
   uint64_t points = 0;
   for (size_t g = 1; g < world->groups.count; g++)
-    for (uint32_t i = 0; i < world->groups.items[g].count; i++) p->grouped[world->groups.items[g].shapes[i]] = 1;
+    for (uint32_t i = 0; i < world->groups.items[g].count; i++)
+      p->grouped[world->groups.items[g].shapes[i]] = 1;
   for (uint32_t id = 0; id < p->ids[1] && p->counts[1]; id++) {
-    if (!atomic_load(&p->counts[1][id].all.count)) continue;
+    if (!atomic_load(&p->counts[1][id].all.count))
+      continue;
     const vlWorldGroup *group = &world->groups.items[world->instances.items[id].group];
     for (uint32_t i = 0; i < group->count && points <= most; i++)
       points += vl_box_points(&world->shapes.items[group->shapes[i]]);
@@ -145,7 +160,8 @@ static void look_at_groups(Pass *p) {
 }
 
 vlBoxesDef vl_default_boxes_def(uint32_t width, uint32_t height) {
-  return (vlBoxesDef){.cookie = VL_COOKIE_BOXES, .crop = {0, 0, width, height}, .time = VL_UNSET};
+  return (vlBoxesDef){
+      .cookie = VL_COOKIE_BOXES, .crop = {0, 0, width, height}, .time = VL_UNSET};
 }
 
 static vlResult make_room(Pass *p, vlError *error) {
@@ -178,18 +194,23 @@ static void free_room(Pass *p) {
   }
   vl_free(context, c->workers);
   vl_free(context, p->grouped);
-  for (int k = 0; k < 2; k++) vl_free(context, p->counts[k]);
+  for (int k = 0; k < 2; k++)
+    vl_free(context, p->counts[k]);
 }
 
-vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBoxesDef *def, vlIdBox *objects,
-                        vlIdBox *instances, vlError *error) {
+vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBoxesDef *def,
+                        vlIdBox *objects, vlIdBox *instances, vlError *error) {
   vl_error_clear(error);
-  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: world, camera or def is null");
-  if (def->cookie != VL_COOKIE_BOXES) return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: " VL_BAD_COOKIE);
+  if (!world || !camera || !def)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: world, camera or def is null");
+  if (def->cookie != VL_COOKIE_BOXES)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: " VL_BAD_COOKIE);
   const uint32_t *crop = def->crop;
-  if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > camera->width || crop[3] > camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
-                   crop[0], crop[1], crop[2], crop[3], camera->width, camera->height);
+  if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > camera->width ||
+      crop[3] > camera->height)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", crop[0],
+                   crop[1], crop[2], crop[3], camera->width, camera->height);
   Pass pass, *p = &pass;
   memset(p, 0, sizeof *p);
   vlChannelPass *c = &p->channels;
@@ -212,8 +233,10 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
   if (result == VL_OK) {
     vl_parallel_for(world->context, c->tiles, count_tile, p);
     look_at_groups(p);
-    vl_parallel_for(world->context, (objects ? p->ids[0] : 0) + (instances ? p->ids[1] : 0), put_box, p);
-    if (atomic_load(&stop.stopped)) result = vl_fail(error, VL_CANCELLED, "stopped");
+    vl_parallel_for(world->context, (objects ? p->ids[0] : 0) + (instances ? p->ids[1] : 0),
+                    put_box, p);
+    if (atomic_load(&stop.stopped))
+      result = vl_fail(error, VL_CANCELLED, "stopped");
   }
   free_room(p);
   return result;

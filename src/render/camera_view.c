@@ -15,17 +15,20 @@
 /* Length of the camera's axes if all have the same length and are at right angles; else 0. */
 static double axes_length(const double m[16]) {
   double length2[3];
-  for (int i = 0; i < 3; i++) length2[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+  for (int i = 0; i < 3; i++)
+    length2[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3;
     double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
-    if (fabs(dot) > 1e-5 * length2[0] || fabs(length2[i] - length2[0]) > 1e-5 * length2[0]) return 0;
+    if (fabs(dot) > 1e-5 * length2[0] || fabs(length2[i] - length2[0]) > 1e-5 * length2[0])
+      return 0;
   }
   return sqrt(length2[0]);
 }
 
 static vlVec3 axis(const double m[16], int i, double length) {
-  return (vlVec3){(float)(m[i] / length), (float)(m[4 + i] / length), (float)(m[8 + i] / length)};
+  return (vlVec3){(float)(m[i] / length), (float)(m[4 + i] / length),
+                  (float)(m[8 + i] / length)};
 }
 
 void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView *view) {
@@ -34,15 +37,17 @@ void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView 
   vl_camera_compile(camera, &c);
   const double *m = camera->world_from_camera;
   double s = axes_length(m);
-  view->sees = c.projection == VL_PROJECTION_PERSPECTIVE && c.plain && !c.shaped && !vl_camera_weighted(&c) &&
-               c.eye_circle == 0.0 && camera->skew == 0.0 && s > 0;
-  if (c.when.moves && fabs(axes_length(camera->world_from_camera_close) - s) > 1e-5 * s) view->sees = false;
+  view->sees = c.projection == VL_PROJECTION_PERSPECTIVE && c.plain && !c.shaped &&
+               !vl_camera_weighted(&c) && c.eye_circle == 0.0 && camera->skew == 0.0 && s > 0;
+  if (c.when.moves && fabs(axes_length(camera->world_from_camera_close) - s) > 1e-5 * s)
+    view->sees = false;
   view->low_x = (float)film->crop[0] - film->filter.radius_x;
   view->high_x = (float)film->crop[2] + film->filter.radius_x;
   view->low_y = (float)film->crop[1] - film->filter.radius_y;
   view->high_y = (float)film->crop[3] + film->filter.radius_y;
   vl_own_view(&c, film, view);
-  if (!view->sees || view->look) return;
+  if (!view->sees || view->look)
+    return;
   view->position = (vlVec3){(float)m[3], (float)m[7], (float)m[11]};
   view->right = axis(m, 0, s);
   view->down = axis(m, 1, s);
@@ -71,21 +76,24 @@ static int compare(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace, float *radius,
-                         vlError *error) {
+vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace,
+                         float *radius, vlError *error) {
   enum { SIDE = 16 };
   *radius = 0;
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
-  vlGroundTruthScratch *scratch = vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
+  vlGroundTruthScratch *scratch =
+      vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
   vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
   vlResult result = scratch && batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
     vlGroundTruthDef def = {.isa = trace->isa};
     vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
     for (int i = 0; i < SIDE * SIDE; i++) {
-      double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width, y = (i / SIDE + 0.5) / SIDE * camera->height;
-      if (!vl_camera_unproject(&pinhole, x, y, o, d)) continue;
+      double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,
+                         y = (i / SIDE + 0.5) / SIDE * camera->height;
+      if (!vl_camera_unproject(&pinhole, x, y, o, d))
+        continue;
       for (int k = 0; k < 3; k++) {
         batch->o[k][batch->n] = o[k];
         batch->d[k][batch->n] = d[k];
@@ -98,12 +106,15 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
     float t[SIDE * SIDE];
     uint32_t count = 0;
     for (uint32_t i = 0; i < batch->n; i++)
-      if (batch->object[i] && isfinite(batch->distance[i])) t[count++] = (float)batch->distance[i];
+      if (batch->object[i] && isfinite(batch->distance[i]))
+        t[count++] = (float)batch->distance[i];
     qsort(t, count, sizeof *t, compare);
     vlCameraCompiled c;
     vl_camera_compile(camera, &c);
-    if (count) *radius = 2.0f * (c.pixel_width + c.pixel_spread * t[count / 2]);
-    if (!(*radius < VL_INFINITY)) *radius = 0;
+    if (count)
+      *radius = 2.0f * (c.pixel_width + c.pixel_spread * t[count / 2]);
+    if (!(*radius < VL_INFINITY))
+      *radius = 0;
   }
   vl_free(world->context, scratch);
   vl_free(world->context, batch);

@@ -1,6 +1,6 @@
-/* render/channel_features.c: features for denoisers: albedo, normal and disparity (1 / distance). Each is the mean over
- * camera samples of the image, so that features are antialiased and blurred as the image is: at edges, out of focus, in
- * motion. */
+/* render/channel_features.c: features for denoisers: albedo, normal and disparity (1 /
+ * distance). Each is the mean over camera samples of the image, so that features are
+ * antialiased and blurred as the image is: at edges, out of focus, in motion. */
 #include <string.h>
 
 #include "render/channel_pass.h"
@@ -8,15 +8,17 @@
 
 enum { ALBEDO = 0, NORMAL = 3, DISPARITY = 6, COUNT = VL_FEATURES };
 
-/* The time of sample s as a fraction of the exposure: 1/2, 1/4, 3/4, 1/8, ... All pixels of the tile share it. */
+/* The time of sample s as a fraction of the exposure: 1/2, 1/4, 3/4, 1/8, ... All pixels of the
+ * tile share it. */
 static float instant(uint32_t s) {
   float u = 0.0f, digit = 0.5f;
-  for (uint32_t k = s + 1; k; k >>= 1, digit *= 0.5f) u += (float)(k & 1) * digit;
+  for (uint32_t k = s + 1; k; k >>= 1, digit *= 0.5f)
+    u += (float)(k & 1) * digit;
   return u;
 }
 
-/* The tile's pixels inside the crop window, from x0, y0 on, and the border of pixels around them whose samples count,
- * too (none if pixels have samples of their own). */
+/* The tile's pixels inside the crop window, from x0, y0 on, and the border of pixels around
+ * them whose samples count, too (none if pixels have samples of their own). */
 typedef struct Region {
   uint32_t x0, y0, width, height, border[2];
   uint32_t stride, count; /* pixels of a row and of all rows, with the border */
@@ -32,18 +34,21 @@ static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
   uint32_t x, y;
   vl_channel_corner(p, tile, &x, &y);
   *g = (Region){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
-  if (g->x0 >= crop[2] || g->y0 >= crop[3]) return false;
+  if (g->x0 >= crop[2] || g->y0 >= crop[3])
+    return false;
   g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0;
   g->height = least(y + VL_CHANNEL_TILE, crop[3]) - g->y0;
-  for (int k = 0; k < 2 && p->shares; k++) g->border[k] = p->reconstruction.border[k];
+  for (int k = 0; k < 2 && p->shares; k++)
+    g->border[k] = p->reconstruction.border[k];
   g->stride = g->width + 2 * g->border[0];
   g->count = g->stride * (g->height + 2 * g->border[1]);
   return true;
 }
 
-/* Makes the camera rays of sample s of n pixels of the region, from number `done` on, in w->rows and in the batch. */
-static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *g, uint32_t done, uint32_t n,
-                      uint32_t s) {
+/* Makes the camera rays of sample s of n pixels of the region, from number `done` on, in
+ * w->rows and in the batch. */
+static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *g,
+                      uint32_t done, uint32_t n, uint32_t s) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t k = done + i;
@@ -66,15 +71,17 @@ static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
 }
 
-/* Keeps the n hits of the batch at the grid points from `at` on, with their weights in the pixels around. Negative
- * weights count as 0. */
+/* Keeps the n hits of the batch at the grid points from `at` on, with their weights in the
+ * pixels around. Negative weights count as 0. */
 static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_t at) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   const vlGroundTruthBatch *b = w->batch;
   vlFeatureGrid *g = w->features;
   if (p->shares) {
-    vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 0, n, r.film_x, g->x[0] + at, VL_FEATURE_GRID);
-    vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 1, n, r.film_y, g->y[0] + at, VL_FEATURE_GRID);
+    vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 0, n, r.film_x, g->x[0] + at,
+                   VL_FEATURE_GRID);
+    vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 1, n, r.film_y, g->y[0] + at,
+                   VL_FEATURE_GRID);
   }
   for (uint32_t i = 0; i < n; i++, at++) {
     if (!p->shares) {
@@ -90,9 +97,10 @@ static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_
   }
 }
 
-/* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the first hit. */
-static void add_hits(const vlFeatureGrid *g, uint32_t n, uint32_t u, uint32_t v, size_t at, float *const sums[COUNT],
-                     float *restrict total) {
+/* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the
+ * first hit. */
+static void add_hits(const vlFeatureGrid *g, uint32_t n, uint32_t u, uint32_t v, size_t at,
+                     float *const sums[COUNT], float *restrict total) {
   const float *x = g->x[u] + at, *y = g->y[v] + at;
   float weight[VL_CHANNEL_TILE];
   VL_SIMD for (uint32_t i = 0; i < n; i++) weight[i] = x[i] * y[i];
@@ -109,15 +117,17 @@ static void add(vlChannelWorker *w, const Region *g, float sums[COUNT + 1][VL_TI
   uint32_t bx = g->border[0], by = g->border[1];
   for (uint32_t y = 0; y < g->height; y++) {
     float *row[COUNT + 1];
-    for (int k = 0; k <= COUNT; k++) row[k] = sums[k] + (size_t)y * VL_CHANNEL_TILE;
+    for (int k = 0; k <= COUNT; k++)
+      row[k] = sums[k] + (size_t)y * VL_CHANNEL_TILE;
     for (uint32_t v = 0; v <= 2 * by; v++)
       for (uint32_t u = 0; u <= 2 * bx; u++)
-        add_hits(w->features, g->width, 2 * bx - u, 2 * by - v, (size_t)(y + v) * g->stride + u, row, row[COUNT]);
+        add_hits(w->features, g->width, 2 * bx - u, 2 * by - v, (size_t)(y + v) * g->stride + u,
+                 row, row[COUNT]);
   }
 }
 
-/* Half of the image's samples, since features cost about a half of what the shortest paths cost; but at least FEW, and
- * at most VL_FEATURE_SAMPLES. */
+/* Half of the image's samples, since features cost about a half of what the shortest paths
+ * cost; but at least FEW, and at most VL_FEATURE_SAMPLES. */
 static uint32_t samples_of(uint32_t spp) {
   enum { FEW = 8 };
   return spp <= FEW ? spp : spp <= 2 * FEW ? FEW : least(spp / 2, VL_FEATURE_SAMPLES);
@@ -127,12 +137,14 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
   float sums[COUNT + 1][VL_TILE_PIXELS]; /* the last: sums of weights */
   vlFilmRays rays = p->image;
   Region g;
-  if (!make_region(p, tile, &g)) return;
+  if (!make_region(p, tile, &g))
+    return;
   memset(sums, 0, sizeof sums);
   uint32_t samples = samples_of(vl_channel_spp(p, tile));
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);
-    w->batch->time = vl_world_time(p->world, p->open + (p->close - p->open) * (double)rays.shared);
+    w->batch->time =
+        vl_world_time(p->world, p->open + (p->close - p->open) * (double)rays.shared);
     for (uint32_t done = 0, n; done < g.count; done += n) {
       n = least(g.count - done, VL_BATCH);
       make_rays(w, &rays, &g, done, n, s);
@@ -145,6 +157,7 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
     for (uint32_t x = 0; x < g.width; x++) {
       uint32_t k = y * VL_CHANNEL_TILE + x;
       float *to = vl_channel_floats(p, vl_channel_at(p, g.x0 + x, g.y0 + y), VL_INDEX_FEATURES);
-      for (int i = 0; i < COUNT; i++) to[i] = sums[COUNT][k] > 0.0f ? sums[i][k] / sums[COUNT][k] : 0.0f;
+      for (int i = 0; i < COUNT; i++)
+        to[i] = sums[COUNT][k] > 0.0f ? sums[i][k] / sums[COUNT][k] : 0.0f;
     }
 }

@@ -32,8 +32,8 @@ enum {
   VL_INDEX_FEATURES = VL_INDEX_CRYPTO + 3
 };
 
-/* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel with more than
- * VL_TALLY_MOST ids loses the later ones. */
+/* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel
+ * with more than VL_TALLY_MOST ids loses the later ones. */
 enum { VL_TALLY_SLOTS = 1024, VL_TALLY_MOST = 768 };
 typedef struct vlTallyEntry {
   uint64_t key;
@@ -47,7 +47,8 @@ typedef struct vlTally {
   vlTallyEntry slots[VL_TALLY_SLOTS];
 } vlTally;
 
-/* The first hit of a sample of the image: ids (0: none), film point, depth (infinity: nothing was hit, or not asked).
+/* The first hit of a sample of the image: ids (0: none), film point, depth (infinity: nothing
+ * was hit, or not asked).
  */
 typedef struct vlSampleHit {
   uint32_t ids[3]; /* object, material, instance */
@@ -55,28 +56,35 @@ typedef struct vlSampleHit {
 } vlSampleHit;
 enum { VL_SHARED_HITS = 1 << 17 }; /* most hits that a worker holds at once */
 
-/* The features of one sample of each pixel of a tile and its border, row by row, and the samples' weights along x and y
- * in the pixels around (reconstruct.h). */
+/* The features of one sample of each pixel of a tile and its border, row by row, and the
+ * samples' weights along x and y in the pixels around (reconstruct.h). */
 enum { VL_FEATURES = 7 };
-enum { VL_FEATURE_GRID = (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) * (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) };
-_Static_assert((int)VL_FEATURE_GRID == (int)VL_PAD(VL_FEATURE_GRID), "rows of weights are padded");
+enum {
+  VL_FEATURE_GRID =
+      (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) * (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER)
+};
+_Static_assert((int)VL_FEATURE_GRID == (int)VL_PAD(VL_FEATURE_GRID),
+               "rows of weights are padded");
 typedef struct vlFeatureGrid {
   float value[VL_FEATURES][VL_FEATURE_GRID];
-  float x[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID], y[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID];
+  float x[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID],
+      y[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID];
 } vlFeatureGrid;
 
 typedef struct vlChannelWorker {
   vlGroundTruthScratch *scratch;
   vlGroundTruthBatch *batch;
-  float *rows;               /* VL_CHANNEL_ROWS arrays of VL_ROW_SIZE */
-  vlTally *tallies;          /* three for Cryptomatte or one for the choice of a point; null where nothing is counted */
+  float *rows;      /* VL_CHANNEL_ROWS arrays of VL_ROW_SIZE */
+  vlTally *tallies; /* three for Cryptomatte or one for the choice of a point; null where
+                       nothing is counted */
   vlGroundTruthBatch *other; /* hits of the other camera's rays; null without flow */
   uint32_t *lanes;           /* for each lane of `other`: its lane of the batch */
   vlSampleHit *hits;         /* VL_SHARED_HITS; null where no samples are shared */
   vlFeatureGrid *features;   /* null without features */
   uint32_t x[VL_BATCH], y[VL_BATCH];
-  float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* film point of each pixel of the tile */
-  float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* film point of each lane */
+  float film_x[VL_TILE_PIXELS],
+      film_y[VL_TILE_PIXELS];               /* film point of each pixel of the tile */
+  float lane_x[VL_BATCH], lane_y[VL_BATCH]; /* film point of each lane */
 } vlChannelWorker;
 enum { VL_CHANNEL_ROWS = 28 };
 
@@ -98,16 +106,18 @@ typedef struct vlChannelPass {
   const vlGroundTruthKernels *ground_truth_kernels;
   vlGroundTruthDef ground_truth, features;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
-  uint32_t place[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the floats and among the ids */
+  uint32_t place[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the
+                                          floats and among the ids */
   vlImage *images[2];                  /* floats, ids */
   uint32_t step[2];                    /* values per pixel */
   vlChannelWorker *workers;
   vlStop *stop;
-  vlFilmRays choice, image; /* rays of the image's samples: through the middle of the lens, and unchanged */
-  uint32_t spp;             /* samples per pixel of the film; 0: they are not needed */
-  bool adaptive;            /* the film's blocks have different numbers of samples */
-  uint32_t first_sample;    /* index of the first */
-  bool shares;              /* pixels of the image share samples */
+  vlFilmRays choice,
+      image;    /* rays of the image's samples: through the middle of the lens, and unchanged */
+  uint32_t spp; /* samples per pixel of the film; 0: they are not needed */
+  bool adaptive;         /* the film's blocks have different numbers of samples */
+  uint32_t first_sample; /* index of the first */
+  bool shares;           /* pixels of the image share samples */
   vlReconstruction reconstruction;
   vlCryptomatte crypto[3];
   vlCamera other[2]; /* forward, backward */
@@ -118,12 +128,14 @@ static inline bool vl_channel_wanted(const vlChannelPass *p, uint32_t bits) {
   return (p->def->channels & bits) != 0;
 }
 /* The first pixel of a tile; it may lie before the crop window. */
-static inline void vl_channel_corner(const vlChannelPass *p, uint32_t tile, uint32_t *x, uint32_t *y) {
+static inline void vl_channel_corner(const vlChannelPass *p, uint32_t tile, uint32_t *x,
+                                     uint32_t *y) {
   *x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
   *y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
 }
 /* Coordinates of pixel k of a tile; false: outside the crop window. */
-static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k, uint32_t *x, uint32_t *y) {
+static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k,
+                                    uint32_t *x, uint32_t *y) {
   vl_channel_corner(p, tile, x, y);
   *x += k % VL_CHANNEL_TILE;
   *y += k / VL_CHANNEL_TILE;
@@ -133,7 +145,8 @@ static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint3
 /* Samples per pixel of the image in a tile, which lies in one block of the film. */
 uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile);
 static inline size_t vl_channel_at(const vlChannelPass *p, uint32_t x, uint32_t y) {
-  return (size_t)(y - p->def->crop[1]) * (p->def->crop[2] - p->def->crop[0]) + (x - p->def->crop[0]);
+  return (size_t)(y - p->def->crop[1]) * (p->def->crop[2] - p->def->crop[0]) +
+         (x - p->def->crop[0]);
 }
 static inline float *vl_channel_floats(const vlChannelPass *p, size_t at, uint32_t index) {
   return (float *)vl_image_pixels(p->images[0]) + at * p->step[0] + p->place[0][index];
@@ -147,16 +160,19 @@ static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
 
 /* In channels.c: sets cameras, kernels and tiles from def and world. */
 void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
-/* In channel_samples.c: traces the image's samples of one tile; fills film_x and film_y of the tile and writes
- * Cryptomatte. */
+/* In channel_samples.c: traces the image's samples of one tile; fills film_x and film_y of the
+ * tile and writes Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* In channel_features.c: means over the image's samples of one tile. */
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
-/* In channel_tile.c: t_min and t_max of rays, from the kernel that makes the image's camera rays. */
-void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
-                     float *t_max);
-void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker); /* does nothing once the pass is stopped */
+/* In channel_tile.c: t_min and t_max of rays, from the kernel that makes the image's camera
+ * rays.
+ */
+void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,
+                     const vlChannelEnds *ends, float *t_min, float *t_max);
+void vl_channel_tile(void *pass, uint32_t tile,
+                     uint32_t worker); /* does nothing once the pass is stopped */
 
 #endif

@@ -1,19 +1,21 @@
-/* render/channel_tile.c: one tile of ground truth: one exact ray per pixel, and its first hit written to the images.
+/* render/channel_tile.c: one tile of ground truth: one exact ray per pixel, and its first hit
+ * written to the images.
  *
- * All values of a pixel come from one double-precision ray: P = o + t d, z is P's depth, and project(P) is the pixel's
- * film point. Each value is rounded to float once. */
+ * All values of a pixel come from one double-precision ray: P = o + t d, z is P's depth, and
+ * project(P) is the pixel's film point. Each value is rounded to float once. */
 #include <math.h>
 #include <string.h>
 
 #include "render/channel_pass.h"
 #include "world/shape/moving.h"
 
-void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
-                     float *t_max) {
+void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,
+                     const vlChannelEnds *ends, float *t_min, float *t_max) {
   enum { HALF, X, Y, FILM_X, FILM_Y, OX, OY, OZ, DX, DY, DZ, T_MIN, T_MAX, TIME, ROWS };
   _Static_assert((int)ROWS <= (int)VL_CHANNEL_ROWS, "rows are shared");
   float *rows[ROWS];
-  for (uint32_t i = 0; i < ROWS; i++) rows[i] = vl_channel_row(w, i);
+  for (uint32_t i = 0; i < ROWS; i++)
+    rows[i] = vl_channel_row(w, i);
   int32_t *px = (int32_t *)(void *)rows[X], *py = (int32_t *)(void *)rows[Y];
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t k = i < n ? i : n - 1;
@@ -51,7 +53,8 @@ static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t
   double film[VL_TILE_PIXELS][2], o[VL_TILE_PIXELS][3], d[VL_TILE_PIXELS][3];
   uint8_t valid[VL_TILE_PIXELS];
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
-    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    if (!vl_channel_pixel(p, tile, k, &x, &y))
+      continue;
     film[count][0] = (double)x + (double)w->film_x[k];
     film[count][1] = (double)y + (double)w->film_y[k];
     w->x[count] = x;
@@ -62,7 +65,8 @@ static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t
   }
   vl_camera_unproject_batch(&p->camera, count, film[0], o[0], d[0], valid);
   for (uint32_t k = 0; k < count; k++) {
-    if (!valid[k]) continue;
+    if (!valid[k])
+      continue;
     for (int i = 0; i < 3; i++) {
       b->o[i][n] = o[k][i];
       b->d[i][n] = d[k][i];
@@ -82,39 +86,54 @@ static void put3(float *to, const float rows[3][VL_ROW_SIZE], uint32_t i) {
   to[2] = rows[2][i];
 }
 
-static void put_floats(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, size_t at) {
+static void put_floats(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i,
+                       size_t at) {
   bool hit = b->object[i] != 0;
   double t = b->distance[i], point[3] = {0, 0, 0};
-  for (int k = 0; k < 3 && hit; k++) point[k] = b->o[k][i] + t * b->d[k][i];
+  for (int k = 0; k < 3 && hit; k++)
+    point[k] = b->o[k][i] + t * b->d[k][i];
   const double *m = p->camera.camera_from_world;
-  double z = hit ? m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11] : (double)INFINITY;
-  if (vl_channel_wanted(p, VL_CHANNEL_Z)) *vl_channel_floats(p, at, VL_INDEX_Z) = (float)z;
-  if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE)) *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = (float)t;
+  double z =
+      hit ? m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11] : (double)INFINITY;
+  if (vl_channel_wanted(p, VL_CHANNEL_Z))
+    *vl_channel_floats(p, at, VL_INDEX_Z) = (float)z;
+  if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE))
+    *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = (float)t;
   for (int k = 0; k < 3; k++) {
-    if (vl_channel_wanted(p, VL_CHANNEL_P)) vl_channel_floats(p, at, VL_INDEX_P)[k] = (float)point[k];
-    if (vl_channel_wanted(p, VL_CHANNEL_RAY)) vl_channel_floats(p, at, VL_INDEX_RAY)[k] = (float)b->d[k][i];
+    if (vl_channel_wanted(p, VL_CHANNEL_P))
+      vl_channel_floats(p, at, VL_INDEX_P)[k] = (float)point[k];
+    if (vl_channel_wanted(p, VL_CHANNEL_RAY))
+      vl_channel_floats(p, at, VL_INDEX_RAY)[k] = (float)b->d[k][i];
   }
-  if (vl_channel_wanted(p, VL_CHANNEL_N)) put3(vl_channel_floats(p, at, VL_INDEX_N), b->n_shading, i);
-  if (vl_channel_wanted(p, VL_CHANNEL_NG)) put3(vl_channel_floats(p, at, VL_INDEX_NG), b->n_geometric, i);
-  if (vl_channel_wanted(p, VL_CHANNEL_ALBEDO)) put3(vl_channel_floats(p, at, VL_INDEX_ALBEDO), b->albedo, i);
-  if (!vl_channel_wanted(p, VL_CHANNEL_UV)) return;
+  if (vl_channel_wanted(p, VL_CHANNEL_N))
+    put3(vl_channel_floats(p, at, VL_INDEX_N), b->n_shading, i);
+  if (vl_channel_wanted(p, VL_CHANNEL_NG))
+    put3(vl_channel_floats(p, at, VL_INDEX_NG), b->n_geometric, i);
+  if (vl_channel_wanted(p, VL_CHANNEL_ALBEDO))
+    put3(vl_channel_floats(p, at, VL_INDEX_ALBEDO), b->albedo, i);
+  if (!vl_channel_wanted(p, VL_CHANNEL_UV))
+    return;
   float *uv = vl_channel_floats(p, at, VL_INDEX_UV);
   uv[0] = b->uv[0][i];
   uv[1] = b->uv[1][i];
 }
 
-static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, size_t at) {
+static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i,
+                    size_t at) {
   const uint32_t values[4] = {b->object[i], b->material[i], b->instance[i], b->primitive[i]};
   for (uint32_t k = 0; k < 4; k++)
-    if (vl_channel_wanted(p, VL_CHANNEL_ID_OBJECT << k)) *vl_channel_ids(p, at, VL_INDEX_IDS + k) = values[k];
+    if (vl_channel_wanted(p, VL_CHANNEL_ID_OBJECT << k))
+      *vl_channel_ids(p, at, VL_INDEX_IDS + k) = values[k];
 }
 
 uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile) {
-  if (!p->adaptive) return p->spp ? p->spp : p->def->samples;
+  if (!p->adaptive)
+    return p->spp ? p->spp : p->def->samples;
   const uint32_t *crop = vl_film_def(p->def->film)->crop;
   uint32_t x, y;
   vl_channel_corner(p, tile, &x, &y);
-  return vl_film_block_spp(p->def->film, vl_film_block_at(crop, x > crop[0] ? x : crop[0], y > crop[1] ? y : crop[1]));
+  return vl_film_block_spp(p->def->film, vl_film_block_at(crop, x > crop[0] ? x : crop[0],
+                                                          y > crop[1] ? y : crop[1]));
 }
 
 /* Clears the whole tile: pixels without a ray get the values of no hit, too. */
@@ -122,11 +141,15 @@ static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile
   uint32_t x, y, samples = vl_channel_spp(p, tile);
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     w->film_x[k] = w->film_y[k] = 0.5f;
-    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    if (!vl_channel_pixel(p, tile, k, &x, &y))
+      continue;
     size_t at = vl_channel_at(p, x, y);
-    if (vl_channel_wanted(p, VL_CHANNEL_Z)) *vl_channel_floats(p, at, VL_INDEX_Z) = INFINITY;
-    if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE)) *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = INFINITY;
-    if (vl_channel_wanted(p, VL_CHANNEL_SAMPLES)) *vl_channel_ids(p, at, VL_INDEX_SAMPLES) = samples;
+    if (vl_channel_wanted(p, VL_CHANNEL_Z))
+      *vl_channel_floats(p, at, VL_INDEX_Z) = INFINITY;
+    if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE))
+      *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = INFINITY;
+    if (vl_channel_wanted(p, VL_CHANNEL_SAMPLES))
+      *vl_channel_ids(p, at, VL_INDEX_SAMPLES) = samples;
     for (uint32_t i = 0; i < 2; i++)
       if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
         *vl_channel_ids(p, at, VL_INDEX_FORWARD + i) = VL_HIDDEN_NOWHERE;
@@ -136,7 +159,8 @@ static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile
 static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t tile) {
   uint32_t x, y;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
-    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    if (!vl_channel_pixel(p, tile, k, &x, &y))
+      continue;
     float *to = vl_channel_floats(p, vl_channel_at(p, x, y), VL_INDEX_FILM);
     to[0] = w->film_x[k];
     to[1] = w->film_y[k];
@@ -145,19 +169,23 @@ static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t 
 
 /* Whether a channel needs the ray through the film point of each pixel. */
 static bool wants_points(const vlChannelPass *p) {
-  const uint32_t others = VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM | VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES |
-                          VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+  const uint32_t others = VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM | VL_CHANNEL_ERROR |
+                          VL_CHANNEL_FEATURES | VL_CHANNEL_CRYPTO_OBJECT |
+                          VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
   return vl_channel_wanted(p, ~others);
 }
 
 void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   const vlChannelPass *p = pass;
   vlChannelWorker *w = &p->workers[worker];
-  if (vl_stop_check(p->stop)) return;
+  if (vl_stop_check(p->stop))
+    return;
   clear_tile(p, w, tile);
   unsigned state = vl_accel_enter();
-  if (w->tallies) vl_channel_count(p, w, tile);
-  if (vl_channel_wanted(p, VL_CHANNEL_FEATURES)) vl_channel_features(p, w, tile);
+  if (w->tallies)
+    vl_channel_count(p, w, tile);
+  if (vl_channel_wanted(p, VL_CHANNEL_FEATURES))
+    vl_channel_features(p, w, tile);
   uint32_t n = wants_points(p) ? list_pixels(p, w, tile) : 0;
   vlGroundTruthBatch *b = w->batch;
   if (n) {
@@ -167,9 +195,11 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
     p->ground_truth_kernels->trace(p->world, &p->ground_truth, w->scratch, b);
   }
   for (int i = 0; i < 2 && n; i++)
-    if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i)) vl_channel_flow(p, w, i);
+    if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
+      vl_channel_flow(p, w, i);
   vl_accel_leave(state);
-  if (vl_channel_wanted(p, VL_CHANNEL_FILM)) put_film(p, w, tile);
+  if (vl_channel_wanted(p, VL_CHANNEL_FILM))
+    put_film(p, w, tile);
   for (uint32_t i = 0; i < n; i++) {
     size_t at = vl_channel_at(p, w->x[i], w->y[i]);
     put_floats(p, b, i, at);

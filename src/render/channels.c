@@ -1,5 +1,5 @@
-/* render/channels.c: ground truth: which channels there are, their images, and the pass over the tiles. This pass is
- * separate from vl_render: no pixel of the image depends on it. */
+/* render/channels.c: ground truth: which channels there are, their images, and the pass over
+ * the tiles. This pass is separate from vl_render: no pixel of the image depends on it. */
 #include "velo/channels.h"
 
 #include <math.h>
@@ -12,7 +12,8 @@
 #include "base/unset.h"
 #include "render/channel_pass.h"
 
-/* ---- which channels there are ------------------------------------------------------------------------------------ */
+/* ---- which channels there are
+ * ------------------------------------------------------------------------------------ */
 
 static const struct Channel {
   const char *name;
@@ -42,12 +43,15 @@ static const struct Channel {
     {"features",
      7,
      0,
-     {"feature.albedo.R", "feature.albedo.G", "feature.albedo.B", "feature.N.X", "feature.N.Y", "feature.N.Z",
-      "feature.disparity.Y"}},
+     {"feature.albedo.R", "feature.albedo.G", "feature.albedo.B", "feature.N.X", "feature.N.Y",
+      "feature.N.Z", "feature.disparity.Y"}},
 };
-static const uint32_t CRYPTO = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
-/* The features' last three floats, with errors only: the standard errors of independent samples, for denoisers. */
-static const char *const FEATURE_ERRORS[3] = {"feature.error.R", "feature.error.G", "feature.error.B"};
+static const uint32_t CRYPTO =
+    VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+/* The features' last three floats, with errors only: the standard errors of independent
+ * samples, for denoisers. */
+static const char *const FEATURE_ERRORS[3] = {"feature.error.R", "feature.error.G",
+                                              "feature.error.B"};
 static const uint32_t ERRORS_OF_FEATURES = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
 enum { FEATURES = 7, MAX_RANKS = 32, MAX_FLOATS = 48 + 3 * 2 * MAX_RANKS };
 
@@ -65,74 +69,100 @@ vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height) {
                          .time = VL_UNSET};
 }
 
-/* ---- validation -------------------------------------------------------------------------------------------------- */
+/* ---- validation
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlError *error) {
-  bool counts = (def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) || def->mode != VL_CHANNEL_MODE_CENTRE;
+  bool counts =
+      (def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) || def->mode != VL_CHANNEL_MODE_CENTRE;
   bool errors = (def->channels & VL_CHANNEL_ERROR) != 0;
-  if (!counts && !errors) return VL_OK;
+  if (!counts && !errors)
+    return VL_OK;
   if (!def->film || (counts && !def->render))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: Cryptomatte, features, standard errors and modes other than the centre need the "
-                   "image's film and how it was rendered");
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "ground truth: Cryptomatte, features, standard errors and modes other than the "
+        "centre need the "
+        "image's film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: def.render.cookie is not that of a default def of this version");
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "ground truth: def.render.cookie is not that of a default def of this version");
   if (film->width != camera->width || film->height != camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
                    camera->height, film->width, film->height);
   if (counts && vl_film_spp(def->film) == 0)
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the film has no samples yet");
   if (errors && (!film->errors || memcmp(film->crop, def->crop, sizeof film->crop) != 0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: standard errors need a film of the same crop that was made for them");
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "ground truth: standard errors need a film of the same crop that was made for them");
   return VL_OK;
 }
 
-static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def, vlImage **floats,
-                      vlImage **ids, vlError *error) {
-  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: world, camera or def is null");
-  if (def->cookie != VL_COOKIE_CHANNELS) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: " VL_BAD_COOKIE);
+static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def,
+                      vlImage **floats, vlImage **ids, vlError *error) {
+  if (!world || !camera || !def)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: world, camera or def is null");
+  if (def->cookie != VL_COOKIE_CHANNELS)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: " VL_BAD_COOKIE);
   if (!vl_is_unset(def->time) && !isfinite(def->time))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: time is %g; it must be finite", def->time);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: time is %g; it must be finite",
+                   def->time);
   if (def->channels == 0 || def->channels >> VL_CHANNEL_COUNT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x", def->channels);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x",
+                   def->channels);
   const uint32_t *c = def->crop;
   if (c[0] >= c[2] || c[1] >= c[3] || c[2] > camera->width || c[3] > camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
                    c[0], c[1], c[2], c[3], camera->width, camera->height);
-  if ((unsigned)def->mode > VL_CHANNEL_MODE_COVERAGE || def->ranks < 2 || def->ranks > MAX_RANKS || def->ranks % 2)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: mode %d or %u ranks: there is no such thing",
-                   (int)def->mode, def->ranks);
+  if ((unsigned)def->mode > VL_CHANNEL_MODE_COVERAGE || def->ranks < 2 ||
+      def->ranks > MAX_RANKS || def->ranks % 2)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: mode %d or %u ranks: there is no such thing", (int)def->mode,
+                   def->ranks);
   if (((def->channels & VL_CHANNEL_FORWARD) && !def->forward) ||
       ((def->channels & VL_CHANNEL_BACKWARD) && !def->backward))
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: flow needs the other camera");
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
-    if ((def->channels >> i & 1) && ((channels[i].floats && !floats) || (channels[i].ids && !ids)))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no place for the image that is wanted");
+    if ((def->channels >> i & 1) &&
+        ((channels[i].floats && !floats) || (channels[i].ids && !ids)))
+      return vl_fail(error, VL_ERROR_ARGUMENT,
+                     "ground truth: no place for the image that is wanted");
   return check_film(camera, def, error);
 }
 
-/* ---- images ------------------------------------------------------------------------------------------------------ */
+/* ---- images
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-/* Names of the requested channels of one kind. Cryptomatte's are pairs of ranks, two in a layer. */
-static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOATS], char crypto[MAX_FLOATS][24]) {
+/* Names of the requested channels of one kind. Cryptomatte's are pairs of ranks, two in a
+ * layer. */
+static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOATS],
+                           char crypto[MAX_FLOATS][24]) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++) {
     const struct Channel *c = &channels[i];
-    if (!vl_channel_wanted(p, 1u << i)) continue;
+    if (!vl_channel_wanted(p, 1u << i))
+      continue;
     p->place[id][i] = count;
     if (i < VL_INDEX_CRYPTO || i == VL_INDEX_FEATURES) {
       uint32_t first = id ? c->floats : 0, parts = id ? c->ids : c->floats;
-      for (uint32_t k = 0; k < parts; k++) names[count++] = c->names[first + k];
-      bool errors = i == VL_INDEX_FEATURES && !id && (p->def->channels & ERRORS_OF_FEATURES) == ERRORS_OF_FEATURES;
-      for (uint32_t k = 0; k < 3 && errors; k++) names[count++] = FEATURE_ERRORS[k];
+      for (uint32_t k = 0; k < parts; k++)
+        names[count++] = c->names[first + k];
+      bool errors = i == VL_INDEX_FEATURES && !id &&
+                    (p->def->channels & ERRORS_OF_FEATURES) == ERRORS_OF_FEATURES;
+      for (uint32_t k = 0; k < 3 && errors; k++)
+        names[count++] = FEATURE_ERRORS[k];
       continue;
     }
     for (uint32_t k = 0; k < 2 * p->def->ranks && !id; k++) {
-      snprintf(crypto[count], sizeof crypto[count], "%s%02u.%c", vl_cryptomatte_type((vlIdKind)(i - VL_INDEX_CRYPTO)),
-               k / 4, "RGBA"[k % 4]);
+      snprintf(crypto[count], sizeof crypto[count], "%s%02u.%c",
+               vl_cryptomatte_type((vlIdKind)(i - VL_INDEX_CRYPTO)), k / 4, "RGBA"[k % 4]);
       names[count] = crypto[count];
       count++;
     }
@@ -146,47 +176,60 @@ static vlResult make_images(vlChannelPass *p, vlError *error) {
     char crypto[MAX_FLOATS][24];
     uint32_t count = list_names(p, id, names, crypto);
     p->step[id] = count;
-    if (count == 0) continue;
-    vlImageDef def = vl_default_image_def(p->def->crop[2] - p->def->crop[0], p->def->crop[3] - p->def->crop[1], count);
+    if (count == 0)
+      continue;
+    vlImageDef def = vl_default_image_def(p->def->crop[2] - p->def->crop[0],
+                                          p->def->crop[3] - p->def->crop[1], count);
     def.names = names;
     def.type = id ? VL_PIXEL_U32 : VL_PIXEL_F32;
     vlResult r = vl_image_create(p->world->context, &def, &p->images[id]);
-    if (r == VL_ERROR_MEMORY) return vl_fail_memory(error);
-    if (r != VL_OK) return vl_fail(error, r, "ground truth: the image cannot be made");
+    if (r == VL_ERROR_MEMORY)
+      return vl_fail_memory(error);
+    if (r != VL_OK)
+      return vl_fail(error, r, "ground truth: the image cannot be made");
   }
   return VL_OK;
 }
 
-/* Copies the film's errors to three floats of each pixel, from number `first` of the channel on. */
-static vlResult copy_errors_to(const vlChannelPass *p, bool independent, uint32_t channel, uint32_t first,
-                               vlError *error) {
+/* Copies the film's errors to three floats of each pixel, from number `first` of the channel
+ * on. */
+static vlResult copy_errors_to(const vlChannelPass *p, bool independent, uint32_t channel,
+                               uint32_t first, vlError *error) {
   vlDevelopDef def = vl_default_develop_def();
   def.independent = independent;
   def.exposure = p->def->exposure;
   vlImage *image;
   vlResult r = vl_film_errors(p->def->film, &def, &image);
-  if (r == VL_ERROR_MEMORY) return vl_fail_memory(error);
-  if (r != VL_OK) return vl_fail(error, r, "ground truth: the film does not tell standard errors");
+  if (r == VL_ERROR_MEMORY)
+    return vl_fail_memory(error);
+  if (r != VL_OK)
+    return vl_fail(error, r, "ground truth: the film does not tell standard errors");
   size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
   const float *from = vl_image_const_pixels(image);
-  for (size_t i = 0; i < pixels; i++) memcpy(vl_channel_floats(p, i, channel) + first, from + 3 * i, 3 * sizeof *from);
+  for (size_t i = 0; i < pixels; i++)
+    memcpy(vl_channel_floats(p, i, channel) + first, from + 3 * i, 3 * sizeof *from);
   vl_image_destroy(image);
   return VL_OK;
 }
 
 static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
-  if (!vl_channel_wanted(p, VL_CHANNEL_ERROR)) return VL_OK;
+  if (!vl_channel_wanted(p, VL_CHANNEL_ERROR))
+    return VL_OK;
   vlResult r = copy_errors_to(p, false, VL_INDEX_ERROR, 0, error);
-  if (r != VL_OK || !vl_channel_wanted(p, VL_CHANNEL_FEATURES)) return r;
+  if (r != VL_OK || !vl_channel_wanted(p, VL_CHANNEL_FEATURES))
+    return r;
   return copy_errors_to(p, true, VL_INDEX_FEATURES, FEATURES, error);
 }
 
-/* ---- the pass ---------------------------------------------------------------------------------------------------- */
+/* ---- the pass
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static vlResult make_workers(vlChannelPass *p, vlError *error) {
   vlContext *context = p->world->context;
   uint32_t threads = vl_context_threads(context);
-  bool counts = p->spp > 0, flow = vl_channel_wanted(p, VL_CHANNEL_FORWARD | VL_CHANNEL_BACKWARD);
+  bool counts = p->spp > 0,
+       flow = vl_channel_wanted(p, VL_CHANNEL_FORWARD | VL_CHANNEL_BACKWARD);
   bool features = vl_channel_wanted(p, VL_CHANNEL_FEATURES);
   p->workers = vl_alloc_zero(context, threads, sizeof *p->workers);
   for (uint32_t i = 0; p->workers && i < threads; i++) {
@@ -194,16 +237,23 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
     w->scratch = vl_alloc_zero(context, 1, vl_ground_truth_scratch_size());
     w->batch = vl_alloc_zero(context, 1, sizeof *w->batch);
     w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
-    if (counts) w->tallies = vl_alloc_zero(context, 3, sizeof *w->tallies);
-    if (p->shares) w->hits = vl_alloc_array(context, VL_SHARED_HITS, sizeof *w->hits);
-    if (features) w->features = vl_alloc_array(context, 1, sizeof *w->features);
-    if (flow) w->other = vl_alloc_zero(context, 1, sizeof *w->other);
-    if (flow) w->lanes = vl_alloc_zero(context, VL_BATCH, sizeof *w->lanes);
-    if (!w->scratch || !w->batch || !w->rows || (counts && !w->tallies) || (p->shares && !w->hits) ||
-        (features && !w->features) || (flow && (!w->other || !w->lanes)))
+    if (counts)
+      w->tallies = vl_alloc_zero(context, 3, sizeof *w->tallies);
+    if (p->shares)
+      w->hits = vl_alloc_array(context, VL_SHARED_HITS, sizeof *w->hits);
+    if (features)
+      w->features = vl_alloc_array(context, 1, sizeof *w->features);
+    if (flow)
+      w->other = vl_alloc_zero(context, 1, sizeof *w->other);
+    if (flow)
+      w->lanes = vl_alloc_zero(context, VL_BATCH, sizeof *w->lanes);
+    if (!w->scratch || !w->batch || !w->rows || (counts && !w->tallies) ||
+        (p->shares && !w->hits) || (features && !w->features) ||
+        (flow && (!w->other || !w->lanes)))
       return vl_fail_memory(error);
   }
-  if (p->shares) p->reconstruction = vl_reconstruction_of(vl_film_filter(p->def->film));
+  if (p->shares)
+    p->reconstruction = vl_reconstruction_of(vl_film_filter(p->def->film));
   return p->workers ? VL_OK : vl_fail_memory(error);
 }
 
@@ -227,17 +277,20 @@ static void free_all(vlChannelPass *p) {
   vlContext *context = p->world->context;
   for (uint32_t i = 0; p->workers && i < vl_context_threads(context); i++) {
     vlChannelWorker *w = &p->workers[i];
-    VL_FREE(context, w->scratch, w->batch, w->rows, w->tallies, w->hits, w->features, w->other, w->lanes);
+    VL_FREE(context, w->scratch, w->batch, w->rows, w->tallies, w->hits, w->features, w->other,
+            w->lanes);
   }
   vl_free(context, p->workers);
-  for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);
+  for (int k = 0; k < 3; k++)
+    vl_cryptomatte_close(context, &p->crypto[k]);
 }
 
-/* Prepares two sets of rays for the image's samples: unchanged ones, and ones through the middle of the lens at the
- * middle of the shutter interval. */
+/* Prepares two sets of rays for the image's samples: unchanged ones, and ones through the
+ * middle of the lens at the middle of the shutter interval. */
 static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa) {
   const vlChannelsDef *def = p->def;
-  if (!(def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) && def->mode == VL_CHANNEL_MODE_CENTRE) return;
+  if (!(def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) && def->mode == VL_CHANNEL_MODE_CENTRE)
+    return;
   const vlFilmDef *film = vl_film_def(def->film);
   p->first_sample = vl_film_sequence(def->film).first;
   p->spp = vl_film_spp(def->film);
@@ -269,8 +322,8 @@ static vlCamera pinhole(const vlCamera *camera, double time) {
 void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   vlIsa isa = vl_context_isa(p->world->context);
   const uint32_t *film_crop = p->def->film ? vl_film_def(p->def->film)->crop : NULL;
-  p->adaptive =
-      film_crop && vl_film_is_adaptive(p->def->film) && memcmp(film_crop, p->def->crop, sizeof p->def->crop) == 0;
+  p->adaptive = film_crop && vl_film_is_adaptive(p->def->film) &&
+                memcmp(film_crop, p->def->crop, sizeof p->def->crop) == 0;
   p->time = p->def->time == p->def->time ? p->def->time : middle_time(camera);
   p->camera = pinhole(camera, p->time);
   p->open = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 0.0);
@@ -278,7 +331,8 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   vl_camera_compile(&p->camera, &p->compiled);
   const vlCamera *others[2] = {p->def->forward, p->def->backward};
   for (int i = 0; i < 2; i++) {
-    if (!vl_channel_wanted(p, VL_CHANNEL_FORWARD << i)) continue;
+    if (!vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
+      continue;
     p->other_time[i] = middle_time(others[i]);
     p->other[i] = pinhole(others[i], p->other_time[i]);
     vl_camera_compile(&p->other[i], &p->other_compiled[i]);
@@ -303,13 +357,17 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   prepare_counting(p, camera, isa);
 }
 
-vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def, vlImage **floats,
-                            vlImage **ids, vlError *error) {
+vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
+                            const vlChannelsDef *def, vlImage **floats, vlImage **ids,
+                            vlError *error) {
   vl_error_clear(error);
-  if (floats) *floats = NULL;
-  if (ids) *ids = NULL;
+  if (floats)
+    *floats = NULL;
+  if (ids)
+    *ids = NULL;
   vlResult result = check(world, camera, def, floats, ids, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlChannelPass pass, *p = &pass;
   memset(p, 0, sizeof *p);
   vlStop stop;
@@ -319,13 +377,17 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
   p->stop = &stop;
   vl_channel_prepare(p, camera);
   result = make_images(p, error);
-  if (result == VL_OK) result = copy_errors(p, error);
-  if (result == VL_OK) result = make_workers(p, error);
-  if (result == VL_OK) result = open_mattes(p, error);
+  if (result == VL_OK)
+    result = copy_errors(p, error);
+  if (result == VL_OK)
+    result = make_workers(p, error);
+  if (result == VL_OK)
+    result = open_mattes(p, error);
   if (result == VL_OK) {
     vlLoopDef loop = vl_loop_def(def->priority, def->cancel);
     vl_parallel_for_at(world->context, &loop, p->tiles, vl_channel_tile, p);
-    result = atomic_load(&stop.stopped) ? vl_fail(error, VL_CANCELLED, "stopped") : describe_mattes(p, error);
+    result = atomic_load(&stop.stopped) ? vl_fail(error, VL_CANCELLED, "stopped")
+                                        : describe_mattes(p, error);
   }
   free_all(p);
   if (result != VL_OK) {
@@ -333,7 +395,9 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
     vl_image_destroy(p->images[1]);
     return result;
   }
-  if (floats) *floats = p->images[0];
-  if (ids) *ids = p->images[1];
+  if (floats)
+    *floats = p->images[0];
+  if (ids)
+    *ids = p->images[1];
   return VL_OK;
 }

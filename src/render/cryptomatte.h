@@ -1,5 +1,6 @@
-/* render/cryptomatte.h: names and their hashes for Cryptomatte (Psyop's specification 1.2). Each object, material or
- * instance has a unique name, and a hash of 32 bits that represents it in the image. */
+/* render/cryptomatte.h: names and their hashes for Cryptomatte (Psyop's specification 1.2).
+ * Each object, material or instance has a unique name, and a hash of 32 bits that represents it
+ * in the image. */
 #ifndef RENDER_CRYPTOMATTE_H
 #define RENDER_CRYPTOMATTE_H
 

@@ -11,7 +11,8 @@ static float *row(float *rows, int i) {
 
 vlFilmRayRows vl_film_ray_rows(float *rows) {
   float *ray[11];
-  for (int i = 0; i < 11; i++) ray[i] = row(rows, VL_FILM_RAY + i);
+  for (int i = 0; i < 11; i++)
+    ray[i] = row(rows, VL_FILM_RAY + i);
   return (vlFilmRayRows){.px = (int32_t *)(void *)row(rows, VL_FILM_PIXEL_X),
                          .py = (int32_t *)(void *)row(rows, VL_FILM_PIXEL_Y),
                          .index = (uint32_t *)(void *)row(rows, VL_FILM_INDEX),
@@ -36,8 +37,8 @@ vlFilmRayRows vl_film_ray_rows(float *rows) {
                                   .weight = ray[10]}};
 }
 
-void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
-                       vlIsa isa) {
+void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter,
+                       const vlSampler *sampler, vlIsa isa) {
   vl_camera_compile(camera, &f->camera);
   f->sampler = *sampler;
   f->filter = filter;
@@ -54,7 +55,8 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
 
 void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
   f->moves = world->moves;
-  if (f->moves) vl_camera_retime(&f->camera, world->time_open, 1 / (world->time_close - world->time_open));
+  if (f->moves)
+    vl_camera_retime(&f->camera, world->time_open, 1 / (world->time_close - world->time_open));
 }
 
 void vl_film_rays_points(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
@@ -72,7 +74,8 @@ void vl_film_rays_points(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r
       r->weight[i] = 1.0f;
     }
   } else {
-    f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
+    f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y,
+                              r->weight);
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       r->film_x[i] = r->film_x[i] * f->spread + 0.5f;
       r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
@@ -93,7 +96,9 @@ float vl_film_rays_group_time(const vlFilmRays *f, uint32_t group) {
 static void sample_times(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
   bool same = f->middle || f->centred || f->shared >= 0.0f;
-  if (!same) k->get_1d(&f->sampler, n, r->px, r->py, r->index, f->groups ? VL_DIM_WAVELENGTH : VL_DIM_TIME, r->time);
+  if (!same)
+    k->get_1d(&f->sampler, n, r->px, r->py, r->index,
+              f->groups ? VL_DIM_WAVELENGTH : VL_DIM_TIME, r->time);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     if (same)
       r->time[i] = f->middle || f->centred ? 0.5f : f->shared;
@@ -109,7 +114,8 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
   if (f->lens && !f->centred)
     k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
   else
-    for (uint32_t i = 0; i < VL_PAD(n); i++) r->lens_u[i] = r->lens_v[i] = 0.5f;
+    for (uint32_t i = 0; i < VL_PAD(n); i++)
+      r->lens_u[i] = r->lens_v[i] = 0.5f;
   vlCameraSamples samples = {r->film_x, r->film_y, r->px, r->py, r->lens_u, r->lens_v, r->time};
   f->camera_kernels->rays(&f->camera, n, &samples, &r->rays);
   for (uint32_t i = 0; f->moves && i < VL_PAD(n);

@@ -1,5 +1,5 @@
-/* render/film_rays.h: film samples to camera rays. The image and the ground truth that uses the image's samples share
- * this code, so that their rays are bitwise equal. */
+/* render/film_rays.h: film samples to camera rays. The image and the ground truth that uses the
+ * image's samples share this code, so that their rays are bitwise equal. */
 #ifndef RENDER_FILM_RAYS_H
 #define RENDER_FILM_RAYS_H
 
@@ -15,21 +15,26 @@ typedef struct vlFilmRays {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  bool lens;       /* lens points are sampled; false: all are the centre of the lens */
-  bool centred;    /* centre of the pixel and of the lens, middle of the shutter's time */
-  float shared;    /* at least 0: the number that samples the time of all rays; below 0: each ray has its own */
-  uint32_t groups; /* at least 1: the rays have the times of so many groups of light paths (trace/two_way/two_way.h); 0:
-                      each ray has its own */
-  float turn;      /* with groups: random number in [0, 1) of the pass, for the times of all groups */
-  float spread; /* film samples are drawn from this part of the pixel's filter around its centre; 1: from all of it */
-  bool uniform; /* film points are uniform in the pixel (reconstruct.h), not drawn from its filter */
+  bool lens;    /* lens points are sampled; false: all are the centre of the lens */
+  bool centred; /* centre of the pixel and of the lens, middle of the shutter's time */
+  float shared; /* at least 0: the number that samples the time of all rays; below 0: each ray
+                   has its own */
+  uint32_t groups; /* at least 1: the rays have the times of so many groups of light paths
+                      (trace/two_way/two_way.h); 0: each ray has its own */
+  float
+      turn; /* with groups: random number in [0, 1) of the pass, for the times of all groups */
+  float spread; /* film samples are drawn from this part of the pixel's filter around its
+                   centre; 1: from all of it */
+  bool uniform; /* film points are uniform in the pixel (reconstruct.h), not drawn from its
+                   filter */
   bool middle;  /* all times are the middle of the shutter's time */
-  bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1; false: seconds */
+  bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1;
+                   false:   seconds */
 } vlFilmRays;
 
-/* One element per sample; memory for VL_PAD(n) of them. In: the pixel and the sample's index in it, n of each; the rest
- * is output, and the padding repeats the last sample. film_x, film_y: pixels from the pixel's top left corner; weight:
- * the sample's weight by the pixel filter. */
+/* One element per sample; memory for VL_PAD(n) of them. In: the pixel and the sample's index in
+ * it, n of each; the rest is output, and the padding repeats the last sample. film_x, film_y:
+ * pixels from the pixel's top left corner; weight: the sample's weight by the pixel filter. */
 typedef struct vlFilmRayRows {
   int32_t *px, *py;
   uint32_t *index;
@@ -37,7 +42,8 @@ typedef struct vlFilmRayRows {
   vlCameraRays rays;
 } vlFilmRayRows;
 
-/* Places of those arrays in a worker's rows of VL_ROW_SIZE numbers each; a caller's own rows begin at VL_FILM_ROWS. */
+/* Places of those arrays in a worker's rows of VL_ROW_SIZE numbers each; a caller's own rows
+ * begin at VL_FILM_ROWS. */
 enum {
   VL_FILM_U,
   VL_FILM_V,
@@ -55,9 +61,10 @@ enum {
 };
 vlFilmRayRows vl_film_ray_rows(float *rows);
 
-void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
-                       vlIsa isa);
-/* The number in [0, 1) that samples the time of a group. For random turns it is uniform and independent of the group.
+void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter,
+                       const vlSampler *sampler, vlIsa isa);
+/* The number in [0, 1) that samples the time of a group. For random turns it is uniform and
+ * independent of the group.
  */
 float vl_film_rays_group_time(const vlFilmRays *f, uint32_t group);
 /* Makes rays have world times (0 to 1) if the world has moving shapes. */

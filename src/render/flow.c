@@ -1,10 +1,12 @@
-/* render/flow.c: optical flow. It projects the surface point of each pixel with another camera, computes the point's
- * displacement on the film, and decides by a ray of the other camera whether the point is visible from there.
+/* render/flow.c: optical flow. It projects the surface point of each pixel with another camera,
+ * computes the point's displacement on the film, and decides by a ray of the other camera
+ * whether the point is visible from there.
  *
- *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> is the first hit P?
+ *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> is the first
+ * hit P?
  *
- * Pixels of the sky have flow, too. Their target is a direction; it is visible if the other camera's ray hits
- * nothing. */
+ * Pixels of the sky have flow, too. Their target is a direction; it is visible if the other
+ * camera's ray hits nothing. */
 #include <math.h>
 #include <string.h>
 
@@ -13,8 +15,10 @@
 #include "velo/shape.h"
 #include "world/shape/moving.h"
 
-/* A hit hides the point if it is nearer by more than this tolerance, relative to the size of the numbers. Rays are
- * rounded to float (2^-23), and their hit distance moves by 1 / cosine of that. */
+/* A hit hides the point if it is nearer by more than this tolerance, relative to the size of
+ * the numbers. Rays are rounded to float (2^-23), and their hit distance moves by 1 / cosine of
+ * that.
+ */
 static const double TOLERANCE = 0x1p-19, LEAST_COSINE = 0.01;
 
 typedef struct Target {
@@ -26,36 +30,46 @@ typedef struct Target {
 } Target;
 
 /* The target of lane i, moved to the other camera's time. */
-static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, int which) {
+static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i,
+                        int which) {
   Target t = {.sky = b->object[i] == 0};
   for (int k = 0; k < 3; k++) {
     t.direction[k] = b->d[k][i];
     t.normal[k] = b->n_geometric[k][i];
-    if (!t.sky) t.point[k] = b->o[k][i] + b->distance[i] * b->d[k][i];
+    if (!t.sky)
+      t.point[k] = b->o[k][i] + b->distance[i] * b->d[k][i];
   }
   if (!t.sky && p->world->moves)
-    vl_world_follow(p->world, b->object[i] - 1, b->primitive[i] - 1, b->instance[i] ? b->instance[i] - 1 : VL_NONE,
-                    p->time, p->other_time[which], t.point, t.point);
+    vl_world_follow(p->world, b->object[i] - 1, b->primitive[i] - 1,
+                    b->instance[i] ? b->instance[i] - 1 : VL_NONE, p->time,
+                    p->other_time[which], t.point, t.point);
   return t;
 }
 
-/* Projects the target with the other camera. The sky is at a large finite distance, so large that the eyes of a stereo
- * camera coincide. An orthographic camera has one direction in all its pixels. */
+/* Projects the target with the other camera. The sky is at a large finite distance, so large
+ * that the eyes of a stereo camera coincide. An orthographic camera has one direction in all
+ * its pixels.
+ */
 static bool find_pixel(const vlCamera *camera, Target *t) {
   double point[3], z;
-  if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC) return false;
+  if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC)
+    return false;
   const double *m = camera->world_from_camera, eye[3] = {m[3], m[7], m[11]};
-  for (int k = 0; k < 3; k++) point[k] = t->sky ? eye[k] + 1e6 * (1 + vl_norm3(eye)) * t->direction[k] : t->point[k];
+  for (int k = 0; k < 3; k++)
+    point[k] = t->sky ? eye[k] + 1e6 * (1 + vl_norm3(eye)) * t->direction[k] : t->point[k];
   return vl_camera_project(camera, point, t->pixel, &z);
 }
 
 /* The other camera's ray towards the target, and its length; false: it has none. */
 static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to, double *end) {
   double o[3], d[3];
-  if (!vl_camera_unproject(camera, t->pixel[0], t->pixel[1], o, d)) return false;
-  for (int k = 0; k < 3; k++) d[k] = t->sky ? t->direction[k] : t->point[k] - o[k];
+  if (!vl_camera_unproject(camera, t->pixel[0], t->pixel[1], o, d))
+    return false;
+  for (int k = 0; k < 3; k++)
+    d[k] = t->sky ? t->direction[k] : t->point[k] - o[k];
   double length = vl_norm3(d);
-  if (!(length > 0)) return false;
+  if (!(length > 0))
+    return false;
   for (int k = 0; k < 3; k++) {
     to->o[k][to->n] = o[k];
     to->d[k][to->n] = d[k] / length;
@@ -65,13 +79,16 @@ static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to,
 }
 
 /* Whether the ray's hit hides the point: true unless the hit is the point itself. */
-static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane, const Target *t,
-                  const vlGroundTruthBatch *other, uint32_t i, double end) {
-  if (other->object[i] == 0) return false;
-  if (t->sky) return true;
+static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane,
+                  const Target *t, const vlGroundTruthBatch *other, uint32_t i, double end) {
+  if (other->object[i] == 0)
+    return false;
+  if (t->sky)
+    return true;
   bool same = other->object[i] == b->object[lane] && other->instance[i] == b->instance[lane] &&
               other->primitive[i] == b->primitive[lane];
-  if (same && p->world->shapes.items[b->object[lane] - 1].kind == VL_SHAPE_TRIANGLES) return false;
+  if (same && p->world->shapes.items[b->object[lane] - 1].kind == VL_SHAPE_TRIANGLES)
+    return false;
   double o[3], cosine = 0;
   for (int k = 0; k < 3; k++) {
     o[k] = other->o[k][i];
@@ -81,30 +98,37 @@ static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t 
   return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), LEAST_COSINE);
 }
 
-static vlHidden judge(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane, const Target *t,
-                      const vlGroundTruthBatch *other, uint32_t i, double end, const vlCamera *camera) {
-  bool inside = t->pixel[0] >= 0 && t->pixel[1] >= 0 && t->pixel[0] < camera->width && t->pixel[1] < camera->height;
+static vlHidden judge(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane,
+                      const Target *t, const vlGroundTruthBatch *other, uint32_t i, double end,
+                      const vlCamera *camera) {
+  bool inside = t->pixel[0] >= 0 && t->pixel[1] >= 0 && t->pixel[0] < camera->width &&
+                t->pixel[1] < camera->height;
   bool cut = !t->sky && !(end >= (double)other->t_min[i] && end <= (double)other->t_max[i]);
-  if (!inside || cut) return VL_HIDDEN_OUTSIDE;
+  if (!inside || cut)
+    return VL_HIDDEN_OUTSIDE;
   return hides(p, b, lane, t, other, i, end) ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
 }
 
-/* Makes the other camera's rays for those of the lanes [first, last) that project into it. The first half of the work,
- * so that rays are traced together. */
-static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, Target *targets, double *ends,
-                         uint32_t first, uint32_t last) {
+/* Makes the other camera's rays for those of the lanes [first, last) that project into it. The
+ * first half of the work, so that rays are traced together. */
+static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, Target *targets,
+                         double *ends, uint32_t first, uint32_t last) {
   const vlCamera *camera = &p->other[which];
   vlGroundTruthBatch *other = w->other;
   other->n = 0;
   for (uint32_t i = first; i < last; i++) {
     Target t = target_of(p, w->batch, i, which);
-    if (!find_pixel(camera, &t)) continue;
-    float *flow = vl_channel_floats(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which);
+    if (!find_pixel(camera, &t))
+      continue;
+    float *flow = vl_channel_floats(p, vl_channel_at(p, w->x[i], w->y[i]),
+                                    VL_INDEX_FORWARD + (uint32_t)which);
     flow[0] = (float)(t.pixel[0] - ((double)w->x[i] + (double)w->lane_x[i]));
     flow[1] = (float)(t.pixel[1] - ((double)w->y[i] + (double)w->lane_y[i]));
-    *vl_channel_ids(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which) = VL_HIDDEN_OUTSIDE;
+    *vl_channel_ids(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which) =
+        VL_HIDDEN_OUTSIDE;
     bool far_outside = !(fabs(t.pixel[0]) < 0x1p20 && fabs(t.pixel[1]) < 0x1p20);
-    if (far_outside || !aim(camera, &t, other, &ends[other->n])) continue;
+    if (far_outside || !aim(camera, &t, other, &ends[other->n]))
+      continue;
     w->lanes[other->n] = i;
     targets[other->n++] = t;
   }
@@ -112,14 +136,16 @@ static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, 
 
 enum { CHUNK = 128 };
 
-static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, uint32_t first, uint32_t last) {
+static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, uint32_t first,
+                       uint32_t last) {
   Target targets[CHUNK];
   double ends[CHUNK];
   uint32_t x[CHUNK], y[CHUNK];
   float film_x[CHUNK], film_y[CHUNK];
   vlGroundTruthBatch *other = w->other;
   list_targets(p, w, which, targets, ends, first, last);
-  if (other->n == 0) return;
+  if (other->n == 0)
+    return;
   for (uint32_t i = 0; i < other->n; i++) {
     double left = floor(targets[i].pixel[0]), top = floor(targets[i].pixel[1]);
     x[i] = (uint32_t)(int32_t)left;
@@ -135,7 +161,8 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   p->ground_truth_kernels->trace(p->world, &def, w->scratch, other);
   for (uint32_t i = 0; i < other->n; i++) {
     uint32_t lane = w->lanes[i];
-    *vl_channel_ids(p, vl_channel_at(p, w->x[lane], w->y[lane]), VL_INDEX_FORWARD + (uint32_t)which) =
+    *vl_channel_ids(p, vl_channel_at(p, w->x[lane], w->y[lane]),
+                    VL_INDEX_FORWARD + (uint32_t)which) =
         judge(p, w->batch, lane, &targets[i], other, i, ends[i], &p->other[which]);
   }
 }

@@ -1,5 +1,5 @@
-/* render/media_fit.c: whether the media of a scene fit together (trace/medium/fit.hot.c): traces a batch of volpath's
- * paths from all parts of the image. */
+/* render/media_fit.c: whether the media of a scene fit together (trace/medium/fit.hot.c):
+ * traces a batch of volpath's paths from all parts of the image. */
 #include <string.h>
 
 #include "base/context.h"
@@ -9,21 +9,24 @@
 #include "trace/trace.h"
 
 enum { SIDE = 32, DEPTH = 8, ROWS = 22 };
-/* Media differ if this share of the radiance arrives over such segments, or if this share of the paths has some. A few
- * paths may slip through edges by rounding, or see a place without light, such as the ground from below. */
+/* Media differ if this share of the radiance arrives over such segments, or if this share of
+ * the paths has some. A few paths may slip through edges by rounding, or see a place without
+ * light, such as the ground from below. */
 static const double LITTLE = 0.002, MANY = 0.1;
 enum { FEWEST_WRONG = 3 };
 _Static_assert(SIDE *SIDE == VL_BATCH, "one batch");
 
 /* Rays through the image's middle of the shutter's time. Returns their number. */
-static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int32_t *px, int32_t *py,
-                          uint32_t *index) {
+static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int32_t *px,
+                          int32_t *py, uint32_t *index) {
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
   uint32_t n = 0;
   for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-    double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width, y = (i / SIDE + 0.5) / SIDE * camera->height;
-    if (!vl_camera_unproject(&pinhole, x, y, o, d)) continue;
+    double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,
+                       y = (i / SIDE + 0.5) / SIDE * camera->height;
+    if (!vl_camera_unproject(&pinhole, x, y, o, d))
+      continue;
     for (int k = 0; k < 3; k++) {
       row[k][n] = (float)o[k];
       row[3 + k][n] = (float)d[k];
@@ -37,7 +40,8 @@ static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int
     n++;
   }
   for (uint32_t i = n; n > 0 && i < VL_PAD(n); i++) {
-    for (int k = 0; k < 9; k++) row[k][i] = row[k][n - 1];
+    for (int k = 0; k < 9; k++)
+      row[k][i] = row[k][n - 1];
     px[i] = px[n - 1];
     py[i] = py[n - 1];
     index[i] = index[n - 1];
@@ -52,18 +56,22 @@ typedef struct Room {
   uint32_t index[VL_ROW_SIZE];
 } Room;
 
-static bool ask(const vlWorld *world, const vlCamera *camera, Room *room, uint32_t *light_medium,
-                vlTraceScratch *scratch) {
+static bool ask(const vlWorld *world, const vlCamera *camera, Room *room,
+                uint32_t *light_medium, vlTraceScratch *scratch) {
   vlIsa isa = vl_context_isa(world->context);
   const vlTraceKernels *kernels = vl_trace_kernels(isa);
   vlSampler sampler;
   vl_sampler_init(&sampler, VL_SAMPLER_INDEPENDENT, 1, SIDE, SIDE, 1);
   float(*row)[VL_ROW_SIZE] = room->rows;
   uint32_t n = make_rays(camera, row, room->px, room->py, room->index), wrong = 0;
-  if (n == 0) return false;
+  if (n == 0)
+    return false;
   room->fit.light_medium = light_medium;
-  vlTraceDef def = {
-      .tracer = VL_TRACER_VOLPATH, .sampler = &sampler, .isa = isa, .max_depth = DEPTH, .fit = &room->fit};
+  vlTraceDef def = {.tracer = VL_TRACER_VOLPATH,
+                    .sampler = &sampler,
+                    .isa = isa,
+                    .max_depth = DEPTH,
+                    .fit = &room->fit};
   bool rgb = world->def.color == VL_COLOR_RGB;
   vlTraceBatch batch = {.n = n,
                         .ox = row[0],
@@ -96,9 +104,11 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room, uint32
     wrong += room->fit.wrong[i];
     for (int c = 0; c < 4; c++) {
       double radiance = (double)batch.radiance[c][i];
-      if (!(radiance < 1e30)) continue;
+      if (!(radiance < 1e30))
+        continue;
       all += radiance;
-      if (room->fit.wrong[i]) after += radiance - (double)room->fit.before[c][i];
+      if (room->fit.wrong[i])
+        after += radiance - (double)room->fit.before[c][i];
     }
   }
   return wrong >= FEWEST_WRONG && (after > LITTLE * all || wrong > MANY * n);
@@ -106,13 +116,16 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room, uint32
 
 vlResult vl_media_differ(const vlWorld *world, const vlCamera *camera, bool *differ) {
   *differ = false;
-  if (!world->media.count) return VL_OK;
+  if (!world->media.count)
+    return VL_OK;
   vlContext *context = world->context;
   Room *room = vl_alloc_zero(context, 1, sizeof *room);
   vlTraceScratch *scratch = vl_alloc_zero(context, 1, vl_trace_scratch_size(world));
-  uint32_t *light_medium = vl_alloc_zero(context, world->lights.count + 1, sizeof *light_medium);
+  uint32_t *light_medium =
+      vl_alloc_zero(context, world->lights.count + 1, sizeof *light_medium);
   bool good = room && scratch && light_medium;
-  if (good) *differ = ask(world, camera, room, light_medium, scratch);
+  if (good)
+    *differ = ask(world, camera, room, light_medium, scratch);
   VL_FREE(context, room, scratch, light_medium);
   return good ? VL_OK : VL_ERROR_MEMORY;
 }

@@ -1,8 +1,8 @@
 /* render/outline.c: the box of one object or instance in space, and the box of its projection.
  *
- * The box of a projection is that of the projected corners: exact for triangles and bilinear patches where straight
- * lines stay straight (a linear function on a bilinear patch is largest at a corner). Round shapes use points of their
- * rims and of a fine grid. */
+ * The box of a projection is that of the projected corners: exact for triangles and bilinear
+ * patches where straight lines stay straight (a linear function on a bilinear patch is largest
+ * at a corner). Round shapes use points of their rims and of a fine grid. */
 #include <math.h>
 #include <string.h>
 
@@ -28,13 +28,15 @@ static void flush(Points *p) {
   double pixels[2 * CHUNK];
   uint8_t valid[CHUNK];
   vlIdBox *b = p->box;
-  if (p->count == 0) return;
+  if (p->count == 0)
+    return;
   for (uint32_t i = 0; i < p->count && p->space; i++)
     for (int k = 0; k < 3; k++) {
       b->low[k] = fmin(b->low[k], p->own[3 * i + (uint32_t)k]);
       b->high[k] = fmax(b->high[k], p->own[3 * i + (uint32_t)k]);
     }
-  if (p->outline) vl_camera_project_batch(p->camera, p->count, p->world, pixels, NULL, valid);
+  if (p->outline)
+    vl_camera_project_batch(p->camera, p->count, p->world, pixels, NULL, valid);
   for (uint32_t i = 0; i < p->count && p->outline; i++) {
     p->whole = p->whole && valid[i];
     for (int k = 0; k < 2; k++) {
@@ -55,7 +57,8 @@ static void add(Points *p, double x, double y, double z) {
     world[i] = p->place ? (double)p->place[4 * i] * x + (double)p->place[4 * i + 1] * y +
                               (double)p->place[4 * i + 2] * z + (double)p->place[4 * i + 3]
                         : own[i];
-  if (++p->count == CHUNK) flush(p);
+  if (++p->count == CHUNK)
+    flush(p);
 }
 
 static void add_vertices(Points *p, const vlWorldShape *s, float time) {
@@ -66,12 +69,15 @@ static void add_vertices(Points *p, const vlWorldShape *s, float time) {
   }
 }
 
-/* Adds points of a circle of radius r at height z in object space, over the shape's phi range. */
+/* Adds points of a circle of radius r at height z in object space, over the shape's phi range.
+ */
 static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
   const double *m = s->from_shape;
   for (int i = 0; i <= AROUND; i++) {
-    double phi = (double)s->phi_max * i / AROUND, x = r * vl_precise_cos(phi), y = r * vl_precise_sin(phi), q[3];
-    for (int k = 0; k < 3; k++) q[k] = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
+    double phi = (double)s->phi_max * i / AROUND, x = r * vl_precise_cos(phi),
+           y = r * vl_precise_sin(phi), q[3];
+    for (int k = 0; k < 3; k++)
+      q[k] = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
     add(p, q[0], q[1], q[2]);
   }
 }
@@ -102,7 +108,8 @@ static void add_pieces(Points *p, const vlWorldShape *s) {
     float low[3], high[3];
     vl_world_prim_bounds(s, i, low, high);
     for (int c = 0; c < 8; c++)
-      add(p, (double)(c & 1 ? low : high)[0], (double)(c & 2 ? low : high)[1], (double)(c & 4 ? low : high)[2]);
+      add(p, (double)(c & 1 ? low : high)[0], (double)(c & 2 ? low : high)[1],
+          (double)(c & 4 ? low : high)[2]);
   }
 }
 
@@ -120,7 +127,8 @@ static void add_shape(Points *p, const vlWorldShape *s, float time) {
 }
 
 uint64_t vl_box_points(const vlWorldShape *s) {
-  if (s->traits & VL_SHAPE_TRAIT_MESH) return s->vertices;
+  if (s->traits & VL_SHAPE_TRAIT_MESH)
+    return s->vertices;
   bool rings = (s->traits & VL_SHAPE_TRAIT_QUADRIC) && !s->centers;
   return rings ? (uint64_t)RINGS * AROUND : 8 * (uint64_t)s->faces;
 }
@@ -134,8 +142,10 @@ static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {
     box->outline[k] = INFINITY;
     box->outline[2 + k] = -INFINITY;
   }
-  for (int i = 0; i < 16; i++) box->world_from_box[i] = i % 5 == 0;
-  for (int i = 0; i < 12 && place; i++) box->world_from_box[i] = (double)place[i];
+  for (int i = 0; i < 16; i++)
+    box->world_from_box[i] = i % 5 == 0;
+  for (int i = 0; i < 12 && place; i++)
+    box->world_from_box[i] = (double)place[i];
   return (Points){.camera = camera, .place = place, .box = box, .whole = true};
 }
 
@@ -144,15 +154,16 @@ static void end(Points *p) {
   vlIdBox *b = p->box;
   b->has_space = b->low[0] <= b->high[0];
   b->has_outline = p->outline && p->whole && b->outline[0] <= b->outline[2];
-  if (!b->has_outline) memset(b->outline, 0, sizeof b->outline);
+  if (!b->has_outline)
+    memset(b->outline, 0, sizeof b->outline);
   if (!b->has_space) {
     memset(b->low, 0, sizeof b->low);
     memset(b->high, 0, sizeof b->high);
   }
 }
 
-void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, uint32_t id, bool grouped,
-                      vlIdBox *box) {
+void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, uint32_t id,
+                      bool grouped, vlIdBox *box) {
   Points p = begin(camera, box, NULL);
   p.space = true;
   p.outline = !grouped;
@@ -161,17 +172,19 @@ void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, 
   end(&p);
 }
 
-void vl_box_of_instance(const vlWorld *world, const vlCamera *camera, float time, uint32_t id, bool corners,
-                        vlIdBox *box) {
+void vl_box_of_instance(const vlWorld *world, const vlCamera *camera, float time, uint32_t id,
+                        bool corners, vlIdBox *box) {
   vlWorldInstance room;
   const vlWorldInstance *q = vl_instance_at(&world->instances.items[id - 1], time, &room);
   const vlWorldGroup *group = &world->groups.items[q->group];
   Points p = begin(camera, box, q->from_group);
   p.outline = true;
   for (int c = 0; c < 8 && corners; c++)
-    add(&p, (double)(c & 1 ? group->low : group->high)[0], (double)(c & 2 ? group->low : group->high)[1],
+    add(&p, (double)(c & 1 ? group->low : group->high)[0],
+        (double)(c & 2 ? group->low : group->high)[1],
         (double)(c & 4 ? group->low : group->high)[2]);
-  for (uint32_t i = 0; i < group->count && !corners; i++) add_shape(&p, &world->shapes.items[group->shapes[i]], time);
+  for (uint32_t i = 0; i < group->count && !corners; i++)
+    add_shape(&p, &world->shapes.items[group->shapes[i]], time);
   flush(&p);
   for (int k = 0; k < 3; k++) {
     box->low[k] = (double)group->low[k];

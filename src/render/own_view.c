@@ -7,8 +7,9 @@
 #include "camera/own_rays.h"
 #include "math/double3.h"
 
-/* Points at a time, and rays for each: the film point itself, and STEP pixels to its left and right, above and below.
- * The error of a derivative is STEP^2 / 6 of the third derivative, 1e-7 where the map changes over 40 pixels. */
+/* Points at a time, and rays for each: the film point itself, and STEP pixels to its left and
+ * right, above and below. The error of a derivative is STEP^2 / 6 of the third derivative, 1e-7
+ * where the map changes over 40 pixels. */
 enum { CHUNK = 128, MIDDLE = 0, SIDES = 1, RAYS = 5 };
 static const double STEP = 1.0 / 32;
 _Static_assert(CHUNK *RAYS <= VL_OWN_BATCH, "one call");
@@ -19,18 +20,22 @@ static double square(double x) {
 
 static double change(const vlOwnRay *a, const vlOwnRay *b) {
   double sum = 0;
-  for (int k = 0; k < 3; k++) sum += square(b->d[k] - a->d[k]) + square(b->o[k] - a->o[k]);
+  for (int k = 0; k < 3; k++)
+    sum += square(b->d[k] - a->d[k]) + square(b->o[k] - a->o[k]);
   return sum;
 }
 
-/* Derivatives by one axis of the film. Beside a film point without a ray, and at a seam, where the rays of one side are
- * far from those of the other, they are one-sided. False: there are none. */
-static bool derivatives(const vlOwnRay *before, const vlOwnRay *at, const vlOwnRay *after, double o[3], double d[3]) {
+/* Derivatives by one axis of the film. Beside a film point without a ray, and at a seam, where
+ * the rays of one side are far from those of the other, they are one-sided. False: there are
+ * none. */
+static bool derivatives(const vlOwnRay *before, const vlOwnRay *at, const vlOwnRay *after,
+                        double o[3], double d[3]) {
   double back = before->good ? change(before, at) : (double)INFINITY;
   double ahead = after->good ? change(at, after) : (double)INFINITY;
   bool uses_before = back < (double)INFINITY && back <= 4 * ahead;
   bool uses_after = ahead < (double)INFINITY && ahead <= 4 * back;
-  if (!uses_before && !uses_after) return false;
+  if (!uses_before && !uses_after)
+    return false;
   const vlOwnRay *a = uses_before ? before : at, *b = uses_after ? after : at;
   double inv = 1 / (STEP * (uses_before + uses_after));
   for (int k = 0; k < 3; k++) {
@@ -47,47 +52,63 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
 }
 
 /* rays: RAYS of one film point; p: world space. */
-static void connect(const vlCameraCompiled *c, const vlOwnRay *rays, const float p[3], vlCameraSample *s) {
+static void connect(const vlCameraCompiled *c, const vlOwnRay *rays, const float p[3],
+                    vlCameraSample *s) {
   const vlOwnRay *at = &rays[MIDDLE];
   double ox[3], oy[3], dx[3], dy[3], to[3], off2 = 0;
-  if (!at->good || !(at->weight >= 0) || !(at->weight < (double)INFINITY)) return;
-  if (!derivatives(&rays[SIDES], at, &rays[SIDES + 1], ox, dx)) return;
-  if (!derivatives(&rays[SIDES + 2], at, &rays[SIDES + 3], oy, dy)) return;
-  for (int k = 0; k < 3; k++) to[k] = (double)p[k] - at->o[k];
-  double t = vl_dot3(to, at->d), near = c->near_plane * at->stretch, far = c->far_plane * at->stretch;
-  double area[3] = {triple(ox, oy, at->d), triple(ox, dy, at->d) + triple(dx, oy, at->d), triple(dx, dy, at->d)};
+  if (!at->good || !(at->weight >= 0) || !(at->weight < (double)INFINITY))
+    return;
+  if (!derivatives(&rays[SIDES], at, &rays[SIDES + 1], ox, dx))
+    return;
+  if (!derivatives(&rays[SIDES + 2], at, &rays[SIDES + 3], oy, dy))
+    return;
+  for (int k = 0; k < 3; k++)
+    to[k] = (double)p[k] - at->o[k];
+  double t = vl_dot3(to, at->d), near = c->near_plane * at->stretch,
+         far = c->far_plane * at->stretch;
+  double area[3] = {triple(ox, oy, at->d), triple(ox, dy, at->d) + triple(dx, oy, at->d),
+                    triple(dx, dy, at->d)};
   double pixel = fabs(area[0] + t * (area[1] + t * area[2]));
-  for (int k = 0; k < 3; k++) off2 += square(to[k] - t * at->d[k]);
-  if (!(t > near) || !(t < far) || !(off2 <= pixel / 256) || !(pixel > 0)) return;
+  for (int k = 0; k < 3; k++)
+    off2 += square(to[k] - t * at->d[k]);
+  if (!(t > near) || !(t < far) || !(off2 <= pixel / 256) || !(pixel > 0))
+    return;
   s->seen = true;
   s->from = (vlVec3){(float)at->o[0], (float)at->o[1], (float)at->o[2]};
   s->w = (vlVec3){(float)-at->d[0], (float)-at->d[1], (float)-at->d[2]};
   s->end = (float)(1 - near / t);
   s->per_square = (float)(1 / pixel);
   s->weight = (float)at->weight;
-  for (int k = 0; k < 3; k++) s->area[k] = (float)area[k];
+  for (int k = 0; k < 3; k++)
+    s->area[k] = (float)area[k];
 }
 
-static void look_at(const vlCameraView *view, uint32_t n, const float *x, const float *y, const float *z,
-                    vlCameraSample *samples) {
+static void look_at(const vlCameraView *view, uint32_t n, const float *x, const float *y,
+                    const float *z, vlCameraSample *samples) {
   static const double side[RAYS][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
   const vlCameraCompiled *c = view->camera;
   const double *m = c->camera_from_world;
-  double at[3][CHUNK], film_x[CHUNK], film_y[CHUNK], points_x[CHUNK * RAYS], points_y[CHUNK * RAYS];
+  double at[3][CHUNK], film_x[CHUNK], film_y[CHUNK], points_x[CHUNK * RAYS],
+      points_y[CHUNK * RAYS];
   vlOwnRay rays[CHUNK * RAYS];
   for (uint32_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++)
-      at[k][i] = m[4 * k] * (double)x[i] + m[4 * k + 1] * (double)y[i] + m[4 * k + 2] * (double)z[i] + m[4 * k + 3];
+      at[k][i] = m[4 * k] * (double)x[i] + m[4 * k + 1] * (double)y[i] +
+                 m[4 * k + 2] * (double)z[i] + m[4 * k + 3];
   vl_own_pixels(c, n, at[0], at[1], at[2], film_x, film_y);
   for (uint32_t i = 0; i < n; i++) {
     vlCameraSample *s = &samples[i];
     memset(s, 0, sizeof *s);
     s->x = (float)film_x[i];
     s->y = (float)film_y[i];
-    s->seen = s->x > view->low_x && s->x < view->high_x && s->y > view->low_y && s->y < view->high_y;
-    for (int k = 0; k < RAYS; k++) { /* of a point that is not seen: some rays, which are not used */
-      points_x[RAYS * i + (uint32_t)k] = (s->seen ? film_x[i] : (double)view->low_x) + STEP * side[k][0];
-      points_y[RAYS * i + (uint32_t)k] = (s->seen ? film_y[i] : (double)view->low_y) + STEP * side[k][1];
+    s->seen =
+        s->x > view->low_x && s->x < view->high_x && s->y > view->low_y && s->y < view->high_y;
+    for (int k = 0; k < RAYS;
+         k++) { /* of a point that is not seen: some rays, which are not used */
+      points_x[RAYS * i + (uint32_t)k] =
+          (s->seen ? film_x[i] : (double)view->low_x) + STEP * side[k][0];
+      points_y[RAYS * i + (uint32_t)k] =
+          (s->seen ? film_y[i] : (double)view->low_y) + STEP * side[k][1];
     }
   }
   vl_own_world_rays(c, RAYS * n, points_x, points_y, rays);
@@ -95,20 +116,24 @@ static void look_at(const vlCameraView *view, uint32_t n, const float *x, const 
     const float p[3] = {x[i], y[i], z[i]};
     bool inside = samples[i].seen;
     samples[i].seen = false;
-    if (inside) connect(c, rays + RAYS * i, p, &samples[i]);
+    if (inside)
+      connect(c, rays + RAYS * i, p, &samples[i]);
   }
 }
 
-static void look(const vlCameraView *view, uint32_t n, const float *x, const float *y, const float *z,
-                 vlCameraSample *samples) {
+static void look(const vlCameraView *view, uint32_t n, const float *x, const float *y,
+                 const float *z, vlCameraSample *samples) {
   for (uint32_t first = 0; first < n; first += CHUNK)
-    look_at(view, n - first < CHUNK ? n - first : CHUNK, x + first, y + first, z + first, samples + first);
+    look_at(view, n - first < CHUNK ? n - first : CHUNK, x + first, y + first, z + first,
+            samples + first);
 }
 
 void vl_own_view(const vlCameraCompiled *c, const vlFilmDef *film, vlCameraView *view) {
-  if (!c->own) return;
+  if (!c->own)
+    return;
   view->sees = c->own->pixels && !c->own->lens && !c->when.moves;
-  if (!view->sees) return;
+  if (!view->sees)
+    return;
   view->look = look;
   view->reach_x = film->filter.radius_x + 1.0f;
   view->reach_y = film->filter.radius_y + 1.0f;

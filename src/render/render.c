@@ -1,5 +1,5 @@
-/* render/render.c: vl_render: prepares world, camera and film, runs the passes over the image and reports their
- * progress. A pass goes over blocks of tiles (block.h). */
+/* render/render.c: vl_render: prepares world, camera and film, runs the passes over the image
+ * and reports their progress. A pass goes over blocks of tiles (block.h). */
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +27,8 @@ static void count_rays(const vlRenderRun *r, uint64_t *paths, uint64_t *rays) {
 }
 
 bool vl_render_report(vlRenderRun *r, bool pass_done, double work) {
-  if (!r->def->progress) return true;
+  if (!r->def->progress)
+    return true;
   vlProgress p;
   memset(&p, 0, sizeof p);
   double total = r->work_total - r->work_before;
@@ -55,51 +56,70 @@ static bool ask_to_stop(void *user) {
 /* The names of the caller's own code; all are checked. */
 static vlFilmOwn own_names(const vlCamera *camera, const vlRenderDef *def) {
   vlFilmOwn own = {0};
-  if (camera->own) memcpy(own.name[VL_OWN_CAMERA], camera->own->name, strlen(camera->own->name));
-  if (def->own_sampler) memcpy(own.name[VL_OWN_SAMPLER], def->own_sampler->name, strlen(def->own_sampler->name));
-  if (def->own_tracer) memcpy(own.name[VL_OWN_TRACER], def->own_tracer->name, strlen(def->own_tracer->name));
+  if (camera->own)
+    memcpy(own.name[VL_OWN_CAMERA], camera->own->name, strlen(camera->own->name));
+  if (def->own_sampler)
+    memcpy(own.name[VL_OWN_SAMPLER], def->own_sampler->name, strlen(def->own_sampler->name));
+  if (def->own_tracer)
+    memcpy(own.name[VL_OWN_TRACER], def->own_tracer->name, strlen(def->own_tracer->name));
   return own;
 }
 
-vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                         vlError *error) {
-  if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
-  if (def->cookie != VL_COOKIE_RENDER) return vl_fail(error, VL_ERROR_ARGUMENT, "render: " VL_BAD_COOKIE);
+vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                         const vlRenderDef *def, vlError *error) {
+  if (!world || !camera || !film)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
+  if (def->cookie != VL_COOKIE_RENDER)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: " VL_BAD_COOKIE);
   const vlFilmDef *f = vl_film_def(film);
   if (camera->width != f->width || camera->height != f->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: camera (%u x %u) and film (%u x %u) differ", camera->width,
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "render: camera (%u x %u) and film (%u x %u) differ", camera->width,
                    camera->height, f->width, f->height);
   if (f->buckets && world->def.color == VL_COLOR_RGB)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: a world in RGB has no spectra for the film");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "render: a world in RGB has no spectra for the film");
   uint32_t length = vl_film_sequence(film).length;
   if (def->sequence && length && def->sequence != length)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's samples are of a sequence of %u, not of %u", length,
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "render: the film's samples are of a sequence of %u, not of %u", length,
                    def->sequence);
   vlResult result = VL_OK;
   if (def->own_sampler)
-    result = vl_own_check("sampler", def->own_sampler->name, def->own_sampler->numbers != NULL, error);
+    result = vl_own_check("sampler", def->own_sampler->name, def->own_sampler->numbers != NULL,
+                          error);
   if (result == VL_OK && def->own_tracer)
-    result = vl_own_check("tracer", def->own_tracer->name, def->own_tracer->radiance != NULL, error);
-  if (result != VL_OK) return result;
+    result =
+        vl_own_check("tracer", def->own_tracer->name, def->own_tracer->radiance != NULL, error);
+  if (result != VL_OK)
+    return result;
   vlFilmOwn own = own_names(camera, def);
   vlFilmSequence sequence = vl_film_sequence(film);
   vlOwnKind kind = length ? vl_film_own_differs(&sequence.own, &own) : VL_OWN_KINDS;
   if (kind < VL_OWN_KINDS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's samples are of the own %s \"%s\", not of \"%s\"",
-                   vl_own_words[kind], vl_short_text(sequence.own.name[kind]).text, vl_short_text(own.name[kind]).text);
-  if (sequence.uneven)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's pixels do not all have the same samples");
-  if (!(def->noise >= 0) || (def->noise > 0 && (!f->errors || !(def->noise_scale > 0) || def->first_sample)))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "render: noise %g needs a film with errors, a noise_scale above 0, and samples from the first on",
-                   def->noise);
+                   "render: the film's samples are of the own %s \"%s\", not of \"%s\"",
+                   vl_own_words[kind], vl_short_text(sequence.own.name[kind]).text,
+                   vl_short_text(own.name[kind]).text);
+  if (sequence.uneven)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "render: the film's pixels do not all have the same samples");
+  if (!(def->noise >= 0) ||
+      (def->noise > 0 && (!f->errors || !(def->noise_scale > 0) || def->first_sample)))
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "render: noise %g needs a film with errors, a noise_scale above 0, and samples "
+        "from the first on",
+        def->noise);
   if (def->max_depth > 4096)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096", def->max_depth);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096",
+                   def->max_depth);
   if (!vl_is_unset(def->merge_radius) && !(def->merge_radius > 0 && def->merge_radius <= 3e38))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: merge_radius %g is not a radius", def->merge_radius);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: merge_radius %g is not a radius",
+                   def->merge_radius);
   if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MOST_LIGHT_PATHS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: light_paths %u is above %u", def->light_paths,
-                   VL_MOST_LIGHT_PATHS);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: light_paths %u is above %u",
+                   def->light_paths, VL_MOST_LIGHT_PATHS);
   return VL_OK;
 }
 
@@ -113,20 +133,23 @@ static size_t grids_size(void) {
 
 uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  uint64_t each = round_up(vl_trace_scratch_size(world)) + rows + (vl_shares_samples(film, def) ? grids_size() : 0);
+  uint64_t each = round_up(vl_trace_scratch_size(world)) + rows +
+                  (vl_shares_samples(film, def) ? grids_size() : 0);
   uint64_t bytes = vl_context_threads(world->context) * each;
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
 
-/* Workers' memory is one block that the film keeps (vl_film_scratch), so that many small renders in a row need no new
- * memory. */
+/* Workers' memory is one block that the film keeps (vl_film_scratch), so that many small
+ * renders in a row need no new memory. */
 static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error) {
   uint32_t threads = vl_context_threads(context);
-  size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size(r->world));
+  size_t head = round_up(threads * sizeof *r->workers),
+         scratch = round_up(vl_trace_scratch_size(r->world));
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
   size_t grids = r->shares ? grids_size() : 0;
   char *block = vl_film_scratch(r->film, head + threads * (scratch + rows + grids));
-  if (!block) return vl_fail_memory(error);
+  if (!block)
+    return vl_fail_memory(error);
   r->workers = (vlRenderWorker *)(void *)block;
   memset(block, 0, head);
   for (uint32_t i = 0; i < threads; i++) {
@@ -134,33 +157,46 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
     r->workers[i].scratch = (vlTraceScratch *)(void *)own;
     vl_trace_scratch_begin(r->workers[i].scratch, r->world);
     r->workers[i].rows = (float *)(void *)(own + scratch);
-    if (grids) r->workers[i].grids = (vlSharedGrid *)(void *)(own + scratch + rows);
+    if (grids)
+      r->workers[i].grids = (vlSharedGrid *)(void *)(own + scratch + rows);
   }
   return VL_OK;
 }
 
-/* The tracer that is used: volpath in place of one that lacks something of the scene (support.c). */
+/* The tracer that is used: volpath in place of one that lacks something of the scene
+ * (support.c).
+ */
 static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
-  if (r->def->own_tracer) return VL_TRACER_PATH; /* no light paths */
-  if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0) return VL_TRACER_VOLPATH;
+  if (r->def->own_tracer)
+    return VL_TRACER_PATH; /* no light paths */
+  if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0)
+    return VL_TRACER_VOLPATH;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
-           "this tracer renders material \"subsurface\" as clear glass; volpath renders its scattering");
+           "this tracer renders material \"subsurface\" as clear glass; volpath renders its "
+           "scattering");
   const char *lack = NULL;
-  if (!r->raced) r->prepared = vl_tracers_lack(world, camera, vl_film_def(r->film), VL_TRACER_BIT(tracer), &lack);
-  if (!lack) return tracer;
-  vl_log(world->context, VL_LOG_INFO, NULL, "tracer \"%s\" does not support %s: volpath is used",
+  if (!r->raced)
+    r->prepared =
+        vl_tracers_lack(world, camera, vl_film_def(r->film), VL_TRACER_BIT(tracer), &lack);
+  if (!lack)
+    return tracer;
+  vl_log(world->context, VL_LOG_INFO, NULL,
+         "tracer \"%s\" does not support %s: volpath is used",
          vl_kind_family_find("tracers")->rows[tracer]->name, lack);
   return VL_TRACER_VOLPATH;
 }
 
 /* The passes of two-way tracers have one sample; its light paths come first. */
 static vlResult prepare_two_way(vlRenderRun *r, const vlCamera *camera, vlError *error) {
-  if (!vl_two_way_tracer(r->trace.tracer)) return VL_OK;
-  vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace, &r->film_rays, &r->two_way, error);
-  if (result != VL_OK) return result;
+  if (!vl_two_way_tracer(r->trace.tracer))
+    return VL_OK;
+  vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace,
+                                      &r->film_rays, &r->two_way, error);
+  if (result != VL_OK)
+    return result;
   r->trace.two_way = vl_two_way_of(r->two_way);
   for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++)
     vl_two_way_use(r->two_way, i, r->workers[i].scratch);
@@ -172,7 +208,8 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   const vlFilmDef *f = vl_film_def(r->film);
   vlIsa isa = vl_context_isa(world->context);
   vlSampler sampler;
-  vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->sequence.length);
+  vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height,
+                  r->sequence.length);
   sampler.own = r->def->own_sampler;
   sampler.own_bad = &r->own_bad;
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
@@ -183,22 +220,23 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
-  /* Footprints shrink with the samples per pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8). Here the
-   * factor is constant, so that more samples refine the same image. */
+  /* Footprints shrink with the samples per pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at
+   * least 1/8). Here the factor is constant, so that more samples refine the same image. */
   const float footprint = r->def->sharp_textures ? 0.0f : 0.25f;
-  r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
-                          .own = r->def->own_tracer,
-                          .sampler = &r->film_rays.sampler,
-                          .isa = isa,
-                          .cancel = r->def->cancel,
-                          .max_depth = r->def->max_depth,
-                          .ao_distance = r->def->ao_distance,
-                          .ao_cosine = r->def->ao_cosine,
-                          .same_wavelengths = r->def->same_wavelengths,
-                          .lambda_low = (float)f->lambda_min,
-                          .lambda_span = f->buckets ? (float)(f->lambda_max - f->lambda_min) : 0.0f,
-                          .pixel_spread = footprint * r->film_rays.camera.pixel_spread,
-                          .pixel_width = footprint * r->film_rays.camera.pixel_width};
+  r->trace =
+      (vlTraceDef){.tracer = tracer_of(r, camera),
+                   .own = r->def->own_tracer,
+                   .sampler = &r->film_rays.sampler,
+                   .isa = isa,
+                   .cancel = r->def->cancel,
+                   .max_depth = r->def->max_depth,
+                   .ao_distance = r->def->ao_distance,
+                   .ao_cosine = r->def->ao_cosine,
+                   .same_wavelengths = r->def->same_wavelengths,
+                   .lambda_low = (float)f->lambda_min,
+                   .lambda_span = f->buckets ? (float)(f->lambda_max - f->lambda_min) : 0.0f,
+                   .pixel_spread = footprint * r->film_rays.camera.pixel_spread,
+                   .pixel_width = footprint * r->film_rays.camera.pixel_width};
   memcpy(r->crop, f->crop, sizeof r->crop);
   r->tile_x0 = r->crop[0] / VL_RENDER_TILE;
   r->tile_y0 = r->crop[1] / VL_RENDER_TILE;
@@ -206,14 +244,17 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   r->tiles_y = (r->crop[3] + VL_RENDER_TILE - 1) / VL_RENDER_TILE - r->tile_y0;
 }
 
-/* The number of samples of the next pass, at most `most`. Passes have 1, 1, 2, 4, ... samples, so that a first image
- * exists early. The first pass of a call has one sample, since the time of a sample is not known yet. A pass takes at
- * most PASS_SECONDS, since its work is lost when it is abandoned, and at most half of the remaining time. The split
- * into passes does not change the image. */
-static uint32_t pass_size(uint32_t done, uint32_t most, double seconds_per_sample, double left) {
+/* The number of samples of the next pass, at most `most`. Passes have 1, 1, 2, 4, ... samples,
+ * so that a first image exists early. The first pass of a call has one sample, since the time
+ * of a sample is not known yet. A pass takes at most PASS_SECONDS, since its work is lost when
+ * it is abandoned, and at most half of the remaining time. The split into passes does not
+ * change the image. */
+static uint32_t pass_size(uint32_t done, uint32_t most, double seconds_per_sample,
+                          double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
   double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : 1;
-  if (fit < size) size = fit > 1 ? (uint32_t)fit : 1;
+  if (fit < size)
+    size = fit > 1 ? (uint32_t)fit : 1;
   return size < most ? size : most;
 }
 
@@ -239,7 +280,8 @@ static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
   }
   stats->camera_rays = stats->paths;
   stats->own_numbers = atomic_load(&r->own_bad);
-  if (!r->two_way) return;
+  if (!r->two_way)
+    return;
   vlTwoWayCounts more = vl_two_way_counts(r->two_way);
   stats->paths += more.paths;
   stats->bounce_rays += more.bounce_rays;
@@ -249,11 +291,13 @@ static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
 
 /* Chooses the blocks and the samples of the next pass. False: there is none. */
 static bool choose_pass(vlRenderRun *r, double seconds_per_work, double left) {
-  uint32_t total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0, first, most;
+  uint32_t total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0, first,
+           most;
   bool any = vl_adaptive_next(&r->adaptive, total, &first, &most);
   r->work_done = vl_adaptive_mean_spp(&r->adaptive);
   r->work_total = vl_adaptive_expected_spp(&r->adaptive, total);
-  if (!any) return false;
+  if (!any)
+    return false;
   double share = (double)r->adaptive.in_pass / r->adaptive.blocks;
   r->first_sample = r->sequence.first + first;
   r->pass_samples = r->two_way ? 1 : pass_size(first, most, share * seconds_per_work, left);
@@ -263,23 +307,32 @@ static bool choose_pass(vlRenderRun *r, double seconds_per_work, double left) {
 
 /* One pass. *late: it was not finished before the time limit. */
 static vlResult render_pass(vlRenderRun *r, bool *late, vlError *error) {
-  if (vl_film_begin_pass(r->film) != VL_OK) return vl_fail_memory(error);
+  if (vl_film_begin_pass(r->film) != VL_OK)
+    return vl_fail_memory(error);
   vl_film_set_pass_samples(r->film, r->first_sample, r->first_sample + r->pass_samples);
   vlResult result = VL_OK;
   vl_render_choose_blocks(r);
-  if (r->two_way) vl_two_way_times(r->two_way, r->first_sample, &r->film_rays);
+  if (r->two_way)
+    vl_two_way_times(r->two_way, r->first_sample, &r->film_rays);
   atomic_store(&r->blocks_done, 0);
-  if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
-  if (result == VL_OK) vl_parallel_for_at(r->world->context, &r->loop, vl_render_block_count(r), vl_render_block, r);
-  if (r->two_way && r->adaptive.in_pass < r->adaptive.blocks) vl_two_way_drop_splats(r->two_way);
+  if (r->two_way)
+    result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
+  if (result == VL_OK)
+    vl_parallel_for_at(r->world->context, &r->loop, vl_render_block_count(r), vl_render_block,
+                       r);
+  if (r->two_way && r->adaptive.in_pass < r->adaptive.blocks)
+    vl_two_way_drop_splats(r->two_way);
   *late = atomic_load(&r->stop.late);
   if (result == VL_OK && !atomic_load(&r->stop.stopped) && !vl_is_cancelled(r->def->cancel)) {
     vl_film_commit_pass(r->film);
-    return vl_adaptive_end_pass(&r->adaptive, r->pass_samples) == VL_OK ? VL_OK : vl_fail_memory(error);
+    return vl_adaptive_end_pass(&r->adaptive, r->pass_samples) == VL_OK ? VL_OK
+                                                                        : vl_fail_memory(error);
   }
   vl_film_abandon_pass(r->film);
-  if (*late) return VL_OK;
-  return result == VL_OK || result == VL_CANCELLED ? vl_fail(error, VL_CANCELLED, "stopped") : result;
+  if (*late)
+    return VL_OK;
+  return result == VL_OK || result == VL_CANCELLED ? vl_fail(error, VL_CANCELLED, "stopped")
+                                                   : result;
 }
 
 static vlResult render_passes(vlRenderRun *r, vlError *error) {
@@ -288,21 +341,28 @@ static vlResult render_passes(vlRenderRun *r, vlError *error) {
   bool late = false;
   r->work_before = vl_adaptive_mean_spp(&r->adaptive);
   for (bool first = true;; first = false) {
-    double end = def->time_limit > 0 ? r->start + def->time_limit : 0, pass_start = vl_seconds();
-    if (!choose_pass(r, seconds_per_work, end > 0 ? end - pass_start : INFINITY)) return VL_OK;
+    double end = def->time_limit > 0 ? r->start + def->time_limit : 0,
+           pass_start = vl_seconds();
+    if (!choose_pass(r, seconds_per_work, end > 0 ? end - pass_start : INFINITY))
+      return VL_OK;
     r->stop.deadline = first ? 0 : end;
     vlResult result = render_pass(r, &late, error);
-    if (result != VL_OK || late) return result;
+    if (result != VL_OK || late)
+      return result;
     seconds_per_work = (vl_seconds() - pass_start) / r->work_pass;
     r->work_done = vl_adaptive_mean_spp(&r->adaptive);
-    bool more = vl_adaptive_expected_spp(&r->adaptive, def->spp - r->sequence.first) > r->work_done;
-    if (!vl_render_report(r, true, r->work_done) && more) return vl_fail(error, VL_CANCELLED, "stopped");
-    if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit) return VL_OK;
+    bool more =
+        vl_adaptive_expected_spp(&r->adaptive, def->spp - r->sequence.first) > r->work_done;
+    if (!vl_render_report(r, true, r->work_done) && more)
+      return vl_fail(error, VL_CANCELLED, "stopped");
+    if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit)
+      return VL_OK;
   }
 }
 
 static void prepare_pilot(vlRenderRun *r, const vlPilot *pilot) {
-  if (!pilot) return;
+  if (!pilot)
+    return;
   r->shares = r->film_rays.uniform = false;
   r->film_rays.spread = pilot->spread;
   r->trace.pixel_spread *= pilot->spread;
@@ -310,18 +370,23 @@ static void prepare_pilot(vlRenderRun *r, const vlPilot *pilot) {
 }
 
 static void end_pilot(const vlRenderRun *r, vlPilot *pilot) {
-  if (!pilot) return;
+  if (!pilot)
+    return;
   pilot->merge_work = 0;
-  for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++) pilot->merge_work += r->workers[i].merge_work;
+  for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++)
+    pilot->merge_work += r->workers[i].merge_work;
 }
 
-vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                         vlPilot *pilot, vlRenderStats *stats, vlError *error) {
+vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                         const vlRenderDef *def, vlPilot *pilot, vlRenderStats *stats,
+                         vlError *error) {
   vl_error_clear(error);
   vlRenderDef standard = vl_default_render_def();
-  if (!def) def = &standard;
+  if (!def)
+    def = &standard;
   vlResult result = vl_render_check(world, camera, film, def, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlRenderRun render, *r = &render;
   memset(r, 0, sizeof *r);
   r->world = world;
@@ -333,35 +398,45 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   vl_stop_init(&r->stop, def->cancel, ask_to_stop, r);
   r->sequence = vl_film_sequence(film);
   if (!r->sequence.length) {
-    r->sequence.length = def->sequence ? def->sequence : vl_sampler_sequence(def->sampler, def->spp);
+    r->sequence.length =
+        def->sequence ? def->sequence : vl_sampler_sequence(def->sampler, def->spp);
     r->sequence.first = def->first_sample;
     r->sequence.own = own_names(camera, def);
   }
   vl_film_set_sequence(film, r->sequence);
   vlCamera focused = *camera;
-  if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
+  if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK)
+    return result;
   vl_render_prepare(r, &focused);
-  if (r->prepared != VL_OK) return vl_fail_memory(error);
+  if (r->prepared != VL_OK)
+    return vl_fail_memory(error);
   prepare_pilot(r, pilot);
   result = make_workers(r, world->context, error);
-  if (r->shares) r->reconstruction = vl_reconstruction_of(vl_film_filter(film));
-  if (result == VL_OK) result = prepare_two_way(r, &focused, error);
+  if (r->shares)
+    r->reconstruction = vl_reconstruction_of(vl_film_filter(film));
+  if (result == VL_OK)
+    result = prepare_two_way(r, &focused, error);
   if (result == VL_OK && pilot && r->two_way) {
     vl_two_way_share(r->two_way, pilot->pass_seed);
-    vl_two_way_measure(r->two_way, pilot->tails, pilot->spread * pilot->spread / (float)def->spp);
+    vl_two_way_measure(r->two_way, pilot->tails,
+                       pilot->spread * pilot->spread / (float)def->spp);
   }
   double correlation = r->shares ? vl_reconstruction_correlation(&r->reconstruction) : 1;
-  if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def, correlation) != VL_OK)
+  if (result == VL_OK &&
+      vl_adaptive_create(&r->adaptive, world->context, film, def, correlation) != VL_OK)
     result = vl_fail_memory(error);
-  if (result == VL_OK) result = render_passes(r, error);
-  if (stats && r->workers) fill_stats(r, stats);
-  if (r->workers) end_pilot(r, pilot);
+  if (result == VL_OK)
+    result = render_passes(r, error);
+  if (stats && r->workers)
+    fill_stats(r, stats);
+  if (r->workers)
+    end_pilot(r, pilot);
   vl_adaptive_destroy(&r->adaptive);
   vl_two_way_destroy(r->two_way);
   return result;
 }
 
-vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                   vlRenderStats *stats, vlError *error) {
+vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                   const vlRenderDef *def, vlRenderStats *stats, vlError *error) {
   return vl_render_pilot(world, camera, film, def, NULL, stats, error);
 }

@@ -1,5 +1,6 @@
-/* render/stop.h: how a pass over many tasks is abandoned. The caller's callback is called about ten times a second, on
- * the thread that called vl_render; every worker checks the request to cancel and the deadline. */
+/* render/stop.h: how a pass over many tasks is abandoned. The caller's callback is called about
+ * ten times a second, on the thread that called vl_render; every worker checks the request to
+ * cancel and the deadline. */
 #ifndef RENDER_STOP_H
 #define RENDER_STOP_H
 
@@ -20,7 +21,8 @@ typedef struct vlStop {
   atomic_bool late;    /* stopped by the deadline */
 } vlStop;
 
-static inline void vl_stop_init(vlStop *stop, const vlCancel *cancel, vlStopFn *ask, void *user) {
+static inline void vl_stop_init(vlStop *stop, const vlCancel *cancel, vlStopFn *ask,
+                                void *user) {
   stop->cancel = cancel;
   stop->ask = ask;
   stop->user = user;
@@ -33,7 +35,8 @@ static inline void vl_stop_init(vlStop *stop, const vlCancel *cancel, vlStopFn *
 
 /* True: stop. Tasks call it every few milliseconds of work. */
 static inline bool vl_stop_check(vlStop *stop) {
-  if (atomic_load_explicit(&stop->stopped, memory_order_relaxed)) return true;
+  if (atomic_load_explicit(&stop->stopped, memory_order_relaxed))
+    return true;
   if (vl_is_cancelled(stop->cancel)) {
     atomic_store(&stop->stopped, true);
     return true;
@@ -42,9 +45,11 @@ static inline bool vl_stop_check(vlStop *stop) {
   if (stop->deadline > 0 && now >= stop->deadline) {
     atomic_store(&stop->late, true);
     atomic_store(&stop->stopped, true);
-  } else if (stop->ask && pthread_equal(pthread_self(), stop->caller) && now - stop->last > 0.1) {
+  } else if (stop->ask && pthread_equal(pthread_self(), stop->caller) &&
+             now - stop->last > 0.1) {
     stop->last = now;
-    if (stop->ask(stop->user)) atomic_store(&stop->stopped, true);
+    if (stop->ask(stop->user))
+      atomic_store(&stop->stopped, true);
   }
   return atomic_load_explicit(&stop->stopped, memory_order_relaxed);
 }

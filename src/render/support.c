@@ -1,5 +1,5 @@
-/* render/support.c: a table of features by tracers: what each tracer lacks. A new row is enough for vl_render, the race
- * and vl_tracer_lacks; docs/tracers.md lists the rows. */
+/* render/support.c: a table of features by tracers: what each tracer lacks. A new row is enough
+ * for vl_render, the race and vl_tracer_lacks; docs/tracers.md lists the rows. */
 #include "render/support.h"
 
 #include "render/camera_view.h"
@@ -8,7 +8,8 @@
 
 #define BIT VL_TRACER_BIT
 enum {
-  FROM_LIGHTS = BIT(VL_TRACER_BIDIRECTIONAL) | BIT(VL_TRACER_MERGING) | BIT(VL_TRACER_SPPM) | BIT(VL_TRACER_LIGHT_PATH)
+  FROM_LIGHTS = BIT(VL_TRACER_BIDIRECTIONAL) | BIT(VL_TRACER_MERGING) | BIT(VL_TRACER_SPPM) |
+                BIT(VL_TRACER_LIGHT_PATH)
 };
 
 typedef struct Scene {
@@ -29,7 +30,8 @@ static bool has_spectral_film(Scene *s) {
   return s->film->buckets > 0;
 }
 
-/* All paths of a pass, or of a group of light paths, have one time; with a readout time each row has its own. */
+/* All paths of a pass, or of a group of light paths, have one time; with a readout time each
+ * row has its own. */
 static bool has_rolling_shutter(Scene *s) {
   return (s->world->moves || s->camera->moves) && s->camera->readout > 0;
 }
@@ -43,29 +45,35 @@ static bool has_one_sided(Scene *s) {
   return s->world->has_one_sided;
 }
 
-/* A curve turns to face the ray that hits it (world/shape/curve.c). The surface that a light path hits is not the
- * surface that a camera path hits: their points, normals and areas differ, and so do the shadow rays from them. */
+/* A curve turns to face the ray that hits it (world/shape/curve.c). The surface that a light
+ * path hits is not the surface that a camera path hits: their points, normals and areas differ,
+ * and so do the shadow rays from them. */
 static bool has_curves(Scene *s) {
   for (size_t i = 0; i < s->world->shapes.count; i++)
-    if (s->world->shapes.items[i].kind == VL_SHAPE_CURVES) return true;
+    if (s->world->shapes.items[i].kind == VL_SHAPE_CURVES)
+      return true;
   return false;
 }
 
 static bool is_hair(const vlWorld *world, uint32_t material) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  if (m->kind != VL_MATERIAL_MIX) return m->kind == VL_MATERIAL_HAIR;
+  if (m->kind != VL_MATERIAL_MIX)
+    return m->kind == VL_MATERIAL_HAIR;
   return is_hair(world, m->mix[0]) || is_hair(world, m->mix[1]);
 }
 
-/* The BSDF of hair (trace/bsdf/hair.hot.c) is not symmetric: absorption, refraction and the tilt of the scales follow
- * from the direction of the camera. Light paths would need its adjoint. */
+/* The BSDF of hair (trace/bsdf/hair.hot.c) is not symmetric: absorption, refraction and the
+ * tilt of the scales follow from the direction of the camera. Light paths would need its
+ * adjoint. */
 static bool has_hair(Scene *s) {
   for (size_t i = 0; i < s->world->shapes.count; i++)
-    if (is_hair(s->world, s->world->shapes.items[i].material)) return true;
+    if (is_hair(s->world, s->world->shapes.items[i].material))
+      return true;
   return false;
 }
 
-/* The roughness of a vertex depends on the path before it, so paths from both sides would not see the same BSDF. */
+/* The roughness of a vertex depends on the path before it, so paths from both sides would not
+ * see the same BSDF. */
 static bool has_regularisation(Scene *s) {
   return s->world->def.regularize;
 }
@@ -82,10 +90,12 @@ static bool has_other_own_camera(Scene *s) {
   return !view.sees && s->camera->own;
 }
 
-/* Light paths start at lights. Other tracers find a medium's own light by paths from the camera. */
+/* Light paths start at lights. Other tracers find a medium's own light by paths from the
+ * camera. */
 static bool has_emissive_media(Scene *s) {
   for (size_t i = 0; i < s->world->media.count; i++)
-    if (s->world->media.items[i].emits) return true;
+    if (s->world->media.items[i].emits)
+      return true;
   return false;
 }
 
@@ -104,22 +114,26 @@ static const Feature features[] = {
     {"shape \"curve\"", has_curves, FROM_LIGHTS},
     {"material \"hair\"", has_hair, FROM_LIGHTS},
     {"regularization", has_regularisation, FROM_LIGHTS},
-    {"cameras other than perspective ones with a round lens", has_other_camera, BIT(VL_TRACER_LIGHT_PATH)},
-    {"own cameras that do not project points, have a lens or move", has_other_own_camera, BIT(VL_TRACER_LIGHT_PATH)},
+    {"cameras other than perspective ones with a round lens", has_other_camera,
+     BIT(VL_TRACER_LIGHT_PATH)},
+    {"own cameras that do not project points, have a lens or move", has_other_own_camera,
+     BIT(VL_TRACER_LIGHT_PATH)},
     {"light from media", has_emissive_media, BIT(VL_TRACER_LIGHT_PATH)},
     {"media that do not fit together", has_differing_media, FROM_LIGHTS},
 };
 
-vlResult vl_tracers_lack(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film, uint32_t tracers,
-                         const char **lack) {
+vlResult vl_tracers_lack(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film,
+                         uint32_t tracers, const char **lack) {
   Scene scene = {world, camera, film, VL_OK};
   *lack = NULL;
   for (size_t i = 0; !*lack && i < sizeof features / sizeof *features; i++)
-    if (features[i].lacking & tracers && features[i].present(&scene)) *lack = features[i].name;
+    if (features[i].lacking & tracers && features[i].present(&scene))
+      *lack = features[i].name;
   return scene.result;
 }
 
-const char *vl_tracer_lacks(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film, vlTracer tracer) {
+const char *vl_tracer_lacks(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film,
+                            vlTracer tracer) {
   const char *lack;
   vl_tracers_lack(world, camera, film, VL_TRACER_BIT(tracer), &lack);
   return lack;

@@ -12,10 +12,13 @@ static uint32_t pixel_at(float x, uint32_t size) {
 }
 
 static double measure(const vlTails *t, float x, float y, double odds, const double color[3]) {
-  if (!(odds > 0)) return 0; /* camera paths never find it: light that is missing, not noise */
-  const double *base = t->base + 3 * ((size_t)pixel_at(y, t->height) * t->width + pixel_at(x, t->width));
+  if (!(odds > 0))
+    return 0; /* camera paths never find it: light that is missing, not noise */
+  const double *base =
+      t->base + 3 * ((size_t)pixel_at(y, t->height) * t->width + pixel_at(x, t->width));
   double largest = 0, squared = 0, both = 0, grows = (1 + odds) / odds;
-  for (int c = 0; c < 3; c++) largest = fmax(largest, fabs(color[c]) * grows);
+  for (int c = 0; c < 3; c++)
+    largest = fmax(largest, fabs(color[c]) * grows);
   double limit = largest > t->most ? t->most / largest : 1;
   for (int c = 0; c < 3; c++) {
     double sample = color[c] * grows * limit, part = 1 / (3 * (base[c] * base[c] + t->least));
@@ -25,8 +28,8 @@ static double measure(const vlTails *t, float x, float y, double odds, const dou
   return squared > t->rare * t->rare ? fmin(both, MOST) : 0;
 }
 
-void vl_tails_measure(const vlTails *tails, uint32_t n, const float *x, const float *y, const float *odds,
-                      float *const color[3]) {
+void vl_tails_measure(const vlTails *tails, uint32_t n, const float *x, const float *y,
+                      const float *odds, float *const color[3]) {
   for (uint32_t i = 0; i < n; i++) {
     const double rgb[3] = {(double)color[0][i], (double)color[1][i], (double)color[2][i]};
     double moment = measure(tails, x[i], y[i], (double)odds[i], rgb);

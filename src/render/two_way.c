@@ -15,14 +15,16 @@
 
 enum {
   MOST_PATHS = 1 << 20,   /* light paths in a pass, where the scene gives no number */
-  MOST_PHOTONS = 1 << 23, /* 512 MB, and the same again sorted; a pass that would store more gets fewer paths */
+  MOST_PHOTONS = 1 << 23, /* 512 MB, and the same again sorted; a pass that would store more
+                             gets fewer paths */
   FIRST_PHOTONS = 1 << 16,
   MOST_INNER = 1 << 18,    /* light paths in a pass whose vertices camera paths connect to */
   MOST_VERTICES = 1 << 23, /* of them in worlds with media, as MOST_PHOTONS */
-  GROUP_PATHS = 8          /* least number of light paths of a group with the same wavelengths */
+  GROUP_PATHS = 8 /* least number of light paths of a group with the same wavelengths */
 };
-/* vlTwoWay.connect. One connection of a few candidates finds more than one light path would; measured on rooms lit by
- * lamps in shades and on the Cornell box, 3 to 10 have the same error, and 1 has a quarter more. */
+/* vlTwoWay.connect. One connection of a few candidates finds more than one light path would;
+ * measured on rooms lit by lamps in shades and on the Cornell box, 3 to 10 have the same error,
+ * and 1 has a quarter more. */
 static const float CONNECTIONS = 4.0f;
 static const uint32_t light_seed = 0x6c696768u, time_seed = 0x74696d65u;
 
@@ -57,11 +59,13 @@ struct vlTwoWayRun {
   uint32_t most_paths, paths, index;
   const vlTails *tails;    /* null: a render */
   uint32_t pass_seed;      /* of what all paths of a pass share */
-  uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of their own sampler */
+  uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of
+                              their own sampler */
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
   vlLightVertex *vertices, *sorted_vertices; /* the pass's vertices, in any order and sorted */
-  uint32_t *passed, *sorted_passed; /* the same of vlLightVertices.passed; null without attenuation by channel */
+  uint32_t *passed, *sorted_passed;          /* the same of vlLightVertices.passed; null without
+                                                attenuation by channel */
   uint32_t *counts, vertex_capacity, inner_paths;
   atomic_uint_least64_t left;
   atomic_uint_least64_t stored;
@@ -71,8 +75,8 @@ struct vlTwoWayRun {
 };
 
 bool vl_two_way_tracer(uint32_t tracer) {
-  return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING || tracer == VL_TRACER_SPPM ||
-         tracer == VL_TRACER_LIGHT_PATH;
+  return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING ||
+         tracer == VL_TRACER_SPPM || tracer == VL_TRACER_LIGHT_PATH;
 }
 const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run) {
   return &run->way;
@@ -87,19 +91,23 @@ void vl_two_way_share(vlTwoWayRun *run, uint32_t seed) {
 
 void vl_two_way_measure(vlTwoWayRun *run, const vlTails *tails, float pixel) {
   run->tails = tails;
-  if (tails) run->way.light_only = false;
+  if (tails)
+    run->way.light_only = false;
   run->way.alone = tails != NULL;
-  if (tails) run->way.pixel = pixel;
+  if (tails)
+    run->way.pixel = pixel;
 }
 
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch) {
   run->workers[worker].scratch = scratch;
 }
 
-/* ---- splats ------------------------------------------------------------------------------------------------------ */
+/* ---- splats
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-static void splat(void *user, uint32_t n, const float *x, const float *y, const float *odds, float *const value[4],
-                  float *const lambda[4], float *const inv_pdf[4]) {
+static void splat(void *user, uint32_t n, const float *x, const float *y, const float *odds,
+                  float *const value[4], float *const lambda[4], float *const inv_pdf[4]) {
   Worker *w = user;
   vlTwoWayRun *run = w->run;
   bool rgb = run->world->def.color == VL_COLOR_RGB;
@@ -115,65 +123,84 @@ static void splat(void *user, uint32_t n, const float *x, const float *y, const 
     expose.inv_pdf[c] = rgb ? NULL : inv_pdf[c];
   }
   vl_film_expose(run->film, run->trace.isa, &expose, w->color[0], w->color[1], w->color[2]);
-  if (run->tails) vl_tails_measure(run->tails, n, x, y, odds, (float *const[3]){w->color[0], w->color[1], w->color[2]});
-  w->not_finite += vl_splats_add(&run->splats, n, x, y, (float *const[3]){w->color[0], w->color[1], w->color[2]});
+  if (run->tails)
+    vl_tails_measure(run->tails, n, x, y, odds,
+                     (float *const[3]){w->color[0], w->color[1], w->color[2]});
+  w->not_finite += vl_splats_add(&run->splats, n, x, y,
+                                 (float *const[3]){w->color[0], w->color[1], w->color[2]});
 }
 
 void vl_two_way_drop_splats(vlTwoWayRun *run) {
   vl_splats_clear(&run->splats);
 }
 
-void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
-                     float *g, float *b) {
+void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py,
+                     const float *weight, float *r, float *g, float *b) {
   vl_splats_take(&run->splats, n, px, py, weight, r, g, b);
 }
 
-/* ---- light paths ------------------------------------------------------------------------------------------------- */
+/* ---- light paths
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static void store(void *user, uint32_t n, const vlPhoton *photons) {
   Worker *w = user;
   vlTwoWayRun *run = w->run;
   uint64_t at = atomic_fetch_add_explicit(&run->stored, n, memory_order_relaxed);
-  if (at + n <= run->capacity) memcpy(run->photons + at, photons, n * sizeof *photons);
+  if (at + n <= run->capacity)
+    memcpy(run->photons + at, photons, n * sizeof *photons);
 }
 
-static void leave(void *user, uint32_t n, const vlLightVertex *vertices, const uint32_t *passed) {
+static void leave(void *user, uint32_t n, const vlLightVertex *vertices,
+                  const uint32_t *passed) {
   Worker *w = user;
   vlTwoWayRun *run = w->run;
   uint64_t at = atomic_fetch_add_explicit(&run->left, n, memory_order_relaxed);
-  if (at + n > run->vertex_capacity) return;
+  if (at + n > run->vertex_capacity)
+    return;
   memcpy(run->vertices + at, vertices, n * sizeof *vertices);
-  if (run->passed) memcpy(run->passed + at, passed, n * sizeof *passed);
+  if (run->passed)
+    memcpy(run->passed + at, passed, n * sizeof *passed);
 }
 
-/* Sorts the pass's vertices by group, path and bounce. A counting sort by path; the few vertices of a path are then
- * sorted by bounce. */
+/* Sorts the pass's vertices by group, path and bounce. A counting sort by path; the few
+ * vertices of a path are then sorted by bounce. */
 static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
   vlLightVertices *inner = &run->way.inner;
   vlLightVertex *sorted = run->sorted_vertices;
-  uint32_t *start = run->counts, paths = inner->paths, groups = inner->groups, each = paths / groups;
+  uint32_t *start = run->counts, paths = inner->paths, groups = inner->groups,
+           each = paths / groups;
   memset(start, 0, ((size_t)paths + 1) * sizeof *start);
 #define PLACE(X) ((X)->path % groups * each + (X)->path / groups)
-  for (uint32_t i = 0; i < count; i++) start[PLACE(&run->vertices[i]) + 1]++;
-  for (uint32_t i = 0; i < paths; i++) start[i + 1] += start[i];
-  for (uint32_t g = 0; g <= groups; g++) inner->start[g] = start[g * each];
+  for (uint32_t i = 0; i < count; i++)
+    start[PLACE(&run->vertices[i]) + 1]++;
+  for (uint32_t i = 0; i < paths; i++)
+    start[i + 1] += start[i];
+  for (uint32_t g = 0; g <= groups; g++)
+    inner->start[g] = start[g * each];
   uint32_t *passed = run->passed ? run->sorted_passed : NULL;
   for (uint32_t i = 0; i < count; i++) {
     uint32_t at = start[PLACE(&run->vertices[i])]++;
     sorted[at] = run->vertices[i];
-    if (passed) passed[at] = run->passed[i];
+    if (passed)
+      passed[at] = run->passed[i];
   }
 #undef PLACE
   for (uint32_t k = 1; k < count; k++) {
     vlLightVertex moving = sorted[k];
     uint32_t at = k, with = passed ? passed[k] : 0;
-    for (; at > 0 && sorted[at - 1].path == moving.path && sorted[at - 1].bounce > moving.bounce; at--) {
+    for (;
+         at > 0 && sorted[at - 1].path == moving.path && sorted[at - 1].bounce > moving.bounce;
+         at--) {
       sorted[at] = sorted[at - 1];
-      if (passed) passed[at] = passed[at - 1];
+      if (passed)
+        passed[at] = passed[at - 1];
     }
-    if (at == k) continue;
+    if (at == k)
+      continue;
     sorted[at] = moving;
-    if (passed) passed[at] = with;
+    if (passed)
+      passed[at] = with;
   }
   inner->vertices = sorted;
   inner->passed = passed;
@@ -181,8 +208,10 @@ static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
 
 /* Keeps fewer paths' vertices in this pass. Returns false if that is not possible. */
 static bool fewer_inner(vlLightVertices *inner, uint64_t left) {
-  uint32_t paths = (uint32_t)(inner->paths * (uint64_t)(MOST_VERTICES / 8 * 7) / left) / inner->groups * inner->groups;
-  if (paths == 0) paths = inner->groups;
+  uint32_t paths = (uint32_t)(inner->paths * (uint64_t)(MOST_VERTICES / 8 * 7) / left) /
+                   inner->groups * inner->groups;
+  if (paths == 0)
+    paths = inner->groups;
   bool fewer = paths < inner->paths;
   inner->paths = paths;
   return fewer;
@@ -206,7 +235,8 @@ static vlResult grow_vertices(vlTwoWayRun *run, uint64_t wanted, vlError *error)
   return good ? VL_OK : vl_fail_memory(error);
 }
 
-/* Van der Corput's sequence, rotated by the seed: the wavelengths of any number of passes are evenly distributed. */
+/* Van der Corput's sequence, rotated by the seed: the wavelengths of any number of passes are
+ * evenly distributed. */
 static float shared_number(uint32_t seed, uint32_t index) {
   uint32_t x = index;
   x = x << 16 | x >> 16;
@@ -220,7 +250,8 @@ static float shared_number(uint32_t seed, uint32_t index) {
 /* The same in base 3: with base 2, wavelength and time would be correlated. */
 static float shared_time(const vlTwoWayRun *run, uint32_t index) {
   double turn = vl_hash2(run->pass_seed, time_seed) * 0x1p-32, place = 1;
-  for (uint32_t x = index; x > 0; x /= 3) turn += (x % 3) * (place /= 3);
+  for (uint32_t x = index; x > 0; x /= 3)
+    turn += (x % 3) * (place /= 3);
   return fminf((float)(turn - floor(turn)), VL_ONE_MINUS_EPSILON);
 }
 
@@ -231,16 +262,20 @@ void vl_two_way_times(const vlTwoWayRun *run, uint32_t index, vlFilmRays *rays) 
   rays->turn = rays->groups ? shared_time(run, index) : 0.0f;
 }
 
-const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u,
-                                       float *time) {
+const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, uint32_t n,
+                                       const float *u, float *time) {
   const vlCameraCompiled *c = &run->rays->camera;
   const vlCameraTime *t = &c->when;
   vlCameraView *eyes = run->workers[worker].eyes;
-  if (!eyes && !time) return NULL;
+  if (!eyes && !time)
+    return NULL;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     double when = c->shutter_open + c->shutter_time * vl_shutter_share(t, (double)u[i]);
-    if (time) time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f) : 0.0f; /* the world is at rest outside [0, 1] */
-    if (!eyes) continue;
+    if (time)
+      time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f)
+                         : 0.0f; /* the world is at rest outside [0, 1] */
+    if (!eyes)
+      continue;
     double f = (when - t->pose_open) * t->pose_rate;
     eyes[i] = run->way.eye;
     vl_camera_view_move(&eyes[i], vl_motion_between(&t->motion, f > 0 ? (f < 1 ? f : 1) : 0));
@@ -248,26 +283,32 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
   return eyes;
 }
 
-/* Samples the numbers (w->u) from which the times of the n light paths from `first` on follow. */
+/* Samples the numbers (w->u) from which the times of the n light paths from `first` on follow.
+ */
 static void draw_times(const vlTwoWayRun *run, uint32_t first, uint32_t n, Worker *w) {
   const vlFilmRays *rays = run->rays;
   if (!rays->centred && rays->groups) {
-    for (uint32_t i = 0; i < VL_PAD(n); i++) w->u[i] = vl_film_rays_group_time(rays, (first + i) % rays->groups);
+    for (uint32_t i = 0; i < VL_PAD(n); i++)
+      w->u[i] = vl_film_rays_group_time(rays, (first + i) % rays->groups);
     return;
   }
   if (!rays->centred && rays->shared < 0.0f) {
-    rays->sampler_kernels->get_1d(&run->way.sampler, n, w->px, w->py, w->index, VL_DIM_BOUNCE + VL_DIM_LIGHT, w->u);
+    rays->sampler_kernels->get_1d(&run->way.sampler, n, w->px, w->py, w->index,
+                                  VL_DIM_BOUNCE + VL_DIM_LIGHT, w->u);
     return;
   }
-  for (uint32_t i = 0; i < VL_PAD(n); i++) w->u[i] = rays->centred ? 0.5f : rays->shared;
+  for (uint32_t i = 0; i < VL_PAD(n); i++)
+    w->u[i] = rays->centred ? 0.5f : rays->shared;
 }
 
 static void light_block(void *user, uint32_t block, uint32_t worker) {
   vlTwoWayRun *run = user;
   Worker *w = &run->workers[worker];
-  uint32_t first = block * VL_BATCH, left = run->paths - first, n = left < VL_BATCH ? left : VL_BATCH;
+  uint32_t first = block * VL_BATCH, left = run->paths - first,
+           n = left < VL_BATCH ? left : VL_BATCH;
   uint32_t width = run->film_def->width;
-  if (vl_stop_check(run->stop)) return;
+  if (vl_stop_check(run->stop))
+    return;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t path = first + (i < n ? i : n - 1), pixel = path % run->pixels;
     w->px[i] = (int32_t)(pixel % width);
@@ -297,11 +338,14 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
 }
 
 static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
-  if (wanted <= run->capacity) return VL_OK;
+  if (wanted <= run->capacity)
+    return VL_OK;
   uint64_t capacity = wanted + wanted / 4;
-  if (capacity > MOST_PHOTONS) capacity = MOST_PHOTONS;
+  if (capacity > MOST_PHOTONS)
+    capacity = MOST_PHOTONS;
   uint32_t buckets = FIRST_PHOTONS;
-  while (buckets < capacity) buckets *= 2;
+  while (buckets < capacity)
+    buckets *= 2;
   VL_FREE(run->context, run->photons, run->sorted, run->start);
   run->photons = vl_alloc_array(run->context, capacity, sizeof *run->photons);
   run->sorted = vl_alloc_array(run->context, capacity, sizeof *run->sorted);
@@ -312,8 +356,8 @@ static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   return good ? VL_OK : vl_fail_memory(error);
 }
 
-/* The radius of a pass. Radii shrink so that both error and bias vanish: r_i^2 = r_1^2 i^(alpha - 1), alpha = 2/3
- * (Knaus and Zwicker 2011; Georgiev et al. 2012). */
+/* The radius of a pass. Radii shrink so that both error and bias vanish: r_i^2 = r_1^2 i^(alpha
+ * - 1), alpha = 2/3 (Knaus and Zwicker 2011; Georgiev et al. 2012). */
 static void set_radius(vlTwoWayRun *run, uint32_t index) {
   vlTwoWay *way = &run->way;
   float radius = run->first_radius * vl_pow((float)(index + 1), -1.0f / 6.0f);
@@ -324,20 +368,25 @@ static void set_radius(vlTwoWayRun *run, uint32_t index) {
 }
 
 vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlError *error) {
-  if (!run->starts) return VL_OK;
+  if (!run->starts)
+    return VL_OK;
   vlTwoWay *way = &run->way;
   run->index = index;
   run->stop = stop;
   run->paths = run->most_paths;
-  if (way->merge) way->shared = shared_number(run->pass_seed, index);
-  if (way->connect > 0.0f) way->turn = shared_number(run->pass_seed, index);
+  if (way->merge)
+    way->shared = shared_number(run->pass_seed, index);
+  if (way->connect > 0.0f)
+    way->turn = shared_number(run->pass_seed, index);
   way->inner.paths = run->inner_paths;
   for (;;) {
     set_radius(run, index);
     atomic_store(&run->stored, 0);
     atomic_store(&run->left, 0);
-    vl_parallel_for_at(run->context, &run->loop, (run->paths + VL_BATCH - 1) / VL_BATCH, light_block, run);
-    if (vl_stop_check(stop)) return vl_fail(error, VL_CANCELLED, "stopped");
+    vl_parallel_for_at(run->context, &run->loop, (run->paths + VL_BATCH - 1) / VL_BATCH,
+                       light_block, run);
+    if (vl_stop_check(stop))
+      return vl_fail(error, VL_CANCELLED, "stopped");
     uint64_t stored = atomic_load(&run->stored);
     uint64_t left = atomic_load(&run->left);
     if (run->world->media.count && left > MOST_VERTICES && fewer_inner(&way->inner, left)) {
@@ -347,31 +396,39 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
     if (left > run->vertex_capacity) {
       vl_splats_clear(&run->splats); /* the pass is repeated with more memory */
       vlResult result = grow_vertices(run, left, error);
-      if (result != VL_OK) return result;
+      if (result != VL_OK)
+        return result;
       continue;
     }
-    if (way->inner.paths) sort_vertices(run, (uint32_t)left);
-    if (!way->merge) return VL_OK;
+    if (way->inner.paths)
+      sort_vertices(run, (uint32_t)left);
+    if (!way->merge)
+      return VL_OK;
     if (stored <= run->capacity) {
-      vl_photon_map_build(&way->map, run->photons, (uint32_t)stored, sqrtf(way->map.radius2), run->sorted, run->start,
-                          run->buckets);
+      vl_photon_map_build(&way->map, run->photons, (uint32_t)stored, sqrtf(way->map.radius2),
+                          run->sorted, run->start, run->buckets);
       return VL_OK;
     }
     vl_splats_clear(&run->splats); /* the pass is repeated with more memory or fewer paths */
-    if (stored > MOST_PHOTONS) run->paths = run->paths / 2 > 1 ? run->paths / 2 : 1;
+    if (stored > MOST_PHOTONS)
+      run->paths = run->paths / 2 > 1 ? run->paths / 2 : 1;
     vlResult result = grow(run, stored < MOST_PHOTONS ? stored : MOST_PHOTONS, error);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
 }
 
-/* ---- creation ---------------------------------------------------------------------------------------------------- */
+/* ---- creation
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
   uint32_t threads = vl_context_threads(run->context);
   size_t size = (vl_two_way_rows_size() + 63) & ~(size_t)63;
   run->workers = vl_alloc_array(run->context, threads, sizeof *run->workers);
   run->memory = vl_alloc_array(run->context, threads, size);
-  if (!run->workers || !run->memory) return vl_fail_memory(error);
+  if (!run->workers || !run->memory)
+    return vl_fail_memory(error);
   memset((void *)run->workers, 0, threads * sizeof *run->workers);
   memset(run->memory, 0, threads * size);
   for (uint32_t i = 0; i < threads; i++) {
@@ -384,34 +441,43 @@ static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
 static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
   uint32_t threads = vl_context_threads(run->context);
   run->eyes = vl_alloc_array(run->context, (size_t)threads * VL_ROW_SIZE, sizeof *run->eyes);
-  if (!run->eyes) return vl_fail_memory(error);
-  for (uint32_t i = 0; i < threads; i++) run->workers[i].eyes = run->eyes + (size_t)i * VL_ROW_SIZE;
+  if (!run->eyes)
+    return vl_fail_memory(error);
+  for (uint32_t i = 0; i < threads; i++)
+    run->workers[i].eyes = run->eyes + (size_t)i * VL_ROW_SIZE;
   return VL_OK;
 }
 
-/* Prepares connections of inner vertices. Groups differ by their wavelengths and, if the world moves, by their times.
+/* Prepares connections of inner vertices. Groups differ by their wavelengths and, if the world
+ * moves, by their times.
  */
 static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   const vlWorld *world = run->world;
   vlLightVertices *inner = &run->way.inner;
-  if ((world->moves && run->trace.same_wavelengths) || run->trace.max_depth < 2) return VL_OK;
-  uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER, groups = paths / GROUP_PATHS;
+  if ((world->moves && run->trace.same_wavelengths) || run->trace.max_depth < 2)
+    return VL_OK;
+  uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER,
+           groups = paths / GROUP_PATHS;
   bool alike = world->def.color == VL_COLOR_RGB && !world->moves;
   groups = groups < 1 || alike ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
   inner->groups = groups;
   inner->paths = run->inner_paths = paths / groups * groups;
   run->way.connect = CONNECTIONS;
   run->counts = vl_alloc_array(run->context, (size_t)inner->paths + 1, sizeof *run->counts);
-  if (!run->counts) return vl_fail_memory(error);
+  if (!run->counts)
+    return vl_fail_memory(error);
   return grow_vertices(run, (uint64_t)inner->paths * 2, error);
 }
 
 /* Finds the medium that surrounds each light, in which its light paths start. */
 static vlResult find_media(vlTwoWayRun *run, const vlCamera *camera, vlError *error) {
   const vlWorld *world = run->world;
-  if (!world->media.count) return VL_OK;
-  run->way.medium = run->medium = vl_alloc_array(run->context, world->lights.count + 1, sizeof *run->medium);
-  if (!run->medium) return vl_fail_memory(error);
+  if (!world->media.count)
+    return VL_OK;
+  run->way.medium = run->medium =
+      vl_alloc_array(run->context, world->lights.count + 1, sizeof *run->medium);
+  if (!run->medium)
+    return vl_fail_memory(error);
   const double *m = camera->world_from_camera;
   const float eye[3] = {(float)m[3], (float)m[7], (float)m[11]};
   unsigned state = vl_accel_enter();
@@ -429,19 +495,23 @@ static bool find_extents(vlTwoWayRun *run) {
   run->way.extent = run->extent;
   bool good = of_shape && run->extent;
   for (size_t i = 0; good && i < n; i++)
-    if (world->lights.items[i].shape != VL_NONE) of_shape[world->lights.items[i].shape] += world->lights.items[i].area;
+    if (world->lights.items[i].shape != VL_NONE)
+      of_shape[world->lights.items[i].shape] += world->lights.items[i].area;
   for (size_t i = 0; good && i < n; i++)
-    if (world->lights.items[i].shape != VL_NONE) run->extent[i] = of_shape[world->lights.items[i].shape];
+    if (world->lights.items[i].shape != VL_NONE)
+      run->extent[i] = of_shape[world->lights.items[i].shape];
   vl_free(run->context, of_shape);
   return good;
 }
 
-vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                           const vlTraceDef *trace, const vlFilmRays *rays, vlTwoWayRun **made, vlError *error) {
+vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                           const vlRenderDef *def, const vlTraceDef *trace,
+                           const vlFilmRays *rays, vlTwoWayRun **made, vlError *error) {
   vlContext *context = world->context;
   vlTwoWayRun *run = vl_alloc_zero(context, 1, sizeof *run);
   *made = run;
-  if (!run) return vl_fail_memory(error);
+  if (!run)
+    return vl_fail_memory(error);
   const vlFilmDef *f = vl_film_def(film);
   run->context = context;
   run->world = world;
@@ -457,62 +527,79 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->pass_seed = rays->sampler.seed;
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
   run->most_paths = def->light_paths;
-  if (def->light_paths == VL_AS_MANY_AS_PIXELS) run->most_paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;
+  if (def->light_paths == VL_AS_MANY_AS_PIXELS)
+    run->most_paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;
   run->paths = run->most_paths;
-  run->rounds = run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
+  run->rounds =
+      run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
   uint64_t samples = (uint64_t)rays->sampler.spp * run->rounds;
   vlTwoWay *way = &run->way;
-  vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width, f->height,
-                  samples < UINT32_MAX ? (uint32_t)samples : UINT32_MAX);
+  vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width,
+                  f->height, samples < UINT32_MAX ? (uint32_t)samples : UINT32_MAX);
   way->light_only = def->tracer == VL_TRACER_LIGHT_PATH;
   way->apart = def->tracer == VL_TRACER_SPPM;
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
   way->pixel = 1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
-  bool good = run->choice && find_extents(run) && vl_splats_make(context, film, &run->splats) == VL_OK;
+  bool good =
+      run->choice && find_extents(run) && vl_splats_make(context, film, &run->splats) == VL_OK;
   way->choice = run->choice;
   vlResult result = good ? make_workers(run, error) : vl_fail_memory(error);
-  if (result == VL_OK) result = find_media(run, camera, error);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = find_media(run, camera, error);
+  if (result != VL_OK)
+    return result;
   run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
-  if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
-  if (run->starts) vl_camera_view(camera, f, &way->eye);
+  if (run->most_paths == 0)
+    memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
+  if (run->starts)
+    vl_camera_view(camera, f, &way->eye);
   way->eye.camera = &rays->camera;
-  if (result == VL_OK && way->eye.sees && rays->camera.when.moves) result = make_eyes(run, error);
-  if (result == VL_OK && way->merge && def->merge_radius > 0) /* clamped, so that its cube is finite */
+  if (result == VL_OK && way->eye.sees && rays->camera.when.moves)
+    result = make_eyes(run, error);
+  if (result == VL_OK && way->merge &&
+      def->merge_radius > 0) /* clamped, so that its cube is finite */
     run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);
   else if (result == VL_OK && way->merge)
     result = vl_first_radius(world, camera, trace, &run->first_radius, error);
   way->merge = way->merge && run->starts && run->first_radius > 0.0f;
-  if (result == VL_OK && way->merge) result = grow(run, FIRST_PHOTONS, error);
+  if (result == VL_OK && way->merge)
+    result = grow(run, FIRST_PHOTONS, error);
   set_radius(run, 0);
-  if (result == VL_OK && run->starts && def->tracer == VL_TRACER_BIDIRECTIONAL) result = make_inner(run, error);
+  if (result == VL_OK && run->starts && def->tracer == VL_TRACER_BIDIRECTIONAL)
+    result = make_inner(run, error);
   return result;
 }
 
-uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
+uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film,
+                           const vlRenderDef *def) {
   enum { VERTICES = 4 }; /* photons per light path, an estimate */
   uint64_t pixels = (uint64_t)film->width * film->height;
-  uint64_t paths =
-      def->light_paths == VL_AS_MANY_AS_PIXELS ? (pixels < MOST_PATHS ? pixels : MOST_PATHS) : def->light_paths;
+  uint64_t paths = def->light_paths == VL_AS_MANY_AS_PIXELS
+                       ? (pixels < MOST_PATHS ? pixels : MOST_PATHS)
+                       : def->light_paths;
   uint64_t photons = paths * VERTICES < MOST_PHOTONS ? paths * VERTICES : MOST_PHOTONS;
   uint64_t window = (uint64_t)(film->crop[2] - film->crop[0]) * (film->crop[3] - film->crop[1]);
   uint64_t bytes = window * sizeof(*((vlSplats *)0)->pixels);
   if (def->tracer == VL_TRACER_BIDIRECTIONAL)
-    bytes += (paths < MOST_INNER ? paths : MOST_INNER) *
-             (VERTICES * (sizeof(vlLightVertex) + (world->by_channel ? 3 : 1) * sizeof(uint32_t)) + sizeof(uint32_t));
-  if (def->tracer == VL_TRACER_MERGING || def->tracer == VL_TRACER_SPPM) bytes += photons * 2 * sizeof(vlPhoton);
+    bytes +=
+        (paths < MOST_INNER ? paths : MOST_INNER) *
+        (VERTICES * (sizeof(vlLightVertex) + (world->by_channel ? 3 : 1) * sizeof(uint32_t)) +
+         sizeof(uint32_t));
+  if (def->tracer == VL_TRACER_MERGING || def->tracer == VL_TRACER_SPPM)
+    bytes += photons * 2 * sizeof(vlPhoton);
   return bytes + vl_context_threads(world->context) * vl_two_way_rows_size();
 }
 
 void vl_two_way_destroy(vlTwoWayRun *run) {
-  if (!run) return;
+  if (!run)
+    return;
   vlContext *context = run->context;
   VL_FREE(context, run->workers, run->memory, run->eyes, run->choice, run->extent, run->medium);
   vl_splats_free(context, &run->splats);
-  VL_FREE(context, run->photons, run->sorted, run->start, run->vertices, run->sorted_vertices, run->passed,
-          run->sorted_passed, run->counts, run);
+  VL_FREE(context, run->photons, run->sorted, run->start, run->vertices, run->sorted_vertices,
+          run->passed, run->sorted_passed, run->counts, run);
 }
 
 vlTwoWayCounts vl_two_way_counts(const vlTwoWayRun *run) {

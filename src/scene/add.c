@@ -1,5 +1,6 @@
-/* scene/add.c: adds textures, materials, emissions and lights: each def is checked, then copied. Ids refer only to
- * objects added before, so textures and mixed materials cannot form a cycle. */
+/* scene/add.c: adds textures, materials, emissions and lights: each def is checked, then
+ * copied. Ids refer only to objects added before, so textures and mixed materials cannot form a
+ * cycle. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,18 +17,22 @@ enum { MAX_OBJECTS = 0x7fffffff };
 
 static bool is_finite_matrix(const double m[16]) {
   for (int i = 0; i < 16; i++)
-    if (!isfinite(m[i])) return false;
+    if (!isfinite(m[i]))
+      return false;
   return true;
 }
 
 /* Whether one more object can be added. Reports the reason otherwise. */
-static bool may_add(vlScene *scene, const void *def, bool cookie, size_t count, vlSource source, const char *what) {
-  if (scene->error.code != VL_OK) return false;
+static bool may_add(vlScene *scene, const void *def, bool cookie, size_t count, vlSource source,
+                    const char *what) {
+  if (scene->error.code != VL_OK)
+    return false;
   if (!def || !cookie) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "%s: " VL_BAD_COOKIE, what);
     return false;
   }
-  if (count >= MAX_OBJECTS) vl_scene_fail(scene, VL_ERROR_SCENE, source, "too many objects");
+  if (count >= MAX_OBJECTS)
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "too many objects");
   return count < MAX_OBJECTS;
 }
 
@@ -41,11 +46,14 @@ static bool out_of_memory(vlScene *scene) {
   return false;
 }
 
-/* ---- textures --------------------------------------------------------------------------------------------------- */
+/* ---- textures
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static bool all_finite(const float *numbers, size_t count) {
   for (size_t i = 0; i < count; i++)
-    if (!isfinite(numbers[i])) return false;
+    if (!isfinite(numbers[i]))
+      return false;
   return true;
 }
 
@@ -53,14 +61,16 @@ static bool all_finite(const float *numbers, size_t count) {
 static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKindRow *row) {
   char what[64];
   snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
-  if (!is_finite_matrix(d->texture_from_world)) return bad(scene, d->source, what, "transform is not finite");
+  if (!is_finite_matrix(d->texture_from_world))
+    return bad(scene, d->source, what, "transform is not finite");
   if (!all_finite(d->tint, 4) || !all_finite(d->st_from_uv, 6))
     return bad(scene, d->source, what, "a number is not finite");
   if (d->spectrum && (row->traits & VL_TEXTURE_FLOAT_ONLY))
     return bad(scene, d->source, what, "there is none of colours, only of floats");
   if (!d->spectrum && (row->traits & VL_TEXTURE_COLOR_ONLY))
     return bad(scene, d->source, what, "there is none of floats, only of colours");
-  if (d->channel < -1 || d->channel > 3) return bad(scene, d->source, what, "its channels are 0 to 3");
+  if (d->channel < -1 || d->channel > 3)
+    return bad(scene, d->source, what, "its channels are 0 to 3");
   if (d->kind == VL_TEXTURE_IMAGE && !!d->path + !!d->image + !!d->data != 1)
     return bad(scene, d->source, what, "needs either a file name or an image");
   return true;
@@ -69,7 +79,8 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKin
 /* Members that the kind's row does not describe are not stored. */
 static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
-  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count, (vlSource){0}, "texture"))
+  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count,
+               (vlSource){0}, "texture"))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
   if (!row) {
@@ -83,9 +94,11 @@ static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool ado
   d.source = def->source;
   vl_row_copy_members(row, def, &d);
   if (!vl_scene_copy_source(scene, &d.source) || !check_texture_def(scene, &d, row) ||
-      !vl_row_take(scene, row, &d, d.spectrum, d.source, what) || !vl_scene_copy_string(scene, &d.name))
+      !vl_row_take(scene, row, &d, d.spectrum, d.source, what) ||
+      !vl_scene_copy_string(scene, &d.name))
     return none;
-  if (!adopt && (!vl_scene_copy_image(scene, &d.image) || !vl_scene_copy_block(scene, d.data, d.data_size, 1, &d.data)))
+  if (!adopt && (!vl_scene_copy_image(scene, &d.image) ||
+                 !vl_scene_copy_block(scene, d.data, d.data_size, 1, &d.data)))
     return none;
   vlTextureDef *slot = VL_PUSH(scene->context, &scene->textures);
   if (!slot) {
@@ -104,14 +117,18 @@ vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def) {
   return add_texture(scene, def, true);
 }
 
-/* ---- materials -------------------------------------------------------------------------------------------------- */
+/* ---- materials
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
   for (int i = 0; i < 2; i++) {
     uint32_t index = d->materials[i].index;
-    if (index == 0) return bad(scene, d->source, "mix material", "needs two materials");
+    if (index == 0)
+      return bad(scene, d->source, "mix material", "needs two materials");
     if (index > scene->materials.count)
-      return bad(scene, d->source, "mix material", "there is no such material (add its parts first)");
+      return bad(scene, d->source, "mix material",
+                 "there is no such material (add its parts first)");
   }
   return true;
 }
@@ -119,8 +136,9 @@ static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
 bool vl_coat_in_closed_form(const vlMaterialDef *def) {
   const vlSpectrum *a = &def->albedo.value;
   float grey = 0;
-  bool black = (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
-               (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
+  bool black =
+      (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
+      (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
   return def->kind == VL_MATERIAL_COATED_DIFFUSE && !def->albedo.texture.index && black &&
          !def->thickness.texture.index;
 }
@@ -128,25 +146,33 @@ bool vl_coat_in_closed_form(const vlMaterialDef *def) {
 /* Members that the kind's row does not describe are not stored. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
-  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
+  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count,
+               (vlSource){0}, "material"))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
   if (!row) {
     bad(scene, def->source, "material", "unknown kind");
     return none;
   }
-  if (def->kind == VL_MATERIAL_MIX && !check_mix(scene, def)) return none;
+  if (def->kind == VL_MATERIAL_MIX && !check_mix(scene, def))
+    return none;
   char what[64];
   snprintf(what, sizeof what, "%s material", row->name);
-  vlMaterialDef d = {
-      .cookie = def->cookie, .kind = def->kind, .name = def->name, .place = def->place, .source = def->source};
+  vlMaterialDef d = {.cookie = def->cookie,
+                     .kind = def->kind,
+                     .name = def->name,
+                     .place = def->place,
+                     .source = def->source};
   vl_row_copy_members(row, def, &d);
-  if (!vl_scene_copy_source(scene, &d.source) || !vl_row_take(scene, row, &d, true, def->source, what) ||
+  if (!vl_scene_copy_source(scene, &d.source) ||
+      !vl_row_take(scene, row, &d, true, def->source, what) ||
       !vl_scene_copy_string(scene, &d.name) || !vl_scene_copy_string(scene, &d.place))
     return none;
   if (d.conserve_energy && !vl_coat_in_closed_form(&d)) {
     bad(scene, def->source, what,
-        "energy is conserved over a diffuse base only, under a medium of albedo 0 and untextured thickness");
+        "energy is conserved over a diffuse base only, under a medium of albedo 0 and "
+        "untextured "
+        "thickness");
     return none;
   }
   if (d.kind == VL_MATERIAL_MIX) {
@@ -162,14 +188,18 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   return (vlMaterialId){(uint32_t)scene->materials.count};
 }
 
-/* ---- light ------------------------------------------------------------------------------------------------------ */
+/* ---- light
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   const vlEmissionId none = {0};
-  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_EMISSION, scene->emissions.count, (vlSource){0}, "emission"))
+  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_EMISSION, scene->emissions.count,
+               (vlSource){0}, "emission"))
     return none;
   vlEmissionDef d = *def;
-  if (!vl_row_take(scene, vl_kind_row(&vl_emission_family, 0), &d, true, d.source, "emission")) return none;
+  if (!vl_row_take(scene, vl_kind_row(&vl_emission_family, 0), &d, true, d.source, "emission"))
+    return none;
   if (d.power < 0.0) {
     bad(scene, d.source, "emission", "power must not be negative");
     return none;
@@ -178,7 +208,8 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
     bad(scene, d.source, "emission", "its texture must be an image");
     return none;
   }
-  if (!vl_scene_copy_source(scene, &d.source)) return none;
+  if (!vl_scene_copy_source(scene, &d.source))
+    return none;
   vlEmissionDef *slot = VL_PUSH(scene->context, &scene->emissions);
   if (!slot) {
     out_of_memory(scene);
@@ -196,12 +227,14 @@ static bool check_portal(vlScene *scene, const vlLightDef *d) {
   for (int k = 0; k < 4; k++) {
     double sum = 0;
     for (int i = 0; i < 3; i++) {
-      if (!isfinite(d->portal[k][i])) return bad(scene, d->source, "light", "portal is not finite");
+      if (!isfinite(d->portal[k][i]))
+        return bad(scene, d->source, "light", "portal is not finite");
       sides[k][i] = (double)d->portal[(k + 1) % 4][i] - d->portal[k][i];
       sum += sides[k][i] * sides[k][i];
     }
     lengths[k] = sqrt(sum);
-    if (!(sum > 0)) return bad(scene, d->source, "light", "two corners of its portal are the same");
+    if (!(sum > 0))
+      return bad(scene, d->source, "light", "two corners of its portal are the same");
   }
   for (int k = 0; k < 4; k++) {
     double across = 0, opposite = 0;
@@ -210,20 +243,27 @@ static bool check_portal(vlScene *scene, const vlLightDef *d) {
       opposite += sides[k][i] * sides[(k + 2) % 4][i] / (lengths[k] * lengths[(k + 2) % 4]);
     }
     if (fabs(across) > 1e-3 || fabs(opposite + 1) > 1e-3)
-      return bad(scene, d->source, "light", "its portal is not a rectangle, corner after corner");
+      return bad(scene, d->source, "light",
+                 "its portal is not a rectangle, corner after corner");
   }
   return true;
 }
 
 static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *row) {
-  if (d->medium.index > scene->media.count) return bad(scene, d->source, "light", "there is no such medium");
-  if (d->power < 0.0) return bad(scene, d->source, "light", "power must not be negative");
-  if (d->illuminance < 0.0) return bad(scene, d->source, "light", "illuminance must not be negative");
-  if (!is_finite_matrix(d->world_from_light)) return bad(scene, d->source, "light", "transform is not finite");
+  if (d->medium.index > scene->media.count)
+    return bad(scene, d->source, "light", "there is no such medium");
+  if (d->power < 0.0)
+    return bad(scene, d->source, "light", "power must not be negative");
+  if (d->illuminance < 0.0)
+    return bad(scene, d->source, "light", "illuminance must not be negative");
+  if (!is_finite_matrix(d->world_from_light))
+    return bad(scene, d->source, "light", "transform is not finite");
   bool same = d->from[0] == d->to[0] && d->from[1] == d->to[1] && d->from[2] == d->to[2];
   if ((row->traits & VL_LIGHT_TRAIT_AIMS) && same)
-    return bad(scene, d->source, "light", "from and to are the same point: it has no direction");
-  if (d->path && d->image) return bad(scene, d->source, "light", "has both a file name and an image");
+    return bad(scene, d->source, "light",
+               "from and to are the same point: it has no direction");
+  if (d->path && d->image)
+    return bad(scene, d->source, "light", "has both a file name and an image");
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !d->path && !d->image)
     return bad(scene, d->source, "light", "needs an image");
   return !d->has_portal || check_portal(scene, d);
@@ -231,7 +271,8 @@ static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *ro
 
 vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   const vlLightId none = {0};
-  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_LIGHT, scene->lights.count, (vlSource){0}, "light"))
+  if (!may_add(scene, def, def && def->cookie == VL_COOKIE_LIGHT, scene->lights.count,
+               (vlSource){0}, "light"))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
   if (!row) {
@@ -240,7 +281,8 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   }
   char what[80];
   snprintf(what, sizeof what, "%s light", row->name);
-  vlLightDef d = vl_default_light_def(def->kind); /* members that the kind does not use keep their defaults */
+  vlLightDef d = vl_default_light_def(
+      def->kind); /* members that the kind does not use keep their defaults */
   vl_row_copy_members(row, def, &d);
   d.source = def->source;
   memcpy(d.world_from_light, def->world_from_light, sizeof d.world_from_light);
@@ -248,7 +290,8 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   d.space = def->space;
   d.has_portal = def->has_portal;
   memcpy(d.portal, def->portal, sizeof d.portal);
-  if (vl_row_find(row, "filename")) d.image = def->image;
+  if (vl_row_find(row, "filename"))
+    d.image = def->image;
   if (!vl_row_take(scene, row, &d, true, d.source, what) || !check_light(scene, &d, row) ||
       !vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_image(scene, &d.image))
     return none;

@@ -13,13 +13,17 @@ vlCheckDef vl_default_check_def(void) {
 
 const char *vl_finding_kind_name(vlFindingKind kind) {
   static const char *const names[VL_FINDING_KINDS] = {
-      "missing-file", "broken-file", "unused",      "replaced", "open-dielectric", "inverted-dielectric",
-      "media",        "degenerate",  "no-uv",       "albedo",   "camera-inside",   "dark-light",
-      "rough-coat",   "wrong",       "overwritten", "remark"};
+      "missing-file", "broken-file",     "unused",
+      "replaced",     "open-dielectric", "inverted-dielectric",
+      "media",        "degenerate",      "no-uv",
+      "albedo",       "camera-inside",   "dark-light",
+      "rough-coat",   "wrong",           "overwritten",
+      "remark"};
   return (unsigned)kind < VL_FINDING_KINDS ? names[kind] : "";
 }
 
-void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source, const char *format, ...) {
+void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source,
+                  const char *format, ...) {
   char text[600];
   VL_FORMAT(text, format);
   vl_make_printable(text);
@@ -47,41 +51,53 @@ static bool make_used(vlCheck *check) {
              {&check->group_used, s->groups.count},
              {&check->emission_used, s->emissions.count}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (!(*all[i].array = vl_alloc_zero(check->context, all[i].count + 1, 1))) return false;
+    if (!(*all[i].array = vl_alloc_zero(check->context, all[i].count + 1, 1)))
+      return false;
   return true;
 }
 
-/* Sorts by severity (errors, warnings, notes); findings of equal severity stay in the order in which they were
- * found. */
+/* Sorts by severity (errors, warnings, notes); findings of equal severity stay in the order in
+ * which they were found. */
 static bool sort(vlCheck *check) {
   size_t n = check->findings.count, next = 0;
   vlFinding *sorted = vl_alloc_array(check->context, n ? n : 1, sizeof *sorted);
-  if (!sorted) return false;
+  if (!sorted)
+    return false;
   for (int severity = VL_SEVERITY_ERROR; severity <= (int)VL_SEVERITY_NOTE; severity++)
     for (size_t i = 0; i < n; i++)
-      if ((int)check->findings.items[i].severity == severity) sorted[next++] = check->findings.items[i];
-  if (n) memcpy(check->findings.items, sorted, n * sizeof *sorted);
+      if ((int)check->findings.items[i].severity == severity)
+        sorted[next++] = check->findings.items[i];
+  if (n)
+    memcpy(check->findings.items, sorted, n * sizeof *sorted);
   vl_free(check->context, sorted);
   return true;
 }
 
-vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more, vlCheck **result,
-                       vlError *error) {
+vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more,
+                       vlCheck **result, vlError *error) {
   vl_error_clear(error);
-  if (result) *result = NULL;
-  if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: scene or result is null");
-  if (def && def->cookie != VL_COOKIE_CHECK) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: " VL_BAD_COOKIE);
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
-  if (scene->meshes_dropped) return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to a world");
+  if (result)
+    *result = NULL;
+  if (!scene || !result)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: scene or result is null");
+  if (def && def->cookie != VL_COOKIE_CHECK)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: " VL_BAD_COOKIE);
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
+  if (scene->meshes_dropped)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to a world");
   vlCheck *check = vl_alloc_zero(scene->context, 1, sizeof *check);
-  if (!check) return vl_fail_memory(error);
+  if (!check)
+    return vl_fail_memory(error);
   check->context = scene->context;
   check->scene = scene;
   check->def = def ? *def : vl_default_check_def();
   check->no_memory = !make_used(check);
-  vlCheckPart *const parts[] = {vl_check_names, vl_check_images, vl_check_meshes, vl_check_inside, more};
+  vlCheckPart *const parts[] = {vl_check_names, vl_check_images, vl_check_meshes,
+                                vl_check_inside, more};
   size_t count = check->def.names_only ? 1 : sizeof parts / sizeof *parts;
-  for (size_t i = 0; i < count && !check->no_memory; i++) parts[i](check);
+  for (size_t i = 0; i < count && !check->no_memory; i++)
+    parts[i](check);
   if (check->no_memory || !sort(check)) {
     vl_check_destroy(check);
     return vl_fail_memory(error);
@@ -91,16 +107,18 @@ vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart 
 }
 
 void vl_check_destroy(vlCheck *check) {
-  if (!check) return;
+  if (!check)
+    return;
   vlContext *c = check->context;
   for (size_t i = 0; i < check->findings.count; i++) {
     void *block;
-    memcpy(&block, &check->findings.items[i].message, sizeof block); /* const for readers; the check owns it */
+    memcpy(&block, &check->findings.items[i].message,
+           sizeof block); /* const for readers; the check owns it */
     vl_free(c, block);
   }
   VL_ARRAY_FREE(c, &check->findings);
-  VL_FREE(c, check->texture_used, check->material_used, check->medium_used, check->group_used, check->emission_used,
-          check);
+  VL_FREE(c, check->texture_used, check->material_used, check->medium_used, check->group_used,
+          check->emission_used, check);
 }
 
 uint32_t vl_check_count(const vlCheck *check) {

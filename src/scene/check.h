@@ -1,6 +1,6 @@
-/* scene/check.h: declarations shared by the parts of the scene check (check*.c). Each part reads the scene description
- * once and adds findings; it does not change the scene. Findings are in the order of the scene's objects, whatever the
- * number of threads. */
+/* scene/check.h: declarations shared by the parts of the scene check (check*.c). Each part
+ * reads the scene description once and adds findings; it does not change the scene. Findings
+ * are in the order of the scene's objects, whatever the number of threads. */
 #ifndef SCENE_CHECK_H
 #define SCENE_CHECK_H
 
@@ -18,20 +18,26 @@ struct vlCheck {
   uint8_t *texture_used, *material_used, *medium_used, *group_used, *emission_used;
 };
 
-void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source,
+                  const char *format, ...) __attribute__((format(printf, 5, 6)));
 
 /* The parts of the check. */
 typedef void vlCheckPart(vlCheck *check);
-/* Implements vl_scene_check. The extra part examines the materials as the world will compile them
- * (api/check_coats.c). */
-vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more, vlCheck **check, vlError *error);
-void vl_check_names(vlCheck *check);  /* finds unused and replaced names; fills the arrays *_used */
+/* Implements vl_scene_check. The extra part examines the materials as the world will compile
+ * them (api/check_coats.c). */
+vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more,
+                       vlCheck **check, vlError *error);
+void vl_check_names(
+    vlCheck *check); /* finds unused and replaced names; fills the arrays *_used */
 void vl_check_images(vlCheck *check); /* checks image files, albedos and the power of lights */
-void vl_check_meshes(vlCheck *check); /* finds degenerate faces, missing uvs, open and inverted solids */
-void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong media of nested solids, reversed portals */
+void vl_check_meshes(
+    vlCheck *check); /* finds degenerate faces, missing uvs, open and inverted solids */
+void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong media of nested
+                                         solids, reversed portals */
 
-/* ---- helpers ----------------------------------------------------------------------------------------------------- */
+/* ---- helpers
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* The material of a shape; null: the default diffuse material. */
 static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {
@@ -42,7 +48,8 @@ enum { VL_CHECK_INPUTS = 48 };
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);
 /* Gives the textures that a texture reads directly. */
 uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]);
-/* Name for a message: "material \"glass\"", "the default material", "the material of line 3". */
+/* Name for a message: "material \"glass\"", "the default material", "the material of line 3".
+ */
 typedef struct vlCheckName {
   char text[120];
 } vlCheckName;

@@ -1,6 +1,7 @@
-/* scene/check_images.c: scene check: missing files, surfaces that reflect more light than they receive, lights without
- * power. It computes an upper bound of each texture's values: for a mix the larger bound of its inputs, for a product
- * the product of the bounds, for an image its brightest texel. */
+/* scene/check_images.c: scene check: missing files, surfaces that reflect more light than they
+ * receive, lights without power. It computes an upper bound of each texture's values: for a mix
+ * the larger bound of its inputs, for a product the product of the bounds, for an image its
+ * brightest texel. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,69 +18,88 @@
 #include "velo/medium.h"
 #include "velo/texture.h"
 
-/* ---- files ------------------------------------------------------------------------------------------------------- */
+/* ---- files
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
-  if (vl_context_allows(c->context, path) && access(path, R_OK) == 0) return true;
+  if (vl_context_allows(c->context, path) && access(path, R_OK) == 0)
+    return true;
   char *data = NULL;
   size_t size;
   vlError error = {0};
-  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error); /* called for its error message */
+  vlResult r = vl_file_read(c->context, path, false, &data, &size,
+                            &error); /* called for its error message */
   vl_free(c->context, data);
   if (r != VL_OK)
-    vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, source,
-                 "%s", error.message);
+    vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE,
+                 VL_SEVERITY_ERROR, source, "%s", error.message);
   return r == VL_OK;
 }
 
 /* Checks that the files exist which the parameters of a family's defs name. */
-static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def, vlSource source) {
+static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def,
+                              vlSource source) {
   const vlKindRow *row = vl_kind_row(family, kind);
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (p->type != VL_PARAMETER_FILE) continue;
+    if (p->type != VL_PARAMETER_FILE)
+      continue;
     const char *path = *(const char *const *)(const void *)((const char *)def + p->offset);
-    if (path) file_is_there(c, path, source);
+    if (path)
+      file_is_there(c, path, source);
   }
 }
 
 static void look_for_files(vlCheck *c) {
   const vlScene *s = c->scene;
   for (size_t i = 0; i < s->textures.count; i++)
-    look_for_files_of(c, &vl_texture_family, (int)s->textures.items[i].kind, &s->textures.items[i],
-                      s->textures.items[i].source);
+    look_for_files_of(c, &vl_texture_family, (int)s->textures.items[i].kind,
+                      &s->textures.items[i], s->textures.items[i].source);
   for (size_t i = 0; i < s->materials.count; i++)
-    look_for_files_of(c, &vl_material_family, (int)s->materials.items[i].kind, &s->materials.items[i],
-                      s->materials.items[i].source);
+    look_for_files_of(c, &vl_material_family, (int)s->materials.items[i].kind,
+                      &s->materials.items[i], s->materials.items[i].source);
   for (size_t i = 0; i < s->lights.count; i++)
-    if (s->lights.items[i].path) file_is_there(c, s->lights.items[i].path, s->lights.items[i].source);
+    if (s->lights.items[i].path)
+      file_is_there(c, s->lights.items[i].path, s->lights.items[i].source);
   for (size_t i = 0; i < s->emissions.count; i++)
-    if (s->emissions.items[i].image) file_is_there(c, s->emissions.items[i].image, s->emissions.items[i].source);
+    if (s->emissions.items[i].image)
+      file_is_there(c, s->emissions.items[i].image, s->emissions.items[i].source);
   for (size_t i = 0; i < s->media.count; i++)
-    if (s->media.items[i].path) file_is_there(c, s->media.items[i].path, s->media.items[i].source);
+    if (s->media.items[i].path)
+      file_is_there(c, s->media.items[i].path, s->media.items[i].source);
 }
 
-/* ---- greatest values --------------------------------------------------------------------------------------------- */
+/* ---- greatest values
+ * ---------------------------------------------------------------------------------------------
+ */
 
-/* The largest value of a spectrum as a reflectance: over the RGB channels, or over all wavelengths. */
+/* The largest value of a spectrum as a reflectance: over the RGB channels, or over all
+ * wavelengths.
+ */
 static float spectrum_max(const vlSpectrum *s) {
   if (s->kind == VL_SPECTRUM_RGB) {
     float m = s->rgb[0] > s->rgb[1] ? s->rgb[0] : s->rgb[1];
     return s->scale * (m > s->rgb[2] ? m : s->rgb[2]);
   }
-  if (s->kind == VL_SPECTRUM_CONSTANT) return s->scale * s->value;
+  if (s->kind == VL_SPECTRUM_CONSTANT)
+    return s->scale * s->value;
   float dense[VL_LAMBDA_COUNT], most = 0;
-  if (vl_spectrum_dense(s, VL_ROLE_ALBEDO, dense, NULL) != VL_OK) return 0;
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) most = dense[i] > most ? dense[i] : most;
+  if (vl_spectrum_dense(s, VL_ROLE_ALBEDO, dense, NULL) != VL_OK)
+    return 0;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    most = dense[i] > most ? dense[i] : most;
   return most;
 }
 
 /* Smallest and largest linear colour value of an image. */
 static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   uint32_t channel[4], n = vl_image_color(image, channel);
-  if (n == 2 || n == 4) n--; /* alpha is not a colour */
+  if (n == 2 || n == 4)
+    n--; /* alpha is not a colour */
   float *row = n ? vl_alloc_array(c->context, (size_t)image->width * n, sizeof *row) : NULL;
-  if (!row) return false;
+  if (!row)
+    return false;
   range[0] = INFINITY;
   range[1] = -INFINITY;
   for (uint32_t y = 0; y < image->height; y++) {
@@ -96,19 +116,23 @@ static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
 static float image_max(vlCheck *c, const vlTextureDef *t) {
   float tint = t->tint[0] > t->tint[1] ? t->tint[0] : t->tint[1], range[2] = {0, 1};
   tint = tint > t->tint[2] ? tint : t->tint[2];
-  bool floats = t->image || t->data || !t->path || vl_ends_with(t->path, ".exr") || vl_ends_with(t->path, ".hdr") ||
-                vl_ends_with(t->path, ".pfm");
+  bool floats = t->image || t->data || !t->path || vl_ends_with(t->path, ".exr") ||
+                vl_ends_with(t->path, ".hdr") || vl_ends_with(t->path, ".pfm");
   vlImage *image = NULL;
-  /* Values of integer images are at most 1, so these are read only if a factor enlarges the values. */
+  /* Values of integer images are at most 1, so these are read only if a factor enlarges the
+   * values.
+   */
   if (c->def.images && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
     vlError error;
-    vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image", t->data, t->data_size,
-                                                  &image, &error)
+    vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image",
+                                                  t->data, t->data_size, &image, &error)
                  : t->path ? vl_image_read_named(c->context, NULL, t->path, &image, &error)
                            : VL_ERROR_MISSING;
-    if (r == VL_ERROR_MEMORY) c->no_memory = true;
+    if (r == VL_ERROR_MEMORY)
+      c->no_memory = true;
     if (r == VL_ERROR_SCENE || r == VL_ERROR_UNSUPPORTED)
-      vl_check_add(c, VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, t->source, "%s", error.message);
+      vl_check_add(c, VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, t->source, "%s",
+                   error.message);
   }
   if (image || t->image)
     if (!image_range(c, image ? image : t->image, range)) {
@@ -124,8 +148,8 @@ static float larger(float a, float b) {
   return a > b ? a : b;
 }
 
-/* The largest of the inputs that the kind has, for kinds that choose between or interpolate them; 0 for kinds without
- * inputs: the colours of noise textures are fixed. */
+/* The largest of the inputs that the kind has, for kinds that choose between or interpolate
+ * them; 0 for kinds without inputs: the colours of noise textures are fixed. */
 static float largest_input(const vlTextureDef *t, const float in[4]) {
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);
   const size_t offsets[4] = {offsetof(vlTextureDef, float_a), offsetof(vlTextureDef, float_b),
@@ -133,30 +157,37 @@ static float largest_input(const vlTextureDef *t, const float in[4]) {
   float largest = 0;
   for (uint32_t i = 0; i < row->parameter_count; i++)
     for (int k = 0; k < 4; k++)
-      if (row->parameters[i].type == VL_PARAMETER_EITHER_INPUT && row->parameters[i].offset == offsets[k])
+      if (row->parameters[i].type == VL_PARAMETER_EITHER_INPUT &&
+          row->parameters[i].offset == offsets[k])
         largest = larger(largest, in[k]);
   return largest;
 }
 
-/* Upper bound of the values of a texture that a reflectance may read; 0 for other textures. known: bounds of the
- * textures added before. */
+/* Upper bound of the values of a texture that a reflectance may read; 0 for other textures.
+ * known: bounds of the textures added before. */
 static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) {
   float in[4];
   const vlFloatInput *floats[4] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d};
-  const vlSpectrumInput *spectra[4] = {&t->spectrum_a, &t->spectrum_b, &t->spectrum_c, &t->spectrum_d};
+  const vlSpectrumInput *spectra[4] = {&t->spectrum_a, &t->spectrum_b, &t->spectrum_c,
+                                       &t->spectrum_d};
   for (int i = 0; i < 4; i++) {
     uint32_t id = t->spectrum ? spectra[i]->texture.index : floats[i]->texture.index;
-    in[i] = id ? known[id - 1] : t->spectrum ? spectrum_max(&spectra[i]->value) : floats[i]->value;
+    in[i] = id            ? known[id - 1]
+            : t->spectrum ? spectrum_max(&spectra[i]->value)
+                          : floats[i]->value;
   }
   float amount = t->amount.texture.index ? known[t->amount.texture.index - 1] : t->amount.value;
-  if (t->kind == VL_TEXTURE_IMAGE) return image_max(c, t);
-  if (t->kind == VL_TEXTURE_SCALE) return in[0] * amount;
-  if (t->kind == VL_TEXTURE_MIX && !t->amount.texture.index) return in[0] * (1 - amount) + in[1] * amount;
+  if (t->kind == VL_TEXTURE_IMAGE)
+    return image_max(c, t);
+  if (t->kind == VL_TEXTURE_SCALE)
+    return in[0] * amount;
+  if (t->kind == VL_TEXTURE_MIX && !t->amount.texture.index)
+    return in[0] * (1 - amount) + in[1] * amount;
   return largest_input(t, in);
 }
 
-/* Gives the inputs of a material that are reflectances or transmittances: the parameters of its row with the role of an
- * albedo, if the def makes use of them. */
+/* Gives the inputs of a material that are reflectances or transmittances: the parameters of its
+ * row with the role of an albedo, if the def makes use of them. */
 enum { SHARES = 6 };
 typedef struct Share {
   const char *what;
@@ -164,11 +195,16 @@ typedef struct Share {
   float factor;
 } Share;
 
-/* Whether the material reads this input. Some kinds read their reflectance only if the def says so. */
+/* Whether the material reads this input. Some kinds read their reflectance only if the def says
+ * so.
+ */
 static bool is_read(const vlMaterialDef *m, uint32_t traits, const vlSpectrumInput *input) {
-  if (input != &m->reflectance) return true;
-  if (m->kind == VL_MATERIAL_SUBSURFACE) return m->subsurface.from_reflectance;
-  if (m->kind == VL_MATERIAL_HAIR) return m->hair.color == VL_HAIR_REFLECTANCE;
+  if (input != &m->reflectance)
+    return true;
+  if (m->kind == VL_MATERIAL_SUBSURFACE)
+    return m->subsurface.from_reflectance;
+  if (m->kind == VL_MATERIAL_HAIR)
+    return m->hair.color == VL_HAIR_REFLECTANCE;
   return !(traits & VL_MATERIAL_METAL) || m->use_reflectance;
 }
 
@@ -178,9 +214,11 @@ static uint32_t shares(const vlMaterialDef *m, Share list[SHARES]) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < row->parameter_count && n < SHARES; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (p->type != VL_PARAMETER_SPECTRUM_INPUT || p->role != VL_PARAMETER_ALBEDO) continue;
+    if (p->type != VL_PARAMETER_SPECTRUM_INPUT || p->role != VL_PARAMETER_ALBEDO)
+      continue;
     const vlSpectrumInput *input = (const void *)((const char *)m + p->offset);
-    if (is_read(m, row->traits, input)) list[n++] = (Share){p->name, input, factor};
+    if (is_read(m, row->traits, input))
+      list[n++] = (Share){p->name, input, factor};
   }
   return n;
 }
@@ -192,23 +230,29 @@ static void mark(vlCheck *c, uint8_t *needed) {
   for (size_t i = 0; i < s->materials.count; i++) {
     uint32_t n = shares(&s->materials.items[i], list);
     for (uint32_t k = 0; k < n; k++)
-      if (list[k].input->texture.index) needed[list[k].input->texture.index - 1] = 1;
+      if (list[k].input->texture.index)
+        needed[list[k].input->texture.index - 1] = 1;
   }
   for (size_t i = s->textures.count; i-- > 0;) {
     uint32_t n = needed[i] ? vl_check_texture_inputs(&s->textures.items[i], inputs) : 0;
-    for (uint32_t k = 0; k < n; k++) needed[inputs[k].index - 1] = 1;
+    for (uint32_t k = 0; k < n; k++)
+      needed[inputs[k].index - 1] = 1;
   }
 }
 
 static void check_albedo(vlCheck *c) {
   const vlScene *s = c->scene;
-  const float most = 1.001f; /* largest value accepted; above 1 because scaled colours are rounded */
+  const float most =
+      1.001f; /* largest value accepted; above 1 because scaled colours are rounded */
   uint8_t *needed = vl_alloc_zero(c->context, s->textures.count + 1, 1);
   float *known = vl_alloc_zero(c->context, s->textures.count + 1, sizeof *known);
-  if (!needed || !known) c->no_memory = true;
-  if (!c->no_memory) mark(c, needed);
+  if (!needed || !known)
+    c->no_memory = true;
+  if (!c->no_memory)
+    mark(c, needed);
   for (size_t i = 0; i < s->textures.count && !c->no_memory; i++)
-    if (needed[i]) known[i] = texture_max(c, &s->textures.items[i], known);
+    if (needed[i])
+      known[i] = texture_max(c, &s->textures.items[i], known);
   for (size_t i = 0; i < s->materials.count && !c->no_memory; i++) {
     const vlMaterialDef *m = &s->materials.items[i];
     Share list[SHARES];
@@ -217,17 +261,20 @@ static void check_albedo(vlCheck *c) {
     for (uint32_t k = 0; k < n; k++) {
       uint32_t id = list[k].input->texture.index;
       float value = list[k].factor * (id ? known[id - 1] : spectrum_max(&list[k].input->value));
-      if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) sum += value;
-      if (!(value > most)) continue;
+      if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION)
+        sum += value;
+      if (!(value > most))
+        continue;
       if (id)
-        vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING, s->textures.items[id - 1].source,
+        vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING,
+                     s->textures.items[id - 1].source,
                      "%s reaches %.4g as the %s of %s: surfaces give back at most 1",
-                     vl_check_texture_name(&s->textures.items[id - 1]).text, (double)value, list[k].what,
-                     vl_check_material_name(m).text);
+                     vl_check_texture_name(&s->textures.items[id - 1]).text, (double)value,
+                     list[k].what, vl_check_material_name(m).text);
       else
         vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING, m->source,
-                     "%s: its %s is %.4g: surfaces give back at most 1", vl_check_material_name(m).text, list[k].what,
-                     (double)value);
+                     "%s: its %s is %.4g: surfaces give back at most 1",
+                     vl_check_material_name(m).text, list[k].what, (double)value);
       sum = 0;
     }
     if (sum > most)
@@ -239,7 +286,9 @@ static void check_albedo(vlCheck *c) {
   vl_free(c->context, known);
 }
 
-/* ---- lights ------------------------------------------------------------------------------------------------------ */
+/* ---- lights
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_dark(const vlSpectrum *s, float scale, bool image) {
   return scale == 0.0f || (!image && !(spectrum_max(s) > 0.0f));
@@ -249,13 +298,15 @@ static void check_lights(vlCheck *c) {
   const vlScene *s = c->scene;
   for (size_t i = 0; i < s->lights.count; i++) {
     const vlLightDef *l = &s->lights.items[i];
-    if (is_dark(&l->color, l->scale, l->path || l->image) || l->power == 0.0 || l->illuminance == 0.0)
+    if (is_dark(&l->color, l->scale, l->path || l->image) || l->power == 0.0 ||
+        l->illuminance == 0.0)
       vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
                    "this light gives no light: its power is 0");
   }
   for (size_t i = 0; i < s->emissions.count; i++) {
     const vlEmissionDef *e = &s->emissions.items[i];
-    if (c->emission_used[i] && (is_dark(&e->radiance, e->scale, e->image || e->texture.index) || e->power == 0.0))
+    if (c->emission_used[i] &&
+        (is_dark(&e->radiance, e->scale, e->image || e->texture.index) || e->power == 0.0))
       vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, e->source,
                    "this area light gives no light: its power is 0");
   }

@@ -1,6 +1,6 @@
-/* scene/check_names.c: scene check: finds which objects are used by shapes, lights and instances, and reports unused
- * ones that have a name or a source location. Objects refer only to earlier ones, so one pass from the last to the
- * first suffices. */
+/* scene/check_names.c: scene check: finds which objects are used by shapes, lights and
+ * instances, and reports unused ones that have a name or a source location. Objects refer only
+ * to earlier ones, so one pass from the last to the first suffices. */
 #include <stdio.h>
 
 #include "scene/check.h"
@@ -12,11 +12,13 @@
 #include "velo/texture.h"
 
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]) {
-  return vl_row_textures(vl_kind_row(&vl_material_family, (int)m->kind), m, inputs, VL_CHECK_INPUTS);
+  return vl_row_textures(vl_kind_row(&vl_material_family, (int)m->kind), m, inputs,
+                         VL_CHECK_INPUTS);
 }
 
 uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]) {
-  return vl_row_textures(vl_kind_row(&vl_texture_family, (int)t->kind), t, inputs, VL_CHECK_INPUTS);
+  return vl_row_textures(vl_kind_row(&vl_texture_family, (int)t->kind), t, inputs,
+                         VL_CHECK_INPUTS);
 }
 
 /* "material "NAME"", "the material of line 3" or "its material". */
@@ -32,7 +34,8 @@ static vlCheckName name_of(const char *kind, const char *name, uint32_t line) {
 }
 
 vlCheckName vl_check_material_name(const vlMaterialDef *m) {
-  return m ? name_of("material", m->name, m->source.line) : (vlCheckName){"the default material"};
+  return m ? name_of("material", m->name, m->source.line)
+           : (vlCheckName){"the default material"};
 }
 
 vlCheckName vl_check_texture_name(const vlTextureDef *t) {
@@ -40,7 +43,8 @@ vlCheckName vl_check_texture_name(const vlTextureDef *t) {
 }
 
 static void use(uint8_t *used, uint32_t index) {
-  if (index) used[index - 1] = 1;
+  if (index)
+    used[index - 1] = 1;
 }
 
 static void find_used(vlCheck *c) {
@@ -53,38 +57,47 @@ static void find_used(vlCheck *c) {
     use(c->medium_used, d->inside.index);
     use(c->medium_used, d->outside.index);
   }
-  for (size_t i = 0; i < s->lights.count; i++) use(c->medium_used, s->lights.items[i].medium.index);
+  for (size_t i = 0; i < s->lights.count; i++)
+    use(c->medium_used, s->lights.items[i].medium.index);
   use(c->medium_used, s->defs.camera_medium.index);
-  for (size_t i = 0; i < s->emissions.count; i++) use(c->texture_used, s->emissions.items[i].texture.index);
-  for (size_t i = 0; i < s->instances.count; i++) use(c->group_used, s->instances.items[i].group.index);
+  for (size_t i = 0; i < s->emissions.count; i++)
+    use(c->texture_used, s->emissions.items[i].texture.index);
+  for (size_t i = 0; i < s->instances.count; i++)
+    use(c->group_used, s->instances.items[i].group.index);
   vlTextureId inputs[VL_CHECK_INPUTS];
   for (size_t i = s->materials.count; i-- > 0;) {
     const vlMaterialDef *m = &s->materials.items[i];
-    if (!c->material_used[i]) continue;
+    if (!c->material_used[i])
+      continue;
     use(c->material_used, m->materials[0].index);
     use(c->material_used, m->materials[1].index);
     uint32_t n = vl_check_material_inputs(m, inputs);
-    for (uint32_t k = 0; k < n; k++) use(c->texture_used, inputs[k].index);
+    for (uint32_t k = 0; k < n; k++)
+      use(c->texture_used, inputs[k].index);
   }
   for (size_t i = s->textures.count; i-- > 0;) {
-    if (!c->texture_used[i]) continue;
+    if (!c->texture_used[i])
+      continue;
     uint32_t n = vl_check_texture_inputs(&s->textures.items[i], inputs);
-    for (uint32_t k = 0; k < n; k++) use(c->texture_used, inputs[k].index);
+    for (uint32_t k = 0; k < n; k++)
+      use(c->texture_used, inputs[k].index);
   }
 }
 
-/* Marks textures that a material or another texture reads, used or not. They are not reported: their unused reader
- * is. */
+/* Marks textures that a material or another texture reads, used or not. They are not reported:
+ * their unused reader is. */
 static void mark_textures_of_unused(vlCheck *c, uint8_t *read) {
   const vlScene *s = c->scene;
   vlTextureId inputs[VL_CHECK_INPUTS];
   for (size_t i = 0; i < s->materials.count; i++) {
     uint32_t n = vl_check_material_inputs(&s->materials.items[i], inputs);
-    for (uint32_t k = 0; k < n; k++) use(read, inputs[k].index);
+    for (uint32_t k = 0; k < n; k++)
+      use(read, inputs[k].index);
   }
   for (size_t i = 0; i < s->textures.count; i++) {
     uint32_t n = vl_check_texture_inputs(&s->textures.items[i], inputs);
-    for (uint32_t k = 0; k < n; k++) use(read, inputs[k].index);
+    for (uint32_t k = 0; k < n; k++)
+      use(read, inputs[k].index);
   }
 }
 
@@ -104,26 +117,29 @@ static void tell_unused(vlCheck *c) {
   }
   mark_textures_of_unused(c, read);
   for (size_t i = 0; i < s->materials.count; i++)
-    for (int k = 0; k < 2; k++) use(mixed, s->materials.items[i].materials[k].index);
+    for (int k = 0; k < 2; k++)
+      use(mixed, s->materials.items[i].materials[k].index);
   for (size_t i = 0; i < s->textures.count; i++) {
     const vlTextureDef *t = &s->textures.items[i];
     if (!c->texture_used[i] && !read[i] && named(t->name))
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, t->source, "texture \"%s\" is not used",
-                   vl_short_text(t->name).text);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, t->source,
+                   "texture \"%s\" is not used", vl_short_text(t->name).text);
   }
   for (size_t i = 0; i < s->materials.count; i++) {
     const vlMaterialDef *m = &s->materials.items[i];
-    if (c->material_used[i] || mixed[i]) continue;
+    if (c->material_used[i] || mixed[i])
+      continue;
     if (named(m->name))
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source, "material \"%s\" is not used",
-                   vl_short_text(m->name).text);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source,
+                   "material \"%s\" is not used", vl_short_text(m->name).text);
     else if (m->source.line)
-      vl_check_add(c, VL_FINDING_REPLACED, VL_SEVERITY_NOTE, m->source, "no shape takes this material");
+      vl_check_add(c, VL_FINDING_REPLACED, VL_SEVERITY_NOTE, m->source,
+                   "no shape takes this material");
   }
   for (size_t i = 0; i < s->media.count; i++)
     if (!c->medium_used[i])
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source, "nothing lies in medium \"%s\"",
-                   vl_short_text(s->media.items[i].name).text);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source,
+                   "nothing lies in medium \"%s\"", vl_short_text(s->media.items[i].name).text);
   for (size_t i = 0; i < s->emissions.count; i++)
     if (!c->emission_used[i])
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
@@ -132,24 +148,29 @@ static void tell_unused(vlCheck *c) {
   vl_free(c->context, mixed);
 }
 
-/* Reports unused groups. A group has no source location, so that of its first shape is given. */
+/* Reports unused groups. A group has no source location, so that of its first shape is given.
+ */
 static void tell_groups(vlCheck *c) {
   const vlScene *s = c->scene;
   size_t next = 0;
   for (size_t g = 0; g < s->groups.count; g++) {
     const vlSceneGroup *group = &s->groups.items[g];
     if (!c->group_used[g] && group->shape_count && named(group->name)) {
-      while (next < s->shapes.count && s->shapes.items[next].group.index != g + 1) next++;
+      while (next < s->shapes.count && s->shapes.items[next].group.index != g + 1)
+        next++;
       vlSource at = next < s->shapes.count ? s->shapes.items[next].source : (vlSource){0};
       next = 0;
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, at, "object \"%s\" is placed nowhere",
-                   vl_short_text(group->name).text);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, at,
+                   "object \"%s\" is placed nowhere", vl_short_text(group->name).text);
     }
-    if (!c->group_used[g] || group->shape_count) continue;
+    if (!c->group_used[g] || group->shape_count)
+      continue;
     size_t i = 0;
-    while (s->instances.items[i].group.index != g + 1) i++;
+    while (s->instances.items[i].group.index != g + 1)
+      i++;
     vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_NOTE, s->instances.items[i].source,
-                 "object \"%s\" is placed, but holds no shapes", vl_short_text(group->name).text);
+                 "object \"%s\" is placed, but holds no shapes",
+                 vl_short_text(group->name).text);
   }
 }
 

@@ -41,14 +41,16 @@ typedef struct Seen {
 typedef struct Survey {
   Placed *placed;
   size_t count;
-  vlExtent **blocks; /* of each shape: the box of each BLOCK of its faces; null where they are not made */
+  vlExtent **blocks; /* of each shape: the box of each BLOCK of its faces; null where they are
+                        not made */
   double o[RAYS][3], d[RAYS][3];
   Seen seen[RAYS];
 } Survey;
 
 static void corner(const vlShapeDef *d, size_t face, int k, double p[3]) {
   const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)k];
-  for (int i = 0; i < 3; i++) p[i] = v[i];
+  for (int i = 0; i < 3; i++)
+    p[i] = v[i];
 }
 
 /* The normal as the order of the corners gives it; its length is twice the area. */
@@ -61,9 +63,12 @@ static void face_normal(const double p[3][3], double n[3]) {
   vl_cross3(a, b, n);
 }
 
-/* ---- rays -------------------------------------------------------------------------------------------------------- */
+/* ---- rays
+ * --------------------------------------------------------------------------------------------------------
+ */
 
-static bool meets_box(const double low[3], const double high[3], const double o[3], const double d[3], double t_max) {
+static bool meets_box(const double low[3], const double high[3], const double o[3],
+                      const double d[3], double t_max) {
   double t0 = 0, t1 = t_max;
   for (int i = 0; i < 3; i++) {
     double inverse = 1 / d[i], a = (low[i] - o[i]) * inverse, b = (high[i] - o[i]) * inverse;
@@ -79,16 +84,20 @@ static bool meets_box(const double low[3], const double high[3], const double o[
 }
 
 /* Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
-static void meet_block(const Placed *p, size_t first, const double o[3], const double d[3], Seen *seen) {
+static void meet_block(const Placed *p, size_t first, const double o[3], const double d[3],
+                       Seen *seen) {
   size_t last = first + BLOCK < p->def->faces ? first + BLOCK : p->def->faces;
   for (size_t face = first; face < last; face++) {
     double c[3][3], n[3], q[3], r[3];
-    for (int k = 0; k < 3; k++) corner(p->def, face, k, c[k]);
+    for (int k = 0; k < 3; k++)
+      corner(p->def, face, k, c[k]);
     face_normal((const double(*)[3])c, n);
     double along = vl_dot3(n, d);
-    for (int i = 0; i < 3; i++) q[i] = o[i] - c[0][i];
+    for (int i = 0; i < 3; i++)
+      q[i] = o[i] - c[0][i];
     double t = -vl_dot3(n, q) / along;
-    if (!(t > 0 && t < seen->t)) continue;
+    if (!(t > 0 && t < seen->t))
+      continue;
     vl_cross3(q, d, r);
     double u = 0, v = 0;
     for (int i = 0; i < 3; i++) {
@@ -97,18 +106,21 @@ static void meet_block(const Placed *p, size_t first, const double o[3], const d
     }
     u /= along;
     v /= along;
-    if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
+    if (!(u >= 0 && v >= 0 && u + v <= 1))
+      continue;
     *seen = (Seen){.t = t, .placed = p, .back = (along > 0) != p->flip};
   }
 }
 
-static void meet_faces(const Placed *p, const double world_o[3], const double world_d[3], Seen *seen) {
+static void meet_faces(const Placed *p, const double world_o[3], const double world_d[3],
+                       Seen *seen) {
   double o[3], d[3];
   vl_mat4_point(&p->to_shape, world_o, o);
   vl_mat4_vector(&p->to_shape, world_d, d);
   for (size_t first = 0; first < p->def->faces; first += BLOCK) {
     const vlExtent *block = &p->blocks[first / BLOCK];
-    if (meets_box(block->low, block->high, o, d, seen->t)) meet_block(p, first, o, d, seen);
+    if (meets_box(block->low, block->high, o, d, seen->t))
+      meet_block(p, first, o, d, seen);
   }
 }
 
@@ -119,7 +131,8 @@ static void cast(void *user, uint32_t ray, uint32_t worker) {
   *seen = (Seen){.t = INFINITY};
   for (size_t i = 0; i < s->count; i++) {
     const Placed *p = &s->placed[i];
-    if (meets_box(p->low, p->high, s->o[ray], s->d[ray], seen->t)) meet_faces(p, s->o[ray], s->d[ray], seen);
+    if (meets_box(p->low, p->high, s->o[ray], s->d[ray], seen->t))
+      meet_faces(p, s->o[ray], s->d[ray], seen);
   }
 }
 
@@ -147,22 +160,30 @@ static void aim(Survey *s, const vlExtent *box, const double eye[3]) {
   for (uint32_t k = OUTSIDE; k < RAYS; k++) {
     /* the middle, and points towards the faces of the box */
     uint32_t point = (k - OUTSIDE) / AROUND, i = (k - OUTSIDE) % AROUND;
-    double z = 1 - (2 * i + 1) / (double)AROUND, r = sqrt(1 - z * z), turn = 2.399963229728653 * i + 0.3;
+    double z = 1 - (2 * i + 1) / (double)AROUND, r = sqrt(1 - z * z),
+           turn = 2.399963229728653 * i + 0.3;
     memcpy(s->o[k], middle, sizeof middle);
-    if (point) s->o[k][(point - 1) / 2] += (point & 1 ? 0.23 : -0.23) * size[(point - 1) / 2];
+    if (point)
+      s->o[k][(point - 1) / 2] += (point & 1 ? 0.23 : -0.23) * size[(point - 1) / 2];
     s->d[k][0] = r * vl_precise_cos(turn);
     s->d[k][1] = z;
     s->d[k][2] = r * vl_precise_sin(turn);
   }
 }
 
-/* ---- the meshes -------------------------------------------------------------------------------------------------- */
+/* ---- the meshes
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* Makes the boxes of a shape's blocks, a little larger than their faces. False: memory is exhausted. */
+/* Makes the boxes of a shape's blocks, a little larger than their faces. False: memory is
+ * exhausted. */
 static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape) {
-  if (s->blocks[shape]) return true;
-  vlExtent *blocks = s->blocks[shape] = vl_alloc_array(context, d->faces / BLOCK + 1, sizeof *blocks);
-  if (!blocks) return false;
+  if (s->blocks[shape])
+    return true;
+  vlExtent *blocks = s->blocks[shape] =
+      vl_alloc_array(context, d->faces / BLOCK + 1, sizeof *blocks);
+  if (!blocks)
+    return false;
   for (size_t first = 0; first < d->faces; first += BLOCK) {
     vlExtent *b = &blocks[first / BLOCK];
     *b = vl_extent_nothing;
@@ -173,7 +194,8 @@ static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size
         vl_extent_grow(b, c);
       }
     double margin = 0;
-    for (int i = 0; i < 3; i++) margin += 1e-6 * (b->high[i] - b->low[i]);
+    for (int i = 0; i < 3; i++)
+      margin += 1e-6 * (b->high[i] - b->low[i]);
     for (int i = 0; i < 3; i++) {
       b->low[i] -= margin;
       b->high[i] += margin;
@@ -182,12 +204,14 @@ static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size
   return true;
 }
 
-static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape, const vlMat4 *world_from_group,
-                  bool fixed) {
-  if (!make_blocks(context, s, d, shape)) return false;
+static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape,
+                  const vlMat4 *world_from_group, bool fixed) {
+  if (!make_blocks(context, s, d, shape))
+    return false;
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
   Placed *p = &s->placed[s->count];
-  if (!vl_mat4_inverse(m, &p->to_shape)) return true;
+  if (!vl_mat4_inverse(m, &p->to_shape))
+    return true;
   p->def = d;
   p->blocks = s->blocks[shape];
   p->shape = shape;
@@ -207,11 +231,14 @@ static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t sha
 /* False: memory is exhausted, or the scene is too large. */
 static bool place_all(const vlScene *scene, Survey *s) {
   uint64_t faces = 0, count = scene->shapes.count + scene->instances.count;
-  for (size_t i = 0; i < scene->shapes.count; i++) faces += scene->shapes.items[i].faces;
-  if (faces > MOST_FACES || count == 0) return false;
+  for (size_t i = 0; i < scene->shapes.count; i++)
+    faces += scene->shapes.items[i].faces;
+  if (faces > MOST_FACES || count == 0)
+    return false;
   s->placed = vl_alloc_array(scene->context, MOST_PLACED, sizeof *s->placed);
   s->blocks = vl_alloc_zero(scene->context, scene->shapes.count, sizeof *s->blocks);
-  if (!s->placed || !s->blocks) return false;
+  if (!s->placed || !s->blocks)
+    return false;
   vlMat4 identity = vl_mat4_identity();
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *d = &scene->shapes.items[i];
@@ -224,18 +251,23 @@ static bool place_all(const vlScene *scene, Survey *s) {
     for (size_t i = 0; i < scene->shapes.count; i++) {
       const vlShapeDef *d = &scene->shapes.items[i];
       bool member = d->group.index && d->group.index == scene->instances.items[k].group.index;
-      if (member && d->kind == VL_SHAPE_TRIANGLES && d->faces && !place(scene->context, s, d, i, &m, false))
+      if (member && d->kind == VL_SHAPE_TRIANGLES && d->faces &&
+          !place(scene->context, s, d, i, &m, false))
         return false;
     }
   }
   return s->count > 0;
 }
 
-/* ---- the shell --------------------------------------------------------------------------------------------------- */
+/* ---- the shell
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static bool is_opaque(const vlScene *scene, const vlShapeDef *d) {
-  if (d->alpha.texture.index || d->alpha.value < 1) return false;
-  if (!d->material.index) return true;
+  if (d->alpha.texture.index || d->alpha.value < 1)
+    return false;
+  if (!d->material.index)
+    return true;
   const vlMaterialDef *m = &scene->materials.items[d->material.index - 1];
   return m->kind != VL_MATERIAL_PRINCIPLED ||
          !(m->principled.transmission.value > 0 || m->principled.transmission.texture.index);
@@ -246,29 +278,35 @@ static bool is_convex(const vlShapeDef *d) {
   size_t step = d->faces / CONVEX + 1, vertex_step = d->vertices / CONVEX + 1;
   for (size_t face = 0; face < d->faces; face += step) {
     double c[3][3], n[3], low = 0, high = 0, length = 0;
-    for (int k = 0; k < 3; k++) corner(d, face, k, c[k]);
+    for (int k = 0; k < 3; k++)
+      corner(d, face, k, c[k]);
     face_normal((const double(*)[3])c, n);
     for (size_t i = 0; i < d->vertices; i += vertex_step) {
-      double q[3] = {(double)d->positions[3 * i] - c[0][0], (double)d->positions[3 * i + 1] - c[0][1],
+      double q[3] = {(double)d->positions[3 * i] - c[0][0],
+                     (double)d->positions[3 * i + 1] - c[0][1],
                      (double)d->positions[3 * i + 2] - c[0][2]};
       double away = vl_dot3(n, q);
       low = away < low ? away : low;
       high = away > high ? away : high;
       length = high - low;
     }
-    if (fmin(-low, high) > 0.02 * length) return false;
+    if (fmin(-low, high) > 0.02 * length)
+      return false;
   }
   return true;
 }
 
-/* Whether vertex normals look against the order of the corners: the object is whole, its winding is wrong. */
+/* Whether vertex normals look against the order of the corners: the object is whole, its
+ * winding is wrong. */
 static bool normals_disagree(const Placed *p) {
   const vlShapeDef *d = p->def;
   size_t against = 0, count = 0;
-  if (!d->normals) return false;
+  if (!d->normals)
+    return false;
   for (size_t face = 0; face < d->faces; face += d->faces / CONVEX + 1) {
     double c[3][3], n[3];
-    for (int k = 0; k < 3; k++) corner(d, face, k, c[k]);
+    for (int k = 0; k < 3; k++)
+      corner(d, face, k, c[k]);
     face_normal((const double(*)[3])c, n);
     const float *own = d->normals + 3 * (size_t)d->indices[3 * face];
     const double v[3] = {own[0], own[1], own[2]};
@@ -278,7 +316,8 @@ static bool normals_disagree(const Placed *p) {
   return 2 * against > count;
 }
 
-/* The share of rays from the best point near the middle that meet something, and meet its front. */
+/* The share of rays from the best point near the middle that meet something, and meet its
+ * front. */
 static int best_point(const Survey *s, double *covered, double *front) {
   int best = 0;
   *covered = *front = -1;
@@ -298,33 +337,44 @@ static int best_point(const Survey *s, double *covered, double *front) {
   return best;
 }
 
-/* A shell whose faces look inwards: from outside one sees mostly backs, from the middle mostly fronts. */
-static bool find_inward(const vlScene *scene, const Survey *s, vlClosed *closed, double covered, double front) {
+/* A shell whose faces look inwards: from outside one sees mostly backs, from the middle mostly
+ * fronts. */
+static bool find_inward(const vlScene *scene, const Survey *s, vlClosed *closed, double covered,
+                        double front) {
   int met = 0, backs = 0, one_sided = 0, whole = 0, sides = 0;
   for (int i = 0; i < OUTSIDE; i++) {
     const Seen *seen = &s->seen[i];
     met += seen->placed != NULL;
-    if (!seen->placed || !seen->back) continue;
+    if (!seen->placed || !seen->back)
+      continue;
     backs++;
     one_sided += seen->placed->def->one_sided || seen->placed->def->emission.index;
     whole += normals_disagree(seen->placed) || !seen->placed->fixed;
     closed->shell[seen->placed->shape] = true;
   }
-  for (size_t i = 0; i < scene->shapes.count; i++) sides += !closed->shell[i];
-  if (!(backs * 10 > met * 6 && covered > 0.8 && front > 0.6) || 2 * whole > backs) return false;
-  return 2 * one_sided > backs || sides > 0; /* else an object whose winding is wrong is as likely */
+  for (size_t i = 0; i < scene->shapes.count; i++)
+    sides += !closed->shell[i];
+  if (!(backs * 10 > met * 6 && covered > 0.8 && front > 0.6) || 2 * whole > backs)
+    return false;
+  return 2 * one_sided > backs ||
+         sides > 0; /* else an object whose winding is wrong is as likely */
 }
 
 /* A convex shell of one shape that hides all others. */
-static bool find_outward(const vlScene *scene, const Survey *s, vlClosed *closed, double covered) {
+static bool find_outward(const vlScene *scene, const Survey *s, vlClosed *closed,
+                         double covered) {
   const Placed *shell = NULL;
   for (int i = 0; i < OUTSIDE; i++) {
     const Placed *p = s->seen[i].placed;
-    if (p && shell && p != shell) return false;
-    if (p) shell = p;
+    if (p && shell && p != shell)
+      return false;
+    if (p)
+      shell = p;
   }
-  if (!shell || s->count < 2 || !shell->fixed || covered < 0.98) return false;
-  if (!is_opaque(scene, shell->def) || !is_convex(shell->def)) return false;
+  if (!shell || s->count < 2 || !shell->fixed || covered < 0.98)
+    return false;
+  if (!is_opaque(scene, shell->def) || !is_convex(shell->def))
+    return false;
   memset(closed->shell, 0, scene->shapes.count * sizeof *closed->shell);
   closed->shell[shell->shape] = true;
   return true;
@@ -332,29 +382,37 @@ static bool find_outward(const vlScene *scene, const Survey *s, vlClosed *closed
 
 static double diagonal(const vlExtent *b) {
   double sum = 0;
-  for (int i = 0; i < 3; i++) sum += (b->high[i] - b->low[i]) * (b->high[i] - b->low[i]);
+  for (int i = 0; i < 3; i++)
+    sum += (b->high[i] - b->low[i]) * (b->high[i] - b->low[i]);
   return b->low[0] <= b->high[0] ? sqrt(sum) : 0;
 }
 
-static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *boxes, vlClosed *closed) {
+static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *boxes,
+                     vlClosed *closed) {
   vlExtent inner = vl_extent_nothing;
   vl_extent_visit(scene, boxes, closed->shell, vl_extent_grow, &inner);
   size_t shells = 0;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     shells += closed->shell[i];
-    closed->emits = closed->emits || (closed->shell[i] && scene->shapes.items[i].emission.index);
+    closed->emits =
+        closed->emits || (closed->shell[i] && scene->shapes.items[i].emission.index);
   }
   double share = diagonal(&inner) / diagonal(box);
   closed->kind = share > 0.12 ? VL_CLOSED_ROOM : share > 0 ? VL_CLOSED_DOME : VL_CLOSED_EMPTY;
-  /* A room in one mesh: its furniture is a part of the shell. Panoramas have few corners or are convex. */
+  /* A room in one mesh: its furniture is a part of the shell. Panoramas have few corners or are
+   * convex. */
   for (size_t i = 0; i < scene->shapes.count && closed->kind == VL_CLOSED_EMPTY; i++)
-    if (closed->shell[i] && (shells > 1 || !is_convex(&scene->shapes.items[i]))) closed->kind = VL_CLOSED_ROOM;
+    if (closed->shell[i] && (shells > 1 || !is_convex(&scene->shapes.items[i])))
+      closed->kind = VL_CLOSED_ROOM;
 }
 
-bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes, const double eye[3], vlClosed *closed) {
+bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
+                    const double eye[3], vlClosed *closed) {
   *closed = (vlClosed){.kind = VL_CLOSED_NOT};
-  for (int i = 0; i < 3; i++) closed->middle[i] = 0.5 * (box->low[i] + box->high[i]);
-  if (!(diagonal(box) > 0)) return true;
+  for (int i = 0; i < 3; i++)
+    closed->middle[i] = 0.5 * (box->low[i] + box->high[i]);
+  if (!(diagonal(box) > 0))
+    return true;
   Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
   closed->shell = vl_alloc_zero(scene->context, scene->shapes.count + 1, sizeof *closed->shell);
   bool ok = s && closed->shell, found = false;
@@ -365,14 +423,20 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes, 
     int best = best_point(s, &covered, &front);
     found = closed->inward = find_inward(scene, s, closed, covered, front);
     found = found || find_outward(scene, s, closed, covered);
-    if (found) memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
+    if (found)
+      memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
   }
-  for (size_t i = 0; s && s->blocks && i < scene->shapes.count; i++) vl_free(scene->context, s->blocks[i]);
-  if (s) vl_free(scene->context, s->blocks);
-  if (s) vl_free(scene->context, s->placed);
+  for (size_t i = 0; s && s->blocks && i < scene->shapes.count; i++)
+    vl_free(scene->context, s->blocks[i]);
+  if (s)
+    vl_free(scene->context, s->blocks);
+  if (s)
+    vl_free(scene->context, s->placed);
   vl_free(scene->context, s);
-  if (!ok) vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  if (found) classify(scene, box, boxes, closed);
+  if (!ok)
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  if (found)
+    classify(scene, box, boxes, closed);
   if (!found) {
     vl_free(scene->context, closed->shell);
     closed->shell = NULL;
@@ -380,12 +444,14 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes, 
   return ok;
 }
 
-/* ---- the opening ------------------------------------------------------------------------------------------------- */
+/* ---- the opening
+ * -------------------------------------------------------------------------------------------------
+ */
 
-/* Whether the face's plane separates the eye from the middle. A face of an inward shell must also show the eye its
- * back: what stands in a room, and is a part of the same mesh, stays. */
-static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face, const vlClosed *closed,
-                           const double eye[3]) {
+/* Whether the face's plane separates the eye from the middle. A face of an inward shell must
+ * also show the eye its back: what stands in a room, and is a part of the same mesh, stays. */
+static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face,
+                           const vlClosed *closed, const double eye[3]) {
   double c[3][3], n[3], p[3], to_eye[3], to_middle[3];
   for (int k = 0; k < 3; k++) {
     corner(d, face, k, p);
@@ -397,11 +463,13 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face, co
     to_middle[i] = closed->middle[i] - c[0][i];
   }
   double a = vl_dot3(n, to_eye), b = vl_dot3(n, to_middle);
-  if (closed->inward && (a < 0) == d->reverse_orientation) return false;
+  if (closed->inward && (a < 0) == d->reverse_orientation)
+    return false;
   return (a > 0 && b < 0) || (a < 0 && b > 0);
 }
 
-static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed, const double eye[3], uint64_t *count) {
+static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed,
+                       const double eye[3], uint64_t *count) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   uint32_t *kept = vl_alloc_array(scene->context, 3 * (size_t)d->faces, sizeof *kept), n = 0;
   if (!kept) {
@@ -409,7 +477,8 @@ static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed, co
     return false;
   }
   for (size_t face = 0; face < d->faces; face++) {
-    if (stands_between(d, &m, face, closed, eye)) continue;
+    if (stands_between(d, &m, face, closed, eye))
+      continue;
     memcpy(kept + 3 * (size_t)n++, d->indices + 3 * face, 3 * sizeof *kept);
   }
   *count += d->faces - n;
@@ -422,11 +491,13 @@ static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed, co
   return vl_scene_own(scene, kept);
 }
 
-bool vl_closed_open(vlScene *scene, const vlClosed *closed, const double eye[3], uint64_t *count) {
+bool vl_closed_open(vlScene *scene, const vlClosed *closed, const double eye[3],
+                    uint64_t *count) {
   *count = 0;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     vlShapeDef *d = &scene->shapes.items[i];
-    if (closed->shell[i] && !d->group.index && !open_shape(scene, d, closed, eye, count)) return false;
+    if (closed->shell[i] && !d->group.index && !open_shape(scene, d, closed, eye, count))
+      return false;
   }
   return true;
 }

@@ -1,4 +1,5 @@
-/* scene/closed.h: models that are seen from inside: rooms with walls on all sides, domes around a model. */
+/* scene/closed.h: models that are seen from inside: rooms with walls on all sides, domes around
+ * a model. */
 #ifndef SCENE_CLOSED_H
 #define SCENE_CLOSED_H
 
@@ -14,17 +15,21 @@ typedef enum vlClosedKind {
 /* What surrounds a model. */
 typedef struct vlClosed {
   vlClosedKind kind;
-  bool *shell; /* for each shape: it is a part of the shell; null for NOT; the caller frees it */
+  bool
+      *shell; /* for each shape: it is a part of the shell; null for NOT; the caller frees it */
   bool inward; /* the shell's faces look inwards */
   bool emits;  /* the shell emits light */
   double middle[3];
 } vlClosed;
 
-/* Finds out by several hundred rays: from `eye` into the scene's box, and from its middle in all directions. False: the
- * scene holds the error. */
-bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes, const double eye[3], vlClosed *closed);
+/* Finds out by several hundred rays: from `eye` into the scene's box, and from its middle in
+ * all directions. False: the scene holds the error. */
+bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
+                    const double eye[3], vlClosed *closed);
 
-/* Leaves out the shell's faces between `eye` and the middle. *count: their number. False: the scene holds the error. */
-bool vl_closed_open(vlScene *scene, const vlClosed *closed, const double eye[3], uint64_t *count);
+/* Leaves out the shell's faces between `eye` and the middle. *count: their number. False: the
+ * scene holds the error. */
+bool vl_closed_open(vlScene *scene, const vlClosed *closed, const double eye[3],
+                    uint64_t *count);
 
 #endif

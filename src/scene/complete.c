@@ -1,4 +1,5 @@
-/* scene/complete.c: completes a file of plain geometry: a camera that frames everything, light, a ground plane. */
+/* scene/complete.c: completes a file of plain geometry: a camera that frames everything, light,
+ * a ground plane. */
 #include <math.h>
 #include <string.h>
 
@@ -15,13 +16,16 @@
 #include "velo/texture.h"
 
 vlCompleteDef vl_default_complete_def(void) {
-  return (vlCompleteDef){.cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};
+  return (vlCompleteDef){
+      .cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};
 }
 
-/* ---- the camera -------------------------------------------------------------------------------------------------- */
+/* ---- the camera
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* The view frustum. sides: offset of each side plane, which is the maximum over all points of x - z tan(half angle) for
- * the right side, and likewise for the others. */
+/* The view frustum. sides: offset of each side plane, which is the maximum over all points of x
+ * - z tan(half angle) for the right side, and likewise for the others. */
 typedef struct Frame {
   double center[3], right[3], up[3], ahead[3];
   double tan_x, tan_y;
@@ -46,7 +50,8 @@ typedef struct View {
 
 static double extent_along(const vlExtent *box, const double axis[3]) {
   double sum = 0;
-  for (int i = 0; i < 3; i++) sum += fabs(axis[i]) * (box->high[i] - box->low[i]);
+  for (int i = 0; i < 3; i++)
+    sum += fabs(axis[i]) * (box->high[i] - box->low[i]);
   return sum;
 }
 
@@ -56,7 +61,8 @@ static void mean_normal(const vlScene *scene, double n[3]) {
   for (size_t k = 0; k < scene->shapes.count; k++) {
     const vlShapeDef *d = &scene->shapes.items[k];
     vlMat4 m = vl_mat4_load(d->group_from_shape);
-    for (size_t face = 0; d->kind == VL_SHAPE_TRIANGLES && !d->group.index && face < d->faces; face++) {
+    for (size_t face = 0; d->kind == VL_SHAPE_TRIANGLES && !d->group.index && face < d->faces;
+         face++) {
       double p[3][3];
       for (int c = 0; c < 3; c++) {
         const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)c];
@@ -65,7 +71,8 @@ static void mean_normal(const vlScene *scene, double n[3]) {
       }
       for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, l = (i + 2) % 3;
-        double x = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) - (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
+        double x = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) -
+                   (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
         n[i] += d->reverse_orientation ? -x : x;
       }
     }
@@ -73,13 +80,18 @@ static void mean_normal(const vlScene *scene, double n[3]) {
 }
 
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts. */
-static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, const vlExtent *box, View *v) {
+static const char *choose_view(const vlScene *scene, const vlCompleteDef *def,
+                               const vlExtent *box, View *v) {
   v->azimuth = 0.45;
   v->elevation = 0.3;
-  if (def->framing == VL_FRAMING_FRONT) v->azimuth = v->elevation = 0;
-  if (def->framing == VL_FRAMING_FRONT) return "from the front, as asked";
-  double x = extent_along(box, v->right), y = extent_along(box, v->up), z = extent_along(box, v->front), n[3];
-  if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0)) return "from the front, a little from the right and above";
+  if (def->framing == VL_FRAMING_FRONT)
+    v->azimuth = v->elevation = 0;
+  if (def->framing == VL_FRAMING_FRONT)
+    return "from the front, as asked";
+  double x = extent_along(box, v->right), y = extent_along(box, v->up),
+         z = extent_along(box, v->front), n[3];
+  if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0))
+    return "from the front, a little from the right and above";
   const double flat = 0.2, half_turn = 3.14159265358979323846;
   mean_normal(scene, n);
   if (y <= flat * fmin(x, z)) {
@@ -103,7 +115,8 @@ static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, c
   return "from the front, a little from the right and above";
 }
 
-static void set_camera(vlScene *scene, const double up[3], double fov, const double eye[3], const double lookat[3]) {
+static void set_camera(vlScene *scene, const double up[3], double fov, const double eye[3],
+                       const double lookat[3]) {
   vlSceneDefs *s = &scene->defs;
   vlCameraDef camera = vl_default_camera_def(s->film.width, s->film.height);
   camera.shutter_open = s->camera.shutter_open;
@@ -121,13 +134,14 @@ static void set_camera(vlScene *scene, const double up[3], double fov, const dou
 }
 
 /* without: shapes that need not be in the image; may be null. */
-static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, const vlExtent *boxes,
-                         const bool *without) {
+static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
+                         const vlExtent *boxes, const bool *without) {
   const double fov = 0.6, margin = 0.9;
   const vlSceneDefs *s = &scene->defs;
-  double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height, lookat[3], eye[3];
-  double ca = vl_precise_cos(v->azimuth), sa = vl_precise_sin(v->azimuth), ce = vl_precise_cos(v->elevation),
-         se = vl_precise_sin(v->elevation);
+  double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height,
+         lookat[3], eye[3];
+  double ca = vl_precise_cos(v->azimuth), sa = vl_precise_sin(v->azimuth),
+         ce = vl_precise_cos(v->elevation), se = vl_precise_sin(v->elevation);
   Frame f = {.tan_x = margin * half * (aspect > 1 ? aspect : 1),
              .tan_y = margin * half * (aspect > 1 ? 1 : 1 / aspect)};
   for (int i = 0; i < 3; i++) {
@@ -136,15 +150,18 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, con
     f.right[i] = ca * v->right[i] - sa * v->front[i];
   }
   vl_cross3(f.right, f.ahead, f.up);
-  for (int i = 0; i < 4; i++) f.sides[i] = -INFINITY;
+  for (int i = 0; i < 4; i++)
+    f.sides[i] = -INFINITY;
   vl_extent_visit(scene, boxes, without, widen, &f);
   double x = 0, y = 0, d = 1;
   if (isfinite(f.sides[0])) {
     x = 0.5 * (f.sides[0] - f.sides[1]);
     y = 0.5 * (f.sides[2] - f.sides[3]);
-    d = fmax((f.sides[0] + f.sides[1]) / (2 * f.tan_x), (f.sides[2] + f.sides[3]) / (2 * f.tan_y));
+    d = fmax((f.sides[0] + f.sides[1]) / (2 * f.tan_x),
+             (f.sides[2] + f.sides[3]) / (2 * f.tan_y));
   }
-  if (!(d > 0) || !isfinite(d)) d = 1;
+  if (!(d > 0) || !isfinite(d))
+    d = 1;
   for (int i = 0; i < 3; i++) {
     lookat[i] = f.center[i] + x * f.right[i] + y * f.up[i];
     eye[i] = lookat[i] - d * f.ahead[i];
@@ -152,10 +169,13 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, con
   set_camera(scene, v->up, fov, eye, lookat);
 }
 
-/* ---- closed models ----------------------------------------------------------------------------------------------- */
+/* ---- closed models
+ * -----------------------------------------------------------------------------------------------
+ */
 
 /* Lets camera and light into a closed model. */
-static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent *box, const vlExtent *boxes) {
+static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent *box,
+                       const vlExtent *boxes) {
   double eye[3], size = 0;
   uint64_t count = 0;
   for (int i = 0; i < 3; i++) {
@@ -170,19 +190,26 @@ static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent
   }
   if (closed->kind == VL_CLOSED_EMPTY) {
     double ahead[3];
-    for (int i = 0; i < 3; i++) ahead[i] = closed->middle[i] - v->front[i];
+    for (int i = 0; i < 3; i++)
+      ahead[i] = closed->middle[i] - v->front[i];
     set_camera(scene, v->up, 1.2, closed->middle, ahead);
   }
   bool inside = closed->kind != VL_CLOSED_ROOM;
   if (inside && closed->emits) {
-    vl_log(scene->context, VL_LOG_INFO, NULL, "the model is closed and emits light: the camera is inside");
+    vl_log(scene->context, VL_LOG_INFO, NULL,
+           "the model is closed and emits light: the camera is inside");
     return true;
   }
-  for (int i = 0; inside && i < 3; i++) { /* the half on the camera's side: light comes from there */
-    double away = closed->kind == VL_CLOSED_EMPTY ? v->front[i] : scene->defs.camera.eye[i] - closed->middle[i];
-    eye[i] = closed->middle[i] + 1e4 * size * away / (closed->kind == VL_CLOSED_EMPTY ? 1 : size);
+  for (int i = 0; inside && i < 3;
+       i++) { /* the half on the camera's side: light comes from there */
+    double away = closed->kind == VL_CLOSED_EMPTY
+                      ? v->front[i]
+                      : scene->defs.camera.eye[i] - closed->middle[i];
+    eye[i] =
+        closed->middle[i] + 1e4 * size * away / (closed->kind == VL_CLOSED_EMPTY ? 1 : size);
   }
-  if (!vl_closed_open(scene, closed, eye, &count)) return false;
+  if (!vl_closed_open(scene, closed, eye, &count))
+    return false;
   vl_log(scene->context, VL_LOG_INFO, NULL,
          "the model is closed: %s%llu of its faces, on the camera's side, are hidden",
          inside ? "the camera is inside, and " : "", (unsigned long long)count);
@@ -190,13 +217,17 @@ static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent
 }
 
 static void tell_camera(const vlScene *scene, const char *view, const vlExtent *box) {
-  vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: %s; the model is %.4g x %.4g x %.4g", view,
-         box->high[0] - box->low[0], box->high[1] - box->low[1], box->high[2] - box->low[2]);
+  vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: %s; the model is %.4g x %.4g x %.4g",
+         view, box->high[0] - box->low[0], box->high[1] - box->low[1],
+         box->high[2] - box->low[2]);
 }
 
-/* ---- the ground -------------------------------------------------------------------------------------------------- */
+/* ---- the ground
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* Opacity over v of a disk, which is 1 in the middle: opaque around the model, transparent at the rim. */
+/* Opacity over v of a disk, which is 1 in the middle: opaque around the model, transparent at
+ * the rim. */
 static bool fade_texture(vlScene *scene, vlTextureId *id) {
   enum { ROWS = 128 };
   vlImageDef def = vl_default_image_def(1, ROWS, 1);
@@ -220,7 +251,8 @@ static bool fade_texture(vlScene *scene, vlTextureId *id) {
   return id->index != 0;
 }
 
-/* A disk under everything. fades: with the radiance of the studio's floor, into which it fades. */
+/* A disk under everything. fades: with the radiance of the studio's floor, into which it fades.
+ */
 static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool fades) {
   double center[3], size = 0;
   for (int i = 0; i < 3; i++) {
@@ -229,23 +261,28 @@ static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool 
     size += some ? (box->high[i] - box->low[i]) * (box->high[i] - box->low[i]) : 1;
   }
   size = sqrt(size);
-  if (!(size > 0)) size = 1;
+  if (!(size > 0))
+    size = 1;
   double lowest = INFINITY;
   for (int k = 0; k < 8; k++) {
     double corner[3] = {k & 1 ? box->low[0] : box->high[0], k & 2 ? box->low[1] : box->high[1],
                         k & 4 ? box->low[2] : box->high[2]};
-    for (int i = 0; i < 3; i++) corner[i] -= center[i];
+    for (int i = 0; i < 3; i++)
+      corner[i] -= center[i];
     lowest = fmin(lowest, vl_dot3(corner, v->up));
   }
-  if (!isfinite(lowest)) lowest = 0;
+  if (!isfinite(lowest))
+    lowest = 0;
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   material.name = "ground";
   vlShapeDef disk = vl_default_shape_def(VL_SHAPE_DISK);
   disk.radius = (float)((fades ? 2.5 : 40) * size);
   disk.backdrop = fades;
-  if (fades && !fade_texture(scene, &disk.alpha.texture)) return false;
+  if (fades && !fade_texture(scene, &disk.alpha.texture))
+    return false;
   if (fades)
-    material.reflectance = vl_spectrum_input(vl_spectrum_rgb(VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO));
+    material.reflectance =
+        vl_spectrum_input(vl_spectrum_rgb(VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO));
   disk.material = vl_scene_add_material(scene, &material);
   for (int i = 0; i < 3; i++) {
     disk.group_from_shape[4 * i] = v->right[i];
@@ -256,22 +293,25 @@ static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool 
   return vl_scene_add_shape(scene, &disk).index != 0;
 }
 
-/* ---- the steps --------------------------------------------------------------------------------------------------- */
+/* ---- the steps
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 /* The studio is the fill light of the scene's own lamps: 0.3 times their light. */
 static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDef *def) {
   double lux = vl_lamp_illuminance(scene, boxes), pi = 3.14159265358979323846;
-  if (lux > 0) def->strength *= (float)(0.3 * lux / pi);
   if (lux > 0)
-    vl_log(scene->context, VL_LOG_DEBUG, NULL, "light: the file's lamps give %.3g lux; the studio adds 0.3 times that",
-           lux);
+    def->strength *= (float)(0.3 * lux / pi);
+  if (lux > 0)
+    vl_log(scene->context, VL_LOG_DEBUG, NULL,
+           "light: the file's lamps give %.3g lux; the studio adds 0.3 times that", lux);
   else
     vl_log(scene->context, VL_LOG_DEBUG, NULL, "light: the studio");
 }
 
 /* Camera, opening and ground. *studio: the studio will be added. */
-static bool complete_geometry(vlScene *scene, vlCompleteDef *def, const View *axes, bool camera, bool studio,
-                              const vlExtent *boxes) {
+static bool complete_geometry(vlScene *scene, vlCompleteDef *def, const View *axes, bool camera,
+                              bool studio, const vlExtent *boxes) {
   vlExtent box = vl_extent_nothing;
   View view = *axes;
   vlClosed closed = {.kind = VL_CLOSED_NOT};
@@ -281,28 +321,35 @@ static bool complete_geometry(vlScene *scene, vlCompleteDef *def, const View *ax
     const char *from = choose_view(scene, def, &box, &view);
     tell_camera(scene, from, &box);
     frame_camera(scene, &view, &box, boxes, NULL);
-    if (studio) def->rotation += view.azimuth - 0.45; /* the key light stays to the camera's left */
+    if (studio)
+      def->rotation += view.azimuth - 0.45; /* the key light stays to the camera's left */
   }
   if (camera && def->open_walls) {
     double eye[3];
     memcpy(eye, scene->defs.camera.eye, sizeof eye);
     ok = vl_closed_find(scene, &box, boxes, eye, &closed);
-    if (ok && closed.kind != VL_CLOSED_NOT) ok = open_model(scene, &view, &closed, &box, boxes);
+    if (ok && closed.kind != VL_CLOSED_NOT)
+      ok = open_model(scene, &view, &closed, &box, boxes);
     vl_free(scene->context, closed.shell);
   }
   bool inside = closed.kind == VL_CLOSED_DOME || closed.kind == VL_CLOSED_EMPTY;
   bool fades = camera && studio && def->backdrop && !inside && view.elevation >= 0;
-  if (ok && (def->ground || fades)) ok = add_ground(scene, &view, &box, fades && !def->ground);
-  if (ok && fades && !def->ground) vl_log(scene->context, VL_LOG_DEBUG, NULL, "ground: under the model, fading");
+  if (ok && (def->ground || fades))
+    ok = add_ground(scene, &view, &box, fades && !def->ground);
+  if (ok && fades && !def->ground)
+    vl_log(scene->context, VL_LOG_DEBUG, NULL, "ground: under the model, fading");
   return ok;
 }
 
 vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *error) {
   vl_error_clear(error);
   vlCompleteDef def = given ? *given : vl_default_complete_def();
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
-  if (def.cookie != VL_COOKIE_COMPLETE) return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  if (!scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
+  if (def.cookie != VL_COOKIE_COMPLETE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
   vlSceneDefs *s = &scene->defs;
   bool camera = s->camera_missing || def.reframe;
   if (camera && def.width && def.height) {
@@ -312,20 +359,25 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
     memcpy(s->film.crop, whole, sizeof whole);
   }
   vlEnvironmentKind kind = def.environment;
-  if (kind == VL_ENVIRONMENT_AUTO) kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
+  if (kind == VL_ENVIRONMENT_AUTO)
+    kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   bool fits = def.environment == VL_ENVIRONMENT_AUTO && kind == VL_ENVIRONMENT_STUDIO;
   View axes = {.azimuth = 0};
   if (!vl_scene_axes(&def, axes.right, axes.up, axes.front)) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "camera: the axes up and front make no sense");
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
+                  "camera: the axes up and front make no sense");
     return vl_scene_result(scene, error);
   }
   vlExtent *boxes = NULL;
   bool ok = true;
-  if (camera || def.ground || fits) ok = vl_extent_groups(scene, &boxes);
-  if (ok && fits) fit_studio(scene, boxes, &def);
+  if (camera || def.ground || fits)
+    ok = vl_extent_groups(scene, &boxes);
+  if (ok && fits)
+    fit_studio(scene, boxes, &def);
   if (ok && (camera || def.ground))
     ok = complete_geometry(scene, &def, &axes, camera, kind == VL_ENVIRONMENT_STUDIO, boxes);
   vl_free(scene->context, boxes);
-  if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind)) s->light_missing = false;
+  if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind))
+    s->light_missing = false;
   return vl_scene_result(scene, error);
 }

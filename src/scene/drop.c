@@ -14,14 +14,16 @@ static int by_address(const void *a, const void *b) {
 }
 
 static void arrays_of(const vlShapeDef *d, const void *arrays[ARRAYS]) {
-  const void *all[ARRAYS] = {d->positions,       d->normals,       d->tangents,      d->uvs,     d->indices,
-                             d->positions_close, d->normals_close, d->tangent_signs, d->colors,  d->more_uvs[0],
-                             d->more_uvs[1],     d->more_uvs[2],   d->widths,        d->centers, d->radii};
+  const void *all[ARRAYS] = {
+      d->positions,       d->normals,       d->tangents,      d->uvs,     d->indices,
+      d->positions_close, d->normals_close, d->tangent_signs, d->colors,  d->more_uvs[0],
+      d->more_uvs[1],     d->more_uvs[2],   d->widths,        d->centers, d->radii};
   memcpy(arrays, all, sizeof all);
 }
 
 static void forget(vlShapeDef *d) {
-  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = d->tangent_signs = NULL;
+  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close =
+      d->tangent_signs = NULL;
   d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = d->widths = NULL;
   d->indices = NULL;
   d->centers = NULL;
@@ -34,17 +36,21 @@ void vl_scene_drop_meshes(vlScene *scene) {
   size_t room = 1;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     arrays_of(&scene->shapes.items[i], arrays);
-    for (int k = 0; k < ARRAYS; k++) room += arrays[k] != NULL;
+    for (int k = 0; k < ARRAYS; k++)
+      room += arrays[k] != NULL;
   }
   const void **all = vl_alloc_array(scene->context, room, sizeof *all);
-  if (!all) return;
+  if (!all)
+    return;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     arrays_of(&scene->shapes.items[i], arrays);
     for (int k = 0; k < ARRAYS; k++)
-      if (arrays[k]) all[n++] = arrays[k];
+      if (arrays[k])
+        all[n++] = arrays[k];
     forget(&scene->shapes.items[i]);
   }
-  if (n) qsort(all, n, sizeof *all, by_address);
+  if (n)
+    qsort(all, n, sizeof *all, by_address);
   for (size_t i = 0; i < scene->blocks.count; i++) {
     void *block = scene->blocks.items[i];
     if (n && bsearch(&block, all, n, sizeof *all, by_address))

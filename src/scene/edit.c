@@ -1,5 +1,6 @@
-/* scene/edit.c: changes to objects of a scene (velo/edit.h). A new def is checked and stored by the vl_scene_add_*
- * function, while the scene looks as it did before the object was added; so ids refer to lower ones only. */
+/* scene/edit.c: changes to objects of a scene (velo/edit.h). A new def is checked and stored by
+ * the vl_scene_add_* function, while the scene looks as it did before the object was added; so
+ * ids refer to lower ones only. */
 #include "velo/edit.h"
 
 #include <math.h>
@@ -12,10 +13,14 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-/* ---- defs -------------------------------------------------------------------------------------------------------- */
+/* ---- defs
+ * --------------------------------------------------------------------------------------------------------
+ */
 
-#define ITEM(scene, array, id) \
-  ((scene) && (id).index && (id).index <= (scene)->array.count ? &(scene)->array.items[(id).index - 1] : NULL)
+#define ITEM(scene, array, id)                                 \
+  ((scene) && (id).index && (id).index <= (scene)->array.count \
+       ? &(scene)->array.items[(id).index - 1]                 \
+       : NULL)
 
 const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id) {
   return ITEM(scene, textures, id);
@@ -38,7 +43,8 @@ const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id) {
 
 vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info) {
   const vlSceneInstance *instance = ITEM(scene, instances, id);
-  if (!instance || instance->removed || !info) return VL_ERROR_ARGUMENT;
+  if (!instance || instance->removed || !info)
+    return VL_ERROR_ARGUMENT;
   *info = (vlInstanceInfo){.group = instance->group,
                            .moves = instance->keys > 0,
                            .keys = instance->keys,
@@ -51,34 +57,45 @@ vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo
   return VL_OK;
 }
 
-/* ---- checks ------------------------------------------------------------------------------------------------------ */
+/* ---- checks
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static vlResult check(const vlScene *scene, bool found, const char *what, vlError *error) {
   vl_error_clear(error);
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "%s: scene is null", what);
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
-  return found ? VL_OK : vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", what, what);
+  if (!scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: scene is null", what);
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
+  return found ? VL_OK
+               : vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", what, what);
 }
 
 /* Takes the error of a failed change out of the scene. */
 static vlResult take_error(vlScene *scene, vlError *error) {
   vlResult result = scene->error.code;
-  if (error) *error = scene->error;
+  if (error)
+    *error = scene->error;
   vl_error_clear(&scene->error);
   return result;
 }
 
-/* ---- replacing a def --------------------------------------------------------------------------------------------- */
+/* ---- replacing a def
+ * ---------------------------------------------------------------------------------------------
+ */
 
 /* A def that is set again keeps its image, which another object may then have, too. */
 static bool is_used(const vlScene *scene, const vlImage *image) {
   bool used = false;
-  for (size_t i = 0; i < scene->textures.count; i++) used = used || scene->textures.items[i].image == image;
-  for (size_t i = 0; i < scene->lights.count; i++) used = used || scene->lights.items[i].image == image;
+  for (size_t i = 0; i < scene->textures.count; i++)
+    used = used || scene->textures.items[i].image == image;
+  for (size_t i = 0; i < scene->lights.count; i++)
+    used = used || scene->lights.items[i].image == image;
   return used;
 }
 
-/* Frees what an earlier change of the object has allocated; entries from `end` on are of this change. */
+/* Frees what an earlier change of the object has allocated; entries from `end` on are of this
+ * change. */
 static void free_edits(vlScene *scene, const void *array, uint32_t id, size_t end) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->edits.count; i++) {
@@ -93,28 +110,36 @@ static void free_edits(vlScene *scene, const void *array, uint32_t id, size_t en
   scene->edits.count = kept;
 }
 
-/* Moves the blocks and images that the change has added to the scene's lists into its edits. There is room. */
-static void note_edits(vlScene *scene, const void *array, uint32_t id, size_t blocks, size_t images) {
+/* Moves the blocks and images that the change has added to the scene's lists into its edits.
+ * There is room. */
+static void note_edits(vlScene *scene, const void *array, uint32_t id, size_t blocks,
+                       size_t images) {
   for (size_t i = blocks; i < scene->blocks.count; i++)
-    scene->edits.items[scene->edits.count++] = (vlSceneEdit){array, id, scene->blocks.items[i], NULL};
+    scene->edits.items[scene->edits.count++] =
+        (vlSceneEdit){array, id, scene->blocks.items[i], NULL};
   for (size_t i = images; i < scene->images.count; i++)
-    scene->edits.items[scene->edits.count++] = (vlSceneEdit){array, id, NULL, scene->images.items[i]};
+    scene->edits.items[scene->edits.count++] =
+        (vlSceneEdit){array, id, NULL, scene->images.items[i]};
   scene->blocks.count = blocks;
   scene->images.count = images;
 }
 
 /* Ends a change: what the failed or the replaced def has allocated is freed. */
-static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t blocks, size_t images, bool done,
-                       vlError *error) {
+static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t blocks,
+                       size_t images, bool done, vlError *error) {
   size_t old = scene->edits.count;
-  if (done && VL_RESERVE(scene->context, &scene->edits, scene->blocks.count - blocks + scene->images.count - images)) {
+  if (done && VL_RESERVE(scene->context, &scene->edits,
+                         scene->blocks.count - blocks + scene->images.count - images)) {
     note_edits(scene, array, id, blocks, images);
     free_edits(scene, array, id, old);
     return VL_OK;
   }
-  if (done) return VL_OK; /* no memory for the list: the blocks stay with the scene */
-  for (size_t i = blocks; i < scene->blocks.count; i++) vl_free(scene->context, scene->blocks.items[i]);
-  for (size_t i = images; i < scene->images.count; i++) vl_image_destroy(scene->images.items[i]);
+  if (done)
+    return VL_OK; /* no memory for the list: the blocks stay with the scene */
+  for (size_t i = blocks; i < scene->blocks.count; i++)
+    vl_free(scene->context, scene->blocks.items[i]);
+  for (size_t i = images; i < scene->images.count; i++)
+    vl_image_destroy(scene->images.items[i]);
   scene->blocks.count = blocks;
   scene->images.count = images;
   return take_error(scene, error);
@@ -123,7 +148,8 @@ static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t bl
 static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
   while (marks->count < id) {
     vlSceneMark *mark = VL_PUSH(scene->context, marks);
-    if (!mark) return NULL;
+    if (!mark)
+      return NULL;
   }
   return &marks->items[id - 1];
 }
@@ -132,10 +158,13 @@ static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
 #define SET(scene, array, add, id, def, what, error)                                \
   do {                                                                              \
     vlResult checked = check(scene, ITEM(scene, array, id) != NULL, what, error);   \
-    if (checked != VL_OK) return checked;                                           \
-    if (!(def)) return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);  \
+    if (checked != VL_OK)                                                           \
+      return checked;                                                               \
+    if (!(def))                                                                     \
+      return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);            \
     vlSource place = (def)->source; /* its file's name outlives the change */       \
-    if (!vl_scene_copy_source(scene, &place)) return take_error(scene, error);      \
+    if (!vl_scene_copy_source(scene, &place))                                       \
+      return take_error(scene, error);                                              \
     size_t blocks = (scene)->blocks.count, images = (scene)->images.count;          \
     size_t count = (scene)->array.count;                                            \
     const size_t at = (id).index - 1;                                               \
@@ -143,64 +172,82 @@ static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
     (scene)->array.count = at;                                                      \
     bool done = add(scene, def).index != 0;                                         \
     (scene)->array.count = count;                                                   \
-    if (!done) (scene)->array.items[at] = old;                                      \
+    if (!done)                                                                      \
+      (scene)->array.items[at] = old;                                               \
     return finish(scene, &(scene)->array, (id).index, blocks, images, done, error); \
   } while (0)
 
-static vlResult set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error) {
+static vlResult set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
+                            vlError *error) {
   SET(scene, textures, vl_scene_add_texture, id, def, "texture", error);
 }
 static vlResult set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
   SET(scene, lights, vl_scene_add_light, id, def, "light", error);
 }
-static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
+static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def,
+                           vlError *error) {
   SET(scene, media, vl_scene_add_medium, id, def, "medium", error);
 }
 
-/* Calls set (one of the above). After success the object's mark has a new generation. The id must be checked before. */
-#define SET_AND_MARK(scene, marks, set, id, def, error)                           \
-  do {                                                                            \
-    vlSceneMark *mark = mark_of(scene, &(scene)->marks, (id).index);              \
-    if (!mark) return vl_fail_memory(error);                                      \
-    vlResult changed = set(scene, id, def, error);                                \
-    if (changed == VL_OK) mark->generation = vl_context_number((scene)->context); \
-    return changed;                                                               \
+/* Calls set (one of the above). After success the object's mark has a new generation. The id
+ * must be checked before. */
+#define SET_AND_MARK(scene, marks, set, id, def, error)              \
+  do {                                                               \
+    vlSceneMark *mark = mark_of(scene, &(scene)->marks, (id).index); \
+    if (!mark)                                                       \
+      return vl_fail_memory(error);                                  \
+    vlResult changed = set(scene, id, def, error);                   \
+    if (changed == VL_OK)                                            \
+      mark->generation = vl_context_number((scene)->context);        \
+    return changed;                                                  \
   } while (0)
 
-vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error) {
+vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
+                              vlError *error) {
   vlResult result = check(scene, ITEM(scene, textures, id) != NULL, "texture", error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   if (def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
     return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
                    def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
   SET_AND_MARK(scene, texture_marks, set_texture, id, def, error);
 }
 
-vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def, vlError *error) {
+vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
+                               vlError *error) {
   SET(scene, materials, vl_scene_add_material, id, def, "material", error);
 }
 
-vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def, vlError *error) {
+vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
+                               vlError *error) {
   SET(scene, emissions, vl_scene_add_emission, id, def, "emission", error);
 }
 
-vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
+vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def,
+                            vlError *error) {
   vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   SET_AND_MARK(scene, light_marks, set_light, id, def, error);
 }
 
-vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
+vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def,
+                             vlError *error) {
   vlResult result = check(scene, ITEM(scene, media, id) != NULL, "medium", error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   SET_AND_MARK(scene, medium_marks, set_medium, id, def, error);
 }
 
-/* ---- shapes, lights ---------------------------------------------------------------------------------------------- */
+/* ---- shapes, lights
+ * ----------------------------------------------------------------------------------------------
+ */
 
-static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool shown, vlError *error) {
+static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool shown,
+                     vlError *error) {
   vlSceneMark *mark = mark_of(scene, marks, id);
-  if (!mark) return vl_fail_memory(error);
+  if (!mark)
+    return vl_fail_memory(error);
   mark->hidden = !shown;
   return VL_OK;
 }
@@ -215,17 +262,23 @@ vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *
   return result == VL_OK ? show(scene, &scene->shape_marks, id.index, shown, error) : result;
 }
 
-vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material, vlError *error) {
+vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,
+                                     vlError *error) {
   vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
-  if (result == VL_OK) result = check(scene, material.index <= scene->materials.count, "material", error);
-  if (result == VL_OK) scene->shapes.items[id.index - 1].material = material;
+  if (result == VL_OK)
+    result = check(scene, material.index <= scene->materials.count, "material", error);
+  if (result == VL_OK)
+    scene->shapes.items[id.index - 1].material = material;
   return result;
 }
 
-vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission, vlError *error) {
+vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission,
+                                     vlError *error) {
   vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
-  if (result == VL_OK) result = check(scene, emission.index <= scene->emissions.count, "emission", error);
-  if (result != VL_OK) return result;
+  if (result == VL_OK)
+    result = check(scene, emission.index <= scene->emissions.count, "emission", error);
+  if (result != VL_OK)
+    return result;
   const vlShapeDef *shape = &scene->shapes.items[id.index - 1];
   if (emission.index && !vl_shape_may_emit(shape))
     return vl_fail(error, VL_ERROR_SCENE, "shape: a shape of this kind cannot emit light");
@@ -233,17 +286,22 @@ vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId 
   return VL_OK;
 }
 
-/* ---- instances --------------------------------------------------------------------------------------------------- */
+/* ---- instances
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-static vlResult find_instance(vlScene *scene, vlInstanceId id, vlSceneInstance **instance, vlError *error) {
+static vlResult find_instance(vlScene *scene, vlInstanceId id, vlSceneInstance **instance,
+                              vlError *error) {
   *instance = ITEM(scene, instances, id);
   return check(scene, *instance && !(*instance)->removed, "instance", error);
 }
 
-vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id, const double world_from_group[16], vlError *error) {
+vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id,
+                               const double world_from_group[16], vlError *error) {
   vlSceneInstance *instance;
   vlResult result = find_instance(scene, id, &instance, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   for (int i = 0; i < 16; i++)
     if (!world_from_group || !isfinite(world_from_group[i]))
       return vl_fail(error, VL_ERROR_SCENE, "instance: transform is not finite");
@@ -255,14 +313,16 @@ vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id, const double wor
 vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown, vlError *error) {
   vlSceneInstance *instance;
   vlResult result = find_instance(scene, id, &instance, error);
-  if (result == VL_OK) instance->hidden = !shown;
+  if (result == VL_OK)
+    instance->hidden = !shown;
   return result;
 }
 
 vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error) {
   vlSceneInstance *instance;
   vlResult result = find_instance(scene, id, &instance, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   instance->removed = instance->hidden = true;
   scene->groups.items[instance->group.index - 1].instance_count--;
   return VL_OK;

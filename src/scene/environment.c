@@ -1,5 +1,6 @@
-/* scene/environment.c: see environment.h. Directions: x right, y ahead (away from the viewer), z up. The image is the
- * equal-area octahedral square of infinite lights (math/octahedral.h). */
+/* scene/environment.c: see environment.h. Directions: x right, y ahead (away from the viewer),
+ * z up. The image is the equal-area octahedral square of infinite lights (math/octahedral.h).
+ */
 #include "scene/environment.h"
 
 #include <math.h>
@@ -16,19 +17,25 @@ enum { BUILT_IN_SIDE = 512, MOST_SIDE = 2048 };
 
 bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]) {
   double l = 0, d = 0, f = 0;
-  for (int i = 0; i < 3; i++) l += def->up[i] * def->up[i];
-  for (int i = 0; i < 3; i++) up[i] = l > 0 ? def->up[i] / sqrt(l) : 0;
-  for (int i = 0; i < 3; i++) d += def->front[i] * up[i];
+  for (int i = 0; i < 3; i++)
+    l += def->up[i] * def->up[i];
+  for (int i = 0; i < 3; i++)
+    up[i] = l > 0 ? def->up[i] / sqrt(l) : 0;
+  for (int i = 0; i < 3; i++)
+    d += def->front[i] * up[i];
   for (int i = 0; i < 3; i++) {
     front[i] = def->front[i] - d * up[i];
     f += front[i] * front[i];
   }
-  for (int i = 0; i < 3; i++) front[i] /= f > 0 ? sqrt(f) : 1;
+  for (int i = 0; i < 3; i++)
+    front[i] /= f > 0 ? sqrt(f) : 1;
   vl_cross3(up, front, right);
   return l > 0 && f > 1e-12 && isfinite(l + f);
 }
 
-/* ---- the studio -------------------------------------------------------------------------------------------------- */
+/* ---- the studio
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static float ramp(float x, float from, float to) {
   float t = (x - from) / (to - from);
@@ -36,25 +43,26 @@ static float ramp(float x, float from, float to) {
   return t * t * (3 - 2 * t);
 }
 
-/* A soft box: a rectangle on the sphere; angles in degrees: azimuth from straight ahead to the right, elevation above
- * the horizon. */
-static float soft_box(float azimuth, float elevation, float at, float height, float half_width, float half_height,
-                      float edge) {
+/* A soft box: a rectangle on the sphere; angles in degrees: azimuth from straight ahead to the
+ * right, elevation above the horizon. */
+static float soft_box(float azimuth, float elevation, float at, float height, float half_width,
+                      float half_height, float edge) {
   float a = fabsf(azimuth - at);
   a = a > 180 ? 360 - a : a;
   return ramp(half_width - a, 0, edge) * ramp(half_height - fabsf(elevation - height), 0, edge);
 }
 
 static float studio(vlVec3 d) {
-  float azimuth = vl_atan2(d.x, d.y) * 57.29578f, elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
-  /* A grey room without edges: the floor goes over into walls that become brighter upwards and towards the back, and
-   * darker on the viewer's side. */
+  float azimuth = vl_atan2(d.x, d.y) * 57.29578f,
+        elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
+  /* A grey room without edges: the floor goes over into walls that become brighter upwards and
+   * towards the back, and darker on the viewer's side. */
   float back = 0.5f + 0.5f * d.y, floor = 0.17f + 0.05f * ramp(elevation, -80, -20);
   float wall = (0.20f + 0.12f * back) + 0.22f * ramp(elevation, 5, 90);
   float y = floor + (wall - floor) * ramp(elevation, -12, 24);
-  /* The viewer is at azimuth 180: key light over the left shoulder, fill light on the right, two rim lights behind the
-   * subject, one above; each is brighter towards its top. A white diffuse surface that faces the viewer has radiance
-   * 0.7, a horizontal one 1.1. */
+  /* The viewer is at azimuth 180: key light over the left shoulder, fill light on the right,
+   * two rim lights behind the subject, one above; each is brighter towards its top. A white
+   * diffuse surface that faces the viewer has radiance 0.7, a horizontal one 1.1. */
   float above = ramp(elevation, 0, 90);
   y += (3.0f + 3.0f * above) * soft_box(azimuth, elevation, -135, 44, 32, 26, 12);
   y += (0.8f + 1.2f * above) * soft_box(azimuth, elevation, 105, 24, 15, 34, 10);
@@ -69,8 +77,8 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
   vlImage *image = user;
   float *row = vl_image_row(image, y);
   for (uint32_t x = 0; x < image->width; x++)
-    row[x] =
-        studio(vl_octahedral_decode(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height));
+    row[x] = studio(vl_octahedral_decode(((float)x + 0.5f) / (float)image->width,
+                                         ((float)y + 0.5f) / (float)image->height));
 }
 
 static void fill_studio(vlScene *scene, vlImage *image) {
@@ -84,9 +92,10 @@ static void fill_sky(vlImage *image) {
   for (uint32_t y = 0; y < image->height; y++) {
     float *row = vl_image_row(image, y);
     for (uint32_t x = 0; x < image->width; x++) {
-      vlVec3 d =
-          vl_octahedral_decode(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height);
-      float height = 1 - (1 - (d.z > 0 ? d.z : 0)) * (1 - (d.z > 0 ? d.z : 0)), above = ramp(d.z, -0.02f, 0.02f);
+      vlVec3 d = vl_octahedral_decode(((float)x + 0.5f) / (float)image->width,
+                                      ((float)y + 0.5f) / (float)image->height);
+      float height = 1 - (1 - (d.z > 0 ? d.z : 0)) * (1 - (d.z > 0 ? d.z : 0)),
+            above = ramp(d.z, -0.02f, 0.02f);
       for (int c = 0; c < 3; c++) {
         float sky = horizon[c] + (zenith[c] - horizon[c]) * height;
         row[3 * x + (uint32_t)c] = ground[c] + (sky - ground[c]) * above;
@@ -95,32 +104,45 @@ static void fill_sky(vlImage *image) {
   }
 }
 
-/* ---- files ------------------------------------------------------------------------------------------------------- */
+/* ---- files
+ * -------------------------------------------------------------------------------------------------------
+ */
 
-/* Converts an image over longitude and latitude. A pixel of the result is the mean of 2 x 2 lookups, each interpolated
- * between four pixels. */
-static void from_latitudes(const vlImage *from, const float *pixels, uint32_t channels, vlImage *to) {
+/* Converts an image over longitude and latitude. A pixel of the result is the mean of 2 x 2
+ * lookups, each interpolated between four pixels. */
+static void from_latitudes(const vlImage *from, const float *pixels, uint32_t channels,
+                           vlImage *to) {
   double w = from->width, h = from->height;
   for (uint32_t y = 0; y < to->height; y++) {
     float *row = vl_image_row(to, y);
     for (uint32_t x = 0; x < to->width; x++) {
       double sum[3] = {0, 0, 0};
       for (int k = 0; k < 4; k++) {
-        vlVec3 d = vl_octahedral_decode(((float)x + (k & 1 ? 0.75f : 0.25f)) / (float)to->width,
-                                        ((float)y + (k & 2 ? 0.75f : 0.25f)) / (float)to->height);
+        vlVec3 d =
+            vl_octahedral_decode(((float)x + (k & 1 ? 0.75f : 0.25f)) / (float)to->width,
+                                 ((float)y + (k & 2 ? 0.75f : 0.25f)) / (float)to->height);
         double u = (vl_atan2_double(d.x, d.y) / 6.283185307179586 + 0.5) * w - 0.5;
-        double v = vl_acos_double(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z) / 3.141592653589793 * h - 0.5;
+        double v = vl_acos_double(d.z > 1    ? 1
+                                  : d.z < -1 ? -1
+                                             : (double)d.z) /
+                       3.141592653589793 * h -
+                   0.5;
         double fu = floor(u), fv = floor(v);
         for (int c = 0; c < 4; c++) {
           int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
-          i = i < 0 ? i + (int64_t)from->width : i >= (int64_t)from->width ? i - (int64_t)from->width : i;
+          i = i < 0                       ? i + (int64_t)from->width
+              : i >= (int64_t)from->width ? i - (int64_t)from->width
+                                          : i;
           j = j < 0 ? 0 : j >= (int64_t)from->height ? (int64_t)from->height - 1 : j;
-          double weight = (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv)) * 0.25;
+          double weight =
+              (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv)) * 0.25;
           const float *p = pixels + ((size_t)j * from->width + (size_t)i) * channels;
-          for (uint32_t n = 0; n < 3; n++) sum[n] += weight * p[channels < 3 ? 0 : n];
+          for (uint32_t n = 0; n < 3; n++)
+            sum[n] += weight * p[channels < 3 ? 0 : n];
         }
       }
-      for (int n = 0; n < 3; n++) row[3 * x + (uint32_t)n] = sum[n] > 0 ? (float)sum[n] : 0.0f;
+      for (int n = 0; n < 3; n++)
+        row[3 * x + (uint32_t)n] = sum[n] > 0 ? (float)sum[n] : 0.0f;
     }
   }
 }
@@ -154,19 +176,25 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
   bool ok = from->width == 2 * from->height && channels > 0;
   if (!ok)
     vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
-                  "%.300s: %u x %u: an image of the surroundings must be twice as wide as high, or square", path,
-                  from->width, from->height);
+                  "%.300s: %u x %u: an image of the surroundings must be twice as wide as "
+                  "high, or square",
+                  path, from->width, from->height);
   channels = channels > 2 ? 3 : 1;
-  ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
-  uint32_t side = from->height + from->height / 4; /* pixels at the horizon keep about their solid angle */
+  ok = ok &&
+       (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
+  uint32_t side =
+      from->height + from->height / 4; /* pixels at the horizon keep about their solid angle */
   ok = ok && new_image(scene, side > MOST_SIDE ? MOST_SIDE : side < 16 ? 16 : side, 3, image);
-  if (ok) from_latitudes(from, pixels, channels, *image);
+  if (ok)
+    from_latitudes(from, pixels, channels, *image);
   vl_free(scene->context, pixels);
   vl_image_destroy(from);
   return ok;
 }
 
-/* ---- the light --------------------------------------------------------------------------------------------------- */
+/* ---- the light
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *sky) {
   vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
@@ -179,11 +207,14 @@ static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *
   return vl_scene_add_light(scene, &sun).index != 0;
 }
 
-bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind) {
+bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
+                              vlEnvironmentKind kind) {
   vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
-  double right[3], up[3], front[3], c = vl_precise_cos(def->rotation), s = vl_precise_sin(def->rotation);
+  double right[3], up[3], front[3], c = vl_precise_cos(def->rotation),
+                                    s = vl_precise_sin(def->rotation);
   if (!vl_scene_axes(def, right, up, front) || !isfinite(def->strength) || !isfinite(c)) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "environment: its axes, rotation or strength make no sense");
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
+                  "environment: its axes, rotation or strength make no sense");
     return false;
   }
   for (int i = 0; i < 3; i++) { /* axes: x right, y ahead, rotated about z */
@@ -194,9 +225,12 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnviro
   light.scale = def->strength;
   vlImage *image = NULL;
   bool ok = true;
-  if (kind == VL_ENVIRONMENT_FILE) ok = read_environment(scene, def->path, &image);
-  if (kind == VL_ENVIRONMENT_STUDIO && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image))) fill_studio(scene, image);
-  if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image))) fill_sky(image);
+  if (kind == VL_ENVIRONMENT_FILE)
+    ok = read_environment(scene, def->path, &image);
+  if (kind == VL_ENVIRONMENT_STUDIO && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image)))
+    fill_studio(scene, image);
+  if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image)))
+    fill_sky(image);
   light.image = image;
   ok = ok && vl_scene_add_light(scene, &light).index != 0;
   vl_image_destroy(image);

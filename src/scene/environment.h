@@ -7,10 +7,12 @@
 /* The albedo of a floor in the studio that has the radiance of the studio's floor. */
 #define VL_FLOOR_ALBEDO 0.2f
 
-/* Adds an environment light; its kind is neither AUTO nor NONE. False: the scene holds the error. */
+/* Adds an environment light; its kind is neither AUTO nor NONE. False: the scene holds the
+ * error.
+ */
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind);
-/* Gives the directions right, up and front of the scene as unit vectors. False: up or front is zero, or they are
- * parallel. */
+/* Gives the directions right, up and front of the scene as unit vectors. False: up or front is
+ * zero, or they are parallel. */
 bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]);
 
 #endif

@@ -7,27 +7,33 @@
 #include "schema/schema.h"
 #include "velo/shape.h"
 
-static void visit_box(const vlMat4 *m, const double low[3], const double high[3], vlPointVisit *visit, void *user) {
+static void visit_box(const vlMat4 *m, const double low[3], const double high[3],
+                      vlPointVisit *visit, void *user) {
   for (int k = 0; k < 8; k++) {
-    double corner[3] = {k & 1 ? low[0] : high[0], k & 2 ? low[1] : high[1], k & 4 ? low[2] : high[2]}, p[3];
+    double corner[3] = {k & 1 ? low[0] : high[0], k & 2 ? low[1] : high[1],
+                        k & 4 ? low[2] : high[2]},
+           p[3];
     vl_mat4_point(m, corner, p);
     visit(user, p);
   }
 }
 
-static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t most, vlPointVisit *visit,
-                        void *user) {
+static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t most,
+                        vlPointVisit *visit, void *user) {
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
   for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
     const double *c = d->centers + 3 * i;
-    double r = d->radii[i], low[3] = {c[0] - r, c[1] - r, c[2] - r}, high[3] = {c[0] + r, c[1] + r, c[2] + r};
+    double r = d->radii[i], low[3] = {c[0] - r, c[1] - r, c[2] - r},
+           high[3] = {c[0] + r, c[1] + r, c[2] + r};
     visit_box(&m, low, high, visit, user);
   }
-  if (d->centers) return;
+  if (d->centers)
+    return;
   if (!d->positions) {
     double low[3], high[3];
     vl_shape_own_box(d, low, high);
-    if (low[0] > high[0]) return;
+    if (low[0] > high[0])
+      return;
     visit_box(&m, low, high, visit, user);
     return;
   }
@@ -47,13 +53,16 @@ void vl_extent_grow(void *user, const double p[3]) {
   }
 }
 
-const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY},
+                                    {-INFINITY, -INFINITY, -INFINITY}};
 
-void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without, vlPointVisit *visit,
-                     void *user) {
+void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without,
+                     vlPointVisit *visit, void *user) {
   vlMat4 identity = vl_mat4_identity();
-  for (size_t i = 0; i + 2 < scene->frame_points.count; i += 3) visit(user, scene->frame_points.items + i);
-  if (scene->frame_points.count) return;
+  for (size_t i = 0; i + 2 < scene->frame_points.count; i += 3)
+    visit(user, scene->frame_points.items + i);
+  if (scene->frame_points.count)
+    return;
   for (size_t i = 0; i < scene->shapes.count; i++)
     if (!scene->shapes.items[i].group.index && !(without && without[i]))
       visit_shape(&scene->shapes.items[i], &identity, 20000, visit, user);
@@ -61,7 +70,8 @@ void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *wi
     const vlSceneInstance *instance = &scene->instances.items[i];
     const vlExtent *b = &boxes[instance->group.index - 1];
     vlMat4 m = vl_mat4_load(instance->world_from_group);
-    if (!instance->hidden && b->low[0] <= b->high[0]) visit_box(&m, b->low, b->high, visit, user);
+    if (!instance->hidden && b->low[0] <= b->high[0])
+      visit_box(&m, b->low, b->high, visit, user);
   }
 }
 
@@ -72,10 +82,12 @@ bool vl_extent_groups(vlScene *scene, vlExtent **boxes) {
     return false;
   }
   vlMat4 identity = vl_mat4_identity();
-  for (size_t i = 0; i < scene->groups.count; i++) (*boxes)[i] = vl_extent_nothing;
+  for (size_t i = 0; i < scene->groups.count; i++)
+    (*boxes)[i] = vl_extent_nothing;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *d = &scene->shapes.items[i];
-    if (d->group.index) visit_shape(d, &identity, SIZE_MAX, vl_extent_grow, &(*boxes)[d->group.index - 1]);
+    if (d->group.index)
+      visit_shape(d, &identity, SIZE_MAX, vl_extent_grow, &(*boxes)[d->group.index - 1]);
   }
   return true;
 }

@@ -14,11 +14,14 @@ extern const vlExtent vl_extent_nothing;
 typedef void vlPointVisit(void *user, const double p[3]);
 /* Grows the box `user`, a vlExtent. */
 void vl_extent_grow(void *user, const double p[3]);
-/* The bounding boxes of the groups, in group space; the caller frees the array. False: the scene holds the error. */
+/* The bounding boxes of the groups, in group space; the caller frees the array. False: the
+ * scene holds the error. */
 bool vl_extent_groups(vlScene *scene, vlExtent **boxes);
-/* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the corners of the boxes of other
- * shapes and of instances. A file that moves gives points of all its times instead. boxes: those of the groups.
- * without[i]: shape i is left out; null: none is. */
-void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without, vlPointVisit *visit, void *user);
+/* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the
+ * corners of the boxes of other shapes and of instances. A file that moves gives points of all
+ * its times instead. boxes: those of the groups. without[i]: shape i is left out; null: none
+ * is. */
+void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without,
+                     vlPointVisit *visit, void *user);
 
 #endif

@@ -21,7 +21,8 @@ void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
   }
   size_t n = s->groups.count + 1;
   double(*boxes)[6] = vl_alloc_array(s->context, n, sizeof *boxes);
-  if (!boxes) return;
+  if (!boxes)
+    return;
   for (size_t g = 0; g < n; g++)
     for (int k = 0; k < 3; k++) {
       boxes[g][k] = INFINITY;
@@ -52,7 +53,9 @@ void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
   vl_free(s->context, boxes);
 }
 
-/* ---- areas ------------------------------------------------------------------------------------------------------- */
+/* ---- areas
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static double triangle_area(const double p[3][3]) {
   double e[2][3], n[3];
@@ -64,15 +67,19 @@ static double triangle_area(const double p[3][3]) {
   return 0.5 * vl_norm3(n);
 }
 
-/* Area of a shape. Patches count as two triangles; quadrics as if their transform scaled uniformly. */
+/* Area of a shape. Patches count as two triangles; quadrics as if their transform scaled
+ * uniformly.
+ */
 static double shape_area(const vlShapeDef *d) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   double r = d->radius, turn = d->phi_max, scale = vl_mat4_scale_of(&m), sum = 0;
   if (d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_CYLINDER)
     return turn * r * ((double)d->z_max - (double)d->z_min) * scale * scale;
   if (d->kind == VL_SHAPE_DISK)
-    return 0.5 * turn * (r * r - (double)d->inner_radius * (double)d->inner_radius) * scale * scale;
-  if (!vl_shape_is_mesh(d->kind)) return NAN;
+    return 0.5 * turn * (r * r - (double)d->inner_radius * (double)d->inner_radius) * scale *
+           scale;
+  if (!vl_shape_is_mesh(d->kind))
+    return NAN;
   uint32_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   for (uint32_t i = 0; i < d->faces; i++) {
     double p[4][3];
@@ -82,19 +89,24 @@ static double shape_area(const vlShapeDef *d) {
       vl_mat4_point(&m, q, p[k]);
     }
     sum += triangle_area((const double(*)[3])p);
-    if (per == 4) sum += triangle_area((const double(*)[3])(p + 1));
+    if (per == 4)
+      sum += triangle_area((const double(*)[3])(p + 1));
   }
   return sum;
 }
 
-/* ---- lights ------------------------------------------------------------------------------------------------------ */
+/* ---- lights
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 double vl_light_def_luminance(const vlSpectrum *s) {
   float dense[VL_LAMBDA_COUNT];
   const float *y = vl_cie_y();
   double sum = 0, own = vl_spectrum_photometric(s, NULL);
-  if (vl_spectrum_dense(s, VL_ROLE_ILLUMINANT, dense, NULL) != VL_OK || !(own > 0)) return 0;
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)y[i] * (double)dense[i];
+  if (vl_spectrum_dense(s, VL_ROLE_ILLUMINANT, dense, NULL) != VL_OK || !(own > 0))
+    return 0;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    sum += (double)y[i] * (double)dense[i];
   return sum / own;
 }
 
@@ -109,29 +121,34 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   info.image = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces
                : info.image    ? NAN
-                               : pi * shape_area(d) * vl_light_def_luminance(&e->radiance) * (double)e->scale *
-                                  (e->two_sided ? 2 : 1);
+                               : pi * shape_area(d) * vl_light_def_luminance(&e->radiance) *
+                                  (double)e->scale * (e->two_sided ? 2 : 1);
   return info;
 }
 
 static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
-  vlLightInfo info = {.kind = vl_kind_row(&vl_light_family, (int)l->kind)->name, .source = l->source};
+  vlLightInfo info = {.kind = vl_kind_row(&vl_light_family, (int)l->kind)->name,
+                      .source = l->source};
   double low[3], high[3], radius2 = 0;
   info.image = l->path || l->image;
   vl_scene_bounds(s, low, high);
-  for (int k = 0; k < 3; k++) radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
-  info.power = vl_light_power(l, vl_light_def_luminance(&l->color) * (double)l->scale, sqrt(radius2));
+  for (int k = 0; k < 3; k++)
+    radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
+  info.power =
+      vl_light_power(l, vl_light_def_luminance(&l->color) * (double)l->scale, sqrt(radius2));
   return info;
 }
 
 uint32_t vl_scene_light_count(const vlScene *s) {
   size_t n = s->lights.count;
-  for (size_t i = 0; i < s->shapes.count; i++) n += s->shapes.items[i].emission.index != 0;
+  for (size_t i = 0; i < s->shapes.count; i++)
+    n += s->shapes.items[i].emission.index != 0;
   return (uint32_t)n;
 }
 
 vlResult vl_scene_light_info(const vlScene *s, uint32_t index, vlLightInfo *info) {
-  if (!s || !info) return VL_ERROR_ARGUMENT;
+  if (!s || !info)
+    return VL_ERROR_ARGUMENT;
   if (index < s->lights.count) {
     *info = light(s, &s->lights.items[index]);
     return VL_OK;

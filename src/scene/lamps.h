@@ -4,12 +4,13 @@
 
 #include "scene/extent.h"
 
-/* Luminance of a light's spectrum after pbrt's normalisation: emission divided by the spectrum's luminance (for RGB: by
- * that of the colour space's white). */
+/* Luminance of a light's spectrum after pbrt's normalisation: emission divided by the
+ * spectrum's luminance (for RGB: by that of the colour space's white). */
 double vl_light_def_luminance(const vlSpectrum *spectrum);
 
-/* The median, over points of the scene, of the illuminance in lux of a surface that faces the lamps (lights but the
- * infinite ones), without shadows; 0 if there are none, or none lights a point. boxes: those of the groups. */
+/* The median, over points of the scene, of the illuminance in lux of a surface that faces the
+ * lamps (lights but the infinite ones), without shadows; 0 if there are none, or none lights a
+ * point. boxes: those of the groups. */
 double vl_lamp_illuminance(const vlScene *scene, const vlExtent *boxes);
 
 #endif

@@ -4,20 +4,25 @@
 #include "base/error.h"
 #include "scene/scene.h"
 
-/* Memory is reserved first, so that a failed allocation never leaves an object with two owners. */
+/* Memory is reserved first, so that a failed allocation never leaves an object with two owners.
+ */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
-  if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: scene or from is null");
+  if (!scene || !from)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: scene or from is null");
   vlContext *context = scene->context;
   if (from->context != context)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: the scenes are of different contexts");
-  if (scene == from) return VL_OK;
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "scene take camera: the scenes are of different contexts");
+  if (scene == from)
+    return VL_OK;
   if (!VL_RESERVE(context, &scene->apertures, from->apertures.count) ||
       !VL_RESERVE(context, &scene->optics, from->optics.count))
     return vl_fail_memory(error);
   for (size_t i = 0; i < from->apertures.count; i++)
     scene->apertures.items[scene->apertures.count++] = from->apertures.items[i];
-  for (size_t i = 0; i < from->optics.count; i++) scene->optics.items[scene->optics.count++] = from->optics.items[i];
+  for (size_t i = 0; i < from->optics.count; i++)
+    scene->optics.items[scene->optics.count++] = from->optics.items[i];
   from->apertures.count = from->optics.count = 0;
   vlSceneDefs *to = &scene->defs;
   const vlSceneDefs *s = &from->defs;
@@ -30,13 +35,18 @@ vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
 
 vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
   vl_error_clear(error);
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: scene is null");
+  if (!scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: scene is null");
   vlCameraDef *camera = &scene->defs.camera;
-  if (!camera->lens.optics) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: the camera's lens is thin");
-  if (!VL_RESERVE(scene->context, &scene->optics, 1)) return vl_fail_memory(error);
+  if (!camera->lens.optics)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: the camera's lens is thin");
+  if (!VL_RESERVE(scene->context, &scene->optics, 1))
+    return vl_fail_memory(error);
   vlOptics *optics;
-  vlResult result = vl_optics_refocus(scene->context, camera->lens.optics, distance, &optics, error);
-  if (result != VL_OK) return result;
+  vlResult result =
+      vl_optics_refocus(scene->context, camera->lens.optics, distance, &optics, error);
+  if (result != VL_OK)
+    return result;
   scene->optics.items[scene->optics.count++] = optics;
   camera->lens.optics = optics;
   return VL_OK;

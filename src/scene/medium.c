@@ -9,28 +9,33 @@
 #include "velo/medium.h"
 
 static bool bad(vlScene *scene, const vlMediumDef *d, const char *why) {
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s", vl_short_text(d->name).text, why);
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s",
+                vl_short_text(d->name).text, why);
   return false;
 }
 
 /* Checks the values of a grid: finite and, for most kinds, not negative. */
-static bool check_values(vlScene *scene, const vlMediumDef *d, const float *v, size_t per, bool signs,
-                         const char *what) {
+static bool check_values(vlScene *scene, const vlMediumDef *d, const float *v, size_t per,
+                         bool signs, const char *what) {
   size_t count = v ? (size_t)d->nx * d->ny * d->nz * per : 0;
   for (size_t i = 0; i < count; i++) {
-    if (isfinite(v[i]) && (signs || v[i] >= 0.0f)) continue;
+    if (isfinite(v[i]) && (signs || v[i] >= 0.0f))
+      continue;
     vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s: value %zu is %s (%g)",
-                  vl_short_text(d->name).text, what, i / per, isfinite(v[i]) ? "negative" : "not finite", (double)v[i]);
+                  vl_short_text(d->name).text, what, i / per,
+                  isfinite(v[i]) ? "negative" : "not finite", (double)v[i]);
     return false;
   }
   return true;
 }
 
 static bool check_grid(vlScene *scene, const vlMediumDef *d) {
-  if (d->kind == VL_MEDIUM_GRID && !d->density) return bad(scene, d, "the grid has no density");
+  if (d->kind == VL_MEDIUM_GRID && !d->density)
+    return bad(scene, d, "the grid has no density");
   if (d->kind == VL_MEDIUM_RGB_GRID && !d->rgb_a && !d->rgb_s)
     return bad(scene, d, "the grid has neither sigma_a nor sigma_s");
-  if (d->rgb_emission && !d->rgb_a) return bad(scene, d, "a grid that emits needs sigma_a on the grid, too");
+  if (d->rgb_emission && !d->rgb_a)
+    return bad(scene, d, "a grid that emits needs sigma_a on the grid, too");
   return check_values(scene, d, d->density, 1, false, "density") &&
          check_values(scene, d, d->emission_scales, 1, false, "emission scale") &&
          check_values(scene, d, d->temperature, 1, true, "temperature") &&
@@ -40,32 +45,42 @@ static bool check_grid(vlScene *scene, const vlMediumDef *d) {
 }
 
 /* Every sample is checked: negative coefficients would produce light. */
-static bool check_spectrum(vlScene *scene, const vlMediumDef *d, const vlSpectrum *s, const char *what) {
+static bool check_spectrum(vlScene *scene, const vlMediumDef *d, const vlSpectrum *s,
+                           const char *what) {
   bool negative = s->scale < 0.0f || (s->kind == VL_SPECTRUM_CONSTANT && s->value < 0.0f);
-  for (uint32_t i = 0; s->kind == VL_SPECTRUM_SAMPLED && i < s->count; i++) negative = negative || s->values[i] < 0.0f;
-  if (!negative) return true;
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s is negative", vl_short_text(d->name).text, what);
+  for (uint32_t i = 0; s->kind == VL_SPECTRUM_SAMPLED && i < s->count; i++)
+    negative = negative || s->values[i] < 0.0f;
+  if (!negative)
+    return true;
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s is negative",
+                vl_short_text(d->name).text, what);
   return false;
 }
 
 static bool check_rgb_absorption(vlScene *scene, const vlMediumDef *d) {
   bool dark = d->emission_scale == 0.0f || d->emission.scale == 0.0f ||
               (d->emission.kind == VL_SPECTRUM_CONSTANT && d->emission.value == 0.0f);
-  if (d->kind != VL_MEDIUM_HOMOGENEOUS) return bad(scene, d, "only a homogeneous medium can absorb by RGB channel");
+  if (d->kind != VL_MEDIUM_HOMOGENEOUS)
+    return bad(scene, d, "only a homogeneous medium can absorb by RGB channel");
   if (d->sigma_a.kind != VL_SPECTRUM_RGB && d->sigma_a.kind != VL_SPECTRUM_CONSTANT)
-    return bad(scene, d, "to absorb by RGB channel its sigma_a must be an RGB value or a constant");
+    return bad(scene, d,
+               "to absorb by RGB channel its sigma_a must be an RGB value or a constant");
   return dark || bad(scene, d, "a medium that absorbs by RGB channel cannot emit");
 }
 
 static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *row) {
   for (int i = 0; i < 16; i++)
-    if (!isfinite(d->world_from_medium[i])) return bad(scene, d, "transform is not finite");
-  if (!check_spectrum(scene, d, &d->sigma_a, "sigma_a") || !check_spectrum(scene, d, &d->sigma_s, "sigma_s") ||
+    if (!isfinite(d->world_from_medium[i]))
+      return bad(scene, d, "transform is not finite");
+  if (!check_spectrum(scene, d, &d->sigma_a, "sigma_a") ||
+      !check_spectrum(scene, d, &d->sigma_s, "sigma_s") ||
       !check_spectrum(scene, d, &d->emission, "emission"))
     return false;
   for (int i = 0; (row->traits & VL_MEDIUM_TRAIT_BOX) && i < 3; i++)
-    if (!(d->low[i] < d->high[i])) return bad(scene, d, "its box has no room: p0 must be below p1 in x, y and z");
-  if (d->path && !d->path[0]) return bad(scene, d, "it has no file name");
+    if (!(d->low[i] < d->high[i]))
+      return bad(scene, d, "its box has no room: p0 must be below p1 in x, y and z");
+  if (d->path && !d->path[0])
+    return bad(scene, d, "it has no file name");
   return !(row->traits & VL_MEDIUM_TRAIT_CELLS) || check_grid(scene, d);
 }
 
@@ -86,7 +101,8 @@ static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
 
 vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
   const vlMediumId none = {0};
-  if (scene->error.code != VL_OK) return none;
+  if (scene->error.code != VL_OK)
+    return none;
   if (!def || def->cookie != VL_COOKIE_MEDIUM) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "medium: " VL_BAD_COOKIE);
     return none;
@@ -96,24 +112,32 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
     bad(scene, def, "unknown kind");
     return none;
   }
-  if (def->rgb_absorption && !check_rgb_absorption(scene, def)) return none;
+  if (def->rgb_absorption && !check_rgb_absorption(scene, def))
+    return none;
   char what[120];
   snprintf(what, sizeof what, "medium \"%s\"", vl_short_text(def->name).text);
-  vlMediumDef d = vl_default_medium_def(def->kind); /* members that the kind does not use keep their defaults */
+  vlMediumDef d = vl_default_medium_def(
+      def->kind); /* members that the kind does not use keep their defaults */
   vl_row_copy_members(row, def, &d);
   d.name = def->name;
   d.source = def->source;
   d.space = def->space;
   memcpy(d.world_from_medium, def->world_from_medium, sizeof d.world_from_medium);
   copy_cells(def, &d);
-  if (!vl_row_take(scene, row, &d, true, d.source, what)) return none;
-  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_string(scene, &d.name) || !check_medium(scene, &d, row))
+  if (!vl_row_take(scene, row, &d, true, d.source, what))
+    return none;
+  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_string(scene, &d.name) ||
+      !check_medium(scene, &d, row))
     return none;
   size_t cells = (size_t)d.nx * d.ny * d.nz;
-  const float **grids[6] = {&d.density, &d.emission_scales, &d.temperature, &d.rgb_a, &d.rgb_s, &d.rgb_emission};
+  const float **grids[6] = {&d.density, &d.emission_scales, &d.temperature,
+                            &d.rgb_a,   &d.rgb_s,           &d.rgb_emission};
   for (int i = 0; i < 6; i++)
-    if (!vl_scene_copy_block(scene, *grids[i], cells, (i < 3 ? 1 : 3) * sizeof(float), grids[i])) return none;
-  vlMediumDef *slot = scene->media.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->media) : NULL;
+    if (!vl_scene_copy_block(scene, *grids[i], cells, (i < 3 ? 1 : 3) * sizeof(float),
+                             grids[i]))
+      return none;
+  vlMediumDef *slot =
+      scene->media.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->media) : NULL;
   if (!slot) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
     return none;

@@ -1,5 +1,6 @@
-/* scene/mesh_solid.c: see mesh_solid.h. Vertices at exactly the same position are welded. Vertices on edges that are
- * still open after that are welded within a tolerance of a millionth of the solid's size. */
+/* scene/mesh_solid.c: see mesh_solid.h. Vertices at exactly the same position are welded.
+ * Vertices on edges that are still open after that are welded within a tolerance of a millionth
+ * of the solid's size. */
 #include "scene/mesh_solid.h"
 
 #include <math.h>
@@ -18,7 +19,8 @@ void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *b) {
 
 static uint32_t table_size(size_t count) {
   uint32_t size = 16;
-  while (size < 2 * count && size < 0x80000000u) size *= 2;
+  while (size < 2 * count && size < 0x80000000u)
+    size *= 2;
   return size;
 }
 
@@ -41,17 +43,25 @@ static uint64_t hash_point(const double p[3]) {
   return h;
 }
 
-/* ---- gathering --------------------------------------------------------------------------------------------------- */
+/* ---- gathering
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-/* Transforms a shape's vertices to group space and welds them. welded[i]: the corner that vertex i becomes. */
-static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t mask, uint32_t *welded) {
+/* Transforms a shape's vertices to group space and welds them. welded[i]: the corner that
+ * vertex i becomes. */
+static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t mask,
+                 uint32_t *welded) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   for (uint32_t i = 0; i < d->vertices; i++) {
-    double p[3] = {d->positions[3 * (size_t)i], d->positions[3 * (size_t)i + 1], d->positions[3 * (size_t)i + 2]}, q[3];
+    double p[3] = {d->positions[3 * (size_t)i], d->positions[3 * (size_t)i + 1],
+                   d->positions[3 * (size_t)i + 2]},
+           q[3];
     vl_mat4_point(&m, p, q);
-    for (int k = 0; k < 3; k++) q[k] = (double)(float)q[k] + 0.0; /* rounded to float as in the renderer */
+    for (int k = 0; k < 3; k++)
+      q[k] = (double)(float)q[k] + 0.0; /* rounded to float as in the renderer */
     uint32_t slot = (uint32_t)hash_point(q) & mask;
-    while (table[slot] && memcmp(b->points + 3 * (size_t)(table[slot] - 1), q, sizeof q) != 0) slot = (slot + 1) & mask;
+    while (table[slot] && memcmp(b->points + 3 * (size_t)(table[slot] - 1), q, sizeof q) != 0)
+      slot = (slot + 1) & mask;
     if (!table[slot]) {
       memcpy(b->points + 3 * (size_t)b->corners, q, sizeof q);
       table[slot] = ++b->corners;
@@ -60,27 +70,30 @@ static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t 
   }
 }
 
-/* Whether the outside of a face is opposite to the side that its winding gives. Vertex normals, if present, decide, as
- * in rendering. */
+/* Whether the outside of a face is opposite to the side that its winding gives. Vertex normals,
+ * if present, decide, as in rendering. */
 static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bool mirrored) {
-  if (!d->normals) return d->reverse_orientation != mirrored;
+  if (!d->normals)
+    return d->reverse_orientation != mirrored;
   const int corner[3] = {0, k1, k2};
   const float *p[3];
   double n[3] = {0, 0, 0}, g[3];
   for (int j = 0; j < 3; j++) {
     size_t vertex = 3 * (size_t)f[corner[j]];
     p[j] = d->positions + vertex;
-    for (int k = 0; k < 3; k++) n[k] += (double)d->normals[vertex + (size_t)k];
+    for (int k = 0; k < 3; k++)
+      n[k] += (double)d->normals[vertex + (size_t)k];
   }
   vl_triangle_normal(p[0], p[1], p[2], g);
   bool against = vl_dot3(g, n) < 0;
-  /* The test above is in shape space. A mirroring transform to group space reverses the winding. The normals are
-   * reversed only by reverse_orientation. */
+  /* The test above is in shape space. A mirroring transform to group space reverses the
+   * winding. The normals are reversed only by reverse_orientation. */
   return against != (d->reverse_orientation != mirrored);
 }
 
 static void add_face(vlMeshSolid *b, uint32_t x, uint32_t y, uint32_t z, bool turned) {
-  if (x == y || y == z || z == x) return; /* the face is degenerate */
+  if (x == y || y == z || z == x)
+    return; /* the face is degenerate */
   uint32_t *f = b->faces3 + 3 * (size_t)b->faces++;
   f[0] = x;
   f[1] = turned ? z : y;
@@ -105,12 +118,14 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
   size_t vertices = 0, faces = 0, most = 0;
   for (size_t i = 0; i < count; i++) {
     const vlShapeDef *d = &scene->shapes.items[shapes[i]];
-    if (!vl_shape_is_mesh(d->kind)) continue;
+    if (!vl_shape_is_mesh(d->kind))
+      continue;
     vertices += d->vertices;
     faces += (d->kind == VL_SHAPE_TRIANGLES ? 1 : 2) * (size_t)d->faces;
     most = d->vertices > most ? d->vertices : most;
   }
-  if (vertices > 0x3fffffff || faces > 0x3fffffff) return true; /* too large to check: no faces, no findings */
+  if (vertices > 0x3fffffff || faces > 0x3fffffff)
+    return true; /* too large to check: no faces, no findings */
   uint32_t size = table_size(vertices);
   uint32_t *table = vl_alloc_zero(scene->context, size, sizeof *table);
   uint32_t *welded = vl_alloc_array(scene->context, most + 1, sizeof *welded);
@@ -119,7 +134,8 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
   bool fine = table && welded && b->points && b->faces3;
   for (size_t i = 0; i < count && fine; i++) {
     const vlShapeDef *d = &scene->shapes.items[shapes[i]];
-    if (!vl_shape_is_mesh(d->kind)) continue;
+    if (!vl_shape_is_mesh(d->kind))
+      continue;
     weld(d, b, table, size - 1, welded);
     add_faces(d, b, welded);
   }
@@ -128,7 +144,9 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
   return fine;
 }
 
-/* ---- edges ------------------------------------------------------------------------------------------------------- */
+/* ---- edges
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Edge {
   uint32_t a, b, face; /* a < b; face: one of its faces */
@@ -147,7 +165,8 @@ static Edge *find_edge(const Edges *e, uint32_t a, uint32_t b) {
     b = t;
   }
   uint32_t i = (uint32_t)mix(((uint64_t)a << 32) | b) & e->mask;
-  while (e->slots[i].count && (e->slots[i].a != a || e->slots[i].b != b)) i = (i + 1) & e->mask;
+  while (e->slots[i].count && (e->slots[i].a != a || e->slots[i].b != b))
+    i = (i + 1) & e->mask;
   e->slots[i].a = a;
   e->slots[i].b = b;
   return &e->slots[i];
@@ -157,18 +176,21 @@ static bool count_edges(const vlScene *scene, const vlMeshSolid *b, Edges *e) {
   uint32_t size = table_size((size_t)b->faces * 3);
   e->mask = size - 1;
   e->slots = vl_alloc_zero(scene->context, size, sizeof *e->slots);
-  if (!e->slots) return false;
+  if (!e->slots)
+    return false;
   for (uint32_t i = 0; i < b->faces; i++)
     for (int k = 0; k < 3; k++) {
-      Edge *edge = find_edge(e, b->faces3[3 * (size_t)i + (size_t)k], b->faces3[3 * (size_t)i + (size_t)((k + 1) % 3)]);
+      Edge *edge = find_edge(e, b->faces3[3 * (size_t)i + (size_t)k],
+                             b->faces3[3 * (size_t)i + (size_t)((k + 1) % 3)]);
       edge->count++;
       edge->face = i;
     }
   return true;
 }
 
-/* Welds corners of open edges that lie within the tolerance of each other. Grid cells are two tolerances wide, so that
- * a point's neighbours lie in the eight cells around the nearest cell corner. */
+/* Welds corners of open edges that lie within the tolerance of each other. Grid cells are two
+ * tolerances wide, so that a point's neighbours lie in the eight cells around the nearest cell
+ * corner. */
 static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool *changed) {
   double low[3], high[3], size = 0;
   for (int k = 0; k < 3; k++) {
@@ -179,7 +201,8 @@ static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool
   uint8_t *open = vl_alloc_zero(scene->context, b->corners + 1, 1);
   size_t opens = 0;
   for (uint32_t i = 0; open && i <= e->mask; i++)
-    if (e->slots[i].count == 1) open[e->slots[i].a] = open[e->slots[i].b] = 1;
+    if (e->slots[i].count == 1)
+      open[e->slots[i].a] = open[e->slots[i].b] = 1;
   for (uint32_t i = 0; same && open && i < b->corners; i++) {
     same[i] = i;
     opens += open[i];
@@ -189,23 +212,28 @@ static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool
       high[k] = x > high[k] ? x : high[k];
     }
   }
-  for (int k = 0; k < 3; k++) size = high[k] - low[k] > size ? high[k] - low[k] : size;
-  uint32_t slots = table_size(opens), *table = vl_alloc_zero(scene->context, slots, sizeof *table);
+  for (int k = 0; k < 3; k++)
+    size = high[k] - low[k] > size ? high[k] - low[k] : size;
+  uint32_t slots = table_size(opens),
+           *table = vl_alloc_zero(scene->context, slots, sizeof *table);
   double reach = 1e-6 * size;
   bool fine = same && open && table;
   *changed = false;
   for (uint32_t i = 0; fine && reach > 0 && i < b->corners; i++) {
-    if (!open[i]) continue;
+    if (!open[i])
+      continue;
     const double *p = b->points + 3 * (size_t)i;
     uint32_t found = UINT32_MAX;
     for (int c = 0; c < 8 && found == UINT32_MAX; c++) {
       double cell[3];
-      for (int k = 0; k < 3; k++) cell[k] = floor((p[k] - low[k]) / (2 * reach) + (c >> k & 1 ? 0.5 : -0.5));
+      for (int k = 0; k < 3; k++)
+        cell[k] = floor((p[k] - low[k]) / (2 * reach) + (c >> k & 1 ? 0.5 : -0.5));
       uint32_t tries = 0;
       for (uint32_t s = (uint32_t)hash_point(cell) & (slots - 1); table[s] && tries < 64;
            s = (s + 1) & (slots - 1), tries++) {
         const double *q = b->points + 3 * (size_t)(table[s] - 1);
-        if (fabs(p[0] - q[0]) <= reach && fabs(p[1] - q[1]) <= reach && fabs(p[2] - q[2]) <= reach) {
+        if (fabs(p[0] - q[0]) <= reach && fabs(p[1] - q[1]) <= reach &&
+            fabs(p[2] - q[2]) <= reach) {
           found = table[s] - 1;
           break;
         }
@@ -217,9 +245,11 @@ static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool
       continue;
     }
     double cell[3];
-    for (int k = 0; k < 3; k++) cell[k] = floor((p[k] - low[k]) / (2 * reach));
+    for (int k = 0; k < 3; k++)
+      cell[k] = floor((p[k] - low[k]) / (2 * reach));
     uint32_t s = (uint32_t)hash_point(cell) & (slots - 1);
-    while (table[s]) s = (s + 1) & (slots - 1);
+    while (table[s])
+      s = (s + 1) & (slots - 1);
     table[s] = i + 1;
   }
   uint32_t faces = b->faces;
@@ -232,10 +262,13 @@ static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool
   return fine;
 }
 
-/* ---- parts ------------------------------------------------------------------------------------------------------- */
+/* ---- parts
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static uint32_t root_of(uint32_t *parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  while (parent[i] != i)
+    i = parent[i] = parent[parent[i]];
   return i;
 }
 
@@ -244,7 +277,8 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
   uint32_t *index = vl_alloc_zero(scene->context, b->corners + 1, sizeof *index);
   b->part = vl_alloc_array(scene->context, b->faces + 1, sizeof *b->part);
   bool fine = parent && index && b->part;
-  for (uint32_t i = 0; fine && i < b->corners; i++) parent[i] = i;
+  for (uint32_t i = 0; fine && i < b->corners; i++)
+    parent[i] = i;
   for (uint32_t i = 0; fine && i < b->faces; i++) {
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
     parent[root_of(parent, f[1])] = root_of(parent, f[0]);
@@ -252,10 +286,13 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
   }
   for (uint32_t i = 0; fine && i < b->faces; i++) {
     uint32_t *part = &index[root_of(parent, b->faces3[3 * (size_t)i])];
-    if (!*part) *part = ++b->part_count;
+    if (!*part)
+      *part = ++b->part_count;
     b->part[i] = *part - 1;
   }
-  if (fine) fine = (b->parts = vl_alloc_zero(scene->context, b->part_count + 1, sizeof *b->parts)) != NULL;
+  if (fine)
+    fine =
+        (b->parts = vl_alloc_zero(scene->context, b->part_count + 1, sizeof *b->parts)) != NULL;
   for (uint32_t i = 0; fine && i < b->part_count; i++)
     for (int k = 0; k < 3; k++) {
       b->parts[i].low[k] = INFINITY;
@@ -278,17 +315,20 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
     part->volume += vl_triple3(v[0], v[1], v[2]) / 6;
   }
   for (uint32_t i = 0; fine && i <= e->mask; i++)
-    if (e->slots[i].count == 1) b->parts[b->part[e->slots[i].face]].open_edges++;
+    if (e->slots[i].count == 1)
+      b->parts[b->part[e->slots[i].face]].open_edges++;
   vl_free(scene->context, parent);
   vl_free(scene->context, index);
   return fine;
 }
 
-bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlMeshSolid *b) {
+bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count,
+                        vlMeshSolid *b) {
   *b = (vlMeshSolid){0};
   Edges e = {0};
   bool changed = false;
-  bool fine = gather(scene, shapes, count, b) && count_edges(scene, b, &e) && weld_open(scene, b, &e, &changed);
+  bool fine = gather(scene, shapes, count, b) && count_edges(scene, b, &e) &&
+              weld_open(scene, b, &e, &changed);
   if (fine && changed) {
     vl_free(scene->context, e.slots);
     fine = count_edges(scene, b, &e);
@@ -299,21 +339,28 @@ bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t cou
 }
 
 int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only) {
-  const double d[3] = {0.5773, 0.2113, 0.7887}; /* direction of the ray, not along an axis or a diagonal */
+  const double d[3] = {0.5773, 0.2113,
+                       0.7887}; /* direction of the ray, not along an axis or a diagonal */
   int winding = 0;
   for (uint32_t i = 0; i < b->faces; i++) {
-    if (only != UINT32_MAX && b->part[i] != only) continue;
+    if (only != UINT32_MAX && b->part[i] != only)
+      continue;
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
     double v[3][3], s[3];
     for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
+      for (int k = 0; k < 3; k++)
+        v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
     for (int j = 0; j < 3; j++)
-      s[j] = vl_triple3(d, v[j], v[(j + 1) % 3]); /* on which side of each edge the ray passes */
+      s[j] =
+          vl_triple3(d, v[j], v[(j + 1) % 3]); /* on which side of each edge the ray passes */
     bool out = s[0] > 0 && s[1] > 0 && s[2] > 0, in = s[0] < 0 && s[1] < 0 && s[2] < 0;
-    if (!out && !in) continue;
+    if (!out && !in)
+      continue;
     double volume = vl_triple3(v[0], v[1], v[2]);
-    if (out && volume > 0) winding++; /* the ray leaves through the front side, ahead of p */
-    if (in && volume < 0) winding--;
+    if (out && volume > 0)
+      winding++; /* the ray leaves through the front side, ahead of p */
+    if (in && volume < 0)
+      winding--;
   }
   return winding;
 }

@@ -1,5 +1,5 @@
-/* scene/scene.c: creates and destroys scenes; functions for a scene's first error, its defs and the numbers of its
- * objects. */
+/* scene/scene.c: creates and destroys scenes; functions for a scene's first error, its defs and
+ * the numbers of its objects. */
 #include "scene/scene.h"
 #include "base/text.h"
 
@@ -11,15 +11,18 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...) {
-  if (scene->error.code != VL_OK) return scene->error.code;
+vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format,
+                       ...) {
+  if (scene->error.code != VL_OK)
+    return scene->error.code;
   char text[sizeof scene->error.message];
   VL_FORMAT(text, format);
   return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
 }
 
 bool vl_scene_stopped(vlScene *scene, double fraction) {
-  if (!vl_task_stopped(scene->task, "reading", fraction)) return false;
+  if (!vl_task_stopped(scene->task, "reading", fraction))
+    return false;
   vl_scene_fail(scene, VL_CANCELLED, (vlSource){0}, "stopped");
   return true;
 }
@@ -34,10 +37,12 @@ static vlSceneDefs default_defs(void) {
 }
 
 vlResult vl_scene_create(vlContext *context, vlScene **result) {
-  if (!context || !result) return VL_ERROR_ARGUMENT;
+  if (!context || !result)
+    return VL_ERROR_ARGUMENT;
   *result = NULL;
   vlScene *scene = vl_alloc_zero(context, 1, sizeof *scene);
-  if (!scene) return VL_ERROR_MEMORY;
+  if (!scene)
+    return VL_ERROR_MEMORY;
   scene->context = context;
   scene->number = vl_context_number(context);
   scene->defs = default_defs();
@@ -46,12 +51,17 @@ vlResult vl_scene_create(vlContext *context, vlScene **result) {
 }
 
 void vl_scene_destroy(vlScene *scene) {
-  if (!scene) return;
+  if (!scene)
+    return;
   vlContext *context = scene->context;
-  for (size_t i = 0; i < scene->blocks.count; i++) vl_free(context, scene->blocks.items[i]);
-  for (size_t i = 0; i < scene->images.count; i++) vl_image_destroy(scene->images.items[i]);
-  for (size_t i = 0; i < scene->apertures.count; i++) vl_aperture_destroy(scene->apertures.items[i]);
-  for (size_t i = 0; i < scene->optics.count; i++) vl_optics_destroy(scene->optics.items[i]);
+  for (size_t i = 0; i < scene->blocks.count; i++)
+    vl_free(context, scene->blocks.items[i]);
+  for (size_t i = 0; i < scene->images.count; i++)
+    vl_image_destroy(scene->images.items[i]);
+  for (size_t i = 0; i < scene->apertures.count; i++)
+    vl_aperture_destroy(scene->apertures.items[i]);
+  for (size_t i = 0; i < scene->optics.count; i++)
+    vl_optics_destroy(scene->optics.items[i]);
   for (size_t i = 0; i < scene->edits.count; i++) {
     vl_free(context, scene->edits.items[i].block);
     vl_image_destroy(scene->edits.items[i].image);
@@ -81,8 +91,10 @@ void vl_scene_destroy(vlScene *scene) {
 }
 
 vlResult vl_scene_result(const vlScene *scene, vlError *error) {
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "no scene");
-  if (error) *error = scene->error;
+  if (!scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "no scene");
+  if (error)
+    *error = scene->error;
   return scene->error.code;
 }
 
@@ -90,10 +102,11 @@ vlSceneDefs *vl_scene_defs(vlScene *scene) {
   return &scene->defs;
 }
 
-#define COUNT_KINDS(name, array)                                                                           \
-  if (strcmp(family, name) == 0) {                                                                         \
-    for (size_t i = 0; i < scene->array.count; i++) count += (uint32_t)scene->array.items[i].kind == kind; \
-    return count;                                                                                          \
+#define COUNT_KINDS(name, array)                             \
+  if (strcmp(family, name) == 0) {                           \
+    for (size_t i = 0; i < scene->array.count; i++)          \
+      count += (uint32_t)scene->array.items[i].kind == kind; \
+    return count;                                            \
   }
 
 uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {
@@ -119,7 +132,9 @@ void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *shape = &scene->shapes.items[i];
     info->vertices += shape->vertices;
-    if (shape->kind == VL_SHAPE_TRIANGLES) info->triangles += shape->faces;
-    if (shape->emission.index) info->emissive_shapes++;
+    if (shape->kind == VL_SHAPE_TRIANGLES)
+      info->triangles += shape->faces;
+    if (shape->emission.index)
+      info->emissive_shapes++;
   }
 }

@@ -1,7 +1,7 @@
-/* scene/scene.h: the scene description as stored: plain arrays of the public defs. Each def is a deep copy, and the
- * scene owns what its pointers point at. The object with id i is items[i - 1] of its array. The room `import` fills the
- * arrays through the vl_scene_add_* functions, and the room `world` reads them. This room compiles nothing and reads no
- * files. */
+/* scene/scene.h: the scene description as stored: plain arrays of the public defs. Each def is
+ * a deep copy, and the scene owns what its pointers point at. The object with id i is items[i -
+ * 1] of its array. The room `import` fills the arrays through the vl_scene_add_* functions, and
+ * the room `world` reads them. This room compiles nothing and reads no files. */
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
@@ -42,7 +42,8 @@ typedef struct vlSceneMark {
   uint64_t generation; /* 0: as added; each vl_scene_set_* gives a new number */
   bool hidden;
 } vlSceneMark;
-typedef VL_ARRAY(vlSceneMark) vlSceneMarks; /* element i: object of id i + 1; may be shorter than the objects */
+typedef VL_ARRAY(vlSceneMark)
+    vlSceneMarks; /* element i: object of id i + 1; may be shorter than the objects */
 
 typedef struct vlSceneChoice {
   vlChoiceKind kind;
@@ -73,73 +74,87 @@ struct vlScene {
   vlSceneMarks texture_marks, light_marks, medium_marks, shape_marks;
   VL_ARRAY(vlSceneEdit) edits;
   vlSceneDefs defs;
-  bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras of a glTF file */
+  bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras
+                          of a glTF file */
   VL_ARRAY(vlAperture *) apertures; /* aperture objects to which defs.camera may point */
   VL_ARRAY(vlOptics *) optics;
-  /* Memory of everything that the stored defs point at (strings, spectra, meshes). It is freed with the scene. */
+  /* Memory of everything that the stored defs point at (strings, spectra, meshes). It is freed
+   * with the scene. */
   VL_ARRAY(void *) blocks;
   VL_ARRAY(vlImage *) images;
   /* File names of all vlSource, each stored once. The strings are among the blocks. */
   VL_ARRAY(const char *) files;
   VL_ARRAY(vlSceneChoice) choices; /* in the order of the file */
-  /* World points (3 numbers each) that an automatic camera frames in place of the shapes: those of a whole animation.
+  /* World points (3 numbers each) that an automatic camera frames in place of the shapes: those
+   * of a whole animation.
    */
   VL_ARRAY(double) frame_points;
   VL_ARRAY(vlSceneUnread) unread;
-  const char *copyright;     /* of the file, for those that are written from it; null: none */
-  uint32_t skinned, morphed; /* numbers of meshes that the importer deformed by a skin, by morph targets */
-  bool meshes_dropped;       /* vl_scene_drop_meshes has freed the arrays of the shapes */
+  const char *copyright; /* of the file, for those that are written from it; null: none */
+  uint32_t skinned,
+      morphed; /* numbers of meshes that the importer deformed by a skin, by morph targets */
+  bool meshes_dropped; /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };
 
 static inline vlSceneMark vl_scene_mark(const vlSceneMarks *marks, size_t index) {
   return index < marks->count ? marks->items[index] : (vlSceneMark){0, false};
 }
 
-/* Whether the coat of this material has a closed form. It has one if the base is diffuse, the layer does not scatter,
- * and its thickness is constant. */
+/* Whether the coat of this material has a closed form. It has one if the base is diffuse, the
+ * layer does not scatter, and its thickness is constant. */
 bool vl_coat_in_closed_form(const vlMaterialDef *def);
 
 /* Stores the error in the scene if it is the first one. Returns the code. */
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* True: the load that is running must stop; the scene then has the error CANCELLED. fraction: as in vlStep. */
+/* True: the load that is running must stop; the scene then has the error CANCELLED. fraction:
+ * as in vlStep. */
 bool vl_scene_stopped(vlScene *scene, double fraction);
 
-/* Adds a shape without copying its mesh arrays. The arrays are memory blocks of the scene's context (vl_alloc*), or
- * null. On success the scene owns them; on failure they are freed. */
+/* Adds a shape without copying its mesh arrays. The arrays are memory blocks of the scene's
+ * context (vl_alloc*), or null. On success the scene owns them; on failure they are freed. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 
 /* Whether a shape can be an area light. */
 bool vl_shape_may_emit(const vlShapeDef *def);
-/* Whether an instance is in the worlds of the scene: those without shapes are not, nor those that are hidden. */
+/* Whether an instance is in the worlds of the scene: those without shapes are not, nor those
+ * that are hidden. */
 bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance);
 
-/* Adds a choice of the file; the name is copied and may be null. False if memory is exhausted (reported). */
+/* Adds a choice of the file; the name is copied and may be null. False if memory is exhausted
+ * (reported). */
 bool vl_scene_add_choice(vlScene *scene, vlChoiceKind kind, const char *name, double seconds);
 
 /* Gives the instance that was added last a label. */
 void vl_scene_label_instance(vlScene *scene, const vlLabel *label);
 
-/* Frees the arrays of meshes after a world has copied them. Does nothing if memory for its list is exhausted. */
+/* Frees the arrays of meshes after a world has copied them. Does nothing if memory for its list
+ * is exhausted. */
 void vl_scene_drop_meshes(vlScene *scene);
 
-/* Like vl_scene_add_texture, but the scene already owns the image (def->image, def->data), so it is not copied. */
+/* Like vl_scene_add_texture, but the scene already owns the image (def->image, def->data), so
+ * it is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
 
-/* Checks the members that the row describes: ranges, finite numbers, choices, existence and type of textures. Then
- * replaces what they point at with copies owned by the scene, except for parameters of type BLOCK, which the caller
- * copies. spectrum: whether a parameter of type EITHER_INPUT is read as a spectrum or as a number. On an error it calls
- * vl_scene_fail with a message that names `what`, the parameter, its value and range, and returns false. */
-bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum, vlSource source, const char *what);
+/* Checks the members that the row describes: ranges, finite numbers, choices, existence and
+ * type of textures. Then replaces what they point at with copies owned by the scene, except for
+ * parameters of type BLOCK, which the caller copies. spectrum: whether a parameter of type
+ * EITHER_INPUT is read as a spectrum or as a number. On an error it calls vl_scene_fail with a
+ * message that names `what`, the parameter, its value and range, and returns false. */
+bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum,
+                 vlSource source, const char *what);
 
-/* Deep copies (scene/copy.c). If memory is exhausted, they report VL_ERROR_MEMORY by vl_scene_fail and return false. */
+/* Deep copies (scene/copy.c). If memory is exhausted, they report VL_ERROR_MEMORY by
+ * vl_scene_fail and return false. */
 bool vl_scene_own(vlScene *scene, void *block);
-bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer);
+bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size,
+                         void *result_pointer);
 bool vl_scene_copy_string(vlScene *scene, const char **text);
 bool vl_scene_copy_label(vlScene *scene, vlLabel *label);
 bool vl_scene_copy_source(vlScene *scene, vlSource *source);
-bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *spectrum, vlSource source, const char *what);
+bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *spectrum, vlSource source,
+                            const char *what);
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image);
 
 #endif

@@ -1,5 +1,5 @@
-/* scene/shape.c: adds shapes, groups and instances. Meshes may be large: one pass checks the positions, one the
- * indices. */
+/* scene/shape.c: adds shapes, groups and instances. Meshes may be large: one pass checks the
+ * positions, one the indices. */
 #include <math.h>
 #include <string.h>
 
@@ -14,8 +14,8 @@ static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
 }
 
-/* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN otherwise. A block of
- * elements is checked by the sum of x - x, a loop that vectorises. */
+/* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN
+ * otherwise. A block of elements is checked by the sum of x - x, a loop that vectorises. */
 static size_t first_not_finite(const float *v, size_t count) {
   enum { BLOCK = 1024 };
   for (size_t start = 0; start < count; start += BLOCK) {
@@ -26,24 +26,30 @@ static size_t first_not_finite(const float *v, size_t count) {
       memcpy(&bits, &v[i], sizeof bits);
       wrong |= (bits & 0x7f800000u) == 0x7f800000u;
     }
-    if (!wrong) continue;
+    if (!wrong)
+      continue;
     for (size_t i = start; i < end; i++)
-      if (!isfinite(v[i])) return i;
+      if (!isfinite(v[i]))
+        return i;
   }
   return count;
 }
 
-static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, size_t per, const char *what) {
-  if (!v) return true;
+static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, size_t per,
+                         const char *what) {
+  if (!v)
+    return true;
   size_t count = (size_t)d->vertices * per, i = first_not_finite(v, count);
-  if (i == count) return true;
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s of vertex %zu is not finite (%c is %f)", what, i / per,
-                per == 2 ? "uv"[i % per] : "xyz"[i % per], (double)v[i]);
+  if (i == count)
+    return true;
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s of vertex %zu is not finite (%c is %f)",
+                what, i / per, per == 2 ? "uv"[i % per] : "xyz"[i % per], (double)v[i]);
   return false;
 }
 
 static bool check_motion(vlScene *scene, const vlShapeDef *d) {
-  if (!d->positions_close && !d->normals_close) return true;
+  if (!d->positions_close && !d->normals_close)
+    return true;
   if (d->kind != VL_SHAPE_TRIANGLES) {
     bad(scene, d, "only vertices of triangles can move");
     return false;
@@ -57,8 +63,8 @@ static bool check_motion(vlScene *scene, const vlShapeDef *d) {
     return false;
   }
   if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1])) {
-    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "vertices cannot move from %g to %g seconds", d->times[0],
-                  d->times[1]);
+    vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                  "vertices cannot move from %g to %g seconds", d->times[0], d->times[1]);
     return false;
   }
   return check_floats(scene, d, d->positions_close, 3, "position at the end") &&
@@ -66,8 +72,11 @@ static bool check_motion(vlScene *scene, const vlShapeDef *d) {
 }
 
 static bool check_colors(vlScene *scene, const vlShapeDef *d) {
-  size_t count = d->colors ? (size_t)d->vertices * 4 : 0, i = first_not_finite(d->colors, count);
-  if (i < count) vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "colour of vertex %zu is not finite", i / 4);
+  size_t count = d->colors ? (size_t)d->vertices * 4 : 0,
+         i = first_not_finite(d->colors, count);
+  if (i < count)
+    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "colour of vertex %zu is not finite",
+                  i / 4);
   return i == count;
 }
 
@@ -84,20 +93,26 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
   }
   size_t count = (size_t)d->faces * per;
   uint32_t top = 0;
-  for (size_t i = 0; i < count; i++) top = d->indices[i] > top ? d->indices[i] : top;
+  for (size_t i = 0; i < count; i++)
+    top = d->indices[i] > top ? d->indices[i] : top;
   if (top >= d->vertices) {
     size_t i = 0;
-    while (d->indices[i] < d->vertices) i++;
-    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s %zu names vertex %u, but there are only %u vertices (0 to %u)",
-                  face, i / per, d->indices[i], d->vertices, d->vertices - 1);
+    while (d->indices[i] < d->vertices)
+      i++;
+    vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                  "%s %zu names vertex %u, but there are only %u vertices (0 to %u)", face,
+                  i / per, d->indices[i], d->vertices, d->vertices - 1);
     return false;
   }
-  return check_floats(scene, d, d->positions, 3, "position") && check_floats(scene, d, d->normals, 3, "normal") &&
-         check_floats(scene, d, d->tangents, 3, "tangent") && check_floats(scene, d, d->uvs, 2, "uv") &&
+  return check_floats(scene, d, d->positions, 3, "position") &&
+         check_floats(scene, d, d->normals, 3, "normal") &&
+         check_floats(scene, d, d->tangents, 3, "tangent") &&
+         check_floats(scene, d, d->uvs, 2, "uv") &&
          check_floats(scene, d, d->tangent_signs, 1, "sign of the tangent") &&
          check_floats(scene, d, d->more_uvs[0], 2, "uv of set 1") &&
          check_floats(scene, d, d->more_uvs[1], 2, "uv of set 2") &&
-         check_floats(scene, d, d->more_uvs[2], 2, "uv of set 3") && check_colors(scene, d) && check_motion(scene, d);
+         check_floats(scene, d, d->more_uvs[2], 2, "uv of set 3") && check_colors(scene, d) &&
+         check_motion(scene, d);
 }
 
 static bool check_curves(vlScene *scene, const vlShapeDef *d) {
@@ -114,7 +129,8 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
     return false;
   }
   if (first_not_finite(d->widths, 2 * (size_t)d->faces) < 2 * (size_t)d->faces ||
-      (d->normals && first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces)) {
+      (d->normals &&
+       first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces)) {
     bad(scene, d, "a width or normal of a curve is not finite");
     return false;
   }
@@ -128,7 +144,8 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
 
 static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
   if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff) {
-    bad(scene, d, "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1");
+    bad(scene, d,
+        "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1");
     return false;
   }
   if (d->emission.index) {
@@ -138,11 +155,13 @@ static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
   for (size_t i = 0; i < d->faces; i++) {
     const double *c = d->centers + 3 * i;
     if (!isfinite(c[0] + c[1] + c[2])) {
-      vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite", i);
+      vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite",
+                    i);
       return false;
     }
     if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i])) {
-      vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the radius of sphere %zu must be above 0, it is %g", i,
+      vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                    "the radius of sphere %zu must be above 0, it is %g", i,
                     (double)d->radii[i]);
       return false;
     }
@@ -152,7 +171,8 @@ static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
 
 /* Checks rules that the ranges of the row do not express. */
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
-  if (d->centers || d->radii) return check_spheres(scene, d);
+  if (d->centers || d->radii)
+    return check_spheres(scene, d);
   if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius) {
     bad(scene, d, "inner radius must be less than the radius");
     return false;
@@ -170,7 +190,8 @@ static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
 
 static bool check_displacement(vlScene *scene, const vlShapeDef *d) {
   uint32_t index = d->displacement.texture.index;
-  if (!index) return true;
+  if (!index)
+    return true;
   if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close) {
     bad(scene, d, "displacement: only triangles at rest can be displaced");
     return false;
@@ -189,7 +210,8 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
     bad(scene, d, "unknown kind of shape");
     return false;
   }
-  if (!vl_row_take(scene, row, d, false, d->source, row->name)) return false;
+  if (!vl_row_take(scene, row, d, false, d->source, row->name))
+    return false;
   if (d->emission.index && !(row->traits & VL_SHAPE_TRAIT_EMITS)) {
     bad(scene, d, "shapes of this kind cannot be area lights");
     return false;
@@ -210,7 +232,8 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
     bad(scene, d, "there is no such medium");
     return false;
   }
-  if (!check_displacement(scene, d)) return false;
+  if (!check_displacement(scene, d))
+    return false;
   const double *m = d->group_from_shape;
   for (int i = 0; i < 16; i++)
     if (!isfinite(m[i])) {
@@ -222,20 +245,25 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
     bad(scene, d, "transform of the shape is singular: it flattens the shape");
     return false;
   }
-  if (row->traits & VL_SHAPE_TRAIT_MESH) return check_mesh(scene, d);
-  if (row->traits & VL_SHAPE_TRAIT_QUADRIC) return check_quadric(scene, d);
-  return d->kind != VL_SHAPE_CURVES || check_curves(scene, d); /* for other kinds the row is enough */
+  if (row->traits & VL_SHAPE_TRAIT_MESH)
+    return check_mesh(scene, d);
+  if (row->traits & VL_SHAPE_TRAIT_QUADRIC)
+    return check_quadric(scene, d);
+  return d->kind != VL_SHAPE_CURVES ||
+         check_curves(scene, d); /* for other kinds the row is enough */
 }
 
 /* Stores a def. The scene must own the def's arrays, or they are null. */
 static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
-  vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
+  vlShapeDef *slot =
+      scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
   if (!slot) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
     return (vlShapeId){0};
   }
   *slot = *d;
-  if (d->group.index) scene->groups.items[d->group.index - 1].shape_count++;
+  if (d->group.index)
+    scene->groups.items[d->group.index - 1].shape_count++;
   return (vlShapeId){(uint32_t)scene->shapes.count};
 }
 
@@ -249,7 +277,8 @@ static void drop_unused(vlShapeDef *d) {
     return;
   }
   if (d->kind == VL_SHAPE_CURVES) {
-    if (d->curve != VL_CURVE_RIBBON) d->normals = NULL;
+    if (d->curve != VL_CURVE_RIBBON)
+      d->normals = NULL;
     d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
     d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
     d->indices = NULL;
@@ -257,22 +286,26 @@ static void drop_unused(vlShapeDef *d) {
   }
   d->widths = NULL;
   d->vertices = 0;
-  if (!d->centers && !d->radii) d->faces = 0;
-  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
+  if (!d->centers && !d->radii)
+    d->faces = 0;
+  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close =
+      NULL;
   d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
   d->indices = NULL;
 }
 
 vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
   const vlShapeId none = {0};
-  if (scene->error.code != VL_OK) return none;
+  if (scene->error.code != VL_OK)
+    return none;
   if (!def || def->cookie != VL_COOKIE_SHAPE) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "shape: " VL_BAD_COOKIE);
     return none;
   }
   vlShapeDef d = *def;
   drop_unused(&d);
-  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_label(scene, &d.label) || !check_shape(scene, &d))
+  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_label(scene, &d.label) ||
+      !check_shape(scene, &d))
     return none;
   size_t v = d.vertices, per = d.kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   size_t normals = d.kind == VL_SHAPE_CURVES ? 2 * (size_t)d.faces : v;
@@ -280,7 +313,8 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
       !vl_scene_copy_block(scene, d.normals, normals, 3 * sizeof(float), &d.normals) ||
       !vl_scene_copy_block(scene, d.tangents, v, 3 * sizeof(float), &d.tangents) ||
       !vl_scene_copy_block(scene, d.uvs, v, 2 * sizeof(float), &d.uvs) ||
-      !vl_scene_copy_block(scene, d.positions_close, v, 3 * sizeof(float), &d.positions_close) ||
+      !vl_scene_copy_block(scene, d.positions_close, v, 3 * sizeof(float),
+                           &d.positions_close) ||
       !vl_scene_copy_block(scene, d.normals_close, v, 3 * sizeof(float), &d.normals_close) ||
       !vl_scene_copy_block(scene, d.tangent_signs, v, sizeof(float), &d.tangent_signs) ||
       !vl_scene_copy_block(scene, d.colors, v, 4 * sizeof(float), &d.colors) ||
@@ -290,21 +324,25 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
       !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
     return none;
   for (int k = 0; k < 3; k++)
-    if (!vl_scene_copy_block(scene, d.more_uvs[k], v, 2 * sizeof(float), &d.more_uvs[k])) return none;
+    if (!vl_scene_copy_block(scene, d.more_uvs[k], v, 2 * sizeof(float), &d.more_uvs[k]))
+      return none;
   return push_shape(scene, &d);
 }
 
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
-  bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
-              vl_scene_copy_label(scene, &d.label) && check_shape(scene, &d);
+  bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE &&
+              vl_scene_copy_source(scene, &d.source) && vl_scene_copy_label(scene, &d.label) &&
+              check_shape(scene, &d);
   enum { BLOCKS = 15 };
-  const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,     d.indices,
-                                d.positions_close, d.normals_close, d.tangent_signs, d.colors,  d.more_uvs[0],
-                                d.more_uvs[1],     d.more_uvs[2],   d.widths,        d.centers, d.radii};
+  const void *blocks[BLOCKS] = {
+      d.positions,       d.normals,       d.tangents,      d.uvs,     d.indices,
+      d.positions_close, d.normals_close, d.tangent_signs, d.colors,  d.more_uvs[0],
+      d.more_uvs[1],     d.more_uvs[2],   d.widths,        d.centers, d.radii};
   for (int i = 0; i < BLOCKS; i++) {
     void *block;
-    memcpy(&block, &blocks[i], sizeof block); /* the scene owns the array; const is for readers */
+    memcpy(&block, &blocks[i],
+           sizeof block); /* the scene owns the array; const is for readers */
     if (fine)
       fine = vl_scene_own(scene, block);
     else
@@ -315,10 +353,14 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
 
 vlGroupId vl_scene_add_group(vlScene *scene, const char *name) {
   const vlGroupId none = {0};
-  if (scene->error.code != VL_OK) return none;
-  if (!name) name = "";
-  if (!vl_scene_copy_string(scene, &name)) return none;
-  vlSceneGroup *slot = scene->groups.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->groups) : NULL;
+  if (scene->error.code != VL_OK)
+    return none;
+  if (!name)
+    name = "";
+  if (!vl_scene_copy_string(scene, &name))
+    return none;
+  vlSceneGroup *slot =
+      scene->groups.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->groups) : NULL;
   if (!slot) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
     return none;
@@ -329,7 +371,8 @@ vlGroupId vl_scene_add_group(vlScene *scene, const char *name) {
 
 static bool check_pose(vlScene *scene, const double *m, vlSource source) {
   for (int i = 0; i < 16; i++) {
-    if (m && isfinite(m[i])) continue;
+    if (m && isfinite(m[i]))
+      continue;
     vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: transform is not finite");
     return false;
   }
@@ -337,13 +380,16 @@ static bool check_pose(vlScene *scene, const double *m, vlSource source) {
 }
 
 /* A new instance of an existing group; null after an error. */
-static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const double *pose, vlSource source) {
-  if (scene->error.code != VL_OK) return NULL;
+static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const double *pose,
+                                      vlSource source) {
+  if (scene->error.code != VL_OK)
+    return NULL;
   if (group.index == 0 || group.index > scene->groups.count) {
     vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: there is no such group");
     return NULL;
   }
-  if (!check_pose(scene, pose, source) || !vl_scene_copy_source(scene, &source)) return NULL;
+  if (!check_pose(scene, pose, source) || !vl_scene_copy_source(scene, &source))
+    return NULL;
   vlSceneInstance *slot = VL_PUSH(scene->context, &scene->instances);
   if (!slot) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, source, "out of memory");
@@ -355,50 +401,64 @@ static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const dou
   return slot;
 }
 
-vlInstanceId vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16],
-                                   vlSource source) {
+vlInstanceId vl_scene_add_instance(vlScene *scene, vlGroupId group,
+                                   const double world_from_group[16], vlSource source) {
   bool added = push_instance(scene, group, world_from_group, source) != NULL;
   return (vlInstanceId){added ? (uint32_t)scene->instances.count : 0};
 }
 
 void vl_scene_label_instance(vlScene *scene, const vlLabel *label) {
-  if (scene->error.code != VL_OK || scene->instances.count == 0) return;
+  if (scene->error.code != VL_OK || scene->instances.count == 0)
+    return;
   vlLabel copy = *label;
-  if (vl_scene_copy_label(scene, &copy)) scene->instances.items[scene->instances.count - 1].label = copy;
+  if (vl_scene_copy_label(scene, &copy))
+    scene->instances.items[scene->instances.count - 1].label = copy;
 }
 
-static bool check_keys(vlScene *scene, uint32_t keys, const double *times, const double *poses, vlSource source) {
+static bool check_keys(vlScene *scene, uint32_t keys, const double *times, const double *poses,
+                       vlSource source) {
   for (uint32_t k = 0; k < keys; k++) {
-    if (!check_pose(scene, poses + 16 * (size_t)k, source)) return false;
-    if (isfinite(times[k]) && (k == 0 || times[k] > times[k - 1])) continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: the times of its poses do not ascend (%g)", times[k]);
+    if (!check_pose(scene, poses + 16 * (size_t)k, source))
+      return false;
+    if (isfinite(times[k]) && (k == 0 || times[k] > times[k - 1]))
+      continue;
+    vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                  "instance: the times of its poses do not ascend (%g)", times[k]);
     return false;
   }
   for (uint32_t k = 0; k + 1 < keys; k++) {
     vlMotion motion;
-    if (vl_motion_make(poses + 16 * (size_t)k, poses + 16 * (size_t)(k + 1), &motion)) continue;
+    if (vl_motion_make(poses + 16 * (size_t)k, poses + 16 * (size_t)(k + 1), &motion))
+      continue;
     vl_scene_fail(scene, VL_ERROR_SCENE, source,
-                  "instance: no motion leads from one pose to the next: one is singular, not affine, or mirrors alone");
+                  "instance: no motion leads from one pose to the next: one is singular, not "
+                  "affine, or mirrors alone");
     return false;
   }
   return true;
 }
 
-vlInstanceId vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
-                                          const double *world_from_group, vlSource source) {
+vlInstanceId vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys,
+                                          const double *times, const double *world_from_group,
+                                          vlSource source) {
   const vlInstanceId none = {0};
-  if (scene->error.code != VL_OK) return none;
+  if (scene->error.code != VL_OK)
+    return none;
   if (keys == 0 || keys > 65536 || !times || !world_from_group) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "instance: a motion needs 1 to 65536 poses and their times");
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, source,
+                  "instance: a motion needs 1 to 65536 poses and their times");
     return none;
   }
-  if (!check_keys(scene, keys, times, world_from_group, source)) return none;
+  if (!check_keys(scene, keys, times, world_from_group, source))
+    return none;
   const double *kept_times = times, *kept_poses = world_from_group;
   if (!vl_scene_copy_block(scene, times, keys, sizeof *times, &kept_times) ||
-      !vl_scene_copy_block(scene, world_from_group, keys, 16 * sizeof *world_from_group, &kept_poses))
+      !vl_scene_copy_block(scene, world_from_group, keys, 16 * sizeof *world_from_group,
+                           &kept_poses))
     return none;
   vlSceneInstance *slot = push_instance(scene, group, world_from_group, source);
-  if (!slot) return none;
+  if (!slot)
+    return none;
   slot->keys = keys > 1 ? keys : 0;
   slot->times = kept_times;
   slot->poses = kept_poses;

@@ -18,7 +18,8 @@ static void grow(double low[3], double high[3], const double p[3]) {
 vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k) {
   const double *c = d->centers + 3 * (size_t)k;
   vlShapeDef one = *d;
-  vlMat4 m = vl_mat4_multiply(vl_mat4_load(d->group_from_shape), vl_mat4_translate(c[0], c[1], c[2]));
+  vlMat4 m =
+      vl_mat4_multiply(vl_mat4_load(d->group_from_shape), vl_mat4_translate(c[0], c[1], c[2]));
   memcpy(one.group_from_shape, m.m, sizeof one.group_from_shape);
   one.radius = one.z_max = d->radii[k];
   one.z_min = -one.radius;
@@ -38,7 +39,8 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
   }
   if (d->vertices && d->positions) {
     for (uint32_t i = 0; i < d->vertices; i++) {
-      for (int k = 0; k < 3; k++) p[k] = d->positions[3 * (size_t)i + (size_t)k];
+      for (int k = 0; k < 3; k++)
+        p[k] = d->positions[3 * (size_t)i + (size_t)k];
       vl_mat4_point(&m, p, q);
       grow(low, high, q);
     }
@@ -51,7 +53,8 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
     grow(low, high, a);
     grow(low, high, b);
   }
-  if (d->centers) return;
+  if (d->centers)
+    return;
   double a[3], b[3];
   vl_shape_own_box(d, a, b);
   for (int c = 0; c < 8; c++) {
@@ -62,8 +65,8 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
 }
 
 static bool is_whole_sphere(const vlShapeDef *d) {
-  return d->kind == VL_SHAPE_SPHERE && !d->centers && d->phi_max > 6.28318f && d->z_min <= -d->radius &&
-         d->z_max >= d->radius;
+  return d->kind == VL_SHAPE_SPHERE && !d->centers && d->phi_max > 6.28318f &&
+         d->z_min <= -d->radius && d->z_max >= d->radius;
 }
 
 bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlSolid *s) {
@@ -90,8 +93,10 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
   for (uint32_t i = 0; i < s->meshes.part_count; i++) {
     const vlMeshSolidPart *part = &s->meshes.parts[i];
     bool near = part->open_edges == 0;
-    for (int k = 0; k < 3 && near; k++) near = part->low[k] < p[k] && p[k] < part->high[k];
-    if (near) winding += vl_mesh_solid_winding(&s->meshes, p, i);
+    for (int k = 0; k < 3 && near; k++)
+      near = part->low[k] < p[k] && p[k] < part->high[k];
+    if (near)
+      winding += vl_mesh_solid_winding(&s->meshes, p, i);
   }
   return winding != 0;
 }
@@ -100,7 +105,8 @@ void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
   if (s->sphere) { /* points on a spiral over the sphere */
     double z = 1 - (2.0 * i + 1) / n, r = sqrt(1 - z * z), a = 2.39996322972865332 * i;
     double q[3] = {0.999 * (double)s->shape->radius * r * vl_precise_cos(a),
-                   0.999 * (double)s->shape->radius * r * vl_precise_sin(a), 0.999 * (double)s->shape->radius * z};
+                   0.999 * (double)s->shape->radius * r * vl_precise_sin(a),
+                   0.999 * (double)s->shape->radius * z};
     vlMat4 m = vl_mat4_load(s->shape->group_from_shape);
     vl_mat4_point(&m, q, p);
     return;
@@ -110,7 +116,9 @@ void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
   for (int k = 0; k < 3; k++) {
     double sum = 0;
     for (int j = 0; j < 3; j++)
-      sum += s->meshes.points[3 * (size_t)s->meshes.faces3[3 * (size_t)face + (size_t)j] + (size_t)k];
+      sum +=
+          s->meshes
+              .points[3 * (size_t)s->meshes.faces3[3 * (size_t)face + (size_t)j] + (size_t)k];
     p[k] = 0.999 * sum / 3 + 0.0005 * (part->low[k] + part->high[k]);
   }
 }

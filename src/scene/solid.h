@@ -1,5 +1,5 @@
-/* scene/solid.h: closed solids in a group of shapes: whole spheres and closed parts of meshes. It determines whether a
- * point is inside a solid. */
+/* scene/solid.h: closed solids in a group of shapes: whole spheres and closed parts of meshes.
+ * It determines whether a point is inside a solid. */
 #ifndef SCENE_SOLID_H
 #define SCENE_SOLID_H
 
@@ -13,8 +13,8 @@ typedef struct vlSolid {
   vlMeshSolid meshes;      /* only set for meshes; vl_solid_free frees it */
 } vlSolid;
 
-/* Makes a solid of `count` shapes of the scene; shapes: their indices. An open solid contains no point. False: out of
- * memory. */
+/* Makes a solid of `count` shapes of the scene; shapes: their indices. An open solid contains
+ * no point. False: out of memory. */
 bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlSolid *solid);
 void vl_solid_free(const vlScene *scene, vlSolid *solid);
 /* Whether the point p (group space) is inside the solid. */
@@ -23,8 +23,8 @@ bool vl_solid_holds(const vlSolid *solid, const double p[3]);
 vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k);
 /* The bounding box of a shape, in group space. */
 void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]);
-/* Gives point i of n points on the solid's surface, in group space. The points are moved towards the solid's centre by
- * a thousandth of their distance from it. */
+/* Gives point i of n points on the solid's surface, in group space. The points are moved
+ * towards the solid's centre by a thousandth of their distance from it. */
 void vl_solid_sample(const vlSolid *solid, uint32_t i, uint32_t n, double p[3]);
 
 #endif

@@ -1,5 +1,6 @@
-/* scene/transform.c: moves, turns and scales all that a scene describes (velo/edit.h). Numbers that are lengths, or
- * that depend on them, change by powers of the scale; docs/verify.md lists them. */
+/* scene/transform.c: moves, turns and scales all that a scene describes (velo/edit.h). Numbers
+ * that are lengths, or that depend on them, change by powers of the scale; docs/verify.md lists
+ * them. */
 #include <math.h>
 #include <string.h>
 
@@ -23,17 +24,22 @@ typedef struct Similarity {
 /* Takes the matrix apart. False: it is not a rotation, a uniform scale and a shift. */
 static bool take_apart(const double m[16], Similarity *s) {
   s->matrix = vl_mat4_load(m);
-  if (!vl_mat4_is_finite(s->matrix) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return false;
+  if (!vl_mat4_is_finite(s->matrix) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+    return false;
   s->scale = sqrt(m[0] * m[0] + m[4] * m[4] + m[8] * m[8]);
-  if (!(vl_mat4_determinant3(s->matrix) > 0) || !vl_mat4_inverse(s->matrix, &s->inverse)) return false;
+  if (!(vl_mat4_determinant3(s->matrix) > 0) || !vl_mat4_inverse(s->matrix, &s->inverse))
+    return false;
   s->turn = vl_mat4_identity();
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) s->turn.m[4 * i + j] = m[4 * i + j] / s->scale;
+    for (int j = 0; j < 3; j++)
+      s->turn.m[4 * i + j] = m[4 * i + j] / s->scale;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       double dot = 0;
-      for (int k = 0; k < 3; k++) dot += s->turn.m[4 * k + i] * s->turn.m[4 * k + j];
-      if (fabs(dot - (i == j)) > 1e-6) return false;
+      for (int k = 0; k < 3; k++)
+        dot += s->turn.m[4 * k + i] * s->turn.m[4 * k + j];
+      if (fabs(dot - (i == j)) > 1e-6)
+        return false;
     }
   return true;
 }
@@ -44,7 +50,8 @@ static void apply(const vlMat4 *matrix, double m[16]) {
   memcpy(m, product.m, sizeof product.m);
 }
 
-/* A float texture with `scale` times the values of another one. Index 0: an error of the scene. */
+/* A float texture with `scale` times the values of another one. Index 0: an error of the scene.
+ */
 static vlTextureId scaled_texture(vlScene *scene, vlTextureId texture, double scale) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_SCALE, false);
   def.float_a.texture = texture;
@@ -54,9 +61,11 @@ static vlTextureId scaled_texture(vlScene *scene, vlTextureId texture, double sc
 
 /* The height of a bump map is a length. */
 static bool scale_height(vlScene *scene, vlFloatInput *height, double scale) {
-  if (scale == 1) return true;
+  if (scale == 1)
+    return true;
   height->value = (float)(height->value * scale);
-  if (!height->texture.index) return true;
+  if (!height->texture.index)
+    return true;
   const vlTextureId scaled = scaled_texture(scene, height->texture, scale);
   height->texture = scaled;
   return scaled.index != 0;
@@ -65,11 +74,13 @@ static bool scale_height(vlScene *scene, vlFloatInput *height, double scale) {
 static bool transform_material(vlScene *scene, size_t index, const Similarity *s) {
   vlMaterialDef *m = &scene->materials.items[index];
   if (m->kind == VL_MATERIAL_SUBSURFACE)
-    m->scale = (float)(m->subsurface.from_reflectance ? m->scale * s->scale : m->scale / s->scale);
+    m->scale =
+        (float)(m->subsurface.from_reflectance ? m->scale * s->scale : m->scale / s->scale);
   return scale_height(scene, &m->displacement, s->scale);
 }
 
-/* The direction and the position of a light change, its own space is scaled: so images of lights keep their size. */
+/* The direction and the position of a light change, its own space is scaled: so images of
+ * lights keep their size. */
 static void transform_light(vlLightDef *light, const Similarity *s) {
   double *m = light->world_from_light;
   const bool far = light->kind == VL_LIGHT_DISTANT || light->kind == VL_LIGHT_INFINITE;
@@ -84,18 +95,23 @@ static void transform_light(vlLightDef *light, const Similarity *s) {
     light->to[i] = (float)(light->to[i] * s->scale);
   }
   /* the same irradiance at `scale` times the distance */
-  if (!far) light->scale = (float)(light->scale * s->scale * s->scale);
+  if (!far)
+    light->scale = (float)(light->scale * s->scale * s->scale);
   for (int corner = 0; light->has_portal && corner < 4; corner++) {
-    const double from[3] = {light->portal[corner][0], light->portal[corner][1], light->portal[corner][2]};
+    const double from[3] = {light->portal[corner][0], light->portal[corner][1],
+                            light->portal[corner][2]};
     double to[3];
     vl_mat4_point(&s->matrix, from, to);
-    for (int i = 0; i < 3; i++) light->portal[corner][i] = (float)to[i];
+    for (int i = 0; i < 3; i++)
+      light->portal[corner][i] = (float)to[i];
   }
 }
 
-/* Shapes of a group stay as they are in its space; its instances move. Displacements are lengths in shape space. */
+/* Shapes of a group stay as they are in its space; its instances move. Displacements are
+ * lengths in shape space. */
 static void transform_shape(vlShapeDef *shape, const Similarity *s) {
-  if (shape->group.index) return;
+  if (shape->group.index)
+    return;
   apply(&s->matrix, shape->group_from_shape);
   shape->edge_length = (float)(shape->edge_length * s->scale);
 }
@@ -103,31 +119,40 @@ static void transform_shape(vlShapeDef *shape, const Similarity *s) {
 static void transform_instance(vlSceneInstance *instance, const Similarity *s) {
   double *poses = (double *)(uintptr_t)instance->poses; /* the scene's own */
   apply(&s->matrix, instance->world_from_group);
-  for (uint32_t k = 0; k < instance->keys; k++) apply(&s->matrix, poses + 16 * (size_t)k);
+  for (uint32_t k = 0; k < instance->keys; k++)
+    apply(&s->matrix, poses + 16 * (size_t)k);
 }
 
 static void transform_texture(vlTextureDef *texture, const Similarity *s) {
   double *m = texture->texture_from_world, turned[3];
-  const double direction[3] = {texture->direction[0], texture->direction[1], texture->direction[2]};
+  const double direction[3] = {texture->direction[0], texture->direction[1],
+                               texture->direction[2]};
   const vlMat4 product = vl_mat4_multiply(vl_mat4_load(m), s->inverse);
   memcpy(m, product.m, sizeof product.m);
   vl_mat4_vector(&s->turn, direction, turned);
-  for (int i = 0; i < 3; i++) texture->direction[i] = (float)turned[i];
+  for (int i = 0; i < 3; i++)
+    texture->direction[i] = (float)turned[i];
 }
 
 static bool transform_all(vlScene *scene, const Similarity *s) {
   const size_t textures = scene->textures.count; /* without those that are added for heights */
   bool good = true;
-  for (size_t i = 0; good && i < scene->materials.count; i++) good = transform_material(scene, i, s);
-  for (size_t i = 0; good && i < scene->shapes.count; i++) transform_shape(&scene->shapes.items[i], s);
-  for (size_t i = 0; good && i < scene->instances.count; i++) transform_instance(&scene->instances.items[i], s);
-  for (size_t i = 0; good && i < textures; i++) transform_texture(&scene->textures.items[i], s);
+  for (size_t i = 0; good && i < scene->materials.count; i++)
+    good = transform_material(scene, i, s);
+  for (size_t i = 0; good && i < scene->shapes.count; i++)
+    transform_shape(&scene->shapes.items[i], s);
+  for (size_t i = 0; good && i < scene->instances.count; i++)
+    transform_instance(&scene->instances.items[i], s);
+  for (size_t i = 0; good && i < textures; i++)
+    transform_texture(&scene->textures.items[i], s);
   for (size_t i = 0; good && i < scene->media.count; i++) {
     apply(&s->matrix, scene->media.items[i].world_from_medium);
     scene->media.items[i].scale = (float)(scene->media.items[i].scale / s->scale);
   }
-  for (size_t i = 0; good && i < scene->emissions.count; i++) scene->emissions.items[i].power *= s->scale * s->scale;
-  for (size_t i = 0; good && i < scene->lights.count; i++) transform_light(&scene->lights.items[i], s);
+  for (size_t i = 0; good && i < scene->emissions.count; i++)
+    scene->emissions.items[i].power *= s->scale * s->scale;
+  for (size_t i = 0; good && i < scene->lights.count; i++)
+    transform_light(&scene->lights.items[i], s);
   for (size_t i = 0; good && i + 3 <= scene->frame_points.count; i += 3) {
     const double from[3] = {scene->frame_points.items[i], scene->frame_points.items[i + 1],
                             scene->frame_points.items[i + 2]};
@@ -139,10 +164,14 @@ static bool transform_all(vlScene *scene, const Similarity *s) {
 vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], vlError *error) {
   Similarity s;
   vl_error_clear(error);
-  if (!scene || !world_from_scene) return vl_fail(error, VL_ERROR_ARGUMENT, "transform: a null pointer");
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  if (!scene || !world_from_scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "transform: a null pointer");
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
   if (!take_apart(world_from_scene, &s))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "transform: not a rotation, a uniform scale and a shift");
-  scene->number = vl_context_number(scene->context); /* for later worlds these are the shapes of another scene */
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "transform: not a rotation, a uniform scale and a shift");
+  scene->number = vl_context_number(
+      scene->context); /* for later worlds these are the shapes of another scene */
   return transform_all(scene, &s) ? VL_OK : vl_scene_result(scene, error);
 }

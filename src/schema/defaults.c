@@ -1,5 +1,5 @@
-/* schema/defaults.c: the vl_default_*_def functions of scenes and of an image's settings. Defaults of scenes are
- * pbrt-v4's, since pbrt files leave most parameters out. */
+/* schema/defaults.c: the vl_default_*_def functions of scenes and of an image's settings.
+ * Defaults of scenes are pbrt-v4's, since pbrt files leave most parameters out. */
 #include <math.h>
 #include <string.h>
 
@@ -45,7 +45,8 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
                       .channel = -1,
                       .cutoff = VL_UNSET};
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)kind);
-  if (row) vl_row_set_defaults(row, &def);
+  if (row)
+    vl_row_set_defaults(row, &def);
   memcpy(def.texture_from_world, identity, sizeof identity);
   return def;
 }
@@ -53,7 +54,8 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
 vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
   vlMaterialDef def = {.cookie = VL_COOKIE_MATERIAL, .kind = kind};
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)kind);
-  if (row) vl_row_set_defaults(row, &def);
+  if (row)
+    vl_row_set_defaults(row, &def);
   return def;
 }
 
@@ -61,10 +63,13 @@ vlLoadDef vl_default_load_def(void) {
   return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
 }
 
-/* ---- the settings of an image ------------------------------------------------------------------------------------ */
+/* ---- the settings of an image
+ * ------------------------------------------------------------------------------------ */
 
 vlBuildDef vl_default_build_def(void) {
-  return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
+  return (vlBuildDef){.cookie = VL_COOKIE_BUILD,
+                      .color = VL_COLOR_SPECTRAL,
+                      .light_sampler = VL_LIGHT_SAMPLER_BVH};
 }
 
 vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {

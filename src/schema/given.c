@@ -1,5 +1,6 @@
-/* schema/given.c: checks a value that somebody gave by the row of its parameter or setting, and writes what is wrong:
- * the name, what it must be, the value, the nearest name. All messages about values of rows are written here. */
+/* schema/given.c: checks a value that somebody gave by the row of its parameter or setting, and
+ * writes what is wrong: the name, what it must be, the value, the nearest name. All messages
+ * about values of rows are written here. */
 #include "schema/given.h"
 
 #include <float.h>
@@ -10,36 +11,42 @@
 #include "base/text.h"
 #include "base/unset.h"
 
-/* ---- what a value must be ---------------------------------------------------------------------------------------- */
+/* ---- what a value must be
+ * ---------------------------------------------------------------------------------------- */
 
 static bool has_range(const vlParameter *row) {
   return (row->low != 0 || row->high != 0) && !(row->flags & VL_PARAMETER_CLAMPED);
 }
 
 static double low_of(const vlParameter *row) {
-  if (row->type == VL_PARAMETER_COUNT && !(has_range(row) && row->low > 0)) return 0;
+  if (row->type == VL_PARAMETER_COUNT && !(has_range(row) && row->low > 0))
+    return 0;
   return has_range(row) ? row->low : (double)-INFINITY;
 }
 
 static double high_of(const vlParameter *row) {
   bool counts = row->type == VL_PARAMETER_COUNT;
-  if (counts && !(has_range(row) && row->high < UINT32_MAX)) return UINT32_MAX;
+  if (counts && !(has_range(row) && row->high < UINT32_MAX))
+    return UINT32_MAX;
   return has_range(row) ? row->high : (double)INFINITY;
 }
 
 /* Whether the member that holds the number is a float. */
 static bool is_single(const vlParameter *row) {
-  return row->type != VL_PARAMETER_DOUBLE && row->type != VL_PARAMETER_DOUBLE3 && row->type != VL_PARAMETER_COUNT;
+  return row->type != VL_PARAMETER_DOUBLE && row->type != VL_PARAMETER_DOUBLE3 &&
+         row->type != VL_PARAMETER_COUNT;
 }
 
-/* Writes a whole number without an exponent, others with up to 6 digits: angles in degrees are rounded. */
+/* Writes a whole number without an exponent, others with up to 6 digits: angles in degrees are
+ * rounded. */
 static const char *put_number(char text[40], double number) {
   bool whole = fabs(number) < 1e15 && number == floor(number);
   snprintf(text, 40, whole ? "%.0f" : "%.6g", number);
   return text;
 }
 
-/* Writes "a whole number from 1 to 64", "a number above 0, or infinity". factor: as in vlGiven. */
+/* Writes "a whole number from 1 to 64", "a number above 0, or infinity". factor: as in vlGiven.
+ */
 static void put_number_rule(const vlParameter *row, double factor, char *rule, size_t size) {
   const char *const thing = row->type == VL_PARAMETER_COUNT ? "whole number" : "number";
   char low[40];
@@ -62,8 +69,10 @@ static void put_number_rule(const vlParameter *row, double factor, char *rule, s
   else
     snprintf(rule, size, "a finite %s", thing);
   size_t used = strlen(rule);
-  if (factor != 1 && row->unit) used += (size_t)snprintf(rule + used, size - used, " %s", row->unit);
-  if (row->flags & VL_PARAMETER_INFINITE) snprintf(rule + used, size - used, ", or infinity");
+  if (factor != 1 && row->unit)
+    used += (size_t)snprintf(rule + used, size - used, " %s", row->unit);
+  if (row->flags & VL_PARAMETER_INFINITE)
+    snprintf(rule + used, size - used, ", or infinity");
 }
 
 static void put_choices(const char *const *choices, char *rule, size_t size) {
@@ -74,12 +83,24 @@ static void put_choices(const char *const *choices, char *rule, size_t size) {
 
 static void put_rule(const vlParameter *row, double factor, char *rule, size_t size) {
   switch (row->type) {
-    case VL_PARAMETER_BOOL: snprintf(rule, size, "true or false"); break;
-    case VL_PARAMETER_CHOICE: put_choices(row->choices, rule, size); break;
-    case VL_PARAMETER_STRING: snprintf(rule, size, "text"); break;
-    case VL_PARAMETER_FILE: snprintf(rule, size, "the path of a file"); break;
-    case VL_PARAMETER_TEXTURE: snprintf(rule, size, "a texture"); break;
-    case VL_PARAMETER_BLOCK: snprintf(rule, size, "what its file's format says"); break;
+    case VL_PARAMETER_BOOL:
+      snprintf(rule, size, "true or false");
+      break;
+    case VL_PARAMETER_CHOICE:
+      put_choices(row->choices, rule, size);
+      break;
+    case VL_PARAMETER_STRING:
+      snprintf(rule, size, "text");
+      break;
+    case VL_PARAMETER_FILE:
+      snprintf(rule, size, "the path of a file");
+      break;
+    case VL_PARAMETER_TEXTURE:
+      snprintf(rule, size, "a texture");
+      break;
+    case VL_PARAMETER_BLOCK:
+      snprintf(rule, size, "what its file's format says");
+      break;
     case VL_PARAMETER_COUNT:
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_DOUBLE:
@@ -88,39 +109,53 @@ static void put_rule(const vlParameter *row, double factor, char *rule, size_t s
     case VL_PARAMETER_SPECTRUM:
     case VL_PARAMETER_FLOAT_INPUT:
     case VL_PARAMETER_SPECTRUM_INPUT:
-    case VL_PARAMETER_EITHER_INPUT: put_number_rule(row, factor, rule, size); break;
+    case VL_PARAMETER_EITHER_INPUT:
+      put_number_rule(row, factor, rule, size);
+      break;
   }
 }
 
-/* ---- whether it is that ------------------------------------------------------------------------------------------ */
+/* ---- whether it is that
+ * ------------------------------------------------------------------------------------------ */
 
 bool vl_in_range(const vlParameter *row, double x) {
-  if ((row->flags & VL_PARAMETER_UNSET) && vl_is_unset(x)) return true;
-  if (isnan(x)) return false;
-  if (isinf(x)) return row->flags & VL_PARAMETER_INFINITE && (x > 0 || isinf(low_of(row)));
-  if (is_single(row) && fabs(x) > (double)FLT_MAX) return false;
-  if (row->type == VL_PARAMETER_COUNT && x != floor(x)) return false;
+  if ((row->flags & VL_PARAMETER_UNSET) && vl_is_unset(x))
+    return true;
+  if (isnan(x))
+    return false;
+  if (isinf(x))
+    return row->flags & VL_PARAMETER_INFINITE && (x > 0 || isinf(low_of(row)));
+  if (is_single(row) && fabs(x) > (double)FLT_MAX)
+    return false;
+  if (row->type == VL_PARAMETER_COUNT && x != floor(x))
+    return false;
   double low = low_of(row);
   double high = high_of(row);
-  if (row->flags & VL_PARAMETER_ABOVE_LOW && has_range(row) ? !(x > low) : !(x >= low)) return false;
+  if (row->flags & VL_PARAMETER_ABOVE_LOW && has_range(row) ? !(x > low) : !(x >= low))
+    return false;
   return row->flags & VL_PARAMETER_BELOW_HIGH && has_range(row) ? x < high : x <= high;
 }
 
 /* Compares letters and digits only, whatever their case: "off-axis" is "OFF_AXIS". */
 static bool same_word(const char *a, const char *b) {
   for (;; a++, b++) {
-    while (*a == '_' || *a == '-' || *a == ' ') a++;
-    while (*b == '_' || *b == '-' || *b == ' ') b++;
+    while (*a == '_' || *a == '-' || *a == ' ')
+      a++;
+    while (*b == '_' || *b == '-' || *b == ' ')
+      b++;
     char x = *a >= 'A' && *a <= 'Z' ? (char)(*a + 32) : *a;
     char y = *b >= 'A' && *b <= 'Z' ? (char)(*b + 32) : *b;
-    if (x != y) return false;
-    if (!x) return true;
+    if (x != y)
+      return false;
+    if (!x)
+      return true;
   }
 }
 
 static int find_word(const char *const *choices, const char *word) {
   for (int i = 0; choices[i]; i++)
-    if (same_word(choices[i], word)) return i;
+    if (same_word(choices[i], word))
+      return i;
   return -1;
 }
 
@@ -128,7 +163,9 @@ static bool fits(const vlParameter *row, const vlGiven *given, double factor, do
   bool optional = row->flags & VL_PARAMETER_UNSET;
   *number = 0;
   switch (row->type) {
-    case VL_PARAMETER_BOOL: *number = given->number != 0; return given->kind == VL_GIVEN_FLAG;
+    case VL_PARAMETER_BOOL:
+      *number = given->number != 0;
+      return given->kind == VL_GIVEN_FLAG;
     case VL_PARAMETER_CHOICE: {
       int choice = given->kind == VL_GIVEN_TEXT ? find_word(row->choices, given->text) : -1;
       *number = choice;
@@ -136,10 +173,14 @@ static bool fits(const vlParameter *row, const vlGiven *given, double factor, do
     }
     case VL_PARAMETER_STRING:
     case VL_PARAMETER_FILE:
-      if (given->kind == VL_GIVEN_NOTHING) return !(row->flags & VL_PARAMETER_REQUIRED);
-      return given->kind == VL_GIVEN_TEXT && (given->text[0] || row->type == VL_PARAMETER_STRING);
-    case VL_PARAMETER_TEXTURE: return given->kind == VL_GIVEN_NOTHING;
-    case VL_PARAMETER_BLOCK: return false;
+      if (given->kind == VL_GIVEN_NOTHING)
+        return !(row->flags & VL_PARAMETER_REQUIRED);
+      return given->kind == VL_GIVEN_TEXT &&
+             (given->text[0] || row->type == VL_PARAMETER_STRING);
+    case VL_PARAMETER_TEXTURE:
+      return given->kind == VL_GIVEN_NOTHING;
+    case VL_PARAMETER_BLOCK:
+      return false;
     case VL_PARAMETER_COUNT:
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_DOUBLE:
@@ -148,38 +189,53 @@ static bool fits(const vlParameter *row, const vlGiven *given, double factor, do
     case VL_PARAMETER_SPECTRUM:
     case VL_PARAMETER_FLOAT_INPUT:
     case VL_PARAMETER_SPECTRUM_INPUT:
-    case VL_PARAMETER_EITHER_INPUT: break;
+    case VL_PARAMETER_EITHER_INPUT:
+      break;
   }
   *number = given->kind == VL_GIVEN_NOTHING ? VL_UNSET : factor * given->number;
-  if (given->kind == VL_GIVEN_NOTHING) return optional;
+  if (given->kind == VL_GIVEN_NOTHING)
+    return optional;
   /* A NaN that somebody gives is a wrong number, also if its bits are those of VL_UNSET. */
   return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && vl_in_range(row, *number);
 }
 
-/* ---- messages ---------------------------------------------------------------------------------------------------- */
+/* ---- messages
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void put_value(const vlParameter *row, const vlGiven *given, char *value, size_t size) {
   bool unit = given->factor != 0 && given->factor != 1 && row->unit;
   char number[40];
   switch (given->kind) {
-    case VL_GIVEN_NOTHING: snprintf(value, size, "nothing"); break;
-    case VL_GIVEN_FLAG: snprintf(value, size, "%s", given->number != 0 ? "true" : "false"); break;
-    case VL_GIVEN_NUMBER:
-      snprintf(value, size, "%s%s%s", put_number(number, given->number), unit ? " " : "", unit ? row->unit : "");
+    case VL_GIVEN_NOTHING:
+      snprintf(value, size, "nothing");
       break;
-    case VL_GIVEN_TEXT: snprintf(value, size, "\"%s\"", vl_argument_text(given->text).text); break;
-    case VL_GIVEN_OTHER: snprintf(value, size, "of another type"); break;
+    case VL_GIVEN_FLAG:
+      snprintf(value, size, "%s", given->number != 0 ? "true" : "false");
+      break;
+    case VL_GIVEN_NUMBER:
+      snprintf(value, size, "%s%s%s", put_number(number, given->number), unit ? " " : "",
+               unit ? row->unit : "");
+      break;
+    case VL_GIVEN_TEXT:
+      snprintf(value, size, "\"%s\"", vl_argument_text(given->text).text);
+      break;
+    case VL_GIVEN_OTHER:
+      snprintf(value, size, "of another type");
+      break;
   }
 }
 
-static void put_near(const char *name, const char *const *names, size_t count, const char *prefix, char *text,
-                     size_t size) {
+static void put_near(const char *name, const char *const *names, size_t count,
+                     const char *prefix, char *text, size_t size) {
   const char *near = vl_near_name(name, names, count);
   text[0] = 0;
-  if (near) snprintf(text, size, "; did you mean \"%s%s\"?", prefix, near);
+  if (near)
+    snprintf(text, size, "; did you mean \"%s%s\"?", prefix, near);
 }
 
-void vl_put_wrong(const vlParameter *row, const char *name, const vlGiven *given, char *message, size_t size) {
+void vl_put_wrong(const vlParameter *row, const char *name, const vlGiven *given, char *message,
+                  size_t size) {
   char rule[256];
   char value[270];
   char near[80] = "";
@@ -190,16 +246,19 @@ void vl_put_wrong(const vlParameter *row, const char *name, const vlGiven *given
   put_value(row, given, value, sizeof value);
   if (row->type == VL_PARAMETER_CHOICE && given->kind == VL_GIVEN_TEXT) {
     size_t count = 0;
-    while (row->choices[count]) count++;
+    while (row->choices[count])
+      count++;
     put_near(given->text, row->choices, count, "", near, sizeof near);
   }
-  snprintf(message, size, "%s must be %s; it is %s%s", name, rule, given->shown ? given->shown : value, near);
+  snprintf(message, size, "%s must be %s; it is %s%s", name, rule,
+           given->shown ? given->shown : value, near);
 }
 
-bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *given, double *number,
-                    char message[VL_GIVEN_MESSAGE]) {
+bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *given,
+                    double *number, char message[VL_GIVEN_MESSAGE]) {
   double unused;
-  if (fits(row, given, given->factor != 0 ? given->factor : 1, number ? number : &unused)) return true;
+  if (fits(row, given, given->factor != 0 ? given->factor : 1, number ? number : &unused))
+    return true;
   vl_put_wrong(row, name, given, message, VL_GIVEN_MESSAGE);
   return false;
 }
@@ -210,11 +269,21 @@ static void put(const vlParameter *row, double number, char *at) {
   int choice = row->type == VL_PARAMETER_CHOICE ? (int)number : 0;
   bool flag = number != 0;
   switch (row->type) {
-    case VL_PARAMETER_BOOL: memcpy(at, &flag, sizeof flag); break;
-    case VL_PARAMETER_COUNT: memcpy(at, &count, sizeof count); break;
-    case VL_PARAMETER_CHOICE: memcpy(at, &choice, sizeof choice); break;
-    case VL_PARAMETER_FLOAT: memcpy(at, &single, sizeof single); break;
-    case VL_PARAMETER_DOUBLE: memcpy(at, &number, sizeof number); break;
+    case VL_PARAMETER_BOOL:
+      memcpy(at, &flag, sizeof flag);
+      break;
+    case VL_PARAMETER_COUNT:
+      memcpy(at, &count, sizeof count);
+      break;
+    case VL_PARAMETER_CHOICE:
+      memcpy(at, &choice, sizeof choice);
+      break;
+    case VL_PARAMETER_FLOAT:
+      memcpy(at, &single, sizeof single);
+      break;
+    case VL_PARAMETER_DOUBLE:
+      memcpy(at, &number, sizeof number);
+      break;
     case VL_PARAMETER_FLOAT3:
     case VL_PARAMETER_DOUBLE3:
     case VL_PARAMETER_STRING:
@@ -224,30 +293,36 @@ static void put(const vlParameter *row, double number, char *at) {
     case VL_PARAMETER_SPECTRUM_INPUT:
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: break;
+    case VL_PARAMETER_BLOCK:
+      break;
   }
 }
 
 void vl_given_put(const vlParameter *row, double number, void *def) {
   put(row, number, (char *)def + row->offset);
-  if (row->second) put(row, number, (char *)def + row->second);
+  if (row->second)
+    put(row, number, (char *)def + row->second);
 }
 
 const char *vl_near_name(const char *name, const char *const *names, size_t count) {
   size_t length = strlen(name);
   const char *near = vl_nearest_name(name, names, count);
   for (size_t i = 0; i < count && !near && length >= 2; i++)
-    if (strncmp(names[i], name, length) == 0) near = names[i]; /* an abbreviation */
+    if (strncmp(names[i], name, length) == 0)
+      near = names[i]; /* an abbreviation */
   return near;
 }
 
-void vl_unknown_name(const char *thing, const char *prefix, const char *name, const char *const *names, size_t count,
-                     char message[VL_GIVEN_MESSAGE]) {
-  int used = snprintf(message, VL_GIVEN_MESSAGE, "unknown %s \"%s%s\"", thing, prefix, vl_argument_text(name).text);
+void vl_unknown_name(const char *thing, const char *prefix, const char *name,
+                     const char *const *names, size_t count, char message[VL_GIVEN_MESSAGE]) {
+  int used = snprintf(message, VL_GIVEN_MESSAGE, "unknown %s \"%s%s\"", thing, prefix,
+                      vl_argument_text(name).text);
   size_t room = VL_GIVEN_MESSAGE - (size_t)used;
   put_near(name, names, count, prefix, message + used, room);
-  if (message[used]) return;
+  if (message[used])
+    return;
   char list[VL_GIVEN_MESSAGE] = "";
-  for (size_t i = 0; i < count; i++) vl_list_name(list, room > 20 ? room - 20 : 0, names[i]);
+  for (size_t i = 0; i < count; i++)
+    vl_list_name(list, room > 20 ? room - 20 : 0, names[i]);
   snprintf(message + used, room, "; known are%s", list + (list[0] == ':'));
 }

@@ -1,6 +1,6 @@
-/* schema/schema.h: the rows of all families of kinds, and functions that access a def through its row. A row
- * describes one kind and its parameters. The rows of each family are in a file of this folder with the family's
- * name. */
+/* schema/schema.h: the rows of all families of kinds, and functions that access a def through
+ * its row. A row describes one kind and its parameters. The rows of each family are in a file
+ * of this folder with the family's name. */
 #ifndef SCHEMA_SCHEMA_H
 #define SCHEMA_SCHEMA_H
 
@@ -9,18 +9,19 @@
 #include "velo/setting.h"
 #include "velo/spectrum.h"
 
-/* ---- for the files that hold rows --------------------------------------------------------------------------------
- * Each writes, per kind, an array `NAME_parameters` and VL_KIND_ROW(NAME, ...); the list of kinds then makes the table,
- * so that a kind without a row does not compile. */
+/* ---- for the files that hold rows
+ * -------------------------------------------------------------------------------- Each writes,
+ * per kind, an array `NAME_parameters` and VL_KIND_ROW(NAME, ...); the list of kinds then makes
+ * the table, so that a kind without a row does not compile. */
 
-/* Initialises a parameter of type VL_PARAMETER_##TYPE, stored in the member `path` of Def. file_name may be NULL.
- * VL_DEFAULT, VL_RANGE or VL_FROM and further initialisers may follow. The compiler warns if the member has another C
- * type. */
-#define VL_PARAMETER(TYPE, Def, file_name, path, text_line, ...)                                        \
-  {                                                                                                     \
-    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #path,                                    \
-    .offset = VL_TYPED_OFFSET(VL_POINTER_##TYPE, Def, path), .size = sizeof(((const Def *)NULL)->path), \
-    .description = text_line, __VA_ARGS__                                                               \
+/* Initialises a parameter of type VL_PARAMETER_##TYPE, stored in the member `path` of Def.
+ * file_name may be NULL. VL_DEFAULT, VL_RANGE or VL_FROM and further initialisers may follow.
+ * The compiler warns if the member has another C type. */
+#define VL_PARAMETER(TYPE, Def, file_name, path, text_line, ...)                     \
+  {                                                                                  \
+    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #path,                 \
+    .offset = VL_TYPED_OFFSET(VL_POINTER_##TYPE, Def, path),                         \
+    .size = sizeof(((const Def *)NULL)->path), .description = text_line, __VA_ARGS__ \
   }
 #define VL_DEFAULT(...) .value = {__VA_ARGS__}
 #define VL_RANGE(least, most) .low = (least), .high = (most)
@@ -46,33 +47,39 @@
 #define VL_POINTER_TEXTURE const vlTextureId *
 #define VL_POINTER_BLOCK const void *
 
-/* Defines the row of `kind`, whose parameters are in the array `kind`_parameters. Further initialisers (.name, .traits)
- * may follow. */
-#define VL_KIND_ROW(kind, ...)                                                                                  \
-  static const vlKindRow kind##_row = {.parameters = kind##_parameters,                                         \
-                                       .parameter_count = sizeof kind##_parameters / sizeof *kind##_parameters, \
-                                       __VA_ARGS__};
+/* Defines the row of `kind`, whose parameters are in the array `kind`_parameters. Further
+ * initialisers (.name, .traits) may follow. */
+#define VL_KIND_ROW(kind, ...)                                                 \
+  static const vlKindRow kind##_row = {                                        \
+      .parameters = kind##_parameters,                                         \
+      .parameter_count = sizeof kind##_parameters / sizeof *kind##_parameters, \
+      __VA_ARGS__};
 /* Initialises the parameters of a row with an array. */
-#define VL_ROW_PARAMETERS(array) .parameters = (array), .parameter_count = sizeof(array) / sizeof *(array)
+#define VL_ROW_PARAMETERS(array) \
+  .parameters = (array), .parameter_count = sizeof(array) / sizeof *(array)
 /* Defines the row of a kind without parameters. */
 #define VL_KIND_ROW_EMPTY(kind, ...) static const vlKindRow kind##_row = {__VA_ARGS__};
 
-/* Defines a family from its list of kinds. ROW(NAME, name) expands to `[VL_..._##NAME] = &name##_row,`. */
-#define VL_KIND_FAMILY(variable, KINDS, ROW, family_name, thing_name, directive_name)            \
-  static const vlKindRow *const variable##_rows[] = {KINDS(ROW)};                                \
-  static const char *const variable##_constants[] = {KINDS(VL_KIND_CONSTANT)};                   \
-  const vlKindFamily variable = {.name = family_name,                                            \
-                                 .thing = thing_name,                                            \
-                                 .directive = directive_name,                                    \
-                                 .kind_count = sizeof variable##_rows / sizeof *variable##_rows, \
-                                 .constants = variable##_constants,                              \
-                                 .rows = variable##_rows};
+/* Defines a family from its list of kinds. ROW(NAME, name) expands to `[VL_..._##NAME] =
+ * &name##_row,`. */
+#define VL_KIND_FAMILY(variable, KINDS, ROW, family_name, thing_name, directive_name) \
+  static const vlKindRow *const variable##_rows[] = {KINDS(ROW)};                     \
+  static const char *const variable##_constants[] = {KINDS(VL_KIND_CONSTANT)};        \
+  const vlKindFamily variable = {                                                     \
+      .name = family_name,                                                            \
+      .thing = thing_name,                                                            \
+      .directive = directive_name,                                                    \
+      .kind_count = sizeof variable##_rows / sizeof *variable##_rows,                 \
+      .constants = variable##_constants,                                              \
+      .rows = variable##_rows};
 #define VL_KIND_CONSTANT(NAME, name) #NAME,
 
 /* For the size of a table with one entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
 #define VL_COUNT_KIND(NAME, name) +1
 
-/* ---- families ---------------------------------------------------------------------------------------------------- */
+/* ---- families
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 extern const vlKindFamily vl_material_family, vl_texture_family, vl_pixel_filter_family;
 extern const vlKindFamily vl_light_family;    /* vlLightDef */
@@ -106,12 +113,12 @@ extern const vlKindFamily vl_setting_family;
 /* The settings of cameras: the parameters of all kinds, and what files say by rules. */
 extern const vlKindRow vl_camera_settings_row;
 
-/* Power of a light, by pbrt's definition. luminance: of the light's colour, with its scale. radius: of a sphere around
- * the scene. NaN: the power depends on an image. */
+/* Power of a light, by pbrt's definition. luminance: of the light's colour, with its scale.
+ * radius: of a sphere around the scene. NaN: the power depends on an image. */
 double vl_light_power(const vlLightDef *def, double luminance, double radius);
 
-/* Bounding box of a shape in shape space; `centers` is ignored. For curves it is the box of the control points. If the
- * shape has no vertices, the box is empty (low > high). */
+/* Bounding box of a shape in shape space; `centers` is ignored. For curves it is the box of the
+ * control points. If the shape has no vertices, the box is empty (low > high). */
 void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]);
 /* Whether shapes of this kind have vertices and faces (VL_SHAPE_TRAIT_MESH). */
 bool vl_shape_is_mesh(uint32_t kind); /* vlShapeKind */
@@ -120,33 +127,38 @@ bool vl_shape_is_mesh(uint32_t kind); /* vlShapeKind */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);
 /* The kind that has this name or alias in files. -1: none. */
 int vl_kind_find(const vlKindFamily *family, const char *name);
-/* Gives the names that kinds have in files, without aliases, for "did you mean" messages. Returns the number of names,
- * at most `most`. */
+/* Gives the names that kinds have in files, without aliases, for "did you mean" messages.
+ * Returns the number of names, at most `most`. */
 size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most);
 /* The parameter that has this name or alias in files. Null: none. */
 const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
-/* ---- defs -------------------------------------------------------------------------------------------------------- */
+/* ---- defs
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 /* Sets the members that the row describes to their defaults. Other members are unchanged. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
-/* Sets all members that any row of the family describes to their defaults, because a def may change its kind. The
- * defaults of `kind` are set last and take precedence. */
+/* Sets all members that any row of the family describes to their defaults, because a def may
+ * change its kind. The defaults of `kind` are set last and take precedence. */
 void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);
 /* Copies the members that the row describes. Pointers are copied, not what they point at. */
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
 /* The name of a parameter in messages: its name in files, else its member's. */
 const char *vl_parameter_label(const vlParameter *parameter);
-/* Checks the value of a parameter: it must be finite, in range and a known choice, and must not be missing if it is
- * required. If the result is false, message holds the reason (velo/setting.h: VL_GIVEN_MESSAGE). name: of the value in
- * the message. */
+/* Checks the value of a parameter: it must be finite, in range and a known choice, and must not
+ * be missing if it is required. If the result is false, message holds the reason
+ * (velo/setting.h: VL_GIVEN_MESSAGE). name: of the value in the message. */
 bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *name,
                         char message[VL_GIVEN_MESSAGE]);
-/* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices, bools, and inputs
- * without texture that hold one number. False: the parameter is of another type. */
+/* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices,
+ * bools, and inputs without texture that hold one number. False: the parameter is of another
+ * type.
+ */
 bool vl_parameter_number(const vlParameter *parameter, const void *def, double *number);
 /* Gives the textures that the members of the row read, at most `most`. Returns their number. */
-uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids, uint32_t most);
+uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids,
+                         uint32_t most);
 /* Whether the value of a parameter is its default. */
 bool vl_parameter_is_default(const vlParameter *parameter, const void *def, bool spectrum);
 

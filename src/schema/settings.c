@@ -1,5 +1,6 @@
-/* schema/settings.c: rows of the settings that are no parameters of a kind: of renders, loads, completed scenes, ground
- * truth, image files, contexts, and of the program alone. Those of cameras are in cameras.c. */
+/* schema/settings.c: rows of the settings that are no parameters of a kind: of renders, loads,
+ * completed scenes, ground truth, image files, contexts, and of the program alone. Those of
+ * cameras are in cameras.c. */
 #include <math.h>
 #include <string.h>
 
@@ -24,7 +25,9 @@
 #define SPP_MOST 16777216
 #define SIDE_MOST 65536
 
-/* ---- renders ----------------------------------------------------------------------------------------------------- */
+/* ---- renders
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static const char *const tracers[] = {VL_TRACER_KINDS(NAME) NULL};
 static const char *const samplers[] = {VL_SAMPLER_KINDS(NAME) NULL};
@@ -38,74 +41,104 @@ static const char *const accelerators[] = {"auto", "embree", "bvh", NULL};
 
 #define RENDER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, NULL, __VA_ARGS__)
 static const vlParameter render_parameters[] = {
-    RENDER(CHOICE, render.tracer, "light transport algorithm", .choices = tracers, VL_DEFAULT(VL_TRACER_PATH)),
+    RENDER(CHOICE, render.tracer, "light transport algorithm", .choices = tracers,
+           VL_DEFAULT(VL_TRACER_PATH)),
     RENDER(CHOICE, render.sampler, "generator of the sample points", .choices = samplers,
            VL_DEFAULT(VL_SAMPLER_ZSOBOL)),
     RENDER(COUNT, render.spp, "samples per pixel", WITHIN(1, SPP_MOST), VL_DEFAULT(16)),
     RENDER(COUNT, render.seed, "seed of the random numbers", .unit = NULL),
-    RENDER(COUNT, render.sequence, "length of the sequence of samples; 0: chosen by the sampler", WITHIN(0, SPP_MOST)),
+    RENDER(COUNT, render.sequence,
+           "length of the sequence of samples; 0: chosen by the sampler", WITHIN(0, SPP_MOST)),
     RENDER(COUNT, render.first_sample, "index of the first sample", WITHIN(0, SPP_MOST)),
-    RENDER(COUNT, render.max_depth, "largest number of bounces of a path", WITHIN(0, 4096), VL_DEFAULT(5)),
-    RENDER(FLOAT, render.ao_distance, "ambient occlusion: length of its rays, scene units", VL_FROM(0),
-           VL_DEFAULT(INFINITY), .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_INFINITE),
-    RENDER(BOOL, render.ao_cosine, "ambient occlusion: cosine-weighted directions", VL_DEFAULT(1)),
-    RENDER(BOOL, render.centred, "all samples at the centre of pixel, lens and exposure", .unit = NULL),
+    RENDER(COUNT, render.max_depth, "largest number of bounces of a path", WITHIN(0, 4096),
+           VL_DEFAULT(5)),
+    RENDER(FLOAT, render.ao_distance, "ambient occlusion: length of its rays, scene units",
+           VL_FROM(0), VL_DEFAULT(INFINITY),
+           .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_INFINITE),
+    RENDER(BOOL, render.ao_cosine, "ambient occlusion: cosine-weighted directions",
+           VL_DEFAULT(1)),
+    RENDER(BOOL, render.centred, "all samples at the centre of pixel, lens and exposure",
+           .unit = NULL),
     RENDER(BOOL, render.same_wavelengths, "all paths have the same wavelengths", .unit = NULL),
     RENDER(BOOL, render.sharp_textures, "textures are not filtered", .unit = NULL),
-    RENDER(BOOL, render.share_samples, "a pixel counts all samples that its filter covers", VL_DEFAULT(1)),
+    RENDER(BOOL, render.share_samples, "a pixel counts all samples that its filter covers",
+           VL_DEFAULT(1)),
     RENDER(BOOL, render.transparent, "the background is transparent", .unit = NULL),
-    RENDER(DOUBLE, render.merge_radius,
-           "radius within which paths merge in the first pass, scene units; unset: the width of two pixels",
-           WITHIN(1e-30, 1e30), UNSET),
-    RENDER(COUNT, render.light_paths, "number of light paths per pass; 4294967295: one per pixel",
+    RENDER(
+        DOUBLE, render.merge_radius,
+        "radius within which paths merge in the first pass, scene units; unset: the width of "
+        "two pixels",
+        WITHIN(1e-30, 1e30), UNSET),
+    RENDER(COUNT, render.light_paths,
+           "number of light paths per pass; 4294967295: one per pixel",
            VL_DEFAULT(VL_AS_MANY_AS_PIXELS)),
-    RENDER(DOUBLE, render.time_limit, "limit of the time of a render; 0: none", VL_FROM(0), .unit = "s"),
-    RENDER(DOUBLE, render.noise, "adaptive sampling: threshold of noise in display values; 0: none", WITHIN(0, 0.5)),
-    RENDER(CHOICE, render.noise_view, "view transform that makes these display values", .choices = views),
-    RENDER(FLOAT, render.noise_exposure, "exposure before this view", WITHIN(-100, 100), .unit = "stops"),
+    RENDER(DOUBLE, render.time_limit, "limit of the time of a render; 0: none", VL_FROM(0),
+           .unit = "s"),
+    RENDER(DOUBLE, render.noise,
+           "adaptive sampling: threshold of noise in display values; 0: none", WITHIN(0, 0.5)),
+    RENDER(CHOICE, render.noise_view, "view transform that makes these display values",
+           .choices = views),
+    RENDER(FLOAT, render.noise_exposure, "exposure before this view", WITHIN(-100, 100),
+           .unit = "stops"),
     RENDER(FLOAT, render.noise_scale, "factor before this view", ABOVE(0), VL_DEFAULT(1)),
-    WHOLE(vlSceneDefs, render.priority, "of several renders at once, the highest gets all threads", WITHIN(0, 1e6)),
+    WHOLE(vlSceneDefs, render.priority,
+          "of several renders at once, the highest gets all threads", WITHIN(0, 1e6)),
     RENDER(CHOICE, film.filter.kind, "pixel filter", .choices = filters, .keyword = "filter",
            VL_DEFAULT(VL_PIXEL_FILTER_GAUSSIAN)),
-    RENDER(FLOAT, film.filter.radius_x, "half of the filter's width", .keyword = "filter_radius_x", WITHIN(0, 64),
-           .flags = VL_PARAMETER_ABOVE_LOW, VL_DEFAULT(1.5), .unit = "pixels"),
-    RENDER(FLOAT, film.filter.radius_y, "half of the filter's height", .keyword = "filter_radius_y", WITHIN(0, 64),
-           .flags = VL_PARAMETER_ABOVE_LOW, VL_DEFAULT(1.5), .unit = "pixels"),
-    RENDER(FLOAT, film.filter.sigma, "gaussian: standard deviation", .keyword = "filter_sigma", WITHIN(0, 1e6),
-           .flags = VL_PARAMETER_ABOVE_LOW, VL_DEFAULT(0.5), .unit = "pixels"),
+    RENDER(FLOAT, film.filter.radius_x, "half of the filter's width",
+           .keyword = "filter_radius_x", WITHIN(0, 64), .flags = VL_PARAMETER_ABOVE_LOW,
+           VL_DEFAULT(1.5), .unit = "pixels"),
+    RENDER(FLOAT, film.filter.radius_y, "half of the filter's height",
+           .keyword = "filter_radius_y", WITHIN(0, 64), .flags = VL_PARAMETER_ABOVE_LOW,
+           VL_DEFAULT(1.5), .unit = "pixels"),
+    RENDER(FLOAT, film.filter.sigma, "gaussian: standard deviation", .keyword = "filter_sigma",
+           WITHIN(0, 1e6), .flags = VL_PARAMETER_ABOVE_LOW, VL_DEFAULT(0.5), .unit = "pixels"),
     RENDER(FLOAT, film.filter.b, "mitchell: B", .keyword = "filter_b", WITHIN(-10, 10)),
     RENDER(FLOAT, film.filter.c, "mitchell: C", .keyword = "filter_c", WITHIN(-10, 10)),
-    RENDER(FLOAT, film.filter.tau, "lanczos: cycles of the sinc", .keyword = "filter_tau", WITHIN(0, 1e6),
-           .flags = VL_PARAMETER_ABOVE_LOW),
+    RENDER(FLOAT, film.filter.tau, "lanczos: cycles of the sinc", .keyword = "filter_tau",
+           WITHIN(0, 1e6), .flags = VL_PARAMETER_ABOVE_LOW),
     RENDER(CHOICE, film.space, "colour space of the image", .choices = spaces),
-    RENDER(DOUBLE, film.white_balance, "colour temperature of the daylight that becomes white; 0: none",
-           WITHIN(0, 100000), .unit = "K"),
+    RENDER(DOUBLE, film.white_balance,
+           "colour temperature of the daylight that becomes white; 0: none", WITHIN(0, 100000),
+           .unit = "K"),
     RENDER(STRING, film.sensor, "spectral response of the sensor", .text = NULL),
-    RENDER(FLOAT, film.max_component, "samples with a larger component are scaled down to it", VL_FROM(0),
-           VL_DEFAULT(INFINITY), .flags = VL_PARAMETER_INFINITE),
+    RENDER(FLOAT, film.max_component, "samples with a larger component are scaled down to it",
+           VL_FROM(0), VL_DEFAULT(INFINITY), .flags = VL_PARAMETER_INFINITE),
     RENDER(BOOL, film.errors, "keep what standard errors need", .unit = NULL),
-    RENDER(COUNT, film.buckets, "intervals of wavelength of the spectrum; 0: no spectrum", WITHIN(0, 1000)),
-    RENDER(DOUBLE, film.lambda_min, "where the spectrum starts", WITHIN(360, 830), VL_DEFAULT(360), .unit = "nm"),
-    RENDER(DOUBLE, film.lambda_max, "where the spectrum ends", WITHIN(360, 830), VL_DEFAULT(830), .unit = "nm"),
-    RENDER(CHOICE, build.color, "representation of colours during light transport", .choices = colors),
-    RENDER(CHOICE, build.light_sampler, "method that chooses a light", .choices = light_samplers),
+    RENDER(COUNT, film.buckets, "intervals of wavelength of the spectrum; 0: no spectrum",
+           WITHIN(0, 1000)),
+    RENDER(DOUBLE, film.lambda_min, "where the spectrum starts", WITHIN(360, 830),
+           VL_DEFAULT(360), .unit = "nm"),
+    RENDER(DOUBLE, film.lambda_max, "where the spectrum ends", WITHIN(360, 830),
+           VL_DEFAULT(830), .unit = "nm"),
+    RENDER(CHOICE, build.color, "representation of colours during light transport",
+           .choices = colors),
+    RENDER(CHOICE, build.light_sampler, "method that chooses a light",
+           .choices = light_samplers),
     RENDER(BOOL, build.imitate_pbrt, "reproduce a known error of pbrt-v4", .unit = NULL),
-    RENDER(BOOL, build.regularize, "make surfaces rougher that a path hits after it has been scattered", .unit = NULL),
-    RENDER(CHOICE, build.bits, "the same image on every machine, or less time", .choices = bits),
-    RENDER(CHOICE, build.accelerator, "what finds the surfaces that rays meet", .choices = accelerators),
+    RENDER(BOOL, build.regularize,
+           "make surfaces rougher that a path hits after it has been scattered", .unit = NULL),
+    RENDER(CHOICE, build.bits, "the same image on every machine, or less time",
+           .choices = bits),
+    RENDER(CHOICE, build.accelerator, "what finds the surfaces that rays meet",
+           .choices = accelerators),
     RENDER(FLOAT, develop.exposure, "factor on the image", VL_DEFAULT(1)),
 };
 VL_KIND_ROW(render, .name = "render", .description = "how an image is rendered")
 
-/* ---- scenes ------------------------------------------------------------------------------------------------------ */
+/* ---- scenes
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 #define LOAD(TYPE, ...) VL_PARAMETER(TYPE, vlLoadDef, NULL, __VA_ARGS__)
 static const vlParameter load_parameters[] = {
-    LOAD(BOOL, permissive, "warn about what is not supported, and repair normals", .unit = NULL),
+    LOAD(BOOL, permissive, "warn about what is not supported, and repair normals",
+         .unit = NULL),
     LOAD(BOOL, strict, "glTF, OBJ: a missing image is an error", .unit = NULL),
     LOAD(STRING, search_path, "further folders of files, separated by colons", .text = NULL),
     LOAD(DOUBLE, time, "glTF: time of the animations", WITHIN(-1e6, 1e6), UNSET, .unit = "s"),
-    LOAD(DOUBLE, time_close, "glTF: time when the shutter closes", WITHIN(-1e6, 1e6), UNSET, .unit = "s"),
+    LOAD(DOUBLE, time_close, "glTF: time when the shutter closes", WITHIN(-1e6, 1e6), UNSET,
+         .unit = "s"),
     LOAD(STRING, scene, "glTF: the scene, by name or number", .text = NULL),
     LOAD(STRING, animation, "glTF: the animation, by name or number", .text = NULL),
     LOAD(STRING, variant, "glTF: the material variant", .text = NULL),
@@ -113,38 +146,50 @@ static const vlParameter load_parameters[] = {
 };
 VL_KIND_ROW(load, .name = "load", .description = "how a file of a scene is read")
 
-static const char *const environments[] = {"auto", "none", "studio", "sky", "white", "file", NULL};
+static const char *const environments[] = {"auto",  "none", "studio", "sky",
+                                           "white", "file", NULL};
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 #define COMPLETE(TYPE, ...) VL_PARAMETER(TYPE, vlCompleteDef, NULL, __VA_ARGS__)
 static const vlParameter complete_parameters[] = {
-    COMPLETE(COUNT, width, "width of the image; 0: the film's", WITHIN(0, SIDE_MOST), .unit = "pixels"),
-    COMPLETE(COUNT, height, "height of the image; 0: the film's", WITHIN(0, SIDE_MOST), .unit = "pixels"),
+    COMPLETE(COUNT, width, "width of the image; 0: the film's", WITHIN(0, SIDE_MOST),
+             .unit = "pixels"),
+    COMPLETE(COUNT, height, "height of the image; 0: the film's", WITHIN(0, SIDE_MOST),
+             .unit = "pixels"),
     COMPLETE(CHOICE, environment, "light from all directions", .choices = environments),
     COMPLETE(FILE, path, "image of the environment", .text = NULL),
     COMPLETE(DOUBLE, rotation, "rotation of the environment about the vertical axis",
              WITHIN(-1e6 * DEGREES, 1e6 * DEGREES), .unit = "degrees", .factor = DEGREES,
              .alias = "environment_rotation"),
-    COMPLETE(FLOAT, strength, "factor on the radiance of the environment", WITHIN(0, 1e6), VL_DEFAULT(1),
-             .alias = "environment_strength"),
-    COMPLETE(DOUBLE3, up, "the direction upwards", VL_DEFAULT(0, 1, 0), .flags = VL_PARAMETER_VECTOR),
-    COMPLETE(DOUBLE3, front, "the direction to the front", VL_DEFAULT(0, 0, 1), .flags = VL_PARAMETER_VECTOR),
+    COMPLETE(FLOAT, strength, "factor on the radiance of the environment", WITHIN(0, 1e6),
+             VL_DEFAULT(1), .alias = "environment_strength"),
+    COMPLETE(DOUBLE3, up, "the direction upwards", VL_DEFAULT(0, 1, 0),
+             .flags = VL_PARAMETER_VECTOR),
+    COMPLETE(DOUBLE3, front, "the direction to the front", VL_DEFAULT(0, 0, 1),
+             .flags = VL_PARAMETER_VECTOR),
     COMPLETE(BOOL, ground, "add a wide grey disk as ground", .unit = NULL),
     COMPLETE(BOOL, reframe, "replace the file's camera", .unit = NULL),
     COMPLETE(CHOICE, framing, "where the added camera stands", .choices = framings),
     COMPLETE(BOOL, backdrop, "add a ground of the studio's colour", .unit = NULL),
-    COMPLETE(BOOL, open_walls, "leave out walls between the added camera and the middle", .unit = NULL),
+    COMPLETE(BOOL, open_walls, "leave out walls between the added camera and the middle",
+             .unit = NULL),
 };
-VL_KIND_ROW(complete, .name = "complete", .description = "what a scene gets that lacks camera, light or ground")
+VL_KIND_ROW(complete, .name = "complete",
+            .description = "what a scene gets that lacks camera, light or ground")
 
-/* ---- images ------------------------------------------------------------------------------------------------------ */
+/* ---- images
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static const char *const modes[] = {"centre", "nearest", "coverage", NULL};
 static const vlParameter channels_parameters[] = {
-    VL_PARAMETER(CHOICE, vlChannelsDef, NULL, mode, "point of a pixel of which ground truth is", .choices = modes),
-    VL_PARAMETER(COUNT, vlChannelsDef, NULL, ranks, "ids per pixel of Cryptomatte, an even number", WITHIN(2, 32),
-                 VL_DEFAULT(6), .alias = "crypto_ranks"),
-    VL_PARAMETER(DOUBLE, vlChannelsDef, NULL, time, "time for which ground truth is; unset: the exposure's middle",
-                 UNSET, .unit = "s"),
+    VL_PARAMETER(CHOICE, vlChannelsDef, NULL, mode, "point of a pixel of which ground truth is",
+                 .choices = modes),
+    VL_PARAMETER(COUNT, vlChannelsDef, NULL, ranks,
+                 "ids per pixel of Cryptomatte, an even number", WITHIN(2, 32), VL_DEFAULT(6),
+                 .alias = "crypto_ranks"),
+    VL_PARAMETER(DOUBLE, vlChannelsDef, NULL, time,
+                 "time for which ground truth is; unset: the exposure's middle", UNSET,
+                 .unit = "s"),
 };
 VL_KIND_ROW(channels, .name = "channels", .description = "ground truth beside an image")
 
@@ -155,30 +200,44 @@ static const vlParameter write_parameters[] = {
 };
 VL_KIND_ROW(write, .name = "write", .description = "how an image is written")
 
-/* ---- contexts, and the program ----------------------------------------------------------------------------------- */
+/* ---- contexts, and the program
+ * ----------------------------------------------------------------------------------- */
 
 static const vlParameter context_parameters[] = {
-    VL_PARAMETER(COUNT, vlContextDef, NULL, threads, "number of worker threads", WITHIN(1, 1024), VL_DEFAULT(1)),
+    VL_PARAMETER(COUNT, vlContextDef, NULL, threads, "number of worker threads",
+                 WITHIN(1, 1024), VL_DEFAULT(1)),
 };
 VL_KIND_ROW(context, .name = "context", .description = "threads")
 
 /* A setting that no def has. */
-#define OWN(TYPE, word, line, ...) \
-  { .type = VL_PARAMETER_##TYPE, .member = word, .flags = VL_PARAMETER_SHORTHAND, .description = line, __VA_ARGS__ }
+#define OWN(TYPE, word, line, ...)                                                \
+  {                                                                               \
+    .type = VL_PARAMETER_##TYPE, .member = word, .flags = VL_PARAMETER_SHORTHAND, \
+    .description = line, __VA_ARGS__                                              \
+  }
 static const vlParameter program_parameters[] = {
-    OWN(FLOAT, "exposure", "exposure of images for display: a factor of 2^exposure", WITHIN(-64, 64), .unit = "stops"),
-    OWN(DOUBLE, "turn", "rotation of the camera about the vertical axis", WITHIN(-1e6, 1e6), .unit = "degrees"),
+    OWN(FLOAT, "exposure", "exposure of images for display: a factor of 2^exposure",
+        WITHIN(-64, 64), .unit = "stops"),
+    OWN(DOUBLE, "turn", "rotation of the camera about the vertical axis", WITHIN(-1e6, 1e6),
+        .unit = "degrees"),
     OWN(DOUBLE, "shutter", "time for which the shutter is open", WITHIN(0, 1e6), .unit = "s"),
-    OWN(COUNT, "width", "width of an image", WITHIN(1, SIDE_MOST), VL_DEFAULT(1280), .unit = "pixels"),
-    OWN(COUNT, "height", "height of an image", WITHIN(1, SIDE_MOST), VL_DEFAULT(720), .unit = "pixels"),
-    OWN(DOUBLE, "x", "column of a point of the image", WITHIN(-SIDE_MOST, SIDE_MOST), .unit = "pixels"),
-    OWN(DOUBLE, "y", "row of a point of the image", WITHIN(-SIDE_MOST, SIDE_MOST), .unit = "pixels"),
-    OWN(COUNT, "samples", "number of samples whose paths are shown; 0: the usual number", WITHIN(0, SIDE_MOST)),
+    OWN(COUNT, "width", "width of an image", WITHIN(1, SIDE_MOST), VL_DEFAULT(1280),
+        .unit = "pixels"),
+    OWN(COUNT, "height", "height of an image", WITHIN(1, SIDE_MOST), VL_DEFAULT(720),
+        .unit = "pixels"),
+    OWN(DOUBLE, "x", "column of a point of the image", WITHIN(-SIDE_MOST, SIDE_MOST),
+        .unit = "pixels"),
+    OWN(DOUBLE, "y", "row of a point of the image", WITHIN(-SIDE_MOST, SIDE_MOST),
+        .unit = "pixels"),
+    OWN(COUNT, "samples", "number of samples whose paths are shown; 0: the usual number",
+        WITHIN(0, SIDE_MOST)),
     OWN(COUNT, "show", "number of paths that are shown one by one", WITHIN(0, 64)),
 };
 VL_KIND_ROW(program, .name = "program", .description = "what is turned into other settings")
 
-/* ---- finding them ------------------------------------------------------------------------------------------------ */
+/* ---- finding them
+ * ------------------------------------------------------------------------------------------------
+ */
 
 /* The parameters of cameras are in cameras.c. */
 #define camera_row vl_camera_settings_row
@@ -191,24 +250,30 @@ const vlKindRow *vl_settings(vlSettingGroup group) {
 
 const char *vl_setting_keyword(const vlParameter *row) {
   const char *dot = strrchr(row->member, '.');
-  if (row->keyword) return row->keyword;
+  if (row->keyword)
+    return row->keyword;
   return dot ? dot + 1 : row->member;
 }
 
 /* Whether the words are the same, with '_', '-' and '.' as one character. */
 static bool same(const char *a, const char *b) {
   for (; *a && *b; a++, b++)
-    if (*a != *b && !(strchr("_-.", *a) && strchr("_-.", *b))) return false;
+    if (*a != *b && !(strchr("_-.", *a) && strchr("_-.", *b)))
+      return false;
   return *a == *b;
 }
 
-/* The first row with that keyword, or with that member. Those of cameras that files set by rules are none. */
+/* The first row with that keyword, or with that member. Those of cameras that files set by
+ * rules are none. */
 static const vlParameter *find(const vlKindRow *rows, const char *name, bool by_member) {
   for (uint32_t i = 0; i < rows->parameter_count; i++) {
     const vlParameter *row = &rows->parameters[i];
-    if (row->flags & VL_PARAMETER_RULE) continue;
-    if (same(by_member ? row->member : vl_setting_keyword(row), name)) return row;
-    if (row->alias && same(row->alias, name)) return row;
+    if (row->flags & VL_PARAMETER_RULE)
+      continue;
+    if (same(by_member ? row->member : vl_setting_keyword(row), name))
+      return row;
+    if (row->alias && same(row->alias, name))
+      return row;
   }
   return NULL;
 }

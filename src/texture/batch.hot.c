@@ -1,33 +1,41 @@
-/* texture/batch.hot.c: evaluation of textures over a run of lanes that share a material: floats, and spectra at each
- * lane's four wavelengths. A node's inputs are evaluated to rows of a stack, then combined by the functions of
- * texture/kinds.h. Undefined values are NaN: the film drops and counts such samples (vlRenderStats.not_finite). */
+/* texture/batch.hot.c: evaluation of textures over a run of lanes that share a material:
+ * floats, and spectra at each lane's four wavelengths. A node's inputs are evaluated to rows of
+ * a stack, then combined by the functions of texture/kinds.h. Undefined values are NaN: the
+ * film drops and counts such samples (vlRenderStats.not_finite). */
 #include "texture/kinds.h"
 #include "texture/node_kind.h"
 #include "texture/run.hot.h"
 
-/* ---- point functions over a run ---------------------------------------------------------------------------------- */
+/* ---- point functions over a run
+ * ---------------------------------------------------------------------------------- */
 
 typedef float PointFloat(const vlTextureNode *node, vlTexturePoint at);
 
 /* Inlined together with f, so that there is one loop per kind. */
-static inline __attribute__((always_inline)) void each_lane(const vlTextureRun *r, const vlTextureNode *node,
+static inline __attribute__((always_inline)) void each_lane(const vlTextureRun *r,
+                                                            const vlTextureNode *node,
                                                             PointFloat *f, float *out) {
-  for (uint32_t i = r->first; i < r->last; i++) out[i] = f(node, vl_texture_point_of(r, node, i));
+  for (uint32_t i = r->first; i < r->last; i++)
+    out[i] = f(node, vl_texture_point_of(r, node, i));
 }
 
 static void fill(const vlTextureRun *r, float value, float *out) {
   VL_SIMD
-  for (uint32_t i = r->first; i < r->last; i++) out[i] = value;
+  for (uint32_t i = r->first; i < r->last; i++)
+    out[i] = value;
 }
 
-static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node, float *const w[4]) {
+static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node,
+                           float *const w[4]) {
   for (uint32_t i = r->first; i < r->last; i++) {
     vlBilerpWeights k = vl_node_bilerp(node, vl_texture_point_of(r, node, i));
-    for (int j = 0; j < 4; j++) w[j][i] = k.w[j];
+    for (int j = 0; j < 4; j++)
+      w[j][i] = k.w[j];
   }
 }
 
-/* Some lanes' lookups of a plain image. All are computed, and their texels requested, before the first is read. */
+/* Some lanes' lookups of a plain image. All are computed, and their texels requested, before
+ * the first is read. */
 typedef struct Lookups {
   uint32_t count;
   vlImageLookup at[VL_LANES];
@@ -35,25 +43,29 @@ typedef struct Lookups {
   vlTexelSquare memory[VL_LANES * VL_LOOKUP_SQUARES];
 } Lookups;
 
-static vlTexel value_of(const vlTextureNode *node, const vlMipmap *mip, const Lookups *l, uint32_t k) {
+static vlTexel value_of(const vlTextureNode *node, const vlMipmap *mip, const Lookups *l,
+                        uint32_t k) {
   return l->squares[k] ? vl_image_value(node, mip, &l->at[k], l->squares[k])
                        : vl_image_value(node, mip, &l->at[k], NULL);
 }
 
 /* Where the lookups are, and how they are filtered: vl_image_lookup for many lanes. */
-static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t first,
-                         Lookups *restrict l) {
-  VL_ROW float s[VL_LANES], t[VL_LANES], axes[4][VL_LANES], level[VL_LANES], ds[VL_LANES], dt[VL_LANES];
+static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip,
+                         uint32_t first, Lookups *restrict l) {
+  VL_ROW float s[VL_LANES], t[VL_LANES], axes[4][VL_LANES], level[VL_LANES], ds[VL_LANES],
+      dt[VL_LANES];
   VL_ROW uint32_t taps[VL_LANES];
   for (uint32_t k = 0; k < l->count; k++) {
     vlTexturePoint at = vl_texture_point_of(r, node, first + k);
     vlVec2 st = vl_texture_st(node, at);
     s[k] = st.x;
     t[k] = st.y;
-    for (int c = 0; c < 4; c++) axes[c][k] = at.axes[c];
+    for (int c = 0; c < 4; c++)
+      axes[c][k] = at.axes[c];
   }
   for (uint32_t k = l->count; k < VL_LANES; k++)
-    for (int c = 0; c < 4; c++) axes[c][k] = 0.0f;
+    for (int c = 0; c < 4; c++)
+      axes[c][k] = 0.0f;
   float width = (float)mip->levels[0].width, height = (float)mip->levels[0].height;
   float last = (float)(mip->level_count - 1);
   /* must vectorise */
@@ -70,7 +82,8 @@ static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const
     l->at[k] = (vlImageLookup){s[k], 1.0f - t[k], {level[k], taps[k], ds[k], dt[k]}};
 }
 
-static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t first, Lookups *l) {
+static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip,
+                    uint32_t first, Lookups *l) {
   vlTexelSquare *next = l->memory;
   l->count = r->last - first < VL_LANES ? r->last - first : VL_LANES;
   plan_lookups(r, node, mip, first, l);
@@ -88,7 +101,8 @@ static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   vl_texture_float(r, node->amount, share);
   return share;
 }
-static inline __attribute__((always_inline)) const float *point_share(vlTextureRun *r, const vlTextureNode *node,
+static inline __attribute__((always_inline)) const float *point_share(vlTextureRun *r,
+                                                                      const vlTextureNode *node,
                                                                       PointFloat *f) {
   float *share = vl_texture_row(r);
   each_lane(r, node, f, share);
@@ -109,33 +123,42 @@ static inline __attribute__((always_inline)) const float *point_share(vlTextureR
   case kind:                         \
     each_color(r, node, value, out); \
     break;
-#define MIX_SPECTRA_CASE(kind, value, set) \
-  case kind: mix_spectra(r, node, point_share(r, node, value), out); break;
+#define MIX_SPECTRA_CASE(kind, value, set)                  \
+  case kind:                                                \
+    mix_spectra(r, node, point_share(r, node, value), out); \
+    break;
 
-/* ---- floats ------------------------------------------------------------------------------------------------------ */
+/* ---- floats
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* Mixes the two inputs of a node by the share of the second. */
-static void mix_floats(vlTextureRun *r, const vlTextureNode *node, const float *share, float *out) {
+static void mix_floats(vlTextureRun *r, const vlTextureNode *node, const float *share,
+                       float *out) {
   float *b = vl_texture_row(r);
   vl_texture_float(r, node->a, out);
   vl_texture_float(r, node->b, b);
-  for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_node_mix(out[i], b[i], share[i]);
+  for (uint32_t i = r->first; i < r->last; i++)
+    out[i] = vl_node_mix(out[i], b[i], share[i]);
 }
 
 static void scale_floats(vlTextureRun *r, const vlTextureNode *node, float *out) {
   float *w = vl_texture_row(r);
   vl_texture_float(r, node->a, out);
   vl_texture_float(r, node->amount, w);
-  for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_node_scale(out[i], w[i]);
+  for (uint32_t i = r->first; i < r->last; i++)
+    out[i] = vl_node_scale(out[i], w[i]);
 }
 
 static void bilerp_floats(vlTextureRun *r, const vlTextureNode *node, float *out) {
-  float *w[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)}, *x = vl_texture_row(r);
+  float *w[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)},
+        *x = vl_texture_row(r);
   bilerp_weights(r, node, w);
   const int32_t inputs[4] = {node->a, node->b, node->c, node->d};
   for (int k = 0; k < 4; k++) {
     vl_texture_float(r, inputs[k], x);
-    for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_node_bilerp_add(k ? out[i] : 0.0f, w[k][i], x[i]);
+    for (uint32_t i = r->first; i < r->last; i++)
+      out[i] = vl_node_bilerp_add(k ? out[i] : 0.0f, w[k][i], x[i]);
   }
 }
 
@@ -149,7 +172,8 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
   Lookups l;
   for (uint32_t first = r->first; first < r->last; first += l.count) {
     look_up(r, node, mip, first, &l);
-    for (uint32_t k = 0; k < l.count; k++) out[first + k] = vl_plain_float(mip, value_of(node, mip, &l, k));
+    for (uint32_t k = 0; k < l.count; k++)
+      out[first + k] = vl_plain_float(mip, value_of(node, mip, &l, k));
   }
 }
 
@@ -157,14 +181,22 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch ((vlNodeKind)node->kind) {
-    case VL_NODE_FLOAT: fill(r, node->value, out); break;
-    case VL_NODE_IMAGE: image_floats(r, node, out); break;
+    case VL_NODE_FLOAT:
+      fill(r, node->value, out);
+      break;
+    case VL_NODE_IMAGE:
+      image_floats(r, node, out);
+      break;
     case VL_NODE_VERTEX_COLOR:
       each_lane(r, node, vl_node_vertex_color_float, out);
       break;
       VL_FLOAT_NODES(FLOAT_CASE)
-    case VL_NODE_SCALE: scale_floats(r, node, out); break;
-    case VL_NODE_BILERP: bilerp_floats(r, node, out); break;
+    case VL_NODE_SCALE:
+      scale_floats(r, node, out);
+      break;
+    case VL_NODE_BILERP:
+      bilerp_floats(r, node, out);
+      break;
     case VL_NODE_MIX:
       mix_floats(r, node, amount_share(r, node), out);
       break;
@@ -177,7 +209,9 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   r->top = top;
 }
 
-/* ---- spectra ----------------------------------------------------------------------------------------------------- */
+/* ---- spectra
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float *const out[4]) {
   for (int c = 0; c < 4; c++) {
@@ -189,19 +223,24 @@ static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float 
     switch (s->kind) {
       case VL_SPECTRAL_SIGMOID:
         VL_SIMD
-        for (uint32_t i = r->first; i < r->last; i++) out[c][i] = s->scale * vl_sigmoid(s->sigmoid, lambda[i]);
+        for (uint32_t i = r->first; i < r->last; i++)
+          out[c][i] = s->scale * vl_sigmoid(s->sigmoid, lambda[i]);
         break;
       case VL_SPECTRAL_DENSE:
         VL_SIMD
-        for (uint32_t i = r->first; i < r->last; i++) out[c][i] = s->scale * vl_dense_at(s->dense, lambda[i]);
+        for (uint32_t i = r->first; i < r->last; i++)
+          out[c][i] = s->scale * vl_dense_at(s->dense, lambda[i]);
         break;
       case VL_SPECTRAL_CONSTANT:
-      case VL_SPECTRAL_RGB: fill(r, vl_spectral_at(s, c, 0.0f), out[c]); break;
+      case VL_SPECTRAL_RGB:
+        fill(r, vl_spectral_at(s, c, 0.0f), out[c]);
+        break;
     }
   }
 }
 
-/* Conversion of colours to spectra by the node's role (pbrt book 10.4.1): albedos are clamped, other colours scaled. */
+/* Conversion of colours to spectra by the node's role (pbrt book 10.4.1): albedos are clamped,
+ * other colours scaled. */
 typedef struct Upsampling {
   bool rgb_mode, albedo;
   const vlRgbTable *table;
@@ -209,12 +248,14 @@ typedef struct Upsampling {
 } Upsampling;
 
 static Upsampling upsampling_of(const vlTextureRun *r, const vlTextureNode *node) {
-  return (Upsampling){r->rgb || r->world->def.color == VL_COLOR_RGB, node->role == VL_ROLE_ALBEDO,
-                      vl_rgb_table(node->space), node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL};
+  return (Upsampling){r->rgb || r->world->def.color == VL_COLOR_RGB,
+                      node->role == VL_ROLE_ALBEDO, vl_rgb_table(node->space),
+                      node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL};
 }
 
-void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded, float (*const rgb)[VL_SKY_BLOCK],
-                      float (*const lambda)[VL_SKY_BLOCK], float (*const value)[VL_SKY_BLOCK]) {
+void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
+                      float (*const rgb)[VL_SKY_BLOCK], float (*const lambda)[VL_SKY_BLOCK],
+                      float (*const value)[VL_SKY_BLOCK]) {
   const float *p = table->coefficients;
   float most = albedo ? 1.0f : VL_INFINITY;
   /* must vectorise */
@@ -227,7 +268,8 @@ void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded, flo
     float m = vl_max(red, vl_max(green, blue));
     float scale = albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
     vlRgbPlace at = vl_rgb_place(red * inv, green * inv, blue * inv);
-    vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
+    vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at),
+                   vl_rgb_coefficient(p, 2, at)};
     value[0][k] = scale * vl_sigmoid(s, lambda[0][k]);
     value[1][k] = scale * vl_sigmoid(s, lambda[1][k]);
     value[2][k] = scale * vl_sigmoid(s, lambda[2][k]);
@@ -235,34 +277,42 @@ void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded, flo
   }
 }
 
-static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, uint32_t i, float *const out[4]) {
+static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, uint32_t i,
+                     float *const out[4]) {
   float c[3] = {rgb.x, rgb.y, rgb.z}, lambda[4], value[4];
   if (up->rgb_mode) {
-    for (int k = 0; k < 4; k++) out[k][i] = k < 3 ? (up->albedo && c[k] > 1.0f ? 1.0f : c[k]) : 0.0f;
+    for (int k = 0; k < 4; k++)
+      out[k][i] = k < 3 ? (up->albedo && c[k] > 1.0f ? 1.0f : c[k]) : 0.0f;
     return;
   }
   vl_path_lambda(&r->at->paths, i, lambda);
   vl_upsample(up->table, up->albedo, c, lambda, value);
-  for (int k = 0; k < 4; k++) out[k][i] = up->illuminant ? value[k] * vl_dense_at(up->illuminant, lambda[k]) : value[k];
+  for (int k = 0; k < 4; k++)
+    out[k][i] = up->illuminant ? value[k] * vl_dense_at(up->illuminant, lambda[k]) : value[k];
 }
 
 /* upsample for lanes from first on, with the same operations. */
-static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t count, float rgb[3][VL_SKY_BLOCK],
-                           uint32_t first, float *const out[4]) {
+static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t count,
+                           float rgb[3][VL_SKY_BLOCK], uint32_t first, float *const out[4]) {
   if (up->rgb_mode || count < VL_LANES / 4) {
-    for (uint32_t k = 0; k < count; k++) upsample(r, up, vl_vec3(rgb[0][k], rgb[1][k], rgb[2][k]), first + k, out);
+    for (uint32_t k = 0; k < count; k++)
+      upsample(r, up, vl_vec3(rgb[0][k], rgb[1][k], rgb[2][k]), first + k, out);
     return;
   }
   VL_ROW float lambda[4][VL_SKY_BLOCK], value[4][VL_SKY_BLOCK];
   for (int c = 0; c < 4; c++)
-    for (uint32_t k = 0; k < VL_LANES; k++) lambda[c][k] = r->at->paths.lambda[c][first + (k < count ? k : count - 1)];
+    for (uint32_t k = 0; k < VL_LANES; k++)
+      lambda[c][k] = r->at->paths.lambda[c][first + (k < count ? k : count - 1)];
   vl_upsample_rows(up->table, up->albedo, VL_LANES, rgb, lambda, value);
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < count; k++)
-      out[c][first + k] = up->illuminant ? value[c][k] * vl_dense_at(up->illuminant, lambda[c][k]) : value[c][k];
+      out[c][first + k] = up->illuminant
+                              ? value[c][k] * vl_dense_at(up->illuminant, lambda[c][k])
+                              : value[c][k];
 }
 
-static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
+static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node,
+                           float *const out[4]) {
   const vlMipmap *mip = r->world->images.items[node->image].mipmap;
   Upsampling up = upsampling_of(r, node);
   if (!node->plain) {
@@ -276,7 +326,8 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, flo
     look_up(r, node, mip, first, &l);
     for (uint32_t k = 0; k < VL_LANES; k++) {
       uint32_t j = k < l.count ? k : l.count - 1;
-      vlVec3 c = j == k ? vl_plain_rgb(mip, value_of(node, mip, &l, k)) : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
+      vlVec3 c = j == k ? vl_plain_rgb(mip, value_of(node, mip, &l, k))
+                        : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
       rgb[0][k] = c.x;
       rgb[1][k] = c.y;
       rgb[2][k] = c.z;
@@ -285,26 +336,32 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, flo
   }
 }
 
-static void vertex_color_spectrum(const vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
+static void vertex_color_spectrum(const vlTextureRun *r, const vlTextureNode *node,
+                                  float *const out[4]) {
   Upsampling up = upsampling_of(r, node);
   for (uint32_t i = r->first; i < r->last; i++)
     upsample(r, &up, vl_node_vertex_color_rgb(node, vl_texture_point_of(r, node, i)), i, out);
 }
 
 typedef vlVec3 PointColor(const vlTextureNode *node, vlTexturePoint at);
-static inline __attribute__((always_inline)) void each_color(const vlTextureRun *r, const vlTextureNode *node,
-                                                             PointColor *f, float *const out[4]) {
+static inline __attribute__((always_inline)) void each_color(const vlTextureRun *r,
+                                                             const vlTextureNode *node,
+                                                             PointColor *f,
+                                                             float *const out[4]) {
   Upsampling up = upsampling_of(r, node);
-  for (uint32_t i = r->first; i < r->last; i++) upsample(r, &up, f(node, vl_texture_point_of(r, node, i)), i, out);
+  for (uint32_t i = r->first; i < r->last; i++)
+    upsample(r, &up, f(node, vl_texture_point_of(r, node, i)), i, out);
 }
 
 /* As mix_floats, scale_floats and bilerp_floats. */
-static void mix_spectra(vlTextureRun *r, const vlTextureNode *node, const float *share, float *const out[4]) {
+static void mix_spectra(vlTextureRun *r, const vlTextureNode *node, const float *share,
+                        float *const out[4]) {
   float *b[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
   vl_texture_spectrum(r, node->a, out);
   vl_texture_spectrum(r, node->b, b);
   for (int c = 0; c < 4; c++)
-    for (uint32_t i = r->first; i < r->last; i++) out[c][i] = vl_node_mix(out[c][i], b[c][i], share[i]);
+    for (uint32_t i = r->first; i < r->last; i++)
+      out[c][i] = vl_node_mix(out[c][i], b[c][i], share[i]);
 }
 
 static void scale_spectra(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
@@ -312,7 +369,8 @@ static void scale_spectra(vlTextureRun *r, const vlTextureNode *node, float *con
   vl_texture_spectrum(r, node->a, out);
   vl_texture_float(r, node->amount, w);
   for (int c = 0; c < 4; c++)
-    for (uint32_t i = r->first; i < r->last; i++) out[c][i] = vl_node_scale(out[c][i], w[i]);
+    for (uint32_t i = r->first; i < r->last; i++)
+      out[c][i] = vl_node_scale(out[c][i], w[i]);
 }
 
 static void bilerp_spectra(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
@@ -332,21 +390,30 @@ void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch ((vlNodeKind)node->kind) {
-    case VL_NODE_SPECTRUM: constant_spectrum(r, &node->spectrum, out); break;
-    case VL_NODE_IMAGE: image_spectrum(r, node, out); break;
+    case VL_NODE_SPECTRUM:
+      constant_spectrum(r, &node->spectrum, out);
+      break;
+    case VL_NODE_IMAGE:
+      image_spectrum(r, node, out);
+      break;
     case VL_NODE_VERTEX_COLOR:
       vertex_color_spectrum(r, node, out);
       break;
       VL_COLOR_NODES(COLOR_CASE)
-    case VL_NODE_SCALE: scale_spectra(r, node, out); break;
-    case VL_NODE_BILERP: bilerp_spectra(r, node, out); break;
+    case VL_NODE_SCALE:
+      scale_spectra(r, node, out);
+      break;
+    case VL_NODE_BILERP:
+      bilerp_spectra(r, node, out);
+      break;
     case VL_NODE_MIX:
       mix_spectra(r, node, amount_share(r, node), out);
       break;
       VL_SHARE_NODES(MIX_SPECTRA_CASE)
       VL_FLOAT_NODES(NODE_CASE)
     case VL_NODE_FLOAT: /* floats; vl_scene_add_texture refuses them here */
-      for (int c = 0; c < 4; c++) fill(r, __builtin_nanf(""), out[c]);
+      for (int c = 0; c < 4; c++)
+        fill(r, __builtin_nanf(""), out[c]);
       break;
   }
   r->top = top;

@@ -4,13 +4,15 @@
 
 #include "texture/lookup.h"
 
-/* Weights of the four inputs a, b, c, d. The weighted inputs are added in this order, starting from 0. */
+/* Weights of the four inputs a, b, c, d. The weighted inputs are added in this order, starting
+ * from 0. */
 typedef struct vlBilerpWeights {
   float w[4];
 } vlBilerpWeights;
 static inline vlBilerpWeights vl_node_bilerp(const vlTextureNode *node, vlTexturePoint at) {
   vlVec2 st = vl_texture_st(node, at);
-  return (vlBilerpWeights){{(1 - st.x) * (1 - st.y), (1 - st.x) * st.y, st.x * (1 - st.y), st.x * st.y}};
+  return (vlBilerpWeights){
+      {(1 - st.x) * (1 - st.y), (1 - st.x) * st.y, st.x * (1 - st.y), st.x * st.y}};
 }
 static inline float vl_node_bilerp_add(float sum, float weight, float input) {
   return sum + weight * input;

@@ -4,8 +4,8 @@
 static const vlParameter parameters[] = {
     INPUT("tex1", a, "texture of the cell at the origin", 1),
     INPUT("tex2", b, "texture of the cells next to it", 0),
-    COUNT("dimension", dimension, "2: unit squares of (s, t); 3: unit cubes in texture space", VL_DEFAULT(2),
-          VL_RANGE(2, 3)),
+    COUNT("dimension", dimension, "2: unit squares of (s, t); 3: unit cubes in texture space",
+          VL_DEFAULT(2), VL_RANGE(2, 3)),
     MAPPING,
 };
 const vlKindRow vl_texture_row_checkerboard = {

@@ -10,14 +10,16 @@
 #include "texture/node_kind.h"
 #include "world/world.h"
 
-/* MAX_NESTING bounds the recursion in this file. VL_NODE_ROWS bounds the nesting of textures by their scratch rows,
- * since each level needs rows of its own. */
+/* MAX_NESTING bounds the recursion in this file. VL_NODE_ROWS bounds the nesting of textures by
+ * their scratch rows, since each level needs rows of its own. */
 enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
 
-/* ---- constant spectra -------------------------------------------------------------------------------------------- */
+/* ---- constant spectra
+ * --------------------------------------------------------------------------------------------
+ */
 
-vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
-                             vlError *error) {
+vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role,
+                             vlSpectral *result, vlError *error) {
   memset(result, 0, sizeof *result);
   result->scale = 1;
   if (world->def.color == VL_COLOR_RGB) {
@@ -28,25 +30,30 @@ vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpect
   if (role != VL_ROLE_ILLUMINANT && vl_spectrum_is_constant(spectrum, &value)) {
     result->kind = VL_SPECTRAL_CONSTANT;
     result->scale = value;
-    for (int i = 0; i < 3; i++) result->rgb[i] = 1;
+    for (int i = 0; i < 3; i++)
+      result->rgb[i] = 1;
     return VL_OK;
   }
   if (spectrum->kind == VL_SPECTRUM_RGB && role == VL_ROLE_ALBEDO) {
     result->kind = VL_SPECTRAL_SIGMOID;
     result->scale = spectrum->scale;
-    result->sigmoid = vl_sigmoid_from_rgb(spectrum->space, spectrum->rgb[0], spectrum->rgb[1], spectrum->rgb[2]);
+    result->sigmoid = vl_sigmoid_from_rgb(spectrum->space, spectrum->rgb[0], spectrum->rgb[1],
+                                          spectrum->rgb[2]);
     vlSpectrum unscaled = *spectrum;
     unscaled.scale = 1;
     return vl_spectrum_to_rgb(&unscaled, role, VL_SPACE_SRGB, result->rgb, error);
   }
   float *dense = vl_world_block(world, VL_LAMBDA_COUNT, sizeof(float));
-  if (!dense) return vl_fail_memory(error);
+  if (!dense)
+    return vl_fail_memory(error);
   result->kind = VL_SPECTRAL_DENSE;
   result->dense = dense;
   return vl_spectrum_dense(spectrum, role, dense, error);
 }
 
-/* ---- nodes ------------------------------------------------------------------------------------------------------- */
+/* ---- nodes
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Compile {
   vlWorld *world;
@@ -57,7 +64,8 @@ typedef struct Compile {
 
 static int32_t push_node(vlWorld *world, const vlTextureNode *node) {
   vlTextureNode *slot = VL_PUSH(world->context, &world->nodes);
-  if (!slot) return VL_TEXTURE_NO_MEMORY;
+  if (!slot)
+    return VL_TEXTURE_NO_MEMORY;
   *slot = *node;
   return (int32_t)world->nodes.count - 1;
 }
@@ -77,34 +85,40 @@ static vlTextureNode empty_node(vlNodeKind kind) {
 static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting);
 
 static int32_t compile_float(Compile *c, vlFloatInput input, int nesting) {
-  if (input.texture.index) return compile_texture(c, input.texture.index, ROLE_FLOAT, nesting + 1);
+  if (input.texture.index)
+    return compile_texture(c, input.texture.index, ROLE_FLOAT, nesting + 1);
   vlTextureNode node = empty_node(VL_NODE_FLOAT);
   node.value = input.value;
   int32_t n = push_node(c->world, &node);
-  if (n == VL_TEXTURE_NO_MEMORY) vl_fail_memory(c->error);
+  if (n == VL_TEXTURE_NO_MEMORY)
+    vl_fail_memory(c->error);
   return n;
 }
 
 static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int nesting) {
-  if (input.texture.index) return compile_texture(c, input.texture.index, role, nesting + 1);
+  if (input.texture.index)
+    return compile_texture(c, input.texture.index, role, nesting + 1);
   vlTextureNode node = empty_node(VL_NODE_SPECTRUM);
   node.is_spectrum = true;
   node.role = (vlSpectrumRole)role;
-  if (vl_spectral_compile(c->world, &input.value, (vlSpectrumRole)role, &node.spectrum, c->error) != VL_OK) return -1;
+  if (vl_spectral_compile(c->world, &input.value, (vlSpectrumRole)role, &node.spectrum,
+                          c->error) != VL_OK)
+    return -1;
   int32_t n = push_node(c->world, &node);
-  if (n == VL_TEXTURE_NO_MEMORY) vl_fail_memory(c->error);
+  if (n == VL_TEXTURE_NO_MEMORY)
+    vl_fail_memory(c->error);
   return n;
 }
 
-static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f, vlSpectrumInput s, int role,
-                             int nesting) {
+static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f,
+                             vlSpectrumInput s, int role, int nesting) {
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
 #define NODE_CASE(node, value, set) case node:
 
-/* Computes the scratch rows of a node, its own (as in texture/batch.hot.c) and those of the input that needs
- * most, and the number of nodes visited for it. False: too many. */
+/* Computes the scratch rows of a node, its own (as in texture/batch.hot.c) and those of the
+ * input that needs most, and the number of nodes visited for it. False: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
   switch ((vlNodeKind)node->kind) {
@@ -112,8 +126,12 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
       own = 1;
       break;
       VL_SHARE_NODES(NODE_CASE)
-    case VL_NODE_MIX: own = node->is_spectrum ? 5 : 2; break;
-    case VL_NODE_BILERP: own = node->is_spectrum ? 8 : 5; break;
+    case VL_NODE_MIX:
+      own = node->is_spectrum ? 5 : 2;
+      break;
+    case VL_NODE_BILERP:
+      own = node->is_spectrum ? 8 : 5;
+      break;
     case VL_NODE_FLOAT:
     case VL_NODE_SPECTRUM:
     case VL_NODE_IMAGE:
@@ -124,25 +142,29 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
   }
   const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
   for (int i = 0; i < 5; i++) {
-    if (input[i] < 0) continue;
+    if (input[i] < 0)
+      continue;
     const vlTextureNode *n = &world->nodes.items[input[i]];
     most = n->rows > most ? n->rows : most;
     visits += n->visits;
   }
-  if (own + most > VL_NODE_ROWS || visits > VL_NODE_VISITS) return false;
+  if (own + most > VL_NODE_ROWS || visits > VL_NODE_VISITS)
+    return false;
   node->rows = (uint8_t)(own + most);
   node->visits = (uint16_t)visits;
   return true;
 }
 
-/* The node kinds that give an RGB colour, which is converted to wavelengths where it is used. */
+/* The node kinds that give an RGB colour, which is converted to wavelengths where it is used.
+ */
 #define GIVES_RGB(node, value, set) [node] = true,
 static const bool gives_rgb[VL_NODE_SPECTRUM + 1] = {
     [VL_NODE_IMAGE] = true, [VL_NODE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};
 
 static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
   node->spectrum.scale = 1;
-  if (node->role != VL_ROLE_ILLUMINANT || world->def.color == VL_COLOR_RGB) return VL_OK;
+  if (node->role != VL_ROLE_ILLUMINANT || world->def.color == VL_COLOR_RGB)
+    return VL_OK;
   node->spectrum.kind = VL_SPECTRAL_DENSE;
   node->spectrum.dense = vl_space_illuminant(node->space);
   (void)error;
@@ -155,8 +177,10 @@ static Colors colors_of(const vlWorld *world, int32_t index) {
   const vlTextureNode *node = &world->nodes.items[index];
   const vlSpectral *s = &node->spectrum;
   if (gives_rgb[node->kind])
-    return node->space == VL_SPACE_SRGB && node->role == VL_ROLE_ALBEDO ? COLORS_RGB : COLORS_OTHER;
-  if (node->kind == VL_NODE_SPECTRUM && s->kind != VL_SPECTRAL_CONSTANT && s->kind != VL_SPECTRAL_SIGMOID)
+    return node->space == VL_SPACE_SRGB && node->role == VL_ROLE_ALBEDO ? COLORS_RGB
+                                                                        : COLORS_OTHER;
+  if (node->kind == VL_NODE_SPECTRUM && s->kind != VL_SPECTRAL_CONSTANT &&
+      s->kind != VL_SPECTRAL_SIGMOID)
     return COLORS_OTHER;
   if (node->kind == VL_NODE_SPECTRUM)
     return s->rgb[0] == s->rgb[1] && s->rgb[0] == s->rgb[2] ? COLORS_GREY : COLORS_RGB;
@@ -164,7 +188,8 @@ static Colors colors_of(const vlWorld *world, int32_t index) {
   Colors all = COLORS_GREY;
   for (int i = 0; i < 4; i++) {
     Colors one = input[i] < 0 ? COLORS_GREY : colors_of(world, input[i]);
-    if (one == COLORS_OTHER) return COLORS_OTHER;
+    if (one == COLORS_OTHER)
+      return COLORS_OTHER;
     all = one > all ? one : all;
   }
   return all;
@@ -191,19 +216,22 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
   memcpy(node->st, def->st_from_uv, sizeof node->st);
   node->st_scale = sqrtf(fmaxf(node->st[0] * node->st[0] + node->st[3] * node->st[3],
                                node->st[1] * node->st[1] + node->st[4] * node->st[4]));
-  bool tinted = def->tint[0] != 1 || def->tint[1] != 1 || def->tint[2] != 1 || def->tint[3] != 1;
-  node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
+  bool tinted =
+      def->tint[0] != 1 || def->tint[1] != 1 || def->tint[2] != 1 || def->tint[3] != 1;
+  node->plain =
+      !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
 /* The numbers that only some kinds have. Null: none. */
 typedef void SetNumbers(vlTextureNode *node, const vlTextureDef *def);
 #define SET_NUMBERS(node, value, set) [node] = set,
-static SetNumbers *const set_numbers[VL_NODE_SPECTRUM + 1] = {VL_FLOAT_NODES(SET_NUMBERS) VL_COLOR_NODES(SET_NUMBERS)
-                                                                  VL_SHARE_NODES(SET_NUMBERS)};
+static SetNumbers *const set_numbers[VL_NODE_SPECTRUM + 1] = {
+    VL_FLOAT_NODES(SET_NUMBERS) VL_COLOR_NODES(SET_NUMBERS) VL_SHARE_NODES(SET_NUMBERS)};
 
-/* Compiles the inputs that the kind's row describes, in the order of the row, into a, b, c, d and the amount. A
- * negative result is an error. */
-static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int nesting, vlTextureNode *node) {
+/* Compiles the inputs that the kind's row describes, in the order of the row, into a, b, c, d
+ * and the amount. A negative result is an error. */
+static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int nesting,
+                              vlTextureNode *node) {
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
   int32_t *slots[4] = {&node->a, &node->b, &node->c, &node->d}, n = 0;
   uint32_t used = 0;
@@ -211,17 +239,21 @@ static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int
     const vlParameter *p = &row->parameters[i];
     const void *f = (const char *)def + p->offset, *s = (const char *)def + p->second;
     if (p->type == VL_PARAMETER_EITHER_INPUT)
-      n = *slots[used++] = compile_input(c, def, *(const vlFloatInput *)f, *(const vlSpectrumInput *)s, role, nesting);
-    if (p->type == VL_PARAMETER_FLOAT_INPUT) n = node->amount = compile_float(c, *(const vlFloatInput *)f, nesting);
+      n = *slots[used++] = compile_input(c, def, *(const vlFloatInput *)f,
+                                         *(const vlSpectrumInput *)s, role, nesting);
+    if (p->type == VL_PARAMETER_FLOAT_INPUT)
+      n = node->amount = compile_float(c, *(const vlFloatInput *)f, nesting);
   }
   return n;
 }
 
 static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
   const vlTextureDef *def = &c->scene->textures.items[index - 1];
-  if (!def->spectrum) role = ROLE_FLOAT;
+  if (!def->spectrum)
+    role = ROLE_FLOAT;
   int32_t *memo = &c->memo[(index - 1) * ROLES + (uint32_t)role];
-  if (*memo) return *memo - 1;
+  if (*memo)
+    return *memo - 1;
   if (nesting > MAX_NESTING) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "textures are nested more than %d deep", MAX_NESTING);
@@ -238,23 +270,31 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   node.dv = def->dv;
   memcpy(node.v1, def->planar_v1, sizeof node.v1);
   memcpy(node.v2, def->planar_v2, sizeof node.v2);
-  for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
+  for (int i = 0; i < 12; i++)
+    node.texture_from_world[i] = (float)def->texture_from_world[i];
   fill_image_node(def, &node);
   if (def->kind == VL_TEXTURE_CONSTANT) { /* a constant texture compiles to its input's node */
     int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
-    if (n >= 0) *memo = n + 1;
+    if (n >= 0)
+      *memo = n + 1;
     return n;
   }
   node.kind = (vlNodeKind)def->kind;
-  if (set_numbers[node.kind]) set_numbers[node.kind](&node, def);
+  if (set_numbers[node.kind])
+    set_numbers[node.kind](&node, def);
   int32_t failed = compile_inputs(c, def, role, nesting, &node);
-  if (failed < 0) return failed;
+  if (failed < 0)
+    return failed;
   if (node.kind == VL_NODE_IMAGE) {
-    if ((node.image = vl_texture_image_index(c->world, c->scene, def, c->error)) < 0) return -1;
+    if ((node.image = vl_texture_image_index(c->world, c->scene, def, c->error)) < 0)
+      return -1;
     const vlMipmap *mip = c->world->images.items[node.image].mipmap;
-    if (mip->space_given) node.space = mip->space;
+    if (mip->space_given)
+      node.space = mip->space;
   }
-  if (def->spectrum && gives_rgb[node.kind] && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
+  if (def->spectrum && gives_rgb[node.kind] &&
+      image_spectrum(c->world, &node, c->error) != VL_OK)
+    return -1;
   if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "textures are nested too deep");
@@ -271,42 +311,50 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
 /* Compiles a texture with a memo of compiled textures that lives as long as the build. */
 static vlResult with_compile(vlWorld *world, const vlScene *scene, Compile *c, vlError *error) {
   if (!world->texture_memo) {
-    world->texture_memo = vl_world_block(world, (scene->textures.count + 1) * ROLES, sizeof(int32_t));
-    if (!world->texture_memo) return vl_fail_memory(error);
+    world->texture_memo =
+        vl_world_block(world, (scene->textures.count + 1) * ROLES, sizeof(int32_t));
+    if (!world->texture_memo)
+      return vl_fail_memory(error);
     memset(world->texture_memo, 0, (scene->textures.count + 1) * ROLES * sizeof(int32_t));
   }
   *c = (Compile){world, scene, world->texture_memo, error};
   return VL_OK;
 }
 
-vlResult vl_world_float_node(vlWorld *world, const vlScene *scene, vlFloatInput input, int32_t *node, vlError *error) {
+vlResult vl_world_float_node(vlWorld *world, const vlScene *scene, vlFloatInput input,
+                             int32_t *node, vlError *error) {
   Compile c;
   vlError inner;
   vl_error_clear(&inner);
   vlResult r = with_compile(world, scene, &c, &inner);
-  if (r == VL_OK && (*node = compile_float(&c, input, 0)) < 0) r = inner.code ? inner.code : VL_ERROR_SCENE;
-  if (r != VL_OK && error) *error = inner;
+  if (r == VL_OK && (*node = compile_float(&c, input, 0)) < 0)
+    r = inner.code ? inner.code : VL_ERROR_SCENE;
+  if (r != VL_OK && error)
+    *error = inner;
   return r;
 }
 
-vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
-                                int32_t *node, vlError *error) {
+vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrumInput input,
+                                vlSpectrumRole role, int32_t *node, vlError *error) {
   Compile c;
   vlError inner;
   vl_error_clear(&inner);
   vlResult r = with_compile(world, scene, &c, &inner);
   if (r == VL_OK && (*node = compile_spectrum(&c, input, (int)role, 0)) < 0)
     r = inner.code ? inner.code : VL_ERROR_SCENE;
-  if (r != VL_OK && error) *error = inner;
+  if (r != VL_OK && error)
+    *error = inner;
   return r;
 }
 
-vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error) {
+vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node,
+                           vlError *error) {
   vlTextureNode mix = empty_node(VL_NODE_MIX);
   mix.a = a;
   mix.b = b;
   mix.amount = amount;
-  if (!weigh(world, &mix)) return vl_fail(error, VL_ERROR_SCENE, "textures are nested too deep");
+  if (!weigh(world, &mix))
+    return vl_fail(error, VL_ERROR_SCENE, "textures are nested too deep");
   *node = push_node(world, &mix);
   return *node == VL_TEXTURE_NO_MEMORY ? vl_fail_memory(error) : VL_OK;
 }

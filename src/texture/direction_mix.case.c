@@ -5,13 +5,15 @@
 const TextureCase direction_mix_texture = {
     .variants =
         {
-            {.parameters = "\"rgb tex1\" [.8 .4 .2] \"rgb tex2\" [.1 .2 .3] \"vector3 dir\" [0 0 1]",
+            {.parameters =
+                 "\"rgb tex1\" [.8 .4 .2] \"rgb tex2\" [.1 .2 .3] \"vector3 dir\" [0 0 1]",
              .low = .1,
              .high = .8,
              .even = true,
              .known = {{.3, .4, {.8, .4, .2}}},
              .known_count = 1},
-            {.parameters = "\"rgb tex1\" [.8 .4 .2] \"rgb tex2\" [.1 .2 .3] \"vector3 dir\" [0 .8 -.6]",
+            {.parameters =
+                 "\"rgb tex1\" [.8 .4 .2] \"rgb tex2\" [.1 .2 .3] \"vector3 dir\" [0 .8 -.6]",
              .low = .1,
              .high = .8,
              .even = true,

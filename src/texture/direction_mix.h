@@ -5,13 +5,16 @@
 #include "texture/lookup.h"
 #include "velo/texture.h"
 
-/* Weight of the second input. The weight of the first is the cosine between the normal and the node's direction. */
+/* Weight of the second input. The weight of the first is the cosine between the normal and the
+ * node's direction. */
 static inline float vl_node_direction_mix(const vlTextureNode *node, vlTexturePoint at) {
-  return 1.0f - vl_abs(vl_dot(at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
+  return 1.0f - vl_abs(vl_dot(
+                    at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
 }
 
 static inline void vl_node_set_direction_mix(vlTextureNode *node, const vlTextureDef *def) {
-  for (int i = 0; i < 3; i++) node->direction[i] = def->direction[i];
+  for (int i = 0; i < 3; i++)
+    node->direction[i] = def->direction[i];
 }
 
 #endif

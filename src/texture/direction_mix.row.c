@@ -4,7 +4,8 @@
 static const vlParameter parameters[] = {
     INPUT("tex1", a, "texture where the surface normal is parallel to dir", 0),
     INPUT("tex2", b, "texture where the surface normal is perpendicular to dir", 1),
-    VECTOR("dir", direction, "the direction with which the normal is compared; its length has no effect",
+    VECTOR("dir", direction,
+           "the direction with which the normal is compared; its length has no effect",
            VL_DEFAULT(0, 1, 0)),
 };
 const vlKindRow vl_texture_row_direction_mix = {

@@ -5,7 +5,8 @@
 #include "texture/noise.h"
 
 static inline float vl_node_fbm(const vlTextureNode *node, vlTexturePoint at) {
-  return vl_fractal_noise(vl_texture_space(node, at.p), vl_texture_space_width(node, at), node->omega, node->octaves);
+  return vl_fractal_noise(vl_texture_space(node, at.p), vl_texture_space_width(node, at),
+                          node->omega, node->octaves);
 }
 
 #endif

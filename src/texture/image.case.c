@@ -12,7 +12,8 @@ const TextureCase image_texture = {
                        {.25, .75, {.2, .2, .2}},
                        {.75, .75, {.4, .4, .4}}},
              .known_count = 4},
-            {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true \"float scale\" .5 \"string "
+            {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true \"float "
+                           "scale\" .5 \"string "
                            "filter\" \"point\"",
              .low = .6,
              .high = .9,
@@ -22,10 +23,17 @@ const TextureCase image_texture = {
     .parameters =
         {{.base = "\"string filename\" \"a.pfm\""},
          {.parameter = "filename", .value = "\"string filename\" \"b.pfm\""},
-         {.parameter = "encoding", .base = "\"string filename\" \"a.tga\"", .value = "\"string encoding\" \"linear\""},
+         {.parameter = "encoding",
+          .base = "\"string filename\" \"a.tga\"",
+          .value = "\"string encoding\" \"linear\""},
          {.parameter = "maxanisotropy", .no_effect = "ignored"},
-         {.parameter = "wrap", .base = "\"string filename\" \"a.pfm\";\"float uscale\" 3.3;\"float vscale\" 2.7"},
-         {.parameter = "mapping", .base = "\"string filename\" \"a.pfm\"", .value = "\"string mapping\" \"spherical\""},
-         {.parameter = "v1", .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""},
-         {.parameter = "v2", .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""}},
+         {.parameter = "wrap",
+          .base = "\"string filename\" \"a.pfm\";\"float uscale\" 3.3;\"float vscale\" 2.7"},
+         {.parameter = "mapping",
+          .base = "\"string filename\" \"a.pfm\"",
+          .value = "\"string mapping\" \"spherical\""},
+         {.parameter = "v1",
+          .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""},
+         {.parameter = "v2",
+          .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""}},
 };

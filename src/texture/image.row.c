@@ -1,7 +1,8 @@
 /* texture/image.row.c: the name and the parameters of the texture image. */
 #include "texture/texture.row.h"
 
-static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "mirror", NULL};
+static const char *const wraps[] = {"repeat",           "black",  "clamp",
+                                    "octahedralsphere", "mirror", NULL};
 static const char *const filters[] = {"point", "bilinear", "trilinear", "ewa", NULL};
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", NULL};
 
@@ -10,11 +11,14 @@ static const vlParameter parameters[] = {
     BLOCK(NULL, image, "an image in memory, in place of a file"),
     BLOCK(NULL, data, "the contents of an image file in memory, in place of a file"),
     BLOCK(NULL, data_size, "length of data, bytes"),
-    CHOICE("wrap", wrap, "the value outside the image; mirror is not one of pbrt's", .choices = wraps),
+    CHOICE("wrap", wrap, "the value outside the image; mirror is not one of pbrt's",
+           .choices = wraps),
     BOOL(NULL, wrap_t_given, "true: wrap_t is used for t"),
-    CHOICE(NULL, wrap_t, "the value outside the image in the direction of t; wrap is then that of s", .choices = wraps),
-    CHOICE("filter", filter, "interpolation between texels; ewa is read as trilinear", VL_DEFAULT(VL_FILTER_BILINEAR),
-           .choices = filters),
+    CHOICE(NULL, wrap_t,
+           "the value outside the image in the direction of t; wrap is then that of s",
+           .choices = wraps),
+    CHOICE("filter", filter, "interpolation between texels; ewa is read as trilinear",
+           VL_DEFAULT(VL_FILTER_BILINEAR), .choices = filters),
     {.name = "maxanisotropy",
      .member = "",
      .type = VL_PARAMETER_FLOAT,
@@ -25,11 +29,15 @@ static const vlParameter parameters[] = {
     FLOAT("scale", scale, "factor on the image's values", VL_DEFAULT(1)),
     BOOL("invert", invert, "true: the value becomes 1 - value, after scale"),
     BLOCK("encoding", encoding,
-          "encoding of the image's numbers: sRGB, linear, or gamma and a number; unset: the file's own",
+          "encoding of the image's numbers: sRGB, linear, or gamma and a number; unset: the "
+          "file's "
+          "own",
           .flags = VL_PARAMETER_RULE),
     BOOL(NULL, encoding_given, "true: encoding and gamma replace the file's own encoding"),
-    FLOAT(NULL, gamma, "exponent of the encoding gamma", VL_DEFAULT(2.2), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW),
-    CHOICE(NULL, space, "colour space of an image that does not name its own", .choices = spaces),
+    FLOAT(NULL, gamma, "exponent of the encoding gamma", VL_DEFAULT(2.2), VL_FROM(0),
+          .flags = VL_PARAMETER_ABOVE_LOW),
+    CHOICE(NULL, space, "colour space of an image that does not name its own",
+           .choices = spaces),
     CHANNELS,
     MAPPING,
 };

@@ -1,4 +1,5 @@
-/* texture/images.c: the images of textures: each file is read once, and shared with the world of the build before. */
+/* texture/images.c: the images of textures: each file is read once, and shared with the world
+ * of the build before. */
 #include "texture/images.h"
 
 #include <stdatomic.h>
@@ -13,7 +14,8 @@
 
 static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
   bool same_file = a->path && def->path && strcmp(a->path, def->path) == 0;
-  return (same_file || (a->data && a->data == def->data)) && a->encoding_given == def->encoding_given &&
+  return (same_file || (a->data && a->data == def->data)) &&
+         a->encoding_given == def->encoding_given &&
          (!a->encoding_given || (a->encoding == def->encoding && a->gamma == def->gamma));
 }
 
@@ -26,17 +28,19 @@ static bool is_covered(const vlImage *image, uint32_t alpha) {
         uint32_t v = row[(size_t)x * image->channels + alpha];
         least = v < least ? v : least;
       }
-      if (least < 255) return false;
+      if (least < 255)
+        return false;
       continue;
     }
     for (uint32_t x = 0; x < image->width; x++)
-      if (!(vl_image_get(image, x, y, alpha) >= 1.0f)) return false;
+      if (!(vl_image_get(image, x, y, alpha) >= 1.0f))
+        return false;
   }
   return true;
 }
 
-/* Selects the colour channels (one for a grey image) and alpha, unless alpha is 1 everywhere. Channels are selected by
- * name, because EXR sorts them. */
+/* Selects the colour channels (one for a grey image) and alpha, unless alpha is 1 everywhere.
+ * Channels are selected by name, because EXR sorts them. */
 static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
   int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
       b = vl_image_find_channel(image, "B");
@@ -67,16 +71,19 @@ typedef struct Image {
   uint64_t owner; /* vlImageKey.owner */
 } Image;
 
-static vlResult load_image(const vlWorld *world, const Image *p, vlMipmap **mipmap, vlError *error) {
+static vlResult load_image(const vlWorld *world, const Image *p, vlMipmap **mipmap,
+                           vlError *error) {
   vlContext *context = world->context;
   const vlImage *given = p->given;
   vlImage *image = NULL;
   vlResult r = VL_OK;
   if (p->data)
-    r = vl_image_decode(context, world->task, p->name ? p->name : "image", p->data, p->size, &image, error);
+    r = vl_image_decode(context, world->task, p->name ? p->name : "image", p->data, p->size,
+                        &image, error);
   else if (!given)
     r = vl_image_read_named(context, world->task, p->path, &image, error);
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   given = image ? image : given;
   vlMipmapDef mip;
   memset(&mip, 0, sizeof mip);
@@ -114,31 +121,39 @@ static vlImageKey key_of(const Image *p) {
 
 /* Adds the digest of a file in memory. Images in memory are recognised by their owner alone. */
 static void add_digest(const Image *p, vlImageKey *key) {
-  if (!p->data) return;
+  if (!p->data)
+    return;
   key->size = p->size;
   vl_digest(p->data, p->size, key->digest);
 }
 
 static bool made_alike(const vlImageKey *a, const vlImageKey *b) {
-  return a->stamp.there == b->stamp.there && a->pyramid == b->pyramid && a->keep_coverage == b->keep_coverage &&
-         a->encoding_given == b->encoding_given && a->encoding == b->encoding && a->gamma == b->gamma;
+  return a->stamp.there == b->stamp.there && a->pyramid == b->pyramid &&
+         a->keep_coverage == b->keep_coverage && a->encoding_given == b->encoding_given &&
+         a->encoding == b->encoding && a->gamma == b->gamma;
 }
 
-/* The image of the previous world with these bytes, or null. The key gets its digest if that is needed. */
-static const vlWorldImage *find_previous(const vlWorld *world, const Image *p, vlImageKey *key) {
+/* The image of the previous world with these bytes, or null. The key gets its digest if that is
+ * needed. */
+static const vlWorldImage *find_previous(const vlWorld *world, const Image *p,
+                                         vlImageKey *key) {
   const vlWorld *previous = world->previous;
   bool same_scene = previous && previous->scene_number == world->scene_number;
   for (size_t i = 0; same_scene && key->owner && i < previous->images.count; i++) {
     const vlWorldImage *image = &previous->images.items[i];
-    if (made_alike(&image->key, key) && image->key.owner == key->owner) return image;
+    if (made_alike(&image->key, key) && image->key.owner == key->owner)
+      return image;
   }
   add_digest(p, key);
-  if (key->stamp.there && !vl_context_allows(world->context, p->path)) return NULL;
+  if (key->stamp.there && !vl_context_allows(world->context, p->path))
+    return NULL;
   for (size_t i = 0; previous && i < previous->images.count; i++) {
     const vlWorldImage *image = &previous->images.items[i];
-    if (!made_alike(&image->key, key)) continue;
+    if (!made_alike(&image->key, key))
+      continue;
     if (key->stamp.there ? vl_file_stamp_same(&image->key.stamp, &key->stamp)
-                         : key->size && image->key.size == key->size && memcmp(image->key.digest, key->digest, 16) == 0)
+                         : key->size && image->key.size == key->size &&
+                               memcmp(image->key.digest, key->digest, 16) == 0)
       return image;
   }
   return NULL;
@@ -149,14 +164,16 @@ static void free_mipmap(vlContext *context, void *mipmap) {
   vl_mipmap_destroy(mipmap);
 }
 
-static int32_t push_image(vlWorld *world, vlMipmap *mipmap, const vlImageKey *key, vlError *error) {
+static int32_t push_image(vlWorld *world, vlMipmap *mipmap, const vlImageKey *key,
+                          vlError *error) {
   vlPart *part = vl_part_add(world);
   vlWorldImage *entry = part ? VL_PUSH(world->context, &world->images) : NULL;
   if (part) {
     part->destroy = free_mipmap;
     part->object = mipmap;
   }
-  if (!part) vl_mipmap_destroy(mipmap);
+  if (!part)
+    vl_mipmap_destroy(mipmap);
   if (!entry) {
     vl_fail_memory(error);
     return -1;
@@ -168,8 +185,10 @@ static int32_t push_image(vlWorld *world, vlMipmap *mipmap, const vlImageKey *ke
 }
 
 /* Shares an image of the previous world. */
-static int32_t share_image(vlWorld *world, const vlWorldImage *from, const vlImageKey *key, vlError *error) {
-  vlWorldImage *entry = vl_part_share(world, from->part) ? VL_PUSH(world->context, &world->images) : NULL;
+static int32_t share_image(vlWorld *world, const vlWorldImage *from, const vlImageKey *key,
+                           vlError *error) {
+  vlWorldImage *entry =
+      vl_part_share(world, from->part) ? VL_PUSH(world->context, &world->images) : NULL;
   if (!entry) {
     vl_fail_memory(error);
     return -1;
@@ -185,21 +204,27 @@ static int32_t share_image(vlWorld *world, const vlWorldImage *from, const vlIma
 static int32_t obtain_image(vlWorld *world, const Image *p, vlError *error) {
   vlImageKey key = key_of(p);
   const vlWorldImage *previous = find_previous(world, p, &key);
-  if (previous) return share_image(world, previous, &key, error);
+  if (previous)
+    return share_image(world, previous, &key, error);
   vlMipmap *mipmap = NULL;
-  return load_image(world, p, &mipmap, error) == VL_OK ? push_image(world, mipmap, &key, error) : -1;
+  return load_image(world, p, &mipmap, error) == VL_OK ? push_image(world, mipmap, &key, error)
+                                                       : -1;
 }
 
-int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
-                           float gamma, bool pyramid, vlError *error) {
-  Image p = {NULL, path, NULL, 0, given, encoding, gamma, pyramid, false, given ? given->number : 0};
+int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given,
+                           const vlEncoding *encoding, float gamma, bool pyramid,
+                           vlError *error) {
+  Image p = {NULL,     path,  NULL,    0,     given,
+             encoding, gamma, pyramid, false, given ? given->number : 0};
   return obtain_image(world, &p, error);
 }
 
 /* vlImageKey.owner: the number of the image, or the texture with its generation. */
 static uint64_t owner_of(const vlScene *scene, const vlTextureDef *def) {
-  if (def->path) return 0;
-  if (def->image) return def->image->number;
+  if (def->path)
+    return 0;
+  if (def->image)
+    return def->image->number;
   size_t index = (size_t)(def - scene->textures.items);
   return vl_scene_mark(&scene->texture_marks, index).generation << 32 | (index + 1);
 }
@@ -211,16 +236,19 @@ static Image open_image(const vlScene *scene, const vlTextureDef *def) {
                  owner_of(scene, def)};
 }
 
-/* Stores the path (or memory address) and the encoding in an entry. Later requests find the image by them. */
+/* Stores the path (or memory address) and the encoding in an entry. Later requests find the
+ * image by them. */
 static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
   entry->encoding = def->encoding;
   entry->encoding_given = def->encoding_given;
   entry->gamma = def->gamma;
   entry->data = def->data;
-  if (!def->path) return true;
+  if (!def->path)
+    return true;
   size_t size = strlen(def->path) + 1;
   char *copy = vl_world_block(world, size, 1);
-  if (copy) memcpy(copy, def->path, size);
+  if (copy)
+    memcpy(copy, def->path, size);
   entry->path = copy;
   return copy != NULL;
 }
@@ -239,9 +267,11 @@ static void preload_one(void *user, uint32_t index, uint32_t worker) {
   (void)worker;
   Preload *job = user;
   double share = (double)atomic_fetch_add(&job->done, 1) / job->count;
-  if (vl_world_step(job->world, "images", 0.3 * share, NULL) != VL_OK) return;
+  if (vl_world_step(job->world, "images", 0.3 * share, NULL) != VL_OK)
+    return;
   Image p = open_image(job->scene, job->defs[index]);
-  vlError ignored; /* ignored: whoever uses the image meets the same error and reports it with its source location */
+  vlError ignored; /* ignored: whoever uses the image meets the same error and reports it with
+                      its source location */
   load_image(job->world, &p, &job->mipmaps[index], &ignored);
 }
 
@@ -252,16 +282,20 @@ static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *
                          .encoding = defs[i]->encoding,
                          .encoding_given = defs[i]->encoding_given,
                          .gamma = defs[i]->gamma};
-    if (same_image(&like, def)) return true;
+    if (same_image(&like, def))
+      return true;
   }
   return false;
 }
 
-/* Whether the images of a texture are listed for reading; those of the previous world are shared at once. */
+/* Whether the images of a texture are listed for reading; those of the previous world are
+ * shared at once. */
 static bool list_image(vlWorld *world, Preload *job, const vlTextureDef *def, vlError *error) {
   for (size_t i = 0; i < world->images.count; i++)
-    if (same_image(&world->images.items[i], def)) return true;
-  if (listed(job->defs, job->count, def)) return true;
+    if (same_image(&world->images.items[i], def))
+      return true;
+  if (listed(job->defs, job->count, def))
+    return true;
   Image p = open_image(job->scene, def);
   vlImageKey key = key_of(&p);
   const vlWorldImage *previous = find_previous(world, &p, &key);
@@ -284,30 +318,36 @@ vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *
   bool ok = job.defs && job.mipmaps && job.keys;
   for (size_t i = 0; ok && i < scene->textures.count && job.count < most; i++) {
     const vlTextureDef *def = &scene->textures.items[i];
-    if (def->kind == VL_TEXTURE_IMAGE && (def->path || def->data)) ok = list_image(world, &job, def, error);
+    if (def->kind == VL_TEXTURE_IMAGE && (def->path || def->data))
+      ok = list_image(world, &job, def, error);
   }
-  if (ok && job.count > 1) vl_parallel_for(world->context, job.count, preload_one, &job);
+  if (ok && job.count > 1)
+    vl_parallel_for(world->context, job.count, preload_one, &job);
   for (size_t i = 0; ok && i < job.count; i++) {
-    if (!job.mipmaps[i]) continue;
+    if (!job.mipmaps[i])
+      continue;
     int32_t index = push_image(world, job.mipmaps[i], &job.keys[i], error);
     job.mipmaps[i] = NULL;
     ok = index >= 0 && name_image(world, &world->images.items[index], job.defs[i]);
   }
-  for (size_t i = 0; job.mipmaps && i < job.count; i++) vl_mipmap_destroy(job.mipmaps[i]);
+  for (size_t i = 0; job.mipmaps && i < job.count; i++)
+    vl_mipmap_destroy(job.mipmaps[i]);
   VL_FREE(world->context, job.defs, job.keys, job.mipmaps);
   return ok ? vl_world_step(world, "images", 0.3, error) : vl_fail_memory(error);
 }
 
-int32_t vl_texture_image_index(vlWorld *world, const vlScene *scene, const vlTextureDef *def, vlError *error) {
+int32_t vl_texture_image_index(vlWorld *world, const vlScene *scene, const vlTextureDef *def,
+                               vlError *error) {
   for (size_t i = 0; i < world->images.count; i++)
-    if (same_image(&world->images.items[i], def)) return (int32_t)i;
+    if (same_image(&world->images.items[i], def))
+      return (int32_t)i;
   vlError inner;
   vl_error_clear(&inner);
   Image image = open_image(scene, def);
   int32_t index = obtain_image(world, &image, &inner);
   if (index < 0) {
-    vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-               "%s", inner.message);
+    vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file,
+               def->source.line, def->source.column, "%s", inner.message);
     return -1;
   }
   if (!name_image(world, &world->images.items[index], def)) {

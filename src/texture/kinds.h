@@ -1,6 +1,7 @@
-/* texture/kinds.h: the kinds of textures whose value is one function of the point, and the functions of all kinds. They
- * are inline and take values. Two evaluators share them and thus agree to the bit: batch.hot.c over a batch, point.c
- * at a single point. Both switch over vlNodeKind without a default, so that a missing kind is a compile error. */
+/* texture/kinds.h: the kinds of textures whose value is one function of the point, and the
+ * functions of all kinds. They are inline and take values. Two evaluators share them and thus
+ * agree to the bit: batch.hot.c over a batch, point.c at a single point. Both switch over
+ * vlNodeKind without a default, so that a missing kind is a compile error. */
 #ifndef TEXTURE_KINDS_H
 #define TEXTURE_KINDS_H
 
@@ -17,9 +18,9 @@
 #include "texture/wrinkled.h"
 #include "velo/texture.h"
 
-/* X(node, value, set) for each kind of node whose value is one function of the point, by the type of the value.
- * value(node, at): the function. set(node, def): stores the numbers of the texture that only such kinds have. The
- * evaluators treat the other kinds separately. */
+/* X(node, value, set) for each kind of node whose value is one function of the point, by the
+ * type of the value. value(node, at): the function. set(node, def): stores the numbers of the
+ * texture that only such kinds have. The evaluators treat the other kinds separately. */
 /* A float. */
 #define VL_FLOAT_NODES(X)                                  \
   X(VL_NODE_FBM, vl_node_fbm, vl_node_set_noise)           \

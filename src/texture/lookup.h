@@ -1,5 +1,5 @@
-/* texture/lookup.h: texture coordinates and filtered image lookup at one point. The functions are inline and take
- * values. Both evaluators use them through kinds.h. pbrt book 10.2-10.4. */
+/* texture/lookup.h: texture coordinates and filtered image lookup at one point. The functions
+ * are inline and take values. Both evaluators use them through kinds.h. pbrt book 10.2-10.4. */
 #ifndef TEXTURE_LOOKUP_H
 #define TEXTURE_LOOKUP_H
 
@@ -7,9 +7,9 @@
 #include "velo/shape.h"
 #include "world/world.h"
 
-/* A point at which a texture is evaluated: uv, position and normal in world space, and the footprint. The footprint has
- * a width in world units and, for image lookups, the two axes of an ellipse in (s, t). color: interpolated vertex
- * colour, read only by nodes that use it. */
+/* A point at which a texture is evaluated: uv, position and normal in world space, and the
+ * footprint. The footprint has a width in world units and, for image lookups, the two axes of
+ * an ellipse in (s, t). color: interpolated vertex colour, read only by nodes that use it. */
 typedef struct vlTexturePoint {
   float u, v;
   vlVec3 p, n;
@@ -23,10 +23,14 @@ static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
   return node->uv_set != 0 || node->colors;
 }
 
-/* Sets the uv and vertex colour of a texture point on a triangle, as far as the node reads them. */
-static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where, vlTexturePoint *at) {
-  for (int c = 0; c < 4; c++) at->color[c] = 1.0f;
-  if (!where || where->shape->kind != VL_SHAPE_TRIANGLES) return;
+/* Sets the uv and vertex colour of a texture point on a triangle, as far as the node reads
+ * them. */
+static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where,
+                                        vlTexturePoint *at) {
+  for (int c = 0; c < 4; c++)
+    at->color[c] = 1.0f;
+  if (!where || where->shape->kind != VL_SHAPE_TRIANGLES)
+    return;
   const vlWorldShape *s = where->shape;
   const uint32_t *f = s->indices + 3 * (size_t)where->prim;
   const float *uvs = node->uv_set ? s->more_uvs[node->uv_set - 1] : NULL;
@@ -39,14 +43,16 @@ static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextu
   }
   for (int c = 0; node->colors && s->colors && c < 4; c++) {
     float sum = 0;
-    for (int k = 0; k < 3; k++) sum += where->weights[k] * s->colors[4 * (size_t)f[k] + (size_t)c];
+    for (int k = 0; k < 3; k++)
+      sum += where->weights[k] * s->colors[4 * (size_t)f[k] + (size_t)c];
     at->color[c] = sum > 0.0f ? sum : 0.0f;
   }
 }
 
 static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
   const float *m = node->texture_from_world;
-  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
+                 m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
                  m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
 }
 
@@ -54,13 +60,15 @@ static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at)
   if (node->st_given)
     return (vlVec2){node->st[0] * at.u + node->st[1] * at.v + node->st[2],
                     node->st[3] * at.u + node->st[4] * at.v + node->st[5]};
-  if (node->mapping == VL_MAPPING_UV) return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
+  if (node->mapping == VL_MAPPING_UV)
+    return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
   vlVec3 q = vl_texture_space(node, at.p);
   if (node->mapping == VL_MAPPING_PLANAR)
     return (vlVec2){node->du + q.x * node->v1[0] + q.y * node->v1[1] + q.z * node->v1[2],
                     node->dv + q.x * node->v2[0] + q.y * node->v2[1] + q.z * node->v2[2]};
   float phi = vl_atan2(q.y, q.x);
-  if (node->mapping == VL_MAPPING_CYLINDRICAL) return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
+  if (node->mapping == VL_MAPPING_CYLINDRICAL)
+    return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
   phi = phi < 0 ? phi + 2 * VL_PI : phi;
   vlVec3 d = vl_normalize(q);
   return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
@@ -71,20 +79,30 @@ static inline bool vl_texture_over_uv(const vlTextureNode *node) {
   return node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV);
 }
 /* Converts axes in uv to axes in (s, t). */
-static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4], vlTexturePoint *at) {
+static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4],
+                                         vlTexturePoint *at) {
   for (int k = 0; k < 4; k += 2) {
-    at->axes[k] = node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
-    at->axes[k + 1] = node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
+    at->axes[k] =
+        node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
+    at->axes[k + 1] =
+        node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
   }
 }
 
-/* ---- images ---------------------------------------------------------------------------------------------------- */
+/* ---- images
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-/* Maps an integer texel coordinate into the image by the wrap mode. -1: outside the image (black). */
+/* Maps an integer texel coordinate into the image by the wrap mode. -1: outside the image
+ * (black).
+ */
 static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
-  if (i >= 0 && i < n) return i;
-  if (wrap == VL_WRAP_CLAMP) return i < 0 ? 0 : n - 1;
-  if (wrap == VL_WRAP_BLACK) return -1;
+  if (i >= 0 && i < n)
+    return i;
+  if (wrap == VL_WRAP_CLAMP)
+    return i < 0 ? 0 : n - 1;
+  if (wrap == VL_WRAP_BLACK)
+    return -1;
   if (wrap == VL_WRAP_MIRROR) {
     int64_t period = 2 * (int64_t)n, m = i % period;
     m = m < 0 ? m + period : m;
@@ -94,9 +112,11 @@ static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
   return m < 0 ? m + n : m;
 }
 
-/* vl_wrap_index of i + 1, if that of i is `wrapped`: without a second division where the image repeats. */
+/* vl_wrap_index of i + 1, if that of i is `wrapped`: without a second division where the image
+ * repeats. */
 static inline int32_t vl_wrap_next(int32_t i, int32_t wrapped, int32_t n, vlWrap wrap) {
-  if (wrap == VL_WRAP_REPEAT) return wrapped + 1 < n ? wrapped + 1 : 0;
+  if (wrap == VL_WRAP_REPEAT)
+    return wrapped + 1 < n ? wrapped + 1 : 0;
   return vl_wrap_index(i + 1, n, wrap);
 }
 
@@ -104,10 +124,11 @@ typedef struct vlTexel {
   float c[4];
 } vlTexel;
 
-static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap,
-                                 vlWrap wrap_t) {
+static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y,
+                                 vlWrap wrap, vlWrap wrap_t) {
   int32_t w = (int32_t)mip->levels[level].width, h = (int32_t)mip->levels[level].height;
-  if (wrap == VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
+  if (wrap ==
+      VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
     if (x < 0) {
       x = -x - 1;
       y = h - 1 - y;
@@ -127,13 +148,16 @@ static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x,
   x = vl_wrap_index(x, w, wrap);
   y = vl_wrap_index(y, h, wrap_t);
   vlTexel black = {{0, 0, 0, 0}};
-  if (x < 0 || y < 0) return black;
+  if (x < 0 || y < 0)
+    return black;
   vlTexel t = black;
-  for (uint32_t i = 0; i < mip->channels; i++) t.c[i] = vl_mip_texel(mip, level, (uint32_t)x, (uint32_t)y, i);
+  for (uint32_t i = 0; i < mip->channels; i++)
+    t.c[i] = vl_mip_texel(mip, level, (uint32_t)x, (uint32_t)y, i);
   return t;
 }
 
-static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap) {
+static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y,
+                               vlWrap wrap) {
   return vl_texel_2(mip, level, x, y, wrap, wrap);
 }
 
@@ -144,15 +168,17 @@ static inline int32_t vl_to_index(float x) { /* floor(x), defined for any float 
   return f == f ? (int32_t)f : 0;
 }
 
-/* The weights of the four texels around a point, and where these texels start in the level: texel 2 j + i at
- * row[j] + column[i]. */
+/* The weights of the four texels around a point, and where these texels start in the level:
+ * texel 2 j + i at row[j] + column[i]. */
 typedef struct vlTexelSquare {
   float w[4];
   size_t row[2];
   uint32_t column[2];
 } vlTexelSquare;
-static inline __attribute__((always_inline)) vlTexel vl_blend_channels(const vlMipmap *mip, const vlMipLevel *l,
-                                                                       const vlTexelSquare *q, uint32_t channels) {
+static inline __attribute__((always_inline)) vlTexel vl_blend_channels(const vlMipmap *mip,
+                                                                       const vlMipLevel *l,
+                                                                       const vlTexelSquare *q,
+                                                                       uint32_t channels) {
   vlTexel r = {{0, 0, 0, 0}};
   if (mip->is_bytes) {
     const uint8_t *top = l->bytes + q->row[0], *below = l->bytes + q->row[1];
@@ -160,23 +186,29 @@ static inline __attribute__((always_inline)) vlTexel vl_blend_channels(const vlM
                   *d = below + q->column[1];
     for (uint32_t i = 0; i < channels; i++) {
       const float *value = mip->decode[i];
-      r.c[i] = q->w[0] * value[a[i]] + q->w[1] * value[b[i]] + q->w[2] * value[c[i]] + q->w[3] * value[d[i]];
+      r.c[i] = q->w[0] * value[a[i]] + q->w[1] * value[b[i]] + q->w[2] * value[c[i]] +
+               q->w[3] * value[d[i]];
     }
     return r;
   }
   const float *top = l->floats + q->row[0], *below = l->floats + q->row[1];
-  const float *a = top + q->column[0], *b = top + q->column[1], *c = below + q->column[0], *d = below + q->column[1];
-  for (uint32_t i = 0; i < channels; i++) r.c[i] = q->w[0] * a[i] + q->w[1] * b[i] + q->w[2] * c[i] + q->w[3] * d[i];
+  const float *a = top + q->column[0], *b = top + q->column[1], *c = below + q->column[0],
+              *d = below + q->column[1];
+  for (uint32_t i = 0; i < channels; i++)
+    r.c[i] = q->w[0] * a[i] + q->w[1] * b[i] + q->w[2] * c[i] + q->w[3] * d[i];
   return r;
 }
-static inline __attribute__((always_inline)) vlTexel vl_blend_texels(const vlMipmap *mip, const vlMipLevel *l,
+static inline __attribute__((always_inline)) vlTexel vl_blend_texels(const vlMipmap *mip,
+                                                                     const vlMipLevel *l,
                                                                      const vlTexelSquare *q) {
-  return mip->channels == 3 ? vl_blend_channels(mip, l, q, 3) : vl_blend_channels(mip, l, q, mip->channels);
+  return mip->channels == 3 ? vl_blend_channels(mip, l, q, 3)
+                            : vl_blend_channels(mip, l, q, mip->channels);
 }
-/* The square of a bilinear lookup. *x, *y: indices of the first texel. Returns false, with only the weights set, if a
- * texel is outside of the image or if the edges fold. */
-static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t,
-                                   vlTexelSquare *q, int32_t *x, int32_t *y) {
+/* The square of a bilinear lookup. *x, *y: indices of the first texel. Returns false, with only
+ * the weights set, if a texel is outside of the image or if the edges fold. */
+static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s, float t,
+                                   vlWrap wrap, vlWrap wrap_t, vlTexelSquare *q, int32_t *x,
+                                   int32_t *y) {
   const vlMipLevel *l = &mip->levels[level];
   float fx = s * (float)l->width - 0.5f, fy = t * (float)l->height - 0.5f;
   int32_t xi = vl_to_index(fx), yi = vl_to_index(fy);
@@ -187,10 +219,14 @@ static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s,
   q->w[3] = dx * dy;
   *x = xi;
   *y = yi;
-  if (!(wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f)) return false;
-  int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_next(xi, x0, (int32_t)l->width, wrap);
-  int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_next(yi, y0, (int32_t)l->height, wrap_t);
-  if ((x0 | x1 | y0 | y1) < 0) return false;
+  if (!(wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f))
+    return false;
+  int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap),
+          x1 = vl_wrap_next(xi, x0, (int32_t)l->width, wrap);
+  int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t),
+          y1 = vl_wrap_next(yi, y0, (int32_t)l->height, wrap_t);
+  if ((x0 | x1 | y0 | y1) < 0)
+    return false;
   uint32_t n = mip->channels;
   size_t pitch = (size_t)l->width * n;
   q->row[0] = (size_t)y0 * pitch;
@@ -200,24 +236,32 @@ static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s,
   return true;
 }
 /* Bilinear lookup in one level. (s, t) = (0, 0) is the top left corner of the image. */
-static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
+static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t,
+                                    vlWrap wrap, vlWrap wrap_t) {
   vlTexelSquare q;
   int32_t x, y;
-  if (vl_texel_square(mip, level, s, t, wrap, wrap_t, &q, &x, &y)) return vl_blend_texels(mip, &mip->levels[level], &q);
-  vlTexel a = vl_texel_2(mip, level, x, y, wrap, wrap_t), b = vl_texel_2(mip, level, x + 1, y, wrap, wrap_t);
-  vlTexel c = vl_texel_2(mip, level, x, y + 1, wrap, wrap_t), d = vl_texel_2(mip, level, x + 1, y + 1, wrap, wrap_t), r;
-  for (int i = 0; i < 4; i++) r.c[i] = q.w[0] * a.c[i] + q.w[1] * b.c[i] + q.w[2] * c.c[i] + q.w[3] * d.c[i];
+  if (vl_texel_square(mip, level, s, t, wrap, wrap_t, &q, &x, &y))
+    return vl_blend_texels(mip, &mip->levels[level], &q);
+  vlTexel a = vl_texel_2(mip, level, x, y, wrap, wrap_t),
+          b = vl_texel_2(mip, level, x + 1, y, wrap, wrap_t);
+  vlTexel c = vl_texel_2(mip, level, x, y + 1, wrap, wrap_t),
+          d = vl_texel_2(mip, level, x + 1, y + 1, wrap, wrap_t), r;
+  for (int i = 0; i < 4; i++)
+    r.c[i] = q.w[0] * a.c[i] + q.w[1] * b.c[i] + q.w[2] * c.c[i] + q.w[3] * d.c[i];
   return r;
 }
-static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t,
+                                  vlWrap wrap) {
   return vl_bilinear_2(mip, level, s, t, wrap, wrap);
 }
 
-static inline vlTexel vl_nearest_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
+static inline vlTexel vl_nearest_2(const vlMipmap *mip, uint32_t level, float s, float t,
+                                   vlWrap wrap, vlWrap wrap_t) {
   return vl_texel_2(mip, level, vl_to_index(s * (float)mip->levels[level].width),
                     vl_to_index(t * (float)mip->levels[level].height), wrap, wrap_t);
 }
-static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, float t,
+                                 vlWrap wrap) {
   return vl_nearest_2(mip, level, s, t, wrap, wrap);
 }
 
@@ -226,27 +270,32 @@ static inline float vl_log2_rough(float x) {
   return vl_ln(x) * 1.44269504f;
 }
 
-/* Filtering over the elliptic footprint: the MIP level matches the shorter axis, because MIP levels are isotropic.
- * Several taps cover the longer axis. */
+/* Filtering over the elliptic footprint: the MIP level matches the shorter axis, because MIP
+ * levels are isotropic. Several taps cover the longer axis. */
 enum { VL_FILTER_TAPS = 8 };
 typedef struct vlFilterPlan {
   float level; /* >= 0 */
   uint32_t taps;
   float s, t; /* from the first tap to the last */
 } vlFilterPlan;
-/* a, b: the footprint's axes; width, height: of the finest level; last: index of the coarsest. Without branches, for
- * vector loops. */
-static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float width, float height, float last,
-                                                                         vlVec2 a, vlVec2 b) {
-  float as = a.x * width, at = a.y * height, bs = b.x * width, bt = b.y * height; /* axes in texels */
+/* a, b: the footprint's axes; width, height: of the finest level; last: index of the coarsest.
+ * Without branches, for vector loops. */
+static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float width,
+                                                                         float height,
+                                                                         float last, vlVec2 a,
+                                                                         vlVec2 b) {
+  float as = a.x * width, at = a.y * height, bs = b.x * width,
+        bt = b.y * height; /* axes in texels */
   float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
   int32_t first = a2 > b2;
   float long2 = first ? a2 : b2;
-  int32_t reduces = (long2 > 1.0f) & (long2 < 1e30f); /* else magnification: no texel is skipped */
+  int32_t reduces =
+      (long2 > 1.0f) & (long2 < 1e30f); /* else magnification: no texel is skipped */
   float longer = __builtin_sqrtf(reduces ? long2 : 1.0f);
   float shorter = vl_max(vl_abs(as * bt - at * bs) / longer, 1.0f); /* ellipse of equal area */
   float level = vl_min(vl_log2_rough(shorter), last), whole = long2 >= 1e30f ? last : 0.0f;
-  uint32_t taps = (uint32_t)(int32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
+  uint32_t taps =
+      (uint32_t)(int32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
   vlFilterPlan plan;
   plan.level = reduces ? level : whole;
   plan.taps = reduces ? taps : 1;
@@ -256,16 +305,19 @@ static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float w
   return plan;
 }
 static inline vlFilterPlan vl_filter_plan_of(const vlMipmap *mip, const float axes[4]) {
-  return vl_filter_plan((float)mip->levels[0].width, (float)mip->levels[0].height, (float)(mip->level_count - 1),
-                        (vlVec2){axes[0], axes[1]}, (vlVec2){axes[2], axes[3]});
+  return vl_filter_plan((float)mip->levels[0].width, (float)mip->levels[0].height,
+                        (float)(mip->level_count - 1), (vlVec2){axes[0], axes[1]},
+                        (vlVec2){axes[2], axes[3]});
 }
 
-/* A lookup in an image texture: where the image is read (t is measured from the top) and how it is filtered. */
+/* A lookup in an image texture: where the image is read (t is measured from the top) and how it
+ * is filtered. */
 typedef struct vlImageLookup {
   float s, t;
   vlFilterPlan plan;
 } vlImageLookup;
-static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlMipmap *mip,
+                                            vlTexturePoint at) {
   vlVec2 st = vl_texture_st(node, at); /* t is measured from the bottom */
   return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan_of(mip, at.axes)};
 }
@@ -279,47 +331,54 @@ static inline float vl_tap_place(float inv_taps, uint32_t k) {
   return 0.5f * inv_taps - 0.5f + (float)k * inv_taps;
 }
 
-/* The squares of all taps and levels of a lookup, in this order. Returns their number; 0 if the filter reads one texel
- * only, or if some square is not plain (vl_texel_square). */
+/* The squares of all taps and levels of a lookup, in this order. Returns their number; 0 if the
+ * filter reads one texel only, or if some square is not plain (vl_texel_square). */
 enum { VL_LOOKUP_SQUARES = 2 * VL_FILTER_TAPS };
-static inline uint32_t vl_lookup_squares(const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at,
-                                         vlTexelSquare *out) {
-  if (node->filter == VL_FILTER_POINT) return 0;
+static inline uint32_t vl_lookup_squares(const vlTextureNode *node, const vlMipmap *mip,
+                                         const vlImageLookup *at, vlTexelSquare *out) {
+  if (node->filter == VL_FILTER_POINT)
+    return 0;
   uint32_t levels = vl_two_levels(node, at->plan.level) ? 2 : 1, count = 0;
   float inv = 1.0f / (float)at->plan.taps;
   for (uint32_t k = 0; k < at->plan.taps; k++) {
-    float place = vl_tap_place(inv, k), s = at->s + place * at->plan.s, t = at->t - place * at->plan.t;
+    float place = vl_tap_place(inv, k), s = at->s + place * at->plan.s,
+          t = at->t - place * at->plan.t;
     for (uint32_t level = 0; level < levels; level++) {
       int32_t x, y;
-      if (!vl_texel_square(mip, (uint32_t)at->plan.level + level, s, t, node->wrap, node->wrap_t, out + count++, &x,
-                           &y))
+      if (!vl_texel_square(mip, (uint32_t)at->plan.level + level, s, t, node->wrap,
+                           node->wrap_t, out + count++, &x, &y))
         return 0;
     }
   }
   return count;
 }
 
-/* Prefetches the texels of some squares. A function without any effect but prefetches must be always_inline: gcc 12 may
- * take it for one without effects and delete its calls. */
-static inline __attribute__((always_inline)) void vl_prefetch_squares(const vlMipmap *mip, const vlImageLookup *at,
-                                                                      const vlTexelSquare *q, uint32_t count) {
+/* Prefetches the texels of some squares. A function without any effect but prefetches must be
+ * always_inline: gcc 12 may take it for one without effects and delete its calls. */
+static inline __attribute__((always_inline)) void vl_prefetch_squares(const vlMipmap *mip,
+                                                                      const vlImageLookup *at,
+                                                                      const vlTexelSquare *q,
+                                                                      uint32_t count) {
   const vlMipLevel *first = &mip->levels[(uint32_t)at->plan.level];
   bool both = count > at->plan.taps;
   for (uint32_t k = 0; k < count; k++, q++) {
     const vlMipLevel *l = first + (both & k);
     for (int j = 0; j < 2; j++) {
       size_t index = q->row[j] + q->column[0];
-      __builtin_prefetch(mip->is_bytes ? (const void *)(l->bytes + index) : (const void *)(l->floats + index), 0, 3);
+      __builtin_prefetch(
+          mip->is_bytes ? (const void *)(l->bytes + index) : (const void *)(l->floats + index),
+          0, 3);
     }
   }
 }
 
-/* A point filter reads one texel of the finer level. A bilinear filter interpolates on that level. A trilinear filter,
- * which also serves for EWA, blends two levels. Bilinear and trilinear filters take several taps. squares: those of
- * vl_lookup_squares; null: they are computed here. */
-static inline __attribute__((always_inline)) vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *mip,
-                                                                    const vlImageLookup *at,
-                                                                    const vlTexelSquare *squares) {
+/* A point filter reads one texel of the finer level. A bilinear filter interpolates on that
+ * level. A trilinear filter, which also serves for EWA, blends two levels. Bilinear and
+ * trilinear filters take several taps. squares: those of vl_lookup_squares; null: they are
+ * computed here. */
+static inline __attribute__((always_inline)) vlTexel vl_image_value(
+    const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at,
+    const vlTexelSquare *squares) {
   float s = at->s, t = at->t;
   vlFilterPlan plan = at->plan;
   uint32_t level = (uint32_t)plan.level;
@@ -336,11 +395,14 @@ static inline __attribute__((always_inline)) vlTexel vl_image_value(const vlText
       if (both) {
         vlTexel b = squares ? vl_blend_texels(mip, &mip->levels[level + 1], squares++)
                             : vl_bilinear_2(mip, level + 1, x, y, node->wrap, node->wrap_t);
-        for (int i = 0; i < 4; i++) a.c[i] = (1 - f) * a.c[i] + f * b.c[i];
+        for (int i = 0; i < 4; i++)
+          a.c[i] = (1 - f) * a.c[i] + f * b.c[i];
       }
-      for (int i = 0; i < 4; i++) r.c[i] = k ? r.c[i] + a.c[i] : a.c[i];
+      for (int i = 0; i < 4; i++)
+        r.c[i] = k ? r.c[i] + a.c[i] : a.c[i];
     }
-    for (int i = 0; plan.taps > 1 && i < 4; i++) r.c[i] *= inv;
+    for (int i = 0; plan.taps > 1 && i < 4; i++)
+      r.c[i] *= inv;
   }
   for (int i = 0; i < 4; i++) {
     float x = r.c[i] * node->scale;
@@ -350,14 +412,16 @@ static inline __attribute__((always_inline)) vlTexel vl_image_value(const vlText
   return r;
 }
 
-static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip,
+                                       vlTexturePoint at) {
   vlImageLookup lookup = vl_image_lookup(node, mip, at);
   return vl_image_value(node, mip, &lookup, NULL);
 }
 
-/* Returns all four channels, multiplied by the tint. A grey value is copied to red, green and blue; coverage is 1 if
- * the image has none. If mip is null, the value is the vertex colour. */
-static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+/* Returns all four channels, multiplied by the tint. A grey value is copied to red, green and
+ * blue; coverage is 1 if the image has none. If mip is null, the value is the vertex colour. */
+static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap *mip,
+                                      vlTexturePoint at) {
   vlTexel t = {{1, 1, 1, 1}};
   if (mip) {
     uint32_t n = mip->channels;
@@ -366,9 +430,11 @@ static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap 
       t.c[3] = n == 2 ? t.c[1] : 1.0f;
       t.c[1] = t.c[2] = t.c[0];
     }
-    if (n == 3) t.c[3] = 1.0f;
+    if (n == 3)
+      t.c[3] = 1.0f;
   }
-  for (int c = 0; c < 4; c++) t.c[c] *= node->colors ? node->tint[c] * at.color[c] : node->tint[c];
+  for (int c = 0; c < 4; c++)
+    t.c[c] *= node->colors ? node->tint[c] * at.color[c] : node->tint[c];
   return t;
 }
 

@@ -19,9 +19,11 @@ static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at
   s -= (float)first;
   float out[3];
   for (int k = 0; k < 3; k++) { /* cubic Bezier */
-    float a = colors[first][k], b = colors[first + 1][k], c = colors[first + 2][k], d = colors[first + 3][k];
+    float a = colors[first][k], b = colors[first + 1][k], c = colors[first + 2][k],
+          d = colors[first + 3][k];
     float r = 1.0f - s;
-    out[k] = 1.5f * (r * r * r * a + 3.0f * r * r * s * b + 3.0f * r * s * s * c + s * s * s * d);
+    out[k] =
+        1.5f * (r * r * r * a + 3.0f * r * r * s * b + 3.0f * r * s * s * c + s * s * s * d);
   }
   return vl_vec3(out[0], out[1], out[2]);
 }

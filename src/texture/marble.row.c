@@ -4,7 +4,8 @@
 static const vlParameter parameters[] = {
     OCTAVES,
     FLOAT("scale", scale, "factor on the positions in texture space", VL_DEFAULT(1)),
-    FLOAT("variation", variation, "strength of the noise that displaces the veins", VL_DEFAULT(0.2)),
+    FLOAT("variation", variation, "strength of the noise that displaces the veins",
+          VL_DEFAULT(0.2)),
 };
 const vlKindRow vl_texture_row_marble = {
     .name = "marble",

@@ -4,7 +4,9 @@
 
 #include "texture/lookup.h"
 
-/* share: weight of the second input. Also of the other kinds that mix two inputs (VL_SHARE_NODES). */
+/* share: weight of the second input. Also of the other kinds that mix two inputs
+ * (VL_SHARE_NODES).
+ */
 static inline float vl_node_mix(float a, float b, float share) {
   return (1 - share) * a + share * b;
 }

@@ -1,6 +1,6 @@
-/* texture/node.h: compiled textures: a flat list of nodes. A node refers to its inputs by index, and these indices are
- * always lower than its own. Spectra are compiled for their role: an RGB colour gives different spectra as an albedo
- * and as an illuminant. */
+/* texture/node.h: compiled textures: a flat list of nodes. A node refers to its inputs by
+ * index, and these indices are always lower than its own. Spectra are compiled for their role:
+ * an RGB colour gives different spectra as an albedo and as an illuminant. */
 #ifndef TEXTURE_NODE_H
 #define TEXTURE_NODE_H
 
@@ -24,19 +24,25 @@ typedef struct vlSpectral {
   float rgb[3];       /* linear sRGB; of the kinds constant, sigmoid and RGB */
 } vlSpectral;
 
-/* Value of the spectrum at one channel. lambda: the channel's wavelength in nm; not read in RGB mode. */
+/* Value of the spectrum at one channel. lambda: the channel's wavelength in nm; not read in RGB
+ * mode. */
 static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
   switch (s->kind) {
-    case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
-    case VL_SPECTRAL_DENSE: return s->scale * vl_dense_at(s->dense, lambda);
-    case VL_SPECTRAL_RGB: return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
-    case VL_SPECTRAL_CONSTANT: break;
+    case VL_SPECTRAL_SIGMOID:
+      return s->scale * vl_sigmoid(s->sigmoid, lambda);
+    case VL_SPECTRAL_DENSE:
+      return s->scale * vl_dense_at(s->dense, lambda);
+    case VL_SPECTRAL_RGB:
+      return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
+    case VL_SPECTRAL_CONSTANT:
+      break;
   }
   return s->scale;
 }
 
-/* Limits per texture, which bound the nesting of textures: the number of scratch rows for evaluation over a batch
- * (texture/batch.hot.c), and the number of nodes visited (a shared input counts each time it is evaluated). */
+/* Limits per texture, which bound the nesting of textures: the number of scratch rows for
+ * evaluation over a batch (texture/batch.hot.c), and the number of nodes visited (a shared
+ * input counts each time it is evaluated). */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
 typedef struct vlTextureNode {
@@ -46,20 +52,20 @@ typedef struct vlTextureNode {
   uint16_t visits;
   vlSpectrumRole role;
   float value;         /* of VL_NODE_FLOAT */
-  vlSpectral spectrum; /* of VL_NODE_SPECTRUM; of VL_NODE_IMAGE for the role of an illuminant: dense is the colour
-                          space's illuminant */
+  vlSpectral spectrum; /* of VL_NODE_SPECTRUM; of VL_NODE_IMAGE for the role of an illuminant:
+                          dense is the colour space's illuminant */
   int32_t a, b, c, d, amount; /* node indices of the inputs; -1: none */
   float direction[3];
   uint32_t dimension, octaves;
   float omega, variation; /* parameters of noise textures */
-  float own[4];           /* numbers that one kind alone has, set by its vl_node_set_ function */
-  int32_t image;          /* index in world->images; -1: the node has no image */
-  uint32_t wrap, wrap_t;  /* vlWrap */
-  uint32_t filter;        /* vlTextureFilter */
+  float own[4];          /* numbers that one kind alone has, set by its vl_node_set_ function */
+  int32_t image;         /* index in world->images; -1: the node has no image */
+  uint32_t wrap, wrap_t; /* vlWrap */
+  uint32_t filter;       /* vlTextureFilter */
   float scale;
   bool invert;
-  /* plain: tint, bias, cutoff and vertex colours have no effect. channel: the channel that a float texture reads; -1:
-   * the image's channels determine it. */
+  /* plain: tint, bias, cutoff and vertex colours have no effect. channel: the channel that a
+   * float texture reads; -1: the image's channels determine it. */
   bool plain, colors;
   int8_t channel;
   uint8_t uv_set;
@@ -68,12 +74,15 @@ typedef struct vlTextureNode {
   uint32_t mapping; /* vlMapping */
   bool st_given;    /* the map st gives s and t, instead of su, sv, du, dv */
   float su, sv, du, dv;
-  float st[6], st_scale; /* map from uv to (s, t); st_scale: the largest factor by which it stretches a length */
+  float st[6], st_scale; /* map from uv to (s, t); st_scale: the largest factor by which it
+                            stretches a length */
   float v1[3], v2[3];
   float texture_from_world[12];
 } vlTextureNode;
 
-/* What tells whether an image is that of an earlier build: from which bytes it was made, and how. */
+/* What tells whether an image is that of an earlier build: from which bytes it was made, and
+ * how.
+ */
 typedef struct vlImageKey {
   vlFileStamp stamp;  /* of a file; `there` is false for bytes in memory */
   uint64_t size;      /* number of bytes in memory */
@@ -89,7 +98,8 @@ typedef struct vlWorldImage {
   vlMipmap *mipmap;
   struct vlPart *part; /* owns the mipmap */
   vlImageKey key;
-  const char *path; /* path and the options that change the pixels, so that each file is read once; or null */
+  const char *path; /* path and the options that change the pixels, so that each file is read
+                       once; or null */
   const void *data; /* the image file in memory, if path is null */
   vlEncoding encoding;
   bool encoding_given;
@@ -100,9 +110,10 @@ struct vlWorld;
 /* What functions that add a node return when memory is exhausted. */
 enum { VL_TEXTURE_NO_MEMORY = -2 };
 /* Compiles a spectrum for its role; errors as for vl_spectrum_dense. */
-vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
-                             vlError *error);
-/* Whether all colours of a spectrum node are linear sRGB, and at least one of them is not a constant grey. */
+vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum,
+                             vlSpectrumRole role, vlSpectral *result, vlError *error);
+/* Whether all colours of a spectrum node are linear sRGB, and at least one of them is not a
+ * constant grey. */
 bool vl_node_has_rgb_colors(const struct vlWorld *world, int32_t node);
 /* A point of a triangle, for interpolating vertex attributes. */
 typedef struct vlTextureCorner {
@@ -110,16 +121,18 @@ typedef struct vlTextureCorner {
   uint32_t prim;
   float weights[3];
 } vlTextureCorner;
-/* A point at which a float texture is evaluated: its first uv set, position and geometric normal (of any length, on
- * either side). Position and normal are in the space of the shape's group (world space for shapes outside of groups).
- * corner is null if the shape has no triangles. */
+/* A point at which a float texture is evaluated: its first uv set, position and geometric
+ * normal (of any length, on either side). Position and normal are in the space of the shape's
+ * group (world space for shapes outside of groups). corner is null if the shape has no
+ * triangles. */
 typedef struct vlTextureQuery {
   float u, v;
   vlVec3 p, n;
   const vlTextureCorner *corner;
 } vlTextureQuery;
-/* Evaluates a float texture at one point, for alpha, mix amounts and displacement. It does not filter images; apart
- * from that it gives the same bits as vl_texture_float over a batch. */
-float vl_texture_float_at(const struct vlWorld *world, int32_t node, const vlTextureQuery *query);
+/* Evaluates a float texture at one point, for alpha, mix amounts and displacement. It does not
+ * filter images; apart from that it gives the same bits as vl_texture_float over a batch. */
+float vl_texture_float_at(const struct vlWorld *world, int32_t node,
+                          const vlTextureQuery *query);
 
 #endif

@@ -4,8 +4,8 @@
 
 #include "velo/texture.h"
 
-/* There is one kind of node per kind of texture, except for constants: a constant texture compiles to a number or, for
- * colours, to a spectrum. */
+/* There is one kind of node per kind of texture, except for constants: a constant texture
+ * compiles to a number or, for colours, to a spectrum. */
 typedef enum vlNodeKind {
 #define VL_KIND(NAME, name) VL_NODE_##NAME,
   VL_TEXTURE_KINDS(VL_KIND)

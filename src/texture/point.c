@@ -1,4 +1,6 @@
-/* texture/point.c: evaluates a float texture at one point, for alpha, mix amounts and displacement. */
+/* texture/point.c: evaluates a float texture at one point, for alpha, mix amounts and
+ * displacement.
+ */
 #include <math.h>
 
 #include "texture/kinds.h"
@@ -7,11 +9,14 @@
 
 #define NODE_CASE(kind, value, set) case kind:
 
-/* The texture point for a node: its uv set, the vertex colour, the normal if the node reads it. No footprint. */
+/* The texture point for a node: its uv set, the vertex colour, the normal if the node reads it.
+ * No footprint. */
 static vlTexturePoint point_of(const vlTextureNode *node, const vlTextureQuery *q) {
   vlTexturePoint at = {q->u, q->v, q->p, vl_vec3(0, 0, 0), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
-  if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, q->corner, &at);
-  if (node->kind == VL_NODE_DIRECTION_MIX) at.n = vl_normalize(q->n);
+  if (vl_texture_needs_corner(node))
+    vl_texture_at_corner(node, q->corner, &at);
+  if (node->kind == VL_NODE_DIRECTION_MIX)
+    at.n = vl_normalize(q->n);
   return at;
 }
 
@@ -20,27 +25,39 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
   vlTexturePoint at = point_of(node, q);
   float share = 0;
   switch ((vlNodeKind)node->kind) {
-    case VL_NODE_FLOAT: return node->value;
-    case VL_NODE_IMAGE: return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
-    case VL_NODE_VERTEX_COLOR: return vl_node_vertex_color_float(node, at);
+    case VL_NODE_FLOAT:
+      return node->value;
+    case VL_NODE_IMAGE:
+      return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
+    case VL_NODE_VERTEX_COLOR:
+      return vl_node_vertex_color_float(node, at);
 #define FLOAT_CASE(kind, value, set) \
-  case kind: return value(node, at);
+  case kind:                         \
+    return value(node, at);
       VL_FLOAT_NODES(FLOAT_CASE)
     case VL_NODE_SCALE:
-      return vl_node_scale(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->amount, q));
+      return vl_node_scale(vl_texture_float_at(world, node->a, q),
+                           vl_texture_float_at(world, node->amount, q));
     case VL_NODE_BILERP: {
       vlBilerpWeights k = vl_node_bilerp(node, at);
       const int32_t input[4] = {node->a, node->b, node->c, node->d};
       float sum = 0;
-      for (int i = 0; i < 4; i++) sum = vl_node_bilerp_add(sum, k.w[i], vl_texture_float_at(world, input[i], q));
+      for (int i = 0; i < 4; i++)
+        sum = vl_node_bilerp_add(sum, k.w[i], vl_texture_float_at(world, input[i], q));
       return sum;
     }
-    case VL_NODE_MIX: share = vl_texture_float_at(world, node->amount, q); break;
+    case VL_NODE_MIX:
+      share = vl_texture_float_at(world, node->amount, q);
+      break;
 #define SHARE_CASE(kind, value, set) \
-  case kind: share = value(node, at); break;
+  case kind:                         \
+    share = value(node, at);         \
+    break;
       VL_SHARE_NODES(SHARE_CASE)
       VL_COLOR_NODES(NODE_CASE)
-    case VL_NODE_SPECTRUM: return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
+    case VL_NODE_SPECTRUM:
+      return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
   }
-  return vl_node_mix(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->b, q), share);
+  return vl_node_mix(vl_texture_float_at(world, node->a, q),
+                     vl_texture_float_at(world, node->b, q), share);
 }

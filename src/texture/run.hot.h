@@ -1,4 +1,5 @@
-/* texture/run.hot.h: textures evaluated node by node over a run of lanes; private to hot files. */
+/* texture/run.hot.h: textures evaluated node by node over a run of lanes; private to hot files.
+ */
 #ifndef TEXTURE_RUN_HOT_H
 #define TEXTURE_RUN_HOT_H
 
@@ -16,30 +17,37 @@ typedef struct vlTextureRun {
   uint32_t top;         /* first free row */
   const float *shift_u, *shift_v, *shift_x, *shift_y,
       *shift_z; /* offsets added to uv and position, for bump maps; or null */
-  bool rgb;     /* spectra are evaluated as linear sRGB, 0 in the fourth row, for nodes with vl_node_has_rgb_colors */
+  bool rgb;     /* spectra are evaluated as linear sRGB, 0 in the fourth row, for nodes with
+                   vl_node_has_rgb_colors */
 } vlTextureRun;
 
-/* Evaluates a texture. Results go to lanes [first, last) of out, whose rows have the size of the whole batch. */
+/* Evaluates a texture. Results go to lanes [first, last) of out, whose rows have the size of
+ * the whole batch. */
 void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
-/* Takes a scratch row, of which only lanes [first, last) exist; the caller frees it by restoring r->top. The stack
- * cannot overflow: texture/compile.c limits nesting. */
+/* Takes a scratch row, of which only lanes [first, last) exist; the caller frees it by
+ * restoring r->top. The stack cannot overflow: texture/compile.c limits nesting. */
 static inline float *vl_texture_row(vlTextureRun *r) {
   uint32_t row = r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top;
-  float *stack = (float *)(void *)((char *)r->s + offsetof(vlTraceScratch, textures)); /* within the scratch memory */
+  float *stack =
+      (float *)(void *)((char *)r->s +
+                        offsetof(vlTraceScratch, textures)); /* within the scratch memory */
   return stack + row * VL_MATERIAL_LANES - r->first;
 }
-_Static_assert(offsetof(vlTraceScratch, textures) >= sizeof(float[VL_BATCH]), "a row less `first` is in the memory");
+_Static_assert(offsetof(vlTraceScratch, textures) >= sizeof(float[VL_BATCH]),
+               "a row less `first` is in the memory");
 
 /* Interpolates the vertex attributes (uv sets, colours) of lane i's triangle at the point. */
-static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
-                                          vlTexturePoint *at) {
+static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node,
+                                          uint32_t i, vlTexturePoint *at) {
   const vlCorners *c = &r->s->corners;
   const vlHits *h = &r->at->hits;
   vlTextureCorner where = {&r->world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
   vlVec3 k[3];
-  for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
-  vlVec3 e1 = vl_sub(k[1], k[0]), e2 = vl_sub(k[2], k[0]), g = vl_cross(e1, e2), way = vl_sub(at->p, k[0]);
+  for (int j = 0; j < 3; j++)
+    k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  vlVec3 e1 = vl_sub(k[1], k[0]), e2 = vl_sub(k[2], k[0]), g = vl_cross(e1, e2),
+         way = vl_sub(at->p, k[0]);
   float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
   where.weights[1] = vl_dot(vl_cross(way, e2), g) * inv;
   where.weights[2] = vl_dot(vl_cross(e1, way), g) * inv;
@@ -47,10 +55,10 @@ static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTexture
   vl_texture_at_corner(node, &where, at);
 }
 
-/* Computes the footprint's axes in texture coordinates (s, t). For the first uv set they are the surface's axes; for
- * other mappings they are finite differences along each axis. */
-static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
-                                        vlTexturePoint *at) {
+/* Computes the footprint's axes in texture coordinates (s, t). For the first uv set they are
+ * the surface's axes; for other mappings they are finite differences along each axis. */
+static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node,
+                                        uint32_t i, vlTexturePoint *at) {
   const vlSurface *f = &r->at->surface;
   if (vl_texture_over_uv(node)) {
     float axes[4] = {f->across_u[i], f->across_v[i], f->along_u[i], f->along_v[i]};
@@ -63,7 +71,8 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
   vlTexturePoint step = *at;
   for (int k = 0; k < 2; k++) {
     step.p = vl_add(at->p, k ? print.along : print.across);
-    if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &step);
+    if (vl_texture_needs_corner(node))
+      vl_texture_lane_corner(r, node, i, &step);
     vlVec2 there = vl_texture_st(node, step);
     float s = there.x - here.x, t = there.y - here.y;
     if (node->mapping == VL_MAPPING_SPHERICAL ||
@@ -77,7 +86,8 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
   }
 }
 
-static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
+static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r,
+                                                 const vlTextureNode *node, uint32_t i) {
   const vlSurface *f = &r->at->surface;
   vlTexturePoint at = {.color = {1, 1, 1, 1}};
   at.u = f->u[i];
@@ -90,21 +100,25 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
     at.v += r->shift_v[i];
     at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
   }
-  if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &at);
-  if (node->image >= 0) vl_texture_lane_axes(r, node, i, &at);
+  if (vl_texture_needs_corner(node))
+    vl_texture_lane_corner(r, node, i, &at);
+  if (node->image >= 0)
+    vl_texture_lane_axes(r, node, i, &at);
   return at;
 }
 
-/* Evaluates the BSDF parameters of material m from its textures, over a run of lanes. Each BSDF kind has one
- * function. */
+/* Evaluates the BSDF parameters of material m from its textures, over a run of lanes. Each BSDF
+ * kind has one function. */
 typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
 #define VL_DECLARE_PARAMETERS(NAME, name) vlParametersFn vl_parameters_##name;
 VL_BSDF_KINDS(VL_DECLARE_PARAMETERS)
 
-/* Parts of the functions above. vl_stage_layers runs after eta, k and roughness are evaluated; the parts for
- * translucent, subsurface and hair run after the reflectance. The coat's normal of the principled material stays in
- * world space until vl_stage_coat_frames. */
-vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair, vl_stage_principled;
-void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
+/* Parts of the functions above. vl_stage_layers runs after eta, k and roughness are evaluated;
+ * the parts for translucent, subsurface and hair run after the reflectance. The coat's normal
+ * of the principled material stays in world space until vl_stage_coat_frames. */
+vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair,
+    vl_stage_principled;
+void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first,
+                          uint32_t last);
 
 #endif

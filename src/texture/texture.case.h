@@ -1,5 +1,6 @@
-/* texture/texture.case.h: what the tests of textures must know of a kind beyond its row: its values at points of a
- * square with texture coordinates 0 to 1 (test/conformance/textures.h), and cases of its parameters. */
+/* texture/texture.case.h: what the tests of textures must know of a kind beyond its row: its
+ * values at points of a square with texture coordinates 0 to 1 (test/conformance/textures.h),
+ * and cases of its parameters. */
 #ifndef TEXTURE_TEXTURE_CASE_H
 #define TEXTURE_TEXTURE_CASE_H
 

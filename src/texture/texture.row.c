@@ -1,4 +1,5 @@
-/* texture/texture.row.c: the family of textures: the list of its rows, each from the file of its kind. */
+/* texture/texture.row.c: the family of textures: the list of its rows, each from the file of
+ * its kind. */
 #include "texture/texture.row.h"
 
 const char *const vl_texture_mappings[] = {"uv", "spherical", "cylindrical", "planar", NULL};

@@ -1,13 +1,15 @@
-/* texture/vertex_color.h: the colour of the shape's vertices at a point, and the channel of a colour that a float
- * texture reads. */
+/* texture/vertex_color.h: the colour of the shape's vertices at a point, and the channel of a
+ * colour that a float texture reads. */
 #ifndef TEXTURE_VERTEX_COLOR_H
 #define TEXTURE_VERTEX_COLOR_H
 
 #include "texture/lookup.h"
 
-/* A float from red, green, blue and coverage: the channel that the node selects. If it selects none: the coverage if
- * the image has it, otherwise the mean of the colours. mip is null for vertex colours alone. */
-static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+/* A float from red, green, blue and coverage: the channel that the node selects. If it selects
+ * none: the coverage if the image has it, otherwise the mean of the colours. mip is null for
+ * vertex colours alone. */
+static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip,
+                                       vlTexturePoint at) {
   vlTexel t = vl_texture_rgba(node, mip, at);
   float x = node->bias;
   if (node->channel >= 0)

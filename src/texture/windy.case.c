@@ -4,6 +4,10 @@
 const TextureCase windy_texture = {
     .variants =
         {
-            {.parameters = "", .low = 0, .high = 1, .known = {{.5, .5, {0, 0, 0}}}, .known_count = 1},
+            {.parameters = "",
+             .low = 0,
+             .high = 1,
+             .known = {{.5, .5, {0, 0, 0}}},
+             .known_count = 1},
         },
 };

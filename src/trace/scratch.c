@@ -3,8 +3,10 @@
 
 #include "trace/stages.h"
 
-/* What every scene has fits the L2 cache of a core (1 to 2 MB). docs/performance.md has these numbers. */
-_Static_assert(sizeof(struct vlTraceScratch) <= 1000000, "a worker's memory for a world without media");
+/* What every scene has fits the L2 cache of a core (1 to 2 MB). docs/performance.md has these
+ * numbers. */
+_Static_assert(sizeof(struct vlTraceScratch) <= 1000000,
+               "a worker's memory for a world without media");
 
 /* The parts in this order, each aligned to 64 bytes. */
 typedef struct Parts {
@@ -31,6 +33,8 @@ void vl_trace_scratch_begin(vlTraceScratch *scratch, const vlWorld *world) {
   Parts p = parts_of(world);
   char *memory = (char *)scratch;
   scratch->occluders.world = NULL;
-  scratch->volume = p.subsurface > p.volume ? (vlVolumeScratch *)(void *)(memory + p.volume) : NULL;
-  scratch->subsurface = p.end > p.subsurface ? (vlSubsurfaceScratch *)(void *)(memory + p.subsurface) : NULL;
+  scratch->volume =
+      p.subsurface > p.volume ? (vlVolumeScratch *)(void *)(memory + p.volume) : NULL;
+  scratch->subsurface =
+      p.end > p.subsurface ? (vlSubsurfaceScratch *)(void *)(memory + p.subsurface) : NULL;
 }

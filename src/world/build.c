@@ -1,5 +1,5 @@
-/* world/build.c: compiles a scene into a constant world: materials (with their textures), shapes, lights,
- * accelerator. */
+/* world/build.c: compiles a scene into a constant world: materials (with their textures),
+ * shapes, lights, accelerator. */
 #include <string.h>
 
 #include "base/cookie.h"
@@ -9,11 +9,14 @@
 #include "scene/scene.h"
 #include "world/world.h"
 
-/* ---- parts (part.h) ---------------------------------------------------------------------------------------------- */
+/* ---- parts (part.h)
+ * ----------------------------------------------------------------------------------------------
+ */
 
 vlPart *vl_part_add(vlWorld *world) {
   vlPart **slot = VL_PUSH(world->context, &world->parts);
-  if (!slot) return NULL;
+  if (!slot)
+    return NULL;
   vlPart *part = *slot = vl_alloc_zero(world->context, 1, sizeof *part);
   if (!part) {
     world->parts.count--;
@@ -26,7 +29,8 @@ vlPart *vl_part_add(vlWorld *world) {
 
 bool vl_part_share(vlWorld *world, vlPart *part) {
   vlPart **slot = VL_PUSH(world->context, &world->parts);
-  if (!slot) return false;
+  if (!slot)
+    return false;
   atomic_fetch_add(&part->users, 1);
   *slot = part;
   return true;
@@ -36,56 +40,77 @@ void vl_part_drop_last(vlWorld *world) {
   vl_part_release(world->parts.items[--world->parts.count]);
 }
 
-/* ---- memory of a world ------------------------------------------------------------------------------------------- */
+/* ---- memory of a world
+ * -------------------------------------------------------------------------------------------
+ */
 
 void *vl_world_block(vlWorld *world, size_t count, size_t size) {
-  void **slot = world->part ? VL_PUSH(world->context, &world->part->blocks) : VL_PUSH(world->context, &world->blocks);
-  if (!slot) return NULL;
+  void **slot = world->part ? VL_PUSH(world->context, &world->part->blocks)
+                            : VL_PUSH(world->context, &world->blocks);
+  if (!slot)
+    return NULL;
   *slot = vl_alloc_array(world->context, count ? count : 1, size);
   return *slot;
 }
 
 bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float **to) {
-  if (!from) return true;
-  if (!(*to = vl_world_block(world, count, sizeof **to))) return false;
+  if (!from)
+    return true;
+  if (!(*to = vl_world_block(world, count, sizeof **to)))
+    return false;
   memcpy(*to, from, count * sizeof **to);
   return true;
 }
 
-/* ---- building ---------------------------------------------------------------------------------------------------- */
+/* ---- building
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, vlError *error) {
-  return vl_task_stopped(world->task, name, fraction) ? vl_fail(error, VL_CANCELLED, "stopped") : VL_OK;
+vlResult vl_world_step(const vlWorld *world, const char *name, double fraction,
+                       vlError *error) {
+  return vl_task_stopped(world->task, name, fraction) ? vl_fail(error, VL_CANCELLED, "stopped")
+                                                      : VL_OK;
 }
 
 /* The previous world, if the new one can share its parts. */
 static const vlWorld *usable(const vlWorld *previous, const vlBuildDef *d) {
-  if (!previous) return NULL;
+  if (!previous)
+    return NULL;
   const vlBuildDef *p = &previous->def;
-  return p->color == d->color && p->bits == d->bits && p->imitate_pbrt == d->imitate_pbrt ? previous : NULL;
+  return p->color == d->color && p->bits == d->bits && p->imitate_pbrt == d->imitate_pbrt
+             ? previous
+             : NULL;
 }
 
 /* giving: the same scene if its meshes may be freed during the build, else null. */
-static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
+static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def,
+                      vlWorld **result, vlError *error) {
   vl_error_clear(error);
-  if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: result is null");
+  if (!result)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: result is null");
   *result = NULL;
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: scene is null");
+  if (!scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: scene is null");
   vlBuildDef d = def ? *def : vl_default_build_def();
-  if (d.cookie != VL_COOKIE_BUILD) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: " VL_BAD_COOKIE);
+  if (d.cookie != VL_COOKIE_BUILD)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: " VL_BAD_COOKIE);
   if (d.bits != VL_BITS_PORTABLE && d.bits != VL_BITS_FAST)
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such kind of bits");
   if (d.accelerator < VL_ACCELERATOR_AUTO || d.accelerator > VL_ACCELERATOR_BVH)
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such accelerator");
   vlResult r = vl_scene_result(scene, error);
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   if (scene->meshes_dropped)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the scene gave its meshes to an earlier world");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "world build: the scene gave its meshes to an earlier world");
   if (d.previous && d.previous->context != scene->context)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the previous world is of another context");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "world build: the previous world is of another context");
   double start = vl_seconds();
   vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
-  if (!world) return vl_fail_memory(error);
+  if (!world)
+    return vl_fail_memory(error);
   vlTask task;
   vl_task_start(&task, d.cancel, d.progress, d.progress_user);
   world->context = scene->context;
@@ -100,21 +125,31 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   vlError local;
   vl_error_clear(&local);
   r = vl_world_step(world, "images", 0, &local);
-  if (r == VL_OK) r = vl_world_preload_images(world, scene, &local);
-  if (r == VL_OK) r = vl_world_add_materials(world, scene, &local);
-  if (r == VL_OK) r = vl_world_add_shapes(world, scene, &local);
-  if (r == VL_OK) r = vl_world_add_media(world, scene, &local);
-  if (r == VL_OK) r = vl_world_add_origins(world, scene, &local);
-  if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
-  if (r == VL_OK && giving) vl_scene_drop_meshes(giving); /* frees memory before the accelerator allocates */
-  if (r == VL_OK) r = vl_accel_build(world, &local);
-  if (r == VL_OK) r = vl_world_step(world, "accelerator", 1, &local);
+  if (r == VL_OK)
+    r = vl_world_preload_images(world, scene, &local);
+  if (r == VL_OK)
+    r = vl_world_add_materials(world, scene, &local);
+  if (r == VL_OK)
+    r = vl_world_add_shapes(world, scene, &local);
+  if (r == VL_OK)
+    r = vl_world_add_media(world, scene, &local);
+  if (r == VL_OK)
+    r = vl_world_add_origins(world, scene, &local);
+  if (r == VL_OK)
+    r = vl_world_add_lights(world, scene, &local);
+  if (r == VL_OK && giving)
+    vl_scene_drop_meshes(giving); /* frees memory before the accelerator allocates */
+  if (r == VL_OK)
+    r = vl_accel_build(world, &local);
+  if (r == VL_OK)
+    r = vl_world_step(world, "accelerator", 1, &local);
   world->texture_memo = NULL;
   world->task = NULL;
   world->previous = NULL;
   world->part = NULL;
   if (r != VL_OK) {
-    if (error) *error = local;
+    if (error)
+      *error = local;
     vl_world_destroy(world);
     return r;
   }
@@ -130,14 +165,16 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   return VL_OK;
 }
 
-vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
+vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **result,
+                        vlError *error) {
   unsigned floats = vl_machine_set_floats();
   vlResult r = build(scene, NULL, def, result, error);
   vl_machine_restore_floats(floats);
   return r;
 }
 
-vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
+vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **result,
+                             vlError *error) {
   unsigned floats = vl_machine_set_floats();
   vlResult r = build(scene, scene, def, result, error);
   vl_machine_restore_floats(floats);
@@ -145,12 +182,15 @@ vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **re
 }
 
 void vl_world_destroy(vlWorld *world) {
-  if (!world) return;
+  if (!world)
+    return;
   vlContext *c = world->context;
   vl_accel_destroy(c, &world->accel);
-  for (size_t i = 0; i < world->parts.count; i++) vl_part_release(world->parts.items[i]); /* after the accelerator */
+  for (size_t i = 0; i < world->parts.count; i++)
+    vl_part_release(world->parts.items[i]); /* after the accelerator */
   VL_ARRAY_FREE(c, &world->parts);
-  for (size_t i = 0; i < world->blocks.count; i++) vl_free(c, world->blocks.items[i]);
+  for (size_t i = 0; i < world->blocks.count; i++)
+    vl_free(c, world->blocks.items[i]);
   VL_ARRAY_FREE(c, &world->blocks);
   VL_ARRAY_FREE(c, &world->shapes);
   VL_ARRAY_FREE(c, &world->groups);
@@ -172,7 +212,8 @@ void vl_world_destroy(vlWorld *world) {
 }
 
 vlResult vl_world_placed(vlSource source, vlError *error, vlResult r) {
-  if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line) return r;
+  if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line)
+    return r;
   char message[sizeof error->message];
   memcpy(message, error->message, sizeof message);
   return vl_fail_at(error, r, source.file, source.line, source.column, "%s", message);

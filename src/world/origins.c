@@ -1,5 +1,5 @@
-/* world/origins.c: what ids refer to: type, name and source location of each shape, material and instance. Not read
- * while rendering. */
+/* world/origins.c: what ids refer to: type, name and source location of each shape, material
+ * and instance. Not read while rendering. */
 #include <string.h>
 
 #include "base/error.h"
@@ -20,7 +20,8 @@ static const char *shape_type(vlShapeKind kind) {
 static const char *copy_text(vlWorld *world, const char *text) {
   size_t size = strlen(text) + 1;
   char *copy = vl_world_block(world, size, 1);
-  if (copy) memcpy(copy, text, size);
+  if (copy)
+    memcpy(copy, text, size);
   return copy;
 }
 
@@ -28,7 +29,8 @@ static bool copy_label(vlWorld *world, const vlLabel *from, vlLabel *to) {
   const char *const texts[3] = {from->name, from->path, from->place};
   const char **copies[3] = {&to->name, &to->path, &to->place};
   for (int k = 0; k < 3; k++)
-    if (texts[k] && texts[k][0] && !(*copies[k] = copy_text(world, texts[k]))) return false;
+    if (texts[k] && texts[k][0] && !(*copies[k] = copy_text(world, texts[k])))
+      return false;
   return true;
 }
 
@@ -43,7 +45,8 @@ static void copy_source(Files *files, const vlScene *scene, vlSource source, vlS
   copy->file = NULL;
   for (size_t i = 0; source.file && i < scene->files.count; i++) {
     size_t at = (files->last + i) % scene->files.count;
-    if (scene->files.items[at] != source.file) continue;
+    if (scene->files.items[at] != source.file)
+      continue;
     copy->file = files->copies[at];
     files->last = at;
     return;
@@ -54,30 +57,39 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
   for (size_t i = 0; i < scene->shapes.count; i++) {
     vlWorldOrigin *o = &world->shape_origins[i];
     copy_source(files, scene, scene->shapes.items[i].source, &o->source);
-    if (!copy_label(world, &scene->shapes.items[i].label, &o->label)) return VL_ERROR_MEMORY;
+    if (!copy_label(world, &scene->shapes.items[i].label, &o->label))
+      return VL_ERROR_MEMORY;
   }
-  for (size_t i = 0; i < scene->materials.count; i++) { /* the world's first material is the default material */
+  for (size_t i = 0; i < scene->materials.count;
+       i++) { /* the world's first material is the default material */
     vlWorldOrigin *o = &world->material_origins[i + 1];
     const vlMaterialDef *def = &scene->materials.items[i];
     copy_source(files, scene, def->source, &o->source);
-    if (!copy_label(world, &(vlLabel){def->name, NULL, def->place}, &o->label)) return VL_ERROR_MEMORY;
+    if (!copy_label(world, &(vlLabel){def->name, NULL, def->place}, &o->label))
+      return VL_ERROR_MEMORY;
   }
   const char **names = vl_world_block(world, scene->groups.count, sizeof(char *));
-  if (!names) return VL_ERROR_MEMORY;
+  if (!names)
+    return VL_ERROR_MEMORY;
   for (size_t i = 0; i < scene->groups.count; i++) {
     const char *name = scene->groups.items[i].name;
     names[i] = name[0] ? copy_text(world, name) : NULL;
-    if (name[0] && !names[i]) return VL_ERROR_MEMORY;
+    if (name[0] && !names[i])
+      return VL_ERROR_MEMORY;
   }
   size_t next = 0;
   for (size_t i = 0; i < scene->instances.count; i++) { /* as in add_instances (shapes.c) */
     const vlSceneInstance *instance = &scene->instances.items[i];
     uint32_t group = instance->group.index;
-    if (instance->hidden || world->groups.items[group].count == 0 || next >= world->instances.count) continue;
+    if (instance->hidden || world->groups.items[group].count == 0 ||
+        next >= world->instances.count)
+      continue;
     vlWorldOrigin *o = &world->instance_origins[next++];
     copy_source(files, scene, instance->source, &o->source);
-    if (!copy_label(world, &instance->label, &o->label)) return VL_ERROR_MEMORY;
-    if (o->label.name) continue;
+    if (!copy_label(world, &instance->label, &o->label))
+      return VL_ERROR_MEMORY;
+    if (o->label.name)
+      continue;
     o->label.name = names[group - 1];
     o->shared = true;
   }
@@ -86,7 +98,8 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
 
 static vlWorldOrigin *make_origins(vlWorld *world, size_t count) {
   vlWorldOrigin *o = vl_world_block(world, count, sizeof *o);
-  if (o) memset(o, 0, (count ? count : 1) * sizeof *o);
+  if (o)
+    memset(o, 0, (count ? count : 1) * sizeof *o);
   return o;
 }
 
@@ -95,25 +108,32 @@ vlResult vl_world_add_origins(vlWorld *world, const vlScene *scene, vlError *err
   world->material_origins = make_origins(world, world->materials.count);
   world->instance_origins = make_origins(world, world->instances.count);
   Files files = {vl_world_block(world, scene->files.count, sizeof(char *)), 0};
-  if (!world->shape_origins || !world->material_origins || !world->instance_origins || !files.copies)
+  if (!world->shape_origins || !world->material_origins || !world->instance_origins ||
+      !files.copies)
     return vl_fail_memory(error);
   for (size_t i = 0; i < scene->files.count; i++)
-    if (!(files.copies[i] = copy_text(world, scene->files.items[i]))) return vl_fail_memory(error);
+    if (!(files.copies[i] = copy_text(world, scene->files.items[i])))
+      return vl_fail_memory(error);
   return fill(world, scene, &files) == VL_OK ? VL_OK : vl_fail_memory(error);
 }
 
 uint32_t vl_world_id_count(const vlWorld *world, vlIdKind kind) {
-  if (!world) return 0;
+  if (!world)
+    return 0;
   switch (kind) {
-    case VL_ID_OBJECT: return (uint32_t)world->shapes.count;
-    case VL_ID_MATERIAL: return (uint32_t)world->materials.count;
-    case VL_ID_INSTANCE: return (uint32_t)world->instances.count;
+    case VL_ID_OBJECT:
+      return (uint32_t)world->shapes.count;
+    case VL_ID_MATERIAL:
+      return (uint32_t)world->materials.count;
+    case VL_ID_INSTANCE:
+      return (uint32_t)world->instances.count;
   }
   return 0;
 }
 
 vlResult vl_world_id_info(const vlWorld *world, vlIdKind kind, uint32_t id, vlIdInfo *info) {
-  if (!world || !info || id == 0 || id > vl_world_id_count(world, kind)) return VL_ERROR_ARGUMENT;
+  if (!world || !info || id == 0 || id > vl_world_id_count(world, kind))
+    return VL_ERROR_ARGUMENT;
   memset(info, 0, sizeof *info);
   const vlWorldOrigin *o = NULL;
   switch (kind) {
@@ -124,7 +144,8 @@ vlResult vl_world_id_info(const vlWorld *world, vlIdKind kind, uint32_t id, vlId
       break;
     case VL_ID_MATERIAL:
       o = &world->material_origins[id - 1];
-      info->type = vl_kind_row(&vl_material_family, (int)world->materials.items[id - 1].kind)->name;
+      info->type =
+          vl_kind_row(&vl_material_family, (int)world->materials.items[id - 1].kind)->name;
       break;
     case VL_ID_INSTANCE:
       o = &world->instance_origins[id - 1];

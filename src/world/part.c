@@ -2,10 +2,13 @@
 #include "world/part.h"
 
 void vl_part_release(vlPart *part) {
-  if (atomic_fetch_sub(&part->users, 1) > 1) return;
+  if (atomic_fetch_sub(&part->users, 1) > 1)
+    return;
   vlContext *context = part->context;
-  if (part->destroy) part->destroy(context, part->object);
-  for (size_t i = 0; i < part->blocks.count; i++) vl_free(context, part->blocks.items[i]);
+  if (part->destroy)
+    part->destroy(context, part->object);
+  for (size_t i = 0; i < part->blocks.count; i++)
+    vl_free(context, part->blocks.items[i]);
   VL_ARRAY_FREE(context, &part->blocks);
   vl_free(context, part);
 }

@@ -1,5 +1,7 @@
-/* world/part.h: parts that worlds share: the arrays of a shape, an image, a table. Each world that has a part is one of
- * its users; the last one frees it. Parts are not changed once they are made. */
+/* world/part.h: parts that worlds share: the arrays of a shape, an image, a table. Each world
+ * that has a part is one of its users; the last one frees it. Parts are not changed once they
+ * are made.
+ */
 #ifndef WORLD_PART_H
 #define WORLD_PART_H
 
@@ -18,8 +20,8 @@ typedef struct vlPart {
 } vlPart;
 
 struct vlWorld;
-/* A new part of a world under construction. While vlWorld.part is set to it, vl_world_block allocates for it. Null: out
- * of memory. */
+/* A new part of a world under construction. While vlWorld.part is set to it, vl_world_block
+ * allocates for it. Null: out of memory. */
 vlPart *vl_part_add(struct vlWorld *world);
 /* Shares a part of another world. False: out of memory. */
 bool vl_part_share(struct vlWorld *world, vlPart *part);

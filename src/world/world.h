@@ -1,9 +1,11 @@
-/* world/world.h: the compiled world: flat arrays addressed by index. build.c makes the world from a scene; the room
- * trace reads it. The world does not change during rendering.
+/* world/world.h: the compiled world: flat arrays addressed by index. build.c makes the world
+ * from a scene; the room trace reads it. The world does not change during rendering.
  *
- * A surface point is identified by (shape, prim, instance): shape indexes world->shapes, prim is a face of that shape,
- * and instance indexes world->instances or is VL_NONE. Vertices of shapes in group 0 are in world space; vertices of
- * shapes in other groups are in the space of their group. */
+ * A surface point is identified by (shape, prim, instance): shape indexes world->shapes, prim
+ * is a face of that shape, and instance indexes world->instances or is VL_NONE. Vertices of
+ * shapes in group 0 are in world space; vertices of shapes in other groups are in the space of
+ * their group.
+ */
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
@@ -19,7 +21,9 @@
 #include "world/medium/medium.h"
 #include "world/part.h"
 
-/* ---- shapes ------------------------------------------------------------------------------------------------------ */
+/* ---- shapes
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct vlWorldShape {
   uint32_t kind;        /* vlShapeKind */
@@ -27,69 +31,79 @@ typedef struct vlWorldShape {
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* VL_NONE: the shape emits no light; otherwise see vl_shape_light */
   int32_t alpha;        /* texture node of the opacity; -1: opaque */
-  /* True if exactly one holds: the shape has reverse orientation; its transform mirrors. It reverses the normal: for
-   * triangles and patches the one given by the order of the vertices, in group space; for quadrics and curves dpdu x
-   * dpdv, in shape space. */
+  /* True if exactly one holds: the shape has reverse orientation; its transform mirrors. It
+   * reverses the normal: for triangles and patches the one given by the order of the vertices,
+   * in group space; for quadrics and curves dpdu x dpdv, in shape space. */
   bool flip;
   bool pass_shadow;         /* the material is an interface: shadow rays pass */
-  uint32_t inside, outside; /* media; the geometric normal points to `outside`; VL_NONE: vacuum; equal: the surface
-                               separates no media */
-  /* For triangles (3 indices per face) and bilinear patches (4 indices per face). 16 padding bytes follow the
-   * positions, because Embree reads past the last one. */
+  uint32_t inside, outside; /* media; the geometric normal points to `outside`; VL_NONE: vacuum;
+                               equal: the surface separates no media */
+  /* For triangles (3 indices per face) and bilinear patches (4 indices per face). 16 padding
+   * bytes follow the positions, because Embree reads past the last one. */
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
   uint32_t *indices;
-  /* For triangles; each pointer may be null. tangent_signs: bitangent = sign * (n x tangent). more_uvs: the uv sets 1
-   * to 3. colors: 4 floats per vertex. emission_uvs: uvs at which the image of the emission is read. */
+  /* For triangles; each pointer may be null. tangent_signs: bitangent = sign * (n x tangent).
+   * more_uvs: the uv sets 1 to 3. colors: 4 floats per vertex. emission_uvs: uvs at which the
+   * image of the emission is read. */
   float *tangent_signs, *more_uvs[3], *colors, *emission_uvs;
-  uint32_t *light_of; /* light index per prim, VL_NONE: no light; null: prim i is light first_light + i */
+  uint32_t *light_of; /* light index per prim, VL_NONE: no light; null: prim i is light
+                         first_light + i */
   bool one_sided;     /* rays that come from behind pass through */
   bool backdrop;      /* alpha is 0 where camera rays meet it first */
-  uint32_t steps;     /* number of sets of positions and normals, at equal time steps; 1: at rest */
-  /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have the two affine maps
-   * below. */
+  uint32_t steps; /* number of sets of positions and normals, at equal time steps; 1: at rest */
+  /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have
+   * the two affine maps below. */
   float radius, inner_radius, z_min, z_max, phi_max, height;
   double *centers; /* many spheres: 3 per prim, in shape space; else null */
   float *radii;    /* many spheres: 1 per prim; else null */
-  /* For curves. A segment has 4 control points, 2 widths and, if it is a ribbon, 2 normals, all in shape space. Each
-   * segment is split into pieces; a prim is one piece. */
+  /* For curves. A segment has 4 control points, 2 widths and, if it is a ribbon, 2 normals, all
+   * in shape space. Each segment is split into pieces; a prim is one piece. */
   uint32_t curve; /* vlCurveKind */
   uint32_t split; /* faces = segments << split */
   float *widths;
-  double from_shape[12], to_shape[12]; /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
+  double from_shape[12],
+      to_shape[12]; /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
 } vlWorldShape;
 
 /* The light of a prim, or VL_NONE. */
 static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
-  if (s->first_light == VL_NONE) return VL_NONE;
+  if (s->first_light == VL_NONE)
+    return VL_NONE;
   return s->light_of ? s->light_of[prim] : s->first_light + prim;
 }
 
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */
   uint32_t count;
-  float low[3], high[3]; /* bounding box over all times, in group space; an empty box has low > high */
+  float low[3],
+      high[3]; /* bounding box over all times, in group space; an empty box has low > high */
 } vlWorldGroup;
 
-/* An instance of a group. The pose of a moving instance is interpolated linearly between its keys. Embree and velo
- * (moving.h) interpolate the same matrices. */
+/* An instance of a group. The pose of a moving instance is interpolated linearly between its
+ * keys. Embree and velo (moving.h) interpolate the same matrices. */
 typedef struct vlWorldInstance {
   uint32_t group;
   bool mirrored;
-  float from_group[12], to_group[12]; /* world from group, and its inverse; if moving, at the world's time 0 */
-  uint32_t keys;                      /* number of poses in path, at equal steps of the world's time; 0: at rest */
-  const float *path;                  /* pose (world from group) of each key, 12 floats */
-  /* Bound of the distance, world space, between a placed point and the surface that a ray meets: a point x of the group
-   * may be off by error[0] |x| + error[1] |y| + error[2] |z| + error[3] (surface_point.h). */
+  float from_group[12],
+      to_group[12]; /* world from group, and its inverse; if moving, at the world's time 0 */
+  uint32_t keys; /* number of poses in path, at equal steps of the world's time; 0: at rest */
+  const float *path; /* pose (world from group) of each key, 12 floats */
+  /* Bound of the distance, world space, between a placed point and the surface that a ray
+   * meets: a point x of the group may be off by error[0] |x| + error[1] |y| + error[2] |z| +
+   * error[3] (surface_point.h). */
   float error[4];
 } vlWorldInstance;
 
-/* ---- materials --------------------------------------------------------------------------------------------------- */
+/* ---- materials
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-/* Inputs of the principled material, as indices of float nodes and spectrum nodes. The flags has_* are false for lobes
- * whose weight is always 0. */
+/* Inputs of the principled material, as indices of float nodes and spectrum nodes. The flags
+ * has_* are false for lobes whose weight is always 0. */
 typedef struct vlWorldPrincipled {
-  int32_t metallic, roughness, anisotropy, anisotropy_rotation, specular, transmission, diffuse_transmission;
+  int32_t metallic, roughness, anisotropy, anisotropy_rotation, specular, transmission,
+      diffuse_transmission;
   int32_t clearcoat, clearcoat_roughness, sheen_roughness, iridescence, iridescence_thickness;
   int32_t specular_color, through, sheen; /* spectra */
   int32_t normal, coat_normal;            /* image nodes, -1: none */
@@ -98,29 +112,30 @@ typedef struct vlWorldPrincipled {
   bool thin;                /* thin-walled, or nothing is transmitted */
   float cauchy_a, cauchy_b; /* dispersive: index of refraction a + b / lambda^2 */
   bool has_coat, has_sheen, has_film, has_anisotropy, has_transmission;
-  bool by_channel; /* spectral mode: transmitted light has the base colour per channel of linear sRGB */
+  bool by_channel; /* spectral mode: transmitted light has the base colour per channel of linear
+                      sRGB */
 } vlWorldPrincipled;
 
-/* Inputs of layered materials that are evaluated by random walks: a coat over metal or over a diffuse base. Numbers of
- * type int32_t are indices of spectrum or float nodes. */
+/* Inputs of layered materials that are evaluated by random walks: a coat over metal or over a
+ * diffuse base. Numbers of type int32_t are indices of spectrum or float nodes. */
 typedef struct vlWorldLayers {
   bool metal;
   int32_t albedo, thickness, g;
-  int32_t coat_u, coat_v; /* roughness of a coat over metal; a coat over a diffuse base has the material's u_roughness
-                             and v_roughness */
+  int32_t coat_u, coat_v; /* roughness of a coat over metal; a coat over a diffuse base has the
+                             material's u_roughness and v_roughness */
   uint32_t depth, walks;
 } vlWorldLayers;
 
-/* Inputs of hair. The first three are spectrum nodes, alternative parameters of the colour (-1: not given). The others
- * are float nodes. */
+/* Inputs of hair. The first three are spectrum nodes, alternative parameters of the colour (-1:
+ * not given). The others are float nodes. */
 typedef struct vlWorldHair {
   int32_t sigma_a, eumelanin, pheomelanin;
   int32_t eumelanin_share, pheomelanin_share, eta, beta_m, beta_n, alpha;
 } vlWorldHair;
 
-/* Inputs of subsurface scattering, as spectrum nodes. mfp, the mean free path, is used if the material is described by
- * its reflectance and mean free path; sigma_a and sigma_s otherwise. The material's scale multiplies mfp or the
- * sigmas. */
+/* Inputs of subsurface scattering, as spectrum nodes. mfp, the mean free path, is used if the
+ * material is described by its reflectance and mean free path; sigma_a and sigma_s otherwise.
+ * The material's scale multiplies mfp or the sigmas. */
 typedef struct vlWorldSubsurface {
   int32_t sigma_a, sigma_s, mfp;
   const struct vlBssrdfTable *table;
@@ -131,7 +146,8 @@ typedef struct vlWorldSubsurface {
 typedef enum vlSmooth {
   VL_SMOOTH_NEVER,
   VL_SMOOTH_BY_ALPHA,          /* if its roughness alphas are small */
-  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* if its roughness alphas are small or its relative index of refraction is 1 */
+  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* if its roughness alphas are small or its relative index of
+                                  refraction is 1 */
   VL_SMOOTH_ALWAYS
 } vlSmooth;
 
@@ -140,25 +156,30 @@ typedef struct vlWorldMaterial {
   uint32_t bsdf; /* vlBsdfKind */
   vlSmooth smooth;
   uint32_t traits; /* bits of the kind, such as VL_MATERIAL_OPAQUE */
-  const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned by the world */
+  const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned
+                      by the world */
   bool no_cosine;  /* the path throughput is not multiplied by the cosine */
-  bool one_sided;  /* light only leaves on the side on which it arrives: only lights on the viewer's side count */
+  bool one_sided;  /* light only leaves on the side on which it arrives: only lights on the
+                      viewer's  side count */
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];
-  /* nothing: an interface, or a mix of interfaces only. presence: of a mix with an interface among its parts, the node
-   * of the share that is not interface; shapes have it as an alpha (shapes.c). -1: all of it. */
+  /* nothing: an interface, or a mix of interfaces only. presence: of a mix with an interface
+   * among its parts, the node of the share that is not interface; shapes have it as an alpha
+   * (shapes.c). -1: all of it. */
   bool nothing;
   int32_t presence;
   bool remap, use_reflectance;
-  bool dispersive;                     /* for dielectrics: eta depends on the wavelength */
-  float eta_s;                         /* for dielectrics whose eta does not depend on the wavelength */
-  int32_t displacement;                /* float node, -1: none */
-  int32_t normal_map;                  /* image index, -1: none */
-  const vlCoatTable *coat;             /* may be shared with other materials; the world frees it */
-  const vlCoatTable *widened;          /* the same for the roughness that vlBuildDef.regularize gives; else null */
+  bool dispersive;         /* for dielectrics: eta depends on the wavelength */
+  float eta_s;             /* for dielectrics whose eta does not depend on the wavelength */
+  int32_t displacement;    /* float node, -1: none */
+  int32_t normal_map;      /* image index, -1: none */
+  const vlCoatTable *coat; /* may be shared with other materials; the world frees it */
+  const vlCoatTable
+      *widened; /* the same for the roughness that vlBuildDef.regularize gives; else null */
   const vlWorldPrincipled *principled; /* null for other kinds */
-  int32_t transmittance; /* for diffuse transmission: spectrum node; scale multiplies reflectance and transmittance */
+  int32_t transmittance; /* for diffuse transmission: spectrum node; scale multiplies
+                            reflectance and transmittance */
   float scale;
   const vlMeasured *measured; /* may be shared with other materials; the world frees it */
   const vlWorldSubsurface *subsurface;
@@ -172,12 +193,14 @@ typedef struct vlWorldCoat {
   uint32_t depth; /* max_depth of the materials that share the table */
 } vlWorldCoat;
 
-/* ---- lights ------------------------------------------------------------------------------------------------------ */
+/* ---- lights
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
-  int32_t image;       /* index of an image over uv (area lights) or over directions (infinite lights); spectrum, the
-                          illuminant, multiplies it; -1: none */
+  int32_t image;       /* index of an image over uv (area lights) or over directions (infinite
+                          lights);       spectrum, the illuminant, multiplies it; -1: none */
   int32_t node;        /* 1 + index of the texture node that reads image at uv; 0: none */
   float image_scale;
   vlColorSpace space;
@@ -185,32 +208,41 @@ typedef struct vlEmitted {
 } vlEmitted;
 
 typedef struct vlWorldLight {
-  uint32_t kind;            /* vlWorldLightKind (world/light/light_kind.h) */
-  uint32_t emitted;         /* index into emitted */
-  uint32_t shape, prim;     /* of an area light; for other lights shape is VL_NONE */
-  float area;               /* of an area light: area of the primitive in world space */
-  float position[3];        /* of lights at a point, world space */
-  float direction[3];       /* of a spot light: its axis, away from the light; of a distant light: towards the light */
-  float cos_start, cos_end; /* of a spot light: full intensity within the angle `start`, none beyond `end` */
-  bool cone_squared;        /* the falloff between start and end is t^2; otherwise it is smooth */
-  bool has_cone;            /* emits only into the cone of cos_end about its direction */
-  bool at_point;            /* all light starts at `position` */
-  bool far;                 /* infinitely far away */
-  uint32_t environment;     /* of an infinite light with an image: index into environments; VL_NONE: uniform radiance */
-  float power;              /* emitted flux in units of luminance, for light selection */
-  /* the light is an invisible full sphere: light paths start only on its outside (light.hot.c) */
+  uint32_t kind;        /* vlWorldLightKind (world/light/light_kind.h) */
+  uint32_t emitted;     /* index into emitted */
+  uint32_t shape, prim; /* of an area light; for other lights shape is VL_NONE */
+  float area;           /* of an area light: area of the primitive in world space */
+  float position[3];    /* of lights at a point, world space */
+  float direction[3];   /* of a spot light: its axis, away from the light; of a distant light:
+                           towards   the light */
+  float cos_start,
+      cos_end; /* of a spot light: full intensity within the angle `start`, none beyond `end` */
+  bool cone_squared;    /* the falloff between start and end is t^2; otherwise it is smooth */
+  bool has_cone;        /* emits only into the cone of cos_end about its direction */
+  bool at_point;        /* all light starts at `position` */
+  bool far;             /* infinitely far away */
+  uint32_t environment; /* of an infinite light with an image: index into environments; VL_NONE:
+                           uniform radiance */
+  float power;          /* emitted flux in units of luminance, for light selection */
+  /* the light is an invisible full sphere: light paths start only on its outside (light.hot.c)
+   */
   bool outer_side;
-  /* the shape of the area light has alpha 0 everywhere: rays do not hit the shape, but it emits light, as in pbrt */
+  /* the shape of the area light has alpha 0 everywhere: rays do not hit the shape, but it emits
+   * light, as in pbrt */
   bool invisible;
   bool delta;     /* no ray can hit it */
-  uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the rotation from world to
-                     light directions */
-  float image_extent[2]; /* of a projection light: half the width and height of the image at distance 1 */
-  /* Of an area light that is a triangle: its corners. Of a whole sphere: its centre, its radius, 1 if it emits outwards
-   * or -1 if it emits inwards, and the distance by which points sampled on it may be off. */
+  uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the
+                     rotation from world to light directions */
+  float image_extent[2]; /* of a projection light: half the width and height of the image at
+                            distance 1 */
+  /* Of an area light that is a triangle: its corners. Of a whole sphere: its centre, its
+   * radius, 1 if it emits outwards or -1 if it emits inwards, and the distance by which points
+   * sampled on it may be off. */
   float corners[9];
-  bool one_sided_normals; /* `direction` is the normal of the emitting side at every point of the light */
-  bool plain_triangle;    /* a triangle with one_sided_normals, opaque, with the same emission everywhere */
+  bool one_sided_normals; /* `direction` is the normal of the emitting side at every point of
+                             the light */
+  bool plain_triangle;    /* a triangle with one_sided_normals, opaque, with the same emission
+                             everywhere */
   bool plain_sphere;      /* a whole sphere, opaque, with the same emission everywhere */
 } vlWorldLight;
 
@@ -237,18 +269,22 @@ typedef struct vlWorldOrigin {
   vlSource source;
 } vlWorldOrigin;
 
-/* ---- the whole --------------------------------------------------------------------------------------------------- */
+/* ---- the whole
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 struct vlWorld {
   vlContext *context;
-  vlBuildDef def;                 /* without its pointers, which are valid during the build only */
-  vlTask *task;                   /* of the build; null afterwards */
-  const struct vlWorld *previous; /* during the build: the world whose parts may be shared; null: none */
-  uint64_t scene_number;          /* vlScene.number */
-  VL_ARRAY(vlPart *) parts;       /* all parts of which the world is a user */
-  vlPart *part;                   /* during the build: owner of new blocks; null: the world */
-  vlPart **shape_parts;           /* one per shape: the part with its arrays; null: the shape has none */
-  uint32_t *shape_from; /* during the build: index of the previous world's shape with the same geometry, or VL_NONE */
+  vlBuildDef def; /* without its pointers, which are valid during the build only */
+  vlTask *task;   /* of the build; null afterwards */
+  const struct vlWorld
+      *previous;         /* during the build: the world whose parts may be shared; null: none */
+  uint64_t scene_number; /* vlScene.number */
+  VL_ARRAY(vlPart *) parts; /* all parts of which the world is a user */
+  vlPart *part;             /* during the build: owner of new blocks; null: the world */
+  vlPart **shape_parts; /* one per shape: the part with its arrays; null: the shape has none */
+  uint32_t *shape_from; /* during the build: index of the previous world's shape with the same
+                           geometry, or VL_NONE */
   struct vlShapeSearch *shape_search; /* during the build (share.c) */
   VL_ARRAY(vlWorldShape) shapes;
   VL_ARRAY(vlWorldGroup) groups; /* element 0 holds the shapes outside of groups */
@@ -258,7 +294,8 @@ struct vlWorld {
   VL_ARRAY(vlWorldImage) images;
   VL_ARRAY(vlEmitted) emitted;
   VL_ARRAY(vlWorldLight) lights;
-  VL_ARRAY(uint32_t) infinite_lights; /* indices of the lights that a ray hits if it misses all surfaces */
+  VL_ARRAY(uint32_t)
+  infinite_lights; /* indices of the lights that a ray hits if it misses all surfaces */
   VL_ARRAY(vlEnvironment) environments;
   VL_ARRAY(vlWorldEnvironmentPart) environment_parts; /* one per environment */
   VL_ARRAY(vlMeasured *) measured;
@@ -266,55 +303,67 @@ struct vlWorld {
   VL_ARRAY(vlWorldCoat) coats;
   VL_ARRAY(vlWorldMedium) media;          /* media in use */
   VL_ARRAY(vlWorldFilePart) medium_parts; /* one per medium */
-  VL_ARRAY(void *) blocks;                /* memory blocks owned by the world, such as dense spectra */
-  int32_t *texture_memo;                  /* used during the build only: maps scene texture and role to the node */
-  uint32_t *rank; /* per material: its position in an order in which materials of one kind are adjacent */
+  VL_ARRAY(void *) blocks; /* memory blocks owned by the world, such as dense spectra */
+  int32_t
+      *texture_memo; /* used during the build only: maps scene texture and role to the node */
+  uint32_t *rank; /* per material: its position in an order in which materials of one kind are
+                     adjacent */
   bool has_interfaces, has_mixtures; /* a material is an interface; a material is mixed */
   bool has_subsurface;               /* a shape has subsurface scattering */
   bool has_one_sided;                /* rays pass through a shape from one side */
-  bool by_channel; /* a medium (vlWorldMedium.by_channel) or a material (vlWorldPrincipled.by_channel) attenuates light
-                      per channel of linear sRGB */
-  uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */
-  bool moves;                   /* something moves; if false, rays need no time */
-  double time_open, time_close; /* the world's times 0 and 1 in seconds; nothing moves before or after */
-  vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one per shape, material and instance */
-  vlSpectral white;                                                   /* radiance that is displayed as white */
+  bool by_channel;                   /* a medium (vlWorldMedium.by_channel) or a material
+                                        (vlWorldPrincipled.by_channel) attenuates light                   per
+                                        channel of linear sRGB */
+  uint32_t camera_medium;            /* index into media, VL_NONE: vacuum */
+  bool moves;                        /* something moves; if false, rays need no time */
+  double time_open,
+      time_close; /* the world's times 0 and 1 in seconds; nothing moves before or after */
+  vlWorldOrigin *shape_origins, *material_origins,
+      *instance_origins; /* one per shape, material and instance */
+  vlSpectral white;      /* radiance that is displayed as white */
   vlLightTree tree;
   vlAccel accel;
-  float bounds_min[3], bounds_max[3], center[3], radius; /* bounds of all surfaces, and their bounding sphere */
+  float bounds_min[3], bounds_max[3], center[3],
+      radius; /* bounds of all surfaces, and their bounding sphere */
   vlWorldInfo info;
 };
 
-/* Compiles an input of the scene into a node of a world under construction. Errors carry the source location. */
-vlResult vl_world_float_node(vlWorld *world, const struct vlScene *scene, vlFloatInput input, int32_t *node,
-                             vlError *error);
-vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
-                                int32_t *node, vlError *error);
+/* Compiles an input of the scene into a node of a world under construction. Errors carry the
+ * source location. */
+vlResult vl_world_float_node(vlWorld *world, const struct vlScene *scene, vlFloatInput input,
+                             int32_t *node, vlError *error);
+vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene,
+                                vlSpectrumInput input, vlSpectrumRole role, int32_t *node,
+                                vlError *error);
 /* Interpolates between two float nodes by a third. */
-vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error);
-/* Reads an image (or uses the given one). encoding null: the file's own. pyramid: also makes the smaller levels of the
- * MIP map. Returns the image's index, or -1 with the error set. */
-int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
-                           float gamma, bool pyramid, vlError *error);
-/* Reads the scene's images on all workers. Errors of an image are ignored here: the code that uses the image reports
- * them. */
+vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node,
+                           vlError *error);
+/* Reads an image (or uses the given one). encoding null: the file's own. pyramid: also makes
+ * the smaller levels of the MIP map. Returns the image's index, or -1 with the error set. */
+int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given,
+                           const vlEncoding *encoding, float gamma, bool pyramid,
+                           vlError *error);
+/* Reads the scene's images on all workers. Errors of an image are ignored here: the code that
+ * uses the image reports them. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_origins(vlWorld *world, const struct vlScene *scene, vlError *error);
 
-/* Area of one primitive in the space of its vertices: world space for shapes outside of groups, else group space. */
+/* Area of one primitive in the space of its vertices: world space for shapes outside of groups,
+ * else group space. */
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);
-void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]);
+void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3],
+                          float high[3]);
 /* During the build: CANCELLED if it must stop. name, fraction: as in vlStep. */
 vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, vlError *error);
 /* Returns r. Adds the source location to an error that has none. */
 vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);
-/* Sets *to to a new block owned by the world, with a copy of the numbers; leaves *to unchanged if from is null. False:
- * out of memory. */
+/* Sets *to to a new block owned by the world, with a copy of the numbers; leaves *to unchanged
+ * if from is null. False: out of memory. */
 bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float **to);
 
 #endif

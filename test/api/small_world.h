@@ -1,4 +1,5 @@
-/* test/api/small_world.h: a world of a few objects that uses many parts of the renderer, made with the public API. */
+/* test/api/small_world.h: a world of a few objects that uses many parts of the renderer, made
+ * with the public API. */
 #ifndef TEST_API_SMALL_WORLD_H
 #define TEST_API_SMALL_WORLD_H
 
@@ -100,9 +101,10 @@ static inline vlResult small_camera(vlCamera *camera) {
   return vl_camera_make(&def, camera, NULL, NULL);
 }
 
-/* Makes scene, world and film, renders and develops. Everything else is destroyed; *image is set on VL_OK only. */
-static inline vlResult small_image(vlContext *context, const vlRenderDef *render, const uint32_t crop[4],
-                                   vlColorMode color, vlImage **image) {
+/* Makes scene, world and film, renders and develops. Everything else is destroyed; *image is
+ * set on VL_OK only. */
+static inline vlResult small_image(vlContext *context, const vlRenderDef *render,
+                                   const uint32_t crop[4], vlColorMode color, vlImage **image) {
   *image = NULL;
   vlScene *scene = NULL;
   vlWorld *world = NULL;
@@ -117,16 +119,22 @@ static inline vlResult small_image(vlContext *context, const vlRenderDef *render
   vlBuildDef build = vl_default_build_def();
   vlDevelopDef develop = vl_default_develop_def();
   build.color = color;
-  if (result == VL_OK) result = vl_world_build(scene, &build, &world, &error);
+  if (result == VL_OK)
+    result = vl_world_build(scene, &build, &world, &error);
   vl_scene_destroy(scene);
-  if (result == VL_OK) result = small_camera(&camera);
+  if (result == VL_OK)
+    result = small_camera(&camera);
   vlFilmDef film_def = vl_default_film_def(SMALL_WIDTH, SMALL_HEIGHT);
-  if (crop) memcpy(film_def.crop, crop, sizeof film_def.crop);
-  if (result == VL_OK) result = vl_film_create(context, &film_def, &film);
-  if (result == VL_OK) result = vl_render(world, &camera, film, render, NULL, &error);
+  if (crop)
+    memcpy(film_def.crop, crop, sizeof film_def.crop);
+  if (result == VL_OK)
+    result = vl_film_create(context, &film_def, &film);
+  if (result == VL_OK)
+    result = vl_render(world, &camera, film, render, NULL, &error);
   if (result == VL_OK || (result == VL_CANCELLED && vl_film_spp(film) > 0)) {
     vlResult developed = vl_film_develop(film, &develop, image);
-    if (result == VL_OK) result = developed;
+    if (result == VL_OK)
+      result = developed;
   }
   vl_film_destroy(film);
   vl_world_destroy(world);

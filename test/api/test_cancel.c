@@ -1,5 +1,5 @@
-/* test/api/test_cancel.c: a request to cancel stops a render, ground truth, a build and a load between two tasks; the
- * film keeps whole passes; the steps of loads and builds. */
+/* test/api/test_cancel.c: a request to cancel stops a render, ground truth, a build and a load
+ * between two tasks; the film keeps whole passes; the steps of loads and builds. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,8 @@ typedef struct Runner {
 static void run_loop(void *user, uint32_t count, vlParallelFn *body, void *loop_user) {
   Runner *r = user;
   for (uint32_t i = 0; i < count; i++) {
-    if (r->cancel && r->loops == r->loop && i == r->at) vl_cancel_request(r->cancel);
+    if (r->cancel && r->loops == r->loop && i == r->at)
+      vl_cancel_request(r->cancel);
     body(loop_user, i, 0);
   }
   r->loops++;
@@ -42,7 +43,8 @@ static void set_up(Stage *s, uint32_t threads) {
   memset(s, 0, sizeof *s);
   vlContextDef def = vl_default_context_def();
   def.threads = threads;
-  if (threads == 1) def.parallel_for = run_loop, def.parallel_for_user = &s->runner;
+  if (threads == 1)
+    def.parallel_for = run_loop, def.parallel_for_user = &s->runner;
   assert_int_equal(vl_context_create(&def, &s->context), VL_OK);
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(s->context, &scene), VL_OK);
@@ -73,7 +75,8 @@ static void widen(Stage *s, uint32_t width, uint32_t height) {
   assert_int_equal(vl_camera_resize(&camera, width, height, &s->camera), VL_OK);
 }
 
-/* The request in the middle of the second pass: no batch is traced after it, and the film has the first pass only. */
+/* The request in the middle of the second pass: no batch is traced after it, and the film has
+ * the first pass only. */
 static void a_render_keeps_whole_passes(void **state) {
   (void)state;
   enum { WIDTH = 144, HEIGHT = 4 };
@@ -115,7 +118,8 @@ static void ground_truth_stops(void **state) {
   def.cancel = s.cancel;
   s.runner = (Runner){s.cancel, 0, 1, 0};
   vlImage *floats = NULL, *ids = NULL;
-  assert_int_equal(vl_render_channels(s.world, &s.camera, &def, &floats, &ids, NULL), VL_CANCELLED);
+  assert_int_equal(vl_render_channels(s.world, &s.camera, &def, &floats, &ids, NULL),
+                   VL_CANCELLED);
   assert_null(floats);
   assert_null(ids);
   tear_down(&s);
@@ -157,7 +161,9 @@ static void builds_and_loads_stop(void **state) {
   load.cancel = s.cancel;
   vl_cancel_request(s.cancel);
   assert_int_equal(vl_scene_create(s.context, &scene), VL_OK);
-  assert_int_equal(vl_scene_load_memory(scene, "scene.pbrt", text, sizeof text - 1, &load, &error), VL_CANCELLED);
+  assert_int_equal(
+      vl_scene_load_memory(scene, "scene.pbrt", text, sizeof text - 1, &load, &error),
+      VL_CANCELLED);
   assert_int_equal(vl_scene_result(scene, NULL), VL_CANCELLED);
   vl_scene_destroy(scene);
   tear_down(&s);

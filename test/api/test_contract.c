@@ -1,5 +1,7 @@
-/* test/api/test_contract.c: invalid arguments of every public function: a def without its default function is rejected
- * by its cookie, null arguments do not crash, and destroying null is allowed. */
+/* test/api/test_contract.c: invalid arguments of every public function: a def without its
+ * default function is rejected by its cookie, null arguments do not crash, and destroying null
+ * is allowed.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -78,7 +80,8 @@ static void a_def_made_by_hand_is_caught(void **state) {
   assert_int_equal(vl_scene_load(scene, "none.pbrt", &load, &error), VL_ERROR_ARGUMENT);
   vl_scene_destroy(scene);
 
-  /* each kind of thing that a scene takes, in a scene of its own, for a scene remembers its first error */
+  /* each kind of thing that a scene takes, in a scene of its own, for a scene remembers its
+   * first error */
   for (int kind = 0; kind < 5; kind++) {
     assert_int_equal(vl_scene_create(context, &scene), VL_OK);
     vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_CONSTANT, true);
@@ -88,11 +91,16 @@ static void a_def_made_by_hand_is_caught(void **state) {
     vlShapeDef shape = vl_default_shape_def(VL_SHAPE_SPHERE);
     texture.cookie = material.cookie = emission.cookie = light.cookie = shape.cookie = 0;
     uint32_t index = 1;
-    if (kind == 0) index = vl_scene_add_texture(scene, &texture).index;
-    if (kind == 1) index = vl_scene_add_material(scene, &material).index;
-    if (kind == 2) index = vl_scene_add_emission(scene, &emission).index;
-    if (kind == 3) index = vl_scene_add_light(scene, &light).index;
-    if (kind == 4) index = vl_scene_add_shape(scene, &shape).index;
+    if (kind == 0)
+      index = vl_scene_add_texture(scene, &texture).index;
+    if (kind == 1)
+      index = vl_scene_add_material(scene, &material).index;
+    if (kind == 2)
+      index = vl_scene_add_emission(scene, &emission).index;
+    if (kind == 3)
+      index = vl_scene_add_light(scene, &light).index;
+    if (kind == 4)
+      index = vl_scene_add_shape(scene, &shape).index;
     assert_int_equal(index, 0);
     assert_int_equal(vl_scene_result(scene, &error), VL_ERROR_ARGUMENT);
     vl_scene_destroy(scene);
@@ -173,17 +181,20 @@ static void a_null_def_stands_for_the_default(void **state) {
   vlDevelopDef develop = vl_default_develop_def();
   for (int i = 0; i < 2; i++) {
     assert_int_equal(vl_film_create(own, &film_def, &film[i]), VL_OK);
-    assert_int_equal(vl_render(world, &camera, film[i], i ? &render : NULL, NULL, &error), VL_OK);
+    assert_int_equal(vl_render(world, &camera, film[i], i ? &render : NULL, NULL, &error),
+                     VL_OK);
     assert_int_equal(vl_film_spp(film[i]), render.spp);
     assert_int_equal(vl_film_develop(film[i], i ? &develop : NULL, &image[i]), VL_OK);
   }
-  assert_memory_equal(vl_image_const_pixels(image[0]), vl_image_const_pixels(image[1]), 8 * 8 * 4 * sizeof(float));
+  assert_memory_equal(vl_image_const_pixels(image[0]), vl_image_const_pixels(image[1]),
+                      8 * 8 * 4 * sizeof(float));
   assert_true(vl_image_get(image[0], 4, 4, 0) > 0.0f);
   develop.cookie = 0;
   vlImage *none = NULL;
   assert_int_equal(vl_film_develop(film[0], &develop, &none), VL_ERROR_ARGUMENT);
   render.cookie = 0;
-  assert_int_equal(vl_render(world, &camera, film[0], &render, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(world, &camera, film[0], &render, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   for (int i = 0; i < 2; i++) {
     vl_film_destroy(film[i]);
     vl_image_destroy(image[i]);
@@ -195,13 +206,16 @@ static void a_null_def_stands_for_the_default(void **state) {
 static void spectra_have_names(void **state) {
   (void)state;
   uint32_t count = 0;
-  while (vl_spectrum_name(count)) count++;
+  while (vl_spectrum_name(count))
+    count++;
   assert_true(count > 5);
   assert_null(vl_spectrum_name(UINT32_MAX));
-  static const char *const wanted[] = {"metal-Au-eta", "metal-Cu-k", "glass-BK7", "stdillum-D65"};
+  static const char *const wanted[] = {"metal-Au-eta", "metal-Cu-k", "glass-BK7",
+                                       "stdillum-D65"};
   for (unsigned i = 0; i < sizeof wanted / sizeof *wanted; i++) {
     bool found = false;
-    for (uint32_t j = 0; j < count; j++) found |= strcmp(vl_spectrum_name(j), wanted[i]) == 0;
+    for (uint32_t j = 0; j < count; j++)
+      found |= strcmp(vl_spectrum_name(j), wanted[i]) == 0;
     assert_true(found);
   }
 }

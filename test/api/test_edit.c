@@ -1,5 +1,6 @@
-/* test/api/test_edit.c: a scene that is changed, and worlds that share parts: the images have the bytes of a world
- * built from nothing; worlds may be destroyed in any order; parts that have not changed are not built again. */
+/* test/api/test_edit.c: a scene that is changed, and worlds that share parts: the images have
+ * the bytes of a world built from nothing; worlds may be destroyed in any order; parts that
+ * have not changed are not built again. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,7 +33,8 @@ static void end(vlContext *context) {
 }
 
 /* A wavy sheet of 2 SIDE^2 triangles at height y. */
-static void add_sheet(vlScene *scene, vlGroupId group, double y, vlMaterialId material, vlTextureId alpha) {
+static void add_sheet(vlScene *scene, vlGroupId group, double y, vlMaterialId material,
+                      vlTextureId alpha) {
   static float p[3 * (SIDE + 1) * (SIDE + 1)], uv[2 * (SIDE + 1) * (SIDE + 1)];
   static uint32_t f[6 * SIDE * SIDE];
   uint32_t *to = f;
@@ -40,9 +42,11 @@ static void add_sheet(vlScene *scene, vlGroupId group, double y, vlMaterialId ma
     for (uint32_t j = 0; j <= SIDE; j++) {
       uint32_t v = i * (SIDE + 1) + j;
       double x = (double)j / SIDE - 0.5, z = (double)i / SIDE - 0.5;
-      p[3 * v] = (float)x, p[3 * v + 1] = (float)(y + 0.05 * sin(20 * x) * cos(17 * z)), p[3 * v + 2] = (float)z;
+      p[3 * v] = (float)x, p[3 * v + 1] = (float)(y + 0.05 * sin(20 * x) * cos(17 * z)),
+            p[3 * v + 2] = (float)z;
       uv[2 * v] = (float)j / SIDE, uv[2 * v + 1] = (float)i / SIDE;
-      if (i == SIDE || j == SIDE) continue;
+      if (i == SIDE || j == SIDE)
+        continue;
       const uint32_t quad[6] = {v, v + 1, v + SIDE + 1, v + 1, v + SIDE + 2, v + SIDE + 1};
       memcpy(to, quad, sizeof quad);
       to += 6;
@@ -74,8 +78,8 @@ static vlImage *pattern(vlContext *context, int seed) {
   return image;
 }
 
-/* The small world, a sheet outside of groups, a sheet with holes and a sphere in a group with three instances, a
- * coated material, an image, an environment image. */
+/* The small world, a sheet outside of groups, a sheet with holes and a sphere in a group with
+ * three instances, a coated material, an image, an environment image. */
 static Things make_scene(vlContext *context) {
   Things t = {0};
   assert_int_equal(vl_scene_create(context, &t.scene), VL_OK);
@@ -130,7 +134,8 @@ static void shoot(vlContext *context, const vlWorld *world, float *pixels) {
   memcpy(pixels, vl_image_const_pixels(image), (size_t)PIXELS * 4 * sizeof(float));
   vl_image_destroy(image);
   vlChannelsDef channels = vl_default_channels_def(SMALL_WIDTH, SMALL_HEIGHT);
-  channels.channels = VL_CHANNEL_Z | VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE | VL_CHANNEL_ID_MATERIAL;
+  channels.channels =
+      VL_CHANNEL_Z | VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE | VL_CHANNEL_ID_MATERIAL;
   assert_int_equal(vl_render_channels(world, &camera, &channels, &image, &ids, NULL), VL_OK);
   memcpy(pixels + 4 * PIXELS, vl_image_const_pixels(image), (size_t)PIXELS * sizeof(float));
   memcpy(pixels + 5 * PIXELS, vl_image_const_pixels(ids), (size_t)PIXELS * 3 * sizeof(float));
@@ -141,8 +146,10 @@ static void shoot(vlContext *context, const vlWorld *world, float *pixels) {
 
 static vlBits bits; /* of the worlds */
 
-/* Builds with and without the previous world, and compares the bytes. Returns the shared world. */
-static vlWorld *compare(vlContext *context, const vlScene *scene, const vlWorld *previous, float *image) {
+/* Builds with and without the previous world, and compares the bytes. Returns the shared world.
+ */
+static vlWorld *compare(vlContext *context, const vlScene *scene, const vlWorld *previous,
+                        float *image) {
   static float fresh_image[8 * PIXELS];
   vlWorld *shared = NULL, *fresh = NULL;
   vlError error;
@@ -176,7 +183,9 @@ static void edit(vlContext *context, Things *t, int k) {
   small_place(place, 0.3, 1.1, 1.0 + 0.01 * k);
   switch (k) {
     case 0:
-    case 1: assert_int_equal(vl_scene_set_instance(s, t->instances[k], place, &error), VL_OK); break;
+    case 1:
+      assert_int_equal(vl_scene_set_instance(s, t->instances[k], place, &error), VL_OK);
+      break;
     case 2: {
       vlMaterialDef def = *vl_scene_material(s, t->paint);
       def.u_roughness = def.v_roughness = vl_float_input(0.3f);
@@ -192,10 +201,18 @@ static void edit(vlContext *context, Things *t, int k) {
       vl_image_destroy(image);
       break;
     }
-    case 5: assert_int_equal(vl_scene_show_instance(s, t->instances[1], false, &error), VL_OK); break;
-    case 6: assert_int_equal(vl_scene_show_shape(s, t->first, false, &error), VL_OK); break;
-    case 7: assert_int_equal(vl_scene_show_instance(s, t->instances[1], true, &error), VL_OK); break;
-    case 8: assert_int_equal(vl_scene_remove_instance(s, t->instances[0], &error), VL_OK); break;
+    case 5:
+      assert_int_equal(vl_scene_show_instance(s, t->instances[1], false, &error), VL_OK);
+      break;
+    case 6:
+      assert_int_equal(vl_scene_show_shape(s, t->first, false, &error), VL_OK);
+      break;
+    case 7:
+      assert_int_equal(vl_scene_show_instance(s, t->instances[1], true, &error), VL_OK);
+      break;
+    case 8:
+      assert_int_equal(vl_scene_remove_instance(s, t->instances[0], &error), VL_OK);
+      break;
     case 9: {
       vlLightDef def = *vl_scene_light(s, t->sky);
       def.scale = 3;
@@ -208,13 +225,18 @@ static void edit(vlContext *context, Things *t, int k) {
       assert_int_equal(vl_scene_set_texture(s, t->mask, &def, &error), VL_OK);
       break;
     }
-    case 11: assert_int_equal(vl_scene_show_light(s, t->sky, false, &error), VL_OK); break;
+    case 11:
+      assert_int_equal(vl_scene_show_light(s, t->sky, false, &error), VL_OK);
+      break;
     case 12: {
-      vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE); /* shadow rays pass: other filters */
+      vlMaterialDef def =
+          vl_default_material_def(VL_MATERIAL_INTERFACE); /* shadow rays pass: other filters */
       assert_int_equal(vl_scene_set_material(s, t->paint, &def, &error), VL_OK);
       break;
     }
-    default: add_sheet(s, (vlGroupId){0}, 0.4, (vlMaterialId){1}, (vlTextureId){0}); break;
+    default:
+      add_sheet(s, (vlGroupId){0}, 0.4, (vlMaterialId){1}, (vlTextureId){0});
+      break;
   }
 }
 
@@ -271,7 +293,8 @@ static void any_order(void **state) {
   end(context);
 }
 
-/* A scene that was made again shares what is the same; one more shape shifts the numbers of the others. */
+/* A scene that was made again shares what is the same; one more shape shifts the numbers of the
+ * others. */
 static void a_scene_made_again(void **state) {
   (void)state;
   static float image[8 * PIXELS];
@@ -310,7 +333,8 @@ static void an_image_file_changes(void **state) {
   vlContext *context = make_context();
   Things t = make_scene(context);
   char path[512];
-  snprintf(path, sizeof path, "%s/velo_edit_%ld.exr", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", (long)getpid());
+  snprintf(path, sizeof path, "%s/velo_edit_%ld.exr",
+           getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", (long)getpid());
   vlImage *image = pattern(context, 5);
   assert_int_equal(vl_image_write(image, path, NULL, NULL), VL_OK);
   vl_image_destroy(image);
@@ -333,7 +357,8 @@ static void an_image_file_changes(void **state) {
 }
 
 /* A wrong change is refused and leaves the scene as it was. */
-/* A ball of fog. Its medium changes its numbers, then its kind; then nothing changes, and it is shared. */
+/* A ball of fog. Its medium changes its numbers, then its kind; then nothing changes, and it is
+ * shared. */
 static void media_change(void **state) {
   (void)state;
   static float a[8 * PIXELS], b[8 * PIXELS];
@@ -364,7 +389,8 @@ static void media_change(void **state) {
   assert_memory_not_equal(a, b, sizeof a);
   fog.density = NULL;
   assert_int_equal(vl_scene_set_medium(t.scene, id, &fog, &error), VL_ERROR_SCENE);
-  assert_int_equal(vl_scene_set_medium(t.scene, (vlMediumId){9}, &fog, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_set_medium(t.scene, (vlMediumId){9}, &fog, &error),
+                   VL_ERROR_ARGUMENT);
   vlWorld *four = compare(context, t.scene, three, b);
   assert_memory_equal(a, b, sizeof a);
   tracer = VL_TRACER_PATH;
@@ -386,12 +412,16 @@ static void wrong_edits(void **state) {
   vlMaterialDef material = *vl_scene_material(t.scene, t.paint);
   material.materials[0] = material.materials[1] = t.paint;
   material.kind = VL_MATERIAL_MIX;
-  assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error), VL_ERROR_SCENE); /* of itself */
+  assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error),
+                   VL_ERROR_SCENE); /* of itself */
   material = *vl_scene_material(t.scene, t.paint);
   material.cookie = 0;
-  assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_scene_set_material(t.scene, (vlMaterialId){99}, &material, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_scene_set_material(t.scene, (vlMaterialId){0}, &material, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_set_material(t.scene, (vlMaterialId){99}, &material, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_set_material(t.scene, (vlMaterialId){0}, &material, &error),
+                   VL_ERROR_ARGUMENT);
   vlTextureDef texture = *vl_scene_texture(t.scene, t.mask);
   texture.spectrum = true;
   assert_int_equal(vl_scene_set_texture(t.scene, t.mask, &texture, &error), VL_ERROR_ARGUMENT);
@@ -400,23 +430,27 @@ static void wrong_edits(void **state) {
   assert_int_not_equal(vl_scene_set_light(t.scene, t.sky, &light, &error), VL_OK);
   double place[16];
   small_place(place, NAN, 0, 0);
-  assert_int_equal(vl_scene_set_instance(t.scene, t.instances[0], place, &error), VL_ERROR_SCENE);
-  assert_int_equal(vl_scene_show_instance(t.scene, (vlInstanceId){1000}, false, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_scene_set_shape_material(t.scene, t.first, (vlMaterialId){99}, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_set_instance(t.scene, t.instances[0], place, &error),
+                   VL_ERROR_SCENE);
+  assert_int_equal(vl_scene_show_instance(t.scene, (vlInstanceId){1000}, false, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_set_shape_material(t.scene, t.first, (vlMaterialId){99}, &error),
+                   VL_ERROR_ARGUMENT);
   assert_int_equal(vl_scene_result(t.scene, NULL), VL_OK);
   vlWorld *same = compare(context, t.scene, world, b);
   assert_memory_equal(a, b, sizeof a);
   vlInstanceInfo info;
   assert_int_equal(vl_scene_remove_instance(t.scene, t.instances[0], &error), VL_OK);
   assert_int_equal(vl_scene_instance(t.scene, t.instances[0], &info), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_scene_remove_instance(t.scene, t.instances[0], &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_scene_remove_instance(t.scene, t.instances[0], &error),
+                   VL_ERROR_ARGUMENT);
   assert_int_equal(vl_scene_instance(t.scene, t.instances[1], &info), VL_OK);
   assert_true(info.shown && !info.moves && info.keys == 0 && !info.times && !info.poses);
   double poses[32];
   small_place(poses, 1, 2, 3);
   small_place(poses + 16, 4, 5, 6);
-  vlInstanceId moving =
-      vl_scene_add_moving_instance(t.scene, info.group, 2, (const double[2]){0.25, 0.5}, poses, (vlSource){0});
+  vlInstanceId moving = vl_scene_add_moving_instance(
+      t.scene, info.group, 2, (const double[2]){0.25, 0.5}, poses, (vlSource){0});
   assert_int_equal(vl_scene_instance(t.scene, moving, &info), VL_OK);
   assert_true(info.moves && info.keys == 2 && info.times[0] == 0.25 && info.times[1] == 0.5);
   assert_memory_equal(info.poses, poses, sizeof poses);
@@ -427,7 +461,8 @@ static void wrong_edits(void **state) {
   end(context);
 }
 
-/* An object that is set again keeps its image in memory, also when another object has got it. */
+/* An object that is set again keeps its image in memory, also when another object has got it.
+ */
 static void images_are_kept(void **state) {
   (void)state;
   static float image[8 * PIXELS];
@@ -464,7 +499,8 @@ static void edits_keep_no_memory(void **state) {
     def.image = image;
     assert_int_equal(vl_scene_set_texture(t.scene, t.image, &def, NULL), VL_OK);
     vl_image_destroy(image);
-    if (k == 10) after_first = vl_context_memory(context, NULL);
+    if (k == 10)
+      after_first = vl_context_memory(context, NULL);
   }
   assert_true(vl_context_memory(context, NULL) <= after_first + 4096);
   vl_scene_destroy(t.scene);

@@ -1,5 +1,6 @@
-/* test/api/test_load_group.c: vl_scene_load_group: a file's shapes, its instances too, become one group, and nothing
- * else of the file is taken. The reference is the same content in a world of its own. */
+/* test/api/test_load_group.c: vl_scene_load_group: a file's shapes, its instances too, become
+ * one group, and nothing else of the file is taken. The reference is the same content in a
+ * world of its own. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,7 +14,9 @@ static const char model[] =
     "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 7 \"integer yresolution\" 5\n"
     "WorldBegin\nLightSource \"point\"\n"
     "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.5\n"
-    "ObjectBegin \"part\"\nTranslate 0 1 0\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] "
+    "ObjectBegin \"part\"\nTranslate 0 1 0\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 "
+    "1 "
+    "0] "
     "\"integer indices\" [0 1 2]\nShape \"sphere\" \"float radius\" 0.2\nObjectEnd\n"
     "ObjectInstance \"part\"\nTranslate 2 0 0\nScale -1 1 1\nObjectInstance \"part\"\n";
 
@@ -26,7 +29,8 @@ static vlScene *load_model(vlContext *context, const char *path, vlLoadedGroup *
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlError error = {0};
   vlResult result = vl_scene_load_group(scene, path, NULL, "thing", loaded, &error);
-  if (result != VL_OK) print_error("%s\n", error.message);
+  if (result != VL_OK)
+    print_error("%s\n", error.message);
   assert_int_equal(result, VL_OK);
   return scene;
 }
@@ -42,7 +46,8 @@ static void test_contents(void **state) {
   assert_int_equal(loaded.shapes, 5);
   assert_int_equal(loaded.lights, 1);
   assert_int_equal(loaded.emitters, 1);
-  /* The sphere from -0.5 to 0.5; the triangle at (0, 1) and, mirrored, from x = 2 to 1, with a ball of radius 0.2. */
+  /* The sphere from -0.5 to 0.5; the triangle at (0, 1) and, mirrored, from x = 2 to 1, with a
+   * ball of radius 0.2. */
   const double low[3] = {-0.5, -0.5, -0.5}, high[3] = {2.2, 2, 0.5};
   for (int i = 0; i < 3; i++) {
     assert_true(loaded.low[i] > low[i] - 1e-6 && loaded.low[i] < low[i] + 1e-6);
@@ -59,7 +64,8 @@ static void test_contents(void **state) {
   vl_context_destroy(context);
 }
 
-/* Depths and geometric normals of the group placed by an instance equal those of the file in a world of its own. */
+/* Depths and geometric normals of the group placed by an instance equal those of the file in a
+ * world of its own. */
 static void test_same_geometry(void **state) {
   (void)state;
   vlContext *context;
@@ -85,7 +91,8 @@ static void test_same_geometry(void **state) {
     assert_int_equal(vl_world_build(scenes[i], NULL, &world, &error), VL_OK);
     vlChannelsDef channels = vl_default_channels_def(48, 36);
     channels.channels = VL_CHANNEL_Z | VL_CHANNEL_NG;
-    assert_int_equal(vl_render_channels(world, &camera, &channels, &images[i], NULL, &error), VL_OK);
+    assert_int_equal(vl_render_channels(world, &camera, &channels, &images[i], NULL, &error),
+                     VL_OK);
     vl_world_destroy(world);
   }
   const float *a = vl_image_const_pixels(images[0]), *b = vl_image_const_pixels(images[1]);
@@ -96,12 +103,14 @@ static void test_same_geometry(void **state) {
     hits += i % 4 == 0 && a[i] < 100;
   }
   assert_true(hits > 100);
-  for (int i = 0; i < 2; i++) vl_image_destroy(images[i]), vl_scene_destroy(scenes[i]);
+  for (int i = 0; i < 2; i++)
+    vl_image_destroy(images[i]), vl_scene_destroy(scenes[i]);
   remove(path);
   vl_context_destroy(context);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_contents), cmocka_unit_test(test_same_geometry)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_contents),
+                                     cmocka_unit_test(test_same_geometry)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,6 @@
-/* test/api/test_memory_files.c: scenes and images in memory give the same as files; coarse images. */
+/* test/api/test_memory_files.c: scenes and images in memory give the same as files; coarse
+ * images.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -54,14 +56,16 @@ static void images_in_memory(void **state) {
   vlContext *context = make_context();
   vlError error;
   for (int i = 0; i < 6; i++) {
-    vlImage *image = gradient(context, i == 0 || i == 5 ? VL_PIXEL_U8 : VL_PIXEL_F32), *a = NULL, *b = NULL;
+    vlImage *image = gradient(context, i == 0 || i == 5 ? VL_PIXEL_U8 : VL_PIXEL_F32),
+            *a = NULL, *b = NULL;
     char path[512];
-    snprintf(path, sizeof path, "%s/velo_memory_%ld%s", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", (long)getpid(),
-             suffixes[i]);
+    snprintf(path, sizeof path, "%s/velo_memory_%ld%s",
+             getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", (long)getpid(), suffixes[i]);
     assert_int_equal(vl_image_write(image, path, NULL, &error), VL_OK);
     void *data = NULL;
     size_t size = 0, file_size;
-    assert_int_equal(vl_image_write_memory(image, suffixes[i], NULL, &data, &size, &error), VL_OK);
+    assert_int_equal(vl_image_write_memory(image, suffixes[i], NULL, &data, &size, &error),
+                     VL_OK);
     void *file = read_whole(path, &file_size);
     assert_int_equal(size, file_size);
     assert_memory_equal(data, file, size);
@@ -70,7 +74,8 @@ static void images_in_memory(void **state) {
     assert_int_equal(vl_image_type(a), vl_image_type(b));
     assert_memory_equal(vl_image_const_pixels(a), vl_image_const_pixels(b), 33 * 17 * 3);
     vlImage *half = image;
-    assert_int_equal(vl_image_read_memory(context, "x", data, size / 2, &half, &error), VL_ERROR_SCENE);
+    assert_int_equal(vl_image_read_memory(context, "x", data, size / 2, &half, &error),
+                     VL_ERROR_SCENE);
     assert_null(half);
     unlink(path);
     free(file);
@@ -82,7 +87,8 @@ static void images_in_memory(void **state) {
   vlImage *image = gradient(context, VL_PIXEL_U8);
   void *data = &error;
   size_t size = 1;
-  assert_int_equal(vl_image_write_memory(image, ".pgn", NULL, &data, &size, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write_memory(image, ".pgn", NULL, &data, &size, &error),
+                   VL_ERROR_ARGUMENT);
   assert_null(data);
   assert_int_equal(size, 0);
   vl_image_destroy(image);
@@ -99,14 +105,17 @@ static void scenes_in_memory(void **state) {
   vlError error;
   vlSceneInfo info;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-  assert_int_equal(vl_scene_load_memory(scene, "a.pbrt", text, sizeof text - 1, NULL, &error), VL_OK);
+  assert_int_equal(vl_scene_load_memory(scene, "a.pbrt", text, sizeof text - 1, NULL, &error),
+                   VL_OK);
   vl_scene_info(scene, &info);
   assert_int_equal(info.shapes, 2);
   assert_int_equal(vl_scene_defs(scene)->film.width, 8);
   vl_scene_destroy(scene);
   static const char broken[] = "WorldBegin\n  Shape \"spere\"\n";
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-  assert_int_equal(vl_scene_load_memory(scene, "dir/b.pbrt", broken, sizeof broken - 1, NULL, &error), VL_ERROR_SCENE);
+  assert_int_equal(
+      vl_scene_load_memory(scene, "dir/b.pbrt", broken, sizeof broken - 1, NULL, &error),
+      VL_ERROR_SCENE);
   assert_string_equal(error.file, "dir/b.pbrt");
   assert_int_equal(error.line, 2);
   vl_scene_destroy(scene);
@@ -116,9 +125,10 @@ static void scenes_in_memory(void **state) {
   end(context);
 }
 
-/* Renders the small world with a camera; the mean of each block of factor x factor pixels, 3 channels. */
-static vlImage *shoot(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlFilmDef *def,
-                      uint32_t spp) {
+/* Renders the small world with a camera; the mean of each block of factor x factor pixels, 3
+ * channels. */
+static vlImage *shoot(vlContext *context, const vlWorld *world, const vlCamera *camera,
+                      const vlFilmDef *def, uint32_t spp) {
   vlFilm *film = NULL;
   vlImage *image = NULL;
   vlRenderDef render = vl_default_render_def();
@@ -130,7 +140,8 @@ static vlImage *shoot(vlContext *context, const vlWorld *world, const vlCamera *
   return image;
 }
 
-/* Each pixel of the coarse image is the mean of the pixels that it covers (box filter; noise is left). */
+/* Each pixel of the coarse image is the mean of the pixels that it covers (box filter; noise is
+ * left). */
 static void coarse_images(void **state) {
   (void)state;
   vlContext *context = make_context();
@@ -161,12 +172,14 @@ static void coarse_images(void **state) {
         for (uint32_t k = 0; k < 3; k++) {
           double mean = 0;
           for (uint32_t j = 0; j < factor * factor; j++)
-            mean += (double)f[4 * ((y * factor + j / factor) * SMALL_WIDTH + x * factor + j % factor) + k];
+            mean += (double)
+                f[4 * ((y * factor + j / factor) * SMALL_WIDTH + x * factor + j % factor) + k];
           mean /= factor * factor;
           difference += fabs(mean - (double)c[4 * (y * def.width + x) + k]);
           sum += mean;
         }
-    assert_true(difference < 0.06 * sum); /* a shift by half a coarse pixel gives 0.2 and more */
+    assert_true(difference <
+                0.06 * sum); /* a shift by half a coarse pixel gives 0.2 and more */
     vl_image_destroy(image);
   }
   vl_image_destroy(fine);

@@ -1,5 +1,5 @@
-/* test/api/test_receipt.c: receipts store exact values, comparisons find every difference, and damaged receipts are
- * refused. */
+/* test/api/test_receipt.c: receipts store exact values, comparisons find every difference, and
+ * damaged receipts are refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,7 +26,9 @@ static int set_up(void **state) {
   Fixture *f = calloc(1, sizeof *f);
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
-  if (!f || vl_context_create(&def, &f->context) != VL_OK || vl_scene_create(f->context, &f->scene) != VL_OK) return 1;
+  if (!f || vl_context_create(&def, &f->context) != VL_OK ||
+      vl_scene_create(f->context, &f->scene) != VL_OK)
+    return 1;
   *state = f;
   return 0;
 }
@@ -77,20 +79,23 @@ static const char *differences(const vlReceipt *then, const vlReceipt *now, uint
   static Lines lines;
   lines = (Lines){.left = 1000};
   uint32_t count = vl_receipt_compare(then, now, parts, add_line, &lines), found = 0;
-  for (const char *c = lines.text; *c; c++) found += *c == '\n';
+  for (const char *c = lines.text; *c; c++)
+    found += *c == '\n';
   assert_int_equal(count, found);
   assert_int_equal(vl_receipt_compare(then, now, parts, NULL, NULL), count);
   return lines.text;
 }
 
-/* The published values of MurmurHash3_x64_128 for seed 0, and distinct digests for inputs of 0 to 63 bytes. */
+/* The published values of MurmurHash3_x64_128 for seed 0, and distinct digests for inputs of 0
+ * to 63 bytes. */
 static void digests_are_murmur3(void **state) {
   (void)state;
   static const struct {
     const char *text, *digest;
-  } known[] = {{"", "00000000000000000000000000000000"},
-               {"hello", "cbd8a7b341bd9b025b1e906a48ae1d19"},
-               {"The quick brown fox jumps over the lazy dog", "e34bbc7bbc071b6c7a433ca9c49a9347"}};
+  } known[] = {
+      {"", "00000000000000000000000000000000"},
+      {"hello", "cbd8a7b341bd9b025b1e906a48ae1d19"},
+      {"The quick brown fox jumps over the lazy dog", "e34bbc7bbc071b6c7a433ca9c49a9347"}};
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     uint8_t digest[16];
     char text[33];
@@ -101,7 +106,8 @@ static void digests_are_murmur3(void **state) {
   uint8_t bytes[64] = {0}, seen[64][16];
   for (size_t n = 0; n < 64; n++) {
     vl_digest(bytes, n, seen[n]);
-    for (size_t k = 0; k < n; k++) assert_memory_not_equal(seen[n], seen[k], 16);
+    for (size_t k = 0; k < n; k++)
+      assert_memory_not_equal(seen[n], seen[k], 16);
   }
 }
 
@@ -112,7 +118,8 @@ static void files_are_recorded(void **state) {
   snprintf(scene, sizeof scene, "%s/room.pbrt", folder);
   snprintf(part, sizeof part, "%s/part.pbrt", folder);
   write_file(scene,
-             "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nCamera \"perspective\"\n"
+             "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nCamera "
+             "\"perspective\"\n"
              "WorldBegin\nInclude \"part.pbrt\"\n");
   write_file(part, "Shape \"sphere\"\n");
   vl_context_record_files(f->context, true);
@@ -150,7 +157,8 @@ static void files_are_recorded(void **state) {
 }
 
 /* Numbers that are easily changed by a conversion to text and back. */
-static const double awkward[] = {0.1, -0.0, 1.0 / 3.0, 1e-300, 6.02214076e23, 12345678.9, 5e-324};
+static const double awkward[] = {0.1,           -0.0,       1.0 / 3.0, 1e-300,
+                                 6.02214076e23, 12345678.9, 5e-324};
 
 static void numbers_are_exact(void **state) {
   Fixture *f = *state;
@@ -158,9 +166,12 @@ static void numbers_are_exact(void **state) {
   vlCameraDef *camera = &defs->camera;
   for (size_t i = 0; i < sizeof awkward / sizeof *awkward; i++) {
     camera->has_matrix = true;
-    for (int k = 0; k < 16; k++) camera->world_from_camera[k] = awkward[(i + (size_t)k) % 7];
-    camera->focus_distance = awkward[i] > 0 ? awkward[i] : 2.0 / 3.0; /* a camera has no other */
-    camera->lens.tilt_x = fmod(awkward[(i + 1) % 7], 1.5) + 0.0;      /* less than a right angle; turns -0 into 0 */
+    for (int k = 0; k < 16; k++)
+      camera->world_from_camera[k] = awkward[(i + (size_t)k) % 7];
+    camera->focus_distance =
+        awkward[i] > 0 ? awkward[i] : 2.0 / 3.0; /* a camera has no other */
+    camera->lens.tilt_x =
+        fmod(awkward[(i + 1) % 7], 1.5) + 0.0; /* less than a right angle; turns -0 into 0 */
     defs->film.filter.sigma = (float)awkward[i];
     vlReceiptDef def = vl_default_receipt_def();
     def.defs = defs;
@@ -170,15 +181,18 @@ static void numbers_are_exact(void **state) {
     vlCameraDef back;
     uint32_t size[2], crop[4];
     vlError error = {0};
-    if (vl_receipt_camera(read, &back, size, crop, &error) != VL_OK) fail_msg("%s", error.message);
-    assert_memory_equal(back.world_from_camera, camera->world_from_camera, sizeof back.world_from_camera);
+    if (vl_receipt_camera(read, &back, size, crop, &error) != VL_OK)
+      fail_msg("%s", error.message);
+    assert_memory_equal(back.world_from_camera, camera->world_from_camera,
+                        sizeof back.world_from_camera);
     assert_memory_equal(&back.focus_distance, &camera->focus_distance, sizeof(double));
     assert_memory_equal(&back.lens.tilt_x, &camera->lens.tilt_x, sizeof(double));
     assert_int_equal(size[0], defs->film.width);
     assert_int_equal(crop[3], defs->film.crop[3]);
     defs->film.filter.sigma = nextafterf((float)awkward[i], 1.0f);
     vlReceipt *other = make(f, &def);
-    assert_true(strncmp(differences(made, other, VL_RECEIPT_ALL), "film differs: filter.sigma ", 27) == 0);
+    assert_true(strncmp(differences(made, other, VL_RECEIPT_ALL), "film differs: filter.sigma ",
+                        27) == 0);
     vl_receipt_destroy(made);
     vl_receipt_destroy(read);
     vl_receipt_destroy(other);
@@ -213,12 +227,15 @@ static void differences_are_named(void **state) {
   complete.ground = true;
   def.commit = "ba9876543210";
   vlReceipt *now = make(f, &def);
-  assert_string_equal(differences(then, now, VL_RECEIPT_ALL),
-                      "velo's commit is ba9876543210, was 0123456789ab\ncamera differs: fov is 0.5, was 0.6\n"
-                      "load differs: variant is red, was not given\ncomplete differs: ground is true, was false\n"
-                      "build differs: color is rgb, was spectral\nrender differs: tracer is sppm, was path\n"
-                      "spp is 64, was 16\nsamples is 64, was 16\ndevelop differs: exposure is 2.0, was 1.0\n");
-  assert_string_equal(differences(then, now, VL_RECEIPT_SAMPLES), "spp is 64, was 16\nsamples is 64, was 16\n");
+  assert_string_equal(
+      differences(then, now, VL_RECEIPT_ALL),
+      "velo's commit is ba9876543210, was 0123456789ab\ncamera differs: fov is 0.5, was 0.6\n"
+      "load differs: variant is red, was not given\ncomplete differs: ground is true, was "
+      "false\n"
+      "build differs: color is rgb, was spectral\nrender differs: tracer is sppm, was path\n"
+      "spp is 64, was 16\nsamples is 64, was 16\ndevelop differs: exposure is 2.0, was 1.0\n");
+  assert_string_equal(differences(then, now, VL_RECEIPT_SAMPLES),
+                      "spp is 64, was 16\nsamples is 64, was 16\n");
   assert_string_equal(differences(now, now, VL_RECEIPT_ALL), "");
   uint32_t planned;
   assert_int_equal(vl_receipt_samples(now, &planned), 64);
@@ -234,8 +251,10 @@ static void long_values_are_cut(void **state) {
   char long_text[900] = "{\"velo_receipt\": 1, \"scene\": [\"";
   memset(long_text + strlen(long_text), 'x', 600);
   strcat(long_text, "\"]}");
-  vlReceipt *then = parse(f, "{\"velo_receipt\": 1, \"scene\": \"a\"}"), *now = parse(f, long_text);
-  const char *text = differences(then, now, VL_RECEIPT_ALL), *end = strstr(text, "xxx..., was a\n");
+  vlReceipt *then = parse(f, "{\"velo_receipt\": 1, \"scene\": \"a\"}"),
+            *now = parse(f, long_text);
+  const char *text = differences(then, now, VL_RECEIPT_ALL),
+             *end = strstr(text, "xxx..., was a\n");
   assert_non_null(end);
   assert_int_equal(strlen(text), strlen("scene is ") + 119 + strlen(", was a\n"));
   assert_int_equal(strncmp(text, "scene is [\"xxx", 14), 0);
@@ -268,7 +287,8 @@ static void every_projection_has_a_name(void **state) {
   vlSceneDefs *defs = vl_scene_defs(f->scene);
   def.defs = defs;
   for (vlProjection p = VL_PROJECTION_PERSPECTIVE; p <= VL_PROJECTION_OWN; p++) {
-    if (p == VL_PROJECTION_OPTICS) continue; /* needs a lens; it has a name in the same way as VL_PROJECTION_OWN */
+    if (p == VL_PROJECTION_OPTICS)
+      continue; /* needs a lens; it has a name in the same way as VL_PROJECTION_OWN */
     defs->camera.projection = p;
     vlReceipt *receipt = make(f, &def);
     assert_null(strstr(vl_receipt_text(receipt), "\"projection\":\"\""));
@@ -334,22 +354,25 @@ static void wrong_receipts_are_refused(void **state) {
   vlReceipt *receipt = NULL;
   vlError error;
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-    assert_int_equal(vl_receipt_parse(f->context, wrong[i].text, strlen(wrong[i].text), &receipt, &error),
-                     wrong[i].result);
+    assert_int_equal(
+        vl_receipt_parse(f->context, wrong[i].text, strlen(wrong[i].text), &receipt, &error),
+        wrong[i].result);
     assert_null(receipt);
     assert_true(error.message[0] != 0);
   }
   assert_int_equal(vl_receipt_make(f->context, NULL, &receipt, &error), VL_ERROR_ARGUMENT);
   vlReceiptDef def = vl_default_receipt_def();
-  assert_int_equal(vl_receipt_make(f->context, &def, &receipt, &error), VL_ERROR_ARGUMENT); /* the def has no defs */
+  assert_int_equal(vl_receipt_make(f->context, &def, &receipt, &error),
+                   VL_ERROR_ARGUMENT); /* the def has no defs */
 }
 
 /* Members of a wrong type count as missing. */
 static void wrong_members_are_missing(void **state) {
   Fixture *f = *state;
-  vlReceipt *odd = parse(f,
-                         "{\"velo_receipt\": 1, \"velo\": 3, \"command\": {}, \"scene\": [], \"files\": [1, {}], "
-                         "\"camera\": [], \"film\": 1, \"render\": null, \"samples\": -5, \"outputs\": \"a\"}");
+  vlReceipt *odd = parse(
+      f,
+      "{\"velo_receipt\": 1, \"velo\": 3, \"command\": {}, \"scene\": [], \"files\": [1, {}], "
+      "\"camera\": [], \"film\": 1, \"render\": null, \"samples\": -5, \"outputs\": \"a\"}");
   vlReceipt *empty = parse(f, "{\"velo_receipt\": 1}");
   vlFileRecord record;
   vlCameraDef camera;
@@ -362,14 +385,16 @@ static void wrong_members_are_missing(void **state) {
   assert_string_equal(vl_receipt_version(odd, NULL), "");
   assert_int_equal(vl_receipt_camera(odd, &camera, NULL, NULL, &error), VL_ERROR_SCENE);
   assert_int_equal(vl_receipt_camera(empty, &camera, NULL, NULL, &error), VL_ERROR_SCENE);
-  assert_true(strstr(differences(empty, odd, VL_RECEIPT_ALL), "film is 1, was not given") != NULL);
-  assert_true(strstr(differences(odd, empty, VL_RECEIPT_ALL), "scene is not given, was []") != NULL);
+  assert_true(strstr(differences(empty, odd, VL_RECEIPT_ALL), "film is 1, was not given") !=
+              NULL);
+  assert_true(strstr(differences(odd, empty, VL_RECEIPT_ALL), "scene is not given, was []") !=
+              NULL);
   vl_receipt_destroy(odd);
   vl_receipt_destroy(empty);
 }
 
-/* Reads a scene while files are recorded, makes its receipt, reads that receipt, and derives an image's receipt from
- * it. user: path of the scene. */
+/* Reads a scene while files are recorded, makes its receipt, reads that receipt, and derives an
+ * image's receipt from it. user: path of the scene. */
 static vlResult all_of_it(vlContext *context, void *user) {
   vlScene *scene = NULL;
   vlReceipt *receipt = NULL, *read = NULL, *image = NULL;
@@ -378,15 +403,19 @@ static vlResult all_of_it(vlContext *context, void *user) {
   def.scene = user;
   vl_context_record_files(context, true);
   vlResult result = vl_scene_create(context, &scene);
-  if (result == VL_OK) result = vl_scene_load(scene, user, NULL, &error);
+  if (result == VL_OK)
+    result = vl_scene_load(scene, user, NULL, &error);
   if (result == VL_OK) {
     def.defs = vl_scene_defs(scene);
     result = vl_receipt_make(context, &def, &receipt, &error);
   }
   if (result == VL_OK)
-    result = vl_receipt_parse(context, vl_receipt_text(receipt), strlen(vl_receipt_text(receipt)), &read, &error);
-  if (result == VL_OK) result = vl_receipt_of_image(read, 3, &image, &error);
-  if (result == VL_OK) assert_non_null(strstr(vl_receipt_text(image), "\"files\":[{\"path\":\"one.pbrt\""));
+    result = vl_receipt_parse(context, vl_receipt_text(receipt),
+                              strlen(vl_receipt_text(receipt)), &read, &error);
+  if (result == VL_OK)
+    result = vl_receipt_of_image(read, 3, &image, &error);
+  if (result == VL_OK)
+    assert_non_null(strstr(vl_receipt_text(image), "\"files\":[{\"path\":\"one.pbrt\""));
   vl_receipt_destroy(receipt);
   vl_receipt_destroy(read);
   vl_receipt_destroy(image);

@@ -22,7 +22,8 @@ static void the_version_is_the_headers(void **state) {
   assert_int_equal(version->patch, VL_VERSION_PATCH);
   assert_int_equal(version->abi, VL_ABI_VERSION);
   assert_true(strlen(version->compiler) > 4);
-  assert_true(strstr(version->instruction_sets, "x86-64-v3") || strcmp(version->instruction_sets, "base") == 0);
+  assert_true(strstr(version->instruction_sets, "x86-64-v3") ||
+              strcmp(version->instruction_sets, "base") == 0);
 }
 
 static void libraries_have_versions(void **state) {
@@ -58,7 +59,8 @@ static void a_def_of_another_abi_is_refused(void **state) {
   uint32_t good = context_def.cookie;
   context_def.cookie = next_abi(good);
   assert_int_equal(vl_context_create(&context_def, &context), VL_ERROR_ARGUMENT);
-  context_def = vl_default_context_def_abi(VL_ABI_VERSION + 1); /* a program compiled with other headers */
+  context_def = vl_default_context_def_abi(VL_ABI_VERSION +
+                                           1); /* a program compiled with other headers */
   assert_int_equal(vl_context_create(&context_def, &context), VL_ERROR_ARGUMENT);
   assert_null(context);
   context_def = vl_default_context_def();

@@ -1,5 +1,6 @@
-/* test/api/test_whole.c: the whole pipeline through the public API: the same bits for any number of threads,
- * instruction set, crop and split into calls; cancellation; a failure of every single allocation. */
+/* test/api/test_whole.c: the whole pipeline through the public API: the same bits for any
+ * number of threads, instruction set, crop and split into calls; cancellation; a failure of
+ * every single allocation. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,7 +14,8 @@
 #include "api/small_world.h"
 #include "failing_allocator.h"
 
-static vlImage *take_image(vlContext *context, uint32_t spp, const uint32_t crop[4], vlColorMode color) {
+static vlImage *take_image(vlContext *context, uint32_t spp, const uint32_t crop[4],
+                           vlColorMode color) {
   vlRenderDef render = vl_default_render_def();
   render.spp = spp;
   vlImage *image = NULL;
@@ -27,14 +29,16 @@ static vlContext *make_context(uint32_t threads, vlIsa isa) {
   def.isa = isa;
   vlContext *context = NULL;
   vlResult result = vl_context_create(&def, &context);
-  if (result == VL_ERROR_UNSUPPORTED) return NULL;
+  if (result == VL_ERROR_UNSUPPORTED)
+    return NULL;
   assert_int_equal(result, VL_OK);
   return context;
 }
 
 static size_t size_of(const vlImage *image) {
   assert_int_equal(vl_image_type(image), VL_PIXEL_F32);
-  return (size_t)vl_image_width(image) * vl_image_height(image) * vl_image_channels(image) * sizeof(float);
+  return (size_t)vl_image_width(image) * vl_image_height(image) * vl_image_channels(image) *
+         sizeof(float);
 }
 
 static void the_same_bits_everywhere(void **state) {
@@ -52,12 +56,15 @@ static void the_same_bits_everywhere(void **state) {
     static const struct {
       uint32_t threads;
       vlIsa isa;
-    } runs[] = {{2, VL_ISA_BASE}, {3, VL_ISA_V3}, {8, VL_ISA_V4}, {1, VL_ISA_V4}, {1, VL_ISA_V3}};
+    } runs[] = {
+        {2, VL_ISA_BASE}, {3, VL_ISA_V3}, {8, VL_ISA_V4}, {1, VL_ISA_V4}, {1, VL_ISA_V3}};
     for (unsigned i = 0; i < sizeof runs / sizeof *runs; i++) {
       vlContext *context = make_context(runs[i].threads, runs[i].isa);
-      if (!context) continue;
+      if (!context)
+        continue;
       vlImage *image = take_image(context, 4, NULL, (vlColorMode)color);
-      assert_memory_equal(vl_image_const_pixels(image), vl_image_const_pixels(reference), size_of(reference));
+      assert_memory_equal(vl_image_const_pixels(image), vl_image_const_pixels(reference),
+                          size_of(reference));
       vl_image_destroy(image);
       vl_context_destroy(context);
     }
@@ -70,7 +77,8 @@ static void a_crop_is_a_cut(void **state) {
   (void)state;
   vlContext *context = make_context(2, VL_ISA_AUTO);
   vlImage *whole = take_image(context, 2, NULL, VL_COLOR_SPECTRAL);
-  static const uint32_t crops[][4] = {{0, 0, 1, 1}, {7, 5, 24, 29}, {39, 29, 40, 30}, {0, 13, 40, 14}};
+  static const uint32_t crops[][4] = {
+      {0, 0, 1, 1}, {7, 5, 24, 29}, {39, 29, 40, 30}, {0, 13, 40, 14}};
   for (unsigned i = 0; i < 4; i++) {
     const uint32_t *c = crops[i];
     vlImage *cut = take_image(context, 2, c, VL_COLOR_SPECTRAL);
@@ -116,7 +124,8 @@ static void passes_may_be_split(void **state) {
   }
   assert_int_equal(vl_film_spp(film), 8);
   assert_int_equal(vl_film_develop(film, &develop, &in_parts), VL_OK);
-  assert_memory_equal(vl_image_const_pixels(in_parts), vl_image_const_pixels(at_once), size_of(at_once));
+  assert_memory_equal(vl_image_const_pixels(in_parts), vl_image_const_pixels(at_once),
+                      size_of(at_once));
   vl_image_destroy(in_parts);
   vl_image_destroy(at_once);
   vl_film_destroy(film);
@@ -132,7 +141,8 @@ typedef struct Stopper {
 } Stopper;
 static bool stop(void *user, const vlProgress *progress) {
   Stopper *stopper = user;
-  if (progress->spp_done < stopper->last || progress->fraction < stopper->fraction - 1e-9) stopper->went_back = true;
+  if (progress->spp_done < stopper->last || progress->fraction < stopper->fraction - 1e-9)
+    stopper->went_back = true;
   stopper->last = progress->spp_done;
   stopper->fraction = progress->fraction;
   return !(progress->pass_done && progress->spp_done >= stopper->stop_at);
@@ -147,7 +157,8 @@ static void a_render_can_be_stopped(void **state) {
   render.progress = stop;
   render.progress_user = &stopper;
   vlImage *image = NULL;
-  assert_int_equal(small_image(context, &render, NULL, VL_COLOR_SPECTRAL, &image), VL_CANCELLED);
+  assert_int_equal(small_image(context, &render, NULL, VL_COLOR_SPECTRAL, &image),
+                   VL_CANCELLED);
   assert_non_null(image); /* whole passes are kept */
   assert_true(stopper.last >= 1 && stopper.last < 64);
   assert_false(stopper.went_back);
@@ -175,10 +186,12 @@ static void memory_may_run_out_anywhere(void **state) {
       vl_image_destroy(image);
       vl_context_destroy(context);
     }
-    if (allocator.refused) refused++;
+    if (allocator.refused)
+      refused++;
     assert_int_equal(result, allocator.refused ? VL_ERROR_MEMORY : VL_OK);
     assert_int_equal(allocator.blocks, 0);
-    if (!allocator.refused) break;
+    if (!allocator.refused)
+      break;
   }
   assert_true(refused > 10);
 }

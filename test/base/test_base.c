@@ -1,5 +1,5 @@
-/* test/base/test_base.c: the base room: counted memory, arrays, names, errors, files that are written whole or not at
- * all, instruction sets. */
+/* test/base/test_base.c: the base room: counted memory, arrays, names, errors, files that are
+ * written whole or not at all, instruction sets. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,7 +26,8 @@ static char folder[256];
 static vlContext *make_context(failAllocator *state) {
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
-  if (state) def.allocator = fail_allocator(state);
+  if (state)
+    def.allocator = fail_allocator(state);
   vlContext *context = NULL;
   assert_int_equal(vl_context_create(&def, &context), VL_OK);
   return context;
@@ -64,11 +65,13 @@ static void memory_is_counted(void **state) {
   double *b = vl_alloc_zero(context, 100, sizeof *b);
   assert_int_equal((uintptr_t)a % 64, 0);
   assert_int_equal((uintptr_t)b % 64, 0);
-  for (int i = 0; i < 100; i++) assert_true(b[i] == 0);
+  for (int i = 0; i < 100; i++)
+    assert_true(b[i] == 0);
   assert_int_equal(vl_context_memory(context, NULL) - before, 1800);
   memset(a, 7, 1000);
   a = vl_realloc_array(context, a, 5, 1000);
-  for (int i = 0; i < 1000; i++) assert_int_equal(a[i], 7);
+  for (int i = 0; i < 1000; i++)
+    assert_int_equal(a[i], 7);
   size_t peak = 0;
   vl_free(context, a);
   vl_free(context, b);
@@ -98,7 +101,8 @@ static void arrays_grow_and_survive_refusal(void **state) {
   allocator.fail_at = allocator.calls + 1;
   assert_false(VL_RESERVE(context, &numbers, 100000));
   assert_int_equal(numbers.count, 1000);
-  for (int i = 0; i < 1000; i++) assert_int_equal(numbers.items[i], i);
+  for (int i = 0; i < 1000; i++)
+    assert_int_equal(numbers.items[i], i);
   assert_false(VL_RESERVE(context, &numbers, SIZE_MAX / 8));
   VL_ARRAY_FREE(context, &numbers);
   assert_null(numbers.items);
@@ -127,7 +131,8 @@ static void contexts_check_their_def(void **state) {
 
 static void nearest_names(void **state) {
   (void)state;
-  static const char *const names[] = {"diffuse", "coateddiffuse", "conductor", "dielectric", "thindielectric"};
+  static const char *const names[] = {"diffuse", "coateddiffuse", "conductor", "dielectric",
+                                      "thindielectric"};
   assert_string_equal(vl_nearest_name("difuse", names, 5), "diffuse");
   assert_string_equal(vl_nearest_name("Dielectirc", names, 5), "dielectric");
   assert_string_equal(vl_nearest_name("condutcor", names, 5), "conductor");
@@ -156,7 +161,8 @@ static void paths_join(void **state) {
   assert_true(vl_path_join("a/b.pbrt", "/c.ply", path, sizeof path));
   assert_string_equal(path, "/c.ply");
   assert_true(vl_path_join(NULL, "c.ply", path, sizeof path));
-  assert_false(vl_path_join("a/b.pbrt", "a-name-that-is-longer-than-its-room.ply", path, sizeof path));
+  assert_false(
+      vl_path_join("a/b.pbrt", "a-name-that-is-longer-than-its-room.ply", path, sizeof path));
 }
 
 static void errors_are_cut_not_overrun(void **state) {
@@ -188,26 +194,32 @@ static void files_are_read_whole(void **state) {
   size_t size = 0;
   vlError error;
   put_file(in_folder("scene.pbrt"), "WorldBegin", 10);
-  assert_int_equal(vl_file_read(context, in_folder("scene.pbrt"), true, &data, &size, &error), VL_OK);
+  assert_int_equal(vl_file_read(context, in_folder("scene.pbrt"), true, &data, &size, &error),
+                   VL_OK);
   assert_int_equal(size, 10);
   assert_string_equal(data, "WorldBegin");
   vl_free(context, data);
 
-  assert_int_equal(vl_file_read(context, in_folder("scnee.pbrt"), true, &data, &size, &error), VL_ERROR_MISSING);
+  assert_int_equal(vl_file_read(context, in_folder("scnee.pbrt"), true, &data, &size, &error),
+                   VL_ERROR_MISSING);
   assert_non_null(strstr(error.message, "scene.pbrt")); /* the nearest name in that folder */
   assert_int_equal(vl_file_read(context, folder, true, &data, &size, &error), VL_ERROR_IO);
   if (access("/dev/zero", R_OK) == 0) { /* a device never ends */
-    assert_int_equal(vl_file_read(context, "/dev/zero", false, &data, &size, &error), VL_ERROR_IO);
+    assert_int_equal(vl_file_read(context, "/dev/zero", false, &data, &size, &error),
+                     VL_ERROR_IO);
     assert_string_equal(error.message, "cannot read /dev/zero: is a device");
   }
-  assert_int_equal(vl_file_read(context, in_folder("scene.pbrt/x"), true, &data, &size, &error), VL_ERROR_MISSING);
+  assert_int_equal(vl_file_read(context, in_folder("scene.pbrt/x"), true, &data, &size, &error),
+                   VL_ERROR_MISSING);
 
   put_file(in_folder("empty"), "", 0);
-  assert_int_equal(vl_file_read(context, in_folder("empty"), true, &data, &size, &error), VL_OK);
+  assert_int_equal(vl_file_read(context, in_folder("empty"), true, &data, &size, &error),
+                   VL_OK);
   assert_int_equal(size, 0);
   vl_free(context, data);
   /* a file whose size the system reports as 0 */
-  assert_int_equal(vl_file_read(context, "/proc/self/maps", false, &data, &size, &error), VL_OK);
+  assert_int_equal(vl_file_read(context, "/proc/self/maps", false, &data, &size, &error),
+                   VL_OK);
   assert_true(size > 100);
   vl_free(context, data);
   assert_int_equal(vl_context_memory(context, NULL), empty);
@@ -220,7 +232,8 @@ static void gzip_is_unpacked(void **state) {
   size_t empty = vl_context_memory(context, NULL);
   enum { LENGTH = 300000 };
   char *text = malloc(LENGTH);
-  for (int i = 0; i < LENGTH; i++) text[i] = (char)('a' + i % 17);
+  for (int i = 0; i < LENGTH; i++)
+    text[i] = (char)('a' + i % 17);
   gzFile file = gzopen(in_folder("a.gz"), "wb");
   assert_int_equal(gzwrite(file, text, LENGTH), LENGTH);
   gzclose(file);
@@ -238,7 +251,8 @@ static void gzip_is_unpacked(void **state) {
   vl_free(context, data);
 
   /* cut off or damaged at any place: an error, never a loop, never half a file */
-  assert_int_equal(vl_file_read(context, in_folder("a.gz"), false, &packed, &packed_size, &error), VL_OK);
+  assert_int_equal(
+      vl_file_read(context, in_folder("a.gz"), false, &packed, &packed_size, &error), VL_OK);
   for (size_t cut = 2; cut < packed_size; cut += 1 + packed_size / 40) {
     put_file(in_folder("b.gz"), packed, cut);
     vlResult result = vl_file_read(context, in_folder("b.gz"), true, &data, &size, &error);
@@ -265,7 +279,9 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   assert_int_equal(vl_context_create(NULL, &context), VL_OK);
   put_file(in_folder("target"), "before", 6);
   int entries = count_entries();
-  assert_int_equal(vl_file_open_write(&writer, context, in_folder("target"), VL_OUTPUT_PLAIN, &error), VL_OK);
+  assert_int_equal(
+      vl_file_open_write(&writer, context, in_folder("target"), VL_OUTPUT_PLAIN, &error),
+      VL_OK);
   vl_file_write(&writer, "after!", 6);
   vl_file_abandon(&writer);
   assert_int_equal(count_entries(), entries);
@@ -273,7 +289,9 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   assert_int_equal(stat(in_folder("target"), &info), 0);
   assert_int_equal(info.st_size, 6);
 
-  assert_int_equal(vl_file_open_write(&writer, context, in_folder("target"), VL_OUTPUT_PLAIN, &error), VL_OK);
+  assert_int_equal(
+      vl_file_open_write(&writer, context, in_folder("target"), VL_OUTPUT_PLAIN, &error),
+      VL_OK);
   vl_file_write(&writer, "after", 5);
   vl_file_write_at(&writer, "A", 1, 0);
   assert_int_equal(vl_file_commit(&writer, &error), VL_OK);
@@ -284,12 +302,15 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   fclose(file);
   assert_string_equal(text, "After");
 
-  assert_int_equal(vl_file_open_write(&writer, context, in_folder("none/target"), VL_OUTPUT_PLAIN, &error),
+  assert_int_equal(
+      vl_file_open_write(&writer, context, in_folder("none/target"), VL_OUTPUT_PLAIN, &error),
+      VL_ERROR_IO);
+  assert_int_equal(vl_file_open_write(&writer, context, folder, VL_OUTPUT_PLAIN, &error),
                    VL_ERROR_IO);
-  assert_int_equal(vl_file_open_write(&writer, context, folder, VL_OUTPUT_PLAIN, &error), VL_ERROR_IO);
   /* a full disk: the written bytes cannot be kept, and commit reports an error */
   if (access("/dev/full", W_OK) == 0) {
-    assert_int_equal(vl_file_open_write(&writer, context, "/dev/full", VL_OUTPUT_PLAIN, &error), VL_OK);
+    assert_int_equal(vl_file_open_write(&writer, context, "/dev/full", VL_OUTPUT_PLAIN, &error),
+                     VL_OK);
     vl_file_write(&writer, "x", 1);
     assert_int_equal(vl_file_commit(&writer, &error), VL_ERROR_IO);
     assert_non_null(strstr(error.message, "/dev/full"));
@@ -319,7 +340,8 @@ static void instruction_sets(void **state) {
   setenv("VELO_ISA", "base", 1);
   assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_OK);
   assert_int_equal(isa, lowest);
-  assert_int_equal(vl_isa_choose(vl_isa_best(), &isa), VL_OK); /* a wish is above the environment */
+  assert_int_equal(vl_isa_choose(vl_isa_best(), &isa),
+                   VL_OK); /* a wish is above the environment */
   assert_int_equal(isa, vl_isa_best());
   setenv("VELO_ISA", "v9", 1);
   assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_ERROR_ARGUMENT);
@@ -338,12 +360,17 @@ static void names_of_files_are_short(void **state) {
       {"thirteen_char", "thirteen_cha\u2026"},
       {"a\x1b[31mb\nc\x7f", "a?[31mb?c?"},
       {"b\u00e4ckerstra\u00dfe", "b\u00e4ckerstra\u00dfe"},
-      {"\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600"
+      {"\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600"
+       "\U0001f600"
+       "\U0001f600"
        "\U0001f600\U0001f600\U0001f600",
-       "\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600"
+       "\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600"
+       "\U0001f600"
+       "\U0001f600"
        "\U0001f600\U0001f600\u2026"},
-      {"\xff\xc3.\xed\xa0\x80\xc0\xaf", "??.?????"}, /* no UTF-8: half a sequence, a surrogate, an overlong slash */
-      {"a\u202eb\u200bc\xc2\x85", "a?b?c?"},         /* from right to left, no width, control */
+      {"\xff\xc3.\xed\xa0\x80\xc0\xaf",
+       "??.?????"}, /* no UTF-8: half a sequence, a surrogate, an overlong slash */
+      {"a\u202eb\u200bc\xc2\x85", "a?b?c?"}, /* from right to left, no width, control */
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
     assert_string_equal(vl_short_text(cases[i].name).text, cases[i].shown);
@@ -357,7 +384,8 @@ static void names_of_files_are_short(void **state) {
   argument[200] = 'x', argument[201] = 0;
   snprintf(shown, sizeof shown, "%.200s\u2026", argument);
   assert_string_equal(vl_argument_text(argument).text, shown);
-  for (int i = 0; i < 100; i++) memcpy(argument + 4 * i, "\U0001f600", 5);
+  for (int i = 0; i < 100; i++)
+    memcpy(argument + 4 * i, "\U0001f600", 5);
   snprintf(shown, sizeof shown, "%.*s\u2026", 4 * 63, argument);
   assert_int_equal(strlen(vl_argument_text(argument).text), 4 * 63 + 3);
   assert_string_equal(vl_argument_text(argument).text, shown);
@@ -371,12 +399,15 @@ static void names_of_files_are_short(void **state) {
   vl_shorten_quoted(&error, "SIMPLE_PINHOLES");
   assert_string_equal(error.message, "no model \"SIMPLE_PINHO\u2026\"; SIMPLE_PINHOLES");
 
-  /* whole messages and names of files, too; a character that the buffer's end has cut is removed */
-  vl_fail_at(&error, VL_ERROR_SCENE, "a\x1b]0;title\x07.pbrt", 1, 1, "%s", "some\nfile\x1b[2J\u00e4.png");
+  /* whole messages and names of files, too; a character that the buffer's end has cut is
+   * removed */
+  vl_fail_at(&error, VL_ERROR_SCENE, "a\x1b]0;title\x07.pbrt", 1, 1, "%s",
+             "some\nfile\x1b[2J\u00e4.png");
   assert_string_equal(error.file, "a?]0;title?.pbrt");
   assert_string_equal(error.message, "some file?[2J\u00e4.png");
   char longer[600];
-  for (size_t i = 0; i < 598; i += 2) memcpy(longer + i, "\u00e4", 3);
+  for (size_t i = 0; i < 598; i += 2)
+    memcpy(longer + i, "\u00e4", 3);
   vl_fail(&error, VL_ERROR_SCENE, "%s", longer);
   assert_int_equal(strlen(error.message), 510);
 }
@@ -384,7 +415,8 @@ static void names_of_files_are_short(void **state) {
 int main(void) {
   const char *temporary = getenv("TMPDIR");
   snprintf(folder, sizeof folder, "%s/velo-base-XXXXXX", temporary ? temporary : "/tmp");
-  if (!mkdtemp(folder)) return 1;
+  if (!mkdtemp(folder))
+    return 1;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(memory_is_counted),
       cmocka_unit_test(arrays_grow_and_survive_refusal),
@@ -401,6 +433,7 @@ int main(void) {
   int result = cmocka_run_group_tests(tests, NULL, NULL);
   char command[300];
   snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  if (system(command) != 0) return 1;
+  if (system(command) != 0)
+    return 1;
   return result;
 }

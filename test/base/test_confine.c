@@ -1,5 +1,5 @@
-/* test/base/test_confine.c: vl_confine: what a confined process can open and start. Each case confines a child, which
- * tries and reports by its exit code. */
+/* test/base/test_confine.c: vl_confine: what a confined process can open and start. Each case
+ * confines a child, which tries and reports by its exit code. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,7 +43,8 @@ static void put(const char *name) {
 
 static int set_up(void **state) {
   (void)state;
-  if (!mkdtemp(folder) || mkdir(in_folder("in"), 0700) || mkdir(in_folder("out"), 0700) || mkdir(in_folder("no"), 0700))
+  if (!mkdtemp(folder) || mkdir(in_folder("in"), 0700) || mkdir(in_folder("out"), 0700) ||
+      mkdir(in_folder("no"), 0700))
     return -1;
   put("in/file");
   put("out/old");
@@ -61,19 +62,22 @@ static int tear_down(void **state) {
 
 static bool reads(const char *name) {
   int fd = open(in_folder(name), O_RDONLY | O_CLOEXEC);
-  if (fd >= 0) close(fd);
+  if (fd >= 0)
+    close(fd);
   return fd >= 0;
 }
 
 static bool writes(const char *name) {
   int fd = open(in_folder(name), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  if (fd >= 0) close(fd);
+  if (fd >= 0)
+    close(fd);
   return fd >= 0;
 }
 
 static bool opens_socket(int domain) {
   int fd = socket(domain, SOCK_STREAM, 0);
-  if (fd >= 0) close(fd);
+  if (fd >= 0)
+    close(fd);
   return fd >= 0 || errno != EPERM;
 }
 
@@ -103,15 +107,24 @@ enum {
 
 static unsigned tried(void) {
   unsigned could = 0;
-  if (reads("in/file")) could |= READS_IN;
-  if (reads("given")) could |= READS_GIVEN;
-  if (reads("no/file") || reads("no")) could |= READS_NO;
-  if (writes("out/new")) could |= WRITES_OUT;
-  if (rename(in_folder("out/new"), in_folder("out/old")) == 0) could |= RENAMES_OUT;
-  if (writes("in/file") || writes("in/new") || unlink(in_folder("in/file")) == 0) could |= WRITES_IN;
-  if (opens_socket(AF_INET) || opens_socket(AF_UNIX)) could |= OPENS_SOCKET;
-  if (starts_program()) could |= STARTS;
-  if (access("/proc/self/statm", F_OK) != 0 || open("/proc/self/statm", O_RDONLY | O_CLOEXEC) >= 0)
+  if (reads("in/file"))
+    could |= READS_IN;
+  if (reads("given"))
+    could |= READS_GIVEN;
+  if (reads("no/file") || reads("no"))
+    could |= READS_NO;
+  if (writes("out/new"))
+    could |= WRITES_OUT;
+  if (rename(in_folder("out/new"), in_folder("out/old")) == 0)
+    could |= RENAMES_OUT;
+  if (writes("in/file") || writes("in/new") || unlink(in_folder("in/file")) == 0)
+    could |= WRITES_IN;
+  if (opens_socket(AF_INET) || opens_socket(AF_UNIX))
+    could |= OPENS_SOCKET;
+  if (starts_program())
+    could |= STARTS;
+  if (access("/proc/self/statm", F_OK) != 0 ||
+      open("/proc/self/statm", O_RDONLY | O_CLOEXEC) >= 0)
     could |= READS_LIBRARY;
   return could;
 }
@@ -126,14 +139,16 @@ typedef struct Answer {
   unsigned could;
 } Answer;
 
-/* Confines a child process and returns what it could do, on its main thread or on a thread made after. */
+/* Confines a child process and returns what it could do, on its main thread or on a thread made
+ * after. */
 static Answer confined(bool sockets, bool thread) {
   Answer answer = {0};
   int ends[2], status;
   assert_int_equal(pipe(ends), 0);
   pid_t child = fork();
   if (child == 0) {
-    const char *const read_paths[] = {in_folder("in"), in_folder("given"), in_folder("missing")};
+    const char *const read_paths[] = {in_folder("in"), in_folder("given"),
+                                      in_folder("missing")};
     const char *const write_paths[] = {in_folder("out/image_%04d.exr")};
     answer.done = vl_confine(read_paths, 3, write_paths, 1, sockets);
     pthread_t other;
@@ -153,10 +168,11 @@ static Answer confined(bool sockets, bool thread) {
 
 static void check_answer(const Answer *a, bool sockets) {
   const unsigned always = READS_IN | READS_GIVEN | WRITES_OUT | RENAMES_OUT | READS_LIBRARY;
-  print_message("files %d (Landlock %u), network %d, programs %d\n", a->done.files, a->done.landlock, a->done.network,
-                a->done.programs);
+  print_message("files %d (Landlock %u), network %d, programs %d\n", a->done.files,
+                a->done.landlock, a->done.network, a->done.programs);
   assert_int_equal(a->could & always, always);
-  if (a->done.files) assert_int_equal(a->could & (READS_NO | WRITES_IN), 0);
+  if (a->done.files)
+    assert_int_equal(a->could & (READS_NO | WRITES_IN), 0);
   assert_int_equal(!(a->could & OPENS_SOCKET), a->done.network);
   assert_int_equal(!(a->could & STARTS), a->done.programs);
   assert_false(sockets && a->done.network);
@@ -186,7 +202,8 @@ static void test_seccomp_is_there(void **state) {
   (void)state;
 #if defined(__linux__) && (defined(__x86_64__) || defined(__aarch64__))
   const Answer a = confined(false, false);
-  if (prctl(PR_GET_SECCOMP) < 0) skip(); /* a kernel, or an emulator, without it */
+  if (prctl(PR_GET_SECCOMP) < 0)
+    skip(); /* a kernel, or an emulator, without it */
   assert_true(a.done.network && a.done.programs);
 #else
   skip();
@@ -197,14 +214,17 @@ static void test_seccomp_is_there(void **state) {
 static void test_landlock(void **state) {
   (void)state;
   const Answer a = confined(false, false);
-  if (!a.done.files) print_message("skip: this kernel has no Landlock\n");
-  if (!a.done.files) skip();
+  if (!a.done.files)
+    print_message("skip: this kernel has no Landlock\n");
+  if (!a.done.files)
+    skip();
   assert_int_equal(a.could, READS_IN | READS_GIVEN | WRITES_OUT | RENAMES_OUT | READS_LIBRARY);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_landlock), cmocka_unit_test(test_seccomp_is_there),
-                                     cmocka_unit_test(test_confined), cmocka_unit_test(test_threads_made_after),
-                                     cmocka_unit_test(test_sockets_of_a_server)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_landlock), cmocka_unit_test(test_seccomp_is_there),
+      cmocka_unit_test(test_confined), cmocka_unit_test(test_threads_made_after),
+      cmocka_unit_test(test_sockets_of_a_server)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

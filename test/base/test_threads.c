@@ -1,6 +1,6 @@
-/* test/base/test_threads.c: the worker pool: each index runs once, worker numbers are in range, loops follow each
- * other, several callers at once, priorities, the caller's own parallel_for, a log callback that is never entered twice
- * at a time. */
+/* test/base/test_threads.c: the worker pool: each index runs once, worker numbers are in range,
+ * loops follow each other, several callers at once, priorities, the caller's own parallel_for,
+ * a log callback that is never entered twice at a time. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,7 +27,8 @@ typedef struct Job {
 static void mark(void *user, uint32_t index, uint32_t worker) {
   Job *job = user;
   atomic_fetch_add(&job->seen[index], 1);
-  if (worker >= job->threads) atomic_fetch_add(&job->bad_worker, 1);
+  if (worker >= job->threads)
+    atomic_fetch_add(&job->bad_worker, 1);
 }
 
 static void run_job(vlContext *context, uint32_t threads, uint32_t count) {
@@ -35,7 +36,8 @@ static void run_job(vlContext *context, uint32_t threads, uint32_t count) {
   memset(&job, 0, sizeof job);
   job.threads = threads;
   vl_parallel_for(context, count, mark, &job);
-  for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(job.seen[i], i < count ? 1 : 0);
+  for (uint32_t i = 0; i < COUNT; i++)
+    assert_int_equal(job.seen[i], i < count ? 1 : 0);
   assert_int_equal(job.bad_worker, 0);
 }
 
@@ -48,12 +50,15 @@ static void each_index_once(void **state) {
     vlContext *context = NULL;
     assert_int_equal(vl_context_create(&def, &context), VL_OK);
     assert_int_equal(vl_context_threads(context), threads[i]);
-    for (uint32_t round = 0; round < 50; round++) run_job(context, threads[i], round % 2 ? COUNT : round);
+    for (uint32_t round = 0; round < 50; round++)
+      run_job(context, threads[i], round % 2 ? COUNT : round);
     vl_context_destroy(context);
   }
 }
 
-/* One sum in plain memory by each worker: a data race here would be seen by the thread sanitizer. */
+/* One sum in plain memory by each worker: a data race here would be seen by the thread
+ * sanitizer.
+ */
 typedef struct Sums {
   uint64_t by_worker[8];
 } Sums;
@@ -66,8 +71,10 @@ static void *call_loops(void *argument) {
     Sums sums = {0};
     vl_parallel_for(argument, COUNT, add, &sums);
     uint64_t sum = 0;
-    for (int i = 0; i < 8; i++) sum += sums.by_worker[i];
-    if (sum != (uint64_t)COUNT * (COUNT - 1) / 2) return argument;
+    for (int i = 0; i < 8; i++)
+      sum += sums.by_worker[i];
+    if (sum != (uint64_t)COUNT * (COUNT - 1) / 2)
+      return argument;
   }
   return NULL;
 }
@@ -79,7 +86,8 @@ static void several_callers(void **state) {
   vlContext *context = NULL;
   assert_int_equal(vl_context_create(&def, &context), VL_OK);
   pthread_t callers[3];
-  for (int i = 0; i < 3; i++) assert_int_equal(pthread_create(&callers[i], NULL, call_loops, context), 0);
+  for (int i = 0; i < 3; i++)
+    assert_int_equal(pthread_create(&callers[i], NULL, call_loops, context), 0);
   for (int i = 0; i < 3; i++) {
     void *failed = NULL;
     pthread_join(callers[i], &failed);
@@ -90,7 +98,8 @@ static void several_callers(void **state) {
 
 static void backwards(void *user, uint32_t count, vlParallelFn *body, void *loop_user) {
   ++*(int *)user;
-  for (uint32_t i = count; i > 0; i--) body(loop_user, i - 1, 0);
+  for (uint32_t i = count; i > 0; i--)
+    body(loop_user, i - 1, 0);
 }
 
 static void callers_own_loop(void **state) {
@@ -108,12 +117,16 @@ static void callers_own_loop(void **state) {
 }
 
 typedef struct Log {
-  int inside, lines, twice; /* plain: the library promises never to call from two threads at once */
+  int inside, lines,
+      twice; /* plain: the library promises never to call from two threads at once */
 } Log;
-static void count_line(void *user, vlLogLevel level, const vlError *where, const char *message) {
+static void count_line(void *user, vlLogLevel level, const vlError *where,
+                       const char *message) {
   Log *log = user;
-  if (log->inside++) log->twice++;
-  if (level == VL_LOG_WARNING && where && where->line == 7 && strcmp(message, "a warning") == 0) log->lines++;
+  if (log->inside++)
+    log->twice++;
+  if (level == VL_LOG_WARNING && where && where->line == 7 && strcmp(message, "a warning") == 0)
+    log->lines++;
   log->inside--;
 }
 static void warn(void *user, uint32_t index, uint32_t worker) {
@@ -138,8 +151,8 @@ static void log_is_entered_once(void **state) {
   vl_context_destroy(context);
 }
 
-/* Two loops at once: each body waits until a body of the other loop runs, too. A pool that runs one loop after the
- * other would wait for ever; the alarm ends it. */
+/* Two loops at once: each body waits until a body of the other loop runs, too. A pool that runs
+ * one loop after the other would wait for ever; the alarm ends it. */
 typedef struct Meeting {
   atomic_uint here[2];
   vlContext *context;
@@ -153,7 +166,8 @@ static void meet(void *user, uint32_t index, uint32_t worker) {
   (void)index, (void)worker;
   Side *side = user;
   atomic_store(&side->meeting->here[side->index], 1);
-  while (!atomic_load(&side->meeting->here[1 - side->index])) sched_yield();
+  while (!atomic_load(&side->meeting->here[1 - side->index]))
+    sched_yield();
 }
 
 static void *call_meet(void *user) {
@@ -179,7 +193,9 @@ static void loops_overlap(void **state) {
   }
 }
 
-/* A loop of low priority gives way: while the other one runs, it starts at most a task each 50 ms. */
+/* A loop of low priority gives way: while the other one runs, it starts at most a task each 50
+ * ms.
+ */
 typedef struct Race {
   vlContext *context;
   atomic_uint low, low_before, low_after, high;
@@ -194,7 +210,8 @@ static void low_task(void *user, uint32_t index, uint32_t worker) {
 static void high_task(void *user, uint32_t index, uint32_t worker) {
   (void)index, (void)worker;
   Race *race = user;
-  if (atomic_fetch_add(&race->high, 1) == 0) race->low_before = atomic_load(&race->low);
+  if (atomic_fetch_add(&race->high, 1) == 0)
+    race->low_before = atomic_load(&race->low);
   nanosleep(&(struct timespec){0, 1000000}, NULL);
   race->low_after = atomic_load(&race->low);
 }
@@ -212,7 +229,8 @@ static void priority_gives_way(void **state) {
   assert_int_equal(vl_context_create(&def, &race.context), VL_OK);
   pthread_t other;
   assert_int_equal(pthread_create(&other, NULL, call_low, &race), 0);
-  while (atomic_load(&race.low) < 4) sched_yield();
+  while (atomic_load(&race.low) < 4)
+    sched_yield();
   vl_parallel_for_at(race.context, &(vlLoopDef){1, NULL}, 200, high_task, &race);
   pthread_join(other, NULL);
   assert_int_equal(race.high, 200);
@@ -224,8 +242,9 @@ static void priority_gives_way(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(each_index_once), cmocka_unit_test(several_callers),    cmocka_unit_test(callers_own_loop),
-      cmocka_unit_test(loops_overlap),   cmocka_unit_test(priority_gives_way), cmocka_unit_test(log_is_entered_once),
+      cmocka_unit_test(each_index_once),    cmocka_unit_test(several_callers),
+      cmocka_unit_test(callers_own_loop),   cmocka_unit_test(loops_overlap),
+      cmocka_unit_test(priority_gives_way), cmocka_unit_test(log_is_entered_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* test/camera/cameras.h: helpers of the camera tests: a random source with fixed seeds, a few very different cameras.
+/* test/camera/cameras.h: helpers of the camera tests: a random source with fixed seeds, a few
+ * very different cameras.
  */
 #ifndef TEST_CAMERA_CAMERAS_H
 #define TEST_CAMERA_CAMERAS_H
@@ -40,7 +41,8 @@ static inline vlCamera make_or_fail(const vlCameraDef *def) {
   vlError error;
   const char *warning;
   vlResult result = vl_camera_make(def, &camera, &warning, &error);
-  if (result != VL_OK) fail_msg("%s", error.message);
+  if (result != VL_OK)
+    fail_msg("%s", error.message);
   assert_null(warning);
   return camera;
 }
@@ -55,8 +57,9 @@ static inline vlCameraDef lecture_def(uint32_t width, uint32_t height) {
 }
 
 enum { CAMERA_COUNT = 6 };
-/* 0 lecture; 1 rolled, off-centre, skewed, other fy; 2 a matrix that mirrors and scales; 3 orthographic; 4 orthographic
- * with a screen window; 5 pbrt's fov with a screen window, a large image. */
+/* 0 lecture; 1 rolled, off-centre, skewed, other fy; 2 a matrix that mirrors and scales; 3
+ * orthographic; 4 orthographic with a screen window; 5 pbrt's fov with a screen window, a large
+ * image. */
 static inline vlCamera camera_of(int index) {
   vlCameraDef def = lecture_def(400, 400);
   switch (index) {
@@ -68,7 +71,8 @@ static inline vlCamera camera_of(int index) {
       def.roll = RADIANS(33);
       break;
     case 2: {
-      const double m[16] = {-1.2, 0.4, 0.3, 5, 0.2, -1.9, 0.8, -6, 0.6, 0.7, 2.1, 7, 0, 0, 0, 1};
+      const double m[16] = {-1.2, 0.4, 0.3, 5, 0.2, -1.9, 0.8, -6,
+                            0.6,  0.7, 2.1, 7, 0,   0,    0,   1};
       def = vl_default_camera_def(320, 200);
       def.has_matrix = true;
       memcpy(def.world_from_camera, m, sizeof m);
@@ -91,11 +95,13 @@ static inline vlCamera camera_of(int index) {
     case 5:
       def = vl_default_camera_def(7680, 4320);
       def.fov = RADIANS(20);
-      def.screen_min_x = -1.5, def.screen_max_x = 1.9, def.screen_min_y = -0.8, def.screen_max_y = 1.1;
+      def.screen_min_x = -1.5, def.screen_max_x = 1.9, def.screen_min_y = -0.8,
+      def.screen_max_y = 1.1;
       set3(def.eye, 0.1, 0.2, 0.3);
       set3(def.lookat, -3, 0.25, 1);
       break;
-    default: break;
+    default:
+      break;
   }
   return make_or_fail(&def);
 }
@@ -107,8 +113,10 @@ static inline void expect_error(vlCameraDef def, const char *first, const char *
   memset(&error, 0x55, sizeof error);
   assert_int_equal(vl_camera_make(&def, &c, NULL, &error), VL_ERROR_ARGUMENT);
   assert_int_equal(error.code, VL_ERROR_ARGUMENT);
-  if (!strstr(error.message, first) || (second && !strstr(error.message, second)) || strchr(error.message, '\n'))
-    fail_msg("message \"%s\" should speak of \"%s\" and \"%s\"", error.message, first, second ? second : "");
+  if (!strstr(error.message, first) || (second && !strstr(error.message, second)) ||
+      strchr(error.message, '\n'))
+    fail_msg("message \"%s\" should speak of \"%s\" and \"%s\"", error.message, first,
+             second ? second : "");
 }
 /* The default def with a change. */
 #define EXPECT_ERROR(change, ...)                    \

@@ -1,4 +1,5 @@
-/* test/camera/test_approx_double.c: the elementary functions in double, compared with the C library's long double. */
+/* test/camera/test_approx_double.c: the elementary functions in double, compared with the C
+ * library's long double. */
 #include "camera/cameras.h"
 
 #include "math/approx_double.h"
@@ -11,7 +12,8 @@ static void sincos_is_near_the_last_bit(void **state) {
     double x = next_between(&random, -7, 7), far = next_between(&random, -1000, 1000);
     vlSinCosDouble a = vl_sincos_double(x), b = vl_sincos_double(far);
     worst = fmax(worst, fmax(fabs((double)(a.sin - sinl(x))), fabs((double)(a.cos - cosl(x)))));
-    worst_far = fmax(worst_far, fmax(fabs((double)(b.sin - sinl(far))), fabs((double)(b.cos - cosl(far)))));
+    worst_far = fmax(
+        worst_far, fmax(fabs((double)(b.sin - sinl(far))), fabs((double)(b.cos - cosl(far)))));
   }
   print_message("sincos: %.3g within 7, %.3g within 1000\n", worst, worst_far);
   assert_true(worst < 2e-16 && worst_far < 2e-16);
@@ -29,13 +31,15 @@ static void atan2_is_near_the_last_bit(void **state) {
   uint64_t random = 2;
   double worst = 0;
   for (int i = 0; i < 400000; i++) {
-    double y = next_between(&random, -1, 1), x = next_between(&random, -1, 1) * exp(next_between(&random, -20, 20));
+    double y = next_between(&random, -1, 1),
+           x = next_between(&random, -1, 1) * exp(next_between(&random, -20, 20));
     worst = fmax(worst, fabs((double)(vl_atan2_double(y, x) / atan2l(y, x) - 1)));
   }
   print_message("atan2: %.3g relative\n", worst);
   assert_true(worst < 5e-16);
   assert_true(vl_atan2_double(0, 0) == 0 && vl_atan2_double(0, 1) == 0);
-  assert_true(vl_atan2_double(0, -1) == M_PI && vl_atan2_double(1, 0) == M_PI_2 && vl_atan2_double(-1, 0) == -M_PI_2);
+  assert_true(vl_atan2_double(0, -1) == M_PI && vl_atan2_double(1, 0) == M_PI_2 &&
+              vl_atan2_double(-1, 0) == -M_PI_2);
 }
 
 static void acos_is_near_the_last_bit(void **state) {
@@ -48,7 +52,8 @@ static void acos_is_near_the_last_bit(void **state) {
   }
   print_message("acos: %.3g relative\n", worst);
   assert_true(worst < 1e-15);
-  assert_true(vl_acos_double(1) == 0 && vl_acos_double(-1) == M_PI && vl_acos_double(0) == M_PI_2);
+  assert_true(vl_acos_double(1) == 0 && vl_acos_double(-1) == M_PI &&
+              vl_acos_double(0) == M_PI_2);
 }
 
 static void exp_is_near_the_last_bit(void **state) {
@@ -61,7 +66,8 @@ static void exp_is_near_the_last_bit(void **state) {
   }
   print_message("exp: %.3g relative\n", worst);
   assert_true(worst < 4e-16);
-  assert_true(vl_exp_double(0) == 1 && vl_exp_double(-1e9) < 1e-307 && isfinite(vl_exp_double(1e9)));
+  assert_true(vl_exp_double(0) == 1 && vl_exp_double(-1e9) < 1e-307 &&
+              isfinite(vl_exp_double(1e9)));
 }
 
 int main(void) {

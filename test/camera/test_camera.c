@@ -1,5 +1,5 @@
-/* test/camera/test_camera.c: the camera as a value: descriptions, pose, resizing, projection and unprojection, error
- * messages. */
+/* test/camera/test_camera.c: the camera as a value: descriptions, pose, resizing, projection
+ * and unprojection, error messages. */
 #include "camera/cameras.h"
 
 #include <stdio.h>
@@ -11,20 +11,26 @@ static void round_trip(void **state) {
     vlCamera camera = camera_of(k);
     uint64_t random = 7;
     for (int i = 0; i < 2000; i++) {
-      double x = next_between(&random, -50, camera.width + 50.0), y = next_between(&random, -50, camera.height + 50.0);
+      double x = next_between(&random, -50, camera.width + 50.0),
+             y = next_between(&random, -50, camera.height + 50.0);
       double t = exp(next_between(&random, -3, 9));
       double o[3], d[3], p[3], pixel[2], z;
       assert_true(vl_camera_unproject(&camera, x, y, o, d));
       assert_true(fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) < 1e-14);
-      for (int a = 0; a < 3; a++) p[a] = o[a] + t * d[a];
+      for (int a = 0; a < 3; a++)
+        p[a] = o[a] + t * d[a];
       assert_true(vl_camera_project(&camera, p, pixel, &z));
       assert_true(z > 0);
-      /* far from a far eye the point itself is rounded: allow one bit of its coordinates, seen at its distance */
-      double size = fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2]))) + fabs(o[0]) + fabs(o[1]) + fabs(o[2]);
-      double blur = camera.projection == VL_PROJECTION_PERSPECTIVE ? camera.fx * size / z : camera.fx * size;
+      /* far from a far eye the point itself is rounded: allow one bit of its coordinates, seen
+       * at its distance */
+      double size =
+          fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2]))) + fabs(o[0]) + fabs(o[1]) + fabs(o[2]);
+      double blur = camera.projection == VL_PROJECTION_PERSPECTIVE ? camera.fx * size / z
+                                                                   : camera.fx * size;
       double error = fmax(fabs(pixel[0] - x), fabs(pixel[1] - y));
       assert_true(error <= 8 * 0x1p-53 * blur + 1e-11);
-      if (t > 1 && error > worst && blur < 1e5) worst = error;
+      if (t > 1 && error > worst && blur < 1e5)
+        worst = error;
     }
   }
   assert_true(worst <= 1e-9);
@@ -36,7 +42,8 @@ static void project_round_trip_is_a_nanopixel(void **state) {
   vlCamera camera = camera_of(0);
   uint64_t random = 11;
   for (int i = 0; i < 20000; i++) {
-    double x = next_between(&random, 0, 400), y = next_between(&random, 0, 400), t = next_between(&random, 1, 5000);
+    double x = next_between(&random, 0, 400), y = next_between(&random, 0, 400),
+           t = next_between(&random, 1, 5000);
     double o[3], d[3], pixel[2], z;
     assert_true(vl_camera_unproject(&camera, x, y, o, d));
     double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
@@ -50,8 +57,8 @@ static void outside_the_domain(void **state) {
   vlCameraDef def = vl_default_camera_def(100, 100);
   vlCamera camera = make_or_fail(&def); /* at the origin, looking along -z */
   double pixel[2] = {1, 2}, z, o[3], d[3];
-  const double behind[3] = {0, 0, 1}, at[3] = {0, 0, 0}, beside[3] = {5, 0, 0}, nan[3] = {NAN, 0, -1},
-               ahead[3] = {0, 0, -2};
+  const double behind[3] = {0, 0, 1}, at[3] = {0, 0, 0}, beside[3] = {5, 0, 0},
+               nan[3] = {NAN, 0, -1}, ahead[3] = {0, 0, -2};
   const double huge[3] = {1e300, 0, -1e-300};
   assert_false(vl_camera_project(&camera, behind, pixel, &z));
   assert_false(vl_camera_project(&camera, at, pixel, &z));
@@ -71,7 +78,8 @@ static void ways_in_agree(void **state) {
   const double f = 500, w = 640, h = 480;
   vlCameraDef way[10];
   int n = 0;
-  for (int i = 0; i < 10; i++) way[i] = vl_default_camera_def(640, 480);
+  for (int i = 0; i < 10; i++)
+    way[i] = vl_default_camera_def(640, 480);
   way[n++].fx = f;
   way[n++].fy = f;
   way[n++].view_distance = f;
@@ -86,12 +94,17 @@ static void ways_in_agree(void **state) {
   vlCameraDef all = way[5];
   for (int i = 0; i < n; i++) {
     vlCamera c = make_or_fail(&way[i]);
-    assert_true(fabs(c.fx - f) < 1e-9 && fabs(c.fy - f) < 1e-9 && c.cx == 320 && c.cy == 240 && c.skew == 0);
+    assert_true(fabs(c.fx - f) < 1e-9 && fabs(c.fy - f) < 1e-9 && c.cx == 320 && c.cy == 240 &&
+                c.skew == 0);
     if (i != 2 && i < 5) {
-      if (i == 0) all.fx = f;
-      if (i == 1) all.fy = f;
-      if (i == 3) all.view_distance = 5, all.zoom = 2, all.pixel_size = 0.02;
-      if (i == 4) all.focal_mm = way[4].focal_mm, all.sensor_width_mm = 36;
+      if (i == 0)
+        all.fx = f;
+      if (i == 1)
+        all.fy = f;
+      if (i == 3)
+        all.view_distance = 5, all.zoom = 2, all.pixel_size = 0.02;
+      if (i == 4)
+        all.focal_mm = way[4].focal_mm, all.sensor_width_mm = 36;
     }
   }
   /* all at once, one of them written with few digits */
@@ -111,18 +124,21 @@ static void ways_in_agree(void **state) {
   assert_true(make_or_fail(&nothing).fx == 240); /* 90 degrees across the smaller side */
 }
 
-/* A screen window equal to the default one changes nothing. One that is twice as wide halves the focal length. */
+/* A screen window equal to the default one changes nothing. One that is twice as wide halves
+ * the focal length. */
 static void screen_window(void **state) {
   (void)state;
   vlCameraDef plain = vl_default_camera_def(600, 400), def = plain;
   plain.fov = def.fov = RADIANS(40);
   def.screen_min_x = -1.5, def.screen_max_x = 1.5, def.screen_min_y = -1, def.screen_max_y = 1;
   vlCamera a = make_or_fail(&plain), b = make_or_fail(&def);
-  assert_true(fabs(a.fx / b.fx - 1) < 1e-15 && fabs(a.fy / b.fy - 1) < 1e-15 && b.cx == 300 && b.cy == 200);
+  assert_true(fabs(a.fx / b.fx - 1) < 1e-15 && fabs(a.fy / b.fy - 1) < 1e-15 && b.cx == 300 &&
+              b.cy == 200);
   def.screen_min_x = 0, def.screen_max_x = 6, def.screen_min_y = -3, def.screen_max_y = 1;
   b = make_or_fail(&def);
   /* the view axis goes through x = 0 (the left side) and y = 0, a quarter from the top */
-  assert_true(fabs(a.fx / b.fx - 2) < 1e-15 && fabs(a.fy / b.fy - 2) < 1e-15 && b.cx == 0 && b.cy == 100);
+  assert_true(fabs(a.fx / b.fx - 2) < 1e-15 && fabs(a.fy / b.fy - 2) < 1e-15 && b.cx == 0 &&
+              b.cy == 100);
 }
 
 static void lecture_basis(void **state) {
@@ -131,11 +147,14 @@ static void lecture_basis(void **state) {
   vlCamera c = make_or_fail(&def);
   /* the slides, term by term */
   double w[3] = {300, 400, 550}, n = sqrt(300. * 300 + 400. * 400 + 550. * 550);
-  for (int i = 0; i < 3; i++) w[i] /= n;
+  for (int i = 0; i < 3; i++)
+    w[i] /= n;
   double u[3] = {w[2], 0, -w[0]}; /* (0,1,0) x w */
   n = sqrt(u[0] * u[0] + u[2] * u[2]);
-  for (int i = 0; i < 3; i++) u[i] /= n;
-  double v[3] = {w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]};
+  for (int i = 0; i < 3; i++)
+    u[i] /= n;
+  double v[3] = {w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2],
+                 w[0] * u[1] - w[1] * u[0]};
   const double *m = c.world_from_camera;
   for (int i = 0; i < 3; i++) {
     assert_true(fabs(m[4 * i + 0] - u[i]) < 1e-15);
@@ -146,7 +165,8 @@ static void lecture_basis(void **state) {
   /* lookat is seen in the middle, at the distance |e - l| */
   double pixel[2], z;
   assert_true(vl_camera_project(&c, def.lookat, pixel, &z));
-  assert_true(fabs(pixel[0] - 200) < 1e-10 && fabs(pixel[1] - 150) < 1e-10 && fabs(z - sqrt(552500)) < 1e-10);
+  assert_true(fabs(pixel[0] - 200) < 1e-10 && fabs(pixel[1] - 150) < 1e-10 &&
+              fabs(z - sqrt(552500)) < 1e-10);
 }
 
 static void roll_turns_clockwise(void **state) {
@@ -154,7 +174,8 @@ static void roll_turns_clockwise(void **state) {
   vlCameraDef def = vl_default_camera_def(100, 100);
   def.view_distance = 50, def.roll = RADIANS(90);
   vlCamera c = make_or_fail(&def);
-  /* the camera turned clockwise by a quarter: its right hand points down, so what is above appears at the left */
+  /* the camera turned clockwise by a quarter: its right hand points down, so what is above
+   * appears at the left */
   const double above[3] = {0, 1, -5};
   double pixel[2], z;
   assert_true(vl_camera_project(&c, above, pixel, &z));
@@ -170,14 +191,16 @@ static void roll_turns_clockwise(void **state) {
 
 static void up_parallel_to_the_view(void **state) {
   (void)state;
-  const double looks[6][3] = {{0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {1, 2, -2}};
+  const double looks[6][3] = {{0, -1, 0}, {0, 1, 0}, {1, 0, 0},
+                              {-1, 0, 0}, {0, 0, 1}, {1, 2, -2}};
   for (int k = 0; k < 6; k++) {
     vlCameraDef def = vl_default_camera_def(100, 100);
     vlCamera c;
     const char *warning = NULL;
     vlError error;
     set3(def.eye, 1, 2, 3);
-    for (int i = 0; i < 3; i++) def.lookat[i] = def.eye[i] + looks[k][i], def.up[i] = -2 * looks[k][i];
+    for (int i = 0; i < 3; i++)
+      def.lookat[i] = def.eye[i] + looks[k][i], def.up[i] = -2 * looks[k][i];
     assert_int_equal(vl_camera_make(&def, &c, &warning, &error), VL_OK);
     assert_non_null(warning);
     assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);
@@ -187,7 +210,8 @@ static void up_parallel_to_the_view(void **state) {
         double dot = m[a] * m[b] + m[4 + a] * m[4 + b] + m[8 + a] * m[8 + b];
         assert_true(fabs(dot - (a == b)) < 1e-15);
       }
-    if (k < 2) assert_true(m[0] == 1); /* right stays x, looking down as looking up */
+    if (k < 2)
+      assert_true(m[0] == 1); /* right stays x, looking down as looking up */
   }
 }
 
@@ -195,11 +219,15 @@ static void resize_keeps_the_framing(void **state) {
   (void)state;
   vlCamera c = camera_of(1), twice, square, back;
   assert_int_equal(vl_camera_resize(&c, 1282, 958, &twice), VL_OK);
-  assert_true(twice.width == 1282 && twice.height == 958 && twice.fx == 2 * c.fx && twice.fy == 2 * c.fy);
-  assert_true(fabs(twice.cx - 2 * c.cx) < 1e-12 && fabs(twice.cy - 2 * c.cy) < 1e-12 && twice.skew == 2 * c.skew);
+  assert_true(twice.width == 1282 && twice.height == 958 && twice.fx == 2 * c.fx &&
+              twice.fy == 2 * c.fy);
+  assert_true(fabs(twice.cx - 2 * c.cx) < 1e-12 && fabs(twice.cy - 2 * c.cy) < 1e-12 &&
+              twice.skew == 2 * c.skew);
   assert_int_equal(vl_camera_resize(&twice, 641, 479, &back), VL_OK);
-  assert_true(fabs(back.fx - c.fx) < 1e-12 && fabs(back.cx - c.cx) < 1e-12 && fabs(back.cy - c.cy) < 1e-12);
-  /* another shape: the smaller side keeps its field of view, as a fov camera made at that size */
+  assert_true(fabs(back.fx - c.fx) < 1e-12 && fabs(back.cx - c.cx) < 1e-12 &&
+              fabs(back.cy - c.cy) < 1e-12);
+  /* another shape: the smaller side keeps its field of view, as a fov camera made at that size
+   */
   vlCameraDef def = vl_default_camera_def(640, 480);
   def.fov = RADIANS(50);
   c = make_or_fail(&def);
@@ -220,11 +248,14 @@ static void orthographic(void **state) {
   vlCamera c = make_or_fail(&def);
   double o[3], d[3], pixel[2], z;
   assert_true(vl_camera_unproject(&c, 0.5, 0.5, o, d));
-  assert_true(o[0] == -74.75 && o[1] == 49.75 && o[2] == 0 && d[0] == 0 && d[1] == 0 && d[2] == -1);
+  assert_true(o[0] == -74.75 && o[1] == 49.75 && o[2] == 0 && d[0] == 0 && d[1] == 0 &&
+              d[2] == -1);
   /* size does not depend on distance */
   const double near[3] = {10, 5, -1}, far[3] = {10, 5, -1000};
-  assert_true(vl_camera_project(&c, near, pixel, &z) && pixel[0] == 170 && pixel[1] == 90 && z == 1);
-  assert_true(vl_camera_project(&c, far, pixel, &z) && pixel[0] == 170 && pixel[1] == 90 && z == 1000);
+  assert_true(vl_camera_project(&c, near, pixel, &z) && pixel[0] == 170 && pixel[1] == 90 &&
+              z == 1);
+  assert_true(vl_camera_project(&c, far, pixel, &z) && pixel[0] == 170 && pixel[1] == 90 &&
+              z == 1000);
   def.pixel_size = VL_UNSET;
   assert_true(make_or_fail(&def).fy == 100); /* default: -1 to 1 across the smaller side */
 }
@@ -234,35 +265,45 @@ static void error_messages(void **state) {
   EXPECT_ERROR(d.cookie = 0, "def.cookie", NULL);
   /* over-determined: both values are named */
   EXPECT_ERROR((d.fov = RADIANS(60), d.view_distance = 500), "fov 60 degrees", "d 500");
-  EXPECT_ERROR((d.fov = RADIANS(60), d.fov_axis = VL_FOV_VERTICAL, d.view_distance = 500), "415.69", "500");
+  EXPECT_ERROR((d.fov = RADIANS(60), d.fov_axis = VL_FOV_VERTICAL, d.view_distance = 500),
+               "415.69", "500");
   EXPECT_ERROR((d.fx = 100, d.fy = 200, d.view_distance = 100), "fy gives", "d 100");
-  EXPECT_ERROR((d.focal_mm = 50, d.sensor_width_mm = 36, d.fx = 500), "fx gives", "focal_mm 50");
-  EXPECT_ERROR((d.cx = 10, d.screen_min_x = -1, d.screen_max_x = 1, d.screen_min_y = -1, d.screen_max_y = 1), "cx",
-               "screen window");
-  EXPECT_ERROR((d.fx = 500, d.fov = RADIANS(53.13), d.fov_axis = VL_FOV_HORIZONTAL), "fx gives", "640.0");
-  EXPECT_ERROR((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.fx = 3, d.pixel_size = 0.5), "3", "pixel size 0.5");
+  EXPECT_ERROR((d.focal_mm = 50, d.sensor_width_mm = 36, d.fx = 500), "fx gives",
+               "focal_mm 50");
+  EXPECT_ERROR((d.cx = 10, d.screen_min_x = -1, d.screen_max_x = 1, d.screen_min_y = -1,
+                d.screen_max_y = 1),
+               "cx", "screen window");
+  EXPECT_ERROR((d.fx = 500, d.fov = RADIANS(53.13), d.fov_axis = VL_FOV_HORIZONTAL), "fx gives",
+               "640.0");
+  EXPECT_ERROR((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.fx = 3, d.pixel_size = 0.5), "3",
+               "pixel size 0.5");
   /* half a way */
   EXPECT_ERROR(d.zoom = 2, "zoom 2", "view distance");
   EXPECT_ERROR(d.pixel_size = 0.1, "pixel size 0.1", "view distance");
   EXPECT_ERROR(d.focal_mm = 50, "focal_mm", "sensor_width_mm");
   EXPECT_ERROR(d.sensor_width_mm = 50, "sensor_width_mm is given without focal_mm", NULL);
   EXPECT_ERROR(d.screen_min_x = 1, "1 of its 4 sides", NULL);
-  EXPECT_ERROR((d.screen_min_x = d.screen_max_x = 1, d.screen_min_y = -1, d.screen_max_y = 1), "empty", NULL);
+  EXPECT_ERROR((d.screen_min_x = d.screen_max_x = 1, d.screen_min_y = -1, d.screen_max_y = 1),
+               "empty", NULL);
   EXPECT_ERROR((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.fov = 1), "fov", "orthographic");
   EXPECT_ERROR((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.zoom = 2), "zoom 2", "pixel size");
   /* ranges */
   EXPECT_ERROR(d.fov = RADIANS(180), "180 degrees", NULL);
   EXPECT_ERROR(d.fov = 0, "fov is 0", NULL);
-  EXPECT_ERROR((d.view_distance = 1e300, d.pixel_size = 1e-300), "no finite focal length", NULL);
+  EXPECT_ERROR((d.view_distance = 1e300, d.pixel_size = 1e-300), "no finite focal length",
+               NULL);
   EXPECT_ERROR(d.view_distance = 1e200, "out of range", NULL);
   /* pose */
-  EXPECT_ERROR((set3(d.eye, 1, 2, 3), set3(d.lookat, 1, 2, 3)), "eye and lookat are the same point (1 2 3)", NULL);
+  EXPECT_ERROR((set3(d.eye, 1, 2, 3), set3(d.lookat, 1, 2, 3)),
+               "eye and lookat are the same point (1 2 3)", NULL);
   EXPECT_ERROR((d.eye[0] = 1.7e308, d.lookat[0] = -1.7e308), "too far apart", NULL);
   EXPECT_ERROR(set3(d.up, 0, 0, 0), "up is the zero vector", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = NAN), "not finite", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 0), "singular", NULL);
-  EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 1e308), "stretches by 1e+308", NULL);
-  EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[1] = 1, d.world_from_camera[5] = 0), "singular", NULL);
+  EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 1e308), "stretches by 1e+308",
+               NULL);
+  EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[1] = 1, d.world_from_camera[5] = 0),
+               "singular", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[14] = 1), "last row", NULL);
   /* the rest */
   EXPECT_ERROR(d.shutter_close = -1, "shutter opens at 0", "closes at -1");

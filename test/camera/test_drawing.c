@@ -1,5 +1,6 @@
-/* vl_camera_outline: the lines of a pinhole camera are where its numbers say; projectors go through the eye and meet
- * the view plane in their image; of curved projections all points are on rays of the camera; rigs; wrong defs. */
+/* vl_camera_outline: the lines of a pinhole camera are where its numbers say; projectors go
+ * through the eye and meet the view plane in their image; of curved projections all points are
+ * on rays of the camera; rigs; wrong defs. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,13 +42,15 @@ static vlCamera pinhole(void) {
 static vlDrawing *draw(const vlCamera *cameras, uint32_t count, const vlDrawingDef *def) {
   vlDrawing *d = NULL;
   vlError error;
-  if (vl_camera_outline(context, cameras, count, def, &d, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_camera_outline(context, cameras, count, def, &d, &error) != VL_OK)
+    fail_msg("%s", error.message);
   return d;
 }
 
 static uint32_t count_of(const vlDrawing *d, vlDrawingPart part) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < d->line_count; i++) n += d->lines[i].part == part;
+  for (uint32_t i = 0; i < d->line_count; i++)
+    n += d->lines[i].part == part;
   return n;
 }
 
@@ -60,7 +63,8 @@ static void of_a_pinhole(void **state) {
   (void)state;
   vlCamera camera = pinhole();
   camera.near_plane = 2, camera.far_plane = 20;
-  const double points[3] = {3, 3, -17}; /* depth 20: its image is a quarter as far from the axis */
+  const double points[3] = {3, 3,
+                            -17}; /* depth 20: its image is a quarter as far from the axis */
   vlDrawingDef def = vl_default_drawing_def();
   def.plane = 5, def.grid = 10, def.points = points, def.point_count = 1;
   def.parts |= 1u << VL_DRAWING_FILM;
@@ -70,26 +74,39 @@ static void of_a_pinhole(void **state) {
   assert_int_equal(count_of(d, VL_DRAWING_FAR), 4);
   assert_int_equal(count_of(d, VL_DRAWING_VOLUME), 4);
   assert_int_equal(count_of(d, VL_DRAWING_AXES), 3);
-  assert_int_equal(count_of(d, VL_DRAWING_GRID), 2 * (7 + 5)); /* every 10 pixels, on the window and the film */
+  assert_int_equal(count_of(d, VL_DRAWING_GRID),
+                   2 * (7 + 5)); /* every 10 pixels, on the window and the film */
   for (uint32_t i = 0; i < d->line_count; i++) {
     const vlDrawingLine *l = &d->lines[i];
     double depth = 3 - l->from[2], x = l->from[0] - 1, y = l->from[1] - 2;
-    if (l->part == VL_DRAWING_WINDOW) assert_true(fabs(fabs(x) - 4) < 1e-9 && fabs(fabs(y) - 3) < 1e-9);
-    if (l->part == VL_DRAWING_WINDOW) assert_true(fabs(depth - 5) < 1e-9);
-    if (l->part == VL_DRAWING_NEAR) assert_true(fabs(depth - 2) < 1e-9 && fabs(fabs(x) - 1.6) < 1e-9);
-    if (l->part == VL_DRAWING_FAR) assert_true(fabs(depth - 20) < 1e-9 && fabs(fabs(x) - 16) < 1e-9);
-    if (l->part == VL_DRAWING_VOLUME) near3(l->from, 1, 2, 3);
+    if (l->part == VL_DRAWING_WINDOW)
+      assert_true(fabs(fabs(x) - 4) < 1e-9 && fabs(fabs(y) - 3) < 1e-9);
+    if (l->part == VL_DRAWING_WINDOW)
+      assert_true(fabs(depth - 5) < 1e-9);
+    if (l->part == VL_DRAWING_NEAR)
+      assert_true(fabs(depth - 2) < 1e-9 && fabs(fabs(x) - 1.6) < 1e-9);
+    if (l->part == VL_DRAWING_FAR)
+      assert_true(fabs(depth - 20) < 1e-9 && fabs(fabs(x) - 16) < 1e-9);
+    if (l->part == VL_DRAWING_VOLUME)
+      near3(l->from, 1, 2, 3);
   }
   int found = 0;
   for (uint32_t i = 0; i < d->label_count; i++) {
     const vlDrawingLabel *l = &d->labels[i];
-    if (strcmp(l->text, "P'") == 0) near3(l->at, 1.5, 2.25, -2), found++;
-    if (strcmp(l->text, "P") == 0) near3(l->at, 3, 3, -17), found++;
-    if (strcmp(l->text, "e") == 0) near3(l->at, 1, 2, 3), found++;
-    if (strcmp(l->text, "d") == 0) near3(l->at, 1, 2, 0.5), found++;
-    if (strcmp(l->text, "u") == 0) assert_true(l->at[0] > 1 && l->at[1] == 2), found++;
-    if (strcmp(l->text, "v") == 0) assert_true(l->at[1] > 2), found++;
-    if (strcmp(l->text, "w") == 0) assert_true(l->at[2] > 3), found++;
+    if (strcmp(l->text, "P'") == 0)
+      near3(l->at, 1.5, 2.25, -2), found++;
+    if (strcmp(l->text, "P") == 0)
+      near3(l->at, 3, 3, -17), found++;
+    if (strcmp(l->text, "e") == 0)
+      near3(l->at, 1, 2, 3), found++;
+    if (strcmp(l->text, "d") == 0)
+      near3(l->at, 1, 2, 0.5), found++;
+    if (strcmp(l->text, "u") == 0)
+      assert_true(l->at[0] > 1 && l->at[1] == 2), found++;
+    if (strcmp(l->text, "v") == 0)
+      assert_true(l->at[1] > 2), found++;
+    if (strcmp(l->text, "w") == 0)
+      assert_true(l->at[2] > 3), found++;
   }
   assert_int_equal(found, 7);
   bool behind = false; /* on the film the image is upside down */
@@ -103,7 +120,8 @@ static void of_a_pinhole(void **state) {
 /* All points of window and grid are at the distance `plane`, on rays of the camera. */
 static void of_curved_projections(void **state) {
   (void)state;
-  static const vlProjection kinds[] = {VL_PROJECTION_EQUIDISTANT, VL_PROJECTION_EQUIRECTANGULAR, VL_PROJECTION_PANINI};
+  static const vlProjection kinds[] = {VL_PROJECTION_EQUIDISTANT, VL_PROJECTION_EQUIRECTANGULAR,
+                                       VL_PROJECTION_PANINI};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     vlCameraDef camera_def = vl_default_camera_def(90, 60);
     camera_def.projection = kinds[k];
@@ -115,7 +133,8 @@ static void of_curved_projections(void **state) {
     assert_true(count_of(d, VL_DRAWING_GRID) > 100 && d->face_count > 100);
     for (uint32_t i = 0; i < d->line_count; i++) {
       const double *at = d->lines[i].from;
-      if (d->lines[i].part != VL_DRAWING_GRID && d->lines[i].part != VL_DRAWING_WINDOW) continue;
+      if (d->lines[i].part != VL_DRAWING_GRID && d->lines[i].part != VL_DRAWING_WINDOW)
+        continue;
       assert_true(fabs(sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]) - 3) < 1e-9);
     }
     vl_drawing_destroy(d);
@@ -134,7 +153,8 @@ static void of_a_distorted_lens(void **state) {
   double least = INFINITY, most = 0; /* barrel: the true window is a cushion */
   for (uint32_t i = 0; i < d->line_count; i++) {
     const vlDrawingLine *l = &d->lines[i];
-    if (l->part != VL_DRAWING_WINDOW || fabs(l->from[1]) < fabs(l->from[0]) * 0.9) continue;
+    if (l->part != VL_DRAWING_WINDOW || fabs(l->from[1]) < fabs(l->from[0]) * 0.9)
+      continue;
     assert_true(fabs(l->from[2] + 1) < 1e-9);
     least = fmin(least, fabs(l->from[1])), most = fmax(most, fabs(l->from[1]));
   }
@@ -148,7 +168,8 @@ static void of_a_rig(void **state) {
   for (int i = 0; i < 3; i++) {
     cameras[i] = pinhole();
     cameras[i].world_from_camera[3] = i;
-    assert_int_equal(vl_camera_move(&cameras[i], cameras[i].world_from_camera, &cameras[i], NULL), VL_OK);
+    assert_int_equal(
+        vl_camera_move(&cameras[i], cameras[i].world_from_camera, &cameras[i], NULL), VL_OK);
   }
   vlDrawing *d = draw(cameras, 3, NULL);
   assert_int_equal(count_of(d, VL_DRAWING_PATH), 2);
@@ -176,8 +197,9 @@ static void wrong_defs(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(of_a_pinhole), cmocka_unit_test(of_curved_projections),
-                                     cmocka_unit_test(of_a_distorted_lens), cmocka_unit_test(of_a_rig),
-                                     cmocka_unit_test(wrong_defs)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(of_a_pinhole),
+                                     cmocka_unit_test(of_curved_projections),
+                                     cmocka_unit_test(of_a_distorted_lens),
+                                     cmocka_unit_test(of_a_rig), cmocka_unit_test(wrong_defs)};
   return cmocka_run_group_tests(tests, begin, end);
 }

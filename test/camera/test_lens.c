@@ -1,5 +1,6 @@
-/* test/camera/test_lens.c: the lens of a camera: areas of aperture shapes, the tilted plane of focus, the Scheimpflug
- * principle, f-number, focus on a point, exposure, vignetting, clipping planes, rejected values. */
+/* test/camera/test_lens.c: the lens of a camera: areas of aperture shapes, the tilted plane of
+ * focus, the Scheimpflug principle, f-number, focus on a point, exposure, vignetting, clipping
+ * planes, rejected values. */
 #include "camera/context.h"
 
 #include "camera/lens.h"
@@ -17,20 +18,24 @@ static void draw(uint64_t seed) {
   }
 }
 
-/* Chi-square over k cells with these expected counts; below the value that one test in 10^6 exceeds. */
+/* Chi-square over k cells with these expected counts; below the value that one test in 10^6
+ * exceeds. */
 static void check_chi2(const double *counts, const double *expected, int k) {
   double chi2 = 0;
   int cells = 0;
   for (int i = 0; i < k; i++) {
     if (expected[i] < 5) {
-      if (expected[i] == 0) assert_true(counts[i] == 0);
+      if (expected[i] == 0)
+        assert_true(counts[i] == 0);
       continue;
     }
     chi2 += (counts[i] - expected[i]) * (counts[i] - expected[i]) / expected[i];
     cells++;
   }
-  double n = cells - 1, limit = n * pow(1 - 2 / (9 * n) + 4.76 * sqrt(2 / (9 * n)), 3); /* Wilson and Hilferty */
-  if (!(chi2 < limit)) fail_msg("chi2 %g of %d cells, limit %g", chi2, cells, limit);
+  double n = cells - 1, limit = n * pow(1 - 2 / (9 * n) + 4.76 * sqrt(2 / (9 * n)),
+                                        3); /* Wilson and Hilferty */
+  if (!(chi2 < limit))
+    fail_msg("chi2 %g of %d cells, limit %g", chi2, cells, limit);
 }
 
 static double cross(double ax, double ay, double bx, double by) {
@@ -39,11 +44,13 @@ static double cross(double ax, double ay, double bx, double by) {
 
 static bool in_polygon(const vlBlades *b, double px, double py) {
   for (uint32_t i = 0; i < b->count; i++)
-    if (cross(b->x[i + 1] - b->x[i], b->y[i + 1] - b->y[i], px - b->x[i], py - b->y[i]) < 0) return false;
+    if (cross(b->x[i + 1] - b->x[i], b->y[i + 1] - b->y[i], px - b->x[i], py - b->y[i]) < 0)
+      return false;
   return true;
 }
 
-/* Cells of a grid that lie wholly inside the polygon hold their share of its area; nothing lies outside. */
+/* Cells of a grid that lie wholly inside the polygon hold their share of its area; nothing lies
+ * outside. */
 static void blades_are_even(void **state) {
   (void)state;
   enum { GRID = 24 };
@@ -51,7 +58,8 @@ static void blades_are_even(void **state) {
     static double counts[GRID * GRID], expected[GRID * GRID];
     vlBlades b;
     vl_blades_make(count, 0.3, &b);
-    assert_true(fabs(b.x[0] - sin(0.3)) < 1e-6 && fabs(b.y[0] + cos(0.3)) < 1e-6); /* up, turned clockwise */
+    assert_true(fabs(b.x[0] - sin(0.3)) < 1e-6 &&
+                fabs(b.y[0] + cos(0.3)) < 1e-6); /* up, turned clockwise */
     draw(count);
     vl_blades_points(&b, N, u, v, x, y);
     memset(counts, 0, sizeof counts);
@@ -62,15 +70,16 @@ static void blades_are_even(void **state) {
     double area = 0.5 * count * sin(2 * M_PI / count);
     for (int k = 0; k < GRID * GRID; k++) {
       double x0 = 2.0 * (k % GRID) / GRID - 1, y0 = 2.0 * (k / GRID) / GRID - 1, s = 2.0 / GRID;
-      bool whole = in_polygon(&b, x0, y0) && in_polygon(&b, x0 + s, y0) && in_polygon(&b, x0, y0 + s) &&
-                   in_polygon(&b, x0 + s, y0 + s);
+      bool whole = in_polygon(&b, x0, y0) && in_polygon(&b, x0 + s, y0) &&
+                   in_polygon(&b, x0, y0 + s) && in_polygon(&b, x0 + s, y0 + s);
       expected[k] = whole ? N * s * s / area : 1; /* 1: not looked at */
     }
     check_chi2(counts, expected, GRID * GRID);
   }
 }
 
-/* Each cell of the image is hit as often as it is bright, and evenly inside; black ones never. */
+/* Each cell of the image is hit as often as it is bright, and evenly inside; black ones never.
+ */
 static void image_is_density(void **state) {
   (void)state;
   enum { W = 7, H = 5, PARTS = 2 };
@@ -93,12 +102,14 @@ static void image_is_density(void **state) {
     counts[(int)((y[i] + 1) / 2 * H * PARTS) * W * PARTS + (int)((x[i] + 1) / 2 * W * PARTS)]++;
   }
   for (int k = 0; k < W * H * PARTS * PARTS; k++)
-    expected[k] = N * values[k / (W * PARTS) / PARTS * W + k % (W * PARTS) / PARTS] / sum / (PARTS * PARTS);
+    expected[k] = N * values[k / (W * PARTS) / PARTS * W + k % (W * PARTS) / PARTS] / sum /
+                  (PARTS * PARTS);
   check_chi2(counts, expected, W * H * PARTS * PARTS);
   /* as a mask its mean is a disc's */
   double mean = 0;
   for (int i = 0; i < W * H; i++)
-    mean += vl_aperture_value(a, 2 * (i % W + 0.5) / W - 1, 2 * (i / W + 0.5) / H - 1) / (W * H);
+    mean +=
+        vl_aperture_value(a, 2 * (i % W + 0.5) / W - 1, 2 * (i / W + 0.5) / H - 1) / (W * H);
   assert_true(fabs(mean - M_PI / 4) < 1e-6);
   assert_true(vl_aperture_value(a, 1.01, 0) == 0);
   vl_aperture_destroy(a);
@@ -110,15 +121,20 @@ static void named_images(void **state) {
   for (int i = 0; i < 4; i++) {
     vlAperture *a = NULL;
     assert_int_equal(vl_aperture_create_named(context, names[i], &a, NULL), VL_OK);
-    if (i == 2) assert_true(vl_aperture_value(a, 0, -0.75) > 0 && vl_aperture_value(a, 0, 0.75) == 0); /* upright */
-    if (i == 3) assert_true(vl_aperture_value(a, 0.5, 0) == 0 && vl_aperture_value(a, -0.9, 0) > 0);
+    if (i == 2)
+      assert_true(vl_aperture_value(a, 0, -0.75) > 0 &&
+                  vl_aperture_value(a, 0, 0.75) == 0); /* upright */
+    if (i == 3)
+      assert_true(vl_aperture_value(a, 0.5, 0) == 0 && vl_aperture_value(a, -0.9, 0) > 0);
     vl_aperture_destroy(a);
   }
   vlError error;
   vlAperture *a;
-  assert_int_equal(vl_aperture_create_named(context, "a regular heptagon", &a, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_aperture_create_named(context, "a regular heptagon", &a, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "unknown shape \"a regular heptagon\" (known: "));
-  assert_int_equal(vl_aperture_create_named(context, "pentagram", &a, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_aperture_create_named(context, "pentagram", &a, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "pentagon"));
   float bad[2] = {1, -1};
   assert_int_equal(vl_aperture_create(context, 2, 1, bad, &a, &error), VL_ERROR_ARGUMENT);
@@ -148,14 +164,16 @@ static void shapes_are_turned_and_squeezed(void **state) {
   assert_true(fabs(inner / N - 0.5) < 4 * 0.5 / sqrt(N));
 }
 
-/* Any point of the tilted plane is met by the rays from all points of the lens; in double, to 1e-12. */
+/* Any point of the tilted plane is met by the rays from all points of the lens; in double, to
+ * 1e-12. */
 static void tilted_plane_is_sharp(void **state) {
   (void)state;
   uint64_t seed = 21;
   for (int k = 0; k < 400; k++) {
     vlCameraDef def = vl_default_camera_def(300, 200);
     bool orthographic = k % 4 == 1, hinge = k % 4 == 2;
-    if (orthographic) def.projection = VL_PROJECTION_ORTHOGRAPHIC;
+    if (orthographic)
+      def.projection = VL_PROJECTION_ORTHOGRAPHIC;
     def.lens_radius = 0.2;
     double focus = next_between(&seed, 2, 9), normal[3], through[3] = {0, 0, focus};
     def.focus_distance = focus;
@@ -164,23 +182,31 @@ static void tilted_plane_is_sharp(void **state) {
       def.fov_axis = VL_FOV_HORIZONTAL, def.focal_mm = 50;
       def.lens.lens_tilt_x = next_between(&seed, -0.15, 0.15);
       def.lens.lens_tilt_y = k % 8 == 2 ? 0 : next_between(&seed, -0.15, 0.15);
-      if (k % 16 == 6) def.focus_distance = VL_UNSET; /* infinity: the plane is parallel to the axis */
-      double f = 5;                                   /* scene units */
-      normal[0] = sin(def.lens.lens_tilt_y) / f, normal[1] = sin(def.lens.lens_tilt_x) / f, normal[2] = 1 / focus;
-      if (k % 16 == 6) normal[2] = 0;
+      if (k % 16 == 6)
+        def.focus_distance = VL_UNSET; /* infinity: the plane is parallel to the axis */
+      double f = 5;                    /* scene units */
+      normal[0] = sin(def.lens.lens_tilt_y) / f, normal[1] = sin(def.lens.lens_tilt_x) / f,
+      normal[2] = 1 / focus;
+      if (k % 16 == 6)
+        normal[2] = 0;
     } else {
-      def.lens.tilt_x = next_between(&seed, -0.5, 0.5), def.lens.tilt_y = next_between(&seed, -0.5, 0.5);
+      def.lens.tilt_x = next_between(&seed, -0.5, 0.5),
+      def.lens.tilt_y = next_between(&seed, -0.5, 0.5);
       normal[0] = tan(def.lens.tilt_y), normal[1] = tan(def.lens.tilt_x), normal[2] = 1;
     }
     vlCamera camera = make_or_fail(&def);
-    if (hinge) assert_true(fabs(camera.lens_radius - 5.0 / 4) < 1e-12);
+    if (hinge)
+      assert_true(fabs(camera.lens_radius - 5.0 / 4) < 1e-12);
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     double level = hinge ? 1 : normal[2] * focus;
-    if (!hinge) assert_true(fabs(normal[2] * through[2] - level) < 1e-12);
+    if (!hinge)
+      assert_true(fabs(normal[2] * through[2] - level) < 1e-12);
     /* the film point that sees the plane's point p */
-    vlCameraLocal pin = {0, 0, next_between(&seed, -0.6, 0.6), next_between(&seed, -0.4, 0.4), 1};
-    if (orthographic) pin = (vlCameraLocal){pin.dx, pin.dy, 0, 0, 1};
+    vlCameraLocal pin = {0, 0, next_between(&seed, -0.6, 0.6), next_between(&seed, -0.4, 0.4),
+                         1};
+    if (orthographic)
+      pin = (vlCameraLocal){pin.dx, pin.dy, 0, 0, 1};
     double along = (level - normal[0] * pin.ox - normal[1] * pin.oy) /
                    (normal[0] * pin.dx + normal[1] * pin.dy + normal[2] * pin.dz);
     double p[3] = {pin.ox + along * pin.dx, pin.oy + along * pin.dy, along * pin.dz};
@@ -190,29 +216,36 @@ static void tilted_plane_is_sharp(void **state) {
       assert_true(fabs(r.ox - pin.ox - camera.lens_radius * l.x) < 1e-12);
       double t = (p[2]) / r.dz;
       double size = 1 + fabs(along);
-      assert_true(fabs(r.ox + t * r.dx - p[0]) < 1e-12 * size && fabs(r.oy + t * r.dy - p[1]) < 1e-12 * size);
+      assert_true(fabs(r.ox + t * r.dx - p[0]) < 1e-12 * size &&
+                  fabs(r.oy + t * r.dy - p[1]) < 1e-12 * size);
     }
   }
 }
 
-/* A thin lens of focal length f through the origin, its axis along the unit vector n: the image of p. Lines stay lines,
- * so the images of two points of a ray are two points of its other half. */
+/* A thin lens of focal length f through the origin, its axis along the unit vector n: the image
+ * of p. Lines stay lines, so the images of two points of a ray are two points of its other
+ * half. */
 static void tilted_image(double f, const double n[3], const double p[3], double image[3]) {
   double scale = f / (f - (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
-  for (int a = 0; a < 3; a++) image[a] = scale * p[a];
+  for (int a = 0; a < 3; a++)
+    image[a] = scale * p[a];
 }
 
-/* Where the ray through p and q meets the film, z = -d, behind that lens, as a slope of the ray through its middle. */
-static void on_film(double f, const double n[3], double d, const double p[3], const double q[3], double slope[2]) {
+/* Where the ray through p and q meets the film, z = -d, behind that lens, as a slope of the ray
+ * through its middle. */
+static void on_film(double f, const double n[3], double d, const double p[3], const double q[3],
+                    double slope[2]) {
   double a[3], b[3];
   tilted_image(f, n, p, a);
   tilted_image(f, n, q, b);
   double t = (-d - a[2]) / (b[2] - a[2]);
-  for (int k = 0; k < 2; k++) slope[k] = -(a[k] + t * (b[k] - a[k])) / d;
+  for (int k = 0; k < 2; k++)
+    slope[k] = -(a[k] + t * (b[k] - a[k])) / d;
 }
 
 static double determinant(const double m[3][3]) {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
@@ -221,7 +254,8 @@ static void plane_through(const double points[3][3], double a[3]) {
   for (int k = 0; k < 3; k++) {
     double m[3][3];
     memcpy(m, points, sizeof m);
-    for (int i = 0; i < 3; i++) m[i][k] = 1;
+    for (int i = 0; i < 3; i++)
+      m[i][k] = 1;
     a[k] = determinant(m) / determinant(points);
   }
 }
@@ -232,14 +266,16 @@ static vlCamera tilted_lens(uint64_t *seed, double *focus, double n[3]) {
   vlCameraDef def = vl_default_camera_def(600, 400);
   def.focal_mm = 50, def.sensor_width_mm = 36, def.lens.f_number = 2, def.lens.unit_mm = 10;
   def.focus_distance = *focus = next_between(seed, 8, 40);
-  def.lens.lens_tilt_x = next_between(seed, 0.02, 0.2), def.lens.lens_tilt_y = next_between(seed, -0.2, 0.2);
+  def.lens.lens_tilt_x = next_between(seed, 0.02, 0.2),
+  def.lens.lens_tilt_y = next_between(seed, -0.2, 0.2);
   n[0] = sin(def.lens.lens_tilt_y), n[1] = sin(def.lens.lens_tilt_x);
   n[2] = sqrt(1 - n[0] * n[0] - n[1] * n[1]);
   return make_or_fail(&def);
 }
 
-/* The Scheimpflug principle, by Gaussian optics of a lens that is really tilted: all rays of a film point meet, the
- * points where they meet lie in a plane, and this plane, the lens's and the film's share one line. */
+/* The Scheimpflug principle, by Gaussian optics of a lens that is really tilted: all rays of a
+ * film point meet, the points where they meet lie in a plane, and this plane, the lens's and
+ * the film's share one line. */
 static void three_planes_share_a_line(void **state) {
   (void)state;
   uint64_t seed = 31;
@@ -254,31 +290,37 @@ static void three_planes_share_a_line(void **state) {
       vlCameraLocal pin = {0, 0, 0.3 * cos(angle), 0.25 * sin(angle), 1};
       vlCameraLocal one = vl_lens_refract(&c, pin, (vlLensPoint){-1, 0}),
                     two = vl_lens_refract(&c, pin, (vlLensPoint){1, 0});
-      double t = (two.ox - one.ox) / (one.dx / one.dz - two.dx / two.dz); /* the depth at which both have the same x */
-      meet[point][0] = one.ox + t * one.dx / one.dz, meet[point][1] = one.oy + t * one.dy / one.dz, meet[point][2] = t;
+      double t =
+          (two.ox - one.ox) /
+          (one.dx / one.dz - two.dx / two.dz); /* the depth at which both have the same x */
+      meet[point][0] = one.ox + t * one.dx / one.dz,
+      meet[point][1] = one.oy + t * one.dy / one.dz, meet[point][2] = t;
       for (int i = 0; i < SPREAD; i++) {
         vlLensPoint l = {(float)cos(i), (float)sin(i)};
         vlCameraLocal r = vl_lens_refract(&c, pin, l);
-        double p[3] = {r.ox, r.oy, 0}, q[3] = {r.ox + 3 * r.dx / r.dz, r.oy + 3 * r.dy / r.dz, 3}, slope[2];
+        double p[3] = {r.ox, r.oy, 0},
+               q[3] = {r.ox + 3 * r.dx / r.dz, r.oy + 3 * r.dy / r.dz, 3}, slope[2];
         on_film(f, n, d, p, q, slope);
         blur = fmax(blur, hypot(slope[0] - pin.dx, slope[1] - pin.dy) * camera.fx);
       }
     }
-    if (!(blur < 1e-9)) fail_msg("lens %d: %g pixels", k, blur);
+    if (!(blur < 1e-9))
+      fail_msg("lens %d: %g pixels", k, blur);
     plane_through(meet, plane);
     /* the point of the line that is nearest to the axis, and the line's direction */
     double away = d * n[2] / (n[0] * n[0] + n[1] * n[1]),
            at = plane[0] * n[0] * away + plane[1] * n[1] * away - plane[2] * d;
     double along = (plane[0] * n[1] - plane[1] * n[0]) / hypot(n[0], n[1]);
-    if (!(fabs(at - 1) < 1e-9 && fabs(along) < 1e-9)) fail_msg("lens %d: %g, %g", k, at - 1, along);
+    if (!(fabs(at - 1) < 1e-9 && fabs(along) < 1e-9))
+      fail_msg("lens %d: %g, %g", k, at - 1, along);
     /* the hinge rule: at z = 0 the plane is f / sin t away */
     assert_true(fabs(hypot(plane[0], plane[1]) * f - hypot(n[0], n[1])) < 1e-9);
   }
 }
 
-/* The circle of confusion of a point q: its edge is where the tilted lens's ray through the aperture's edge meets the
- * film. Its radius is fx R |q.a - 1| / z, but for the factor 1 / (1 - o.a) of an aperture that is not in the lens's
- * plane. It is nothing in the plane in focus. */
+/* The circle of confusion of a point q: its edge is where the tilted lens's ray through the
+ * aperture's edge meets the film. Its radius is fx R |q.a - 1| / z, but for the factor 1 / (1 -
+ * o.a) of an aperture that is not in the lens's plane. It is nothing in the plane in focus. */
 static void blur_off_the_tilted_plane(void **state) {
   (void)state;
   uint64_t seed = 32;
@@ -289,7 +331,8 @@ static void blur_off_the_tilted_plane(void **state) {
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     double qx = next_between(&seed, -0.3, 0.3), qy = next_between(&seed, -0.2, 0.2);
-    double sharp = 1 / (a[0] * qx + a[1] * qy + a[2]), z = k % 4 == 0 ? sharp : sharp * next_between(&seed, 0.5, 2);
+    double sharp = 1 / (a[0] * qx + a[1] * qy + a[2]),
+           z = k % 4 == 0 ? sharp : sharp * next_between(&seed, 0.5, 2);
     double q[3] = {qx * z, qy * z, z}, off = z / sharp - 1;
     for (int i = 0; i < SPREAD; i++) {
       vlLensPoint l = {(float)cos(i), (float)sin(i)};
@@ -297,9 +340,11 @@ static void blur_off_the_tilted_plane(void **state) {
       on_film(f, n, d, o, q, slope);
       vlCameraLocal r = vl_lens_refract(&c, (vlCameraLocal){0, 0, slope[0], slope[1], 1}, l);
       double miss = hypot(r.ox + z * r.dx / r.dz - q[0], r.oy + z * r.dy / r.dz - q[1]);
-      if (!(miss < 1e-10 * z)) fail_msg("lens %d: misses by %g of %g", k, miss, z);
+      if (!(miss < 1e-10 * z))
+        fail_msg("lens %d: misses by %g of %g", k, miss, z);
       double radius = hypot(slope[0] - qx, slope[1] - qy) * camera.fx;
-      double expected = camera.fx * camera.lens_radius * fabs(off) / z / (1 - a[0] * o[0] - a[1] * o[1]);
+      double expected =
+          camera.fx * camera.lens_radius * fabs(off) / z / (1 - a[0] * o[0] - a[1] * o[1]);
       assert_true(fabs(radius - expected) < 1e-6 + 1e-7 * expected); /* l is a float */
       largest = fmax(largest, radius);
     }
@@ -307,7 +352,8 @@ static void blur_off_the_tilted_plane(void **state) {
   }
 }
 
-/* The batch's rays are those of the formula above, for tilted and shaped lenses, on each instruction set. */
+/* The batch's rays are those of the formula above, for tilted and shaped lenses, on each
+ * instruction set. */
 static void batches_hold_the_lens(void **state) {
   (void)state;
   static float film[CHUNK], rows[3][11][CHUNK];
@@ -315,9 +361,12 @@ static void batches_hold_the_lens(void **state) {
   for (int k = 0; k < 3; k++) {
     vlCameraDef def = vl_default_camera_def(320, 240);
     def.lens_radius = 0.1, def.focus_distance = 4, def.lens.blades = 6;
-    if (k < 2) def.lens.tilt_x = 0.4;
-    if (k == 1) def.projection = VL_PROJECTION_ORTHOGRAPHIC;
-    if (k == 2) def.projection = VL_PROJECTION_EQUIDISTANT;
+    if (k < 2)
+      def.lens.tilt_x = 0.4;
+    if (k == 1)
+      def.projection = VL_PROJECTION_ORTHOGRAPHIC;
+    if (k == 2)
+      def.projection = VL_PROJECTION_EQUIDISTANT;
     set3(def.eye, 0, 0, 0);
     set3(def.lookat, 0, 0, -1);
     vlCamera camera = make_or_fail(&def);
@@ -326,28 +375,33 @@ static void batches_hold_the_lens(void **state) {
     uint64_t seed = 8;
     draw(9);
     for (int i = 0; i < CHUNK; i++)
-      film[i] = 0.5f, px[i] = 80 + (int)(next_unit(&seed) * 160), py[i] = 60 + (int)(next_unit(&seed) * 120);
+      film[i] = 0.5f, px[i] = 80 + (int)(next_unit(&seed) * 160),
+      py[i] = 60 + (int)(next_unit(&seed) * 120);
     const vlIsa sets[] = {VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4};
     for (int set = 0; set < 3; set++) {
       vlIsa got;
-      if (vl_isa_choose(sets[set], &got) != VL_OK) continue;
+      if (vl_isa_choose(sets[set], &got) != VL_OK)
+        continue;
       vlCameraSamples s = {film, film, px, py, u, v, u};
       float(*q)[CHUNK] = rows[set];
       vlCameraRays r = {q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10]};
       vl_camera_kernels(sets[set])->rays(&c, CHUNK, &s, &r);
       assert_memory_equal(rows[0], rows[set], sizeof rows[0]);
     }
-    /* all rays of a pixel cross where the pinhole's ray meets the plane (or sphere) in focus; the camera looks along
-     * -z with y up, so camera z = -z, y = -y */
+    /* all rays of a pixel cross where the pinhole's ray meets the plane (or sphere) in focus;
+     * the camera looks along -z with y up, so camera z = -z, y = -y */
     for (int i = 0; i < CHUNK; i++) {
       double o[3], d[3];
       assert_true(vl_camera_unproject(&camera, px[i] + 0.5, py[i] + 0.5, o, d));
       double ny = k < 2 ? tan(0.4) : 0, t = (4 + ny * o[1]) / (-d[2] - ny * d[1]);
-      if (k == 2) t = 4;
+      if (k == 2)
+        t = 4;
       double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]}, near = 0;
       const float(*q)[CHUNK] = (const float(*)[CHUNK])rows[0];
-      for (int a = 0; a < 3; a++) near += (p[a] - q[a][i]) * q[3 + a][i];
-      for (int a = 0; a < 3; a++) assert_true(fabs(q[a][i] + near * q[3 + a][i] - p[a]) < 3e-6 * (1 + t));
+      for (int a = 0; a < 3; a++)
+        near += (p[a] - q[a][i]) * q[3 + a][i];
+      for (int a = 0; a < 3; a++)
+        assert_true(fabs(q[a][i] + near * q[3 + a][i] - p[a]) < 3e-6 * (1 + t));
     }
   }
 }
@@ -367,7 +421,9 @@ static void f_number_and_focus_point(void **state) {
   /* only the sensor's width is given: the focal length follows from the field of view */
   def.focal_mm = VL_UNSET, def.fov = 2 * atan(18.0 / 50), def.fov_axis = VL_FOV_HORIZONTAL;
   assert_true(fabs(make_or_fail(&def).lens_radius - 0.0125) < 1e-12);
-  /* the tilted plane contains the point, too; spheres of focus have the point's distance as radius */
+  /* the tilted plane contains the point, too; spheres of focus have the point's distance as
+   * radius
+   */
   def.lens.tilt_x = 0.3;
   camera = make_or_fail(&def);
   assert_true(fabs(camera.focus_distance - (4.5 + tan(0.3) * 2)) < 1e-12);
@@ -396,17 +452,21 @@ static void vignetting_is_cos4(void **state) {
   for (int k = 0; k < 2; k++) {
     vlCameraDef def = vl_default_camera_def(300, 200);
     def.lens.vignetting = true, def.fov = 1;
-    if (k) def.distortion = VL_DISTORTION_RADIAL, def.distortion_count = 1, def.distortion_coefficients[0] = -0.05;
+    if (k)
+      def.distortion = VL_DISTORTION_RADIAL, def.distortion_count = 1,
+      def.distortion_coefficients[0] = -0.05;
     vlCamera camera = make_or_fail(&def);
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     assert_true(vl_camera_weighted(&c));
-    for (int i = 0; i < 16; i++) film[i] = 0.25f, px[i] = 17 * i + 3, py[i] = 11 * i;
+    for (int i = 0; i < 16; i++)
+      film[i] = 0.25f, px[i] = 17 * i + 3, py[i] = 11 * i;
     vlCameraSamples s = {film, film, px, py, film, film, film};
     vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5],
                       rows[6], rows[7], rows[8], rows[9], rows[10]};
     vl_camera_kernels(VL_ISA_BASE)->rays(&c, 16, &s, &r);
-    for (int i = 0; i < 16; i++) assert_true(fabs(rows[10][i] - pow(rows[5][i], 4)) < 1e-6); /* looks along -z */
+    for (int i = 0; i < 16; i++)
+      assert_true(fabs(rows[10][i] - pow(rows[5][i], 4)) < 1e-6); /* looks along -z */
   }
 }
 
@@ -418,17 +478,21 @@ static void planes_of_the_orthographic_fisheye(void **state) {
   for (int k = 0; k < 2; k++) {
     vlCameraDef def = vl_default_camera_def(300, 300);
     def.projection = k ? VL_PROJECTION_FOV : VL_PROJECTION_SINE;
-    if (k) def.shape[0] = 0.9;
+    if (k)
+      def.shape[0] = 0.9;
     def.near_plane = 2, def.far_plane = 5;
     vlCamera camera = make_or_fail(&def);
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
-    for (int i = 0; i < 16; i++) film[i] = 0.25f, px[i] = 60 + 10 * i, py[i] = 80 + 9 * i;
+    for (int i = 0; i < 16; i++)
+      film[i] = 0.25f, px[i] = 60 + 10 * i, py[i] = 80 + 9 * i;
     vlCameraSamples s = {film, film, px, py, film, film, film};
-    vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8], rows[9], NULL};
+    vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5],
+                      rows[6], rows[7], rows[8], rows[9], NULL};
     vl_camera_kernels(VL_ISA_BASE)->rays(&c, 16, &s, &r);
     for (int i = 0; i < 16; i++)
-      assert_true(fabs(-rows[5][i] * rows[6][i] - 2) < 1e-6 && fabs(-rows[5][i] * rows[7][i] - 5) < 1e-6);
+      assert_true(fabs(-rows[5][i] * rows[6][i] - 2) < 1e-6 &&
+                  fabs(-rows[5][i] * rows[7][i] - 5) < 1e-6);
   }
 }
 
@@ -446,7 +510,8 @@ static void refused(const char *what, const char *also, const vlCameraDef *def) 
   vlCamera camera;
   vlError error;
   assert_int_equal(vl_camera_make(def, &camera, NULL, &error), VL_ERROR_ARGUMENT);
-  if (!strstr(error.message, what) || !strstr(error.message, also) || strchr(error.message, '\n'))
+  if (!strstr(error.message, what) || !strstr(error.message, also) ||
+      strchr(error.message, '\n'))
     fail_msg("\"%s\" does not say \"%s\" and \"%s\"", error.message, what, also);
 }
 #define REFUSED(change, what, also)                  \
@@ -459,24 +524,30 @@ static void refused(const char *what, const char *also, const vlCameraDef *def) 
 static void wrong_lenses(void **state) {
   (void)state;
   REFUSED(d.lens.f_number = 2, "f_number 2", "focal length");
-  REFUSED((d.focal_mm = 50, d.sensor_width_mm = 36, d.lens.f_number = 2, d.lens_radius = 1), "0.0125",
-          "lens_radius is 1");
+  REFUSED((d.focal_mm = 50, d.sensor_width_mm = 36, d.lens.f_number = 2, d.lens_radius = 1),
+          "0.0125", "lens_radius is 1");
   REFUSED((d.focal_mm = 50, d.lens.f_number = 2), "focal_mm is given", "sensor_width_mm");
-  REFUSED((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.lens.f_number = 2), "f_number 2", "focal length");
+  REFUSED((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.lens.f_number = 2), "f_number 2",
+          "focal length");
   REFUSED(d.lens.blades = 2, "2 blades", "3 to 32");
   REFUSED((d.lens.tilt_x = 0.1, d.lens.lens_tilt_y = 0.1), "tilt_x 0.1", "lens_tilt_y 0.1");
   REFUSED(d.lens.lens_tilt_y = 0.1, "focal length", "focal_mm");
-  REFUSED((d.projection = VL_PROJECTION_EQUIDISTANT, d.lens.tilt_x = 0.1), "tilted plane", "equidistant");
-  REFUSED((d.projection = VL_PROJECTION_EQUIDISTANT, d.lens.vignetting = true), "vignetting", "equidistant");
+  REFUSED((d.projection = VL_PROJECTION_EQUIDISTANT, d.lens.tilt_x = 0.1), "tilted plane",
+          "equidistant");
+  REFUSED((d.projection = VL_PROJECTION_EQUIDISTANT, d.lens.vignetting = true), "vignetting",
+          "equidistant");
   REFUSED(d.lens.focus_point[0] = 1, "focus_point", "all of its numbers");
   REFUSED(set3(d.lens.focus_point, 0, 0, 1), "focus_point", "not before the camera");
-  REFUSED((set3(d.lens.focus_point, 0, 0, -2), d.focus_distance = 3), "of 2", "focus_distance is 3");
-  REFUSED((d.lens.focus_pixel[0] = 1, d.lens.focus_pixel[1] = 1, d.focus_distance = 3), "focus_pixel",
-          "focus_distance");
-  REFUSED((d.lens.focus_pixel[0] = 400, d.lens.focus_pixel[1] = 1), "focus_pixel 400, 1", "320 x 240");
+  REFUSED((set3(d.lens.focus_point, 0, 0, -2), d.focus_distance = 3), "of 2",
+          "focus_distance is 3");
+  REFUSED((d.lens.focus_pixel[0] = 1, d.lens.focus_pixel[1] = 1, d.focus_distance = 3),
+          "focus_pixel", "focus_distance");
+  REFUSED((d.lens.focus_pixel[0] = 400, d.lens.focus_pixel[1] = 1), "focus_pixel 400, 1",
+          "320 x 240");
   REFUSED(d.lens.iso = 100, "iso 100", "f_number");
   REFUSED(d.lens.seconds = 1, "seconds 1", "iso");
-  REFUSED((d.lens.iso = 100, d.lens.f_number = 8, d.exposure_time = 2), "exposure_time 2", "iso 100");
+  REFUSED((d.lens.iso = 100, d.lens.f_number = 8, d.exposure_time = 2), "exposure_time 2",
+          "iso 100");
   REFUSED((d.lens.iso = 100, d.lens.f_number = 8, d.shutter_close = 0), "0 seconds", "iso 100");
 }
 

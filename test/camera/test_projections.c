@@ -1,5 +1,7 @@
-/* test/camera/test_projections.c: every projection and calibrated model: round trips, batches against single calls, the
- * limit of the field of view, solid angles, folds, names, error messages. */
+/* test/camera/test_projections.c: every projection and calibrated model: round trips, batches
+ * against single calls, the limit of the field of view, solid angles, folds, names, error
+ * messages.
+ */
 #include "camera/cameras.h"
 
 #include "camera/parts.h"
@@ -15,48 +17,94 @@ static vlCameraDef model_def(int index) {
   set3(d.lookat, -3, 4, 5);
   d.roll = 0.3;
   double *k = d.distortion_coefficients;
-  const double opencv[14] = {-0.28, 0.07, 1e-3, -2e-3, 0.01, 0.02, -0.01, 0.003, 1e-3, -5e-4, 2e-3, 3e-4, 0.03, -0.02};
+  const double opencv[14] = {-0.28, 0.07, 1e-3,  -2e-3, 0.01, 0.02, -0.01,
+                             0.003, 1e-3, -5e-4, 2e-3,  3e-4, 0.03, -0.02};
   switch (index) {
-    case 0: break;
-    case 1: d.projection = VL_PROJECTION_EQUIDISTANT; break;
-    case 2: d.projection = VL_PROJECTION_EQUISOLID, d.fov = 2 * pi, d.fov_axis = VL_FOV_DIAGONAL; break;
-    case 3: d.projection = VL_PROJECTION_STEREOGRAPHIC, d.fov = 4.5, d.fov_axis = VL_FOV_HORIZONTAL; break;
-    case 4: d.projection = VL_PROJECTION_SINE; break;
-    case 5: d.projection = VL_PROJECTION_EQUIRECTANGULAR; break;
+    case 0:
+      break;
+    case 1:
+      d.projection = VL_PROJECTION_EQUIDISTANT;
+      break;
+    case 2:
+      d.projection = VL_PROJECTION_EQUISOLID, d.fov = 2 * pi, d.fov_axis = VL_FOV_DIAGONAL;
+      break;
+    case 3:
+      d.projection = VL_PROJECTION_STEREOGRAPHIC, d.fov = 4.5, d.fov_axis = VL_FOV_HORIZONTAL;
+      break;
+    case 4:
+      d.projection = VL_PROJECTION_SINE;
+      break;
+    case 5:
+      d.projection = VL_PROJECTION_EQUIRECTANGULAR;
+      break;
     case 6:
       d.projection = VL_PROJECTION_EQUIRECTANGULAR;
       d.screen_min_x = -2, d.screen_max_x = 1, d.screen_min_y = -0.5, d.screen_max_y = 1.4;
       break;
-    case 7: d.projection = VL_PROJECTION_EQUAL_AREA; break;
-    case 8: d.projection = VL_PROJECTION_CYLINDRICAL; break;
-    case 9: d.projection = VL_PROJECTION_CUBE, d.width = 600, d.height = 100; break;
-    case 10: d.projection = VL_PROJECTION_PANINI, d.fov = 4, d.fov_axis = VL_FOV_HORIZONTAL; break;
-    case 11: d.projection = VL_PROJECTION_PANINI, d.shape[0] = 0.5, d.fov = 3, d.fov_axis = VL_FOV_HORIZONTAL; break;
-    case 12: d.projection = VL_PROJECTION_PANINI, d.shape[0] = 3; break;
-    case 13: d.projection = VL_PROJECTION_FOV, d.shape[0] = 0.9; break;
-    case 14: d.projection = VL_PROJECTION_DIVISION, d.shape[0] = -0.3, d.fov = 3.6; break;
-    case 15: d.projection = VL_PROJECTION_DIVISION, d.shape[0] = 0.1; break;
-    case 16: d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 0.8, d.fov = 3.5; break;
-    case 17: d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 1.7, d.fov = 3.5; break;
-    case 18: d.projection = VL_PROJECTION_EUCM, d.shape[0] = 0.6, d.shape[1] = 1.1, d.fov = 3.3; break;
-    case 19: d.projection = VL_PROJECTION_DOUBLE_SPHERE, d.shape[0] = -0.2, d.shape[1] = 0.58, d.fov = 3.3; break;
-    case 20: d.projection = VL_PROJECTION_DOUBLE_SPHERE, d.shape[0] = 0.3, d.shape[1] = 0.4; break;
+    case 7:
+      d.projection = VL_PROJECTION_EQUAL_AREA;
+      break;
+    case 8:
+      d.projection = VL_PROJECTION_CYLINDRICAL;
+      break;
+    case 9:
+      d.projection = VL_PROJECTION_CUBE, d.width = 600, d.height = 100;
+      break;
+    case 10:
+      d.projection = VL_PROJECTION_PANINI, d.fov = 4, d.fov_axis = VL_FOV_HORIZONTAL;
+      break;
+    case 11:
+      d.projection = VL_PROJECTION_PANINI, d.shape[0] = 0.5, d.fov = 3,
+      d.fov_axis = VL_FOV_HORIZONTAL;
+      break;
+    case 12:
+      d.projection = VL_PROJECTION_PANINI, d.shape[0] = 3;
+      break;
+    case 13:
+      d.projection = VL_PROJECTION_FOV, d.shape[0] = 0.9;
+      break;
+    case 14:
+      d.projection = VL_PROJECTION_DIVISION, d.shape[0] = -0.3, d.fov = 3.6;
+      break;
+    case 15:
+      d.projection = VL_PROJECTION_DIVISION, d.shape[0] = 0.1;
+      break;
+    case 16:
+      d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 0.8, d.fov = 3.5;
+      break;
+    case 17:
+      d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 1.7, d.fov = 3.5;
+      break;
+    case 18:
+      d.projection = VL_PROJECTION_EUCM, d.shape[0] = 0.6, d.shape[1] = 1.1, d.fov = 3.3;
+      break;
+    case 19:
+      d.projection = VL_PROJECTION_DOUBLE_SPHERE, d.shape[0] = -0.2, d.shape[1] = 0.58,
+      d.fov = 3.3;
+      break;
+    case 20:
+      d.projection = VL_PROJECTION_DOUBLE_SPHERE, d.shape[0] = 0.3, d.shape[1] = 0.4;
+      break;
     case 21: /* OpenCV, all fourteen, full intrinsics */
       d.fx = 500, d.fy = 510, d.cx = 300, d.cy = 250, d.skew = 0.7;
-      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 14, memcpy(k, opencv, sizeof opencv);
+      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 14,
+      memcpy(k, opencv, sizeof opencv);
       break;
     case 22: /* strong barrel that does not fold within the image */
-      d.fx = 500, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 5, k[0] = -0.3, k[1] = 0.1, k[4] = 0.02;
+      d.fx = 500, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 5, k[0] = -0.3,
+      k[1] = 0.1, k[4] = 0.02;
       break;
     case 23: /* pincushion */
-      d.fx = 600, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = 0.4, k[1] = 0.2;
+      d.fx = 600, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = 0.4,
+      k[1] = 0.2;
       break;
     case 24: /* OpenCV fisheye */
       d.fx = 210, d.projection = VL_PROJECTION_EQUIDISTANT, d.distortion = VL_DISTORTION_RADIAL;
       d.distortion_count = 4, k[0] = 0.03, k[1] = -0.02, k[2] = 0.004, k[3] = -0.0003;
       break;
     case 25: { /* COLMAP's thin prism fisheye */
-      const double p[12] = {220, 225, 310, 240, 0.02, -0.01, 1e-3, -5e-4, 2e-3, -2e-4, 3e-4, -4e-4};
+      const double p[12] = {220,  225,   310,  240,   0.02, -0.01,
+                            1e-3, -5e-4, 2e-3, -2e-4, 3e-4, -4e-4};
       assert_int_equal(vl_camera_def_colmap(&d, "THIN_PRISM_FISHEYE", p, 12, NULL), VL_OK);
       break;
     }
@@ -67,7 +115,8 @@ static vlCameraDef model_def(int index) {
     }
     case 27: /* unified with distortion: Mei's whole model */
       d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 0.9, d.fx = 400;
-      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = -0.2, k[1] = 0.04, k[2] = 1e-3;
+      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = -0.2, k[1] = 0.04,
+      k[2] = 1e-3;
       break;
     case 28: /* folds inside the image */
       d.fx = 300, d.distortion = VL_DISTORTION_RADIAL, d.distortion_count = 1, k[0] = -0.4;
@@ -76,9 +125,14 @@ static vlCameraDef model_def(int index) {
       d.fx = 300, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4;
       k[0] = -0.4, k[2] = 0.02, k[3] = 0.01;
       break;
-    case 30: d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.pixel_size = 0.01; break;
-    case 31: d.projection = VL_PROJECTION_EQUIDISTANT, d.fov = 2 * pi; break;
-    default: break;
+    case 30:
+      d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.pixel_size = 0.01;
+      break;
+    case 31:
+      d.projection = VL_PROJECTION_EQUIDISTANT, d.fov = 2 * pi;
+      break;
+    default:
+      break;
   }
   return d;
 }
@@ -86,7 +140,8 @@ static vlCamera model(int index) {
   vlCameraDef def = model_def(index);
   vlCamera camera;
   vlError error;
-  if (vl_camera_make(&def, &camera, NULL, &error) != VL_OK) fail_msg("model %d: %s", index, error.message);
+  if (vl_camera_make(&def, &camera, NULL, &error) != VL_OK)
+    fail_msg("model %d: %s", index, error.message);
   return camera;
 }
 
@@ -99,66 +154,88 @@ static void there_and_back(void **state) {
     int seen = 0, n = 4000;
     double here = 0;
     for (int i = 0; i < n; i++) {
-      double x = next_between(&random, 0, camera.width), y = next_between(&random, 0, camera.height);
+      double x = next_between(&random, 0, camera.width),
+             y = next_between(&random, 0, camera.height);
       double o[3], d[3], p[3], pixel[2], z, t = exp(next_between(&random, -1, 3));
-      if (!vl_camera_unproject(&camera, x, y, o, d)) continue;
+      if (!vl_camera_unproject(&camera, x, y, o, d))
+        continue;
       seen++;
-      for (int a = 0; a < 3; a++) p[a] = o[a] + t * d[a];
+      for (int a = 0; a < 3; a++)
+        p[a] = o[a] + t * d[a];
       if (!vl_camera_project(&camera, p, pixel, &z)) {
-        /* only at the very edge of the domain may rounding put it outside: a little further in it is inside */
-        double cx = camera.cx + (x - camera.cx) * (1 - 1e-9), cy = camera.cy + (y - camera.cy) * (1 - 1e-9);
+        /* only at the very edge of the domain may rounding put it outside: a little further in
+         * it is inside */
+        double cx = camera.cx + (x - camera.cx) * (1 - 1e-9),
+               cy = camera.cy + (y - camera.cy) * (1 - 1e-9);
         assert_true(vl_camera_unproject(&camera, cx, cy, o, d));
-        for (int a = 0; a < 3; a++) p[a] = o[a] + t * d[a];
-        if (!vl_camera_project(&camera, p, pixel, &z)) fail_msg("model %d: (%g %g) does not come back", k, x, y);
+        for (int a = 0; a < 3; a++)
+          p[a] = o[a] + t * d[a];
+        if (!vl_camera_project(&camera, p, pixel, &z))
+          fail_msg("model %d: (%g %g) does not come back", k, x, y);
         continue;
       }
       here = fmax(here, fmax(fabs(pixel[0] - x), fabs(pixel[1] - y)));
     }
-    if (here > 1e-9) fail_msg("model %d: off by %g pixels", k, here);
+    if (here > 1e-9)
+      fail_msg("model %d: off by %g pixels", k, here);
     worst = fmax(worst, here);
     assert_true(fabs((n - seen) / (double)n - camera.outside) < 0.03);
-    if (k < 22 && k != 1 && k != 2 && k != 3 && k != 4 && k != 14 && k != 16 && k != 17 && k != 18 && k != 19)
+    if (k < 22 && k != 1 && k != 2 && k != 3 && k != 4 && k != 14 && k != 16 && k != 17 &&
+        k != 18 && k != 19)
       assert_int_equal(seen, n);
   }
   print_message("there and back: %.3g pixels at worst\n", worst);
 }
 
-/* If a camera projects a direction, unprojection returns the same direction. No result is ever NaN. */
+/* If a camera projects a direction, unprojection returns the same direction. No result is ever
+ * NaN.
+ */
 static void back_and_there(void **state) {
   (void)state;
   for (int k = 0; k < MODELS; k++) {
-    if (k == 30) continue;
+    if (k == 30)
+      continue;
     vlCamera camera = model(k);
     uint64_t random = 9;
     int seen = 0;
     for (int i = 0; i < 4000; i++) {
-      double z = next_between(&random, -1, 1), phi = next_between(&random, -pi, pi), s = sqrt(1 - z * z);
+      double z = next_between(&random, -1, 1), phi = next_between(&random, -pi, pi),
+             s = sqrt(1 - z * z);
       double d[3] = {s * cos(phi), s * sin(phi), z}, p[3], o[3], e[3], pixel[2], depth;
-      if (i == 0) d[0] = d[1] = 0, d[2] = -1;
-      if (i == 1) d[0] = d[1] = 0, d[2] = 1;
+      if (i == 0)
+        d[0] = d[1] = 0, d[2] = -1;
+      if (i == 1)
+        d[0] = d[1] = 0, d[2] = 1;
       for (int a = 0; a < 3; a++) {
         const double *m = camera.world_from_camera + 4 * a;
         p[a] = m[0] * d[0] + m[1] * d[1] + m[2] * d[2];
       }
       double point[3] = {p[0] + camera.world_from_camera[3], p[1] + camera.world_from_camera[7],
                          p[2] + camera.world_from_camera[11]};
-      if (!vl_camera_project(&camera, point, pixel, &depth)) continue;
+      if (!vl_camera_project(&camera, point, pixel, &depth))
+        continue;
       assert_true(isfinite(pixel[0]) && isfinite(pixel[1]));
-      if (fabs(pixel[0] - camera.cx) > camera.width || fabs(pixel[1] - camera.cy) > camera.height) continue;
+      if (fabs(pixel[0] - camera.cx) > camera.width ||
+          fabs(pixel[1] - camera.cy) > camera.height)
+        continue;
       if (!vl_camera_unproject(&camera, pixel[0], pixel[1], o, e)) {
         /* at the rim */
-        double x = camera.cx + (pixel[0] - camera.cx) * (1 - 1e-9), y = camera.cy + (pixel[1] - camera.cy) * (1 - 1e-9);
-        if (!vl_camera_unproject(&camera, x, y, o, e)) fail_msg("model %d: %g %g seen but not there", k, x, y);
+        double x = camera.cx + (pixel[0] - camera.cx) * (1 - 1e-9),
+               y = camera.cy + (pixel[1] - camera.cy) * (1 - 1e-9);
+        if (!vl_camera_unproject(&camera, x, y, o, e))
+          fail_msg("model %d: %g %g seen but not there", k, x, y);
       }
       double error = fmax(fabs(e[0] - p[0]), fmax(fabs(e[1] - p[1]), fabs(e[2] - p[2])));
-      if (error > 1e-7) fail_msg("model %d: direction off by %g", k, error);
+      if (error > 1e-7)
+        fail_msg("model %d: direction off by %g", k, error);
       seen++;
     }
     assert_true(seen > 50);
     const double bad[4][3] = {{NAN, 0, 0}, {INFINITY, 1, 1}, {1e300, -1e300, 1e300}, {1, 2, 3}};
     for (int i = 0; i < 4; i++) {
       double pixel[2] = {0, 0}, z;
-      if (vl_camera_project(&camera, bad[i], pixel, &z)) assert_true(isfinite(pixel[0]) && isfinite(pixel[1]));
+      if (vl_camera_project(&camera, bad[i], pixel, &z))
+        assert_true(isfinite(pixel[0]) && isfinite(pixel[1]));
     }
   }
 }
@@ -174,7 +251,8 @@ static void batches_are_single_calls(void **state) {
     for (int i = 0; i < N; i++) {
       pixels[2 * i] = next_between(&random, -0.2, 1.2) * camera.width;
       pixels[2 * i + 1] = next_between(&random, -0.2, 1.2) * camera.height;
-      for (int a = 0; a < 3; a++) points[3 * i + a] = next_between(&random, -9, 9);
+      for (int a = 0; a < 3; a++)
+        points[3 * i + a] = next_between(&random, -9, 9);
     }
     pixels[0] = NAN, pixels[3] = INFINITY, points[0] = NAN, points[4] = INFINITY;
     vl_camera_unproject_batch(&camera, N, pixels, o, d, seen);
@@ -183,10 +261,14 @@ static void batches_are_single_calls(void **state) {
       double oi[3] = {0}, di[3] = {0}, pi2[2] = {0}, zi = 0;
       bool s = vl_camera_unproject(&camera, pixels[2 * i], pixels[2 * i + 1], oi, di);
       bool l = vl_camera_project(&camera, points + 3 * i, pi2, &zi);
-      if (s != seen[i] || l != landed[i]) fail_msg("model %d, %d: valid %d %d, %d %d", k, i, s, seen[i], l, landed[i]);
-      if (!s) oi[0] = oi[1] = oi[2] = di[0] = di[1] = di[2] = 0;
-      if (memcmp(oi, o + 3 * i, 24) || memcmp(di, d + 3 * i, 24)) fail_msg("model %d: rays differ", k);
-      if (memcmp(pi2, back + 2 * i, 16) || memcmp(&zi, z + i, 8)) fail_msg("model %d: points differ", k);
+      if (s != seen[i] || l != landed[i])
+        fail_msg("model %d, %d: valid %d %d, %d %d", k, i, s, seen[i], l, landed[i]);
+      if (!s)
+        oi[0] = oi[1] = oi[2] = di[0] = di[1] = di[2] = 0;
+      if (memcmp(oi, o + 3 * i, 24) || memcmp(di, d + 3 * i, 24))
+        fail_msg("model %d: rays differ", k);
+      if (memcmp(pi2, back + 2 * i, 16) || memcmp(&zi, z + i, 8))
+        fail_msg("model %d: points differ", k);
     }
     vl_camera_unproject_batch(&camera, 3, pixels, NULL, d, NULL);
     vl_camera_project_batch(&camera, 3, points, back, NULL, NULL);
@@ -194,7 +276,8 @@ static void batches_are_single_calls(void **state) {
   }
 }
 
-/* The render loop's rays: the double ones rounded, the same bits on every set, with and without a lens. */
+/* The render loop's rays: the double ones rounded, the same bits on every set, with and without
+ * a lens. */
 static void rays_of_all_sets(void **state) {
   (void)state;
   enum { N = 1024 };
@@ -203,12 +286,15 @@ static void rays_of_all_sets(void **state) {
   double worst = 0;
   for (int k = 0; k < 2 * MODELS; k++) {
     vlCamera camera = model(k / 2);
-    if (k & 1) camera.lens_radius = 0.1, camera.focus_distance = 5;
+    if (k & 1)
+      camera.lens_radius = 0.1, camera.focus_distance = 5;
     camera.near_plane = 0.5, camera.far_plane = 90;
     uint64_t random = 3;
     for (int i = 0; i < N; i++) {
-      for (int a = 0; a < 5; a++) in[a][i] = (float)next_unit(&random) * 0.9999f;
-      px[0][i] = (int32_t)(next_unit(&random) * camera.width), px[1][i] = (int32_t)(next_unit(&random) * camera.height);
+      for (int a = 0; a < 5; a++)
+        in[a][i] = (float)next_unit(&random) * 0.9999f;
+      px[0][i] = (int32_t)(next_unit(&random) * camera.width),
+      px[1][i] = (int32_t)(next_unit(&random) * camera.height);
     }
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
@@ -218,33 +304,46 @@ static void rays_of_all_sets(void **state) {
       float(*r)[N] = out[set > 0];
       vlCameraRays rays = {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9], NULL};
       vl_camera_kernels(sets[set])->rays(&c, N, &s, &rays);
-      if (set > 0 && memcmp(out[0], out[1], sizeof out[0])) fail_msg("model %d: sets differ", k / 2);
+      if (set > 0 && memcmp(out[0], out[1], sizeof out[0]))
+        fail_msg("model %d: sets differ", k / 2);
     }
     for (int i = 0; i < N; i++) {
       double o[3], d[3];
-      bool seen = vl_camera_unproject(&camera, px[0][i] + (double)in[0][i], px[1][i] + (double)in[1][i], o, d);
-      if (camera.projection == VL_PROJECTION_CUBE && (k & 1) == 0) seen = out[0][9][i] > 0; /* the pixel's face */
-      if (seen != (out[0][9][i] > 0)) fail_msg("model %d: validity differs", k / 2);
+      bool seen = vl_camera_unproject(&camera, px[0][i] + (double)in[0][i],
+                                      px[1][i] + (double)in[1][i], o, d);
+      if (camera.projection == VL_PROJECTION_CUBE && (k & 1) == 0)
+        seen = out[0][9][i] > 0; /* the pixel's face */
+      if (seen != (out[0][9][i] > 0))
+        fail_msg("model %d: validity differs", k / 2);
       assert_true(seen ? out[0][7][i] > out[0][6][i] : out[0][7][i] == -1);
       double length = 0;
-      for (int a = 0; a < 3; a++) length += (double)out[0][3 + a][i] * (double)out[0][3 + a][i];
+      for (int a = 0; a < 3; a++)
+        length += (double)out[0][3 + a][i] * (double)out[0][3 + a][i];
       assert_true(fabs(length - 1) < 1e-6);
       for (int a = 0; a < 3 && seen && !(k & 1); a++)
-        if (fabs(out[0][3 + a][i] - d[a]) > 1e-7) fail_msg("model %d: ray off by %g", k / 2, out[0][3 + a][i] - d[a]);
-      /* and back: the ray in floats leads to its film point, but for those at the last edge of a domain */
+        if (fabs(out[0][3 + a][i] - d[a]) > 1e-7)
+          fail_msg("model %d: ray off by %g", k / 2, out[0][3 + a][i] - d[a]);
+      /* and back: the ray in floats leads to its film point, but for those at the last edge of
+       * a domain */
       double p[3], pixel[2], z;
-      for (int a = 0; a < 3; a++) p[a] = (double)out[0][a][i] + 5 * (double)out[0][3 + a][i];
-      if (!seen || (k & 1) || !vl_camera_project(&camera, p, pixel, &z)) continue;
-      double off = fmax(fabs(pixel[0] - px[0][i] - (double)in[0][i]), fabs(pixel[1] - px[1][i] - (double)in[1][i]));
-      if (off > 1e-3 && !(camera.projection == VL_PROJECTION_CUBE && off > 1)) /* a seam: another face's pixel */
+      for (int a = 0; a < 3; a++)
+        p[a] = (double)out[0][a][i] + 5 * (double)out[0][3 + a][i];
+      if (!seen || (k & 1) || !vl_camera_project(&camera, p, pixel, &z))
+        continue;
+      double off = fmax(fabs(pixel[0] - px[0][i] - (double)in[0][i]),
+                        fabs(pixel[1] - px[1][i] - (double)in[1][i]));
+      if (off > 1e-3 && !(camera.projection == VL_PROJECTION_CUBE &&
+                          off > 1)) /* a seam: another face's pixel */
         fail_msg("model %d: a float ray leads %g pixels away", k / 2, off);
-      if (off <= 1e-3) worst = fmax(worst, off);
+      if (off <= 1e-3)
+        worst = fmax(worst, off);
     }
   }
   print_message("rays in floats, and back: %.3g pixels at worst\n", worst);
 }
 
-/* All rays of a film point meet in one point: at z = 5 for those that see only ahead, at the distance 5 for all others.
+/* All rays of a film point meet in one point: at z = 5 for those that see only ahead, at the
+ * distance 5 for all others.
  */
 static void lens_focuses(void **state) {
   (void)state;
@@ -256,60 +355,87 @@ static void lens_focuses(void **state) {
     int32_t px[N], py[N];
     uint64_t random = 41;
     for (int i = 0; i < N; i++) {
-      film[i] = 0.25f, px[i] = (int32_t)(0.6 * camera.width), py[i] = (int32_t)(0.55 * camera.height);
+      film[i] = 0.25f, px[i] = (int32_t)(0.6 * camera.width),
+      py[i] = (int32_t)(0.55 * camera.height);
       u[i] = (float)next_unit(&random) * 0.9999f, v[i] = (float)next_unit(&random) * 0.9999f;
     }
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     vlCameraSamples s = {film, film, px, py, u, v, time};
-    vlCameraRays rays = {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9], NULL};
+    vlCameraRays rays = {out[0], out[1], out[2], out[3], out[4], out[5],
+                         out[6], out[7], out[8], out[9], NULL};
     vl_camera_kernels(VL_ISA_BASE)->rays(&c, N, &s, &rays);
     double o[3], d[3], p[3];
     assert_true(vl_camera_unproject(&camera, px[0] + 0.25, py[0] + 0.25, o, d));
     const double *m = camera.world_from_camera;
     double depth = d[0] * m[2] + d[1] * m[6] + d[2] * m[10];
     double reach = vl_camera_sees_ahead(camera.projection) ? 5 / depth : 5;
-    for (int a = 0; a < 3; a++) p[a] = o[a] + reach * d[a];
+    for (int a = 0; a < 3; a++)
+      p[a] = o[a] + reach * d[a];
     for (int i = 0; i < N; i++) {
       double to[3], along = 0, off = 0;
-      for (int a = 0; a < 3; a++) to[a] = p[a] - out[a][i], along += to[a] * out[3 + a][i];
-      for (int a = 0; a < 3; a++) off += pow(to[a] - along * out[3 + a][i], 2);
-      if (!(along > 0 && sqrt(off) < 1e-5)) fail_msg("model %d: a ray misses the focus by %g", k, sqrt(off));
+      for (int a = 0; a < 3; a++)
+        to[a] = p[a] - out[a][i], along += to[a] * out[3 + a][i];
+      for (int a = 0; a < 3; a++)
+        off += pow(to[a] - along * out[3 + a][i], 2);
+      if (!(along > 0 && sqrt(off) < 1e-5))
+        fail_msg("model %d: a ray misses the focus by %g", k, sqrt(off));
     }
   }
 }
 
-/* Known from the equations: cos^3 for the perspective; constant for equal-area maps; cos(latitude), ... */
+/* Known from the equations: cos^3 for the perspective; constant for equal-area maps;
+ * cos(latitude),
+ * ... */
 static void solid_angles(void **state) {
   (void)state;
   for (int k = 0; k < MODELS; k++) {
     vlCamera c = model(k);
     uint64_t random = 21;
     for (int i = 0; i < 200; i++) {
-      double x = next_between(&random, 1, c.width - 1), y = next_between(&random, 1, c.height - 1), o[3], d[4][3];
-      double got = vl_camera_solid_angle(&c, x, y), u = (x - c.cx) / c.fx, v = (y - c.cy) / c.fy;
+      double x = next_between(&random, 1, c.width - 1),
+             y = next_between(&random, 1, c.height - 1), o[3], d[4][3];
+      double got = vl_camera_solid_angle(&c, x, y), u = (x - c.cx) / c.fx,
+             v = (y - c.cy) / c.fy;
       double r = sqrt(u * u + v * v), area = 1 / (c.fx * c.fy), wanted = -1;
-      if (k == 0) wanted = area / pow(1 + r * r, 1.5);
-      if (k == 1 && r < 1.57) wanted = area * sin(r) / r;
-      if (k == 2 && r < 1.99) wanted = area;
-      if (k == 4 && r < 0.98) wanted = area / sqrt(1 - r * r);
-      if (k == 5 || k == 6) wanted = area * cos(v);
-      if (k == 7) wanted = 4 * pi / (641.0 * 479.0);
-      if (k == 8) wanted = area / pow(1 + v * v, 1.5);
-      if (k == 7 && (fabs(u) < 0.02 || fabs(v) < 0.02 || fabs(fabs(u) + fabs(v) - 1) < 0.02)) continue; /* creases */
-      if (wanted >= 0 && fabs(got / wanted - 1) > 1e-7) fail_msg("model %d: %g, not %g", k, got, wanted);
-      if (k == 9 || k == 30 || got == 0) continue;
+      if (k == 0)
+        wanted = area / pow(1 + r * r, 1.5);
+      if (k == 1 && r < 1.57)
+        wanted = area * sin(r) / r;
+      if (k == 2 && r < 1.99)
+        wanted = area;
+      if (k == 4 && r < 0.98)
+        wanted = area / sqrt(1 - r * r);
+      if (k == 5 || k == 6)
+        wanted = area * cos(v);
+      if (k == 7)
+        wanted = 4 * pi / (641.0 * 479.0);
+      if (k == 8)
+        wanted = area / pow(1 + v * v, 1.5);
+      if (k == 7 && (fabs(u) < 0.02 || fabs(v) < 0.02 || fabs(fabs(u) + fabs(v) - 1) < 0.02))
+        continue; /* creases */
+      if (wanted >= 0 && fabs(got / wanted - 1) > 1e-7)
+        fail_msg("model %d: %g, not %g", k, got, wanted);
+      if (k == 9 || k == 30 || got == 0)
+        continue;
       /* and a little quadrilateral of rays */
       const double h = 1e-3;
-      bool ok = vl_camera_unproject(&c, x - h, y, o, d[0]) && vl_camera_unproject(&c, x + h, y, o, d[1]) &&
-                vl_camera_unproject(&c, x, y - h, o, d[2]) && vl_camera_unproject(&c, x, y + h, o, d[3]);
-      if (!ok) continue;
+      bool ok = vl_camera_unproject(&c, x - h, y, o, d[0]) &&
+                vl_camera_unproject(&c, x + h, y, o, d[1]) &&
+                vl_camera_unproject(&c, x, y - h, o, d[2]) &&
+                vl_camera_unproject(&c, x, y + h, o, d[3]);
+      if (!ok)
+        continue;
       double a[3], b[3], n[3];
-      for (int j = 0; j < 3; j++) a[j] = d[1][j] - d[0][j], b[j] = d[3][j] - d[2][j];
-      for (int j = 0; j < 3; j++) n[j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
+      for (int j = 0; j < 3; j++)
+        a[j] = d[1][j] - d[0][j], b[j] = d[3][j] - d[2][j];
+      for (int j = 0; j < 3; j++)
+        n[j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
       double quad = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (4 * h * h);
-      bool rim = (k == 28 || k == 29) && r > 0.57; /* where it folds, differences see two sides */
-      if (!rim && fabs(got / quad - 1) > 1e-5) fail_msg("model %d at %g %g: %g, by rays %g", k, x, y, got, quad);
+      bool rim =
+          (k == 28 || k == 29) && r > 0.57; /* where it folds, differences see two sides */
+      if (!rim && fabs(got / quad - 1) > 1e-5)
+        fail_msg("model %d at %g %g: %g, by rays %g", k, x, y, got, quad);
     }
   }
 }
@@ -317,26 +443,32 @@ static void solid_angles(void **state) {
 static void framing_and_image_circles(void **state) {
   (void)state;
   double o[3], d[3];
-  /* a circular fisheye of 180 degrees: the circle touches the smaller side, the corners are empty */
+  /* a circular fisheye of 180 degrees: the circle touches the smaller side, the corners are
+   * empty
+   */
   vlCameraDef def = vl_default_camera_def(600, 400);
   def.projection = VL_PROJECTION_EQUISOLID, def.fov = pi;
   vlCamera c = make_or_fail(&def);
   assert_true(fabs(c.fy * 2 * sin(pi / 4) - 200) < 1e-9);
-  assert_true(vl_camera_unproject(&c, 300, 0.001, o, d) && !vl_camera_unproject(&c, 300, -0.001, o, d));
+  assert_true(vl_camera_unproject(&c, 300, 0.001, o, d) &&
+              !vl_camera_unproject(&c, 300, -0.001, o, d));
   assert_true(!vl_camera_unproject(&c, 0, 0, o, d));
   assert_true(fabs(c.outside - (1 - pi * 200 * 200 / (600 * 400))) < 0.02);
   /* cropped: across the larger side; diagonal: no empty corner */
   def.fov_axis = VL_FOV_LARGER;
   c = make_or_fail(&def);
-  assert_true(vl_camera_unproject(&c, 0.001, 200, o, d) && !vl_camera_unproject(&c, -0.001, 200, o, d));
+  assert_true(vl_camera_unproject(&c, 0.001, 200, o, d) &&
+              !vl_camera_unproject(&c, -0.001, 200, o, d));
   def.fov_axis = VL_FOV_DIAGONAL;
   c = make_or_fail(&def);
-  assert_true(c.outside == 0 && vl_camera_unproject(&c, 0.001, 0.001, o, d) && !vl_camera_unproject(&c, -1, -1, o, d));
+  assert_true(c.outside == 0 && vl_camera_unproject(&c, 0.001, 0.001, o, d) &&
+              !vl_camera_unproject(&c, -1, -1, o, d));
   /* an image circle of its own; behind it points do not land */
   def = vl_default_camera_def(600, 400);
   def.projection = VL_PROJECTION_EQUIDISTANT, def.fx = 100, def.max_angle = 1;
   c = make_or_fail(&def);
-  assert_true(vl_camera_unproject(&c, 399.9, 200, o, d) && !vl_camera_unproject(&c, 400.1, 200, o, d));
+  assert_true(vl_camera_unproject(&c, 399.9, 200, o, d) &&
+              !vl_camera_unproject(&c, 400.1, 200, o, d));
   const double in[3] = {0.84, 0, -0.55}, out[3] = {0.85, 0, -0.53};
   double pixel[2], z;
   assert_true(vl_camera_project(&c, in, pixel, &z) && !vl_camera_project(&c, out, pixel, &z));
@@ -346,9 +478,11 @@ static void framing_and_image_circles(void **state) {
   c = make_or_fail(&def);
   assert_true(vl_camera_unproject(&c, 300, 100, o, d) && d[0] > 1 - 1e-12);
   assert_true(vl_camera_unproject(&c, 200, 0, o, d) && d[1] > 1 - 1e-12);
-  assert_true(vl_camera_unproject(&c, 405, 100, o, d) && !vl_camera_unproject(&c, 420, 100, o, d));
+  assert_true(vl_camera_unproject(&c, 405, 100, o, d) &&
+              !vl_camera_unproject(&c, 420, 100, o, d));
   /* cube: right left up down front back */
-  const double axis[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
+  const double axis[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                             {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
   def = vl_default_camera_def(600, 100);
   def.projection = VL_PROJECTION_CUBE;
   c = make_or_fail(&def);
@@ -357,8 +491,10 @@ static void framing_and_image_circles(void **state) {
     assert_true(fabs(pixel[0] - (100 * face + 50)) < 1e-9 && fabs(pixel[1] - 50) < 1e-9);
   }
   const double above_front[3] = {0.1, 0.999, -1}, below_up[3] = {0.1, 1.001, -1};
-  assert_true(vl_camera_project(&c, above_front, pixel, &z) && pixel[0] > 400 && pixel[1] < 0.2);
-  assert_true(vl_camera_project(&c, below_up, pixel, &z) && fabs(pixel[0] - 255) < 0.1 && pixel[1] > 99.8);
+  assert_true(vl_camera_project(&c, above_front, pixel, &z) && pixel[0] > 400 &&
+              pixel[1] < 0.2);
+  assert_true(vl_camera_project(&c, below_up, pixel, &z) && fabs(pixel[0] - 255) < 0.1 &&
+              pixel[1] > 99.8);
   /* Panini keeps verticals straight */
   def = vl_default_camera_def(600, 400);
   def.projection = VL_PROJECTION_PANINI, def.fov = 2.5, def.fov_axis = VL_FOV_HORIZONTAL;
@@ -367,7 +503,8 @@ static void framing_and_image_circles(void **state) {
   for (int i = -3; i <= 3; i++) {
     const double p[3] = {2, 0.5 * i, -1};
     assert_true(vl_camera_project(&c, p, pixel, &z));
-    if (i > -3) assert_true(fabs(pixel[0] - column) < 1e-9);
+    if (i > -3)
+      assert_true(fabs(pixel[0] - column) < 1e-9);
     column = pixel[0];
   }
 }
@@ -381,8 +518,10 @@ static void folding_is_found(void **state) {
   const char *warning = NULL;
   assert_int_equal(vl_camera_make(&def, &c, &warning, NULL), VL_OK);
   assert_non_null(warning);
-  assert_true(strstr(warning, "folds") && !strchr(warning, '\n') && c.outside > 0.3 && c.outside < 0.9);
-  /* beyond it, a point ahead of the camera does not land, though the polynomial gives it a place in the image */
+  assert_true(strstr(warning, "folds") && !strchr(warning, '\n') && c.outside > 0.3 &&
+              c.outside < 0.9);
+  /* beyond it, a point ahead of the camera does not land, though the polynomial gives it a
+   * place in the image */
   double pixel[2], z;
   for (int i = 0; i < 2; i++) {
     double x = (i ? 0.999 : 1.001) * c.distortion.radius;
@@ -420,37 +559,49 @@ static void error_messages(void **state) {
   EXPECT_ERROR(d.shape[0] = 1, "perspective", "shape[0] is 1");
   EXPECT_ERROR(d.projection = VL_PROJECTION_UNIFIED, "unified", "needs its xi");
   EXPECT_ERROR((d.projection = VL_PROJECTION_EUCM, d.shape[0] = 0.5), "EUCM", "beta");
-  EXPECT_ERROR((d.projection = VL_PROJECTION_EUCM, d.shape[0] = 1.5, d.shape[1] = 1), "alpha", "1.5");
+  EXPECT_ERROR((d.projection = VL_PROJECTION_EUCM, d.shape[0] = 1.5, d.shape[1] = 1), "alpha",
+               "1.5");
   EXPECT_ERROR((d.projection = VL_PROJECTION_PANINI, d.shape[0] = -1), "d of the Panini", "-1");
   EXPECT_ERROR((d.projection = VL_PROJECTION_SINE, d.fov = 4), "orthographic fisheye", "229");
   EXPECT_ERROR((d.projection = VL_PROJECTION_EQUIDISTANT, d.fov = 7), "360", NULL);
   EXPECT_ERROR((d.projection = VL_PROJECTION_CUBE, d.fov = 1), "fov has no meaning", "cube");
-  EXPECT_ERROR((d.projection = VL_PROJECTION_PANINI, d.fov = 1, d.fov_axis = VL_FOV_DIAGONAL), "diagonal", "Panini");
-  EXPECT_ERROR((d.projection = VL_PROJECTION_CYLINDRICAL, d.max_angle = 1), "max_angle", "cylindrical");
-  EXPECT_ERROR((d.projection = VL_PROJECTION_EQUIDISTANT, d.max_angle = 4), "max_angle must be", "180 degrees");
+  EXPECT_ERROR((d.projection = VL_PROJECTION_PANINI, d.fov = 1, d.fov_axis = VL_FOV_DIAGONAL),
+               "diagonal", "Panini");
+  EXPECT_ERROR((d.projection = VL_PROJECTION_CYLINDRICAL, d.max_angle = 1), "max_angle",
+               "cylindrical");
+  EXPECT_ERROR((d.projection = VL_PROJECTION_EQUIDISTANT, d.max_angle = 4), "max_angle must be",
+               "180 degrees");
   EXPECT_ERROR((d.projection = VL_PROJECTION_SINE, d.max_angle = 2), "does not see", NULL);
   EXPECT_ERROR(d.distortion_count = 4, "4 distortion coefficients", "without");
-  EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 6), "6 OpenCV", "4, 5, 8, 12 or 14");
+  EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 6), "6 OpenCV",
+               "4, 5, 8, 12 or 14");
   EXPECT_ERROR((d.distortion = VL_DISTORTION_RADIAL, d.distortion_count = 5), "5 radial", NULL);
-  EXPECT_ERROR((d.distortion = VL_DISTORTION_THIN_PRISM, d.distortion_count = 5), "5 thin-prism", NULL);
+  EXPECT_ERROR((d.distortion = VL_DISTORTION_THIN_PRISM, d.distortion_count = 5),
+               "5 thin-prism", NULL);
 
-  EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, d.distortion_coefficients[1] = NAN),
+  EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4,
+                d.distortion_coefficients[1] = NAN),
                "coefficient 2 is nan", NULL);
-  EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 14, d.distortion_coefficients[12] = 2),
+  EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 14,
+                d.distortion_coefficients[12] = 2),
                "tilt", NULL);
-  EXPECT_ERROR((d.projection = VL_PROJECTION_CUBE, d.distortion = VL_DISTORTION_RADIAL, d.distortion_count = 1),
+  EXPECT_ERROR((d.projection = VL_PROJECTION_CUBE, d.distortion = VL_DISTORTION_RADIAL,
+                d.distortion_count = 1),
                "no meaning", "cube");
   vlError error;
   vlCameraDef d = vl_default_camera_def(640, 480);
   const double p[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   assert_int_equal(vl_camera_def_colmap(&d, "PINHOL", p, 4, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "the nearest is \"PINHOLE\""));
-  assert_int_equal(vl_camera_def_colmap(&d, "A_MODEL_OF_MY_OWN", p, 4, &error), VL_ERROR_ARGUMENT);
-  assert_non_null(strstr(error.message, "\"A_MODEL_OF_MY_OWN\"")); /* the caller's own words are not cut */
+  assert_int_equal(vl_camera_def_colmap(&d, "A_MODEL_OF_MY_OWN", p, 4, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_non_null(
+      strstr(error.message, "\"A_MODEL_OF_MY_OWN\"")); /* the caller's own words are not cut */
   assert_int_equal(vl_camera_def_colmap(&d, "OPENCV", p, 7, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "8 parameters, not 7"));
   assert_int_equal(vl_camera_def_colmap(&d, "SIMPLE_RADIAL", p, 4, &error), VL_OK);
-  assert_true(d.fx == 1 && d.fy == 1 && d.cx == 2 && d.cy == 3 && d.distortion_coefficients[0] == 4);
+  assert_true(d.fx == 1 && d.fy == 1 && d.cx == 2 && d.cy == 3 &&
+              d.distortion_coefficients[0] == 4);
 }
 
 int main(void) {

@@ -1,5 +1,6 @@
-/* test/camera/test_rays.c: the batch kernels: the lecture's formula to the last bit, agreement with the public
- * functions in double, the same bits on every instruction set, lens, near and far planes. */
+/* test/camera/test_rays.c: the batch kernels: the lecture's formula to the last bit, agreement
+ * with the public functions in double, the same bits on every instruction set, lens, near and
+ * far planes. */
 #include "camera/cameras.h"
 
 #include "camera/lens.h"
@@ -48,19 +49,23 @@ static vlIsa isas(int index) {
 static void same_float(float a, float b) {
   uint32_t x, y;
   memcpy(&x, &a, 4), memcpy(&y, &b, 4);
-  if (x != y) fail_msg("%.9g (%08x) is not %.9g (%08x)", a, x, b, y);
+  if (x != y)
+    fail_msg("%.9g (%08x) is not %.9g (%08x)", a, x, b, y);
 }
 
-/* The formula of the slide is d = (s(c - h_res/2 + p_x), s(r - v_res/2 + p_y), -d), normalised, o = (0, 0, e). It is
- * evaluated in double and rounded to float. The kernel must give the same bits, except that -0 may be 0. Tested are
- * each pixel of three images (even, odd, large), at its centre and at other points. */
+/* The formula of the slide is d = (s(c - h_res/2 + p_x), s(r - v_res/2 + p_y), -d), normalised,
+ * o = (0, 0, e). It is evaluated in double and rounded to float. The kernel must give the same
+ * bits, except that -0 may be 0. Tested are each pixel of three images (even, odd, large), at
+ * its centre and at other points. */
 static void slides_formula_to_the_last_bit(void **state) {
   (void)state;
   const struct {
     uint32_t width, height;
     double e, d, s;
-  } views[] = {
-      {400, 400, 500, 500, 1}, {401, 301, 200, 120.5, 1}, {640, 360, 15, 875, 0.5}, {2048, 300, 100, 33, 0.25}};
+  } views[] = {{400, 400, 500, 500, 1},
+               {401, 301, 200, 120.5, 1},
+               {640, 360, 15, 875, 0.5},
+               {2048, 300, 100, 33, 0.25}};
   const float points[][2] = {{0.5f, 0.5f}, {0.125f, 0.71f}, {0, 0}};
   for (size_t k = 0; k < sizeof views / sizeof views[0]; k++) {
     uint32_t hres = views[k].width, vres = views[k].height;
@@ -85,7 +90,8 @@ static void slides_formula_to_the_last_bit(void **state) {
           for (uint32_t i = 0; i < n; i++) {
             double c = samples.pixel_x[i], r = vres - 1.0 - samples.pixel_y[i];
             double py = 1 - (double)samples.film_y[i];
-            double x = s * (c - hres / 2.0 + (double)points[m][0]), y = s * (r - vres / 2.0 + py), z = -d;
+            double x = s * (c - hres / 2.0 + (double)points[m][0]),
+                   y = s * (r - vres / 2.0 + py), z = -d;
             double length = sqrt(x * x + y * y + z * z);
             same_float(rays.dx[i], (float)(x / length));
             same_float(rays.dy[i], (float)(y / length));
@@ -109,9 +115,11 @@ static void kernels_are_unproject_rounded(void **state) {
     run(VL_ISA_BASE, &camera, N, &rays);
     for (int i = 0; i < N; i++) {
       double o[3], d[3];
-      double x = samples.pixel_x[i] + (double)samples.film_x[i], y = samples.pixel_y[i] + (double)samples.film_y[i];
+      double x = samples.pixel_x[i] + (double)samples.film_x[i],
+             y = samples.pixel_y[i] + (double)samples.film_y[i];
       assert_true(vl_camera_unproject(&camera, x, y, o, d));
-      /* off by one last bit at most, where the sum pixel - cx + film is rounded in another order */
+      /* off by one last bit at most, where the sum pixel - cx + film is rounded in another
+       * order */
       assert_true(fabs(rays.dx[i] - d[0]) <= 3.1e-8 && fabs(rays.dy[i] - d[1]) <= 3.1e-8);
       assert_true(fabs(rays.dz[i] - d[2]) <= 3.1e-8);
       for (int a = 0; a < 3; a++) {
@@ -127,10 +135,12 @@ static void same_bits_on_all_instruction_sets(void **state) {
   (void)state;
   static Rays other;
   int sets = 0;
-  while (isas(sets) != VL_ISA_AUTO) sets++;
+  while (isas(sets) != VL_ISA_AUTO)
+    sets++;
   for (int k = 0; k < 2 * CAMERA_COUNT; k++) {
     vlCamera camera = camera_of(k / 2);
-    if (k & 1) camera.lens_radius = 0.3, camera.focus_distance = k == 1 ? INFINITY : 7.5;
+    if (k & 1)
+      camera.lens_radius = 0.3, camera.focus_distance = k == 1 ? INFINITY : 7.5;
     camera.near_plane = 0.5, camera.far_plane = 100;
     random_samples(&camera, 99);
     run(VL_ISA_BASE, &camera, N, &rays);
@@ -141,7 +151,8 @@ static void same_bits_on_all_instruction_sets(void **state) {
     /* nor do a ray's bits depend on its place in the batch or on the batch's length */
     const Rays whole = rays;
     for (int i = 0; i < N - 37; i++) {
-      samples.pixel_x[i] = samples.pixel_x[i + 37], samples.pixel_y[i] = samples.pixel_y[i + 37];
+      samples.pixel_x[i] = samples.pixel_x[i + 37],
+      samples.pixel_y[i] = samples.pixel_y[i + 37];
       samples.film_x[i] = samples.film_x[i + 37], samples.film_y[i] = samples.film_y[i + 37];
       samples.lens_u[i] = samples.lens_u[i + 37], samples.lens_v[i] = samples.lens_v[i + 37];
       samples.time[i] = samples.time[i + 37];
@@ -155,11 +166,12 @@ static void same_bits_on_all_instruction_sets(void **state) {
       }
     }
   }
-  if (sets < 3) print_message("this machine lacks an instruction set; %d of 3 compared\n", sets);
+  if (sets < 3)
+    print_message("this machine lacks an instruction set; %d of 3 compared\n", sets);
 }
 
-/* All rays of one film point meet in the plane of focus, at the point that the pinhole sees there; and they start all
- * over the lens, evenly. */
+/* All rays of one film point meet in the plane of focus, at the point that the pinhole sees
+ * there; and they start all over the lens, evenly. */
 static void thin_lens_focuses(void **state) {
   (void)state;
   for (int projection = 0; projection < 2; projection++)
@@ -172,7 +184,8 @@ static void thin_lens_focuses(void **state) {
       vlCamera camera = make_or_fail(&def);
       random_samples(&camera, 5);
       for (int i = 0; i < N; i++) {
-        samples.pixel_x[i] = 310, samples.pixel_y[i] = 40, samples.film_x[i] = 0.25f, samples.film_y[i] = 0.75f;
+        samples.pixel_x[i] = 310, samples.pixel_y[i] = 40, samples.film_x[i] = 0.25f,
+        samples.film_y[i] = 0.75f;
       }
       run(VL_ISA_BASE, &camera, N, &rays);
       double o[3], d[3], half = 0;
@@ -180,7 +193,8 @@ static void thin_lens_focuses(void **state) {
       const double *m = camera.world_from_camera;
       double depth = d[0] * m[2] + d[1] * m[6] + d[2] * m[10];
       for (int i = 0; i < N; i++) {
-        double ro[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, rd[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
+        double ro[3] = {rays.ox[i], rays.oy[i], rays.oz[i]},
+               rd[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
         double offset = 0, along = rd[0] * m[2] + rd[1] * m[6] + rd[2] * m[10];
         for (int a = 0; a < 3; a++) {
           if (infinite)
@@ -213,7 +227,8 @@ static void disk_map_is_exact_enough(void **state) {
     }
 }
 
-/* t_min and t_max lie on the planes z = near and z = far for every angle, scale of the matrix and projection. */
+/* t_min and t_max lie on the planes z = near and z = far for every angle, scale of the matrix
+ * and projection. */
 static void near_and_far_planes(void **state) {
   (void)state;
   for (int k = 0; k < 2 * CAMERA_COUNT; k++) {
@@ -223,12 +238,14 @@ static void near_and_far_planes(void **state) {
     random_samples(&camera, 17);
     run(VL_ISA_BASE, &camera, N, &rays);
     for (int i = 0; i < N; i++) {
-      double o[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, d[3] = {rays.dx[i], rays.dy[i], rays.dz[i]}, z[2];
+      double o[3] = {rays.ox[i], rays.oy[i], rays.oz[i]},
+             d[3] = {rays.dx[i], rays.dy[i], rays.dz[i]}, z[2];
       const double *m = camera.camera_from_world;
       for (int e = 0; e < 2; e++) {
         double t = e ? rays.t_max[i] : rays.t_min[i];
         z[e] = m[11];
-        for (int a = 0; a < 3; a++) z[e] += m[8 + a] * (o[a] + t * d[a]);
+        for (int a = 0; a < 3; a++)
+          z[e] += m[8 + a] * (o[a] + t * d[a]);
       }
       double size = fabs(o[0]) + fabs(o[1]) + fabs(o[2]) + 100;
       assert_true(fabs(z[0] - 2) < 2e-7 * size && fabs(z[1] - 50) < 2e-7 * size);
@@ -243,7 +260,8 @@ static void shutter_and_footprint(void **state) {
   vlCamera camera = make_or_fail(&def);
   random_samples(&camera, 1);
   run(VL_ISA_BASE, &camera, N, &rays);
-  for (int i = 0; i < N; i++) assert_true(fabs(rays.time[i] - (2 + 4 * samples.time[i])) < 1e-6);
+  for (int i = 0; i < N; i++)
+    assert_true(fabs(rays.time[i] - (2 + 4 * samples.time[i])) < 1e-6);
   vlCameraCompiled c;
   vl_camera_compile(&camera, &c);
   assert_true(c.pixel_spread == 1 / 200.0f && c.pixel_width == 0);

@@ -1,5 +1,7 @@
-/* test/camera/test_vanishing.c: long parallel lines converge to their vanishing points; random cameras are recovered
- * from their vanishing points; the horizon; impossible points are rejected. */
+/* test/camera/test_vanishing.c: long parallel lines converge to their vanishing points; random
+ * cameras are recovered from their vanishing points; the horizon; impossible points are
+ * rejected.
+ */
 #include "camera/cameras.h"
 
 #include "velo/vanishing.h"
@@ -7,7 +9,8 @@
 static vlCameraDef random_def(uint64_t *seed) {
   vlCameraDef d = vl_default_camera_def(640, 480);
   set3(d.eye, next_between(seed, -9, 9), next_between(seed, -9, 9), next_between(seed, -9, 9));
-  set3(d.lookat, next_between(seed, -9, 9), next_between(seed, -9, 9), next_between(seed, -9, 9));
+  set3(d.lookat, next_between(seed, -9, 9), next_between(seed, -9, 9),
+       next_between(seed, -9, 9));
   d.roll = next_between(seed, -3, 3);
   d.fx = d.fy = next_between(seed, 200, 2000);
   d.cx = next_between(seed, 0, 640), d.cy = next_between(seed, 0, 480);
@@ -16,18 +19,21 @@ static vlCameraDef random_def(uint64_t *seed) {
 
 static const double up[3] = {0, 1, 0};
 
-/* A point far along a line of that direction, through any place, is drawn where the line vanishes. */
+/* A point far along a line of that direction, through any place, is drawn where the line
+ * vanishes.
+ */
 static void test_lines_meet(void **state) {
   (void)state;
   uint64_t seed = 3;
   static const vlProjection kinds[] = {VL_PROJECTION_PERSPECTIVE, VL_PROJECTION_EQUIDISTANT,
-                                       VL_PROJECTION_STEREOGRAPHIC, VL_PROJECTION_EQUIRECTANGULAR,
-                                       VL_PROJECTION_PANINI};
+                                       VL_PROJECTION_STEREOGRAPHIC,
+                                       VL_PROJECTION_EQUIRECTANGULAR, VL_PROJECTION_PANINI};
   int met = 0;
   for (int n = 0; n < 1000; n++) {
     vlCameraDef d = random_def(&seed);
     d.projection = kinds[n % 5];
-    if (d.projection != VL_PROJECTION_PERSPECTIVE) d.fx = d.fy = next_between(&seed, 50, 200);
+    if (d.projection != VL_PROJECTION_PERSPECTIVE)
+      d.fx = d.fy = next_between(&seed, 50, 200);
     if (n % 10 == 0) { /* a lens that bends, too */
       static const double k[4] = {-0.1, 0.01, 1e-3, -1e-3};
       d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4;
@@ -37,12 +43,16 @@ static void test_lines_meet(void **state) {
     vlCamera c;
     assert_int_equal(vl_camera_make(&d, &c, NULL, NULL), VL_OK);
     double direction[3], point[3], p[2], z;
-    for (int i = 0; i < 3; i++) direction[i] = next_between(&seed, -1, 1);
+    for (int i = 0; i < 3; i++)
+      direction[i] = next_between(&seed, -1, 1);
     vlVanishingPoint v;
     assert_true(vl_camera_vanishing_point(&c, direction, &v));
-    if (v.kind != VL_VANISHING_FINITE) continue;
-    for (int i = 0; i < 3; i++) point[i] = next_between(&seed, -1, 1) + (v.behind ? -1e9 : 1e9) * direction[i];
-    if (!vl_camera_project(&c, point, p, &z)) continue;
+    if (v.kind != VL_VANISHING_FINITE)
+      continue;
+    for (int i = 0; i < 3; i++)
+      point[i] = next_between(&seed, -1, 1) + (v.behind ? -1e9 : 1e9) * direction[i];
+    if (!vl_camera_project(&c, point, p, &z))
+      continue;
     met++;
     assert_float_equal(p[0], v.pixel[0], 1e-5 * (1 + fabs(v.pixel[0])));
     assert_float_equal(p[1], v.pixel[1], 1e-5 * (1 + fabs(v.pixel[1])));
@@ -65,7 +75,8 @@ static void test_kinds(void **state) {
   assert_true(v.axes[0].direction[0] == 1.0 && v.axes[0].direction[1] == 0.0);
   assert_true(v.axes[1].direction[0] == 0.0 && v.axes[1].direction[1] == -1.0);
   assert_true(v.axes[2].pixel[0] == 200.0 && v.axes[2].pixel[1] == 200.0 && v.axes[2].behind);
-  assert_true(v.has_horizon && v.horizon[0] == 0.0 && v.horizon[1] == -1.0 && v.horizon[2] == 200.0);
+  assert_true(v.has_horizon && v.horizon[0] == 0.0 && v.horizon[1] == -1.0 &&
+              v.horizon[2] == 200.0);
   set3(d.eye, 7, 0, 10); /* level: two points, on the horizon */
   c = make_or_fail(&d);
   assert_true(vl_camera_vanishing_points(&c, up, &v));
@@ -108,13 +119,16 @@ static void test_horizon(void **state) {
     vlCamera c = make_or_fail(&d);
     vlVanishingPoints v;
     double tilted[3];
-    for (int i = 0; i < 3; i++) tilted[i] = next_between(&seed, -1, 1);
+    for (int i = 0; i < 3; i++)
+      tilted[i] = next_between(&seed, -1, 1);
     assert_true(vl_camera_vanishing_points(&c, tilted, &v));
-    if (!v.has_horizon) continue;
+    if (!v.has_horizon)
+      continue;
     double across[3] = {tilted[1], -tilted[0], 0}, o[3], r[3];
     vlVanishingPoint p;
     assert_true(vl_camera_vanishing_point(&c, across, &p));
-    if (p.kind != VL_VANISHING_FINITE) continue;
+    if (p.kind != VL_VANISHING_FINITE)
+      continue;
     double at = v.horizon[0] * p.pixel[0] + v.horizon[1] * p.pixel[1] + v.horizon[2];
     assert_float_equal(at, 0.0, 1e-9 * (1000 + fabs(p.pixel[0]) + fabs(p.pixel[1])));
     double x = next_between(&seed, 0, 640), y = next_between(&seed, 0, 480);
@@ -131,7 +145,8 @@ static void same_camera(const vlCameraDef *before, const vlCameraDef *after) {
   assert_float_equal(b.cx, a.cx, 1e-9 * a.fx);
   assert_float_equal(b.cy, a.cy, 1e-9 * a.fx);
   for (int i = 0; i < 12; i++)
-    if (i % 4 != 3) assert_float_equal(b.world_from_camera[i], a.world_from_camera[i], 1e-9);
+    if (i % 4 != 3)
+      assert_float_equal(b.world_from_camera[i], a.world_from_camera[i], 1e-9);
 }
 
 /* Any two or three of the axes, in any order. */
@@ -154,14 +169,17 @@ static void test_there_and_back(void **state) {
       near_enough = near_enough && v.axes[def.axes[i]].kind == VL_VANISHING_FINITE &&
                     fabs(c.camera_from_world[8 + def.axes[i]]) > 0.05;
     }
-    if (!near_enough) continue;
+    if (!near_enough)
+      continue;
     three++;
     def.count = 3;
-    if (vl_camera_from_vanishing_points(&def, &back, &error) != VL_OK) fail_msg("%s", error.message);
+    if (vl_camera_from_vanishing_points(&def, &back, &error) != VL_OK)
+      fail_msg("%s", error.message);
     same_camera(&d, &back);
     def.count = 2;
     def.cx = d.cx, def.cy = d.cy;
-    if (vl_camera_from_vanishing_points(&def, &back, &error) != VL_OK) fail_msg("%s", error.message);
+    if (vl_camera_from_vanishing_points(&def, &back, &error) != VL_OK)
+      fail_msg("%s", error.message);
     same_camera(&d, &back);
   }
   assert_true(three > 1500);
@@ -171,14 +189,16 @@ static void wrong(const vlVanishingDef *def, const char *words) {
   vlCameraDef d;
   vlError error;
   assert_int_equal(vl_camera_from_vanishing_points(def, &d, &error), VL_ERROR_ARGUMENT);
-  if (!strstr(error.message, words)) fail_msg("%s", error.message);
+  if (!strstr(error.message, words))
+    fail_msg("%s", error.message);
   assert_null(strchr(error.message, '\n'));
 }
 
 static void test_wrong(void **state) {
   (void)state;
   vlVanishingDef def = vl_default_vanishing_def(640, 480);
-  def.points[0][0] = 900, def.points[0][1] = 240, def.points[1][0] = 700, def.points[1][1] = 240;
+  def.points[0][0] = 900, def.points[0][1] = 240, def.points[1][0] = 700,
+  def.points[1][1] = 240;
   wrong(&def, "less than 90 degrees apart"); /* both right of the centre */
   def.points[1][0] = 320;
   wrong(&def, "less than 90 degrees apart");
@@ -206,8 +226,9 @@ static void test_wrong(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lines_meet), cmocka_unit_test(test_kinds),
-                                     cmocka_unit_test(test_horizon), cmocka_unit_test(test_there_and_back),
-                                     cmocka_unit_test(test_wrong)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_lines_meet), cmocka_unit_test(test_kinds),
+      cmocka_unit_test(test_horizon), cmocka_unit_test(test_there_and_back),
+      cmocka_unit_test(test_wrong)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

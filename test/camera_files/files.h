@@ -1,5 +1,5 @@
-/* test/camera_files/files.h: helpers of the camera file tests: a directory of their own, files with given text, reading
- * and writing that must succeed or must fail with a given message. */
+/* test/camera_files/files.h: helpers of the camera file tests: a directory of their own, files
+ * with given text, reading and writing that must succeed or must fail with a given message. */
 #ifndef TEST_CAMERA_FILES_FILES_H
 #define TEST_CAMERA_FILES_FILES_H
 
@@ -62,20 +62,23 @@ static inline vlCameraRecord read_with(const char *path, const vlCameraFileDef *
 static inline vlError refused(const char *name, const char *text) {
   vlCameraRecord record;
   vlError error;
-  assert_int_equal(vl_camera_read(context, put(name, text), NULL, &record, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_camera_read(context, put(name, text), NULL, &record, &error),
+                   VL_ERROR_SCENE);
   assert_non_null(strstr(error.file, name));
   assert_null(strchr(error.message, '\n'));
   return error;
 }
-#define REFUSED(name, at_line, text, words)                                                                    \
-  do {                                                                                                         \
-    vlError refused_error = refused(name, text);                                                               \
-    if (!strstr(refused_error.message, words)) fail_msg("\"%s\" is not in: %s", words, refused_error.message); \
-    assert_int_equal(refused_error.line, at_line);                                                             \
+#define REFUSED(name, at_line, text, words)                           \
+  do {                                                                \
+    vlError refused_error = refused(name, text);                      \
+    if (!strstr(refused_error.message, words))                        \
+      fail_msg("\"%s\" is not in: %s", words, refused_error.message); \
+    assert_int_equal(refused_error.line, at_line);                    \
   } while (0)
 
 /* Writes a record and reads it again while each allocation in turn fails. file may be null. */
-static inline void check_memory(const char *path, const vlCameraRecord *record, const vlCameraFileDef *file) {
+static inline void check_memory(const char *path, const vlCameraRecord *record,
+                                const vlCameraFileDef *file) {
   bool done = false;
   for (long n = 1; !done && n < 1000; n++) {
     failAllocator fail = {.fail_at = 0};
@@ -87,7 +90,8 @@ static inline void check_memory(const char *path, const vlCameraRecord *record, 
     vlCameraRecord r = *record;
     fail_after(&fail, n - 1);
     vlResult result = vl_camera_write(own, path, file, &r, NULL);
-    if (result == VL_OK) result = vl_camera_read(own, path, NULL, &r, NULL);
+    if (result == VL_OK)
+      result = vl_camera_read(own, path, NULL, &r, NULL);
     done = !atomic_load(&fail.refused);
     assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
     vl_context_destroy(own);

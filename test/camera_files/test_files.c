@@ -1,5 +1,5 @@
-/* Camera files: round trips through every dialect, the half-pixel table in exact numbers, rejected content by name,
- * memory. */
+/* Camera files: round trips through every dialect, the half-pixel table in exact numbers,
+ * rejected content by name, memory. */
 #include "camera_files/files.h"
 
 #include <sys/stat.h>
@@ -14,14 +14,16 @@ static vlCameraRecord read_as(const char *path, vlCameraDialect dialect, const c
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = dialect;
   def.frame = frame;
-  if (vl_camera_read(context, path, &def, &record, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_camera_read(context, path, &def, &record, &error) != VL_OK)
+    fail_msg("%s", error.message);
   return record;
 }
 
 #define SAYS(name, text, words) assert_non_null(strstr(refused(name, text).message, words))
 
 static vlCameraRecord some_camera(void) {
-  vlCameraRecord record = {.camera = vl_default_camera_def(640, 480), .frames = 1, .name = "left"};
+  vlCameraRecord record = {
+      .camera = vl_default_camera_def(640, 480), .frames = 1, .name = "left"};
   vlCameraDef *d = &record.camera;
   set3(d->eye, 1.1, 2.3, -3.7);
   set3(d->lookat, 0.1, 0.2, 0.7);
@@ -42,22 +44,26 @@ static void compare(const vlCameraDef *a, const vlCameraDef *b, double tolerance
   assert_int_equal(one.width, two.width);
   assert_int_equal(one.height, two.height);
   for (int i = 0; i < 200; i++) {
-    double x = next_between(&seed, 0, 640), y = next_between(&seed, 0, 480), o[3], v[3], p[2], z;
+    double x = next_between(&seed, 0, 640), y = next_between(&seed, 0, 480), o[3], v[3], p[2],
+           z;
     assert_true(vl_camera_unproject(&one, x, y, o, v));
-    for (int k = 0; k < 3; k++) v[k] = o[k] + 4.0 * v[k];
+    for (int k = 0; k < 3; k++)
+      v[k] = o[k] + 4.0 * v[k];
     assert_true(vl_camera_project(&two, v, p, &z));
     if (!(fabs(p[0] - x) <= tolerance && fabs(p[1] - y) <= tolerance))
       fail_msg("%.17g %.17g: %.17g %.17g", x, y, p[0], p[1]);
   }
 }
 
-static void there_and_back(const vlCameraRecord *record, vlCameraDialect dialect, const char *name, double tolerance) {
+static void there_and_back(const vlCameraRecord *record, vlCameraDialect dialect,
+                           const char *name, double tolerance) {
   vlError error;
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = dialect;
   char path[256];
   snprintf(path, sizeof path, "%s", path_of(name));
-  if (vl_camera_write(context, path, &def, record, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_camera_write(context, path, &def, record, &error) != VL_OK)
+    fail_msg("%s", error.message);
   vlCameraRecord back = read_as(path, VL_CAMERA_DIALECT_AUTO, NULL);
   assert_int_equal(back.dialect, dialect);
   compare(&record->camera, &back.camera, tolerance);
@@ -127,13 +133,16 @@ static void test_velo_is_exact(void **state) {
                          &d->lens_radius, &d->focus_distance,
                          &d->near_plane,  &d->exposure_time,
                          &d->max_angle};
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) *numbers[k] = next_between(&seed, 0.5, 1.5);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+      *numbers[k] = next_between(&seed, 0.5, 1.5);
     d->far_plane = next_between(&seed, 10, 20);
     lens(d, VL_DISTORTION_OPENCV, 5, five);
     d->has_matrix = i & 1;
-    for (int k = 0; k < 12 && d->has_matrix; k++) d->world_from_camera[k] = next_between(&seed, -1, 1);
+    for (int k = 0; k < 12 && d->has_matrix; k++)
+      d->world_from_camera[k] = next_between(&seed, -1, 1);
     vlError error;
-    if (vl_camera_write(context, path_of("v.json"), NULL, &r, &error) != VL_OK) fail_msg("%s", error.message);
+    if (vl_camera_write(context, path_of("v.json"), NULL, &r, &error) != VL_OK)
+      fail_msg("%s", error.message);
     back = read_as(path_of("v.json"), VL_CAMERA_DIALECT_AUTO, NULL);
     vlCamera one, two;
     assert_int_equal(vl_camera_make(d, &one, NULL, NULL), VL_OK);
@@ -144,9 +153,13 @@ static void test_velo_is_exact(void **state) {
 }
 
 static const char *const opencv_text =
-    "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n"
+    "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   "
+    "rows: "
+    "3\n   cols: 3\n"
     "   dt: d\n   data: [ 500., 0., 319.5, 0., 501., 239.5, 0., 0., 1. ]\n"
-    "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]\n";
+    "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ "
+    "0., "
+    "0., 0., 0., 0. ]\n";
 
 /* One camera whose axis goes through the image's centre, in every dialect's own numbers. */
 static void test_half_pixel_table(void **state) {
@@ -154,24 +167,31 @@ static void test_half_pixel_table(void **state) {
   mkdir(path_of("half"), 0700); /* no images.txt beside */
   const vlCameraRecord records[] = {
       read_as(put("o.yaml", opencv_text), 0, NULL),
-      read_as(put("o.json",
-                  "{\"image_width\":640,\"image_height\":480,\"camera_matrix\":[[500,0,319.5],[0,501,239.5],[0,"
-                  "0,1]],\"distortion_coefficients\":[]}"),
-              0, NULL),
-      read_as(put("r.yaml",
-                  "image_width: 640\nimage_height: 480\ncamera_name: x\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
-                  "  data: [500, 0, 319.5, 0, 501, 239.5, 0, 0, 1]\ndistortion_model: plumb_bob\n"
-                  "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n"
-                  "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [1,0,0,0,0,1,0,0,0,0,1,0]\n"),
-              0, NULL),
+      read_as(
+          put("o.json",
+              "{\"image_width\":640,\"image_height\":480,\"camera_matrix\":[[500,0,319.5],[0,"
+              "501,239.5],[0,"
+              "0,1]],\"distortion_coefficients\":[]}"),
+          0, NULL),
+      read_as(
+          put("r.yaml",
+              "image_width: 640\nimage_height: 480\ncamera_name: x\ncamera_matrix:\n  rows: "
+              "3\n  cols: 3\n"
+              "  data: [500, 0, 319.5, 0, 501, 239.5, 0, 0, 1]\ndistortion_model: plumb_bob\n"
+              "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n"
+              "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [1,0,0,0,0,1,0,0,0,0,1,0]\n"),
+          0, NULL),
       read_as(put("k.yaml",
                   "cam0:\n  camera_model: pinhole\n  intrinsics: [500, 501, 319.5, 239.5]\n"
                   "  distortion_model: none\n  resolution: [640, 480]\n"),
               0, NULL),
       read_as(put("half/cameras.txt", "# one\n1 PINHOLE 640 480 500 501 320 240\n"), 0, NULL),
       read_as(put("n.json",
-                  "{\"w\":640,\"h\":480,\"fl_x\":500,\"fl_y\":501,\"cx\":320,\"cy\":240,\"frames\":[{\"file_"
-                  "path\":\"a\",\"transform_matrix\":[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]]}]}"),
+                  "{\"w\":640,\"h\":480,\"fl_x\":500,\"fl_y\":501,\"cx\":320,\"cy\":240,"
+                  "\"frames\":[{"
+                  "\"file_"
+                  "path\":\"a\",\"transform_matrix\":[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]"
+                  "]}]}"),
               0, NULL)};
   for (size_t i = 0; i < sizeof records / sizeof *records; i++) {
     vlCamera c;
@@ -189,7 +209,8 @@ static void test_half_pixel_table(void **state) {
 static void test_blender_shift(void **state) {
   (void)state;
   const char *text =
-      "{\"lens\":18,\"sensor_width\":36,\"shift_x\":%s,\"shift_y\":0.1,\"resolution_x\":640,\"resolution_y\":"
+      "{\"lens\":18,\"sensor_width\":36,\"shift_x\":%s,\"shift_y\":0.1,\"resolution_x\":640,"
+      "\"resolution_y\":"
       "480,\"matrix_world\":[[1,0,0,0],[0,1,0,0],[0,0,1,5],[0,0,0,1]]}";
   char full[400];
   snprintf(full, sizeof full, text, "0.1");
@@ -207,7 +228,8 @@ static void test_blender_shift(void **state) {
 static void test_colmap_images(void **state) {
   (void)state;
   mkdir(path_of("model"), 0700);
-  put("model/cameras.txt", "1 PINHOLE 640 480 500 501 320 240\n7 SIMPLE_RADIAL 320 200 250 160 100 -0.1\n");
+  put("model/cameras.txt",
+      "1 PINHOLE 640 480 500 501 320 240\n7 SIMPLE_RADIAL 320 200 250 160 100 -0.1\n");
   put("model/images.txt", "1 1 0 0 0 0 0 0 1 a b.png\n\n2 0 0 1 0 1 2 3 7 c.png\n10 20 -1\n");
   vlCameraRecord r = read_as(path_of("model"), 0, "c.png");
   assert_int_equal(r.frames, 2);
@@ -225,13 +247,15 @@ static void test_colmap_images(void **state) {
 
 static void test_kalibr_chain(void **state) {
   (void)state;
-  const char *path =
-      put("chain.yaml",
-          "cam0:\n  camera_model: pinhole\n  intrinsics: [500, 501, 319.5, 239.5]\n  distortion_model: none\n"
-          "  resolution: [640, 480]\ncam1:\n  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.11]\n  - [0.0, 1.0, 0.0, 0.0]\n"
-          "  - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n  camera_model: pinhole\n"
-          "  distortion_model: equidistant\n  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]\n"
-          "  intrinsics: [500, 501, 319.5, 239.5]\n  resolution: [640, 480]\n");
+  const char *path = put(
+      "chain.yaml",
+      "cam0:\n  camera_model: pinhole\n  intrinsics: [500, 501, 319.5, 239.5]\n  "
+      "distortion_model: none\n"
+      "  resolution: [640, 480]\ncam1:\n  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.11]\n  - [0.0, "
+      "1.0, 0.0, 0.0]\n"
+      "  - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n  camera_model: pinhole\n"
+      "  distortion_model: equidistant\n  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]\n"
+      "  intrinsics: [500, 501, 319.5, 239.5]\n  resolution: [640, 480]\n");
   vlCameraRecord r = read_as(path, 0, "cam1");
   assert_float_equal(r.camera.world_from_camera[3], 0.11, 1e-15);
   assert_int_equal(r.camera.projection, VL_PROJECTION_EQUIDISTANT);
@@ -242,11 +266,14 @@ static void test_pbrt(void **state) {
   (void)state;
   vlCameraRecord r = some_camera();
   vlError error;
-  if (vl_camera_write(context, path_of("s.pbrt"), NULL, &r, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_camera_write(context, path_of("s.pbrt"), NULL, &r, &error) != VL_OK)
+    fail_msg("%s", error.message);
   vlScene *scene;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-  if (vl_scene_load(scene, path_of("s.pbrt"), NULL, &error) != VL_OK) fail_msg("%s", error.message);
-  compare(&r.camera, &vl_scene_defs(scene)->camera, 1e-3); /* pbrt's parameters are single precision */
+  if (vl_scene_load(scene, path_of("s.pbrt"), NULL, &error) != VL_OK)
+    fail_msg("%s", error.message);
+  compare(&r.camera, &vl_scene_defs(scene)->camera,
+          1e-3); /* pbrt's parameters are single precision */
   vl_scene_destroy(scene);
 }
 
@@ -259,12 +286,15 @@ static void test_wrong_files(void **state) {
   SAYS("e.yaml", "b: *x\n", "whose anchor is not there");
   SAYS("e.yaml", "image_width: 640\nimage_height: 480\n", "\"camera_matrix\" is missing");
   SAYS("e.yaml", "image_width: 64.5\nimage_height: 480\ncamera_matrix: [1]\n", "image_width");
-  SAYS("e.json", "{\"velo_camera\": 1, \"width\": 4, \"height\": 3, \"focal\": 2}", "unknown field \"focal\"");
-  SAYS("e.json", "{\"velo_camera\": 1, \"width\": 4, \"height\": 3, \"projection\": \"panin\"}", "panini");
+  SAYS("e.json", "{\"velo_camera\": 1, \"width\": 4, \"height\": 3, \"focal\": 2}",
+       "unknown field \"focal\"");
+  SAYS("e.json", "{\"velo_camera\": 1, \"width\": 4, \"height\": 3, \"projection\": \"panin\"}",
+       "panini");
   SAYS("cameras.txt", "1 PINHOL 640 480 1 1 2 2\n", "PINHOLE");
   assert_int_equal(refused("cameras.txt", "# a\n\n1 PINHOLE 640 480 1 nan 2 2\n").line, 3);
   char deep[400] = "a: ";
-  for (int i = 0; i < 100; i++) strcat(deep, "[");
+  for (int i = 0; i < 100; i++)
+    strcat(deep, "[");
   SAYS("e.yaml", deep, "nested");
   SAYS("e.yaml",
        "image_width: 640\nimage_height: 480\ncamera_matrix: [500, 0, 3, 0, 500, 3, 0, 0, 1]\n"
@@ -274,7 +304,8 @@ static void test_wrong_files(void **state) {
   vlError error;
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_KALIBR;
-  assert_int_equal(vl_camera_read(context, put("o.yaml", opencv_text), &def, &record, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_camera_read(context, put("o.yaml", opencv_text), &def, &record, &error),
+                   VL_ERROR_SCENE);
   assert_non_null(strstr(error.message, "opencv, not of kalibr"));
 }
 
@@ -295,17 +326,21 @@ static void test_refusals(void **state) {
     def.dialect = all[i].dialect;
     r.camera.skew = 2.0;
     def.drop = skew + 1, def.drop_count = 1;
-    assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error), VL_ERROR_UNSUPPORTED);
+    assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error),
+                     VL_ERROR_UNSUPPORTED);
     assert_non_null(strstr(error.message, "\"skew\""));
     def.drop = skew, def.drop_count = 2;
     assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error), VL_OK);
     r.camera.projection = VL_PROJECTION_PANINI;
-    assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error), VL_ERROR_UNSUPPORTED);
+    assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error),
+                     VL_ERROR_UNSUPPORTED);
     assert_non_null(strstr(error.message, "Panini"));
     r = some_camera();
     r.camera.near_plane = 0.5;
-    if (def.dialect == VL_CAMERA_DIALECT_BLENDER) continue;
-    assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error), VL_ERROR_UNSUPPORTED);
+    if (def.dialect == VL_CAMERA_DIALECT_BLENDER)
+      continue;
+    assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error),
+                     VL_ERROR_UNSUPPORTED);
     assert_non_null(strstr(error.message, "near_plane"));
   }
 }

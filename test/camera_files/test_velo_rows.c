@@ -1,4 +1,5 @@
-/* velo's JSON holds every parameter of the cameras' rows: a value other than the default is written and read again. */
+/* velo's JSON holds every parameter of the cameras' rows: a value other than the default is
+ * written and read again. */
 #include "camera_files/files.h"
 
 #include "base/array.h"
@@ -6,18 +7,21 @@
 
 #include "../src/camera_files/files.h" /* the room's header, which has the name of the tests' */
 
-/* Parameters of rows that set other members (words), or that the file holds in another form (blocks, `shape`). Whoever
- * adds one must decide how velo's JSON holds it. */
+/* Parameters of rows that set other members (words), or that the file holds in another form
+ * (blocks, `shape`). Whoever adds one must decide how velo's JSON holds it. */
 static bool is_held_in_another_form(const vlParameter *p) {
-  static const char *const words[] = {"screen_min_x", "focus_distance", "projection",    "lens.optics",
-                                      "fov",          "shape[0]",       "shutter_points"};
-  static const char *const blocks[] = {"screen_min_x",     "screen_min_y",  "shutter_at",
-                                       "lens.focus_pixel", "lens.aperture", "distortion_coefficients"};
+  static const char *const words[] = {
+      "screen_min_x", "focus_distance", "projection",    "lens.optics",
+      "fov",          "shape[0]",       "shutter_points"};
+  static const char *const blocks[] = {"screen_min_x",  "screen_min_y",
+                                       "shutter_at",    "lens.focus_pixel",
+                                       "lens.aperture", "distortion_coefficients"};
   const bool word = p->flags & VL_PARAMETER_SHORTHAND;
   const char *const *list = word ? words : blocks;
   const size_t count = word ? sizeof words / sizeof *words : sizeof blocks / sizeof *blocks;
   for (size_t i = 0; i < count; i++)
-    if ((word || p->type == VL_PARAMETER_BLOCK) && strcmp(p->member, list[i]) == 0) return true;
+    if ((word || p->type == VL_PARAMETER_BLOCK) && strcmp(p->member, list[i]) == 0)
+      return true;
   return false;
 }
 
@@ -42,8 +46,9 @@ static void set_other(const vlParameter *p, vlCameraDef *def) {
 
 static void check_parameter(const char *camera, const vlParameter *p) {
   vlCameraRecord record = {.camera = vl_default_camera_def(64, 48), .frames = 1};
-  record.camera.fov = 1.0;                                              /* else its axis is not written */
-  if (strcmp(p->member, "shape[1]") == 0) record.camera.shape[0] = 0.5; /* a list */
+  record.camera.fov = 1.0; /* else its axis is not written */
+  if (strcmp(p->member, "shape[1]") == 0)
+    record.camera.shape[0] = 0.5; /* a list */
   set_other(p, &record.camera);
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
@@ -51,7 +56,8 @@ static void check_parameter(const char *camera, const vlParameter *p) {
   put_bytes("rows.json", text.text.items, text.text.count);
   VL_ARRAY_FREE(context, &text.text);
   const vlCameraRecord back = read_with(path_of("rows.json"), NULL);
-  if (memcmp((const char *)&back.camera + p->offset, (const char *)&record.camera + p->offset, p->size) != 0)
+  if (memcmp((const char *)&back.camera + p->offset, (const char *)&record.camera + p->offset,
+             p->size) != 0)
     fail_msg("camera %s: velo's JSON does not hold %s", camera, p->member);
 }
 
@@ -62,7 +68,8 @@ static void test_all_parameters(void **state) {
   for (uint32_t i = 0; i < cameras->kind_count; i++)
     for (uint32_t k = 0; k < cameras->rows[i]->parameter_count; k++) {
       const vlParameter *p = &cameras->rows[i]->parameters[k];
-      if (is_held_in_another_form(p)) continue;
+      if (is_held_in_another_form(p))
+        continue;
       check_parameter(cameras->constants[i], p);
       checked++;
     }

@@ -1,5 +1,5 @@
-/* Invalid glTF, Mitsuba, USD and matrix files: one clear line each, with the line number where the format has lines;
- * bounded memory and time. */
+/* Invalid glTF, Mitsuba, USD and matrix files: one clear line each, with the line number where
+ * the format has lines; bounded memory and time. */
 #include "camera_files/files.h"
 
 static void test_gltf(void **state) {
@@ -11,23 +11,30 @@ static void test_gltf(void **state) {
   REFUSED("a.gltf", 1, "{" NODE "]}", "names a camera that does not exist");
   REFUSED("a.gltf", 1, "{" NODE "{\"type\":\"fisheye\"}]}", "unknown camera type \"fisheye\"");
   REFUSED("a.gltf", 1, "{" NODE "{\"type\":\"perspective\"}]}", "\"perspective\" is missing");
-  REFUSED("a.gltf", 1, "{" NODE "{\"type\":\"perspective\",\"perspective\":{\"yfov\":4,\"znear\":1}}]}", "yfov");
-  REFUSED("a.gltf", 1, "{" NODE "{\"type\":\"perspective\",\"perspective\":{\"yfov\":\"x\",\"znear\":1}}]}", "yfov");
   REFUSED("a.gltf", 1,
-          "{" NODE "{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1,\"aspectRatio\":1e300}}]}",
+          "{" NODE "{\"type\":\"perspective\",\"perspective\":{\"yfov\":4,\"znear\":1}}]}",
+          "yfov");
+  REFUSED("a.gltf", 1,
+          "{" NODE "{\"type\":\"perspective\",\"perspective\":{\"yfov\":\"x\",\"znear\":1}}]}",
+          "yfov");
+  REFUSED("a.gltf", 1,
+          "{" NODE
+          "{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1,\"aspectRatio\":"
+          "1e300}}]}",
           "aspect ratio");
   REFUSED("a.gltf", 1,
-          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[0]}],\"cameras\":[{\"type\":\"perspective\"," LENS
-          "}]}",
+          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[0]}],\"cameras\":[{\"type\":"
+          "\"perspective\"," LENS "}]}",
           "among its own children");
   REFUSED("a.gltf", 1,
-          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[7]}],\"cameras\":[{\"type\":\"perspective\"," LENS
-          "}]}",
+          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[7]}],\"cameras\":[{\"type\":"
+          "\"perspective\"," LENS "}]}",
           "a child that does not exist");
-  REFUSED("a.gltf", 1,
-          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"rotation\":[0,0,0,0]}],\"cameras\":[{\"type\":\"perspective\"," LENS
-          "}]}",
-          "no rotation");
+  REFUSED(
+      "a.gltf", 1,
+      "{\"asset\":{},\"nodes\":[{\"camera\":0,\"rotation\":[0,0,0,0]}],\"cameras\":[{\"type\":"
+      "\"perspective\"," LENS "}]}",
+      "no rotation");
   REFUSED("a.gltf", 2, "{\n\"asset\": }", "not JSON");
   REFUSED("a.gltf", 1, "glTF\2", "");
   /* glTF's own members were changed, but the extras were not */
@@ -50,37 +57,56 @@ static void test_mitsuba(void **state) {
   REFUSED("a.xml", 1, "<scene><sensor></scene>", "not XML: mismatched tag");
   REFUSED("a.xml", 3, "<scene>\n<sensor type=\"perspective\">\n", "not XML");
   REFUSED("a.xml", 0, "<scene><shape/></scene>", "holds no <sensor>");
-  REFUSED("a.xml", 0, "<scene><include filename=\"x\"/></scene>", "included files are not followed");
-  REFUSED("a.xml", 2, "<scene>\n<sensor type=\"perspectve\"/></scene>", "the nearest is \"perspective\"");
-  REFUSED("a.xml", 2, "<scene><sensor type=\"perspective\">\n<float name=\"fov\" value=\"$f\"/></sensor></scene>",
-          "\"$f\" has no <default>");
-  REFUSED("a.xml", 2, "<scene><sensor type=\"perspective\">\n<float name=\"fov\" value=\"nan\"/></sensor></scene>",
-          "\"value\" of <float> must hold 1 finite number");
-  REFUSED("a.xml", 1, "<scene><sensor type=\"perspective\"><float name=\"fov\" value=\"200\"/></sensor></scene>",
-          "fov is 200 degrees");
+  REFUSED("a.xml", 0, "<scene><include filename=\"x\"/></scene>",
+          "included files are not followed");
+  REFUSED("a.xml", 2, "<scene>\n<sensor type=\"perspectve\"/></scene>",
+          "the nearest is \"perspective\"");
   REFUSED("a.xml", 2,
-          "<sensor type=\"perspective\"><transform name=\"to_world\">\n<lookat origin=\"0 0 0\" target=\"0 0 0\" "
-          "up=\"0 1 0\"/></transform></sensor>",
-          "give no direction");
-  REFUSED("a.xml", 2, "<sensor type=\"perspective\"><transform name=\"to_world\">\n<skew/></transform></sensor>",
+          "<scene><sensor type=\"perspective\">\n<float name=\"fov\" "
+          "value=\"$f\"/></sensor></scene>",
+          "\"$f\" has no <default>");
+  REFUSED("a.xml", 2,
+          "<scene><sensor type=\"perspective\">\n<float name=\"fov\" "
+          "value=\"nan\"/></sensor></scene>",
+          "\"value\" of <float> must hold 1 finite number");
+  REFUSED("a.xml", 1,
+          "<scene><sensor type=\"perspective\"><float name=\"fov\" "
+          "value=\"200\"/></sensor></scene>",
+          "fov is 200 degrees");
+  REFUSED(
+      "a.xml", 2,
+      "<sensor type=\"perspective\"><transform name=\"to_world\">\n<lookat origin=\"0 0 0\" "
+      "target=\"0 0 0\" "
+      "up=\"0 1 0\"/></transform></sensor>",
+      "give no direction");
+  REFUSED("a.xml", 2,
+          "<sensor type=\"perspective\"><transform "
+          "name=\"to_world\">\n<skew/></transform></sensor>",
           "unknown transform <skew>");
-  REFUSED("a.xml", 1, "<sensor type=\"perspective\"><film><integer name=\"width\" value=\"0.5\"/></film></sensor>",
+  REFUSED("a.xml", 1,
+          "<sensor type=\"perspective\"><film><integer name=\"width\" "
+          "value=\"0.5\"/></film></sensor>",
           "whole pixels");
-  REFUSED("a.xml", 1, "<sensor type=\"perspective\"><string name=\"focal_length\" value=\"50\xc2\xb5m\"/></sensor>",
+  REFUSED("a.xml", 1,
+          "<sensor type=\"perspective\"><string name=\"focal_length\" "
+          "value=\"50\xc2\xb5m\"/></sensor>",
           "must be like \"50mm\"");
   /* a billion laughs */
   REFUSED("a.xml", 2,
-          "<?xml version=\"1.0\"?>\n<!DOCTYPE scene [\n<!ENTITY a \"aaaaaaaaaa\">\n<!ENTITY b \"&a;&a;&a;&a;&a;&a;\">\n"
+          "<?xml version=\"1.0\"?>\n<!DOCTYPE scene [\n<!ENTITY a \"aaaaaaaaaa\">\n<!ENTITY b "
+          "\"&a;&a;&a;&a;&a;&a;\">\n"
           "]>\n<scene>&b;</scene>",
           "document type");
   REFUSED("a.xml", 1, "<scene>&undefined;</scene>", "not XML: undefined entity");
   char *deep = calloc(1, 70000);
   assert_non_null(deep);
   strcpy(deep, "<scene><sensor>");
-  for (int i = 0; i < 100; i++) strcat(deep, "<a>");
+  for (int i = 0; i < 100; i++)
+    strcat(deep, "<a>");
   REFUSED("a.xml", 1, deep, "nested too deeply");
   strcpy(deep, "<sensor>");
-  for (int i = 0; i < 15000; i++) memcpy(deep + 8 + 4 * i, "<a/>", 5);
+  for (int i = 0; i < 15000; i++)
+    memcpy(deep + 8 + 4 * i, "<a/>", 5);
   REFUSED("a.xml", 1, deep, "not XML"); /* no end; 15000 elements alone are taken */
   free(deep);
 }
@@ -93,20 +119,30 @@ static void test_usd(void **state) {
   REFUSED("a.usda", 3, HEAD "def Camera \"a\" {\n", "a prim is not closed");
   REFUSED("a.usda", 3, HEAD "def Camera \"a\" {\n float focalLength = }", "a value is missing");
   REFUSED("a.usda", 3, HEAD "def Camera \"a\" {\n float focalLength = (1, 2", "");
-  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { float focalLength = nan }", "\"focalLength\" holds \"nan\"");
+  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { float focalLength = nan }",
+          "\"focalLength\" holds \"nan\"");
   REFUSED("a.usda", 2, HEAD "def Camera \"a\" { float focalLength = 0 }", "must be above zero");
-  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { token projection = \"fisheye\" }", "unknown projection \"fisheye\"");
-  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { float focalLength.timeSamples = { 1: 5, 2: 6 } }", "change with time");
-  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { uniform token[] xformOpOrder = [\"xformOp:transform\"] }", "missing");
-  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { uniform token[] xformOpOrder = [\"xformOp:wobble\"] }", "wobb");
+  REFUSED("a.usda", 2, HEAD "def Camera \"a\" { token projection = \"fisheye\" }",
+          "unknown projection \"fisheye\"");
+  REFUSED("a.usda", 2,
+          HEAD "def Camera \"a\" { float focalLength.timeSamples = { 1: 5, 2: 6 } }",
+          "change with time");
+  REFUSED("a.usda", 2,
+          HEAD "def Camera \"a\" { uniform token[] xformOpOrder = [\"xformOp:transform\"] }",
+          "missing");
+  REFUSED("a.usda", 2,
+          HEAD "def Camera \"a\" { uniform token[] xformOpOrder = [\"xformOp:wobble\"] }",
+          "wobb");
   REFUSED("a.usda", 2, HEAD "def Camera \"a { }", "a string has no end");
   char *deep = calloc(1, 20000);
   assert_non_null(deep);
   strcpy(deep, HEAD);
-  for (int i = 0; i < 500; i++) strcat(deep, "def \"a\" {");
+  for (int i = 0; i < 500; i++)
+    strcat(deep, "def \"a\" {");
   REFUSED("a.usda", 2, deep, "nested too deeply");
   strcpy(deep, HEAD "def Camera \"a\" { float x = ");
-  for (int i = 0; i < 5000; i++) strcat(deep, "[");
+  for (int i = 0; i < 5000; i++)
+    strcat(deep, "[");
   REFUSED("a.usda", 2, deep, "nested too deeply");
   free(deep);
 }
@@ -117,9 +153,12 @@ static void test_matrices(void **state) {
 #define UNIT "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]"
 #define LENS_MATRIX "[1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-1,0]"
   REFUSED("m.json", 1, "{\"graphics_api\":\"opngl\"}", "the nearest is \"opengl\"");
-  REFUSED("m.json", 1, "{\"graphics_api\":\"opengl\",\"width\":2,\"height\":2}", "\"order\" is missing");
-  REFUSED("m.json", 1, "{\"graphics_api\":\"opengl\"," M "\"projection_matrix\":[1,2]}", "holds 2 numbers");
-  REFUSED("m.json", 1, "{\"graphics_api\":\"opengl\"," M "\"projection_matrix\":\"1 2 x\"}", "must hold 16 numbers");
+  REFUSED("m.json", 1, "{\"graphics_api\":\"opengl\",\"width\":2,\"height\":2}",
+          "\"order\" is missing");
+  REFUSED("m.json", 1, "{\"graphics_api\":\"opengl\"," M "\"projection_matrix\":[1,2]}",
+          "holds 2 numbers");
+  REFUSED("m.json", 1, "{\"graphics_api\":\"opengl\"," M "\"projection_matrix\":\"1 2 x\"}",
+          "must hold 16 numbers");
   REFUSED("m.json", 1,
           "{\"graphics_api\":\"opengl\"," M
           "\"projection_matrix\":[1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-2,0,0],"
@@ -137,8 +176,8 @@ static void test_matrices(void **state) {
           "\"view_matrix\":" UNIT "}",
           "singular");
   REFUSED("m.json", 1,
-          "{\"graphics_api\":\"opengl\"," M "\"clip_z\":[0,2],\"projection_matrix\":" LENS_MATRIX
-          ",\"view_matrix\":" UNIT "}",
+          "{\"graphics_api\":\"opengl\"," M
+          "\"clip_z\":[0,2],\"projection_matrix\":" LENS_MATRIX ",\"view_matrix\":" UNIT "}",
           "clip_z");
   REFUSED("m.json", 1,
           "{\"graphics_api\":\"opengl\"," M "\"projection_matrix\":" LENS_MATRIX
@@ -161,14 +200,16 @@ static void test_memory(void **state) {
   for (int k = 0; k < 4; k++) {
     vlCameraRecord record = {.camera = vl_default_camera_def(64, 48), .frames = 1};
     vlCameraFileDef file = vl_default_camera_file_def();
-    if (k == 3) file.dialect = VL_CAMERA_DIALECT_VULKAN;
+    if (k == 3)
+      file.dialect = VL_CAMERA_DIALECT_VULKAN;
     check_memory(path_of(names[k]), &record, &file);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_gltf),       cmocka_unit_test(test_mitsuba),
-                                     cmocka_unit_test(test_usd),        cmocka_unit_test(test_matrices),
-                                     cmocka_unit_test(test_long_words), cmocka_unit_test(test_memory)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_gltf),       cmocka_unit_test(test_mitsuba),
+      cmocka_unit_test(test_usd),        cmocka_unit_test(test_matrices),
+      cmocka_unit_test(test_long_words), cmocka_unit_test(test_memory)};
   return cmocka_run_group_tests(tests, files_setup, files_teardown);
 }

@@ -1,5 +1,5 @@
-/* Colour kernels: the same bits on every instruction set and as the inline functions; wavelengths follow their density;
- * an image of a constant spectrum has the exact colour. */
+/* Colour kernels: the same bits on every instruction set and as the inline functions;
+ * wavelengths follow their density; an image of a constant spectrum has the exact colour. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,7 +46,8 @@ static void run(const vlColorKernels *k, float (*result)[PAD]) {
 #define KEEP4(a) KEEP(a[0]), KEEP(a[1]), KEEP(a[2]), KEEP(a[3])
   k->visible_wavelengths(N, x.u, lambda, inv_pdf);
   KEEP4(x.lambda), KEEP4(x.inv_pdf);
-  k->sigmoid_from_light(vl_rgb_table(VL_SPACE_REC2020), N, x.r, x.g, x.b, x.scale, x.c0, x.c1, x.c2);
+  k->sigmoid_from_light(vl_rgb_table(VL_SPACE_REC2020), N, x.r, x.g, x.b, x.scale, x.c0, x.c1,
+                        x.c2);
   KEEP(x.scale), KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
   k->light_eval(N, x.c0, x.c1, x.c2, x.scale, vl_space_illuminant(VL_SPACE_REC2020), l, out);
   KEEP4(x.out);
@@ -54,7 +55,8 @@ static void run(const vlColorKernels *k, float (*result)[PAD]) {
   vl_rgb_from_xyz(VL_SPACE_SRGB, m);
   k->rgb_from_radiance(vl_cie_xyz0, m, N, o, l, p, x.r, x.g, x.b);
   KEEP(x.r), KEEP(x.g), KEEP(x.b);
-  k->sigmoid_from_rgb(vl_rgb_table(VL_SPACE_SRGB), N, input.r, input.g, input.b, x.c0, x.c1, x.c2);
+  k->sigmoid_from_rgb(vl_rgb_table(VL_SPACE_SRGB), N, input.r, input.g, input.b, x.c0, x.c1,
+                      x.c2);
   KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
   k->sigmoid_eval(N, x.c0, x.c1, x.c2, NULL, l, out);
   KEEP4(x.out);
@@ -69,16 +71,20 @@ static void fill(void) {
   for (int i = 0; i < PAD; i++) {
     input.u[i] = uniform();
     input.r[i] = uniform(), input.g[i] = uniform(), input.b[i] = uniform();
-    if (i % 7 == 0) input.r[i] = input.g[i] = input.b[i];
-    if (i % 11 == 0) input.b[i] = 0;
-    if (i % 13 == 0) input.g[i] = 1;
+    if (i % 7 == 0)
+      input.r[i] = input.g[i] = input.b[i];
+    if (i % 11 == 0)
+      input.b[i] = 0;
+    if (i % 13 == 0)
+      input.g[i] = 1;
     input.offset[i] = (uint32_t)(i % 3) * VL_LAMBDA_COUNT;
   }
   input.r[0] = input.g[0] = input.b[0] = 0;
   input.r[1] = input.g[1] = input.b[1] = 1;
   input.u[0] = 0;
   input.u[1] = 0x1.fffffep-1f;
-  for (int i = 0; i < 3 * VL_LAMBDA_COUNT; i++) dense_pool[i] = uniform();
+  for (int i = 0; i < 3 * VL_LAMBDA_COUNT; i++)
+    dense_pool[i] = uniform();
 }
 
 static void test_bits(void **state) {
@@ -89,37 +95,44 @@ static void test_bits(void **state) {
   for (int isa = VL_ISA_V3; isa <= (int)best; isa++) {
     run(vl_color_kernels((vlIsa)isa), all[1]);
     for (int i = 0; i < RESULTS; i++) {
-      if (memcmp(all[0][i], all[1][i], sizeof all[0][i]) != 0) fail_msg("set v%d: result %d differs", isa, i);
+      if (memcmp(all[0][i], all[1][i], sizeof all[0][i]) != 0)
+        fail_msg("set v%d: result %d differs", isa, i);
     }
   }
 }
 
-/* Each result is compared with that of the inline functions in the headers, which other code uses. */
+/* Each result is compared with that of the inline functions in the headers, which other code
+ * uses.
+ */
 static void test_inline(void **state) {
   (void)state;
   fill();
   run(vl_color_kernels(vl_isa_best()), all[0]);
   float(*x)[PAD] = all[0];
   for (int i = 0; i < N; i++) {
-    vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), input.r[i], input.g[i], input.b[i]);
+    vlSigmoid s =
+        vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), input.r[i], input.g[i], input.b[i]);
     assert_true(s.c0 == x[19][i] && s.c1 == x[20][i] && s.c2 == x[21][i]);
     float high = fmaxf(fmaxf(input.r[i], input.g[i]), input.b[i]);
     assert_true(x[8][i] == 2 * high);
     for (int c = 0; c < 4; c++) {
       float lambda = x[c][i], v = input.u[i] + 0.25f * (float)c, inv_pdf;
       assert_true(lambda >= 360 && lambda <= 830);
-      assert_true(lambda == vl_visible_lambda(v >= 1 ? v - 1 : v, &inv_pdf) && x[4 + c][i] == inv_pdf);
+      assert_true(lambda == vl_visible_lambda(v >= 1 ? v - 1 : v, &inv_pdf) &&
+                  x[4 + c][i] == inv_pdf);
       assert_float_equal(x[4 + c][i] * vl_visible_pdf(lambda), 1.0, 2e-4);
       assert_true(x[22 + c][i] == vl_sigmoid(s, lambda));
       assert_true(x[26 + c][i] == vl_dense_at(dense_pool, lambda));
       assert_true(x[30 + c][i] == vl_dense_at(dense_pool + input.offset[i], lambda));
       vlSigmoid light = {x[9][i], x[10][i], x[11][i]};
       assert_true(x[12 + c][i] ==
-                  x[8][i] * vl_sigmoid(light, lambda) * vl_dense_at(vl_space_illuminant(VL_SPACE_REC2020), lambda));
+                  x[8][i] * vl_sigmoid(light, lambda) *
+                      vl_dense_at(vl_space_illuminant(VL_SPACE_REC2020), lambda));
     }
   }
   assert_true(vl_dense_at(dense_pool, 359.9f) == 0 && vl_dense_at(dense_pool, 830.1f) == 0);
-  assert_true(vl_dense_at(dense_pool, 830) == dense_pool[470] && vl_dense_at(dense_pool, 360) == dense_pool[0]);
+  assert_true(vl_dense_at(dense_pool, 830) == dense_pool[470] &&
+              vl_dense_at(dense_pool, 360) == dense_pool[0]);
 }
 
 /* The share of wavelengths below l is the integral of the density up to l. */
@@ -138,10 +151,12 @@ static void test_density(void **state) {
   float inv_pdf;
   for (int i = 0; i < 1000; i++) {
     double l = (double)vl_visible_lambda((float)(i + 1) / 1001.0f, &inv_pdf);
-    for (; 360.05 + 0.1 * at < l; at++) sum += (double)vl_visible_pdf(360.05f + 0.1f * (float)at) * 0.1;
+    for (; 360.05 + 0.1 * at < l; at++)
+      sum += (double)vl_visible_pdf(360.05f + 0.1f * (float)at) * 0.1;
     assert_float_equal(sum, (i + 1) / 1001.0, 4e-4);
   }
-  assert_true(vl_visible_lambda(0, &inv_pdf) == 360 && vl_visible_lambda(0x1.fffffep-1f, &inv_pdf) > 829.9f);
+  assert_true(vl_visible_lambda(0, &inv_pdf) == 360 &&
+              vl_visible_lambda(0x1.fffffep-1f, &inv_pdf) > 829.9f);
   for (int k = 0; k + 1 < VL_VISIBLE_KNOTS; k++) { /* no jump between two segments */
     const float *row = vl_visible_knots + 4 * k;
     float before = row[4] - 0x1p-24f;
@@ -151,7 +166,9 @@ static void test_density(void **state) {
   }
 }
 
-/* Random wavelengths in intervals of 10 nm against the density, by chi^2: each of the four has it. */
+/* Random wavelengths in intervals of 10 nm against the density, by chi^2: each of the four has
+ * it.
+ */
 static void test_samples(void **state) {
   (void)state;
   enum { BINS = 47, ROUNDS = 100 };
@@ -159,16 +176,19 @@ static void test_samples(void **state) {
   float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf);
   double count[4][BINS] = {{0}};
   for (int round = 0; round < ROUNDS; round++) {
-    for (int i = 0; i < PAD; i++) x.u[i] = uniform();
+    for (int i = 0; i < PAD; i++)
+      x.u[i] = uniform();
     vl_color_kernels(vl_isa_best())->visible_wavelengths(PAD, x.u, lambda, inv_pdf);
     for (int c = 0; c < 4; c++)
-      for (int i = 0; i < PAD; i++) count[c][(int)fminf((lambda[c][i] - 360) / 10, BINS - 1)]++;
+      for (int i = 0; i < PAD; i++)
+        count[c][(int)fminf((lambda[c][i] - 360) / 10, BINS - 1)]++;
   }
   for (int c = 0; c < 4; c++) {
     double chi2 = 0;
     for (int b = 0; b < BINS; b++) {
       double expected = 0;
-      for (int i = 0; i < 100; i++) expected += (double)vl_visible_pdf(360.05f + 10 * (float)b + 0.1f * (float)i) * 0.1;
+      for (int i = 0; i < 100; i++)
+        expected += (double)vl_visible_pdf(360.05f + 10 * (float)b + 0.1f * (float)i) * 0.1;
       expected *= (double)PAD * ROUNDS;
       chi2 += (count[c][b] - expected) * (count[c][b] - expected) / expected;
     }
@@ -183,8 +203,8 @@ static float luminance_lambda(float u, float *inv_pdf) {
   return 538 - 138.888889f * atanhf(t);
 }
 
-/* Variance of one sample's linear sRGB, relative to the squared mean, as the mean over R, G, B: a reflectance under
- * daylight, seen at four rotated wavelengths. */
+/* Variance of one sample's linear sRGB, relative to the squared mean, as the mean over R, G, B:
+ * a reflectance under daylight, seen at four rotated wavelengths. */
 static double colour_noise(float (*sample)(float, float *), const float reflectance[3]) {
   enum { STEPS = 4096 };
   static batch x;
@@ -198,15 +218,21 @@ static double colour_noise(float (*sample)(float, float *), const float reflecta
     int n = STEPS - first < PAD ? STEPS - first : PAD;
     for (int i = 0; i < PAD; i++)
       for (int c = 0; c < 4; c++)
-        lambda[c][i] = sample((float)fmod(((float)(first + i) + 0.5f) / STEPS + 0.25f * (float)c, 1), &inv_pdf[c][i]);
-    vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), reflectance[0], reflectance[1], reflectance[2]);
-    for (int i = 0; i < PAD; i++) x.c0[i] = s.c0, x.c1[i] = s.c1, x.c2[i] = s.c2;
+        lambda[c][i] =
+            sample((float)fmod(((float)(first + i) + 0.5f) / STEPS + 0.25f * (float)c, 1),
+                   &inv_pdf[c][i]);
+    vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), reflectance[0],
+                                      reflectance[1], reflectance[2]);
+    for (int i = 0; i < PAD; i++)
+      x.c0[i] = s.c0, x.c1[i] = s.c1, x.c2[i] = s.c2;
     k->light_eval(PAD, x.c0, x.c1, x.c2, NULL, vl_space_illuminant(VL_SPACE_SRGB), l, out);
     k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     for (int c = 0; c < 3; c++)
-      for (int i = 0; i < n; i++) sum[c] += (double)rgb[c][i], squares[c] += (double)rgb[c][i] * (double)rgb[c][i];
+      for (int i = 0; i < n; i++)
+        sum[c] += (double)rgb[c][i], squares[c] += (double)rgb[c][i] * (double)rgb[c][i];
   }
-  for (int c = 0; c < 3; c++) noise += (squares[c] * STEPS / (sum[c] * sum[c]) - 1) / 3;
+  for (int c = 0; c < 3; c++)
+    noise += (squares[c] * STEPS / (sum[c] * sum[c]) - 1) / 3;
   return noise;
 }
 
@@ -226,8 +252,8 @@ static void test_colour_noise(void **state) {
   }
 }
 
-/* A grey light of the space's illuminant, luminance 1, seen through random wavelengths: (1, 1, 1) on average;
- * stratified u gives it almost exactly. */
+/* A grey light of the space's illuminant, luminance 1, seen through random wavelengths: (1, 1,
+ * 1) on average; stratified u gives it almost exactly. */
 static void test_white(void **state) {
   (void)state;
   static batch x;
@@ -238,24 +264,29 @@ static void test_white(void **state) {
     vlSpectrum white = vl_spectrum_rgb(1, 1, 1);
     white.space = (vlColorSpace)space;
     float scale = (float)(1 / vl_spectrum_photometric(&white, NULL)), m[9];
-    for (int i = 0; i < PAD; i++) x.u[i] = ((float)i + 0.5f) / (float)PAD;
+    for (int i = 0; i < PAD; i++)
+      x.u[i] = ((float)i + 0.5f) / (float)PAD;
     k->visible_wavelengths(PAD, x.u, lambda, inv_pdf);
     k->dense_eval(PAD, vl_space_illuminant((vlColorSpace)space), l, out);
     for (int c = 0; c < 4; c++)
-      for (int i = 0; i < PAD; i++) x.out[c][i] *= scale;
+      for (int i = 0; i < PAD; i++)
+        x.out[c][i] *= scale;
     vl_rgb_from_xyz((vlColorSpace)space, m);
     k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     double sum[3] = {0};
     for (int i = 0; i < PAD; i++)
-      sum[0] += (double)x.r[i] / PAD, sum[1] += (double)x.g[i] / PAD, sum[2] += (double)x.b[i] / PAD;
-    for (int c = 0; c < 3; c++) assert_float_equal(sum[c], 1.0, 2e-3);
+      sum[0] += (double)x.r[i] / PAD, sum[1] += (double)x.g[i] / PAD,
+          sum[2] += (double)x.b[i] / PAD;
+    for (int c = 0; c < 3; c++)
+      assert_float_equal(sum[c], 1.0, 2e-3);
   }
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bits),    cmocka_unit_test(test_inline),       cmocka_unit_test(test_density),
-      cmocka_unit_test(test_samples), cmocka_unit_test(test_colour_noise), cmocka_unit_test(test_white),
+      cmocka_unit_test(test_bits),         cmocka_unit_test(test_inline),
+      cmocka_unit_test(test_density),      cmocka_unit_test(test_samples),
+      cmocka_unit_test(test_colour_noise), cmocka_unit_test(test_white),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

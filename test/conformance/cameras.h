@@ -1,6 +1,6 @@
-/* conformance/cameras.h: the laws of projections and distortions: a film point's ray leads back to it; many points at
- * once give the same bits as one; the solid angle is the derivative's; known radii; velo's camera files hold the
- * camera. */
+/* conformance/cameras.h: the laws of projections and distortions: a film point's ray leads back
+ * to it; many points at once give the same bits as one; the solid angle is the derivative's;
+ * known radii; velo's camera files hold the camera. */
 #ifndef TEST_CONFORMANCE_CAMERAS_H
 #define TEST_CONFORMANCE_CAMERAS_H
 
@@ -10,7 +10,9 @@
 #include "velo/setting.h"
 #include "velo/shape.h"
 
-/* A direction at angle theta to the axis, towards +x, is this many focal lengths from the centre. */
+/* A direction at angle theta to the axis, towards +x, is this many focal lengths from the
+ * centre.
+ */
 typedef struct ProjectionKnown {
   double theta, r;
 } ProjectionKnown;
@@ -28,12 +30,18 @@ typedef struct ProjectionCase {
   { VL_UNSET, VL_UNSET }
 #define HALF_SQRT3 0.86602540378443865
 static const ProjectionCase perspective_camera = {
-    .fov = 90, .shape = NO_SHAPE, .known = {{PI / 6, 0.57735026918962576}, {-PI / 6, -0.57735026918962576}}};
+    .fov = 90,
+    .shape = NO_SHAPE,
+    .known = {{PI / 6, 0.57735026918962576}, {-PI / 6, -0.57735026918962576}}};
 static const ProjectionCase orthographic_camera = {.focal = 20, .shape = NO_SHAPE};
-static const ProjectionCase equidistant_camera = {
-    .fov = 180, .shape = NO_SHAPE, .solid_angle = 2 * PI, .known = {{PI / 3, PI / 3}, {-1.5, -1.5}}};
-static const ProjectionCase equisolid_camera = {
-    .fov = 180, .shape = NO_SHAPE, .solid_angle = 2 * PI, .known = {{PI / 3, 1}, {-PI / 3, -1}}};
+static const ProjectionCase equidistant_camera = {.fov = 180,
+                                                  .shape = NO_SHAPE,
+                                                  .solid_angle = 2 * PI,
+                                                  .known = {{PI / 3, PI / 3}, {-1.5, -1.5}}};
+static const ProjectionCase equisolid_camera = {.fov = 180,
+                                                .shape = NO_SHAPE,
+                                                .solid_angle = 2 * PI,
+                                                .known = {{PI / 3, 1}, {-PI / 3, -1}}};
 static const ProjectionCase stereographic_camera = {
     .fov = 180,
     .shape = NO_SHAPE,
@@ -44,34 +52,50 @@ static const ProjectionCase sine_camera = {
 static const ProjectionCase equirectangular_camera = {
     .shape = NO_SHAPE, .solid_angle = 4 * PI, .known = {{PI / 3, PI / 3}, {-2.5, -2.5}}};
 static const ProjectionCase equal_area_camera = {
-    .shape = NO_SHAPE, .solid_angle = 4 * PI, .known = {{PI / 3, 0.70710678118654752}, {PI / 2 - 1e-12, 1}}};
+    .shape = NO_SHAPE,
+    .solid_angle = 4 * PI,
+    .known = {{PI / 3, 0.70710678118654752}, {PI / 2 - 1e-12, 1}}};
 /* The whole cylinder as far up and down as the image shows. */
-static const ProjectionCase cylindrical_camera = {.shape = NO_SHAPE, .known = {{PI / 3, PI / 3}, {-2.5, -2.5}}};
+static const ProjectionCase cylindrical_camera = {.shape = NO_SHAPE,
+                                                  .known = {{PI / 3, PI / 3}, {-2.5, -2.5}}};
 static const ProjectionCase cube_camera = {.shape = {0, VL_UNSET}, .solid_angle = 4 * PI};
 /* d = .5: (d + 1) sin / (d + cos) */
 static const ProjectionCase panini_camera = {
-    .fov = 120, .shape = {0.5, VL_UNSET}, .known = {{PI / 3, 1.5 * HALF_SQRT3}, {-PI / 6, -0.75 / (0.5 + HALF_SQRT3)}}};
+    .fov = 120,
+    .shape = {0.5, VL_UNSET},
+    .known = {{PI / 3, 1.5 * HALF_SQRT3}, {-PI / 6, -0.75 / (0.5 + HALF_SQRT3)}}};
 /* w = .9: atan(2 tan(theta) tan(w / 2)) / w */
 static const ProjectionCase fov_camera = {
-    .focal = 20, .shape = {0.9, VL_UNSET}, .known = {{PI / 4, 0.853514284171}, {-PI / 4, -0.853514284171}}};
+    .focal = 20,
+    .shape = {0.9, VL_UNSET},
+    .known = {{PI / 4, 0.853514284171}, {-PI / 4, -0.853514284171}}};
 /* lambda = -.2: tan = r / (1 - .2 r^2), at r = 1 tan = 1.25 */
 static const ProjectionCase division_camera = {
-    .focal = 20, .shape = {-0.2, VL_UNSET}, .known = {{0.89605538457134396, 1}, {-0.89605538457134396, -1}}};
+    .focal = 20,
+    .shape = {-0.2, VL_UNSET},
+    .known = {{0.89605538457134396, 1}, {-0.89605538457134396, -1}}};
 /* xi = .8: sin / (cos + xi) */
 static const ProjectionCase unified_camera = {
-    .focal = 20, .shape = {0.8, VL_UNSET}, .known = {{PI / 3, HALF_SQRT3 / 1.3}, {-PI / 2, -1.25}}};
+    .focal = 20,
+    .shape = {0.8, VL_UNSET},
+    .known = {{PI / 3, HALF_SQRT3 / 1.3}, {-PI / 2, -1.25}}};
 /* alpha = .6, beta = 1.1: sin / (alpha sqrt(beta sin^2 + cos^2) + (1 - alpha) cos) */
 static const ProjectionCase eucm_camera = {
-    .focal = 20, .shape = {0.6, 1.1}, .known = {{PI / 3, 1.053439392292}, {-PI / 2, -1.589104315409}}};
+    .focal = 20,
+    .shape = {0.6, 1.1},
+    .known = {{PI / 3, 1.053439392292}, {-PI / 2, -1.589104315409}}};
 /* xi = -.2, alpha = .6: at 90 degrees sin / (alpha sqrt(1 + xi^2) + (1 - alpha) xi) */
 static const ProjectionCase double_sphere_camera = {
-    .focal = 20, .shape = {-0.2, 0.6}, .known = {{PI / 2, 1.880115058780}, {-PI / 2, -1.880115058780}}};
+    .focal = 20,
+    .shape = {-0.2, 0.6},
+    .known = {{PI / 2, 1.880115058780}, {-PI / 2, -1.880115058780}}};
 static const ProjectionCase optics_camera = {.optics = true, .shape = NO_SHAPE};
 
 #define CAMERA_CASE(NAME, name) &name##_camera,
 static const ProjectionCase *const projection_cases[] = {VL_PROJECTION_KINDS(CAMERA_CASE)};
 enum { PROJECTIONS = VL_PROJECTION_OWN };
-_Static_assert(sizeof projection_cases / sizeof *projection_cases == PROJECTIONS, "a case for each projection");
+_Static_assert(sizeof projection_cases / sizeof *projection_cases == PROJECTIONS,
+               "a case for each projection");
 
 /* The distortions, their coefficients and the point to which (.3, .2) goes. */
 typedef struct DistortionCase {
@@ -82,13 +106,20 @@ typedef struct DistortionCase {
 } DistortionCase;
 static const DistortionCase distortion_cases[] = {
     {"none", VL_DISTORTION_NONE, 0, {0}},
-    {"opencv", VL_DISTORTION_OPENCV, 12, {-.2, .05, .003, -.004, .01, .02, .01, .003, .002, .001, -.003, .002}},
+    {"opencv",
+     VL_DISTORTION_OPENCV,
+     12,
+     {-.2, .05, .003, -.004, .01, .02, .01, .003, .002, .001, -.003, .002}},
     {"opencv of 5", VL_DISTORTION_OPENCV, 5, {.1, .02, .02, -.01, .01}},
     {"radial", VL_DISTORTION_RADIAL, 4, {-.1, .03, .01, -.002}},
-    {"thin prism", VL_DISTORTION_THIN_PRISM, 8, {-.1, .02, .003, -.004, .01, .002, .005, -.006}},
+    {"thin prism",
+     VL_DISTORTION_THIN_PRISM,
+     8,
+     {-.1, .02, .003, -.004, .01, .002, .005, -.006}},
 };
 
-/* The published equations, written apart from the library: a point of the plane z = 1 to its distorted point. */
+/* The published equations, written apart from the library: a point of the plane z = 1 to its
+ * distorted point. */
 static void distort_plainly(const DistortionCase *d, double x, double y, double at[2]) {
   const double *k = d->k;
   double s = x * x + y * y;
@@ -100,10 +131,12 @@ static void distort_plainly(const DistortionCase *d, double x, double y, double 
     double k4 = d->count > 5 ? k[5] : 0;
     double k5 = d->count > 5 ? k[6] : 0;
     double k6 = d->count > 5 ? k[7] : 0;
-    radial = (1 + k[0] * s + k[1] * s * s + k[4] * s * s * s) / (1 + k4 * s + k5 * s * s + k6 * s * s * s);
+    radial = (1 + k[0] * s + k[1] * s * s + k[4] * s * s * s) /
+             (1 + k4 * s + k5 * s * s + k6 * s * s * s);
     p1 = k[2];
     p2 = k[3];
-    for (int i = 0; i < 4 && d->count > 8; i++) prism[i] = k[8 + i];
+    for (int i = 0; i < 4 && d->count > 8; i++)
+      prism[i] = k[8 + i];
   } else if (d->kind == VL_DISTORTION_RADIAL) {
     radial = 1 + k[0] * s + k[1] * s * s + k[2] * s * s * s + k[3] * s * s * s * s;
   } else if (d->kind == VL_DISTORTION_THIN_PRISM) {
@@ -117,7 +150,9 @@ static void distort_plainly(const DistortionCase *d, double x, double y, double 
   at[1] = y * radial + p1 * (s + 2 * y * y) + 2 * p2 * x * y + prism[2] * s + prism[3] * s * s;
 }
 
-/* ---- the laws ---------------------------------------------------------------------------------------------------- */
+/* ---- the laws
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 enum { FILM_WIDTH = 96, FILM_HEIGHT = 64, FILM_POINTS = 24 * 16 };
 
@@ -129,7 +164,8 @@ static void film_points(double pixels[2 * FILM_POINTS]) {
 }
 
 /* project after unproject, one at a time and many at once. */
-static void check_round_trip(const char *family, const char *kind, const vlCamera *camera, double slack) {
+static void check_round_trip(const char *family, const char *kind, const vlCamera *camera,
+                             double slack) {
   static double pixels[2 * FILM_POINTS];
   static double origins[3 * FILM_POINTS];
   static double directions[3 * FILM_POINTS];
@@ -145,7 +181,8 @@ static void check_round_trip(const char *family, const char *kind, const vlCamer
   double stretched = 0;
   film_points(pixels);
   vl_camera_unproject_batch(camera, FILM_POINTS, pixels, origins, directions, seen);
-  for (int i = 0; i < 3 * FILM_POINTS; i++) points[i] = origins[i] + 5 * directions[i];
+  for (int i = 0; i < 3 * FILM_POINTS; i++)
+    points[i] = origins[i] + 5 * directions[i];
   vl_camera_project_batch(camera, FILM_POINTS, points, back, depths, found);
   for (int i = 0; i < FILM_POINTS; i++) {
     double o[3];
@@ -155,25 +192,34 @@ static void check_round_trip(const char *family, const char *kind, const vlCamer
     double length = 0;
     bool one = vl_camera_unproject(camera, pixels[2 * i], pixels[2 * i + 1], o, d);
     other_bits += one != (seen[i] != 0);
-    if (!one) continue;
+    if (!one)
+      continue;
     inside++;
     other_bits += memcmp(d, directions + 3 * i, sizeof d) != 0;
-    for (int k = 0; k < 3; k++) length += d[k] * d[k];
+    for (int k = 0; k < 3; k++)
+      length += d[k] * d[k];
     stretched = fmax(stretched, fabs(length - 1));
     bool projected = vl_camera_project(camera, points + 3 * i, at, &z);
     lost += !projected || !found[i];
-    if (!projected || !found[i]) continue;
+    if (!projected || !found[i])
+      continue;
     other_bits += memcmp(at, back + 2 * i, sizeof at) != 0;
     worst = fmax(worst, fmax(fabs(at[0] - pixels[2 * i]), fabs(at[1] - pixels[2 * i + 1])));
   }
-  if (inside < FILM_POINTS / 4) broken(family, kind, "%d of %d film points have rays", inside, FILM_POINTS);
-  if (lost) broken(family, kind, "%d of %d rays do not lead back to the film", lost, inside);
-  if (!(worst < slack)) broken(family, kind, "a ray leads back %g pixels off", worst);
-  if (!(stretched < 1e-12)) broken(family, kind, "a direction's length is off by %g", stretched);
-  if (other_bits) broken(family, kind, "%d points have other bits in a batch", other_bits);
+  if (inside < FILM_POINTS / 4)
+    broken(family, kind, "%d of %d film points have rays", inside, FILM_POINTS);
+  if (lost)
+    broken(family, kind, "%d of %d rays do not lead back to the film", lost, inside);
+  if (!(worst < slack))
+    broken(family, kind, "a ray leads back %g pixels off", worst);
+  if (!(stretched < 1e-12))
+    broken(family, kind, "a direction's length is off by %g", stretched);
+  if (other_bits)
+    broken(family, kind, "%d points have other bits in a batch", other_bits);
 }
 
-/* The solid angle of pixels against that of the triangles between their corners' rays; the sum over the image. */
+/* The solid angle of pixels against that of the triangles between their corners' rays; the sum
+ * over the image. */
 static void check_solid_angle(const char *kind, const vlCamera *camera, double known) {
   double sum = 0;
   double worst = 0;
@@ -187,19 +233,23 @@ static void check_solid_angle(const char *kind, const vlCamera *camera, double k
       double cy = y + 0.5;
       double at = vl_camera_solid_angle(camera, cx, cy);
       sum += at;
-      if (x % 7 != 3 || y % 5 != 2) continue;
-      if (!vl_camera_unproject(camera, cx, cy, o, d[0]) || !vl_camera_unproject(camera, cx + e, cy, o, d[1]) ||
+      if (x % 7 != 3 || y % 5 != 2)
+        continue;
+      if (!vl_camera_unproject(camera, cx, cy, o, d[0]) ||
+          !vl_camera_unproject(camera, cx + e, cy, o, d[1]) ||
           !vl_camera_unproject(camera, cx, cy + e, o, d[2]))
         continue;
       for (int k = 0; k < 3; k++) {
         int i = (k + 1) % 3;
         int j = (k + 2) % 3;
-        double part = (d[1][i] - d[0][i]) * (d[2][j] - d[0][j]) - (d[1][j] - d[0][j]) * (d[2][i] - d[0][i]);
+        double part = (d[1][i] - d[0][i]) * (d[2][j] - d[0][j]) -
+                      (d[1][j] - d[0][j]) * (d[2][i] - d[0][i]);
         n += part * part;
       }
       worst = fmax(worst, fabs(sqrt(n) / (e * e) - at) / fmax(at, 1e-9));
     }
-  if (!(worst < 0.01)) broken("projections", kind, "a pixel's solid angle is off by %.3g of it", worst);
+  if (!(worst < 0.01))
+    broken("projections", kind, "a pixel's solid angle is off by %.3g of it", worst);
   if (known > 0 && !(fabs(sum / known - 1) < 0.02))
     broken("projections", kind, "the image covers %.4f steradians, not %.4f", sum, known);
 }
@@ -219,7 +269,8 @@ static void check_known(const char *kind, const vlCamera *camera, const Projecti
 }
 
 /* velo's camera file gives the same rays. */
-static void check_file(const char *family, const char *kind, const vlCameraDef *def, const vlCamera *camera) {
+static void check_file(const char *family, const char *kind, const vlCameraDef *def,
+                       const vlCamera *camera) {
   char path[100];
   snprintf(path, sizeof path, "%s/camera.json", folder);
   vlError error = {0};
@@ -246,12 +297,16 @@ static void check_file(const char *family, const char *kind, const vlCameraDef *
     double d[2][3] = {{0}};
     bool one = vl_camera_unproject(camera, pixels[2 * i], pixels[2 * i + 1], o[0], d[0]);
     bool two = vl_camera_unproject(&again, pixels[2 * i], pixels[2 * i + 1], o[1], d[1]);
-    for (int k = 0; k < 3; k++) differ += one != two || fabs(d[0][k] - d[1][k]) > 1e-12;
+    for (int k = 0; k < 3; k++)
+      differ += one != two || fabs(d[0][k] - d[1][k]) > 1e-12;
   }
-  if (differ) broken(family, kind, "its file gives other rays, %d of %d", differ, 3 * FILM_POINTS);
+  if (differ)
+    broken(family, kind, "its file gives other rays, %d of %d", differ, 3 * FILM_POINTS);
 }
 
-/* ---- files of scenes --------------------------------------------------------------------------------------------- */
+/* ---- files of scenes
+ * ---------------------------------------------------------------------------------------------
+ */
 
 static void count_camera_loss(void *user, const char *what, uint64_t count) {
   (void)what;
@@ -286,30 +341,35 @@ static const char *camera_difference(const vlCamera *a, const vlCamera *b) {
                  {"motion", a->moves, b->moves}};
   static double pixels[2 * FILM_POINTS];
   for (size_t i = 0; i < sizeof members / sizeof *members; i++)
-    if (!same_number(members[i].a, members[i].b)) return members[i].name;
+    if (!same_number(members[i].a, members[i].b))
+      return members[i].name;
   film_points(pixels);
   for (int i = 0; i < FILM_POINTS; i++) {
     double o[2][3] = {{0}};
     double d[2][3] = {{0}};
     bool one = vl_camera_unproject(a, pixels[2 * i], pixels[2 * i + 1], o[0], d[0]);
     bool two = vl_camera_unproject(b, pixels[2 * i], pixels[2 * i + 1], o[1], d[1]);
-    if (one != two) return "its domain";
+    if (one != two)
+      return "its domain";
     for (int k = 0; k < 3; k++)
-      if (fabs(d[0][k] - d[1][k]) > 2e-6 || fabs(o[0][k] - o[1][k]) > 2e-5) return "its rays";
+      if (fabs(d[0][k] - d[1][k]) > 2e-6 || fabs(o[0][k] - o[1][k]) > 2e-5)
+        return "its rays";
   }
   return NULL;
 }
 
-/* The scene with this camera as a file of a scene and read again: the same camera, or the writer says what it loses.
- * False: it loses something. */
-static bool check_scene_file(const char *family, const char *kind, const vlCameraDef *def, const char *suffix) {
+/* The scene with this camera as a file of a scene and read again: the same camera, or the
+ * writer says what it loses. False: it loses something. */
+static bool check_scene_file(const char *family, const char *kind, const vlCameraDef *def,
+                             const char *suffix) {
   char path[100];
   int losses = 0;
   vlError error = {0};
   vlScene *scene;
   vlCamera made;
   vlCamera again;
-  if (vl_camera_make(def, &made, NULL, &error) != VL_OK) return false;
+  if (vl_camera_make(def, &made, NULL, &error) != VL_OK)
+    return false;
   snprintf(path, sizeof path, "%s/camera.%s", folder, suffix);
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vl_scene_defs(scene)->camera = *def;
@@ -328,15 +388,19 @@ static bool check_scene_file(const char *family, const char *kind, const vlCamer
   save.lost_user = &losses;
   vlResult result = vl_scene_save(scene, path, &save, &error);
   vl_scene_destroy(scene);
-  if (losses) return false;
-  if (result != VL_OK) broken(family, kind, "as .%s: %s", suffix, error.message);
+  if (losses)
+    return false;
+  if (result != VL_OK)
+    broken(family, kind, "as .%s: %s", suffix, error.message);
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   result = vl_scene_load(scene, path, NULL, &error);
   vlCameraDef read = vl_scene_defs(scene)->camera;
   read.width = def->width; /* glTF has no sizes of images */
   read.height = def->height;
-  read.exposure_time *= (double)vl_scene_defs(scene)->develop.exposure; /* pbrt's is the film's */
-  if (result == VL_OK) result = vl_camera_make(&read, &again, NULL, &error);
+  read.exposure_time *=
+      (double)vl_scene_defs(scene)->develop.exposure; /* pbrt's is the film's */
+  if (result == VL_OK)
+    result = vl_camera_make(&read, &again, NULL, &error);
   if (result != VL_OK)
     broken(family, kind, "as .%s it cannot be read: %s", suffix, error.message);
   else if (camera_difference(&made, &again))
@@ -345,12 +409,14 @@ static bool check_scene_file(const char *family, const char *kind, const vlCamer
   return true;
 }
 
-static bool make_camera(const char *family, const char *kind, vlCameraDef *def, vlCamera *camera) {
+static bool make_camera(const char *family, const char *kind, vlCameraDef *def,
+                        vlCamera *camera) {
   static const double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   vlError error = {0};
   def->has_matrix = true; /* camera space is world space: z forward, y down */
   memcpy(def->world_from_camera, axes, sizeof axes);
-  if (vl_camera_make(def, camera, NULL, &error) == VL_OK) return true;
+  if (vl_camera_make(def, camera, NULL, &error) == VL_OK)
+    return true;
   broken(family, kind, "%s", error.message);
   return false;
 }
@@ -359,26 +425,35 @@ static void laws_of_projections(void **state) {
   (void)state;
   vlOptics *optics = NULL;
   vlOpticsDef optics_def = vl_default_optics_def();
-  assert_int_equal(vl_optics_load(context, VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat", &optics_def,
-                                  &optics, NULL),
-                   VL_OK);
+  assert_int_equal(
+      vl_optics_load(context, VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat",
+                     &optics_def, &optics, NULL),
+      VL_OK);
   for (int p = 0; p < PROJECTIONS; p++) {
     const ProjectionCase *c = projection_cases[p];
     const char *name = vl_projection_name((vlProjection)p);
     vlCameraDef def = vl_default_camera_def(FILM_WIDTH, FILM_HEIGHT);
     vlCamera camera;
     def.projection = (vlProjection)p;
-    if (c->fov > 0) def.fov = c->fov * PI / 180;
-    if (c->fov > 0) def.fov_axis = VL_FOV_SMALLER;
-    if (c->focal > 0) def.fx = def.fy = c->focal;
+    if (c->fov > 0)
+      def.fov = c->fov * PI / 180;
+    if (c->fov > 0)
+      def.fov_axis = VL_FOV_SMALLER;
+    if (c->focal > 0)
+      def.fx = def.fy = c->focal;
     memcpy(def.shape, c->shape, sizeof def.shape);
-    if (c->optics) def.lens.optics = optics;
-    if (!make_camera("projections", name, &def, &camera)) continue;
+    if (c->optics)
+      def.lens.optics = optics;
+    if (!make_camera("projections", name, &def, &camera))
+      continue;
     check_round_trip("projections", name, &camera, c->optics ? 1e-6 : 1e-8);
-    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics) check_solid_angle(name, &camera, c->solid_angle);
+    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
+      check_solid_angle(name, &camera, c->solid_angle);
     check_known(name, &camera, c);
-    if (!c->optics) check_file("projections", name, &def, &camera);
-    if (!c->optics) check_scene_file("projections", name, &def, "pbrt");
+    if (!c->optics)
+      check_file("projections", name, &def, &camera);
+    if (!c->optics)
+      check_scene_file("projections", name, &def, "pbrt");
     check_scene_file("projections", name, &def, "gltf");
   }
   vl_optics_destroy(optics);
@@ -397,7 +472,8 @@ static void laws_of_distortions(void **state) {
     def.distortion = c->kind;
     def.distortion_count = c->count;
     memcpy(def.distortion_coefficients, c->k, sizeof c->k);
-    if (!make_camera("distortions", c->name, &def, &camera)) continue;
+    if (!make_camera("distortions", c->name, &def, &camera))
+      continue;
     check_round_trip("distortions", c->name, &camera, 1e-8);
     check_file("distortions", c->name, &def, &camera);
     check_scene_file("distortions", c->name, &def, "pbrt");
@@ -410,42 +486,53 @@ static void laws_of_distortions(void **state) {
       vl_camera_project(&camera, point, at, NULL);
       for (int j = 0; j < 2; j++)
         if (fabs((at[j] - (j ? camera.cy : camera.cx)) / 70 - known[j]) > 1e-10)
-          broken("distortions", c->name, "(%g, %g) goes to %.9f along %c, not to %.9f", point[0], point[1],
-                 (at[j] - (j ? camera.cy : camera.cx)) / 70, j ? 'y' : 'x', known[j]);
+          broken("distortions", c->name, "(%g, %g) goes to %.9f along %c, not to %.9f",
+                 point[0], point[1], (at[j] - (j ? camera.cy : camera.cx)) / 70, j ? 'y' : 'x',
+                 known[j]);
     }
   }
-  for (int k = 0; k <= VL_DISTORTION_THIN_PRISM; k++) assert_true(kinds >> k & 1);
+  for (int k = 0; k <= VL_DISTORTION_THIN_PRISM; k++)
+    assert_true(kinds >> k & 1);
   expect_no_failures();
 }
 
-/* ---- settings ---------------------------------------------------------------------------------------------------- */
+/* ---- settings
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* Puts another value than the default into a member; false: it has no number. */
 static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {
   bool limited = p->low != 0 || p->high != 0;
   double number = p->value[0] + 0.25;
-  if (limited && number <= p->low) number = p->low + 0.25;
-  if (limited && number >= p->high) number = 0.5 * (p->low + p->high) + 0.01;
+  if (limited && number <= p->low)
+    number = p->low + 0.25;
+  if (limited && number >= p->high)
+    number = 0.5 * (p->low + p->high) + 0.01;
   char message[VL_GIVEN_MESSAGE];
   vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = number};
-  if (p->type == VL_PARAMETER_COUNT) given.number = floor(number) + 5;
-  if (p->type == VL_PARAMETER_BOOL) given = (vlGiven){.kind = VL_GIVEN_FLAG, .number = p->value[0] == 0};
+  if (p->type == VL_PARAMETER_COUNT)
+    given.number = floor(number) + 5;
+  if (p->type == VL_PARAMETER_BOOL)
+    given = (vlGiven){.kind = VL_GIVEN_FLAG, .number = p->value[0] == 0};
   if (p->type == VL_PARAMETER_CHOICE)
     given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = p->choices[p->value[0] == 0 ? 1 : 0]};
   if (p->type == VL_PARAMETER_DOUBLE3) {
     double *at = (double *)(void *)((char *)def + p->offset);
-    for (int i = 0; i < 3; i++) at[i] = p->value[i] + 0.3 + 0.1 * i;
+    for (int i = 0; i < 3; i++)
+      at[i] = p->value[i] + 0.3 + 0.1 * i;
     return true;
   }
-  bool one = p->type == VL_PARAMETER_COUNT || p->type == VL_PARAMETER_BOOL || p->type == VL_PARAMETER_CHOICE ||
-             p->type == VL_PARAMETER_DOUBLE;
+  bool one = p->type == VL_PARAMETER_COUNT || p->type == VL_PARAMETER_BOOL ||
+             p->type == VL_PARAMETER_CHOICE || p->type == VL_PARAMETER_DOUBLE;
   double checked;
-  if (!one || !vl_given_check(p, p->member, &given, &checked, message)) return false;
+  if (!one || !vl_given_check(p, p->member, &given, &checked, message))
+    return false;
   vl_given_put(p, checked, def);
   return true;
 }
 
-/* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is not. */
+/* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is not.
+ */
 static void settings_of_cameras(void **state) {
   (void)state;
   int kept[2] = {0, 0};
@@ -454,7 +541,8 @@ static void settings_of_cameras(void **state) {
   for (uint32_t i = 0; i < rows->parameter_count; i++) {
     const vlParameter *p = &rows->parameters[i];
     bool size = strcmp(p->member, "width") == 0 || strcmp(p->member, "height") == 0;
-    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_RULE) || size) continue;
+    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_RULE) || size)
+      continue;
     for (int k = 0; k < 2; k++) {
       vlCameraDef def = vl_default_camera_def(FILM_WIDTH, FILM_HEIGHT);
       def.eye[2] = 3;
@@ -462,9 +550,12 @@ static void settings_of_cameras(void **state) {
         def.lens_radius = 0.02;
         def.focus_distance = 4;
       }
-      if (strcmp(p->member, "readout_direction") == 0) def.readout = 0.1;
-      if (strcmp(p->member, "lens.rotation") == 0) def.lens.blades = 6;
-      if (put_other_setting(p, &def)) kept[k] += check_scene_file("cameras", p->member, &def, suffixes[k]);
+      if (strcmp(p->member, "readout_direction") == 0)
+        def.readout = 0.1;
+      if (strcmp(p->member, "lens.rotation") == 0)
+        def.lens.blades = 6;
+      if (put_other_setting(p, &def))
+        kept[k] += check_scene_file("cameras", p->member, &def, suffixes[k]);
     }
   }
   print_message("settings that files of scenes keep: pbrt %d, glTF %d\n", kept[0], kept[1]);

@@ -1,8 +1,10 @@
-/* conformance/conformance.h: what the laws of all families share: scenes as text, their images, a tracer that asks the
- * world about rays of the test's own, and estimates with their standard errors.
+/* conformance/conformance.h: what the laws of all families share: scenes as text, their images,
+ * a tracer that asks the world about rays of the test's own, and estimates with their standard
+ * errors.
  *
- * A law goes over the rows of its family. What it must know of a kind beyond the row is the kind's case, in a table
- * that the list of kinds makes: a kind without a case does not compile. */
+ * A law goes over the rows of its family. What it must know of a kind beyond the row is the
+ * kind's case, in a table that the list of kinds makes: a kind without a case does not compile.
+ */
 #ifndef TEST_CONFORMANCE_CONFORMANCE_H
 #define TEST_CONFORMANCE_CONFORMANCE_H
 
@@ -27,20 +29,24 @@
 enum { WIDTH = 12, SAMPLES = 4, PIXELS = 3 * WIDTH * WIDTH, TEXT = 8192 };
 
 static vlContext *context;
-/* Contexts of the lowest and of the best instruction set; the same where the machine has one. */
+/* Contexts of the lowest and of the best instruction set; the same where the machine has one.
+ */
 static vlContext *contexts[2];
 static char folder[40] = "/tmp/velo_conformance_XXXXXX";
 
-/* An array with one entry per kind: CASES(VL_MATERIAL, VL_MATERIAL_KINDS) with `static const Case diffuse_case`. */
+/* An array with one entry per kind: CASES(VL_MATERIAL, VL_MATERIAL_KINDS) with `static const
+ * Case diffuse_case`. */
 #define CASE_OF(NAME, name) &name##_case,
 
-/* ---- failures ---------------------------------------------------------------------------------------------------- */
+/* ---- failures
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* Counts and prints the laws that a kind breaks, so that one run names them all. */
 static int failures;
 
-__attribute__((format(printf, 3, 4))) static void broken(const char *family, const char *kind, const char *format,
-                                                         ...) {
+__attribute__((format(printf, 3, 4))) static void broken(const char *family, const char *kind,
+                                                         const char *format, ...) {
   char text[400];
   va_list arguments;
   va_start(arguments, format);
@@ -56,10 +62,13 @@ static void expect_no_failures(void) {
   assert_int_equal(found, 0);
 }
 
-/* ---- text -------------------------------------------------------------------------------------------------------- */
+/* ---- text
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 /* The whole scene: each `%s` of the form stands for `"kind" parameters`. */
-static void scene_text(char text[TEXT], const char *form, const char *kind, const char *parameters) {
+static void scene_text(char text[TEXT], const char *form, const char *kind,
+                       const char *parameters) {
   size_t needed = strlen(form) + 2 * (strlen(kind) + strlen(parameters) + 8);
   assert_true(needed < TEXT);
   text[0] = 0;
@@ -73,19 +82,23 @@ static void scene_text(char text[TEXT], const char *form, const char *kind, cons
   strcat(text, form);
 }
 
-/* ---- images ------------------------------------------------------------------------------------------------------ */
+/* ---- images
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(in, &scene), VL_OK);
   char name[100]; /* relative paths are relative to its folder */
   snprintf(name, sizeof name, "%s/scene.pbrt", folder);
-  if (vl_scene_load_memory(scene, name, text, strlen(text), NULL, error) == VL_OK) return scene;
+  if (vl_scene_load_memory(scene, name, text, strlen(text), NULL, error) == VL_OK)
+    return scene;
   vl_scene_destroy(scene);
   return NULL;
 }
 
-/* Renders a scene by its settings and destroys it. Null, and the reason: it cannot be rendered. */
+/* Renders a scene by its settings and destroys it. Null, and the reason: it cannot be rendered.
+ */
 static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
   vlWorld *world = NULL;
   vlFilm *film = NULL;
@@ -93,10 +106,14 @@ static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
   vlCamera camera;
   vlSceneDefs *defs = vl_scene_defs(scene);
   vlResult result = vl_world_build(scene, &defs->build, &world, error);
-  if (result == VL_OK) result = vl_camera_make(&defs->camera, &camera, NULL, error);
-  if (result == VL_OK) result = vl_film_create(in, &defs->film, &film);
-  if (result == VL_OK) result = vl_render(world, &camera, film, &defs->render, NULL, error);
-  if (result == VL_OK) result = vl_film_develop(film, NULL, &image);
+  if (result == VL_OK)
+    result = vl_camera_make(&defs->camera, &camera, NULL, error);
+  if (result == VL_OK)
+    result = vl_film_create(in, &defs->film, &film);
+  if (result == VL_OK)
+    result = vl_render(world, &camera, film, &defs->render, NULL, error);
+  if (result == VL_OK)
+    result = vl_film_develop(film, NULL, &image);
   vl_film_destroy(film);
   vl_world_destroy(world);
   vl_scene_destroy(scene);
@@ -106,10 +123,12 @@ static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
 /* Renders the text in a context. False, and the reason: it cannot be read. */
 static bool render_in(vlContext *in, const char *text, float pixels[PIXELS], vlError *error) {
   vlScene *scene = load_text(in, text, error);
-  if (!scene) return false;
+  if (!scene)
+    return false;
   vl_scene_defs(scene)->render.spp = SAMPLES;
   vlImage *image = render_scene(in, scene, error);
-  if (image) memcpy(pixels, vl_image_const_pixels(image), PIXELS * sizeof *pixels);
+  if (image)
+    memcpy(pixels, vl_image_const_pixels(image), PIXELS * sizeof *pixels);
   vl_image_destroy(image);
   return image != NULL;
 }
@@ -117,7 +136,9 @@ static bool render_text(const char *text, float pixels[PIXELS], vlError *error) 
   return render_in(context, text, pixels, error);
 }
 
-/* ---- estimates --------------------------------------------------------------------------------------------------- */
+/* ---- estimates
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 /* A mean with its standard error. */
 typedef struct Mean {
@@ -136,18 +157,22 @@ static double variance_of_mean(const Mean *m) {
   double variance = m->count > 1 ? (m->squares / m->count - mean * mean) / (m->count - 1) : 0;
   return variance > 0 ? variance : 0;
 }
-/* Whether two means differ by chance: 5 standard errors, and `slack` for what is not exact. NaN: no. */
+/* Whether two means differ by chance: 5 standard errors, and `slack` for what is not exact.
+ * NaN: no. */
 static bool mean_agrees(const Mean *a, const Mean *b, double slack) {
-  return fabs(mean_of(a) - mean_of(b)) <= 5 * sqrt(variance_of_mean(a) + variance_of_mean(b)) + slack;
+  return fabs(mean_of(a) - mean_of(b)) <=
+         5 * sqrt(variance_of_mean(a) + variance_of_mean(b)) + slack;
 }
 static bool mean_is(const Mean *a, double known, double slack) {
   return fabs(mean_of(a) - known) <= 5 * sqrt(variance_of_mean(a)) + slack;
 }
 
-/* ---- asking the world -------------------------------------------------------------------------------------------- */
+/* ---- asking the world
+ * --------------------------------------------------------------------------------------------
+ */
 
-/* A function that asks the world through the functions of velo/trace.h. Called once for each batch of 1024 paths, on
- * one thread; `batch` counts them. */
+/* A function that asks the world through the functions of velo/trace.h. Called once for each
+ * batch of 1024 paths, on one thread; `batch` counts them. */
 typedef struct Probe {
   void (*ask)(struct Probe *probe, vlTrace *trace, const vlOwnPaths *paths);
   void *user;
@@ -156,7 +181,8 @@ typedef struct Probe {
 
 static void probe_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   Probe *probe = user;
-  if (paths->count < VL_OWN_BATCH || probe->batch == probe->batches) return;
+  if (paths->count < VL_OWN_BATCH || probe->batch == probe->batches)
+    return;
   probe->ask(probe, trace, paths);
   probe->batch++;
 }
@@ -165,7 +191,8 @@ static void probe_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) 
 static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   vlError error = {0};
   vlScene *scene = load_text(context, text, &error);
-  if (!scene) fail_msg("%s\n%s", error.message, text);
+  if (!scene)
+    fail_msg("%s\n%s", error.message, text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   const vlOwnTracer tracer = {.name = "probe", .radiance = probe_radiance, .user = probe};
   defs->build.color = VL_COLOR_RGB;
@@ -179,7 +206,8 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   probe->batch = 0;
   probe->batches = batches;
   vlImage *image = render_scene(context, scene, &error);
-  if (!image) fail_msg("%s\n%s", error.message, text);
+  if (!image)
+    fail_msg("%s\n%s", error.message, text);
   vl_image_destroy(image);
   assert_int_equal(probe->batch, batches);
 }
@@ -190,8 +218,10 @@ static vlTraceRays *new_rays(void) {
   rays->count = VL_OWN_BATCH;
   return rays;
 }
-static void set_ray(vlTraceRays *rays, uint32_t i, const double origin[3], const double direction[3]) {
-  double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+static void set_ray(vlTraceRays *rays, uint32_t i, const double origin[3],
+                    const double direction[3]) {
+  double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
+                       direction[2] * direction[2]);
   for (int k = 0; k < 3; k++) {
     rays->origin[k][i] = (float)origin[k];
     rays->direction[k][i] = (float)(direction[k] / length);
@@ -200,7 +230,8 @@ static void set_ray(vlTraceRays *rays, uint32_t i, const double origin[3], const
   rays->t_max[i] = INFINITY;
   rays->width[i] = 0;
 }
-/* A direction of a set of `count` that fills the sphere evenly (Fibonacci's spiral, turned by `turn`). */
+/* A direction of a set of `count` that fills the sphere evenly (Fibonacci's spiral, turned by
+ * `turn`). */
 static void even_direction(uint32_t i, uint32_t count, double turn, double d[3]) {
   double z = 1 - (2 * i + 1.0) / count;
   double phi = 2 * PI * (i * 0.6180339887498949 + turn);
@@ -210,20 +241,28 @@ static void even_direction(uint32_t i, uint32_t count, double turn, double d[3])
   d[2] = z;
 }
 
-/* ---- forms of scenes --------------------------------------------------------------------------------------------- */
+/* ---- forms of scenes
+ * ---------------------------------------------------------------------------------------------
+ */
 
-#define HEAD                                                                                           \
-  "LookAt 0 1.5 4 0 .4 0 0 1 0 Camera \"perspective\" \"float fov\" 40\n"                              \
-  "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12 \"string filename\" \"x.pfm\"\n" \
+#define HEAD                                                                                \
+  "LookAt 0 1.5 4 0 .4 0 0 1 0 Camera \"perspective\" \"float fov\" 40\n"                   \
+  "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12 \"string filename\" " \
+  "\"x.pfm\"\n"                                                                             \
   "Sampler \"independent\" Integrator \"volpath\" \"integer maxdepth\" 6\n"
 #define LIGHTS                                       \
   "LightSource \"infinite\" \"rgb L\" [.3 .35 .4]\n" \
   "LightSource \"distant\" \"point3 from\" [2 3 1.5] \"rgb L\" [2 1.9 1.7]\n"
-#define NAMED                                                                                              \
-  "Texture \"bumps\" \"float\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5 \"float tex1\" .1\n" \
-  "MakeNamedMaterial \"grey\" \"string type\" \"diffuse\"\n"                                               \
+#define NAMED                                                                           \
+  "Texture \"bumps\" \"float\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5 " \
+  "\"float "                                                                            \
+  "tex1\" .1\n"                                                                         \
+  "MakeNamedMaterial \"grey\" \"string type\" \"diffuse\"\n"                            \
   "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\n"
-#define GROUND "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"
+#define GROUND                                                                              \
+  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 " \
+  "-.6 "                                                                                    \
+  "-3]\n"
 #define BALL "Rotate 70 1 .3 .2 Shape \"sphere\" \"float radius\" .8\n"
 
 #endif

@@ -1,4 +1,5 @@
-/* conformance/files.h: the files that the cases of kinds name: images, meshes, a measured BRDF, densities. */
+/* conformance/files.h: the files that the cases of kinds name: images, meshes, a measured BRDF,
+ * densities. */
 #ifndef TEST_CONFORMANCE_FILES_H
 #define TEST_CONFORMANCE_FILES_H
 
@@ -26,24 +27,29 @@ static bool write_image(const char *name, float phase) {
   vlImage *image;
   char path[100];
   path_of(path, name);
-  if (vl_image_create(context, &def, &image) != VL_OK) return false;
+  if (vl_image_create(context, &def, &image) != VL_OK)
+    return false;
   float *pixels = vl_image_pixels(image);
-  for (int i = 0; i < 3 * 64; i++) pixels[i] = 0.5f + 0.4f * (float)((i * 37 + (int)phase * 11) % 64 - 32) / 32;
+  for (int i = 0; i < 3 * 64; i++)
+    pixels[i] = 0.5f + 0.4f * (float)((i * 37 + (int)phase * 11) % 64 - 32) / 32;
   bool done = vl_image_write(image, path, NULL, NULL) == VL_OK;
   vl_image_destroy(image);
   return done;
 }
 
-/* An image of 8 x 8 pixels with .2 and .4 in the left and right half of its upper rows, .6 and .8 of the lower. */
+/* An image of 8 x 8 pixels with .2 and .4 in the left and right half of its upper rows, .6 and
+ * .8 of the lower. */
 static bool write_quarters(const char *name) {
   vlImageDef def = vl_default_image_def(8, 8, 3);
   vlImage *image;
   char path[100];
   path_of(path, name);
-  if (vl_image_create(context, &def, &image) != VL_OK) return false;
+  if (vl_image_create(context, &def, &image) != VL_OK)
+    return false;
   float *pixels = vl_image_pixels(image);
   for (int y = 0; y < 8; y++)
-    for (int x = 0; x < 24; x++) pixels[24 * y + x] = (x < 12 ? 0.2f : 0.4f) + (y < 4 ? 0.0f : 0.4f);
+    for (int x = 0; x < 24; x++)
+      pixels[24 * y + x] = (x < 12 ? 0.2f : 0.4f) + (y < 4 ? 0.0f : 0.4f);
   bool done = vl_image_write(image, path, NULL, NULL) == VL_OK;
   vl_image_destroy(image);
   return done;
@@ -79,17 +85,20 @@ static bool write_nanovdb(const char *name, float last) {
 }
 
 static const char ply[] =
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-    "property float u\nproperty float v\nelement face 2\nproperty list uchar int vertex_indices\n"
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+    "float "
+    "z\n"
+    "property float u\nproperty float v\nelement face 2\nproperty list uchar int "
+    "vertex_indices\n"
     "end_header\n-1 -1 0 0 0\n1 -1 0 1 0\n-1 1 0 0 1\n1 1 0 1 1\n3 0 1 2\n3 1 3 2\n";
 
 static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
-              write_image("other.pfm", 3) && write_image("normals.pfm", 4) && write_image("a.tga", 5) &&
-              write_quarters("quarters.pfm");
+              write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
+              write_image("a.tga", 5) && write_quarters("quarters.pfm");
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
-  done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) && write_nanovdb("a.nvdb", 0) &&
-         write_nanovdb("b.nvdb", 1);
+  done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
+         write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1);
   return done;
 }
 
@@ -97,7 +106,8 @@ static bool write_files(void) {
 static void remove_files(void) {
   char command[100];
   snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  if (system(command) != 0) print_error("%s stays\n", folder);
+  if (system(command) != 0)
+    print_error("%s stays\n", folder);
 }
 
 #endif

@@ -1,7 +1,7 @@
-/* conformance/hostile.h: every parameter of every row has hostile values: in the defs of the library (NaN, infinities,
- * -1) and in the text of files (those, 2^32 + 8, nothing, a million numbers). A call may succeed or fail with a
- * message; NaN fails, an infinity where the row does not allow it, and what is out of the row's range, unless it is
- * clamped. */
+/* conformance/hostile.h: every parameter of every row has hostile values: in the defs of the
+ * library (NaN, infinities, -1) and in the text of files (those, 2^32 + 8, nothing, a million
+ * numbers). A call may succeed or fail with a message; NaN fails, an infinity where the row
+ * does not allow it, and what is out of the row's range, unless it is clamped. */
 #ifndef TEST_CONFORMANCE_HOSTILE_H
 #define TEST_CONFORMANCE_HOSTILE_H
 
@@ -12,7 +12,9 @@
 #include "velo/setting.h"
 #include "velo/shape.h"
 
-/* ---- defs -------------------------------------------------------------------------------------------------------- */
+/* ---- defs
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 typedef union AnyDef {
   vlMaterialDef material;
@@ -29,14 +31,22 @@ typedef union AnyDef {
 /* A def that the library accepts, but for what the kind requires. */
 static void usual_def(const char *family, int kind, AnyDef *def) {
   memset(def, 0, sizeof *def);
-  if (strcmp(family, "materials") == 0) def->material = vl_default_material_def((vlMaterialKind)kind);
-  if (strcmp(family, "textures") == 0) def->texture = vl_default_texture_def((vlTextureKind)kind, false);
-  if (strcmp(family, "lights") == 0) def->light = vl_default_light_def((vlLightKind)kind);
-  if (strcmp(family, "emission") == 0) def->emission = vl_default_emission_def();
-  if (strcmp(family, "shapes") == 0) def->shape = vl_default_shape_def((vlShapeKind)kind);
-  if (strcmp(family, "media") == 0) def->medium = vl_default_medium_def((vlMediumKind)kind);
-  if (strcmp(family, "filters") == 0) def->filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
-  if (strcmp(family, "cameras") == 0) def->camera = vl_default_camera_def(8, 8);
+  if (strcmp(family, "materials") == 0)
+    def->material = vl_default_material_def((vlMaterialKind)kind);
+  if (strcmp(family, "textures") == 0)
+    def->texture = vl_default_texture_def((vlTextureKind)kind, false);
+  if (strcmp(family, "lights") == 0)
+    def->light = vl_default_light_def((vlLightKind)kind);
+  if (strcmp(family, "emission") == 0)
+    def->emission = vl_default_emission_def();
+  if (strcmp(family, "shapes") == 0)
+    def->shape = vl_default_shape_def((vlShapeKind)kind);
+  if (strcmp(family, "media") == 0)
+    def->medium = vl_default_medium_def((vlMediumKind)kind);
+  if (strcmp(family, "filters") == 0)
+    def->filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
+  if (strcmp(family, "cameras") == 0)
+    def->camera = vl_default_camera_def(8, 8);
 }
 
 /* What the library says to the def. */
@@ -44,12 +54,18 @@ static vlResult offer(const char *family, AnyDef *def, vlError *error) {
   vlScene *scene;
   vlResult result;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-  if (strcmp(family, "materials") == 0) vl_scene_add_material(scene, &def->material);
-  if (strcmp(family, "textures") == 0) vl_scene_add_texture(scene, &def->texture);
-  if (strcmp(family, "lights") == 0) vl_scene_add_light(scene, &def->light);
-  if (strcmp(family, "emission") == 0) vl_scene_add_emission(scene, &def->emission);
-  if (strcmp(family, "shapes") == 0) vl_scene_add_shape(scene, &def->shape);
-  if (strcmp(family, "media") == 0) vl_scene_add_medium(scene, &def->medium);
+  if (strcmp(family, "materials") == 0)
+    vl_scene_add_material(scene, &def->material);
+  if (strcmp(family, "textures") == 0)
+    vl_scene_add_texture(scene, &def->texture);
+  if (strcmp(family, "lights") == 0)
+    vl_scene_add_light(scene, &def->light);
+  if (strcmp(family, "emission") == 0)
+    vl_scene_add_emission(scene, &def->emission);
+  if (strcmp(family, "shapes") == 0)
+    vl_scene_add_shape(scene, &def->shape);
+  if (strcmp(family, "media") == 0)
+    vl_scene_add_medium(scene, &def->medium);
   result = vl_scene_result(scene, error);
   if (strcmp(family, "filters") == 0) {
     vlFilmDef film_def = vl_default_film_def(8, 8);
@@ -72,9 +88,13 @@ static bool put_number(const vlParameter *p, char *def, double number) {
   float single = (float)number;
   switch (p->type) {
     case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_FLOAT3: memcpy(at, &single, sizeof single); return true;
+    case VL_PARAMETER_FLOAT3:
+      memcpy(at, &single, sizeof single);
+      return true;
     case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_DOUBLE3: memcpy(at, &number, sizeof number); return true;
+    case VL_PARAMETER_DOUBLE3:
+      memcpy(at, &number, sizeof number);
+      return true;
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_FLOAT_INPUT: {
       vlFloatInput input = vl_float_input(single);
@@ -97,13 +117,15 @@ static bool put_number(const vlParameter *p, char *def, double number) {
     case VL_PARAMETER_STRING:
     case VL_PARAMETER_FILE:
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: return false;
+    case VL_PARAMETER_BLOCK:
+      return false;
   }
   return false;
 }
 
 static bool must_fail(const vlParameter *p, double x) {
-  if (isinf(x) && x > 0 && p->flags & VL_PARAMETER_INFINITE) return false;
+  if (isinf(x) && x > 0 && p->flags & VL_PARAMETER_INFINITE)
+    return false;
   bool limited = (p->low != 0 || p->high != 0) && !(p->flags & VL_PARAMETER_CLAMPED);
   bool low = limited && (p->flags & VL_PARAMETER_ABOVE_LOW ? x <= p->low : x < p->low);
   bool high = limited && (p->flags & VL_PARAMETER_BELOW_HIGH ? x >= p->high : x > p->high);
@@ -118,12 +140,15 @@ static void check_def(const vlKindFamily *family, int kind, const vlParameter *p
   for (size_t i = 0; i < sizeof hostile / sizeof *hostile; i++) {
     memset(&error, 0, sizeof error);
     usual_def(family->name, kind, &def);
-    if (!put_number(p, (char *)&def, hostile[i])) return;
+    if (!put_number(p, (char *)&def, hostile[i]))
+      return;
     vlResult result = offer(family->name, &def, &error);
     if (result == VL_OK && must_fail(p, hostile[i]))
-      broken(family->name, family->constants[kind], "%s = %g is accepted", p->member, hostile[i]);
+      broken(family->name, family->constants[kind], "%s = %g is accepted", p->member,
+             hostile[i]);
     if (result != VL_OK && result != VL_ERROR_SCENE && result != VL_ERROR_ARGUMENT)
-      broken(family->name, family->constants[kind], "%s = %g: result %d", p->member, hostile[i], (int)result);
+      broken(family->name, family->constants[kind], "%s = %g: result %d", p->member, hostile[i],
+             (int)result);
   }
 }
 
@@ -136,7 +161,8 @@ static void hostile_defs(void **state) {
     for (uint32_t i = 0; i < family->kind_count; i++)
       for (uint32_t k = 0; k < family->rows[i]->parameter_count; k++) {
         const vlParameter *p = &family->rows[i]->parameters[k];
-        if (!(p->flags & VL_PARAMETER_SHORTHAND)) check_def(family, (int)i, p);
+        if (!(p->flags & VL_PARAMETER_SHORTHAND))
+          check_def(family, (int)i, p);
       }
   }
   const vlKindRow *camera = vl_settings(VL_SETTING_CAMERA);
@@ -146,20 +172,26 @@ static void hostile_defs(void **state) {
   expect_no_failures();
 }
 
-/* ---- files ------------------------------------------------------------------------------------------------------- */
+/* ---- files
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 enum { LONG = 1000000 };
 
 /* The type of a parameter in pbrt files. */
 static const char *type_in_files(const vlParameter *p) {
   switch (p->type) {
-    case VL_PARAMETER_BOOL: return "bool";
-    case VL_PARAMETER_COUNT: return "integer";
+    case VL_PARAMETER_BOOL:
+      return "bool";
+    case VL_PARAMETER_COUNT:
+      return "integer";
     case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3: return p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3";
+    case VL_PARAMETER_DOUBLE3:
+      return p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3";
     case VL_PARAMETER_CHOICE:
     case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE: return "string";
+    case VL_PARAMETER_FILE:
+      return "string";
     case VL_PARAMETER_SPECTRUM:
     case VL_PARAMETER_SPECTRUM_INPUT:
       return p->flags & (VL_PARAMETER_NUMBER | VL_PARAMETER_ONE_NUMBER) ? "float" : "rgb";
@@ -168,7 +200,8 @@ static const char *type_in_files(const vlParameter *p) {
     case VL_PARAMETER_FLOAT_INPUT:
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: break;
+    case VL_PARAMETER_BLOCK:
+      break;
   }
   return p->text && strstr(p->text, "point") ? "point3" : "float";
 }
@@ -176,7 +209,8 @@ static const char *type_in_files(const vlParameter *p) {
 /* Loads the scene and builds its world. */
 static vlResult build_text(const char *text, vlError *error) {
   vlScene *scene = load_text(context, text, error);
-  if (!scene) return error->code ? error->code : VL_ERROR_SCENE;
+  if (!scene)
+    return error->code ? error->code : VL_ERROR_SCENE;
   vlWorld *world = NULL;
   vlResult result = vl_world_build(scene, &vl_scene_defs(scene)->build, &world, error);
   vl_world_destroy(world);
@@ -188,13 +222,14 @@ static char *long_value(void) {
   char *text = malloc(2 * LONG + 3);
   assert_non_null(text);
   text[0] = '[';
-  for (int i = 0; i < LONG; i++) memcpy(text + 1 + 2 * i, "1 ", 2);
+  for (int i = 0; i < LONG; i++)
+    memcpy(text + 1 + 2 * i, "1 ", 2);
   strcpy(text + 1 + 2 * LONG, "]");
   return text;
 }
 
-static void check_file_value(const Family *family, const vlKindRow *row, const vlParameter *p, const char *value,
-                             bool refused) {
+static void check_file_value(const Family *family, const vlKindRow *row, const vlParameter *p,
+                             const char *value, bool refused) {
   const ParameterCase *kind_case = find_case(family->name, row->name, NULL);
   const ParameterCase *c = find_case(family->name, row->name, p->name);
   const char *form = form_of(family, row);
@@ -213,15 +248,18 @@ static void check_file_value(const Family *family, const vlKindRow *row, const v
     memcpy(end, at, length);
     end += length;
     *end = 0;
-    if (!next) break;
-    end += snprintf(end, room - (size_t)(end - text), "\"%s\" %s \"%s %s\" %s", directive, parameters, type_in_files(p),
-                    p->name, value);
+    if (!next)
+      break;
+    end += snprintf(end, room - (size_t)(end - text), "\"%s\" %s \"%s %s\" %s", directive,
+                    parameters, type_in_files(p), p->name, value);
     at = next + 2;
   }
   vlResult result = build_text(text, &error);
   free(text);
-  if (result == VL_OK && refused) broken(family->name, row->name, "\"%s\" %.40s is accepted", p->name, value);
-  if (result != VL_OK && !error.message[0]) broken(family->name, row->name, "\"%s\" %.40s: no message", p->name, value);
+  if (result == VL_OK && refused)
+    broken(family->name, row->name, "\"%s\" %.40s is accepted", p->name, value);
+  if (result != VL_OK && !error.message[0])
+    broken(family->name, row->name, "\"%s\" %.40s: no message", p->name, value);
 }
 
 static void hostile_files(void **state) {
@@ -234,15 +272,22 @@ static void hostile_files(void **state) {
       const vlKindRow *row = rows->rows[i];
       for (uint32_t k = 0; row->name && k < row->parameter_count; k++) {
         const vlParameter *p = &row->parameters[k];
-        if (!p->name) continue;
-        bool number = strcmp(type_in_files(p), "bool") != 0 && strcmp(type_in_files(p), "string") != 0;
+        if (!p->name)
+          continue;
+        bool number =
+            strcmp(type_in_files(p), "bool") != 0 && strcmp(type_in_files(p), "string") != 0;
         bool three = strcmp(type_in_files(p), "rgb") == 0 || strstr(type_in_files(p), "3");
-        check_file_value(family, row, p, number ? three ? "[nan nan nan]" : "[nan]" : "[\"nan\"]", number);
-        check_file_value(family, row, p, number ? three ? "[1e999 0 0]" : "[1e999]" : "[\"\"]", number);
-        check_file_value(family, row, p, number ? three ? "[-1 -1 -1]" : "[-1]" : "[\"a\" \"b\"]", false);
-        check_file_value(family, row, p, number ? three ? "[4294967304 0 0]" : "[4294967304]" : "[7]", false);
+        check_file_value(family, row, p,
+                         number ? three ? "[nan nan nan]" : "[nan]" : "[\"nan\"]", number);
+        check_file_value(family, row, p, number ? three ? "[1e999 0 0]" : "[1e999]" : "[\"\"]",
+                         number);
+        check_file_value(family, row, p,
+                         number ? three ? "[-1 -1 -1]" : "[-1]" : "[\"a\" \"b\"]", false);
+        check_file_value(family, row, p,
+                         number ? three ? "[4294967304 0 0]" : "[4294967304]" : "[7]", false);
         check_file_value(family, row, p, "[]", false);
-        if (k % 5 == 0) check_file_value(family, row, p, many, false);
+        if (k % 5 == 0)
+          check_file_value(family, row, p, many, false);
       }
     }
   }

@@ -1,7 +1,8 @@
-/* conformance/lights.h: the laws of lights, of the emission of shapes and of the shapes that emit, asked at points of a
- * floor: a sample's radiance is the emission along its direction over the density; the density integrates to 1 where
- * there is light, so that the mean of the samples is the integral of the emission; lights that no ray can hit shine as
- * the closed form says. */
+/* conformance/lights.h: the laws of lights, of the emission of shapes and of the shapes that
+ * emit, asked at points of a floor: a sample's radiance is the emission along its direction
+ * over the density; the density integrates to 1 where there is light, so that the mean of the
+ * samples is the integral of the emission; lights that no ray can hit shine as the closed form
+ * says. */
 #ifndef TEST_CONFORMANCE_LIGHTS_H
 #define TEST_CONFORMANCE_LIGHTS_H
 
@@ -18,7 +19,8 @@ typedef struct LightVariant {
   const char *parameters; /* null ends the list */
   LightKnown known[4];    /* of delta lights; rgb[1] = 0 ends the list unless x is set */
   uint32_t known_count;
-  bool compensated; /* directions darker than the mean are not sampled: BSDF samples find their light */
+  bool compensated; /* directions darker than the mean are not sampled: BSDF samples find their
+                       light */
 } LightVariant;
 
 enum { LIGHT_VARIANTS = 4 };
@@ -39,12 +41,14 @@ static const LightCase point_light = {
          .known = {{0, 0, {2, 2, 2}}},
          .known_count = 1},
     }};
-/* Between the cosines of 40 and of 20 degrees t runs from 0 to 1; the falloff is 3 t^2 - 2 t^3, here of t = .5 and of
- * .1955 (36.87 degrees), over the squared distance. */
+/* Between the cosines of 40 and of 20 degrees t runs from 0 to 1; the falloff is 3 t^2 - 2 t^3,
+ * here of t = .5 and of .1955 (36.87 degrees), over the squared distance. */
 static const LightCase spot_light = {
     .variants = {
-        {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float coneangle\" 40 \"float "
-                       "conedeltaangle\" 20",
+        {.parameters =
+             "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
+             "coneangle\" 40 \"float "
+             "conedeltaangle\" 20",
          .known = {{0, 0, {1, 1, 1}},
                    {.612460, 0, {.363607, .363607, .363607}},
                    {.75, 0, {.063842, .063842, .063842}},
@@ -59,7 +63,9 @@ static const LightCase distant_light = {
         {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 2 1]",
          .known = {{0, 0, {3, 2, 1}}, {1, 1, {3, 2, 1}}},
          .known_count = 2},
-        {.parameters = "\"point3 from\" [1 1 0] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1] \"float illuminance\" 5",
+        {.parameters =
+             "\"point3 from\" [1 1 0] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1] \"float "
+             "illuminance\" 5",
          .known = {{0, 0, {5, 5, 5}}},
          .known_count = 1},
     }};
@@ -67,33 +73,40 @@ static const LightCase infinite_light = {
     .variants = {
         {.parameters = "\"rgb L\" [.5 1 2]"},
         {.parameters = "\"string filename\" \"sky.pfm\"", .compensated = true},
-        {.parameters = "\"string filename\" \"sky.pfm\" \"point3 portal\" [-2 0 -3 2 0 -3 2 4 -3 -2 4 -3]"},
+        {.parameters = "\"string filename\" \"sky.pfm\" \"point3 portal\" [-2 0 -3 2 0 -3 2 4 "
+                       "-3 -2 4 -3]"},
     }};
-/* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom. Its map has y upwards:
- * below the light, u goes with x and v with z. The distance is the root of 1.5. */
-static const LightCase goniometric_light = {.before = "Translate 0 1 0",
-                                            .variants = {
-                                                {.parameters = "\"string filename\" \"quarters.pfm\" \"rgb I\" [1 1 1]",
-                                                 .known = {{.5, .5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
-                                                           {-.5, .5, {.6 / 1.5, .6 / 1.5, .6 / 1.5}},
-                                                           {.5, -.5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
-                                                           {-.5, -.5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}},
-                                                 .known_count = 4},
-                                            }};
-static const LightCase projection_light = {.before = "Translate 0 1 0 Rotate 90 1 0 0",
-                                           .variants = {
-                                               {.parameters = "\"string filename\" \"quarters.pfm\" \"float fov\" 90",
-                                                .known = {{.5, .5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
-                                                          {-.5, .5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}},
-                                                          {.5, -.5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
-                                                          {1.2, 0, {0, 0, 0}}},
-                                                .known_count = 4},
-                                           }};
+/* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom.
+ * Its map has y upwards: below the light, u goes with x and v with z. The distance is the root
+ * of 1.5.
+ */
+static const LightCase goniometric_light = {
+    .before = "Translate 0 1 0",
+    .variants = {
+        {.parameters = "\"string filename\" \"quarters.pfm\" \"rgb I\" [1 1 1]",
+         .known = {{.5, .5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
+                   {-.5, .5, {.6 / 1.5, .6 / 1.5, .6 / 1.5}},
+                   {.5, -.5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
+                   {-.5, -.5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}},
+         .known_count = 4},
+    }};
+static const LightCase projection_light = {
+    .before = "Translate 0 1 0 Rotate 90 1 0 0",
+    .variants = {
+        {.parameters = "\"string filename\" \"quarters.pfm\" \"float fov\" 90",
+         .known = {{.5, .5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
+                   {-.5, .5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}},
+                   {.5, -.5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
+                   {1.2, 0, {0, 0, 0}}},
+         .known_count = 4},
+    }};
 
 #define LIGHT_CASE(NAME, name) &name##_light,
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
 
-/* ---- asking ------------------------------------------------------------------------------------------------------ */
+/* ---- asking
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct LightLaws {
   double x, z; /* the point of the floor */
@@ -110,7 +123,8 @@ static void ask_light(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   LightLaws *l = probe->user;
   const double above[3] = {l->x, 0.02, l->z};
   const double down[3] = {0, -1, 0};
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) set_ray(l->rays, i, above, down);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    set_ray(l->rays, i, above, down);
   vl_world_trace(trace, l->rays, l->hits);
   assert_true(isfinite(l->hits->t[0]));
   vl_trace_lights(trace, 0, l->lights);
@@ -129,8 +143,10 @@ static void ask_light(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   vl_world_trace(trace, l->rays, l->hits);
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
     for (int c = 0; c < 3; c++)
-      if (l->rays->direction[1][i] > 0) sum[c] += (double)l->hits->emission[c][i];
-  for (int c = 0; c < 3; c++) mean_add(&l->integral[c], sum[c] * 4 * PI / VL_OWN_BATCH);
+      if (l->rays->direction[1][i] > 0)
+        sum[c] += (double)l->hits->emission[c][i];
+  for (int c = 0; c < 3; c++)
+    mean_add(&l->integral[c], sum[c] * 4 * PI / VL_OWN_BATCH);
   /* the emission along the samples */
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     const double from[3] = {l->x, 1e-5, l->z};
@@ -146,7 +162,8 @@ static void ask_light(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
       double radiance = (double)l->lights->radiance[c][i];
       double emitted = (double)l->hits->emission[c][i];
       mean_add(&l->sampled[c], up && !hidden[i] ? radiance : 0);
-      alike = alike && fabs(radiance * (double)l->lights->pdf[i] - emitted) <= 0.01 * emitted + 1e-5;
+      alike = alike &&
+              fabs(radiance * (double)l->lights->pdf[i] - emitted) <= 0.01 * emitted + 1e-5;
     }
     l->deltas += l->lights->delta[i];
     if (l->lights->pdf[i] > 0 && up && !hidden[i] && !l->lights->delta[i]) {
@@ -169,18 +186,20 @@ static LightLaws ask_floor(const char *text, double x, double z) {
 }
 
 /* The laws of light that rays can hit, at a few points of the floor. */
-static void check_hit_light(const char *family, const char *kind, const char *parameters, const char *text,
-                            bool compensated) {
+static void check_hit_light(const char *family, const char *kind, const char *parameters,
+                            const char *text, bool compensated) {
   static const double points[][2] = {{0.1, 0.2}, {-1.2, 0.7}};
   for (int k = 0; k < 2; k++) {
     LightLaws l = ask_floor(text, points[k][0], points[k][1]);
-    if (l.compared < 1000) broken(family, kind, "%s: %u samples of 16384", parameters, l.compared);
+    if (l.compared < 1000)
+      broken(family, kind, "%s: %u samples of 16384", parameters, l.compared);
     if (l.wrong > l.compared / 50)
-      broken(family, kind, "%s: %u of %u samples are not emission over density", parameters, l.wrong, l.compared);
+      broken(family, kind, "%s: %u of %u samples are not emission over density", parameters,
+             l.wrong, l.compared);
     for (int c = 0; c < 3 && !compensated; c++)
       if (!mean_agrees(&l.sampled[c], &l.integral[c], 0.02 * mean_of(&l.integral[c])))
-        broken(family, kind, "%s: samples give %.4f, the emission integrates to %.4f", parameters,
-               mean_of(&l.sampled[c]), mean_of(&l.integral[c]));
+        broken(family, kind, "%s: samples give %.4f, the emission integrates to %.4f",
+               parameters, mean_of(&l.sampled[c]), mean_of(&l.integral[c]));
   }
 }
 
@@ -191,12 +210,13 @@ static void check_delta_light(const char *kind, const LightVariant *v, const cha
     LightLaws l = ask_floor(text, known->x, known->z);
     for (int c = 0; c < 3; c++)
       if (fabs(mean_of(&l.sampled[c]) - known->rgb[c]) > 2e-3 * known->rgb[c] + 2e-4)
-        broken("lights", kind, "%s: %.5f arrives at (%g, %g), not %.5f", v->parameters, mean_of(&l.sampled[c]),
-               known->x, known->z, known->rgb[c]);
+        broken("lights", kind, "%s: %.5f arrives at (%g, %g), not %.5f", v->parameters,
+               mean_of(&l.sampled[c]), known->x, known->z, known->rgb[c]);
   }
 }
 
-#define FLOOR "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
+#define FLOOR \
+  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
 
 static void laws_of_lights(void **state) {
   (void)state;
@@ -207,20 +227,24 @@ static void laws_of_lights(void **state) {
     const vlKindRow *row = family->rows[k];
     const LightCase *c = light_cases[k];
     assert_non_null(c->variants[0].parameters);
-    snprintf(form, sizeof form, HEAD "WorldBegin " FLOOR "AttributeBegin %s LightSource %%s AttributeEnd\n",
+    snprintf(form, sizeof form,
+             HEAD "WorldBegin " FLOOR "AttributeBegin %s LightSource %%s AttributeEnd\n",
              c->before ? c->before : "");
     for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++) {
       scene_text(text, form, row->name, c->variants[i].parameters);
       if (row->traits & VL_LIGHT_TRAIT_DELTA)
         check_delta_light(row->name, &c->variants[i], text);
       else
-        check_hit_light("lights", row->name, c->variants[i].parameters, text, c->variants[i].compensated);
+        check_hit_light("lights", row->name, c->variants[i].parameters, text,
+                        c->variants[i].compensated);
     }
   }
   expect_no_failures();
 }
 
-/* ---- shapes that emit -------------------------------------------------------------------------------------------- */
+/* ---- shapes that emit
+ * --------------------------------------------------------------------------------------------
+ */
 
 static const char *const emissions[] = {
     "\"rgb L\" [1 2 3] \"float scale\" 2",
@@ -230,14 +254,16 @@ static const char *const emissions[] = {
 };
 
 /* The light of a shape that is placed above the floor. */
-static void check_emitting_shape(const char *family, const char *kind, const char *shape, const char *parameters,
-                                 const char *emission) {
+static void check_emitting_shape(const char *family, const char *kind, const char *shape,
+                                 const char *parameters, const char *emission) {
   static char text[TEXT];
-  snprintf(text, sizeof text,
-           HEAD "WorldBegin " FLOOR
-                "AttributeBegin AreaLightSource \"diffuse\" %s Translate .3 1.1 .2 Rotate 70 1 .2 .1 "
-                "Shape \"%s\" %s AttributeEnd\n",
-           emission, shape, parameters);
+  snprintf(
+      text, sizeof text,
+      HEAD
+      "WorldBegin " FLOOR
+      "AttributeBegin AreaLightSource \"diffuse\" %s Translate .3 1.1 .2 Rotate 70 1 .2 .1 "
+      "Shape \"%s\" %s AttributeEnd\n",
+      emission, shape, parameters);
   check_hit_light(family, kind, emission, text, false);
 }
 

@@ -1,8 +1,10 @@
-/* conformance/parameters.h: every parameter of every kind that files can name changes the image, is written to pbrt
- * files and read again, and is known to the doctor. It writes a scene with one parameter that is not its default, reads
- * it, renders a few pixels and compares the bytes with those of the scene without the parameter. It fails where a
- * reader, a compile function or a kernel forgets a parameter, and where a kind or a parameter is added that the test
- * cannot give a value. */
+/* conformance/parameters.h: every parameter of every kind that files can name changes the
+ * image, is written to pbrt files and read again, and is known to the doctor. It writes a scene
+ * with one parameter that is not its default, reads it, renders a few pixels and compares the
+ * bytes with those of the scene without the parameter. It fails where a reader, a compile
+ * function or a kernel forgets a parameter, and where a kind or a parameter is added that the
+ * test cannot give a value.
+ */
 #ifndef TEST_CONFORMANCE_PARAMETERS_H
 #define TEST_CONFORMANCE_PARAMETERS_H
 
@@ -13,41 +15,56 @@
 
 enum { VALUES = 3 };
 
-/* ---- cases ------------------------------------------------------------------------------------------------------- */
+/* ---- cases
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static bool same_name(const char *a, const char *b) {
   return a == b || (a && b && strcmp(a, b) == 0);
 }
 
 /* The case of a parameter that is in the case of its kind; null: there is none. */
-static const ParameterCase *own_case(const char *family, const char *kind, const char *parameter) {
+static const ParameterCase *own_case(const char *family, const char *kind,
+                                     const char *parameter) {
   const vlKindFamily *textures = vl_kind_family_find("textures");
-  if (!kind || strcmp(family, "textures") != 0) return NULL;
+  if (!kind || strcmp(family, "textures") != 0)
+    return NULL;
   for (uint32_t k = 0; k < textures->kind_count; k++) {
-    if (!same_name(textures->rows[k]->name, kind)) continue;
+    if (!same_name(textures->rows[k]->name, kind))
+      continue;
     const ParameterCase *list = texture_cases[k]->parameters;
-    for (int i = 0; i < PARAMETER_CASES && (list[i].base || list[i].value || list[i].no_effect); i++)
-      if (same_name(list[i].parameter, parameter)) return &list[i];
+    for (int i = 0; i < PARAMETER_CASES && (list[i].base || list[i].value || list[i].no_effect);
+         i++)
+      if (same_name(list[i].parameter, parameter))
+        return &list[i];
   }
   return NULL;
 }
 
-/* The case of a parameter, or, for null, of the kind as a whole. A case of the kind comes before one of the family. */
-static const ParameterCase *find_case(const char *family, const char *kind, const char *parameter) {
+/* The case of a parameter, or, for null, of the kind as a whole. A case of the kind comes
+ * before one of the family. */
+static const ParameterCase *find_case(const char *family, const char *kind,
+                                      const char *parameter) {
   const ParameterCase *found = own_case(family, kind, parameter);
-  if (found) return found;
+  if (found)
+    return found;
   for (size_t i = 0; i < sizeof parameter_cases / sizeof *parameter_cases; i++) {
     const ParameterCase *c = &parameter_cases[i];
-    if (strcmp(c->family, family) != 0 || !same_name(c->parameter, parameter)) continue;
-    if (same_name(c->kind, kind)) return c;
-    if (!c->kind) found = c;
+    if (strcmp(c->family, family) != 0 || !same_name(c->parameter, parameter))
+      continue;
+    if (same_name(c->kind, kind))
+      return c;
+    if (!c->kind)
+      found = c;
   }
   return found;
 }
 
-/* ---- the text of a scene ----------------------------------------------------------------------------------------- */
+/* ---- the text of a scene
+ * ----------------------------------------------------------------------------------------- */
 
-/* Appends the parameters of `base`, which semicolons separate, except the one with that name (null: all). */
+/* Appends the parameters of `base`, which semicolons separate, except the one with that name
+ * (null: all). */
 static void append_base(char text[TEXT], const char *base, const char *name) {
   char quoted[80];
   snprintf(quoted, sizeof quoted, " %s\" ", name ? name : "/");
@@ -70,18 +87,22 @@ static double other_number(const vlParameter *p, int which) {
   bool limited = low != 0 || high != 0;
   double candidates[VALUES] = {0.5 * p->value[0] + 0.25, p->value[0] + 1, 0.2};
   double value = candidates[which];
-  if (limited && value <= low) value = low + 0.3;
-  if (limited && value >= high) value = low + 0.6 * (high - low);
+  if (limited && value <= low)
+    value = low + 0.3;
+  if (limited && value >= high)
+    value = low + 0.6 * (high - low);
   return value / factor;
 }
 
-/* Appends `"type name" value` as pbrt writes it. floats: for a float texture. False: the row does not tell. */
+/* Appends `"type name" value` as pbrt writes it. floats: for a float texture. False: the row
+ * does not tell. */
 static bool append_value(char text[TEXT], const vlParameter *p, bool floats, int which) {
   char value[400];
   double number = other_number(p, which);
   switch (p->type) {
     case VL_PARAMETER_BOOL:
-      snprintf(value, sizeof value, "\"bool %s\" %s", p->name, p->value[0] != 0 ? "false" : "true");
+      snprintf(value, sizeof value, "\"bool %s\" %s", p->name,
+               p->value[0] != 0 ? "false" : "true");
       break;
     case VL_PARAMETER_COUNT:
       snprintf(value, sizeof value, "\"integer %s\" %d", p->name, (int)p->value[0] + 1 + which);
@@ -90,7 +111,9 @@ static bool append_value(char text[TEXT], const vlParameter *p, bool floats, int
       break;
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_FLOAT_INPUT: snprintf(value, sizeof value, "\"float %s\" %.9g", p->name, number); break;
+    case VL_PARAMETER_FLOAT_INPUT:
+      snprintf(value, sizeof value, "\"float %s\" %.9g", p->name, number);
+      break;
     case VL_PARAMETER_EITHER_INPUT:
       if (floats)
         snprintf(value, sizeof value, "\"float %s\" 0.3", p->name);
@@ -106,12 +129,14 @@ static bool append_value(char text[TEXT], const vlParameter *p, bool floats, int
       break;
     case VL_PARAMETER_FLOAT3:
     case VL_PARAMETER_DOUBLE3:
-      snprintf(value, sizeof value, "\"%s %s\" [%g %g %g]", p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3",
-               p->name, p->value[0] + 0.3, p->value[1] + 0.2, p->value[2] - 0.4);
+      snprintf(value, sizeof value, "\"%s %s\" [%g %g %g]",
+               p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3", p->name,
+               p->value[0] + 0.3, p->value[1] + 0.2, p->value[2] - 0.4);
       break;
     case VL_PARAMETER_CHOICE: {
       int count = 0;
-      while (p->choices[count]) count++;
+      while (p->choices[count])
+        count++;
       int choice = ((int)p->value[0] + 1 + which) % count;
       snprintf(value, sizeof value, "\"string %s\" \"%s\"", p->name, p->choices[choice]);
       break;
@@ -120,13 +145,16 @@ static bool append_value(char text[TEXT], const vlParameter *p, bool floats, int
     case VL_PARAMETER_FILE:
     case VL_PARAMETER_TEXTURE:
     case VL_PARAMETER_BLOCK:
-    default: return false;
+    default:
+      return false;
   }
   strcat(text, value);
   return true;
 }
 
-/* ---- families ---------------------------------------------------------------------------------------------------- */
+/* ---- families
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* The form of a family's scenes: %s stands for `"kind" parameters`. */
 typedef struct Family {
@@ -138,21 +166,26 @@ static const Family families[] = {
     {"textures", HEAD "WorldBegin " LIGHTS GROUND "Texture \"t\" \"spectrum\" %s "
                       "Material \"diffuse\" \"texture reflectance\" \"t\" " BALL},
     {"lights", HEAD "WorldBegin " GROUND "LightSource %s Material \"coateddiffuse\" " BALL},
-    {"emission", HEAD "WorldBegin " GROUND "AttributeBegin Translate .3 .4 -.5 AreaLightSource %s "
-                      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] AttributeEnd\n"
-                      "Translate -1 0 .5 Scale .4 .4 .4 Material \"diffuse\" " BALL},
-    {"media", HEAD "WorldBegin " LIGHTS GROUND "AttributeBegin MakeNamedMedium \"m\" \"string type\" %s AttributeEnd\n"
+    {"emission",
+     HEAD "WorldBegin " GROUND "AttributeBegin Translate .3 .4 -.5 AreaLightSource %s "
+          "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] AttributeEnd\n"
+          "Translate -1 0 .5 Scale .4 .4 .4 Material \"diffuse\" " BALL},
+    {"media", HEAD "WorldBegin " LIGHTS GROUND
+                   "AttributeBegin MakeNamedMedium \"m\" \"string type\" %s AttributeEnd\n"
                    "MediumInterface \"m\" \"\" Material \"interface\" " BALL},
-    {"shapes", HEAD "WorldBegin " LIGHTS NAMED GROUND
-                    "Texture \"c\" \"spectrum\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5\n"
-                    "Rotate 20 1 .3 .2 Material \"conductor\" \"float uroughness\" .4 \"float vroughness\" .1 Shape %s "
-                    "Translate .4 .2 .3 Material \"diffuse\" \"texture reflectance\" \"c\" Shape %s"},
+    {"shapes", HEAD
+     "WorldBegin " LIGHTS NAMED GROUND
+     "Texture \"c\" \"spectrum\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5\n"
+     "Rotate 20 1 .3 .2 Material \"conductor\" \"float uroughness\" .4 \"float vroughness\" "
+     ".1 Shape %s "
+     "Translate .4 .2 .3 Material \"diffuse\" \"texture reflectance\" \"c\" Shape %s"},
     {"filters", HEAD "PixelFilter %s WorldBegin " LIGHTS GROUND "Material \"diffuse\" " BALL},
 };
 
-static const char *const lamps = HEAD "WorldBegin " GROUND
-                                      "AttributeBegin Translate .2 2 .3 Rotate 80 1 .1 .2 "
-                                      "LightSource %s AttributeEnd Material \"coateddiffuse\" " BALL;
+static const char *const lamps =
+    HEAD "WorldBegin " GROUND
+         "AttributeBegin Translate .2 2 .3 Rotate 80 1 .1 .2 "
+         "LightSource %s AttributeEnd Material \"coateddiffuse\" " BALL;
 
 static const char *const float_texture =
     HEAD "WorldBegin " LIGHTS NAMED GROUND
@@ -165,12 +198,14 @@ static bool is_float_texture(const Family *family, const vlKindRow *row) {
 }
 
 static const char *form_of(const Family *family, const vlKindRow *row) {
-  if (is_float_texture(family, row)) return float_texture;
+  if (is_float_texture(family, row))
+    return float_texture;
   bool lamp = strcmp(family->name, "lights") == 0 && (row->traits & VL_LIGHT_TRAIT_AT_POINT);
   return lamp ? lamps : family->form;
 }
 
-/* ---- written and read again -------------------------------------------------------------------------------------- */
+/* ---- written and read again
+ * -------------------------------------------------------------------------------------- */
 
 /* Counts what a format cannot hold. */
 static void count_loss(void *user, const char *what, uint64_t count) {
@@ -179,8 +214,10 @@ static void count_loss(void *user, const char *what, uint64_t count) {
   ++*(int *)user;
 }
 
-/* Writes the scene of the text to a file and renders what is read from it. False: the format loses a part of it. */
-static bool render_written(const char *text, const char *file, float pixels[PIXELS], vlError *error) {
+/* Writes the scene of the text to a file and renders what is read from it. False: the format
+ * loses a part of it. */
+static bool render_written(const char *text, const char *file, float pixels[PIXELS],
+                           vlError *error) {
   char path[100];
   int losses = 0;
   snprintf(path, sizeof path, "%s/%s", folder, file);
@@ -191,7 +228,8 @@ static bool render_written(const char *text, const char *file, float pixels[PIXE
   save.lost_user = &losses;
   vlResult result = vl_scene_save(scene, path, &save, error);
   vl_scene_destroy(scene);
-  if (result != VL_OK || losses) return losses > 0;
+  if (result != VL_OK || losses)
+    return losses > 0;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   if (vl_scene_load(scene, path, NULL, error) != VL_OK) {
     vl_scene_destroy(scene);
@@ -199,7 +237,8 @@ static bool render_written(const char *text, const char *file, float pixels[PIXE
   }
   vl_scene_defs(scene)->render.spp = SAMPLES;
   vlImage *image = render_scene(context, scene, error);
-  if (!image) return false;
+  if (!image)
+    return false;
   memcpy(pixels, vl_image_const_pixels(image), PIXELS * sizeof *pixels);
   vl_image_destroy(image);
   return true;
@@ -216,8 +255,8 @@ static double difference(const float a[PIXELS], const float b[PIXELS]) {
   return far / most;
 }
 
-/* The scene with a changed parameter, as another instruction set renders it and as the pbrt file that is written holds
- * it. */
+/* The scene with a changed parameter, as another instruction set renders it and as the pbrt
+ * file that is written holds it. */
 static void check_text(const char *family, const char *kind, const char *name, const char *text,
                        const float pixels[PIXELS]) {
   static float other[PIXELS];
@@ -228,15 +267,18 @@ static void check_text(const char *family, const char *kind, const char *name, c
   memcpy(other, pixels, sizeof other);
   if (!render_written(text, "written.pbrt", other, &error))
     broken(family, kind, "\"%s\": written, it cannot be read again: %s", name, error.message);
-  else if (difference(pixels, other) > (strcmp(kind, "principled") == 0 ? 0.02 : 1e-4)) /* pbrt has it not */
-    broken(family, kind, "\"%s\": written and read again, the image differs by %.2g", name, difference(pixels, other));
+  else if (difference(pixels, other) >
+           (strcmp(kind, "principled") == 0 ? 0.02 : 1e-4)) /* pbrt has it not */
+    broken(family, kind, "\"%s\": written and read again, the image differs by %.2g", name,
+           difference(pixels, other));
 }
 
-/* ---- the effect of a parameter ----------------------------------------------------------------------------------- */
+/* ---- the effect of a parameter
+ * ----------------------------------------------------------------------------------- */
 
 /* Whether the image changes with the parameter. */
-static bool has_effect(const char *family, const char *form, const char *kind, const char *base, const char *value,
-                       const char *name) {
+static bool has_effect(const char *family, const char *form, const char *kind, const char *base,
+                       const char *value, const char *name) {
   static float plain[PIXELS];
   static float changed[PIXELS];
   static char parameters[TEXT];
@@ -250,15 +292,18 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
     parameters[0] = 0;
     append_base(parameters, base, NULL);
     scene_text(text, form, kind, parameters);
-    if (!render_text(text, plain, &error)) fail_msg("%s: %s\n%s", kind, error.message, text);
+    if (!render_text(text, plain, &error))
+      fail_msg("%s: %s\n%s", kind, error.message, text);
     parameters[0] = 0;
     append_base(parameters, base, name);
   }
   strcat(parameters, value);
   scene_text(text, form, kind, parameters);
-  if (!render_text(text, changed, &error)) fail_msg("%s %s: %s\n%s", kind, name, error.message, text);
+  if (!render_text(text, changed, &error))
+    fail_msg("%s %s: %s\n%s", kind, name, error.message, text);
   bool effect = memcmp(plain, changed, sizeof plain) != 0;
-  if (effect) check_text(family, kind, name, text, changed);
+  if (effect)
+    check_text(family, kind, name, text, changed);
   return effect;
 }
 
@@ -276,34 +321,41 @@ static void check_parameter(const Family *family, const vlKindRow *row, const vl
       broken(family->name, row->name, "\"%s\": the test has no value for it", p->name);
       return;
     }
-    effect = has_effect(family->name, form, c && c->directive ? c->directive : row->name, base, value, p->name);
+    effect = has_effect(family->name, form, c && c->directive ? c->directive : row->name, base,
+                        value, p->name);
   }
   bool expected = !(c && c->no_effect);
   if (effect != expected)
-    broken(family->name, row->name, "\"%s\" %s", p->name, effect ? "has an effect after all" : "changes nothing");
+    broken(family->name, row->name, "\"%s\" %s", p->name,
+           effect ? "has an effect after all" : "changes nothing");
 }
 
-/* ---- textures of parameters -------------------------------------------------------------------------------------- */
+/* ---- textures of parameters
+ * -------------------------------------------------------------------------------------- */
 
 static bool takes_texture(const vlParameter *p) {
   bool input = p->type == VL_PARAMETER_FLOAT_INPUT || p->type == VL_PARAMETER_SPECTRUM_INPUT ||
                p->type == VL_PARAMETER_EITHER_INPUT;
-  const uint32_t without =
-      VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER | VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND;
+  const uint32_t without = VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER |
+                           VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND;
   return p->name && input && !(p->flags & without);
 }
 
-/* The statements of textures, one for each parameter that takes one (only >= 0: for that one alone), and the
- * parameters that name them. */
-static void append_textures(const vlKindRow *row, bool floats, int only, char textures[TEXT], char parameters[TEXT]) {
+/* The statements of textures, one for each parameter that takes one (only >= 0: for that one
+ * alone), and the parameters that name them. */
+static void append_textures(const vlKindRow *row, bool floats, int only, char textures[TEXT],
+                            char parameters[TEXT]) {
   char line[200];
   textures[0] = 0;
   for (uint32_t k = 0; k < row->parameter_count; k++) {
     const vlParameter *p = &row->parameters[k];
-    if (!takes_texture(p) || (only >= 0 && (int)k != only)) continue;
-    bool number = p->type == VL_PARAMETER_FLOAT_INPUT || (p->type == VL_PARAMETER_EITHER_INPUT && floats);
+    if (!takes_texture(p) || (only >= 0 && (int)k != only))
+      continue;
+    bool number =
+        p->type == VL_PARAMETER_FLOAT_INPUT || (p->type == VL_PARAMETER_EITHER_INPUT && floats);
     snprintf(line, sizeof line, "Texture \"used%u\" \"%s\" \"constant\" \"%s value\" %s\n", k,
-             number ? "float" : "spectrum", number ? "float" : "rgb", number ? ".3" : "[.3 .3 .3]");
+             number ? "float" : "spectrum", number ? "float" : "rgb",
+             number ? ".3" : "[.3 .3 .3]");
     strcat(textures, line);
     snprintf(line, sizeof line, " \"texture %s\" \"used%u\"", p->name, k);
     strcat(parameters, line);
@@ -322,7 +374,8 @@ static void check_doctor(const Family *family, const vlKindRow *row, int only) {
   parameters[0] = 0;
   append_base(parameters, kind_case ? kind_case->base : NULL, NULL);
   append_textures(row, is_float_texture(family, row), only, textures, parameters);
-  if (!*textures) return;
+  if (!*textures)
+    return;
   snprintf(form, sizeof form, "%s", form_of(family, row));
   const char *named = strstr(form, NAMED);
   const char *kept =
@@ -337,17 +390,20 @@ static void check_doctor(const Family *family, const vlKindRow *row, int only) {
   scene_text(text, form, row->name, parameters);
   vlScene *scene = load_text(context, text, &error);
   if (!scene && only < 0) { /* some exclude each other */
-    for (uint32_t k = 0; k < row->parameter_count && row->parameter_count > 1; k++) check_doctor(family, row, (int)k);
+    for (uint32_t k = 0; k < row->parameter_count && row->parameter_count > 1; k++)
+      check_doctor(family, row, (int)k);
     return;
   }
-  if (!scene) return; /* it needs another parameter, beside which the first attempt had it */
+  if (!scene)
+    return; /* it needs another parameter, beside which the first attempt had it */
   vlCheckDef def = vl_default_check_def();
   vlCheck *check = NULL;
   def.names_only = true;
   assert_int_equal(vl_scene_check(scene, &def, &check, &error), VL_OK);
   for (uint32_t i = 0; i < vl_check_count(check); i++) {
     const vlFinding *finding = vl_check_finding(check, i);
-    if (finding->kind == VL_FINDING_UNUSED) broken(family->name, row->name, "the doctor: %s", finding->message);
+    if (finding->kind == VL_FINDING_UNUSED)
+      broken(family->name, row->name, "the doctor: %s", finding->message);
   }
   vl_check_destroy(check);
   vl_scene_destroy(scene);
@@ -359,7 +415,8 @@ static void textures_of_parameters(void **state) {
     const Family *family = &families[f];
     const vlKindFamily *rows = vl_kind_family_find(family->name);
     for (uint32_t i = 0; i < rows->kind_count; i++)
-      if (rows->rows[i]->name) check_doctor(family, rows->rows[i], -1);
+      if (rows->rows[i]->name)
+        check_doctor(family, rows->rows[i], -1);
   }
   expect_no_failures();
 }
@@ -372,7 +429,8 @@ static void parameters_of_all_families(void **state) {
     for (uint32_t i = 0; i < rows->kind_count; i++) {
       const vlKindRow *row = rows->rows[i];
       for (uint32_t k = 0; row->name && k < row->parameter_count; k++)
-        if (row->parameters[k].name) check_parameter(family, row, &row->parameters[k]);
+        if (row->parameters[k].name)
+          check_parameter(family, row, &row->parameters[k]);
     }
   }
   expect_no_failures();

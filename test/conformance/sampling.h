@@ -1,11 +1,14 @@
-/* conformance/sampling.h: the laws of samplers (numbers in [0, 1), even, pairs not correlated, as many in each cell as
- * the kind promises) and of pixel filters (they integrate to 1, and spread light as their formula says). */
+/* conformance/sampling.h: the laws of samplers (numbers in [0, 1), even, pairs not correlated,
+ * as many in each cell as the kind promises) and of pixel filters (they integrate to 1, and
+ * spread light as their formula says). */
 #ifndef TEST_CONFORMANCE_SAMPLING_H
 #define TEST_CONFORMANCE_SAMPLING_H
 
 #include "conformance.h"
 
-/* ---- samplers ---------------------------------------------------------------------------------------------------- */
+/* ---- samplers
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 enum { SETS = 64, SET = 64, SIDE = 8 }; /* pixels; samples of each; cells along a side */
 
@@ -67,18 +70,21 @@ static void draw_numbers(vlSamplerKind kind, Numbers2 *n) {
   defs->render.share_samples = false;
   defs->render.own_tracer = &tracer;
   vlImage *image = render_scene(context, scene, &error);
-  if (!image) fail_msg("%s", error.message);
+  if (!image)
+    fail_msg("%s", error.message);
   vl_image_destroy(image);
   assert_int_equal(n->count, SETS * SET);
 }
 
-/* Chi-square over 256 intervals of all numbers, as standard deviations above what independent numbers have. */
+/* Chi-square over 256 intervals of all numbers, as standard deviations above what independent
+ * numbers have. */
 static double unevenness(double numbers[SETS][SET]) {
   enum { BINS = 256 };
   double bins[BINS] = {0};
   double sum = 0;
   for (int p = 0; p < SETS; p++)
-    for (int i = 0; i < SET; i++) bins[(int)(numbers[p][i] * BINS)]++;
+    for (int i = 0; i < SET; i++)
+      bins[(int)(numbers[p][i] * BINS)]++;
   for (int k = 0; k < BINS; k++) {
     double expected = (double)SETS * SET / BINS;
     sum += (bins[k] - expected) * (bins[k] - expected) / expected;
@@ -89,28 +95,35 @@ static double unevenness(double numbers[SETS][SET]) {
 static double correlation(double a[SETS][SET], double b[SETS][SET]) {
   double sum = 0;
   for (int p = 0; p < SETS; p++)
-    for (int i = 0; i < SET; i++) sum += (a[p][i] - 0.5) * (b[p][i] - 0.5);
+    for (int i = 0; i < SET; i++)
+      sum += (a[p][i] - 0.5) * (b[p][i] - 0.5);
   return 12 * sum / (SETS * SET);
 }
 
-/* The variance of the mean of f over a pixel, times the samples, over that of independent numbers. */
+/* The variance of the mean of f over a pixel, times the samples, over that of independent
+ * numbers.
+ */
 static double spread(double u[SETS][SET], double v[SETS][SET]) {
   Mean m = {0};
   for (int p = 0; p < SETS; p++) {
     double sum = 0;
-    for (int i = 0; i < SET; i++) sum += u[p][i] * v[p][i];
+    for (int i = 0; i < SET; i++)
+      sum += u[p][i] * v[p][i];
     mean_add(&m, sum / SET);
   }
   double variance = variance_of_mean(&m) * SETS;
   return variance * SET / (1.0 / 9 - 1.0 / 16);
 }
 
-static int empty_cells(double numbers[SETS][SET], double others[SETS][SET], int columns, int rows) {
+static int empty_cells(double numbers[SETS][SET], double others[SETS][SET], int columns,
+                       int rows) {
   int empty = 0;
   for (int p = 0; p < SETS; p++) {
     bool used[SET] = {false};
-    for (int i = 0; i < SET; i++) used[(int)(others[p][i] * rows) * columns + (int)(numbers[p][i] * columns)] = true;
-    for (int i = 0; i < SET; i++) empty += !used[i];
+    for (int i = 0; i < SET; i++)
+      used[(int)(others[p][i] * rows) * columns + (int)(numbers[p][i] * columns)] = true;
+    for (int i = 0; i < SET; i++)
+      empty += !used[i];
   }
   return empty;
 }
@@ -133,12 +146,14 @@ static void laws_of_samplers(void **state) {
       continue;
     }
     double uneven = fmax(unevenness(n->u), unevenness(n->v));
-    if (!c->centre && !(uneven < 5)) broken("samplers", name, "uneven by %.1f standard deviations", uneven);
+    if (!c->centre && !(uneven < 5))
+      broken("samplers", name, "uneven by %.1f standard deviations", uneven);
     double pairs = fmax(fabs(correlation(n->u, n->v)), fabs(correlation(n->u, n->other)));
-    if (!(pairs < 5.0 / 64)) broken("samplers", name, "numbers correlate by %.3f", pairs);
+    if (!(pairs < 5.0 / 64))
+      broken("samplers", name, "numbers correlate by %.3f", pairs);
     if (c->rows && (empty_cells(n->u, n->u, SET, 1) || empty_cells(n->v, n->v, SET, 1)))
-      broken("samplers", name, "%d columns and %d rows are empty", empty_cells(n->u, n->u, SET, 1),
-             empty_cells(n->v, n->v, SET, 1));
+      broken("samplers", name, "%d columns and %d rows are empty",
+             empty_cells(n->u, n->u, SET, 1), empty_cells(n->v, n->v, SET, 1));
     if (c->cells && empty_cells(n->u, n->v, SIDE, SIDE))
       broken("samplers", name, "%d cells are empty", empty_cells(n->u, n->v, SIDE, SIDE));
     double ratio = spread(n->u, n->v);
@@ -149,7 +164,9 @@ static void laws_of_samplers(void **state) {
   expect_no_failures();
 }
 
-/* ---- filters ----------------------------------------------------------------------------------------------------- */
+/* ---- filters
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* The formulas, written apart from the library; x: distance from the centre, pixels. */
 typedef double FilterShape(double x, double radius);
@@ -169,7 +186,8 @@ static double mitchell_shape(double x, double radius) {
   double c = 1.0 / 3;
   double t = 2 * x / radius;
   double near = (12 - 9 * b - 6 * c) * t * t * t + (-18 + 12 * b + 6 * c) * t * t + 6 - 2 * b;
-  double far = (-b - 6 * c) * t * t * t + (6 * b + 30 * c) * t * t + (-12 * b - 48 * c) * t + 8 * b + 24 * c;
+  double far = (-b - 6 * c) * t * t * t + (6 * b + 30 * c) * t * t + (-12 * b - 48 * c) * t +
+               8 * b + 24 * c;
   return t < 1 ? near : far;
 }
 static double sinc_of(double x) {
@@ -189,14 +207,16 @@ static FilterShape *const filter_shapes[] = {VL_PIXEL_FILTER_KINDS(FILTER_CASE)}
 
 enum { FILTERED = 16 };
 
-/* Light through the pixel in the middle alone, seen by an orthographic camera of one unit per pixel. */
+/* Light through the pixel in the middle alone, seen by an orthographic camera of one unit per
+ * pixel. */
 static void light_middle(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   (void)user;
   (void)trace;
   for (uint32_t i = 0; i < paths->count; i++) {
     double x = (double)paths->rays->origin[0][i];
     double y = (double)paths->rays->origin[1][i];
-    for (int c = 0; c < 3; c++) paths->radiance[c][i] = fabs(x) < 0.5 && fabs(y) < 0.5;
+    for (int c = 0; c < 3; c++)
+      paths->radiance[c][i] = fabs(x) < 0.5 && fabs(y) < 0.5;
     paths->alpha[i] = 1;
   }
 }
@@ -233,11 +253,13 @@ static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
   defs->render.own_tracer = &tracer;
   double radius = (double)defs->film.filter.radius_x;
   vlImage *image = render_scene(context, scene, &error);
-  if (!image) fail_msg("%s", error.message);
+  if (!image)
+    fail_msg("%s", error.message);
   double sum = 0;
   double worst = 0;
   double shares[2 * FILTERED];
-  for (int k = 0; k < 2 * FILTERED; k++) shares[k] = filtered_share(filter_shapes[kind], radius, k - FILTERED / 2);
+  for (int k = 0; k < 2 * FILTERED; k++)
+    shares[k] = filtered_share(filter_shapes[kind], radius, k - FILTERED / 2);
   for (uint32_t y = 0; y <= FILTERED; y++)
     for (uint32_t x = 0; x <= FILTERED; x++) {
       double value = (double)vl_image_get(image, x, y, 1);
@@ -245,15 +267,18 @@ static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
       worst = fmax(worst, fabs(value - shares[x] * shares[y]));
     }
   vl_image_destroy(image);
-  if (!(fabs(sum - 1) < 0.02)) broken("filters", name, "%s: light of 1 becomes %.4f", share ? "shared" : "own", sum);
-  if (!(worst < 0.01)) broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
+  if (!(fabs(sum - 1) < 0.02))
+    broken("filters", name, "%s: light of 1 becomes %.4f", share ? "shared" : "own", sum);
+  if (!(worst < 0.01))
+    broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
 }
 
 static void laws_of_filters(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("filters");
   for (uint32_t k = 0; k < family->kind_count; k++)
-    for (int share = 0; share < 2; share++) check_filter((vlPixelFilterKind)k, family->rows[k]->name, share == 1);
+    for (int share = 0; share < 2; share++)
+      check_filter((vlPixelFilterKind)k, family->rows[k]->name, share == 1);
   expect_no_failures();
 }
 

@@ -1,6 +1,7 @@
-/* conformance/shapes.h: the laws of shapes: random lines cross a surface as often as its area says (Cauchy and Crofton:
- * the mean number of crossings of a line through a sphere of radius R is area / (2 pi R^2)); normals are those of the
- * points that rays find; known hits; the laws of light for shapes that emit. */
+/* conformance/shapes.h: the laws of shapes: random lines cross a surface as often as its area
+ * says (Cauchy and Crofton: the mean number of crossings of a line through a sphere of radius R
+ * is area / (2 pi R^2)); normals are those of the points that rays find; known hits; the laws
+ * of light for shapes that emit. */
 #ifndef TEST_CONFORMANCE_SHAPES_H
 #define TEST_CONFORMANCE_SHAPES_H
 
@@ -28,11 +29,14 @@ typedef struct ShapeCase {
 } ShapeCase;
 
 static const ShapeCase triangles_shape = {{
-    {.parameters = "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0 1 0 0 1] \"integer indices\" [0 1 2]",
+    {.parameters = "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0 1 0 0 1] \"integer "
+                   "indices\" [0 1 2]",
      .area = 0.5,
-     .known = {{{.2, .3, 1}, {0, 0, -1}, 1, .2, .3}, {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+     .known = {{{.2, .3, 1}, {0, 0, -1}, 1, .2, .3},
+               {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
      .known_count = 2},
-    {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 .5 .5 .4 -.5 .5 .4] \"integer indices\" [0 1 2 0 2 3]",
+    {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 .5 .5 .4 -.5 .5 .4] \"integer indices\" "
+                   "[0 1 2 0 2 3]",
      .area = 1.0770330,
      .known = {{{.1, 0, 1}, {0, 0, -1}, .8, NAN, NAN}},
      .known_count = 1},
@@ -40,7 +44,8 @@ static const ShapeCase triangles_shape = {{
 static const ShapeCase bilinear_shape = {{
     {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 -.5 .5 0 .5 .5 0]",
      .area = 1,
-     .known = {{{-.3, .1, 1}, {0, 0, -1}, 1, .2, .6}, {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+     .known = {{{-.3, .1, 1}, {0, 0, -1}, 1, .2, .6},
+               {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
      .known_count = 2},
     /* z = x y over the square: the area is the integral of sqrt(1 + x^2 + y^2) */
     {.parameters = "\"point3 P\" [-.5 -.5 .25 .5 -.5 -.25 -.5 .5 -.25 .5 .5 .25]",
@@ -53,45 +58,55 @@ static const ShapeCase sphere_shape = {{
      .area = 4 * PI * .64,
      .known = {{{0, 2, .4}, {0, -1, 0}, 2 - 0.69282032, .25, 1 - 1.0 / 3}},
      .known_count = 1},
-    {.parameters = "\"float radius\" .8 \"float zmin\" -.4 \"float zmax\" .4 \"float phimax\" 180",
+    {.parameters =
+         "\"float radius\" .8 \"float zmin\" -.4 \"float zmax\" .4 \"float phimax\" 180",
      .area = PI * .8 * .8,
-     .known = {{{0, 2, 0}, {0, -1, 0}, 1.2, .5, .5}, {{0, 0, 2}, {0, 0, -1}, INFINITY, NAN, NAN}},
+     .known = {{{0, 2, 0}, {0, -1, 0}, 1.2, .5, .5},
+               {{0, 0, 2}, {0, 0, -1}, INFINITY, NAN, NAN}},
      .known_count = 2},
 }};
 static const ShapeCase disk_shape = {{
     {.parameters = "\"float radius\" .8 \"float innerradius\" .4 \"float height\" .1",
      .area = PI * (.64 - .16),
-     .known = {{{0, .6, 1}, {0, 0, -1}, .9, .25, .5}, {{.1, .2, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+     .known = {{{0, .6, 1}, {0, 0, -1}, .9, .25, .5},
+               {{.1, .2, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
      .known_count = 2},
     {.parameters = "\"float radius\" .8 \"float phimax\" 90", .area = PI * .16},
 }};
 static const ShapeCase cylinder_shape = {{
     {.parameters = "\"float radius\" .5 \"float zmin\" -.4 \"float zmax\" .6",
      .area = PI,
-     .known = {{{0, 2, 0}, {0, -1, 0}, 1.5, .25, .4}, {{0, 2, .7}, {0, -1, 0}, INFINITY, NAN, NAN}},
+     .known = {{{0, 2, 0}, {0, -1, 0}, 1.5, .25, .4},
+               {{0, 2, .7}, {0, -1, 0}, INFINITY, NAN, NAN}},
      .known_count = 2},
     {.parameters = "\"float radius\" .5 \"float phimax\" 120", .area = PI / 3 * 2},
 }};
-/* A straight curve. Flat ones turn to the ray and are seen as wide as they are: 2 w l times the mean sine, pi / 4. */
+/* A straight curve. Flat ones turn to the ray and are seen as wide as they are: 2 w l times the
+ * mean sine, pi / 4. */
 #define STRAIGHT "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width\" .1 "
 static const ShapeCase curves_shape = {{
     {.parameters = STRAIGHT "\"string type\" \"flat\"",
      .area = 0.12 * PI / 2,
      .faces_rays = true,
-     .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN}, {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+     .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN},
+               {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
      .known_count = 2},
     {.parameters = STRAIGHT "\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 1]",
      .area = 0.12,
      .faces_rays = true, /* its points lie across the ray, as in pbrt */
      .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN}},
      .known_count = 1},
-    {.parameters = STRAIGHT "\"string type\" \"cylinder\"", .area = 0.12 * PI / 2, .faces_rays = true},
+    {.parameters = STRAIGHT "\"string type\" \"cylinder\"",
+     .area = 0.12 * PI / 2,
+     .faces_rays = true},
 }};
 
 #define SHAPE_CASE(NAME, name) &name##_shape,
 static const ShapeCase *const shape_cases[] = {VL_SHAPE_KINDS(SHAPE_CASE)};
 
-/* ---- asking ------------------------------------------------------------------------------------------------------ */
+/* ---- asking
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 enum { MOST_CROSSINGS = 8 };
 
@@ -116,10 +131,14 @@ static void even_disk(uint32_t i, double turn, double at[2]) {
 static void across(const double d[3], double a[3], double b[3]) {
   const double helper[3] = {fabs(d[0]) < 0.5, fabs(d[0]) >= 0.5, 0};
   double length = 0;
-  for (int k = 0; k < 3; k++) a[k] = d[(k + 1) % 3] * helper[(k + 2) % 3] - d[(k + 2) % 3] * helper[(k + 1) % 3];
-  for (int k = 0; k < 3; k++) length += a[k] * a[k];
-  for (int k = 0; k < 3; k++) a[k] /= sqrt(length);
-  for (int k = 0; k < 3; k++) b[k] = d[(k + 1) % 3] * a[(k + 2) % 3] - d[(k + 2) % 3] * a[(k + 1) % 3];
+  for (int k = 0; k < 3; k++)
+    a[k] = d[(k + 1) % 3] * helper[(k + 2) % 3] - d[(k + 2) % 3] * helper[(k + 1) % 3];
+  for (int k = 0; k < 3; k++)
+    length += a[k] * a[k];
+  for (int k = 0; k < 3; k++)
+    a[k] /= sqrt(length);
+  for (int k = 0; k < 3; k++)
+    b[k] = d[(k + 1) % 3] * a[(k + 2) % 3] - d[(k + 2) % 3] * a[(k + 1) % 3];
 }
 
 static void count_crossings(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
@@ -133,7 +152,8 @@ static void count_crossings(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
     even_direction(i, VL_OWN_BATCH, 0.7548776662 * batch, d);
     across(d, a, b);
     even_disk(i, 0.618034 * batch, at);
-    for (int k = 0; k < 3; k++) origin[k] = at[0] * a[k] + at[1] * b[k] - 2 * d[k];
+    for (int k = 0; k < 3; k++)
+      origin[k] = at[0] * a[k] + at[1] * b[k] - 2 * d[k];
     set_ray(s->rays, i, origin, d);
   }
   for (int k = 0; k < MOST_CROSSINGS; k++) {
@@ -141,13 +161,15 @@ static void count_crossings(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
     for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
       bool hit = isfinite(s->hits->t[i]);
       double facing = 0;
-      for (int c = 0; c < 3; c++) facing += (double)s->hits->normal[c][i] * (double)s->rays->direction[c][i];
+      for (int c = 0; c < 3; c++)
+        facing += (double)s->hits->normal[c][i] * (double)s->rays->direction[c][i];
       found[i] += hit;
       s->backwards += hit && facing > 0;
       s->rays->t_min[i] = hit ? s->hits->t[i] + 1e-4f : 9;
     }
   }
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) mean_add(&s->crossings, found[i]);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    mean_add(&s->crossings, found[i]);
 }
 
 /* Three rays close to each other: the normal is that of their points. */
@@ -164,11 +186,13 @@ static void compare_normals(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
     for (uint32_t j = 0; j < 3; j++) {
       double origin[3];
       for (int k = 0; k < 3; k++)
-        origin[k] = (at[0] + (j == 1) * step) * a[k] + (at[1] + (j == 2) * step) * b[k] - 2 * d[k];
+        origin[k] =
+            (at[0] + (j == 1) * step) * a[k] + (at[1] + (j == 2) * step) * b[k] - 2 * d[k];
       set_ray(s->rays, i + j, origin, d);
     }
   }
-  for (uint32_t i = VL_OWN_BATCH - 1; i < VL_OWN_BATCH; i++) s->rays->t_max[i] = -1;
+  for (uint32_t i = VL_OWN_BATCH - 1; i < VL_OWN_BATCH; i++)
+    s->rays->t_max[i] = -1;
   vl_world_trace(trace, s->rays, s->hits);
   for (uint32_t i = 0; i < VL_OWN_BATCH - 2; i += 3) {
     double e[2][3];
@@ -176,25 +200,32 @@ static void compare_normals(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
     double far = 0;
     double length = 0;
     double same = 0;
-    if (!isfinite(s->hits->t[i] + s->hits->t[i + 1] + s->hits->t[i + 2])) continue;
+    if (!isfinite(s->hits->t[i] + s->hits->t[i + 1] + s->hits->t[i + 2]))
+      continue;
     for (uint32_t j = 0; j < 2; j++)
       for (int k = 0; k < 3; k++) {
         e[j][k] = (double)s->hits->position[k][i + 1 + j] - (double)s->hits->position[k][i];
         far = fmax(far, fabs(e[j][k]));
       }
-    for (int k = 0; k < 3; k++) n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
-    for (int k = 0; k < 3; k++) length += n[k] * n[k];
-    for (int k = 0; k < 3; k++) same += n[k] * (double)s->hits->normal[k][i] / sqrt(length);
-    if (far > 4 * step) continue; /* an edge lies between them, or the view is slant */
+    for (int k = 0; k < 3; k++)
+      n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+      length += n[k] * n[k];
+    for (int k = 0; k < 3; k++)
+      same += n[k] * (double)s->hits->normal[k][i] / sqrt(length);
+    if (far > 4 * step)
+      continue; /* an edge lies between them, or the view is slant */
     s->compared++;
     s->leaning += !(fabs(same) > 0.995);
   }
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) s->rays->t_max[i] = INFINITY;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    s->rays->t_max[i] = INFINITY;
 }
 
 static void compare_known(ShapeLaws *s, vlTrace *trace) {
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    const ShapeKnown *k = &s->variant->known[i % (s->variant->known_count ? s->variant->known_count : 1)];
+    const ShapeKnown *k =
+        &s->variant->known[i % (s->variant->known_count ? s->variant->known_count : 1)];
     const double down[3] = {0, 0, -1};
     set_ray(s->rays, i, k->origin, s->variant->known_count ? k->direction : down);
   }
@@ -206,7 +237,8 @@ static void compare_known(ShapeLaws *s, vlTrace *trace) {
     double v = (double)s->hits->uv[1][i];
     bool same_t = isinf(k->t) ? isinf(t) : fabs(t - k->t) < 1e-4;
     if (!same_t || fabs(u - k->u) > 1e-3 || fabs(v - k->v) > 1e-3)
-      broken("shapes", s->kind, "%s: ray %u hits at %.5f, uv %.4f %.4f; known are %.5f, %.4f %.4f",
+      broken("shapes", s->kind,
+             "%s: ray %u hits at %.5f, uv %.4f %.4f; known are %.5f, %.4f %.4f",
              s->variant->parameters, i, t, u, v, k->t, k->u, k->v);
   }
 }
@@ -215,9 +247,12 @@ static void ask_shape(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   (void)paths;
   ShapeLaws *s = probe->user;
   count_crossings(s, trace, probe->batch);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) s->rays->t_min[i] = 0;
-  if (!s->variant->faces_rays) compare_normals(s, trace, probe->batch);
-  if (probe->batch == 0) compare_known(s, trace);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    s->rays->t_min[i] = 0;
+  if (!s->variant->faces_rays)
+    compare_normals(s, trace, probe->batch);
+  if (probe->batch == 0)
+    compare_known(s, trace);
 }
 
 static void check_shape(const vlKindRow *row, const char *directive, const ShapeVariant *v) {
@@ -225,17 +260,23 @@ static void check_shape(const vlKindRow *row, const char *directive, const Shape
   ShapeLaws s = {.kind = row->name, .variant = v, .rays = new_rays()};
   s.hits = calloc(1, sizeof *s.hits);
   Probe probe = {.ask = ask_shape, .user = &s};
-  scene_text(text, HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" Shape %s", directive, v->parameters);
+  scene_text(text, HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" Shape %s",
+             directive, v->parameters);
   probe_world(text, &probe, 24);
   Mean area = s.crossings;
   area.sum *= 2 * PI;
   area.squares *= 4 * PI * PI;
   if (!mean_is(&area, v->area, 0.005 * v->area))
-    broken("shapes", row->name, "%s: crossings give an area of %.4f, not %.4f", v->parameters, mean_of(&area), v->area);
-  if (s.backwards > 0) broken("shapes", row->name, "%s: %u normals look away from the ray", v->parameters, s.backwards);
-  if (!v->faces_rays && s.compared < 200) broken("shapes", row->name, "%s: %u normals", v->parameters, s.compared);
+    broken("shapes", row->name, "%s: crossings give an area of %.4f, not %.4f", v->parameters,
+           mean_of(&area), v->area);
+  if (s.backwards > 0)
+    broken("shapes", row->name, "%s: %u normals look away from the ray", v->parameters,
+           s.backwards);
+  if (!v->faces_rays && s.compared < 200)
+    broken("shapes", row->name, "%s: %u normals", v->parameters, s.compared);
   if (s.leaning > s.compared / 50)
-    broken("shapes", row->name, "%s: %u of %u normals lean", v->parameters, s.leaning, s.compared);
+    broken("shapes", row->name, "%s: %u of %u normals lean", v->parameters, s.leaning,
+           s.compared);
   if (row->traits & VL_SHAPE_TRAIT_EMITS)
     check_emitting_shape("shapes", row->name, directive, v->parameters, emissions[1]);
   free(s.rays);

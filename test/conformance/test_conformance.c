@@ -1,5 +1,5 @@
-/* test_conformance.c: every kind of every family obeys the laws of its family. The laws go over the rows; what they
- * need beyond a row is the kind's case. */
+/* test_conformance.c: every kind of every family obeys the laws of its family. The laws go over
+ * the rows; what they need beyond a row is the kind's case. */
 #include "cameras.h"
 #include "conformance.h"
 #include "files.h"
@@ -16,7 +16,8 @@ static int setup(void **state) {
   (void)state;
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
-  if (!mkdtemp(folder) || vl_context_create(&def, &context) != VL_OK) return 1;
+  if (!mkdtemp(folder) || vl_context_create(&def, &context) != VL_OK)
+    return 1;
   contexts[1] = context;
   def.isa = VL_ISA_BASE;
   return vl_context_create(&def, &contexts[0]) != VL_OK || !write_files();

@@ -1,12 +1,16 @@
-/* conformance/textures.h: the laws of textures, seen as the reflectance of a square with texture coordinates 0 to 1:
- * known values, values between those of the inputs, and a pattern that is one. */
+/* conformance/textures.h: the laws of textures, seen as the reflectance of a square with
+ * texture coordinates 0 to 1: known values, values between those of the inputs, and a pattern
+ * that is one.
+ */
 #ifndef TEST_CONFORMANCE_TEXTURES_H
 #define TEST_CONFORMANCE_TEXTURES_H
 
 #include "conformance.h"
 #include "parameter_cases.h"
 
-/* ---- asking ------------------------------------------------------------------------------------------------------ */
+/* ---- asking
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct TextureLaws {
   const char *kind;
@@ -22,7 +26,8 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   const TextureVariant *v = t->variant;
   const double down[3] = {0, 0, -1};
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    double at[2] = {fmod(0.5 + i * 0.7548776662466927, 1.0), fmod(0.5 + i * 0.5698402909980532, 1.0)};
+    double at[2] = {fmod(0.5 + i * 0.7548776662466927, 1.0),
+                    fmod(0.5 + i * 0.5698402909980532, 1.0)};
     if (i < v->known_count) {
       at[0] = v->known[i].u;
       at[1] = v->known[i].v;
@@ -39,19 +44,22 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
       low = fminf(low, value);
       high = fmaxf(high, value);
       if (!((double)value >= v->low - 1e-3 && (double)value <= v->high + 1e-3)) {
-        broken("textures", t->kind, "%s: value %.4f, between %.4f and %.4f expected", v->parameters, (double)value,
-               v->low, v->high);
+        broken("textures", t->kind, "%s: value %.4f, between %.4f and %.4f expected",
+               v->parameters, (double)value, v->low, v->high);
         return;
       }
       if (i < v->known_count && fabs((double)value - v->known[i].rgb[c]) > 3e-3)
-        broken("textures", t->kind, "%s: value %.4f at uv (%g, %g), not %.4f", v->parameters, (double)value,
-               v->known[i].u, v->known[i].v, v->known[i].rgb[c]);
+        broken("textures", t->kind, "%s: value %.4f at uv (%g, %g), not %.4f", v->parameters,
+               (double)value, v->known[i].u, v->known[i].v, v->known[i].rgb[c]);
     }
-  if (!v->even && !((double)(high - low) > 0.02)) broken("textures", t->kind, "%s: no pattern", v->parameters);
+  if (!v->even && !((double)(high - low) > 0.02))
+    broken("textures", t->kind, "%s: no pattern", v->parameters);
 }
 
-#define HALVES                                                                                             \
-  "Texture \"halves\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 0 \"float tex1\" .1 " \
+#define HALVES                                                                           \
+  "Texture \"halves\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 0 " \
+  "\"float "                                                                             \
+  "tex1\" .1 "                                                                           \
   "\"float tex2\" .8\n"
 
 static void laws_of_textures(void **state) {
@@ -62,14 +70,15 @@ static void laws_of_textures(void **state) {
     const vlKindRow *row = family->rows[k];
     const TextureCase *c = texture_cases[k];
     assert_true(!row->name || c->variants[0].parameters);
-    const char *form = row->traits & VL_TEXTURE_FLOAT_ONLY ? HEAD
-                           "WorldBegin LightSource \"infinite\" Texture \"f\" \"float\" %s Texture \"t\" "
-                           "\"spectrum\" \"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\" "
-                           "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP
-                                                           : HEAD
-                           "WorldBegin LightSource \"infinite\" " HALVES
-                           "Texture \"t\" \"spectrum\" %s "
-                           "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP;
+    const char *form =
+        row->traits & VL_TEXTURE_FLOAT_ONLY ? HEAD
+            "WorldBegin LightSource \"infinite\" Texture \"f\" \"float\" %s Texture \"t\" "
+            "\"spectrum\" \"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\" "
+            "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP
+                                            : HEAD
+            "WorldBegin LightSource \"infinite\" " HALVES
+            "Texture \"t\" \"spectrum\" %s "
+            "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP;
     for (int i = 0; i < TEXTURE_VARIANTS && row->name && c->variants[i].parameters; i++) {
       TextureLaws t = {.kind = row->name, .variant = &c->variants[i], .rays = new_rays()};
       t.hits = calloc(1, sizeof *t.hits);

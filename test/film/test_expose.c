@@ -1,5 +1,5 @@
-/* Tests the conversion of radiance to the film's colours against the definitions of colour spaces, and the merging
- * of films with error sums against one film with all samples. */
+/* Tests the conversion of radiance to the film's colours against the definitions of colour
+ * spaces, and the merging of films with error sums against one film with all samples. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,8 @@ static int begin(void **state) {
   (void)state;
   statRng rng = stat_rng(5);
   for (int c = 0; c < 3; c++)
-    for (int i = 0; i < N; i++) colors[c][i] = i == 0 ? 1.0f : 4.0f * stat_float(&rng);
+    for (int i = 0; i < N; i++)
+      colors[c][i] = i == 0 ? 1.0f : 4.0f * stat_float(&rng);
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
   return vl_context_create(&def, &context) != VL_OK;
@@ -47,29 +48,35 @@ static void rec709_stays_as_it_is(void **state) {
   assert_memory_equal(out, colors, sizeof out);
   expose(vl_default_film_def(WIDTH, HEIGHT), 2.0f, out);
   for (int c = 0; c < 3; c++)
-    for (int i = 0; i < N; i++) assert_true(out[c][i] == 2.0f * colors[c][i]);
+    for (int i = 0; i < N; i++)
+      assert_true(out[c][i] == 2.0f * colors[c][i]);
 }
 
-/* The conversion from linear Rec.709 to Rec.2020 is that of ITU-R BT.2087-0, table 2. Both have the white D65. */
+/* The conversion from linear Rec.709 to Rec.2020 is that of ITU-R BT.2087-0, table 2. Both have
+ * the white D65. */
 static void rec2020_is_that_of_bt_2087(void **state) {
   (void)state;
-  static const double m[3][3] = {{0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
+  static const double m[3][3] = {
+      {0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   float out[3][N];
   def.space = VL_SPACE_REC2020;
   expose(def, 1.0f, out);
   for (int c = 0; c < 3; c++)
     for (int i = 0; i < N; i++) {
-      double wanted = m[c][0] * (double)colors[0][i] + m[c][1] * (double)colors[1][i] + m[c][2] * (double)colors[2][i];
+      double wanted = m[c][0] * (double)colors[0][i] + m[c][1] * (double)colors[1][i] +
+                      m[c][2] * (double)colors[2][i];
       assert_true(fabs((double)out[c][i] - wanted) < 2e-3);
     }
 }
 
-/* The largest of X, Y, Z is limited to max_component, and the ratios of the components do not change. */
+/* The largest of X, Y, Z is limited to max_component, and the ratios of the components do not
+ * change. */
 static void bright_colours_are_scaled(void **state) {
   (void)state;
-  static const double m[3][3] = {
-      {0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}}; /* IEC 61966-2-1 */
+  static const double m[3][3] = {{0.4124, 0.3576, 0.1805},
+                                 {0.2126, 0.7152, 0.0722},
+                                 {0.0193, 0.1192, 0.9505}}; /* IEC 61966-2-1 */
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   float out[3][N];
   int scaled = 0;
@@ -78,32 +85,38 @@ static void bright_colours_are_scaled(void **state) {
   for (int i = 0; i < N; i++) {
     double before = 0.0, after = 0.0;
     for (int c = 0; c < 3; c++) {
-      before = fmax(before,
-                    m[c][0] * (double)colors[0][i] + m[c][1] * (double)colors[1][i] + m[c][2] * (double)colors[2][i]);
-      after = fmax(after, m[c][0] * (double)out[0][i] + m[c][1] * (double)out[1][i] + m[c][2] * (double)out[2][i]);
+      before = fmax(before, m[c][0] * (double)colors[0][i] + m[c][1] * (double)colors[1][i] +
+                                m[c][2] * (double)colors[2][i]);
+      after = fmax(after, m[c][0] * (double)out[0][i] + m[c][1] * (double)out[1][i] +
+                              m[c][2] * (double)out[2][i]);
     }
     scaled += before > 1.5;
     assert_true(fabs(after - fmin(before, 1.5)) < 2e-3);
     for (int c = 0; c < 3; c++)
-      assert_true(fabs((double)(out[c][i] * colors[0][i]) - (double)(out[0][i] * colors[c][i])) < 1e-4);
+      assert_true(
+          fabs((double)(out[c][i] * colors[0][i]) - (double)(out[0][i] * colors[c][i])) < 1e-4);
   }
   assert_true(scaled > 0 && scaled < N);
 }
 
-/* ---- error sums -------------------------------------------------------------------------------------------------- */
+/* ---- error sums
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static vlFilm *film_of(int first, int last, vlContext *own) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   vlFilm *film;
   def.errors = true;
-  if (vl_film_create(own, &def, &film) != VL_OK) return NULL;
+  if (vl_film_create(own, &def, &film) != VL_OK)
+    return NULL;
   assert_int_equal(vl_film_begin_pass(film), VL_OK);
   for (int s = first; s < last; s++) {
     statRng rng = stat_rng((uint64_t)s);
     for (int32_t y = 0; y < HEIGHT; y++)
       for (int32_t x = 0; x < WIDTH; x++) {
         float v[3], a = 1.0f, w = 1.0f;
-        for (int c = 0; c < 3; c++) v[c] = ldexpf(stat_float(&rng), (int)(stat_bits(&rng) % 50) - 20);
+        for (int c = 0; c < 3; c++)
+          v[c] = ldexpf(stat_float(&rng), (int)(stat_bits(&rng) % 50) - 20);
         vlFilmSamples samples = {1, &x, &y, &v[0], &v[1], &v[2], &a, &w, NULL};
         vl_film_add(film, &samples, NULL, NULL);
       }
@@ -115,20 +128,25 @@ static vlFilm *film_of(int first, int last, vlContext *own) {
 
 static void errors_of_films_are_added(void **state) {
   (void)state;
-  vlFilm *whole = film_of(0, 40, context), *parts[2] = {film_of(0, 15, context), film_of(15, 40, context)};
+  vlFilm *whole = film_of(0, 40, context),
+         *parts[2] = {film_of(0, 15, context), film_of(15, 40, context)};
   vlImage *images[2];
   assert_int_equal(vl_film_add_film(parts[0], parts[1]), VL_OK);
   for (int kind = 0; kind < 2; kind++) {
     for (int i = 0; i < 2; i++) {
       const vlFilm *film = i ? parts[0] : whole;
-      assert_int_equal(kind ? vl_film_errors(film, NULL, &images[i]) : vl_film_develop(film, NULL, &images[i]), VL_OK);
+      assert_int_equal(kind ? vl_film_errors(film, NULL, &images[i])
+                            : vl_film_develop(film, NULL, &images[i]),
+                       VL_OK);
     }
     assert_memory_equal(vl_image_const_pixels(images[0]), vl_image_const_pixels(images[1]),
                         (size_t)WIDTH * HEIGHT * vl_image_channels(images[0]) * sizeof(float));
-    for (int i = 0; i < 2; i++) vl_image_destroy(images[i]);
+    for (int i = 0; i < 2; i++)
+      vl_image_destroy(images[i]);
   }
   vl_film_destroy(whole);
-  for (int i = 0; i < 2; i++) vl_film_destroy(parts[i]);
+  for (int i = 0; i < 2; i++)
+    vl_film_destroy(parts[i]);
 }
 
 static void sensors_have_names(void **state) {
@@ -150,9 +168,9 @@ static void sensors_have_names(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rec709_stays_as_it_is),
-                                     cmocka_unit_test(rec2020_is_that_of_bt_2087),
-                                     cmocka_unit_test(bright_colours_are_scaled),
-                                     cmocka_unit_test(errors_of_films_are_added), cmocka_unit_test(sensors_have_names)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rec709_stays_as_it_is), cmocka_unit_test(rec2020_is_that_of_bt_2087),
+      cmocka_unit_test(bright_colours_are_scaled), cmocka_unit_test(errors_of_films_are_added),
+      cmocka_unit_test(sensors_have_names)};
   return cmocka_run_group_tests(tests, begin, end);
 }

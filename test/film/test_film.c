@@ -1,5 +1,5 @@
-/* The film: exact sums for any order and grouping, constant images, passes without effect on the bits, merging, invalid
- * samples, invalid defs, failing allocations. */
+/* The film: exact sums for any order and grouping, constant images, passes without effect on
+ * the bits, merging, invalid samples, invalid defs, failing allocations. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -77,7 +77,8 @@ static void develop(const vlFilm *film, float *out) {
   vlDevelopDef def = vl_default_develop_def();
   vlImage *image;
   assert_int_equal(vl_film_develop(film, &def, &image), VL_OK);
-  memcpy(out, vl_image_const_pixels(image), (size_t)vl_image_width(image) * vl_image_height(image) * 16);
+  memcpy(out, vl_image_const_pixels(image),
+         (size_t)vl_image_width(image) * vl_image_height(image) * 16);
   vl_image_destroy(image);
 }
 
@@ -119,7 +120,8 @@ static void test_exact(void **state) {
 
 static void test_constant(void **state) {
   (void)state;
-  static const float VALUES[] = {0.18f, 1.0f, 1.0f / 3.0f, 1234.567f, 1e-4f, 7e8f, 0.0f, 0.7310586f};
+  static const float VALUES[] = {0.18f, 1.0f, 1.0f / 3.0f, 1234.567f,
+                                 1e-4f, 7e8f, 0.0f,        0.7310586f};
   vlFilm *film = new_film();
   statRng rng = stat_rng(9);
   for (size_t k = 0; k < sizeof VALUES / sizeof VALUES[0]; k++) {
@@ -133,8 +135,8 @@ static void test_constant(void **state) {
     whole_pass(film, 0, COUNT);
     develop(film, one_);
     for (int p = 0; p < WIDTH * HEIGHT; p++)
-      assert_true(one_[4 * p] == VALUES[k] && one_[4 * p + 1] == VALUES[k] && one_[4 * p + 2] == -VALUES[k] &&
-                  one_[4 * p + 3] == 1.0f);
+      assert_true(one_[4 * p] == VALUES[k] && one_[4 * p + 1] == VALUES[k] &&
+                  one_[4 * p + 2] == -VALUES[k] && one_[4 * p + 3] == 1.0f);
   }
   vl_film_destroy(film);
 }
@@ -144,7 +146,8 @@ static void test_passes(void **state) {
   random_samples(2);
   vlFilm *plain = new_film(), *film = new_film();
   develop(film, one_); /* nothing yet: black */
-  for (int i = 0; i < WIDTH * HEIGHT * 4; i++) assert_true(one_[i] == 0);
+  for (int i = 0; i < WIDTH * HEIGHT * 4; i++)
+    assert_true(one_[i] == 0);
   assert_int_equal(vl_film_begin_pass(film), VL_OK);
   add(film, 4000, 2000);
   vl_film_abandon_pass(film);
@@ -169,18 +172,21 @@ static void test_passes(void **state) {
   vl_film_destroy(film);
 }
 
-/* After 2^32 - 1 passes the numbers begin again: what the first pass touched does not count as touched by the next. */
+/* After 2^32 - 1 passes the numbers begin again: what the first pass touched does not count as
+ * touched by the next. */
 static void test_pass_numbers_wrap(void **state) {
   (void)state;
   random_samples(3);
   vlFilm *plain = new_film(), *film = new_film();
-  for (int i = 0; i < 2; i++) whole_pass(i ? film : plain, 0, 50);
+  for (int i = 0; i < 2; i++)
+    whole_pass(i ? film : plain, 0, 50);
   film->pass = UINT32_MAX;
   assert_int_equal(vl_film_begin_pass(film), VL_OK);
   add(film, 4000, 3);
   vl_film_abandon_pass(film);
   assert_int_equal(film->pass, 1);
-  for (int i = 0; i < 2; i++) whole_pass(i ? film : plain, 50, 3);
+  for (int i = 0; i < 2; i++)
+    whole_pass(i ? film : plain, 50, 3);
   develop(plain, one_);
   develop(film, two_);
   assert_memory_equal(one_, two_, sizeof one_);
@@ -216,7 +222,8 @@ static void test_merge(void **state) {
     vl_film_set_spp(parts[k], 2);
   }
   static const int ORDER[4] = {2, 0, 3, 1};
-  for (int k = 0; k < 4; k++) assert_int_equal(vl_film_add_film(empty, parts[ORDER[k]]), VL_OK);
+  for (int k = 0; k < 4; k++)
+    assert_int_equal(vl_film_add_film(empty, parts[ORDER[k]]), VL_OK);
   assert_int_equal(vl_film_spp(empty), 8);
   develop(whole, one_);
   develop(empty, two_);
@@ -230,14 +237,16 @@ static void test_merge(void **state) {
   vl_film_destroy(other);
   vl_film_destroy(whole);
   vl_film_destroy(empty);
-  for (int k = 0; k < 4; k++) vl_film_destroy(parts[k]);
+  for (int k = 0; k < 4; k++)
+    vl_film_destroy(parts[k]);
 }
 
 static void test_wrong_samples(void **state) {
   (void)state;
   random_samples(4);
   vlFilm *film = new_film(), *clean = new_film();
-  for (int i = 0; i < 100; i++) w_[i] = 1;
+  for (int i = 0; i < 100; i++)
+    w_[i] = 1;
   whole_pass(clean, 0, 100);
   develop(clean, one_);
   assert_int_equal(vl_film_begin_pass(film), VL_OK);
@@ -246,7 +255,8 @@ static void test_wrong_samples(void **state) {
   float *columns[5] = {r_, g_, b_, a_, w_};
   for (size_t k = 0; k < 7; k++)
     for (int c = 0; c < 5; c++) {
-      if (c == 3 && k > 3) continue; /* alpha is clamped */
+      if (c == 3 && k > 3)
+        continue; /* alpha is clamped */
       random_samples(5);
       w_[0] = 1;
       columns[c][1] = bad[k];
@@ -267,7 +277,8 @@ static void test_wrong_samples(void **state) {
   vl_film_destroy(film);
   vl_film_destroy(clean);
 
-  /* weights that sum to nothing or less give black; tiny and denormal values pass; large sums do not overflow */
+  /* weights that sum to nothing or less give black; tiny and denormal values pass; large sums
+   * do not overflow */
   film = new_film();
   assert_int_equal(vl_film_begin_pass(film), VL_OK);
   px_[0] = py_[0] = px_[1] = py_[1] = 0;
@@ -275,12 +286,15 @@ static void test_wrong_samples(void **state) {
   w_[0] = 1, w_[1] = -1;
   assert_int_equal(add(film, 0, 2), 0);
   for (int i = 0; i < COUNT; i++)
-    px_[i] = 1, py_[i] = 0, r_[i] = 0x1.fffffep39f, g_[i] = -0x1.fffffep39f, b_[i] = 1e-42f, a_[i] = 1, w_[i] = 15.5f;
-  for (int k = 0; k < 20; k++) assert_int_equal(add(film, 0, COUNT), 0);
+    px_[i] = 1, py_[i] = 0, r_[i] = 0x1.fffffep39f, g_[i] = -0x1.fffffep39f, b_[i] = 1e-42f,
+    a_[i] = 1, w_[i] = 15.5f;
+  for (int k = 0; k < 20; k++)
+    assert_int_equal(add(film, 0, COUNT), 0);
   vl_film_commit_pass(film);
   develop(film, one_);
   assert_true(one_[0] == 0 && one_[1] == 0 && one_[2] == 0 && one_[3] == 0);
-  assert_true(one_[4] == 0x1.fffffep39f && one_[5] == -0x1.fffffep39f && one_[6] == 0 && one_[7] == 1);
+  assert_true(one_[4] == 0x1.fffffep39f && one_[5] == -0x1.fffffep39f && one_[6] == 0 &&
+              one_[7] == 1);
   vl_film_destroy(film);
 }
 
@@ -291,13 +305,15 @@ static void test_crop_and_develop(void **state) {
   vlFilm *film;
   assert_int_equal(vl_film_create(context_, &def, &film), VL_OK);
   for (int i = 0; i < 24; i++)
-    px_[i] = 3 + i % 4, py_[i] = 2 + i / 4, r_[i] = (float)i, g_[i] = b_[i] = 0.25f, a_[i] = 0.5f, w_[i] = 1;
+    px_[i] = 3 + i % 4, py_[i] = 2 + i / 4, r_[i] = (float)i, g_[i] = b_[i] = 0.25f,
+    a_[i] = 0.5f, w_[i] = 1;
   whole_pass(film, 0, 24);
   vlDevelopDef develop_def = vl_default_develop_def();
   develop_def.exposure = 4;
   vlImage *image;
   assert_int_equal(vl_film_develop(film, &develop_def, &image), VL_OK);
-  assert_true(vl_image_width(image) == 4 && vl_image_height(image) == 6 && vl_image_channels(image) == 4);
+  assert_true(vl_image_width(image) == 4 && vl_image_height(image) == 6 &&
+              vl_image_channels(image) == 4);
   for (uint32_t y = 0; y < 6; y++)
     for (uint32_t x = 0; x < 4; x++) {
       assert_true(vl_image_get(image, x, y, 0) == 4.0f * (float)(4 * y + x));
@@ -307,7 +323,8 @@ static void test_crop_and_develop(void **state) {
   assert_int_equal(vl_image_find_attribute(image, "dataWindow", &a), VL_OK);
   assert_true(a.numbers[0] == 3 && a.numbers[1] == 2 && a.numbers[2] == 6 && a.numbers[3] == 7);
   assert_int_equal(vl_image_find_attribute(image, "displayWindow", &a), VL_OK);
-  assert_true(a.numbers[0] == 0 && a.numbers[1] == 0 && a.numbers[2] == WIDTH - 1 && a.numbers[3] == HEIGHT - 1);
+  assert_true(a.numbers[0] == 0 && a.numbers[1] == 0 && a.numbers[2] == WIDTH - 1 &&
+              a.numbers[3] == HEIGHT - 1);
   assert_int_equal(vl_image_find_attribute(image, "chromaticities", &a), VL_OK);
   assert_true(fabs(a.numbers[0] - 0.64) < 1e-3 && fabs(a.numbers[7] - 0.329) < 1e-3);
   vl_image_destroy(image);
@@ -343,12 +360,14 @@ typedef struct Meager {
 } Meager;
 static void *meager_allocate(void *user, size_t size) {
   Meager *m = user;
-  if (m->left-- <= 0) return NULL;
+  if (m->left-- <= 0)
+    return NULL;
   m->held++;
   return malloc(size);
 }
 static void meager_release(void *user, void *block) {
-  if (block) ((Meager *)user)->held--;
+  if (block)
+    ((Meager *)user)->held--;
   free(block);
 }
 
@@ -367,14 +386,18 @@ static void test_memory(void **state) {
     vlFilm *film = NULL, *other = NULL;
     vlImage *image = NULL;
     vlResult result = vl_film_create(context, &film_def, &film);
-    if (result == VL_OK) result = vl_film_create(context, &film_def, &other);
+    if (result == VL_OK)
+      result = vl_film_create(context, &film_def, &other);
     for (int pass = 0; pass < 2 && result == VL_OK; pass++) {
       result = vl_film_begin_pass(film);
-      if (result == VL_OK) vl_film_commit_pass(film);
+      if (result == VL_OK)
+        vl_film_commit_pass(film);
     }
-    if (result == VL_OK) result = vl_film_add_film(other, film);
+    if (result == VL_OK)
+      result = vl_film_add_film(other, film);
     vlDevelopDef develop_def = vl_default_develop_def();
-    if (result == VL_OK) result = vl_film_develop(film, &develop_def, &image);
+    if (result == VL_OK)
+      result = vl_film_develop(film, &develop_def, &image);
     assert_true(result == VL_OK || result == VL_ERROR_MEMORY);
     done = result == VL_OK;
     vl_image_destroy(image);

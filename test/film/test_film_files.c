@@ -1,4 +1,5 @@
-/* Film files: a film is read as it was written, parts merge to the whole in any order, and all damage is detected. */
+/* Film files: a film is read as it was written, parts merge to the whole in any order, and all
+ * damage is detected. */
 #include <limits.h>
 #include <math.h>
 #include <setjmp.h>
@@ -26,7 +27,8 @@ static vlContext *context;
 static int begin(void **state) {
   (void)state;
   snprintf(folder, sizeof folder, "/tmp/velo-film-XXXXXX");
-  if (!mkdtemp(folder)) return 1;
+  if (!mkdtemp(folder))
+    return 1;
   vlContextDef def = vl_default_context_def();
   def.threads = 2;
   return vl_context_create(&def, &context) != VL_OK;
@@ -76,7 +78,9 @@ static bool same_bytes(const char *a, const char *b) {
   return same;
 }
 
-/* ---- films ------------------------------------------------------------------------------------------------------- */
+/* ---- films
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 enum { PLAIN, ERRORS, SPECTRUM, KINDS };
 
@@ -93,11 +97,14 @@ static float value(uint32_t x, uint32_t y, uint32_t sample, uint32_t salt) {
 }
 
 /* Makes a film that has the samples first to end - 1 in the pixels of the tiles. */
-static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint32_t first, uint32_t last) {
+static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint32_t first,
+                         uint32_t last) {
   vlFilmDef def = film_def(kind);
-  if (tiles) memcpy(def.crop, tiles, sizeof def.crop);
+  if (tiles)
+    memcpy(def.crop, tiles, sizeof def.crop);
   vlFilm *film;
-  if (vl_film_create(own, &def, &film) != VL_OK) return NULL;
+  if (vl_film_create(own, &def, &film) != VL_OK)
+    return NULL;
   if (vl_film_begin_pass(film) != VL_OK) {
     vl_film_destroy(film);
     return NULL;
@@ -107,11 +114,14 @@ static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint
     for (uint32_t y = def.crop[1]; y < def.crop[3]; y++)
       for (uint32_t x = def.crop[0]; x < def.crop[2]; x++) {
         int32_t px = (int32_t)x, py = (int32_t)y;
-        float r = value(x, y, s, 1), g = value(x, y, s, 2), b = value(x, y, s, 3) * 1e5f, a = 1, w = value(x, y, s, 4);
+        float r = value(x, y, s, 1), g = value(x, y, s, 2), b = value(x, y, s, 3) * 1e5f, a = 1,
+              w = value(x, y, s, 4);
         float lambda[4] = {400, 500, 600, 700};
-        vlFilmSpectra spectra = {1, &px, &py, {&r, &g, &b, &w}, {lambda, lambda + 1, lambda + 2, lambda + 3}, &w};
+        vlFilmSpectra spectra = {
+            1, &px, &py, {&r, &g, &b, &w}, {lambda, lambda + 1, lambda + 2, lambda + 3}, &w};
         vlFilmSamples samples = {1, &px, &py, &r, &g, &b, &a, &w, &s};
-        if (def.buckets) vl_film_add_spectra(film, &spectra);
+        if (def.buckets)
+          vl_film_add_spectra(film, &spectra);
         vl_film_add(film, &samples, NULL, NULL);
       }
   vl_film_commit_pass(film);
@@ -120,25 +130,30 @@ static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint
   return film;
 }
 
-static void write_film(const char *path, int kind, const uint32_t tiles[4], uint32_t first, uint32_t last) {
+static void write_film(const char *path, int kind, const uint32_t tiles[4], uint32_t first,
+                       uint32_t last) {
   vlFilm *film = make_film(context, kind, tiles, first, last);
   vlFilmWriteDef def = vl_default_film_write_def();
   vlFilmDef whole = film_def(kind);
   memcpy(def.window, whole.crop, sizeof def.window);
   vlError error;
-  if (vl_film_write(film, &def, path, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_film_write(film, &def, path, &error) != VL_OK)
+    fail_msg("%s", error.message);
   vl_film_destroy(film);
 }
 
 static void same_images(vlImage *a, vlImage *b) {
-  size_t size = (size_t)vl_image_width(a) * vl_image_height(a) * vl_image_channels(a) * sizeof(float);
+  size_t size =
+      (size_t)vl_image_width(a) * vl_image_height(a) * vl_image_channels(a) * sizeof(float);
   assert_int_equal(vl_image_width(a), vl_image_width(b));
   assert_memory_equal(vl_image_const_pixels(a), vl_image_const_pixels(b), size);
   vl_image_destroy(a);
   vl_image_destroy(b);
 }
 
-/* ---- tests ------------------------------------------------------------------------------------------------------- */
+/* ---- tests
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static void what_is_written_is_read(void **state) {
   (void)state;
@@ -171,15 +186,17 @@ static void what_is_written_is_read(void **state) {
   }
 }
 
-static vlResult merge(const char *const *paths, uint32_t count, const char *output, vlError *error) {
+static vlResult merge(const char *const *paths, uint32_t count, const char *output,
+                      vlError *error) {
   vlFilmMergeDef def = vl_default_film_merge_def();
   def.overwrite = true;
   return vl_film_merge(context, paths, count, &def, output, error);
 }
 
-/* Turns the data of a block of the present format into that of format 1 or 2. Returns its size. */
-static size_t old_data(const vlFilmDef *def, uint32_t format, size_t pixels, bool compared, const char *from,
-                       char *to) {
+/* Turns the data of a block of the present format into that of format 1 or 2. Returns its size.
+ */
+static size_t old_data(const vlFilmDef *def, uint32_t format, size_t pixels, bool compared,
+                       const char *from, char *to) {
   char *start = to;
   memcpy(to, from, pixels * sizeof(vlFilmPixel));
   from += pixels * sizeof(vlFilmPixel), to += pixels * sizeof(vlFilmPixel);
@@ -191,11 +208,14 @@ static size_t old_data(const vlFilmDef *def, uint32_t format, size_t pixels, boo
     memcpy(to + sizeof m.plain + sizeof m.squares, &m.samples, sizeof m.samples);
     from += sizeof m, to += sizeof m.plain + sizeof m.squares + sizeof m.samples;
   }
-  if (compared && format == 2) memset(to, 1, 16 * pixels), to += 16 * pixels;
+  if (compared && format == 2)
+    memset(to, 1, 16 * pixels), to += 16 * pixels;
   return (size_t)(to - start);
 }
 
-/* Turns a file of the present format into one of format 1 or 2, whose first block has a comparison. */
+/* Turns a file of the present format into one of format 1 or 2, whose first block has a
+ * comparison.
+ */
 static void make_old(const char *path, uint32_t format) {
   size_t size;
   char *bytes = bytes_of(path, &size), *made = malloc(size + 16 * 32 * 32), *to = made;
@@ -213,8 +233,10 @@ static void make_old(const char *path, uint32_t format) {
     bool first = from == bytes + sizeof p + p.header_size;
     size_t ranges = head.range_count * sizeof(vlSampleSpan), data = head.data_size;
     size_t pixels = (size_t)(head.x1 - head.x0) * (head.y1 - head.y0);
-    if (first) head.compared = (vlComparedNoise){16, 0.25f, 2.0f, 1};
-    head.data_size = old_data(&def, format, pixels, first, from + sizeof head + ranges, to + sizeof head + ranges);
+    if (first)
+      head.compared = (vlComparedNoise){16, 0.25f, 2.0f, 1};
+    head.data_size = old_data(&def, format, pixels, first, from + sizeof head + ranges,
+                              to + sizeof head + ranges);
     memcpy(to, &head, sizeof head);
     memcpy(to + sizeof head, from + sizeof head, ranges);
     size_t whole = sizeof head + ranges + head.data_size;
@@ -236,11 +258,12 @@ static vlImage *independent_errors(const vlFilm *film) {
   return image;
 }
 
-/* Films of formats 1 and 2 have the same image, and the errors of independent samples. Continued beyond the next power
- * of two they have the bytes of new films. */
+/* Films of formats 1 and 2 have the same image, and the errors of independent samples.
+ * Continued beyond the next power of two they have the bytes of new films. */
 static void old_formats_are_read(void **state) {
   (void)state;
-  const char *path = path_of("old.film"), *more = path_of("more.film"), *whole = path_of("whole.film");
+  const char *path = path_of("old.film"), *more = path_of("more.film"),
+             *whole = path_of("whole.film");
   const char *again = path_of("again.film"), *parts[2] = {path, more};
   vlError error;
   vlFilm *film, *present = make_film(context, ERRORS, NULL, 0, 16);
@@ -249,9 +272,11 @@ static void old_formats_are_read(void **state) {
   for (uint32_t format = 1; format <= 2; format++) {
     write_film(path, ERRORS, NULL, 0, 16);
     make_old(path, format);
-    if (vl_film_read(context, path, false, &film, &error) != VL_OK) fail_msg("%s", error.message);
+    if (vl_film_read(context, path, false, &film, &error) != VL_OK)
+      fail_msg("%s", error.message);
     assert_true((film->compared != NULL) == (format == 2));
-    if (format == 2) assert_true(film->compared[0].spp == 16 && film->compared[0].noise == 0.25f);
+    if (format == 2)
+      assert_true(film->compared[0].spp == 16 && film->compared[0].noise == 0.25f);
     vlImage *a, *b;
     assert_int_equal(vl_film_develop(film, NULL, &a), VL_OK);
     assert_int_equal(vl_film_develop(present, NULL, &b), VL_OK);
@@ -265,7 +290,9 @@ static void old_formats_are_read(void **state) {
   vl_film_destroy(present);
 }
 
-/* Blocks keep their last comparison of adaptive sampling, unless samples of another part join them. */
+/* Blocks keep their last comparison of adaptive sampling, unless samples of another part join
+ * them.
+ */
 static void compared_noise(void **state) {
   (void)state;
   enum { LAST = 2 };
@@ -283,10 +310,13 @@ static void compared_noise(void **state) {
   const char *paths[3] = {path_of("noise.film"), path_of("noise.film"), path_of("more.film")};
   for (uint32_t count = 1; count <= 3; count++) { /* the same part twice counts once */
     assert_int_equal(merge(paths, count, path_of("merged.film"), &error), VL_OK);
-    assert_int_equal(vl_film_read(context, path_of("merged.film"), false, &read, &error), VL_OK);
-    vlComparedNoise got = vl_film_compared(read)[LAST], other = vl_film_compared(read)[LAST - 1];
+    assert_int_equal(vl_film_read(context, path_of("merged.film"), false, &read, &error),
+                     VL_OK);
+    vlComparedNoise got = vl_film_compared(read)[LAST],
+                    other = vl_film_compared(read)[LAST - 1];
     assert_int_equal(got.spp, count < 3 ? 16 : 0);
-    if (count < 3) assert_true(got.noise == noise && got.factor == 2.0f && got.view == VL_VIEW_STANDARD);
+    if (count < 3)
+      assert_true(got.noise == noise && got.factor == 2.0f && got.view == VL_VIEW_STANDARD);
     assert_int_equal(other.spp, 0);
     vl_film_destroy(read);
   }
@@ -300,14 +330,16 @@ static void shuffle(const char **paths, uint32_t count, uint32_t seed) {
   }
 }
 
-/* Merges six parts, divided by samples and by tiles, in any order and grouping. One part is given twice. */
+/* Merges six parts, divided by samples and by tiles, in any order and grouping. One part is
+ * given twice. */
 static void parts_become_the_whole(void **state) {
   (void)state;
   static const uint32_t left[4] = {5, 0, 32, HEIGHT - 2}, right[4] = {32, 0, WIDTH, HEIGHT - 2};
   static const struct {
     const uint32_t *tiles;
     uint32_t first, end;
-  } parts[6] = {{NULL, 0, 5}, {NULL, 5, 6}, {left, 6, 20}, {right, 6, 9}, {right, 9, 20}, {NULL, 20, SPP}};
+  } parts[6] = {{NULL, 0, 5},  {NULL, 5, 6},   {left, 6, 20},
+                {right, 6, 9}, {right, 9, 20}, {NULL, 20, SPP}};
   for (int kind = 0; kind < KINDS; kind++) {
     const char *paths[7];
     char names[6][128];
@@ -318,13 +350,17 @@ static void parts_become_the_whole(void **state) {
     }
     for (uint32_t round = 0; round < 8; round++) {
       vlError error;
-      for (int i = 0; i < 7; i++) paths[i] = names[i % 6];
+      for (int i = 0; i < 7; i++)
+        paths[i] = names[i % 6];
       shuffle(paths, 7, round + 100 * (uint32_t)kind);
       uint32_t some = 1 + round % 5;
       const char *second[7] = {path_of("some.film")};
-      if (merge(paths, some, second[0], &error) != VL_OK) fail_msg("%s", error.message);
-      for (uint32_t i = some; i < 7; i++) second[1 + i - some] = paths[i];
-      if (merge(second, 8 - some, path_of("all.film"), &error) != VL_OK) fail_msg("%s", error.message);
+      if (merge(paths, some, second[0], &error) != VL_OK)
+        fail_msg("%s", error.message);
+      for (uint32_t i = some; i < 7; i++)
+        second[1 + i - some] = paths[i];
+      if (merge(second, 8 - some, path_of("all.film"), &error) != VL_OK)
+        fail_msg("%s", error.message);
       assert_true(same_bytes(path_of("all.film"), path_of("whole.film")));
     }
   }
@@ -346,7 +382,8 @@ static void what_does_not_belong_together_is_refused(void **state) {
   assert_int_not_equal(access(output, F_OK), 0);
 }
 
-/* Two merged parts with a gap between their samples can be developed but not continued. Without the gap both work. */
+/* Two merged parts with a gap between their samples can be developed but not continued. Without
+ * the gap both work. */
 static void a_film_with_gaps_is_only_developed(void **state) {
   (void)state;
   const char *paths[2] = {path_of("one.film"), path_of("two.film")};
@@ -356,7 +393,8 @@ static void a_film_with_gaps_is_only_developed(void **state) {
   write_film(paths[0], PLAIN, NULL, 0, 8);
   write_film(paths[1], PLAIN, NULL, 10, 12);
   assert_int_equal(merge(paths, 2, path_of("gap.film"), &error), VL_OK);
-  assert_int_equal(vl_film_read(context, path_of("gap.film"), false, &film, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_film_read(context, path_of("gap.film"), false, &film, &error),
+                   VL_ERROR_SCENE);
   assert_null(film);
   assert_int_equal(vl_film_read(context, path_of("gap.film"), true, &film, &error), VL_OK);
   assert_int_equal(vl_film_spp(film), 10);
@@ -374,8 +412,8 @@ static vlResult read_bytes(const char *bytes, size_t size, vlError *error) {
   return result;
 }
 
-/* Changes each byte of the header and of the first block's head, and every hundredth of the other bytes; also
- * truncates the file at each length. */
+/* Changes each byte of the header and of the first block's head, and every hundredth of the
+ * other bytes; also truncates the file at each length. */
 static void no_damage_goes_unseen(void **state) {
   (void)state;
   size_t size, held = vl_context_memory(context, NULL);
@@ -384,12 +422,14 @@ static void no_damage_goes_unseen(void **state) {
   char *bytes = bytes_of(path_of("good.film"), &size);
   vlFilmPreamble preamble;
   memcpy(&preamble, bytes, sizeof preamble);
-  size_t head = sizeof preamble + preamble.header_size + sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan);
+  size_t head =
+      sizeof preamble + preamble.header_size + sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan);
   for (size_t at = 0; at < size; at += at < head ? 1 : 997) {
     for (int bit = 0; bit < 8; bit += at < 32 ? 1 : 5) {
       bytes[at] = (char)(bytes[at] ^ 1 << bit);
       vlResult result = read_bytes(bytes, size, &error);
-      if (result != VL_ERROR_SCENE) fail_msg("byte %zu, bit %d: %s", at, bit, vl_result_name(result));
+      if (result != VL_ERROR_SCENE)
+        fail_msg("byte %zu, bit %d: %s", at, bit, vl_result_name(result));
       assert_non_null(strstr(error.message, "damaged.film"));
       bytes[at] = (char)(bytes[at] ^ 1 << bit);
     }
@@ -403,7 +443,8 @@ static void no_damage_goes_unseen(void **state) {
   assert_int_equal(vl_context_memory(context, NULL), held);
 }
 
-/* Sums that no samples can produce are refused even if their CRC is right, since later additions could overflow. */
+/* Sums that no samples can produce are refused even if their CRC is right, since later
+ * additions could overflow. */
 static void impossible_sums_are_refused(void **state) {
   (void)state;
   size_t size;
@@ -430,11 +471,14 @@ static void files_that_cannot_be_written(void **state) {
   vlFilmDef def = film_def(PLAIN);
   vlError error;
   vlFilmFile *file;
-  assert_int_equal(vl_film_write(film, NULL, path_of("no/such/folder.film"), &error), VL_ERROR_IO);
-  assert_int_equal(vl_film_read(context, path_of("absent.film"), false, &none, &error), VL_ERROR_MISSING);
+  assert_int_equal(vl_film_write(film, NULL, path_of("no/such/folder.film"), &error),
+                   VL_ERROR_IO);
+  assert_int_equal(vl_film_read(context, path_of("absent.film"), false, &none, &error),
+                   VL_ERROR_MISSING);
   assert_int_equal(vl_film_read(context, folder, false, &none, &error), VL_ERROR_IO);
   put_bytes(path_of("text.film"), "not a film", 10);
-  assert_int_equal(vl_film_file_open(context, path_of("text.film"), &file, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_film_file_open(context, path_of("text.film"), &file, &error),
+                   VL_ERROR_SCENE);
   vl_film_destroy(film);
   assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
   assert_int_equal(vl_film_write(film, NULL, path_of("empty.film"), &error), VL_ERROR_ARGUMENT);
@@ -447,8 +491,10 @@ static vlResult whole_life(vlContext *own, void *user) {
   vlFilm *film = make_film(own, ERRORS, NULL, 0, 1), *read = NULL;
   vlError error;
   vlResult result = film ? vl_film_write(film, NULL, paths[0], &error) : VL_ERROR_MEMORY;
-  if (result == VL_OK) result = vl_film_merge(own, paths, 2, NULL, path_of("life2.film"), &error);
-  if (result == VL_OK) result = vl_film_read(own, path_of("life2.film"), false, &read, &error);
+  if (result == VL_OK)
+    result = vl_film_merge(own, paths, 2, NULL, path_of("life2.film"), &error);
+  if (result == VL_OK)
+    result = vl_film_read(own, path_of("life2.film"), false, &read, &error);
   vl_film_destroy(film);
   vl_film_destroy(read);
   return result;
@@ -465,13 +511,15 @@ static bool json_stays;
 
 static void *json_allocate(size_t size) {
   long n = ++json_calls;
-  if (n == json_at || (json_stays && n > json_at)) return NULL;
+  if (n == json_at || (json_stays && n > json_at))
+    return NULL;
   json_blocks++;
   return malloc(size);
 }
 
 static void json_release(void *block) {
-  if (block) json_blocks--;
+  if (block)
+    json_blocks--;
   free(block);
 }
 
@@ -481,7 +529,8 @@ static void a_receipt_that_is_not_json_is_refused(void **state) {
   vlFilmWriteDef def = vl_default_film_write_def();
   vlError error;
   def.receipt = "{\"velo_receipt\": 1,\n \"samples\": }";
-  assert_int_equal(vl_film_write(film, &def, path_of("receipt.film"), &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_film_write(film, &def, path_of("receipt.film"), &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "receipt: line 2"));
   def.receipt = "{\"velo_receipt\": 1}";
   assert_int_equal(vl_film_write(film, &def, path_of("receipt.film"), &error), VL_OK);
@@ -489,7 +538,8 @@ static void a_receipt_that_is_not_json_is_refused(void **state) {
 }
 
 static vlResult life_with_receipt(void) {
-  static const char text[] = "{\"velo_receipt\": 1, \"command\": [\"velo\", \"render\", \"a.pbrt\"], \"samples\": 1}";
+  static const char text[] =
+      "{\"velo_receipt\": 1, \"command\": [\"velo\", \"render\", \"a.pbrt\"], \"samples\": 1}";
   const char *paths[2] = {path_of("json.film"), path_of("json.film")};
   const uint32_t small[4] = {5, 0, 9, 4};
   vlFilm *film = make_film(context, PLAIN, small, 0, 1), *read = NULL;
@@ -498,10 +548,14 @@ static vlResult life_with_receipt(void) {
   vlError error;
   vlResult result = vl_receipt_parse(context, text, strlen(text), &receipt, &error);
   def.receipt = result == VL_OK ? vl_receipt_text(receipt) : NULL;
-  if (result == VL_OK) result = vl_film_write(film, &def, paths[0], &error);
-  if (result == VL_OK) result = vl_film_merge(context, paths, 2, NULL, path_of("json2.film"), &error);
-  if (result == VL_OK) result = vl_film_read(context, path_of("json2.film"), false, &read, &error);
-  if (result != VL_OK && result != VL_ERROR_MEMORY) print_message("%s\n", error.message);
+  if (result == VL_OK)
+    result = vl_film_write(film, &def, paths[0], &error);
+  if (result == VL_OK)
+    result = vl_film_merge(context, paths, 2, NULL, path_of("json2.film"), &error);
+  if (result == VL_OK)
+    result = vl_film_read(context, path_of("json2.film"), false, &read, &error);
+  if (result != VL_OK && result != VL_ERROR_MEMORY)
+    print_message("%s\n", error.message);
   vl_receipt_destroy(receipt);
   vl_film_destroy(film);
   vl_film_destroy(read);
@@ -513,17 +567,22 @@ static void memory_of_json_runs_out(void **state) {
   long total = LONG_MAX;
   json_set_alloc_funcs(json_allocate, json_release);
   for (json_at = 0; json_at <= total; json_at++)
-    for (int stays = 0; stays < (json_at % 4 == 0 ? 2 : 1); stays++) { /* "and all later" at every fourth */
+    for (int stays = 0; stays < (json_at % 4 == 0 ? 2 : 1);
+         stays++) { /* "and all later" at every fourth */
       json_calls = 0, json_stays = stays && json_at;
       vlResult result = life_with_receipt();
       if (!json_at && !stays) {
         total = json_calls;
         assert_int_equal(rename(path_of("json2.film"), path_of("right.film")), 0);
       }
-      bool good =
-          json_at && json_stays ? result == VL_ERROR_MEMORY : result == VL_OK || (json_at && result == VL_ERROR_MEMORY);
-      if (json_at && result == VL_OK) good = same_bytes(path_of("json2.film"), path_of("right.film"));
-      if (!good) fail_msg("allocation %ld%s: %s", json_at, stays ? " and later" : "", vl_result_name(result));
+      bool good = json_at && json_stays
+                      ? result == VL_ERROR_MEMORY
+                      : result == VL_OK || (json_at && result == VL_ERROR_MEMORY);
+      if (json_at && result == VL_OK)
+        good = same_bytes(path_of("json2.film"), path_of("right.film"));
+      if (!good)
+        fail_msg("allocation %ld%s: %s", json_at, stays ? " and later" : "",
+                 vl_result_name(result));
     }
   json_set_alloc_funcs(malloc, free);
   assert_int_equal(json_blocks, 0);
@@ -533,13 +592,14 @@ static void memory_of_json_runs_out(void **state) {
 static vlResult attributes_of(const char *path, vlImage *image, vlError *error) {
   vlFilmFile *file;
   vlResult result = vl_film_file_open(context, path, &file, error);
-  if (result == VL_OK) result = vl_film_file_attributes(file, image, error);
+  if (result == VL_OK)
+    result = vl_film_file_attributes(file, image, error);
   vl_film_file_close(file);
   return result;
 }
 
-/* Attributes of each type come back as they were, also out of a merged film, and do not depend on the order of its
- * parts. */
+/* Attributes of each type come back as they were, also out of a merged film, and do not depend
+ * on the order of its parts. */
 static void attributes_are_kept(void **state) {
   (void)state;
   static const vlAttribute some[] = {
@@ -550,15 +610,21 @@ static void attributes_are_kept(void **state) {
       {"list", VL_ATTRIBUTE_STRINGS, {0}, "left\nright"},
       {"box", VL_ATTRIBUTE_BOX2I, {1, 2, 3, 4}, NULL},
       {"v", VL_ATTRIBUTE_V2F, {1e-30, 5e30}, NULL},
-      {"m", VL_ATTRIBUTE_M44D, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 1.0 / 3}, NULL}};
+      {"m",
+       VL_ATTRIBUTE_M44D,
+       {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 1.0 / 3},
+       NULL}};
   enum { COUNT = sizeof some / sizeof *some };
   vlImageDef image_def = vl_default_image_def(1, 1, 1);
   vlImage *from, *to;
   vlError error = {0};
   assert_int_equal(vl_image_create(context, &image_def, &from), VL_OK);
-  for (int i = 0; i < COUNT; i++) assert_int_equal(vl_image_set_attribute(from, &some[i]), VL_OK);
-  const vlAttribute lost[2] = {{"nan", VL_ATTRIBUTE_FLOAT, {NAN}, NULL}, {"bytes", VL_ATTRIBUTE_STRING, {0}, "\xff"}};
-  for (int i = 0; i < 2; i++) assert_int_equal(vl_image_set_attribute(from, &lost[i]), VL_OK);
+  for (int i = 0; i < COUNT; i++)
+    assert_int_equal(vl_image_set_attribute(from, &some[i]), VL_OK);
+  const vlAttribute lost[2] = {{"nan", VL_ATTRIBUTE_FLOAT, {NAN}, NULL},
+                               {"bytes", VL_ATTRIBUTE_STRING, {0}, "\xff"}};
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(vl_image_set_attribute(from, &lost[i]), VL_OK);
   const char *paths[3] = {path_of("one.film"), path_of("two.film"), path_of("both.film")};
   for (uint32_t i = 0; i < 2; i++) {
     vlFilm *film = make_film(context, PLAIN, NULL, 4 * i, 4 * i + 4);
@@ -579,8 +645,10 @@ static void attributes_are_kept(void **state) {
         assert_int_equal(vl_image_attribute(to, i, &a), VL_OK);
         assert_string_equal(a.name, some[i].name);
         assert_int_equal(a.type, some[i].type);
-        if (some[i].string) assert_string_equal(a.string, some[i].string);
-        if (!some[i].string) assert_memory_equal(a.numbers, some[i].numbers, sizeof a.numbers);
+        if (some[i].string)
+          assert_string_equal(a.string, some[i].string);
+        if (!some[i].string)
+          assert_memory_equal(a.numbers, some[i].numbers, sizeof a.numbers);
       }
       vl_image_destroy(to);
     }
@@ -602,8 +670,8 @@ static void attributes_are_kept(void **state) {
   vl_image_destroy(to);
 }
 
-/* A lock is one for all names of a file; who writes without it is refused. A leftover of a killed process locks
- * nothing. */
+/* A lock is one for all names of a file; who writes without it is refused. A leftover of a
+ * killed process locks nothing. */
 static void one_writer_at_a_time(void **state) {
   (void)state;
   vlError error = {0};
@@ -622,7 +690,8 @@ static void one_writer_at_a_time(void **state) {
   assert_int_equal(vl_film_lock(context, path, &other, &error), VL_OK);
   assert_null(other);
   def.lock = lock;
-  for (int i = 0; i < 2; i++) assert_int_equal(vl_film_write(film, &def, path, &error), VL_OK);
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(vl_film_write(film, &def, path, &error), VL_OK);
   assert_int_equal(vl_film_lock(context, path, &other, &error), VL_OK);
   assert_null(other); /* the file was replaced, its lock stays */
   const char *const parts[1] = {path};
@@ -641,7 +710,8 @@ static void a_merge_loses_nothing(void **state) {
   vlError error = {0};
   vlFilmMergeDef over = vl_default_film_merge_def();
   over.overwrite = true;
-  const char *first = path_of("first.film"), *last = path_of("last.film"), *all = path_of("result.film");
+  const char *first = path_of("first.film"), *last = path_of("last.film"),
+             *all = path_of("result.film");
   write_film(first, PLAIN, NULL, 0, 5);
   write_film(last, PLAIN, NULL, 5, SPP);
   write_film(all, PLAIN, NULL, 0, 5);

@@ -1,5 +1,6 @@
-/* The noise of a film's blocks: against the known standard error of normal samples, for each view; how often it is
- * below the true error; against the true error of rare bright samples; blocks at the edges of a crop. */
+/* The noise of a film's blocks: against the known standard error of normal samples, for each
+ * view; how often it is below the true error; against the true error of rare bright samples;
+ * blocks at the edges of a crop. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,7 +29,8 @@ static float draw_rare(statRng *rng, float mean, float deviation) {
 }
 
 /* A film of grey samples. */
-static vlFilm *film_of(vlContext *context, Draw *draw, float mean, float deviation, uint64_t seed) {
+static vlFilm *film_of(vlContext *context, Draw *draw, float mean, float deviation,
+                       uint64_t seed) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   vlFilm *film;
   def.errors = true;
@@ -68,23 +70,27 @@ static void blocks_of_a_crop(void **state) {
   assert_int_equal(pixels, 80 * 62);
 }
 
-/* Of grey x the noise is the standard error times the slope of the view, and a little more: the bound. */
+/* Of grey x the noise is the standard error times the slope of the view, and a little more: the
+ * bound. */
 static void expected_noise(void **state) {
   vlContext *context = *state;
   const float mean = 0.25f, deviation = 0.02f;
   const double error = (double)deviation / sqrt(SPP);
   const double slope = 1.055 / 2.4 * pow(0.25, 1 / 2.4 - 1);
   vlFilm *film = noisy_film(context, mean, deviation, 1);
-  for (uint32_t i = 0; i < 6; i++) { /* those of the lowest row have 6 lines: their bound is wider */
+  for (uint32_t i = 0; i < 6;
+       i++) { /* those of the lowest row have 6 lines: their bound is wider */
     double raw = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1), standard;
     double bright = vl_film_block_noise(film, i, VL_VIEW_RAW, 1, 0.75f, 1);
     standard = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1, 1);
-    if (!(raw > 0.97 * error && raw < 1.06 * error)) fail_msg("block %u: noise %g, error %g", i, raw, error);
+    if (!(raw > 0.97 * error && raw < 1.06 * error))
+      fail_msg("block %u: noise %g, error %g", i, raw, error);
     assert_true(fabs(bright / raw - 1.5) < 1e-5);
     assert_true(fabs(standard / (raw * slope) - 1) < 2e-3);
   }
   /* black and white are clipped: half of the interval remains at 0, nothing far above 1 */
-  vlFilm *white = noisy_film(context, 3, deviation, 2), *black = noisy_film(context, 0, deviation, 3);
+  vlFilm *white = noisy_film(context, 3, deviation, 2),
+         *black = noisy_film(context, 0, deviation, 3);
   assert_true(vl_film_block_noise(white, 4, VL_VIEW_STANDARD, 0, 1, 1) == 0);
   double half = vl_film_block_noise(black, 4, VL_VIEW_RAW, 0, 1, 1);
   assert_true(half > 0.4 * error && half < 0.7 * error);
@@ -94,8 +100,9 @@ static void expected_noise(void **state) {
   vl_film_destroy(black);
 }
 
-/* The squared noise lies three standard errors of its mean above the square of the error, in the mean of 240 blocks: 40
- * films of 6. A variance from SPP normal samples has a relative standard error of sqrt(2 / (SPP - 1)). */
+/* The squared noise lies three standard errors of its mean above the square of the error, in
+ * the mean of 240 blocks: 40 films of 6. A variance from SPP normal samples has a relative
+ * standard error of sqrt(2 / (SPP - 1)). */
 static void bound_holds(void **state) {
   vlContext *context = *state;
   const double square = 0.05 * 0.05 / SPP;
@@ -113,12 +120,15 @@ static void bound_holds(void **state) {
     vl_film_destroy(film);
   }
   double mean = sum / 240, deviation = sqrt(squares / 240 - mean * mean);
-  if (!(fabs(mean - 3) < 4 / sqrt(240))) fail_msg("%g standard errors above", mean);
-  if (!(deviation > 0.8 && deviation < 1.2)) fail_msg("spread of %g standard errors", deviation);
+  if (!(fabs(mean - 3) < 4 / sqrt(240)))
+    fail_msg("%g standard errors above", mean);
+  if (!(deviation > 0.8 && deviation < 1.2))
+    fail_msg("spread of %g standard errors", deviation);
 }
 
 /* Samples of a pixel, a random permutation of strata. */
-static vlFilm *stratified_film(vlContext *context, uint32_t strata, uint64_t seed, double *true_noise) {
+static vlFilm *stratified_film(vlContext *context, uint32_t strata, uint64_t seed,
+                               double *true_noise) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   vlFilm *film;
   def.errors = true;
@@ -132,8 +142,10 @@ static vlFilm *stratified_film(vlContext *context, uint32_t strata, uint64_t see
     vl_film_set_pass_samples(film, first, end);
     for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
       for (uint32_t s = first; s < end; s++) {
-        if (s % strata == 0) places[i] = (uint32_t)(stat_float(&rng) * (float)strata);
-        uint32_t stratum = (s * 5 + places[i]) % strata; /* s * 5 mod strata: each stratum once */
+        if (s % strata == 0)
+          places[i] = (uint32_t)(stat_float(&rng) * (float)strata);
+        uint32_t stratum =
+            (s * 5 + places[i]) % strata; /* s * 5 mod strata: each stratum once */
         float value = ((float)stratum + stat_float(&rng)) / (float)strata, one = 1;
         int32_t x = i % WIDTH, y = i / WIDTH;
         vlFilmSamples samples = {1, &x, &y, &value, &value, &value, &one, &one, &s};
@@ -144,13 +156,14 @@ static vlFilm *stratified_film(vlContext *context, uint32_t strata, uint64_t see
     vl_film_set_spp(film, end);
   }
   double sum = 0;
-  for (int i = 0; i < WIDTH * HEIGHT; i++) sum += ((double)done[i] - 0.5) * ((double)done[i] - 0.5);
+  for (int i = 0; i < WIDTH * HEIGHT; i++)
+    sum += ((double)done[i] - 0.5) * ((double)done[i] - 0.5);
   *true_noise = sqrt(sum / (WIDTH * HEIGHT));
   return film;
 }
 
-/* Of better distributed samples the noise is lower, by what the first half shows, and still above the error. Of
- * independent samples (one stratum) it is not. */
+/* Of better distributed samples the noise is lower, by what the first half shows, and still
+ * above the error. Of independent samples (one stratum) it is not. */
 static void distribution_counts(void **state) {
   vlContext *context = *state;
   const double independent = sqrt(1.0 / 12 / SPP);
@@ -163,9 +176,11 @@ static void distribution_counts(void **state) {
     vlFilm *film = stratified_film(context, rows[k].strata, 7 + (uint64_t)k, &error);
     for (uint32_t i = 0; i < 6; i++) { /* the others have few pixels */
       double noise = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1);
-      if (!(noise > error)) fail_msg("%u strata: noise %g, error %g", rows[k].strata, noise, error);
+      if (!(noise > error))
+        fail_msg("%u strata: noise %g, error %g", rows[k].strata, noise, error);
       noise /= independent;
-      if (!(noise > rows[k].least && noise < rows[k].most)) fail_msg("%u strata: %g", rows[k].strata, noise);
+      if (!(noise > rows[k].least && noise < rows[k].most))
+        fail_msg("%u strata: %g", rows[k].strata, noise);
     }
     vl_film_destroy(film);
   }
@@ -176,26 +191,31 @@ static double srgb(double x) {
   return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
 }
 
-/* 78 % of the pixels have no bright sample and no variance. The true error is a sum over the binomial distribution of
- * a pixel's bright samples. The noise may be above it, since it is a bound, but not below. */
+/* 78 % of the pixels have no bright sample and no variance. The true error is a sum over the
+ * binomial distribution of a pixel's bright samples. The noise may be above it, since it is a
+ * bound, but not below. */
 static void rare_light_is_not_missed(void **state) {
   vlContext *context = *state;
   const double p = 1.0 / RARE, mean = (1 - p) * (double)dark_sample + p * (double)bright_sample;
   double probability = pow(1 - p, SPP), square = 0;
   for (int k = 0; k <= SPP; k++) {
-    double d = srgb(((SPP - k) * (double)dark_sample + k * (double)bright_sample) / SPP) - srgb(mean);
+    double d =
+        srgb(((SPP - k) * (double)dark_sample + k * (double)bright_sample) / SPP) - srgb(mean);
     square += probability * d * d;
     probability *= (double)(SPP - k) / (k + 1) * p / (1 - p);
   }
   vlFilm *film = film_of(context, draw_rare, 0, 0, 5);
   double apart = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, 1),
          alike[2]; /* the bound's distance from the mean */
-  for (int k = 0; k < 2; k++) alike[k] = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, k ? 4 : 0);
-  double none = alike[0] * alike[0], one = apart * apart - none, four = alike[1] * alike[1] - none;
+  for (int k = 0; k < 2; k++)
+    alike[k] = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, k ? 4 : 0);
+  double none = alike[0] * alike[0], one = apart * apart - none,
+         four = alike[1] * alike[1] - none;
   assert_true(one > 0 && fabs(four / one - 2) < 1e-3);
   for (uint32_t i = 0; i < 6; i++) {
     double noise = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1, 1) / sqrt(square);
-    if (!(noise > 1 && noise < 1.5)) fail_msg("block %u: %g times the true error, %g", i, noise, sqrt(square));
+    if (!(noise > 1 && noise < 1.5))
+      fail_msg("block %u: %g times the true error, %g", i, noise, sqrt(square));
   }
   vl_film_destroy(film);
 }

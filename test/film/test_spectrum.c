@@ -1,5 +1,5 @@
-/* Spectra in the film: exact sums of each bucket for any order, grouping and passes; merging; names; invalid defs and
- * samples; failing allocations. */
+/* Spectra in the film: exact sums of each bucket for any order, grouping and passes; merging;
+ * names; invalid defs and samples; failing allocations. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -57,11 +57,14 @@ static void random_samples(uint64_t seed) {
 }
 
 static void add(vlFilm *film, int from, int count) {
-  vlFilmSpectra s = {.n = (uint32_t)count, .px = px_ + from, .py = py_ + from, .weight = weight_ + from};
-  for (int c = 0; c < 4; c++) s.radiance[c] = value_[c] + from, s.lambda[c] = lambda_[c] + from;
+  vlFilmSpectra s = {
+      .n = (uint32_t)count, .px = px_ + from, .py = py_ + from, .weight = weight_ + from};
+  for (int c = 0; c < 4; c++)
+    s.radiance[c] = value_[c] + from, s.lambda[c] = lambda_[c] + from;
   vl_film_add_spectra(film, &s);
-  vlFilmSamples colors = {(uint32_t)count, px_ + from,   py_ + from,     zero_ + from, zero_ + from,
-                          zero_ + from,    zero_ + from, weight_ + from, NULL};
+  vlFilmSamples colors = {(uint32_t)count, px_ + from,     py_ + from,
+                          zero_ + from,    zero_ + from,   zero_ + from,
+                          zero_ + from,    weight_ + from, NULL};
   vl_film_add(film, &colors, NULL, NULL);
 }
 static void pass(vlFilm *film, int from, int count) {
@@ -114,12 +117,14 @@ static void exact(void **state) {
       pass(way == 3 && k % 2 ? other : film, way == 1 ? COUNT - from - count : from, count);
       from += count;
     }
-    if (way == 3) assert_int_equal(vl_film_add_film(film, other), VL_OK);
+    if (way == 3)
+      assert_int_equal(vl_film_add_film(film, other), VL_OK);
     spectrum(film, two_);
     assert_memory_equal(one_, two_, sizeof one_);
     vl_film_clear(film);
     spectrum(film, two_);
-    for (int i = 0; i < CELLS; i++) assert_true(two_[i] == 0);
+    for (int i = 0; i < CELLS; i++)
+      assert_true(two_[i] == 0);
     pass(film, 0, COUNT);
     spectrum(film, two_);
     assert_memory_equal(one_, two_, sizeof one_);
@@ -163,7 +168,8 @@ static void wrong(void **state) {
   random_samples(5);
   pass(film, 0, 500);
   spectrum(film, one_);
-  for (int i = 0; i < 3; i++) value_[i][500 + i] = bad[i];
+  for (int i = 0; i < 3; i++)
+    value_[i][500 + i] = bad[i];
   px_[503] = WIDTH;
   pass(film, 500, 4);
   spectrum(film, two_);
@@ -179,14 +185,20 @@ static vlResult whole_film(vlContext *context, void *user) {
   vlResult r = VL_OK;
   for (int i = 0; i < 2 && r == VL_OK; i++) {
     r = vl_film_create(context, &def, &film[i]);
-    if (r == VL_OK) r = vl_film_begin_pass(film[i]);
-    if (r == VL_OK && i) add(film[i], 0, 100), vl_film_commit_pass(film[i]);
-    if (r == VL_OK && !i) vl_film_abandon_pass(film[i]);
+    if (r == VL_OK)
+      r = vl_film_begin_pass(film[i]);
+    if (r == VL_OK && i)
+      add(film[i], 0, 100), vl_film_commit_pass(film[i]);
+    if (r == VL_OK && !i)
+      vl_film_abandon_pass(film[i]);
   }
-  if (r == VL_OK) r = vl_film_add_film(film[0], film[1]);
-  if (r == VL_OK) r = vl_film_spectrum(film[0], &image);
+  if (r == VL_OK)
+    r = vl_film_add_film(film[0], film[1]);
+  if (r == VL_OK)
+    r = vl_film_spectrum(film[0], &image);
   vl_image_destroy(image);
-  for (int i = 0; i < 2; i++) vl_film_destroy(film[i]);
+  for (int i = 0; i < 2; i++)
+    vl_film_destroy(film[i]);
   return r;
 }
 static void no_memory(void **state) {
@@ -196,7 +208,7 @@ static void no_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(exact), cmocka_unit_test(names), cmocka_unit_test(wrong),
-                                     cmocka_unit_test(no_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(exact), cmocka_unit_test(names),
+                                     cmocka_unit_test(wrong), cmocka_unit_test(no_memory)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

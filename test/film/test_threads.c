@@ -1,6 +1,6 @@
-/* test/film/test_threads.c: at the same time, a render with checkpoints is stopped by another thread and continued,
- * shards are rendered, and films are merged. The test is meant for the thread sanitizer. The films must also have
- * the same bytes as those of a single render. */
+/* test/film/test_threads.c: at the same time, a render with checkpoints is stopped by another
+ * thread and continued, shards are rendered, and films are merged. The test is meant for the
+ * thread sanitizer. The films must also have the same bytes as those of a single render. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -29,7 +29,8 @@ static int begin(void **state) {
   vlScene *scene = NULL;
   vlError error;
   def.threads = 3;
-  if (!mkdtemp(folder) || vl_context_create(&def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK)
+  if (!mkdtemp(folder) || vl_context_create(&def, &context) != VL_OK ||
+      vl_scene_create(context, &scene) != VL_OK)
     return 1;
   small_scene(scene);
   vlResult result = vl_world_build(scene, &build, &world, &error);
@@ -54,7 +55,8 @@ static size_t bytes_of(const char *name, char *bytes) {
   char path[128];
   path_of(path, name);
   FILE *file = fopen(path, "rb");
-  if (!file) return 0;
+  if (!file)
+    return 0;
   size_t size = fread(bytes, 1, MOST, file);
   fclose(file);
   return size;
@@ -68,7 +70,8 @@ static void assert_same_files(const char *a, const char *b) {
   assert_memory_equal(x, y, n);
 }
 
-/* ---- a render with checkpoints ----------------------------------------------------------------------------------- */
+/* ---- a render with checkpoints
+ * ----------------------------------------------------------------------------------- */
 
 /* Writes a film after each pass. A thread waits for the disk while the next pass renders. */
 typedef struct Keeper {
@@ -88,7 +91,8 @@ static void *end_write(void *user) {
 }
 
 static bool join(Keeper *k) {
-  if (k->running) pthread_join(k->thread, NULL);
+  if (k->running)
+    pthread_join(k->thread, NULL);
   k->running = false;
   return k->result == VL_OK;
 }
@@ -97,8 +101,10 @@ static bool keep(void *user, const vlProgress *progress) {
   Keeper *k = user;
   char path[128];
   path_of(path, k->name);
-  if (!progress->pass_done) return true;
-  if (!join(k) || vl_film_write_begin(k->film, NULL, path, &k->writer, NULL) != VL_OK) return false;
+  if (!progress->pass_done)
+    return true;
+  if (!join(k) || vl_film_write_begin(k->film, NULL, path, &k->writer, NULL) != VL_OK)
+    return false;
   k->running = pthread_create(&k->thread, NULL, end_write, k) == 0;
   k->written++;
   return k->running;
@@ -111,7 +117,8 @@ static vlFilm *new_film(void) {
   return vl_film_create(context, &def, &film) == VL_OK ? film : NULL;
 }
 
-/* Renders the samples from `first`, or from the film's end, to `spp`, and writes a film file after each pass. */
+/* Renders the samples from `first`, or from the film's end, to `spp`, and writes a film file
+ * after each pass. */
 static bool render_kept(vlFilm *film, const char *name, uint32_t first, uint32_t spp) {
   Keeper keeper = {.film = film, .name = name};
   vlRenderDef def = vl_default_render_def();
@@ -138,7 +145,8 @@ static void a_kept_render_continues(void **state) {
   vl_film_destroy(whole);
 }
 
-/* ---- shards and merges at the same time -------------------------------------------------------------------------- */
+/* ---- shards and merges at the same time
+ * -------------------------------------------------------------------------- */
 
 typedef struct Shard {
   const char *name;
@@ -160,14 +168,17 @@ static void *merge_shards(void *user) {
   path_of(paths[0], "first.film");
   path_of(paths[1], "last.film");
   path_of(output, shard->name);
-  shard->done = vl_film_merge(context, (const char *const[]){paths[1], paths[0]}, 2, NULL, output, NULL) == VL_OK;
+  shard->done = vl_film_merge(context, (const char *const[]){paths[1], paths[0]}, 2, NULL,
+                              output, NULL) == VL_OK;
   return NULL;
 }
 
 static void run_both(void *(*job)(void *), Shard shards[2]) {
   pthread_t threads[2];
-  for (int i = 0; i < 2; i++) assert_int_equal(pthread_create(&threads[i], NULL, job, &shards[i]), 0);
-  for (int i = 0; i < 2; i++) pthread_join(threads[i], NULL);
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(pthread_create(&threads[i], NULL, job, &shards[i]), 0);
+  for (int i = 0; i < 2; i++)
+    pthread_join(threads[i], NULL);
   assert_true(shards[0].done && shards[1].done);
 }
 

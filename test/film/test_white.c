@@ -1,5 +1,5 @@
-/* test/film/test_white.c: white balance: daylight becomes white, D65 is unchanged, the matrix of the Bradford transform
- * as published. */
+/* test/film/test_white.c: white balance: daylight becomes white, D65 is unchanged, the matrix
+ * of the Bradford transform as published. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,9 +23,11 @@ static void bradford(void **state) {
                                      0.0210077, 0.0122982,  -0.0204830, 1.3299098};
   float m[9];
   vl_white_balance(5000.0, VL_SPACE_SRGB, m);
-  for (int i = 0; i < 9; i++) assert_true(fabs((double)m[i] - expected[i]) < 6e-3); /* D50 is at 5003 K */
+  for (int i = 0; i < 9; i++)
+    assert_true(fabs((double)m[i] - expected[i]) < 6e-3); /* D50 is at 5003 K */
   vl_white_balance(6500.0, VL_SPACE_SRGB, m);
-  for (int i = 0; i < 9; i++) assert_true(fabs((double)m[i] - (i % 4 == 0)) < 3e-3);
+  for (int i = 0; i < 9; i++)
+    assert_true(fabs((double)m[i] - (i % 4 == 0)) < 3e-3);
 }
 
 /* A blackbody's own colour becomes white: luminance is kept, and x, y are those of D65. */
@@ -43,12 +45,14 @@ static void light_becomes_white(void **state) {
     vl_space_chromaticities(VL_SPACE_SRGB, xy);
     apply(m, xyz, white);
     double sum = white[0] + white[1] + white[2];
-    assert_true(fabs(white[0] / sum - (double)xy[6]) < 1e-5 && fabs(white[1] / sum - (double)xy[7]) < 1e-5);
+    assert_true(fabs(white[0] / sum - (double)xy[6]) < 1e-5 &&
+                fabs(white[1] / sum - (double)xy[7]) < 1e-5);
     assert_true(fabs(white[1] / xyz[1] - 1) < 1e-5);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(bradford), cmocka_unit_test(light_becomes_white)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(bradford),
+                                     cmocka_unit_test(light_becomes_white)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* test/fuzz/fuzz.h: helpers of the fuzz targets: a context without log, the input as a file, a bound on memory. */
+/* test/fuzz/fuzz.h: helpers of the fuzz targets: a context without log, the input as a file, a
+ * bound on memory. */
 #ifndef TEST_FUZZ_FUZZ_H
 #define TEST_FUZZ_FUZZ_H
 
@@ -11,15 +12,16 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* An untrusted file may use memory in proportion to its size; a gzip stream expands at most a thousandfold. If a
- * target exceeds this bound, it stops, which counts as a crash. */
+/* An untrusted file may use memory in proportion to its size; a gzip stream expands at most a
+ * thousandfold. If a target exceeds this bound, it stops, which counts as a crash. */
 enum { FUZZ_MEMORY = 1 << 28, FUZZ_LEFT = 1 << 16 /* the context's own */ };
 
 static inline vlContext *fuzz_context(void) {
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
   vlContext *context = NULL;
-  if (vl_context_create(&def, &context) != VL_OK) exit(1);
+  if (vl_context_create(&def, &context) != VL_OK)
+    exit(1);
   return context;
 }
 
@@ -32,19 +34,22 @@ static inline void fuzz_end(vlContext *context) {
   vl_context_destroy(context);
 }
 
-/* Writes the input to a file of that name in a directory of this process, in $TMPDIR. The path is valid until the next
- * call. */
+/* Writes the input to a file of that name in a directory of this process, in $TMPDIR. The path
+ * is valid until the next call. */
 static inline const char *fuzz_file(const char *name, const uint8_t *data, size_t size) {
   static char folder[192], path[256];
   if (!folder[0]) {
     const char *scratch = getenv("TMPDIR");
-    if (!scratch || !*scratch) scratch = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
+    if (!scratch || !*scratch)
+      scratch = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
     snprintf(folder, sizeof folder, "%.150s/velo-fuzz-XXXXXX", scratch);
-    if (!mkdtemp(folder)) exit(1);
+    if (!mkdtemp(folder))
+      exit(1);
   }
   snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *file = fopen(path, "wb");
-  if (!file || fwrite(data, 1, size, file) != size) exit(1);
+  if (!file || fwrite(data, 1, size, file) != size)
+    exit(1);
   fclose(file);
   return path;
 }

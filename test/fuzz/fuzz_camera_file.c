@@ -1,12 +1,14 @@
-/* Camera files of every dialect, chosen by content, and COLMAP's lists, binary cameras and binary images. A camera that
- * is read is made, written in some dialect and read again; then all cameras of the file are read as a trajectory. */
+/* Camera files of every dialect, chosen by content, and COLMAP's lists, binary cameras and
+ * binary images. A camera that is read is made, written in some dialect and read again; then
+ * all cameras of the file are read as a trajectory. */
 #include "fuzz.h"
 #include "velo/trajectory.h"
 
 static void read_all(vlContext *context, const char *path, const vlCameraFileDef *def) {
   vlTrajectory *trajectory = NULL;
   vlError error;
-  if (vl_trajectory_load(context, path, def, &trajectory, &error) == VL_OK) vl_trajectory_destroy(trajectory);
+  if (vl_trajectory_load(context, path, def, &trajectory, &error) == VL_OK)
+    vl_trajectory_destroy(trajectory);
 }
 
 /* The input as the poses of a COLMAP model with one camera, number 1. */
@@ -32,20 +34,26 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   vlError error;
   bool list = size > 0 && (data[0] == '1' || data[0] == '#') && !(size > 1 && data[1] == 'u');
   bool binary = size > 8 && data[0] && !data[1] && !data[7]; /* a small count in 8 bytes */
-  const char *name = binary ? "cameras.bin" : list ? "cameras.txt" : "input", *path = fuzz_file(name, data, size);
+  const char *name = binary ? "cameras.bin"
+                     : list ? "cameras.txt"
+                            : "input",
+             *path = fuzz_file(name, data, size);
   vlCameraFileDef def = vl_default_camera_file_def();
-  def.width = 64, def.height = 48; /* for files without an image size; all other sizes are the file's */
+  def.width = 64,
+  def.height = 48; /* for files without an image size; all other sizes are the file's */
   if (vl_camera_read(context, path, &def, &record, &error) == VL_OK &&
       vl_camera_make(&record.camera, &camera, NULL, &error) == VL_OK) {
     def.dialect = (vlCameraDialect)(1 + size % (VL_CAMERA_DIALECT_COUNT - 1));
     const char *copy = fuzz_file("written", data, 0);
-    if (vl_camera_write(context, copy, &def, &record, &error) == VL_OK && def.dialect != VL_CAMERA_DIALECT_PBRT &&
-        def.dialect != VL_CAMERA_DIALECT_COLMAP && vl_camera_read(context, copy, &def, &record, &error) == VL_OK)
+    if (vl_camera_write(context, copy, &def, &record, &error) == VL_OK &&
+        def.dialect != VL_CAMERA_DIALECT_PBRT && def.dialect != VL_CAMERA_DIALECT_COLMAP &&
+        vl_camera_read(context, copy, &def, &record, &error) == VL_OK)
       vl_camera_make(&record.camera, &camera, NULL, &error);
   }
   def.dialect = VL_CAMERA_DIALECT_AUTO;
   read_all(context, fuzz_file(name, data, size), &def);
-  if (binary || list) read_poses(context, binary, data, size);
+  if (binary || list)
+    read_poses(context, binary, data, size);
   fuzz_end(context);
   return 0;
 }

@@ -1,5 +1,6 @@
-/* Files that scenes name besides meshes and images, chosen by their first bytes: measured materials and NanoVDB grids;
- * any other input is read as a spectrum, a lens and a list of poses. */
+/* Files that scenes name besides meshes and images, chosen by their first bytes: measured
+ * materials and NanoVDB grids; any other input is read as a spectrum, a lens and a list of
+ * poses. */
 #include "fuzz.h"
 #include "velo/trajectory.h"
 
@@ -14,7 +15,8 @@ static void build(const char *text) {
   vlWorld *world = NULL;
   vlError error;
   const char *path = fuzz_file("table.pbrt", (const uint8_t *)text, strlen(text));
-  if (vl_scene_create(context, &scene) == VL_OK && vl_scene_load(scene, path, NULL, &error) == VL_OK)
+  if (vl_scene_create(context, &scene) == VL_OK &&
+      vl_scene_load(scene, path, NULL, &error) == VL_OK)
     vl_world_build(scene, NULL, &world, &error);
   vl_world_destroy(world);
   vl_scene_destroy(scene);
@@ -24,22 +26,27 @@ static void build(const char *text) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const char *path = fuzz_file("input", data, size);
   if (begins(data, size, "tensor")) {
-    build("WorldBegin\nMaterial \"measured\" \"string filename\" \"input\"\nShape \"sphere\"\n");
+    build(
+        "WorldBegin\nMaterial \"measured\" \"string filename\" \"input\"\nShape \"sphere\"\n");
     return 0;
   }
   if (begins(data, size, "NanoVDB")) {
     build(
-        "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"input\"\n"
+        "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" "
+        "\"input\"\n"
         "MediumInterface \"m\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
     return 0;
   }
-  build("WorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" \"input\"\nShape \"sphere\"\n");
+  build(
+      "WorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" \"input\"\nShape "
+      "\"sphere\"\n");
   build("Camera \"realistic\" \"string lensfile\" \"input\"\nWorldBegin\nShape \"sphere\"\n");
   vlContext *context = fuzz_context();
   vlTrajectory *trajectory = NULL;
   vlError error;
   path = fuzz_file("input", data, size);
-  if (vl_trajectory_load(context, path, NULL, &trajectory, &error) == VL_OK) vl_trajectory_destroy(trajectory);
+  if (vl_trajectory_load(context, path, NULL, &trajectory, &error) == VL_OK)
+    vl_trajectory_destroy(trajectory);
   fuzz_end(context);
   return 0;
 }

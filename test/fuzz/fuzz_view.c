@@ -1,5 +1,6 @@
-/* Fuzzes the messages that a page of `velo view` sends: parses one and applies its fields to a camera. What is accepted
- * has numbers within the limits that apps/velo/view/message.h states. */
+/* Fuzzes the messages that a page of `velo view` sends: parses one and applies its fields to a
+ * camera. What is accepted has numbers within the limits that apps/velo/view/message.h states.
+ */
 #include "fuzz.h"
 
 #include <math.h>
@@ -8,12 +9,16 @@
 
 static void check_limits(const ViewMessage *m) {
   bool good = m->field_count <= MESSAGE_FIELDS && fabs(m->x) <= 65536 && fabs(m->y) <= 65536 &&
-              fabs(m->exposure) <= 64 && m->spp <= 1 << 24 && (!m->has_spp || m->spp) && m->crop[3] <= 65536;
+              fabs(m->exposure) <= 64 && m->spp <= 1 << 24 && (!m->has_spp || m->spp) &&
+              m->crop[3] <= 65536;
   for (uint32_t i = 0; i < m->field_count; i++) {
-    good &= m->fields[i].count <= MESSAGE_NUMBERS && memchr(m->fields[i].name, 0, sizeof m->fields[i].name);
-    for (uint32_t k = 0; k < m->fields[i].count; k++) good &= isfinite(m->fields[i].numbers[k]);
+    good &= m->fields[i].count <= MESSAGE_NUMBERS &&
+            memchr(m->fields[i].name, 0, sizeof m->fields[i].name);
+    for (uint32_t k = 0; k < m->fields[i].count; k++)
+      good &= isfinite(m->fields[i].numbers[k]);
   }
-  if (!good) abort();
+  if (!good)
+    abort();
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -21,7 +26,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const char *warning = NULL;
   char why[VL_GIVEN_MESSAGE] = "";
   if (!message_parse((const char *)data, size, &message, why)) {
-    if (!why[0]) abort();
+    if (!why[0])
+      abort();
     return 0;
   }
   check_limits(&message);
@@ -29,9 +35,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   vlCamera made;
   ViewCamera camera, next;
   vlError error = {0};
-  if (vl_camera_make(&def, &made, NULL, &error) != VL_OK) abort();
-  if (camera_take(&def, &made, 2, &camera, &error) != VL_OK) abort();
-  if (message.kind != MESSAGE_CAMERA) return 0;
-  if (camera_edit(&camera, &message, &next, &warning, &error) != VL_OK && !error.message[0]) abort();
+  if (vl_camera_make(&def, &made, NULL, &error) != VL_OK)
+    abort();
+  if (camera_take(&def, &made, 2, &camera, &error) != VL_OK)
+    abort();
+  if (message.kind != MESSAGE_CAMERA)
+    return 0;
+  if (camera_edit(&camera, &message, &next, &warning, &error) != VL_OK && !error.message[0])
+    abort();
   return 0;
 }

@@ -1,6 +1,8 @@
-/* test/fuzz/replay.c: runs a fuzz target without libFuzzer over files and directories: each file unchanged and, with
- * --mutate N, in N damaged forms (fixed seed: bytes changed, cut off, duplicated, replaced by special values). Prints
- * the number of inputs. A crash or a sanitizer's report is a failure. */
+/* test/fuzz/replay.c: runs a fuzz target without libFuzzer over files and directories: each
+ * file unchanged and, with
+ * --mutate N, in N damaged forms (fixed seed: bytes changed, cut off, duplicated, replaced by
+ * special values). Prints the number of inputs. A crash or a sanitizer's report is a failure.
+ */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,7 +23,8 @@ static uint32_t next(uint64_t *state) {
 /* In place; room for twice the size. Returns the new size. */
 static size_t damage(uint8_t *data, size_t size, uint64_t *state) {
   static const char *const telling[] = {
-      "4294967295", "-1", "nan", "inf", "1e39", "\"", "[", "]", "\xff\xff\xff\xff", "\x00\x00\x00\x80"};
+      "4294967295",      "-1", "nan", "inf", "1e39", "\"", "[", "]", "\xff\xff\xff\xff",
+      "\x00\x00\x00\x80"};
   unsigned rounds = 1 + next(state) % 8;
   size_t room = 2 * size + 64;
   for (unsigned i = 0; i < rounds && size > 0; i++) {
@@ -29,15 +32,23 @@ static size_t damage(uint8_t *data, size_t size, uint64_t *state) {
     const char *word = telling[next(state) % (sizeof telling / sizeof *telling)];
     size_t length = strlen(word) ? strlen(word) : 4;
     switch (next(state) % 6) {
-      case 0: data[at] = (uint8_t)next(state); break;
-      case 1: data[at] ^= (uint8_t)(1u << next(state) % 8); break;
-      case 2: size = at; break;
+      case 0:
+        data[at] = (uint8_t)next(state);
+        break;
+      case 1:
+        data[at] ^= (uint8_t)(1u << next(state) % 8);
+        break;
+      case 2:
+        size = at;
+        break;
       case 3:
-        if (at + length <= size) memcpy(data + at, word, length);
+        if (at + length <= size)
+          memcpy(data + at, word, length);
         break;
       case 4: {
         size_t count = 1 + next(state) % 32;
-        if (at + count > size) count = size - at;
+        if (at + count > size)
+          count = size - at;
         if (size + count <= room) {
           memmove(data + at + count, data + at, size - at);
           size += count;
@@ -46,7 +57,8 @@ static size_t damage(uint8_t *data, size_t size, uint64_t *state) {
       }
       default: {
         size_t count = 1 + next(state) % 32;
-        if (at + count > size) count = size - at;
+        if (at + count > size)
+          count = size - at;
         memmove(data + at, data + at + count, size - at - count);
         size -= count;
       }
@@ -58,7 +70,8 @@ static size_t damage(uint8_t *data, size_t size, uint64_t *state) {
 /* The target gets a block of exactly its size, so that a sanitizer sees a read past the end. */
 static void once(const uint8_t *data, size_t size) {
   uint8_t *exact = malloc(size ? size : 1);
-  if (!exact) return;
+  if (!exact)
+    return;
   memcpy(exact, data, size);
   LLVMFuzzerTestOneInput(exact, size);
   free(exact);
@@ -74,7 +87,8 @@ static int replay_file(const char *path) {
   fseek(file, 0, SEEK_END);
   long size = ftell(file);
   rewind(file);
-  if (size < 0) size = 0;
+  if (size < 0)
+    size = 0;
   uint8_t *data = malloc((size_t)size + 1), *work = malloc(2 * (size_t)size + 64);
   int failed = !data || !work || fread(data, 1, (size_t)size, file) != (size_t)size;
   fclose(file);
@@ -97,7 +111,8 @@ static int replay(const char *path) {
     perror(path);
     return 1;
   }
-  if (!S_ISDIR(info.st_mode)) return replay_file(path);
+  if (!S_ISDIR(info.st_mode))
+    return replay_file(path);
   struct dirent **entries;
   int count = scandir(path, &entries, NULL, alphasort), failed = 0;
   for (int i = 0; i < count; i++) {
@@ -107,7 +122,8 @@ static int replay(const char *path) {
       failed |= replay(name);
     free(entries[i]);
   }
-  if (count >= 0) free(entries);
+  if (count >= 0)
+    free(entries);
   return failed;
 }
 

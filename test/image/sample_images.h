@@ -1,4 +1,5 @@
-/* test/image/sample_images.h: helpers of the image tests: counting contexts, directories, test patterns. */
+/* test/image/sample_images.h: helpers of the image tests: counting contexts, directories, test
+ * patterns. */
 #ifndef TEST_IMAGE_SAMPLE_IMAGES_H
 #define TEST_IMAGE_SAMPLE_IMAGES_H
 
@@ -78,11 +79,12 @@ static inline uint32_t noise(uint32_t *state) {
 }
 
 /* An image of the type with flat parts, ramps and noise. */
-static inline vlImage *make_image(vlContext *context, uint32_t width, uint32_t height, uint32_t channels,
-                                  vlPixelType type, vlEncoding encoding) {
+static inline vlImage *make_image(vlContext *context, uint32_t width, uint32_t height,
+                                  uint32_t channels, vlPixelType type, vlEncoding encoding) {
   vlImageDef def = vl_default_image_def(width, height, channels);
   static const char *const NAMES[6] = {"R", "G", "B", "A", "Z", "id"};
-  if (channels > 4) def.names = NAMES;
+  if (channels > 4)
+    def.names = NAMES;
   def.type = type;
   def.encoding = encoding;
   vlImage *image;
@@ -90,20 +92,33 @@ static inline vlImage *make_image(vlContext *context, uint32_t width, uint32_t h
   uint32_t seed = 7;
   for (size_t i = 0; i < (size_t)width * height * channels; i++) {
     size_t pixel = i / channels, x = pixel % width, y = pixel / width;
-    uint32_t v = y < height / 3 ? 100u : y < 2 * height / 3 ? (uint32_t)(x * 5 + i % channels * 40) : noise(&seed);
+    uint32_t v = y < height / 3       ? 100u
+                 : y < 2 * height / 3 ? (uint32_t)(x * 5 + i % channels * 40)
+                                      : noise(&seed);
     switch (type) {
-      case VL_PIXEL_U8: ((uint8_t *)image->pixels)[i] = (uint8_t)v; break;
-      case VL_PIXEL_U16: ((uint16_t *)image->pixels)[i] = (uint16_t)(v * 257u); break;
-      case VL_PIXEL_F16: ((uint16_t *)image->pixels)[i] = (uint16_t)(v % 0x7c00u); break;
-      case VL_PIXEL_U32: ((uint32_t *)image->pixels)[i] = v * 4294967u; break;
-      case VL_PIXEL_F32: ((float *)image->pixels)[i] = (float)(v % 4096u) / 1024.0f; break;
+      case VL_PIXEL_U8:
+        ((uint8_t *)image->pixels)[i] = (uint8_t)v;
+        break;
+      case VL_PIXEL_U16:
+        ((uint16_t *)image->pixels)[i] = (uint16_t)(v * 257u);
+        break;
+      case VL_PIXEL_F16:
+        ((uint16_t *)image->pixels)[i] = (uint16_t)(v % 0x7c00u);
+        break;
+      case VL_PIXEL_U32:
+        ((uint32_t *)image->pixels)[i] = v * 4294967u;
+        break;
+      case VL_PIXEL_F32:
+        ((float *)image->pixels)[i] = (float)(v % 4096u) / 1024.0f;
+        break;
     }
   }
   return image;
 }
 
 static inline bool same_pixels(const vlImage *a, const vlImage *b) {
-  return a->width == b->width && a->height == b->height && a->channels == b->channels && a->type == b->type &&
+  return a->width == b->width && a->height == b->height && a->channels == b->channels &&
+         a->type == b->type &&
          memcmp(a->pixels, b->pixels, vl_image_row_size(a) * a->height) == 0;
 }
 

@@ -1,5 +1,6 @@
-/* Damaged image files: cut off at every byte, with changed bytes, with sizes larger than their data. Each is rejected
- * clearly (or gives an image, when the damage cannot be detected), in little time and memory. */
+/* Damaged image files: cut off at every byte, with changed bytes, with sizes larger than their
+ * data. Each is rejected clearly (or gives an image, when the damage cannot be detected), in
+ * little time and memory. */
 #include "sample_images.h"
 
 #include <dirent.h>
@@ -11,9 +12,10 @@ static const char *corpus(const char *file) {
   return path;
 }
 
-/* From a block of exactly its size, so that a sanitizer sees a read past the end. The one zero byte after it is
- * promised. */
-static vlResult read_bytes(vlContext *context, const void *data, size_t size, vlImage **image, vlError *error) {
+/* From a block of exactly its size, so that a sanitizer sees a read past the end. The one zero
+ * byte after it is promised. */
+static vlResult read_bytes(vlContext *context, const void *data, size_t size, vlImage **image,
+                           vlError *error) {
   char *exact = malloc(size + 1);
   memcpy(exact, data, size);
   exact[size] = 0;
@@ -21,7 +23,8 @@ static vlResult read_bytes(vlContext *context, const void *data, size_t size, vl
   free(exact);
   if (result != VL_OK) {
     assert_null(*image);
-    if (result != VL_ERROR_SCENE && result != VL_ERROR_UNSUPPORTED) fail_msg("%d: %s", result, error->message);
+    if (result != VL_ERROR_SCENE && result != VL_ERROR_UNSUPPORTED)
+      fail_msg("%d: %s", result, error->message);
     assert_int_equal(error->code, result);
     assert_int_equal(strncmp(error->message, "file: ", 6), 0);
   }
@@ -33,10 +36,11 @@ static void test_cut(void **state) {
   failAllocator failing;
   vlContext *context = make_context(&failing);
   static const char *const FILES[] = {
-      "png_interlaced.png", "png_palette4.png",   "tga_rle.tga",       "tga_bottom.tga", "bmp_4.bmp",
-      "bmp_24.bmp",         "gif_interlaced.gif", "qoi_rgba.qoi",      "pnm_p6.ppm",     "hdr_flat.hdr",
-      "pfm_big.pfm",        "exr_half_zip.exr",   "exr_tiled_piz.exr", "jpeg_rgb.jpg",   "jpeg_progressive.jpg",
-      "webp_rgb.webp",      "webp_lossy.webp"};
+      "png_interlaced.png", "png_palette4.png", "tga_rle.tga",          "tga_bottom.tga",
+      "bmp_4.bmp",          "bmp_24.bmp",       "gif_interlaced.gif",   "qoi_rgba.qoi",
+      "pnm_p6.ppm",         "hdr_flat.hdr",     "pfm_big.pfm",          "exr_half_zip.exr",
+      "exr_tiled_piz.exr",  "jpeg_rgb.jpg",     "jpeg_progressive.jpg", "webp_rgb.webp",
+      "webp_lossy.webp"};
   for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
     size_t size;
     uint8_t *data = slurp(corpus(FILES[i]), &size);
@@ -45,7 +49,8 @@ static void test_cut(void **state) {
       vlImage *image;
       vlError error;
       long before = failing.blocks;
-      /* Only what comes after the last pixel may be missing: a PNG's or JPEG's end mark, QOI's padding, a GIF's end. */
+      /* Only what comes after the last pixel may be missing: a PNG's or JPEG's end mark, QOI's
+       * padding, a GIF's end. */
       if (read_bytes(context, data, cut, &image, &error) == VL_OK && cut + 24 < size)
         fail_msg("%s cut to %zu", FILES[i], cut);
       vl_image_destroy(image);
@@ -64,14 +69,16 @@ static void test_damaged(void **state) {
   assert_non_null(directory);
   uint32_t seed = 11;
   for (struct dirent *entry; (entry = readdir(directory));) {
-    if (entry->d_name[0] == '.') continue;
+    if (entry->d_name[0] == '.')
+      continue;
     size_t size;
     uint8_t *data = slurp(corpus(entry->d_name), &size), *work = malloc(size);
     for (int i = 0; i < 60; i++) {
       memcpy(work, data, size);
       size_t head = size < 400 ? size : 400;
       for (uint32_t k = 0; k < 1 + noise(&seed) % 4; k++)
-        work[noise(&seed) % (noise(&seed) % 2 ? head : size)] = (uint8_t)(noise(&seed) % 3 ? noise(&seed) : 255);
+        work[noise(&seed) % (noise(&seed) % 2 ? head : size)] =
+            (uint8_t)(noise(&seed) % 3 ? noise(&seed) : 255);
       vlImage *image;
       vlError error;
       read_bytes(context, work, size, &image, &error);
@@ -87,7 +94,9 @@ static void test_damaged(void **state) {
   end_context(context);
 }
 
-/* ---- promises ---------------------------------------------------------------------------------------------------- */
+/* ---- promises
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void put_be32(uint8_t *p, uint32_t v) {
   p[0] = (uint8_t)(v >> 24);
@@ -96,7 +105,8 @@ static void put_be32(uint8_t *p, uint32_t v) {
   p[3] = (uint8_t)v;
 }
 
-static void expect_promise(vlContext *context, const char *what, const void *data, size_t size) {
+static void expect_promise(vlContext *context, const char *what, const void *data,
+                           size_t size) {
   vlImage *image;
   vlError error;
   size_t peak_before, peak;
@@ -105,7 +115,8 @@ static void expect_promise(vlContext *context, const char *what, const void *dat
   vl_context_memory(context, &peak);
   if (result != VL_ERROR_SCENE || !strstr(error.message, "promises"))
     fail_msg("%s: %s", what, result ? error.message : "read");
-  if (peak > peak_before + 1000000) fail_msg("%s: took %zu bytes", what, peak);
+  if (peak > peak_before + 1000000)
+    fail_msg("%s: took %zu bytes", what, peak);
 }
 
 static void test_promises(void **state) {
@@ -142,7 +153,8 @@ static void test_promises(void **state) {
   free(d);
   d = slurp(corpus("jpeg_rgb.jpg"), &size);
   for (size_t i = 0; i + 9 < size; i++) {
-    if (d[i] != 0xff || d[i + 1] != 0xc0) continue;
+    if (d[i] != 0xff || d[i + 1] != 0xc0)
+      continue;
     memset(d + i + 5, 0xfe, 4);
     break;
   }
@@ -151,11 +163,13 @@ static void test_promises(void **state) {
   expect_promise(context, "pfm", "PF\n100000 100000\n-1.0\n123456789", 31);
   expect_promise(context, "pnm", "P6\n2000000000 2000000000 255\n123456789", 38);
   expect_promise(context, "pnm text", "P3\n2000000000 2000000000 255\n1 2 3 4 5", 38);
-  const char *hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n\x02\x02\x12\x34";
+  const char *hdr =
+      "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n\x02\x02\x12\x34";
   expect_promise(context, "hdr", hdr, strlen(hdr));
   d = slurp(corpus("exr_half_zip.exr"), &size);
   for (size_t i = 0; i + 40 < size; i++) {
-    if (memcmp(d + i, "dataWindow\0box2i", 17) != 0) continue;
+    if (memcmp(d + i, "dataWindow\0box2i", 17) != 0)
+      continue;
     d[i + 21 + 10] = d[i + 21 + 14] = 0x10; /* maxima gain 2^20 */
     break;
   }
@@ -169,7 +183,8 @@ static void test_ratio(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  static const uint8_t head[] = "\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\x13\x88\0\0\x13\x88\x08\0\0\0\0";
+  static const uint8_t head[] =
+      "\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\x13\x88\0\0\x13\x88\x08\0\0\0\0";
   size_t raw = 5001u * 5000u;
   uint8_t *zeros = calloc(raw, 1), *file = calloc(100000, 1);
   memcpy(file, head, 29);
@@ -212,11 +227,13 @@ static void test_not_images(void **state) {
                                       "P1 \n",
                                       "RIFF....WEBPVP8L...."};
   for (size_t i = 0; i < sizeof TEXTS / sizeof *TEXTS; i++)
-    assert_int_equal(read_bytes(context, TEXTS[i], strlen(TEXTS[i]), &image, &error), VL_ERROR_SCENE);
+    assert_int_equal(read_bytes(context, TEXTS[i], strlen(TEXTS[i]), &image, &error),
+                     VL_ERROR_SCENE);
   end_context(context);
 }
 
-/* ---- OpenEXR files made byte by byte ----------------------------------------------------------------------------- */
+/* ---- OpenEXR files made byte by byte
+ * ----------------------------------------------------------------------------- */
 
 typedef struct Bytes {
   uint8_t data[4096];
@@ -230,14 +247,16 @@ static void add(Bytes *b, const void *data, size_t size) {
 static void add_int(Bytes *b, int32_t v) {
   add(b, &v, 4);
 }
-static void add_attribute(Bytes *b, const char *name, const char *type, const void *data, int32_t size) {
+static void add_attribute(Bytes *b, const char *name, const char *type, const void *data,
+                          int32_t size) {
   add(b, name, strlen(name) + 1);
   add(b, type, strlen(type) + 1);
   add_int(b, size);
   add(b, data, (size_t)size);
 }
 
-/* Uncompressed, 3x2 pixels: channels Z (float) and id (uint, sampled every `sampling` pixels). */
+/* Uncompressed, 3x2 pixels: channels Z (float) and id (uint, sampled every `sampling` pixels).
+ */
 static void make_exr(Bytes *b, int32_t sampling, int32_t version) {
   b->size = 0;
   add(b, "\x76\x2f\x31\x01", 4);
@@ -251,7 +270,8 @@ static void make_exr(Bytes *b, int32_t sampling, int32_t version) {
   add(&list, "", 1);
   add_attribute(b, "channels", "chlist", list.data, (int32_t)list.size);
   add_attribute(b, "compression", "compression", "\0", 1);
-  const int32_t whole[4] = {-1, 5, 1, 6}, even[4] = {-2, 6, 1, 7}; /* OpenEXR wants it to suit the sampling */
+  const int32_t whole[4] = {-1, 5, 1, 6},
+                even[4] = {-2, 6, 1, 7}; /* OpenEXR wants it to suit the sampling */
   const int32_t *window = sampling == 1 ? whole : even;
   add_attribute(b, "dataWindow", "box2i", window, 16);
   add_attribute(b, "displayWindow", "box2i", window, 16);
@@ -272,7 +292,8 @@ static void make_exr(Bytes *b, int32_t sampling, int32_t version) {
       float depth = (float)(x + 10 * y) + 0.5f;
       add(b, &depth, 4);
     }
-    for (int32_t x = 0; x < 3; x++) add_int(b, 1000 * y + x);
+    for (int32_t x = 0; x < 3; x++)
+      add_int(b, 1000 * y + x);
   }
 }
 
@@ -285,7 +306,8 @@ static void test_made_exr(void **state) {
   Bytes b;
   make_exr(&b, 1, 2);
   assert_int_equal(read_bytes(context, b.data, b.size, &image, &error), VL_OK);
-  assert_true(image->type == VL_PIXEL_F32 && image->width == 3 && image->height == 2 && image->channels == 2);
+  assert_true(image->type == VL_PIXEL_F32 && image->width == 3 && image->height == 2 &&
+              image->channels == 2);
   assert_string_equal(vl_image_channel_name(image, 0), "Z");
   for (uint32_t y = 0; y < 2; y++)
     for (uint32_t x = 0; x < 3; x++) {
@@ -316,11 +338,14 @@ static void test_made_hdr(void **state) {
   uint8_t file[128];
   memcpy(file, head, sizeof head - 1);
   memcpy(file + sizeof head - 1, pixels, sizeof pixels); /* 1 + 87 + 512 pixels */
-  assert_int_equal(read_bytes(context, file, sizeof head - 1 + sizeof pixels, &image, &error), VL_OK);
-  for (uint32_t x = 0; x < 600; x++) assert_true(vl_image_get(image, x, 0, 2) == 30.0f / 256.0f);
+  assert_int_equal(read_bytes(context, file, sizeof head - 1 + sizeof pixels, &image, &error),
+                   VL_OK);
+  for (uint32_t x = 0; x < 600; x++)
+    assert_true(vl_image_get(image, x, 0, 2) == 30.0f / 256.0f);
   vl_image_destroy(image);
   file[sizeof head - 1 + 7] = 88; /* one too many */
-  assert_int_equal(read_bytes(context, file, sizeof head - 1 + sizeof pixels, &image, &error), VL_ERROR_SCENE);
+  assert_int_equal(read_bytes(context, file, sizeof head - 1 + sizeof pixels, &image, &error),
+                   VL_ERROR_SCENE);
   end_context(context);
 }
 
@@ -338,8 +363,8 @@ static void test_silent(void **state) {
   dup2(fileno(file), 2);
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  static const char *const FILES[] = {"exr_half_zip.exr", "exr_tiled_zip.exr", "png_rgba.png", "jpeg_progressive.jpg",
-                                      "jpeg_rgb.jpg"};
+  static const char *const FILES[] = {"exr_half_zip.exr", "exr_tiled_zip.exr", "png_rgba.png",
+                                      "jpeg_progressive.jpg", "jpeg_rgb.jpg"};
   for (int i = 0; i < 5; i++) {
     size_t size;
     uint8_t *data = slurp(corpus(FILES[i]), &size);
@@ -370,9 +395,10 @@ static void test_silent(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cut),      cmocka_unit_test(test_damaged),    cmocka_unit_test(test_promises),
-      cmocka_unit_test(test_ratio),    cmocka_unit_test(test_not_images), cmocka_unit_test(test_made_exr),
-      cmocka_unit_test(test_made_hdr), cmocka_unit_test(test_silent),
+      cmocka_unit_test(test_cut),        cmocka_unit_test(test_damaged),
+      cmocka_unit_test(test_promises),   cmocka_unit_test(test_ratio),
+      cmocka_unit_test(test_not_images), cmocka_unit_test(test_made_exr),
+      cmocka_unit_test(test_made_hdr),   cmocka_unit_test(test_silent),
   };
   return cmocka_run_group_tests(tests, NULL, remove_folder);
 }

@@ -1,10 +1,12 @@
-/* Comparison of images: checks the sums against a plain computation, and FLIP against a direct evaluation of its
- * paper's formulas (two-dimensional kernels, double precision, libm). Also checks properties of FLIP. */
+/* Comparison of images: checks the sums against a plain computation, and FLIP against a direct
+ * evaluation of its paper's formulas (two-dimensional kernels, double precision, libm). Also
+ * checks properties of FLIP. */
 #include "sample_images.h"
 
 #include "image/flip.h"
 
-static vlImage *plain(vlContext *context, uint32_t width, uint32_t height, float r, float g, float b) {
+static vlImage *plain(vlContext *context, uint32_t width, uint32_t height, float r, float g,
+                      float b) {
   vlImageDef def = vl_default_image_def(width, height, 3);
   vlImage *image;
   assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
@@ -20,7 +22,8 @@ static vlImage *plain(vlContext *context, uint32_t width, uint32_t height, float
 static vlImageDiff compare(const vlImage *a, const vlImage *b) {
   vlImageDiff diff;
   vlError error;
-  if (vl_image_compare(a, b, &diff, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_image_compare(a, b, &diff, NULL, &error) != VL_OK)
+    fail_msg("%s", error.message);
   return diff;
 }
 
@@ -28,13 +31,15 @@ static void test_numbers(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *a = plain(context, 10, 10, 0.5f, 0.25f, 1.0f), *b = plain(context, 10, 10, 0.75f, 0.25f, 0.5f);
+  vlImage *a = plain(context, 10, 10, 0.5f, 0.25f, 1.0f),
+          *b = plain(context, 10, 10, 0.75f, 0.25f, 0.5f);
   vlImageDiff d = compare(a, b);
   double mse = (0.0625 + 0.25) / 3.0, rel = (0.0625 / 0.26 + 0.25 / 1.01) / 3.0;
   assert_true(fabs(d.mse - mse) < 1e-12 && fabs(d.rel_mse - rel) < 1e-12);
   assert_true(fabs(d.psnr + 10.0 * log10(mse)) < 1e-9);
   assert_true(d.max_abs == 0.5 && d.differing == 100 && d.not_finite == 0);
-  double la = 0.2126 * 0.5 + 0.7152 * 0.25 + 0.0722, lb = 0.2126 * 0.75 + 0.7152 * 0.25 + 0.0722 * 0.5;
+  double la = 0.2126 * 0.5 + 0.7152 * 0.25 + 0.0722,
+         lb = 0.2126 * 0.75 + 0.7152 * 0.25 + 0.0722 * 0.5;
   assert_true(fabs(d.mean_ratio - lb / la) < 1e-12);
   float *p = vl_image_pixels(b);
   memcpy(p, a->pixels, 300 * sizeof(float));
@@ -68,10 +73,12 @@ static void test_extremes(void **state) {
   vlContext *context = make_context(&failing);
   vlImage *noisy = make_image(context, 40, 30, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   vlImageDiff d = compare(noisy, noisy);
-  assert_true(d.flip == 0.0 && d.mse == 0.0 && isinf(d.psnr) && d.mean_ratio == 1.0 && d.differing == 0);
+  assert_true(d.flip == 0.0 && d.mse == 0.0 && isinf(d.psnr) && d.mean_ratio == 1.0 &&
+              d.differing == 0);
   vlImage *black = plain(context, 40, 30, 0, 0, 0), *white = plain(context, 40, 30, 1, 1, 1);
   d = compare(black, white);
-  assert_true(d.flip > 0.96 && d.flip < 0.98); /* HyAB distance 100; only differences of hue are larger */
+  assert_true(d.flip > 0.96 &&
+              d.flip < 0.98); /* HyAB distance 100; only differences of hue are larger */
   assert_true(isinf(d.mean_ratio) || d.mean_ratio > 1e30);
   vlImage *green = plain(context, 40, 30, 0, 1, 0), *blue = plain(context, 40, 30, 0, 0, 1);
   d = compare(green, blue);
@@ -87,7 +94,8 @@ static void test_extremes(void **state) {
   end_context(context);
 }
 
-/* ---- the paper's formulas ---------------------------------------------------------------------------------------- */
+/* ---- the paper's formulas
+ * ---------------------------------------------------------------------------------------- */
 
 enum { W = 24, H = 18 };
 typedef double Plane[H][W];
@@ -109,17 +117,20 @@ static void rgb(const double c[3], double o[3]) {
   for (int k = 0; k < 3; k++) {
     double unit[3] = {k == 0, k == 1, k == 2}, column[3];
     xyz(unit, column);
-    for (int i = 0; i < 3; i++) m[i][k] = column[i];
+    for (int i = 0; i < 3; i++)
+      m[i][k] = column[i];
   }
   double det = 0;
   for (int i = 0; i < 3; i++)
-    det += m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]);
+    det += m[0][i] *
+           (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]);
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)
       inv[k][i] = (m[(i + 1) % 3][(k + 1) % 3] * m[(i + 2) % 3][(k + 2) % 3] -
                    m[(i + 1) % 3][(k + 2) % 3] * m[(i + 2) % 3][(k + 1) % 3]) /
                   det;
-  for (int i = 0; i < 3; i++) o[i] = inv[i][0] * c[0] + inv[i][1] * c[1] + inv[i][2] * c[2];
+  for (int i = 0; i < 3; i++)
+    o[i] = inv[i][0] * c[0] + inv[i][1] * c[1] + inv[i][2] * c[2];
 }
 static double f_lab(double t) {
   return t > pow(6.0 / 29.0, 3) ? cbrt(t) : t / (3 * pow(6.0 / 29.0, 2)) + 4.0 / 29.0;
@@ -142,14 +153,15 @@ static void filter(Plane in, Plane out, double a1, double b1, double a2, double 
   for (int y = -r; y <= r; y++)
     for (int x = -r; x <= r; x++) {
       double z = (x * x + y * y) / (ppd * ppd);
-      sum += w[y + r][x + r] =
-          a1 * sqrt(M_PI / b1) * exp(-M_PI * M_PI * z / b1) + a2 * sqrt(M_PI / b2) * exp(-M_PI * M_PI * z / b2);
+      sum += w[y + r][x + r] = a1 * sqrt(M_PI / b1) * exp(-M_PI * M_PI * z / b1) +
+                               a2 * sqrt(M_PI / b2) * exp(-M_PI * M_PI * z / b2);
     }
   for (int y = 0; y < H; y++)
     for (int x = 0; x < W; x++) {
       out[y][x] = 0;
       for (int j = -r; j <= r; j++)
-        for (int i = -r; i <= r; i++) out[y][x] += w[j + r][i + r] / sum * at(in, x + i, y + j);
+        for (int i = -r; i <= r; i++)
+          out[y][x] += w[j + r][i + r] / sum * at(in, x + i, y + j);
     }
 }
 
@@ -158,7 +170,8 @@ static void features(Plane in, int point, Plane out) {
   int r = (int)ceil(3 * sd);
   for (int y = -r; y <= r; y++)
     for (int x = -r; x <= r; x++) {
-      double g = exp(-(x * x + y * y) / (2 * sd * sd)), v = point ? (x * x / (sd * sd) - 1) * g : -x * g;
+      double g = exp(-(x * x + y * y) / (2 * sd * sd)),
+             v = point ? (x * x / (sd * sd) - 1) * g : -x * g;
       w[y + r][x + r] = v;
       *(v > 0 ? &plus : &minus) += v;
     }
@@ -208,7 +221,8 @@ static void direct(const float *a, const float *b, double *flip) {
       v[1] = luma;
       v[2] = (luma - filtered[k][2][y][x] / 200) * ZN;
       rgb(v, c);
-      for (int i = 0; i < 3; i++) c[i] = fmin(fmax(c[i], 0), 1);
+      for (int i = 0; i < 3; i++)
+        c[i] = fmin(fmax(c[i], 0), 1);
       hunt(c, lab[k]);
     }
     double d = pow(hyab(lab[0], lab[1]), 0.7);
@@ -230,15 +244,18 @@ static void test_direct(void **state) {
       for (int c = 0; c < 3; c++) {
         float v = (float)noise(&seed) / 16777216.0f;
         a[3 * n + c] = kind == 0 ? v : (float)(n % W) / W; /* noise; a gradient */
-        b[3 * n + c] = kind == 0   ? 1.0f - v * v
-                       : kind == 1 ? a[3 * n + c] * 0.8f + (n == 200 ? 0.2f : 0.0f) /* darker, with one bright pixel */
-                                   : (n % W > W / 2 ? (c == 0 ? 1.0f : 0.1f) : a[3 * n + c]);
+        b[3 * n + c] = kind == 0 ? 1.0f - v * v
+                       : kind == 1
+                           ? a[3 * n + c] * 0.8f +
+                                 (n == 200 ? 0.2f : 0.0f) /* darker, with one bright pixel */
+                           : (n % W > W / 2 ? (c == 0 ? 1.0f : 0.1f) : a[3 * n + c]);
       }
     assert_int_equal(vl_flip(context, W, H, a, b, got), VL_OK);
     direct(a, b, want);
     double mean = 0;
     for (int n = 0; n < W * H; n++) {
-      if (fabs(got[n] - want[n]) > 2e-4) fail_msg("kind %d pixel %d: %g, not %g", kind, n, got[n], want[n]);
+      if (fabs(got[n] - want[n]) > 2e-4)
+        fail_msg("kind %d pixel %d: %g, not %g", kind, n, got[n], want[n]);
       mean += want[n] / (W * H);
     }
     assert_true(mean > 0.02 && mean < 0.95);
@@ -254,12 +271,14 @@ static void test_heat(void **state) {
   vlImageDiff d;
   assert_int_equal(vl_image_compare(a, a, &d, &heat, NULL), VL_OK);
   const uint8_t *p = vl_image_const_pixels(heat);
-  assert_true(heat->width == 30 && heat->height == 20 && heat->channels == 3 && heat->type == VL_PIXEL_U8);
+  assert_true(heat->width == 30 && heat->height == 20 && heat->channels == 3 &&
+              heat->type == VL_PIXEL_U8);
   assert_true(p[0] <= 2 && p[1] <= 2 && p[2] <= 5); /* magma begins at black */
   vl_image_destroy(heat);
   assert_int_equal(vl_image_compare(a, b, &d, &heat, NULL), VL_OK);
   p = vl_image_const_pixels(heat);
-  assert_true(p[0] >= 248 && p[1] >= 245 && p[2] >= 180 && p[2] <= 196); /* and ends at (252, 253, 191) */
+  assert_true(p[0] >= 248 && p[1] >= 245 && p[2] >= 180 &&
+              p[2] <= 196); /* and ends at (252, 253, 191) */
   vl_image_destroy(heat);
   vl_image_destroy(a);
   vl_image_destroy(b);
@@ -272,7 +291,8 @@ static void test_small_and_memory(void **state) {
   vlContext *context = make_context(&failing);
   static const uint32_t SIZES[][2] = {{1, 1}, {1, 50}, {50, 1}, {3, 2}};
   for (int i = 0; i < 4; i++) {
-    vlImage *a = make_image(context, SIZES[i][0], SIZES[i][1], 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
+    vlImage *a =
+        make_image(context, SIZES[i][0], SIZES[i][1], 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
     vlImage *b = plain(context, SIZES[i][0], SIZES[i][1], 0.2f, 0.5f, 0.7f);
     vlImageDiff d = compare(a, b);
     assert_true(d.flip > 0.0 && d.flip <= 1.0);
@@ -290,7 +310,8 @@ static void test_small_and_memory(void **state) {
     fail_after(&failing, n);
     result = vl_image_compare(a, a, &d, &heat, &error);
     fail_after(&failing, -1);
-    if (result != VL_OK) assert_int_equal(result, VL_ERROR_MEMORY);
+    if (result != VL_OK)
+      assert_int_equal(result, VL_ERROR_MEMORY);
     vl_image_destroy(heat);
     assert_int_equal(failing.blocks, before);
   }
@@ -301,8 +322,9 @@ static void test_small_and_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_numbers), cmocka_unit_test(test_extremes),         cmocka_unit_test(test_direct),
-      cmocka_unit_test(test_heat),    cmocka_unit_test(test_small_and_memory),
+      cmocka_unit_test(test_numbers),          cmocka_unit_test(test_extremes),
+      cmocka_unit_test(test_direct),           cmocka_unit_test(test_heat),
+      cmocka_unit_test(test_small_and_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
-/* The fuzz corpus as a test: every image is read and holds its pattern. The files were made by other programs or byte
- * by byte. Patterns: 8-bit files are (5 x + 3 y + 40 c) mod 256 on 13x9 pixels; palettes have its 16 entries at (3 i,
- * i), indexed by (x + 2 y) mod 16; OpenEXR files are ((x (c + 1) + 3 y) mod 64) / 32 on 37x21. */
+/* The fuzz corpus as a test: every image is read and holds its pattern. The files were made by
+ * other programs or byte by byte. Patterns: 8-bit files are (5 x + 3 y + 40 c) mod 256 on 13x9
+ * pixels; palettes have its 16 entries at (3 i, i), indexed by (x + 2 y) mod 16; OpenEXR files
+ * are
+ * ((x (c + 1) + 3 y) mod 64) / 32 on 37x21. */
 #include "sample_images.h"
 
 #include <dirent.h>
@@ -115,7 +117,8 @@ static const char *corpus(const char *file) {
 static vlImage *read_ok(vlContext *context, const char *file) {
   vlImage *image;
   vlError error;
-  if (vl_image_read(context, corpus(file), &image, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_image_read(context, corpus(file), &image, &error) != VL_OK)
+    fail_msg("%s", error.message);
   return image;
 }
 
@@ -126,7 +129,8 @@ static void test_integers(void **state) {
   for (size_t i = 0; i < sizeof INTEGERS / sizeof *INTEGERS; i++) {
     const struct Integer *t = &INTEGERS[i];
     vlImage *image = read_ok(context, t->file);
-    if (image->channels != t->channels || image->type != (t->sixteen ? VL_PIXEL_U16 : VL_PIXEL_U8))
+    if (image->channels != t->channels ||
+        image->type != (t->sixteen ? VL_PIXEL_U16 : VL_PIXEL_U8))
       fail_msg("%s", t->file);
     bool linear = strcmp(t->file, "png_linear.png") == 0;
     assert_int_equal(image->encoding, linear ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB);
@@ -136,7 +140,8 @@ static void test_integers(void **state) {
       for (uint32_t x = 0; x < image->width; x++)
         for (uint32_t c = 0; c < image->channels; c++) {
           size_t at = ((size_t)y * image->width + x) * image->channels + c;
-          uint32_t got = t->sixteen ? ((uint16_t *)image->pixels)[at] : ((uint8_t *)image->pixels)[at];
+          uint32_t got =
+              t->sixteen ? ((uint16_t *)image->pixels)[at] : ((uint8_t *)image->pixels)[at];
           if (got != t->expect(x, y, c))
             fail_msg("%s: %u at %u,%u,%u, not %u", t->file, got, x, y, c, t->expect(x, y, c));
         }
@@ -151,7 +156,8 @@ static void test_long_gif(void **state) { /* fills the table of 4096 codes sever
   vlContext *context = make_context(&failing);
   vlImage *image = read_ok(context, "gif_full_table.gif");
   uint64_t sum = 0;
-  for (size_t i = 0; i < (size_t)image->width * image->height; i++) sum += ((uint8_t *)image->pixels)[3 * i];
+  for (size_t i = 0; i < (size_t)image->width * image->height; i++)
+    sum += ((uint8_t *)image->pixels)[3 * i];
   assert_int_equal(sum, 1525370);
   vl_image_destroy(image);
   end_context(context);
@@ -190,19 +196,26 @@ static void test_jpeg(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  static const char *const FILES[] = {"jpeg_rgb.jpg", "jpeg_progressive.jpg", "jpeg_grey.jpg", "jpeg_cmyk.jpg"};
+  static const char *const FILES[] = {"jpeg_rgb.jpg", "jpeg_progressive.jpg", "jpeg_grey.jpg",
+                                      "jpeg_cmyk.jpg"};
   for (int i = 0; i < 4; i++) {
     vlImage *image = read_ok(context, FILES[i]);
-    assert_true(image->width == 29 && image->height == 23 && image->channels == (i == 2 ? 1 : 3));
+    assert_true(image->width == 29 && image->height == 23 &&
+                image->channels == (i == 2 ? 1 : 3));
     double worst = 0.0;
     for (uint32_t y = 0; y < 23; y++)
       for (uint32_t x = 0; x < 29; x++)
         for (uint32_t c = 0; c < image->channels; c++) {
           double expect = x * 4 + y * 2 + c * 30;
-          if (i == 3) expect = 255 - expect;
-          worst = fmax(worst, fabs(((uint8_t *)image->pixels)[((size_t)y * 29 + x) * image->channels + c] - expect));
+          if (i == 3)
+            expect = 255 - expect;
+          worst =
+              fmax(worst,
+                   fabs(((uint8_t *)image->pixels)[((size_t)y * 29 + x) * image->channels + c] -
+                        expect));
         }
-    if (worst > 6.0) fail_msg("%s is off by %g", FILES[i], worst);
+    if (worst > 6.0)
+      fail_msg("%s is off by %g", FILES[i], worst);
     vl_image_destroy(image);
   }
   end_context(context);
@@ -231,21 +244,27 @@ static void test_exr(void **state) {
   for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
     vlImage *image = read_ok(context, FILES[i].file);
     assert_true(image->width == 37 && image->height == 21 && image->channels == 4);
-    if (image->type != FILES[i].type) fail_msg("%s", FILES[i].file);
+    if (image->type != FILES[i].type)
+      fail_msg("%s", FILES[i].file);
     assert_string_equal(vl_image_channel_name(image, 0), "R");
-    assert_string_equal(vl_image_channel_name(image, 3), strcmp(FILES[i].file, "exr_mixed.exr") ? "A" : "Z");
+    assert_string_equal(vl_image_channel_name(image, 3),
+                        strcmp(FILES[i].file, "exr_mixed.exr") ? "A" : "Z");
     double worst = 0.0;
     for (uint32_t y = 0; y < 21; y++)
       for (uint32_t x = 0; x < 37; x++)
         for (uint32_t c = 0; c < 4; c++)
-          worst = fmax(worst, fabs(vl_image_get(image, x, y, c) - (x * (c + 1) + y * 3) % 64 / 32.0));
-    if (worst > FILES[i].tolerance) fail_msg("%s is off by %g", FILES[i].file, worst);
+          worst = fmax(worst,
+                       fabs(vl_image_get(image, x, y, c) - (x * (c + 1) + y * 3) % 64 / 32.0));
+    if (worst > FILES[i].tolerance)
+      fail_msg("%s is off by %g", FILES[i].file, worst);
     vlAttribute a;
     if (strcmp(FILES[i].file, "exr_window.exr") == 0) {
       assert_int_equal(vl_image_find_attribute(image, "dataWindow", &a), VL_OK);
-      assert_true(a.numbers[0] == 5 && a.numbers[1] == -7 && a.numbers[2] == 41 && a.numbers[3] == 13);
+      assert_true(a.numbers[0] == 5 && a.numbers[1] == -7 && a.numbers[2] == 41 &&
+                  a.numbers[3] == 13);
       assert_int_equal(vl_image_find_attribute(image, "displayWindow", &a), VL_OK);
-      assert_true(a.numbers[0] == -10 && a.numbers[1] == -20 && a.numbers[2] == 53 && a.numbers[3] == 43);
+      assert_true(a.numbers[0] == -10 && a.numbers[1] == -20 && a.numbers[2] == 53 &&
+                  a.numbers[3] == 43);
     } else {
       assert_int_equal(vl_image_find_attribute(image, "dataWindow", &a), VL_ERROR_MISSING);
     }
@@ -263,7 +282,8 @@ static void test_all(void **state) {
   assert_non_null(directory);
   int count = 0;
   for (struct dirent *entry; (entry = readdir(directory));) {
-    if (entry->d_name[0] == '.') continue;
+    if (entry->d_name[0] == '.')
+      continue;
     long before = failing.blocks;
     vlImage *image;
     vlError error;
@@ -291,7 +311,8 @@ static void test_out_of_memory(void **state) {
   DIR *directory = opendir(corpus(""));
   assert_non_null(directory);
   for (struct dirent *entry; (entry = readdir(directory));) {
-    if (entry->d_name[0] == '.') continue;
+    if (entry->d_name[0] == '.')
+      continue;
     long before = failing.blocks;
     vlResult result = VL_ERROR_MEMORY;
     long n = 0;
@@ -301,7 +322,8 @@ static void test_out_of_memory(void **state) {
       fail_after(&failing, n);
       result = vl_image_read(context, corpus(entry->d_name), &image, &error);
       fail_after(&failing, -1);
-      if (result != VL_OK && result != VL_ERROR_MEMORY) fail_msg("%s: %s", entry->d_name, error.message);
+      if (result != VL_OK && result != VL_ERROR_MEMORY)
+        fail_msg("%s: %s", entry->d_name, error.message);
       vl_image_destroy(image);
       assert_int_equal(failing.blocks, before);
     }
@@ -313,8 +335,9 @@ static void test_out_of_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_integers),      cmocka_unit_test(test_long_gif), cmocka_unit_test(test_floats),
-      cmocka_unit_test(test_jpeg),          cmocka_unit_test(test_exr),      cmocka_unit_test(test_all),
+      cmocka_unit_test(test_integers),      cmocka_unit_test(test_long_gif),
+      cmocka_unit_test(test_floats),        cmocka_unit_test(test_jpeg),
+      cmocka_unit_test(test_exr),           cmocka_unit_test(test_all),
       cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

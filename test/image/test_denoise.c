@@ -1,6 +1,6 @@
-/* Tests the denoiser on images with a known ground truth. Pixels without noise do not change, noise is removed,
- * edges that features show are kept, and values that are not finite are replaced. The bits depend neither on the
- * number of threads nor on the instruction set. */
+/* Tests the denoiser on images with a known ground truth. Pixels without noise do not change,
+ * noise is removed, edges that features show are kept, and values that are not finite are
+ * replaced. The bits depend neither on the number of threads nor on the instruction set. */
 #include "sample_images.h"
 
 #include "velo/denoise.h"
@@ -49,7 +49,8 @@ static vlImage *textured(vlContext *context, float sigma) {
       float *p = at(image, x, y);
       for (int c = 0; c < 3; c++) {
         float sum = 0;
-        for (int k = 0; k < 12; k++) sum += (float)noise(&seed) * 0x1p-24f;
+        for (int k = 0; k < 12; k++)
+          sum += (float)noise(&seed) * 0x1p-24f;
         p[c] = albedo(x, y) * light(x, y) + sigma * (sum - 6.0f);
         p[4 + c] = sigma;
         p[7 + c] = albedo(x, y);
@@ -62,7 +63,8 @@ static vlImage *textured(vlContext *context, float sigma) {
 static vlImage *clean_of(const vlImage *image, vlDenoiseStats *stats) {
   vlImage *clean;
   vlError error;
-  if (vl_denoise(image, NULL, &clean, stats, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_denoise(image, NULL, &clean, stats, &error) != VL_OK)
+    fail_msg("%s", error.message);
   assert_int_equal(vl_image_width(clean), W);
   assert_int_equal(vl_image_height(clean), H);
   return clean;
@@ -84,15 +86,18 @@ static void test_constant_stays(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  for (int noisy = 0; noisy < 2; noisy++) { /* the second time with standard errors that claim large noise */
+  for (int noisy = 0; noisy < 2;
+       noisy++) { /* the second time with standard errors that claim large noise */
     vlImage *image = make(context, 7);
     for (uint32_t y = 0; y < H; y++)
       for (uint32_t x = 0; x < W; x++) {
         float *p = at(image, x, y);
         p[0] = 0.5f, p[1] = 3.0f, p[2] = 1e-3f, p[3] = 0.75f;
-        for (int c = 0; c < 3; c++) p[4 + c] = noisy ? 0.4f * p[c] : 0.0f;
+        for (int c = 0; c < 3; c++)
+          p[4 + c] = noisy ? 0.4f * p[c] : 0.0f;
       }
-    const vlAttribute spp = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {16}};
+    const vlAttribute spp = {
+        .name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {16}};
     assert_int_equal(vl_image_set_attribute(image, &spp), VL_OK);
     vlDenoiseStats stats;
     vlImage *clean = clean_of(image, &stats);
@@ -103,7 +108,8 @@ static void test_constant_stays(void **state) {
       for (uint32_t x = 0; x < W; x++)
         for (int c = 0; c < 4; c++) {
           double a = at(image, x, y)[c], b = at(clean, x, y)[c];
-          if (!(fabs(a - b) <= 1e-5 * a)) fail_msg("pixel %u, %u, channel %d: %g, not %g", x, y, c, b, a);
+          if (!(fabs(a - b) <= 1e-5 * a))
+            fail_msg("pixel %u, %u, channel %d: %g, not %g", x, y, c, b, a);
         }
     vlAttribute found;
     assert_int_equal(vl_image_find_attribute(clean, "samplesPerPixel", &found), VL_OK);
@@ -120,20 +126,24 @@ static void test_edges_stay(void **state) {
   vlContext *context = make_context(&failing);
   vlImage *image = textured(context, 0.0f);
   for (uint32_t y = 0; y < H; y++)
-    for (uint32_t x = 0; x < W; x++) memset(at(image, x, y) + 7, 0, 7 * sizeof(float));
+    for (uint32_t x = 0; x < W; x++)
+      memset(at(image, x, y) + 7, 0, 7 * sizeof(float));
   vlImage *clean = clean_of(image, NULL);
   double worst = 0;
   for (uint32_t y = 0; y < H; y++)
     for (uint32_t x = 0; x < W; x++)
       worst = fmax(worst, fabs((double)at(clean, x, y)[0] / (double)at(image, x, y)[0] - 1));
-  if (worst > 1e-2) fail_msg("largest relative change %g", worst);
-  if (squared_error(clean) > 1e-6) fail_msg("mean squared error %g", squared_error(clean));
+  if (worst > 1e-2)
+    fail_msg("largest relative change %g", worst);
+  if (squared_error(clean) > 1e-6)
+    fail_msg("mean squared error %g", squared_error(clean));
   vl_image_destroy(image);
   vl_image_destroy(clean);
   end_context(context);
 }
 
-/* Noise far above the texture's steps is removed; the texture is kept, because the albedo feature shows it. */
+/* Noise far above the texture's steps is removed; the texture is kept, because the albedo
+ * feature shows it. */
 static void test_noise_goes(void **state) {
   (void)state;
   failAllocator failing;
@@ -143,23 +153,27 @@ static void test_noise_goes(void **state) {
   vlImage *clean = clean_of(image, &stats);
   assert_true(stats.features && stats.seconds > 0);
   double before = squared_error(image), after = squared_error(clean);
-  if (!(after < before / 20)) fail_msg("mean squared error %g, was %g", after, before);
+  if (!(after < before / 20))
+    fail_msg("mean squared error %g, was %g", after, before);
   vl_image_destroy(image);
   vl_image_destroy(clean);
   end_context(context);
 }
 
-/* A pixel that is thousands of times brighter than its neighbours, because of one sample, does not brighten them. */
+/* A pixel that is thousands of times brighter than its neighbours, because of one sample, does
+ * not brighten them. */
 static void test_outlier(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = textured(context, 0.05f);
-  for (int c = 0; c < 3; c++) at(image, 70, 30)[c] = at(image, 70, 30)[4 + c] = 5000.0f;
+  for (int c = 0; c < 3; c++)
+    at(image, 70, 30)[c] = at(image, 70, 30)[4 + c] = 5000.0f;
   vlImage *clean = clean_of(image, NULL);
   for (uint32_t y = 22; y < 39; y++)
     for (uint32_t x = 62; x < 79; x++)
-      if (!(at(clean, x, y)[0] < 3.0f)) fail_msg("pixel %u, %u: %g", x, y, (double)at(clean, x, y)[0]);
+      if (!(at(clean, x, y)[0] < 3.0f))
+        fail_msg("pixel %u, %u: %g", x, y, (double)at(clean, x, y)[0]);
   vl_image_destroy(image);
   vl_image_destroy(clean);
   end_context(context);
@@ -174,7 +188,8 @@ static void test_not_finite(void **state) {
   at(image, 149, 60)[1] = INFINITY;
   at(image, 80, 20)[5] = INFINITY; /* the standard error of that pixel */
   for (uint32_t y = 30; y < 36; y++)
-    for (uint32_t x = 30; x < 36; x++) at(image, x, y)[2] = NAN;
+    for (uint32_t x = 30; x < 36; x++)
+      at(image, x, y)[2] = NAN;
   at(image, 100, 10)[9] = NAN; /* only a feature: the pixel's colour is valid */
   vlDenoiseStats stats;
   vlImage *clean = clean_of(image, &stats);
@@ -192,7 +207,8 @@ static void test_not_finite(void **state) {
   vl_image_destroy(clean);
 
   for (uint32_t y = 0; y < H; y++) /* with one sample per pixel the standard error is unknown */
-    for (uint32_t x = 0; x < W; x++) at(image, x, y)[4] = INFINITY;
+    for (uint32_t x = 0; x < W; x++)
+      at(image, x, y)[4] = INFINITY;
   vlError error;
   assert_int_equal(vl_denoise(image, NULL, &clean, NULL, &error), VL_ERROR_SCENE);
   assert_non_null(strstr(error.message, "2 samples"));
@@ -214,7 +230,8 @@ static void test_bits(void **state) {
     def.threads = machines[i].threads;
     def.isa = machines[i].isa;
     vlContext *context;
-    if (vl_context_create(&def, &context) != VL_OK) continue; /* this machine does not have the instruction set */
+    if (vl_context_create(&def, &context) != VL_OK)
+      continue; /* this machine does not have the instruction set */
     vlImage *image = textured(context, 0.3f), *clean = clean_of(image, NULL);
     if (!first) {
       first = malloc(size);
@@ -257,7 +274,8 @@ static vlResult without_memory(vlContext *context, void *user) {
   def.names = names;
   vlImage *image = NULL, *clean = NULL;
   vlResult result = vl_image_create(context, &def, &image);
-  if (result == VL_OK) result = vl_denoise(image, NULL, &clean, NULL, NULL);
+  if (result == VL_OK)
+    result = vl_denoise(image, NULL, &clean, NULL, NULL);
   vl_image_destroy(image);
   vl_image_destroy(clean);
   return result;
@@ -268,9 +286,10 @@ static void test_out_of_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_constant_stays),  cmocka_unit_test(test_edges_stay),
-                                     cmocka_unit_test(test_noise_goes),      cmocka_unit_test(test_outlier),
-                                     cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_bits),
-                                     cmocka_unit_test(test_wrong_arguments), cmocka_unit_test(test_out_of_memory)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_constant_stays),  cmocka_unit_test(test_edges_stay),
+      cmocka_unit_test(test_noise_goes),      cmocka_unit_test(test_outlier),
+      cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_wrong_arguments), cmocka_unit_test(test_out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

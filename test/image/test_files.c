@@ -1,15 +1,18 @@
-/* Round trips through every written format, attributes, determinism, suffixes, write errors, a failure of every
- * allocation, and oiiotool as an independent reader where it is installed. */
+/* Round trips through every written format, attributes, determinism, suffixes, write errors, a
+ * failure of every allocation, and oiiotool as an independent reader where it is installed. */
 #include "sample_images.h"
 
 #include "image/pixel.h"
 
-static vlImage *round_trip(vlContext *context, const vlImage *image, const char *name, const vlWriteDef *def) {
+static vlImage *round_trip(vlContext *context, const vlImage *image, const char *name,
+                           const vlWriteDef *def) {
   char path[1024];
   vlError error;
   vlImage *back;
-  if (vl_image_write(image, in_folder(name, path), def, &error) != VL_OK) fail_msg("%s", error.message);
-  if (vl_image_read(context, path, &back, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_image_write(image, in_folder(name, path), def, &error) != VL_OK)
+    fail_msg("%s", error.message);
+  if (vl_image_read(context, path, &back, &error) != VL_OK)
+    fail_msg("%s", error.message);
   return back;
 }
 
@@ -23,13 +26,15 @@ static void test_exr(void **state) {
     for (int s = 0; s < 4; s++)
       for (uint32_t channels = 1; channels <= 6; channels++)
         for (int compression = 0; compression < 2; compression++) {
-          vlImage *image = make_image(context, SIZES[s][0], SIZES[s][1], channels, TYPES[t], VL_ENCODING_LINEAR);
+          vlImage *image = make_image(context, SIZES[s][0], SIZES[s][1], channels, TYPES[t],
+                                      VL_ENCODING_LINEAR);
           vlWriteDef def = vl_default_write_def();
           def.compression = compression;
           vlImage *back = round_trip(context, image, "a.exr", &def);
           assert_true(same_pixels(image, back));
           for (uint32_t c = 0; c < channels; c++)
-            assert_string_equal(vl_image_channel_name(image, c), vl_image_channel_name(back, c));
+            assert_string_equal(vl_image_channel_name(image, c),
+                                vl_image_channel_name(back, c));
           assert_int_equal(vl_image_attribute_count(back), 0);
           vl_image_destroy(image);
           vl_image_destroy(back);
@@ -47,7 +52,8 @@ static void test_exr_half(void **state) {
   vlImage *image;
   assert_int_equal(vl_image_create(context, &d, &image), VL_OK);
   float *p = vl_image_pixels(image);
-  for (int i = 0; i < 40 * 9 * 5; i++) p[i] = (float)i * 1.37f;
+  for (int i = 0; i < 40 * 9 * 5; i++)
+    p[i] = (float)i * 1.37f;
   p[4] = 1e6f; /* too much for a half */
   p[9] = INFINITY;
   vlWriteDef def = vl_default_write_def();
@@ -68,10 +74,12 @@ static void test_exr_half(void **state) {
   vl_image_destroy(back);
   vl_image_destroy(image);
 
-  image = make_image(context, 8, 8, 3, VL_PIXEL_U8, VL_ENCODING_SRGB); /* eight bits are written as light */
+  image = make_image(context, 8, 8, 3, VL_PIXEL_U8,
+                     VL_ENCODING_SRGB); /* eight bits are written as light */
   back = round_trip(context, image, "light.exr", NULL);
   assert_int_equal(back->type, VL_PIXEL_F32);
-  for (uint32_t y = 0; y < 8; y++) assert_true(vl_image_get(image, 5, y, 1) == vl_image_get(back, 5, y, 1));
+  for (uint32_t y = 0; y < 8; y++)
+    assert_true(vl_image_get(image, 5, y, 1) == vl_image_get(back, 5, y, 1));
   vl_image_destroy(back);
   vl_image_destroy(image);
   end_context(context);
@@ -95,7 +103,9 @@ static const vlAttribute ATTRIBUTES[] = {
      .type = VL_ATTRIBUTE_CHROMATICITIES,
      .numbers = {0.625, 0.375, 0.25, 0.5, 0.125, 0.0625, 0.3125, 0.25}},
     {.name = "double", .type = VL_ATTRIBUTE_DOUBLE, .numbers = {0.1}},
-    {.name = "a name of more than thirty-one characters", .type = VL_ATTRIBUTE_M44D, .numbers = {0.1, 0.2, 0.3}},
+    {.name = "a name of more than thirty-one characters",
+     .type = VL_ATTRIBUTE_M44D,
+     .numbers = {0.1, 0.2, 0.3}},
     {.name = "pixelAspectRatio", .type = VL_ATTRIBUTE_FLOAT, .numbers = {2}},
     {.name = "screenWindowCenter", .type = VL_ATTRIBUTE_V2F, .numbers = {0.5, 0.25}},
     {.name = "screenWindowWidth", .type = VL_ATTRIBUTE_FLOAT, .numbers = {0.75}},
@@ -109,7 +119,8 @@ static void test_attributes(void **state) {
   failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_image(context, 20, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
-  for (int i = 0; i < ATTRIBUTE_COUNT; i++) assert_int_equal(vl_image_set_attribute(image, &ATTRIBUTES[i]), VL_OK);
+  for (int i = 0; i < ATTRIBUTE_COUNT; i++)
+    assert_int_equal(vl_image_set_attribute(image, &ATTRIBUTES[i]), VL_OK);
   vlImage *back = round_trip(context, image, "attributes.exr", NULL);
   assert_true(same_pixels(image, back));
   assert_int_equal(vl_image_attribute_count(back), ATTRIBUTE_COUNT);
@@ -126,9 +137,12 @@ static void test_attributes(void **state) {
 
   char path[1024];
   vlError error;
-  vlAttribute wrong = {.name = "dataWindow", .type = VL_ATTRIBUTE_BOX2I, .numbers = {0, 0, 20, 30}}; /* one too large */
+  vlAttribute wrong = {.name = "dataWindow",
+                       .type = VL_ATTRIBUTE_BOX2I,
+                       .numbers = {0, 0, 20, 30}}; /* one too large */
   assert_int_equal(vl_image_set_attribute(image, &wrong), VL_OK);
-  assert_int_equal(vl_image_write(image, in_folder("wrong.exr", path), NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write(image, in_folder("wrong.exr", path), NULL, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "dataWindow"));
   assert_int_equal(access(path, F_OK), -1);
   vl_image_destroy(image);
@@ -140,7 +154,8 @@ static void test_same_bytes(void **state) {
   failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_image(context, 61, 47, 4, VL_PIXEL_F32, VL_ENCODING_LINEAR);
-  static const char *const NAMES[] = {"same.exr", "same.png", "same.jpg", "same.hdr", "same.pfm", "same.tga"};
+  static const char *const NAMES[] = {"same.exr", "same.png", "same.jpg",
+                                      "same.hdr", "same.pfm", "same.tga"};
   for (int i = 0; i < 6; i++) {
     char path[1024];
     size_t size[2];
@@ -148,7 +163,8 @@ static void test_same_bytes(void **state) {
     for (int k = 0; k < 2; k++) {
       assert_int_equal(vl_image_write(image, in_folder(NAMES[i], path), NULL, NULL), VL_OK);
       bytes[k] = slurp(path, &size[k]);
-      if (k == 0) usleep(20000);
+      if (k == 0)
+        usleep(20000);
     }
     assert_int_equal(size[0], size[1]);
     assert_memory_equal(bytes[0], bytes[1], size[0]);
@@ -161,7 +177,9 @@ static void test_same_bytes(void **state) {
   /* The bytes of an OpenEXR file do not depend on the number of threads. */
   void *first = NULL;
   size_t first_size = 0;
-  for (uint32_t threads = 1; threads <= 8; threads = threads == 1 ? 2 : threads == 2 ? 3 : threads + 5) {
+  for (uint32_t threads = 1; threads <= 8; threads = threads == 1   ? 2
+                                                     : threads == 2 ? 3
+                                                                    : threads + 5) {
     vlContextDef def = vl_default_context_def();
     def.threads = threads;
     assert_int_equal(vl_context_create(&def, &context), VL_OK);
@@ -196,7 +214,8 @@ static void test_integers(void **state) {
     static const vlEncoding ENCODINGS[] = {VL_ENCODING_SRGB, VL_ENCODING_LINEAR};
     for (int e = 0; e < 2; e++)
       for (int deep = 0; deep < 2; deep++) {
-        vlImage *image = make_image(context, 33, 17, channels, deep ? VL_PIXEL_U16 : VL_PIXEL_U8, ENCODINGS[e]);
+        vlImage *image = make_image(context, 33, 17, channels,
+                                    deep ? VL_PIXEL_U16 : VL_PIXEL_U8, ENCODINGS[e]);
         vlImage *back = round_trip(context, image, "a.png", NULL);
         assert_true(same_pixels(image, back));
         assert_int_equal(back->encoding, ENCODINGS[e]);
@@ -215,10 +234,13 @@ static void test_integers(void **state) {
   /* JPEG: smooth content comes back nearly. */
   vlImage *image = make_image(context, 64, 48, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   uint8_t *p = vl_image_pixels(image);
-  for (int i = 0; i < 64 * 48 * 3; i++) p[i] = (uint8_t)(i / 3 % 64 * 2 + i / 192 + i % 3 * 20);
+  for (int i = 0; i < 64 * 48 * 3; i++)
+    p[i] = (uint8_t)(i / 3 % 64 * 2 + i / 192 + i % 3 * 20);
   vlImage *back = round_trip(context, image, "a.jpg", NULL);
-  assert_true(back->width == 64 && back->height == 48 && back->channels == 3 && back->type == VL_PIXEL_U8);
-  for (int i = 0; i < 64 * 48 * 3; i++) assert_true(abs(p[i] - ((uint8_t *)back->pixels)[i]) <= 4);
+  assert_true(back->width == 64 && back->height == 48 && back->channels == 3 &&
+              back->type == VL_PIXEL_U8);
+  for (int i = 0; i < 64 * 48 * 3; i++)
+    assert_true(abs(p[i] - ((uint8_t *)back->pixels)[i]) <= 4);
   vl_image_destroy(back);
   back = round_trip(context, image, "a.JPEG", NULL);
   vl_image_destroy(back);
@@ -246,7 +268,8 @@ static void test_floats(void **state) {
       for (uint32_t y = 0; y < 17; y++)
         for (uint32_t x = 0; x < WIDTHS[w]; x++) {
           float peak = 0.0f;
-          for (uint32_t c = 0; c < channels; c++) peak = fmaxf(peak, vl_image_get(image, x, y, c));
+          for (uint32_t c = 0; c < channels; c++)
+            peak = fmaxf(peak, vl_image_get(image, x, y, c));
           for (uint32_t c = 0; c < 3; c++) {
             float v = vl_image_get(image, x, y, channels == 3 ? c : 0);
             assert_true(fabsf(vl_image_get(back, x, y, c) - v) <= peak / 255.0f);
@@ -262,7 +285,8 @@ static void test_floats(void **state) {
     p[2] = -3.0f;
     for (int k = 0; k < 2; k++) {
       back = round_trip(context, image, NAMES[k], NULL);
-      assert_true(back->type == VL_PIXEL_U8 && back->encoding == VL_ENCODING_SRGB && back->channels == channels);
+      assert_true(back->type == VL_PIXEL_U8 && back->encoding == VL_ENCODING_SRGB &&
+                  back->channels == channels);
       for (size_t i = 0; i < 33u * 17 * channels; i++)
         assert_int_equal(((uint8_t *)back->pixels)[i], vl_linear_to_srgb8(p[i]));
       vl_image_destroy(back);
@@ -279,12 +303,16 @@ static void test_refusals(void **state) {
   vlImage *image = make_image(context, 200, 100, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR), *back;
   char path[1024], target[1100];
   vlError error;
-  assert_int_equal(vl_image_write(image, in_folder("a.xyz", path), NULL, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_image_write(image, in_folder("a", path), NULL, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_image_write(image, in_folder("a.exe", path), NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write(image, in_folder("a.xyz", path), NULL, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write(image, in_folder("a", path), NULL, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write(image, in_folder("a.exe", path), NULL, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, ".exr"));
   vlWriteDef none = {.quality = 95, .compression = 1};
-  assert_int_equal(vl_image_write(image, in_folder("a.exr", path), &none, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write(image, in_folder("a.exr", path), &none, &error),
+                   VL_ERROR_ARGUMENT);
 
   static const char *const SUFFIXES[] = {"exr", "png", "jpg", "hdr", "pfm", "tga"};
   for (int i = 0; i < 6; i++) {
@@ -297,16 +325,19 @@ static void test_refusals(void **state) {
     in_folder(name, target);
     if (access("/dev/full", W_OK) == 0 && symlink("/dev/full", target) == 0) {
       vlResult result = vl_image_write(image, target, NULL, &error);
-      if (result != VL_ERROR_IO) fail_msg("%s on a full disk: %d", SUFFIXES[i], result);
+      if (result != VL_ERROR_IO)
+        fail_msg("%s on a full disk: %d", SUFFIXES[i], result);
       assert_int_equal(error.code, VL_ERROR_IO);
       unlink(target);
     }
   }
-  assert_int_equal(vl_image_read(context, in_folder("absent.png", path), &back, &error), VL_ERROR_MISSING);
+  assert_int_equal(vl_image_read(context, in_folder("absent.png", path), &back, &error),
+                   VL_ERROR_MISSING);
   assert_null(back);
   assert_int_equal(vl_image_read(context, folder(), &back, &error), VL_ERROR_IO);
 
-  /* Of an image without colours formats that hold nothing else get the first channel, as grey. */
+  /* Of an image without colours formats that hold nothing else get the first channel, as grey.
+   */
   const char *const names[2] = {"N.X", "Z"};
   vlImageDef def = vl_default_image_def(2, 2, 2);
   def.names = names;
@@ -350,12 +381,15 @@ static void test_out_of_memory(void **state) {
         vlImage *back = NULL;
         vlError error;
         fail_after(&failing, n);
-        result = reading ? vl_image_read(context, path, &back, &error) : vl_image_write(image, path, NULL, &error);
+        result = reading ? vl_image_read(context, path, &back, &error)
+                         : vl_image_write(image, path, NULL, &error);
         fail_after(&failing, -1);
         if (result != VL_OK) {
-          if (result != VL_ERROR_MEMORY) fail_msg("%s: %s", NAMES[i], error.message);
+          if (result != VL_ERROR_MEMORY)
+            fail_msg("%s: %s", NAMES[i], error.message);
           assert_null(back);
-          if (!reading) assert_int_equal(access(path, F_OK), -1); /* nothing half-written, no temporary */
+          if (!reading)
+            assert_int_equal(access(path, F_OK), -1); /* nothing half-written, no temporary */
         }
         vl_image_destroy(back);
         assert_int_equal(failing.blocks, before);
@@ -378,7 +412,8 @@ static void test_other_reader(void **state) {
   vlContext *context = make_context(&failing);
   vlImage *image = make_image(context, 40, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   float *p = vl_image_pixels(image);
-  for (int i = 0; i < 40 * 30 * 3; i++) p[i] = (float)(i % 97) / 64.0f;
+  for (int i = 0; i < 40 * 30 * 3; i++)
+    p[i] = (float)(i % 97) / 64.0f;
   vlAttribute a = {.name = "samples", .type = VL_ATTRIBUTE_INT, .numbers = {64}};
   assert_int_equal(vl_image_set_attribute(image, &a), VL_OK);
   char ours[1024], pfm[1024], command[4096], line[1024];
@@ -388,14 +423,16 @@ static void test_other_reader(void **state) {
     def.half = k & 1;
     def.compression = k >> 1;
     assert_int_equal(vl_image_write(image, in_folder("ours.exr", ours), &def, NULL), VL_OK);
-    snprintf(command, sizeof command, "oiiotool '%s' '%s' --fail 0 --warn 0 --diff >/dev/null 2>&1", ours, pfm);
+    snprintf(command, sizeof command,
+             "oiiotool '%s' '%s' --fail 0 --warn 0 --diff >/dev/null 2>&1", ours, pfm);
     assert_int_equal(system(command), 0);
   }
   snprintf(command, sizeof command, "oiiotool --info -v '%s' 2>&1", ours);
   FILE *pipe = popen(command, "r");
   assert_non_null(pipe);
   bool found = false;
-  while (fgets(line, sizeof line, pipe)) found |= strstr(line, "samples: 64") != NULL;
+  while (fgets(line, sizeof line, pipe))
+    found |= strstr(line, "samples: 64") != NULL;
   pclose(pipe);
   assert_true(found);
   vl_image_destroy(image);
@@ -404,9 +441,11 @@ static void test_other_reader(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exr),        cmocka_unit_test(test_exr_half),      cmocka_unit_test(test_attributes),
-      cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_integers),      cmocka_unit_test(test_floats),
-      cmocka_unit_test(test_refusals),   cmocka_unit_test(test_out_of_memory), cmocka_unit_test(test_other_reader),
+      cmocka_unit_test(test_exr),          cmocka_unit_test(test_exr_half),
+      cmocka_unit_test(test_attributes),   cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_integers),     cmocka_unit_test(test_floats),
+      cmocka_unit_test(test_refusals),     cmocka_unit_test(test_out_of_memory),
+      cmocka_unit_test(test_other_reader),
   };
   return cmocka_run_group_tests(tests, NULL, remove_folder);
 }

@@ -21,10 +21,12 @@ static void test_create(void **state) {
   assert_int_equal(vl_image_find_channel(image, "G"), 1);
   assert_int_equal(vl_image_find_channel(image, "Z"), -1);
   for (uint32_t y = 0; y < 3; y++)
-    for (uint32_t x = 0; x < 5; x++) assert_true(vl_image_get(image, x, y, 1) == 0.0f);
+    for (uint32_t x = 0; x < 5; x++)
+      assert_true(vl_image_get(image, x, y, 1) == 0.0f);
   vl_image_destroy(image);
 
-  const char *const doubled[2] = {"Z", "Z"}, *const empty[1] = {""}, *const null_name[1] = {NULL};
+  const char *const doubled[2] = {"Z", "Z"}, *const empty[1] = {""},
+                    *const null_name[1] = {NULL};
   def = vl_default_image_def(5, 3, 2);
   def.names = doubled;
   assert_int_equal(vl_image_create(context, &def, &image), VL_ERROR_ARGUMENT);
@@ -56,11 +58,13 @@ static void test_get(void **state) {
   vlImage *image;
   assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
   uint8_t *p = vl_image_pixels(image);
-  for (int i = 0; i < 256; i++) memset(p + 4 * i, i, 4);
+  for (int i = 0; i < 256; i++)
+    memset(p + 4 * i, i, 4);
   for (int i = 0; i < 256; i++) {
     double v = i / 255.0, light = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     assert_true(fabs(vl_image_get(image, (uint32_t)i, 0, 0) - light) < 1e-7);
-    assert_true(fabs(vl_image_get(image, (uint32_t)i, 0, 3) - v) < 1e-7); /* alpha has no curve */
+    assert_true(fabs(vl_image_get(image, (uint32_t)i, 0, 3) - v) <
+                1e-7); /* alpha has no curve */
   }
   float row[256 * 2];
   vl_image_row_to_float(image, 0, (const uint32_t[]){2, 3}, 2, row);
@@ -113,7 +117,8 @@ static void test_attributes(void **state) {
   assert_int_equal(vl_image_attribute_count(image), 2);
   assert_int_equal(vl_image_find_attribute(image, "text", &b), VL_OK);
   assert_string_equal(b.string, "hello");
-  a = (vlAttribute){.name = "text", .type = VL_ATTRIBUTE_INT, .numbers = {7}}; /* the last one stays */
+  a = (vlAttribute){
+      .name = "text", .type = VL_ATTRIBUTE_INT, .numbers = {7}}; /* the last one stays */
   assert_int_equal(vl_image_set_attribute(image, &a), VL_OK);
   assert_int_equal(vl_image_attribute_count(image), 2);
   assert_int_equal(vl_image_attribute(image, 1, &b), VL_OK);
@@ -136,7 +141,8 @@ static void test_half(void **state) {
     double expect = exponent == 31 ? mantissa ? NAN : INFINITY
                     : exponent     ? ldexp(1024 + mantissa, (int)exponent - 25)
                                    : ldexp(mantissa, -24);
-    if (h & 0x8000) expect = -expect;
+    if (h & 0x8000)
+      expect = -expect;
     if (isnan(expect)) {
       assert_true(isnan(f));
       assert_true((vl_float_to_half(f) & 0x7c00) == 0x7c00 && (vl_float_to_half(f) & 0x3ff));
@@ -147,7 +153,8 @@ static void test_half(void **state) {
   }
   /* Between two halves: the nearest, ties to even. */
   for (uint32_t h = 0; h < 0x7bff; h++) {
-    float low = vl_half_to_float((uint16_t)h), high = vl_half_to_float((uint16_t)(h + 1)), middle = 0.5f * (low + high);
+    float low = vl_half_to_float((uint16_t)h), high = vl_half_to_float((uint16_t)(h + 1)),
+          middle = 0.5f * (low + high);
     assert_int_equal(vl_float_to_half(middle), h & 1 ? h + 1 : h);
     assert_int_equal(vl_float_to_half(nextafterf(middle, 0.0f)), h);
     assert_int_equal(vl_float_to_half(nextafterf(middle, 1e9f)), h + 1);
@@ -163,7 +170,8 @@ static void test_curves(void **state) {
     double v = i / 255.0, light = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     assert_true(fabs(vl_srgb8_to_linear[i] - light) <= 6e-8 * light);
     assert_int_equal(vl_linear_to_srgb8(vl_srgb8_to_linear[i]), i);
-    if (i == 0) continue;
+    if (i == 0)
+      continue;
     assert_int_equal(vl_linear_to_srgb8(vl_srgb8_begin[i]), i);
     assert_int_equal(vl_linear_to_srgb8(nextafterf(vl_srgb8_begin[i], 0.0f)), i - 1);
     v = (i - 0.5) / 255.0;
@@ -184,8 +192,9 @@ static void test_curves(void **state) {
   }
   for (int i = 0; i <= 1000; i++) {
     assert_true(fabs(vl_linear_to_srgb(vl_srgb_to_linear(i / 1000.0)) - i / 1000.0) < 1e-6);
-    assert_true(fabs(vl_encode(VL_ENCODING_GAMMA, 2.2f, vl_decode(VL_ENCODING_GAMMA, 2.2f, i / 1000.0)) - i / 1000.0) <
-                1e-12);
+    assert_true(fabs(vl_encode(VL_ENCODING_GAMMA, 2.2f,
+                               vl_decode(VL_ENCODING_GAMMA, 2.2f, i / 1000.0)) -
+                     i / 1000.0) < 1e-12);
   }
 }
 
@@ -202,8 +211,10 @@ static void test_out_of_memory(void **state) {
     vlAttribute a = {.name = "text", .type = VL_ATTRIBUTE_STRING, .string = "hello"};
     fail_after(&failing, n);
     result = vl_image_create(context, &def, &image);
-    if (result == VL_OK) result = vl_image_set_attribute(image, &a);
-    if (result != VL_OK && image) assert_int_equal(vl_image_attribute_count(image), 0);
+    if (result == VL_OK)
+      result = vl_image_set_attribute(image, &a);
+    if (result != VL_OK && image)
+      assert_int_equal(vl_image_attribute_count(image), 0);
     fail_after(&failing, -1);
     vl_image_destroy(image);
     assert_true(result == VL_OK || result == VL_ERROR_MEMORY);
@@ -242,9 +253,10 @@ static void test_rename(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rename), cmocka_unit_test(test_create),        cmocka_unit_test(test_get),
-      cmocka_unit_test(test_color),  cmocka_unit_test(test_attributes),    cmocka_unit_test(test_half),
-      cmocka_unit_test(test_curves), cmocka_unit_test(test_out_of_memory),
+      cmocka_unit_test(test_rename),     cmocka_unit_test(test_create),
+      cmocka_unit_test(test_get),        cmocka_unit_test(test_color),
+      cmocka_unit_test(test_attributes), cmocka_unit_test(test_half),
+      cmocka_unit_test(test_curves),     cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Several images in one OpenEXR file, each with its own type, and single channels read from it. */
+/* Several images in one OpenEXR file, each with its own type, and single channels read from it.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,7 +20,8 @@ typedef struct Layers {
   vlImage *color, *depth, *ids;
 } Layers;
 
-static vlImage *make(vlContext *context, uint32_t width, const char *const *names, uint32_t count, vlPixelType type) {
+static vlImage *make(vlContext *context, uint32_t width, const char *const *names,
+                     uint32_t count, vlPixelType type) {
   vlImageDef def = vl_default_image_def(width, 5, count);
   def.names = names;
   def.type = type;
@@ -29,19 +31,24 @@ static vlImage *make(vlContext *context, uint32_t width, const char *const *name
 }
 
 static Layers open_layers(const vlAllocator *allocator) {
-  static const char *const depth[] = {"Z", "albedo.R"}, *const ids[] = {"id.object", "id.material"};
+  static const char *const depth[] = {"Z", "albedo.R"}, *const ids[] = {"id.object",
+                                                                        "id.material"};
   Layers l = {0};
   vlContextDef def = vl_default_context_def();
   def.threads = 2;
-  if (allocator) def.allocator = *allocator;
+  if (allocator)
+    def.allocator = *allocator;
   assert_int_equal(vl_context_create(&def, &l.context), VL_OK);
   l.color = make(l.context, 37, NULL, 4, VL_PIXEL_F32);
   l.depth = make(l.context, 37, depth, 2, VL_PIXEL_F32);
   l.ids = make(l.context, 37, ids, 2, VL_PIXEL_U32);
   for (uint32_t i = 0; i < 37 * 5; i++) {
-    for (uint32_t c = 0; c < 4; c++) ((float *)vl_image_pixels(l.color))[4 * i + c] = (float)(i + c) / 3.0f;
-    for (uint32_t c = 0; c < 2; c++) ((float *)vl_image_pixels(l.depth))[2 * i + c] = 1000.1f + (float)(i + c) / 7.0f;
-    for (uint32_t c = 0; c < 2; c++) ((uint32_t *)vl_image_pixels(l.ids))[2 * i + c] = (1u << 24) + 1 + i * 4097 + c;
+    for (uint32_t c = 0; c < 4; c++)
+      ((float *)vl_image_pixels(l.color))[4 * i + c] = (float)(i + c) / 3.0f;
+    for (uint32_t c = 0; c < 2; c++)
+      ((float *)vl_image_pixels(l.depth))[2 * i + c] = 1000.1f + (float)(i + c) / 7.0f;
+    for (uint32_t c = 0; c < 2; c++)
+      ((uint32_t *)vl_image_pixels(l.ids))[2 * i + c] = (1u << 24) + 1 + i * 4097 + c;
   }
   return l;
 }
@@ -60,13 +67,15 @@ static void write_layers(const Layers *l, bool half) {
   vlWriteDef write = vl_default_write_def();
   write.half = half;
   vlError error;
-  if (vl_image_write_layers(images, 3, file, &write, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_image_write_layers(images, 3, file, &write, &error) != VL_OK)
+    fail_msg("%s", error.message);
 }
 
 static void expect_equal(const vlImage *a, const vlImage *b) {
   assert_int_equal(vl_image_type(a), vl_image_type(b));
   assert_int_equal(vl_image_channels(a), vl_image_channels(b));
-  assert_memory_equal(vl_image_const_pixels(a), vl_image_const_pixels(b), (size_t)37 * 5 * vl_image_channels(a) * 4);
+  assert_memory_equal(vl_image_const_pixels(a), vl_image_const_pixels(b),
+                      (size_t)37 * 5 * vl_image_channels(a) * 4);
 }
 
 /* Names are asked for in another order than the file's; ids above 2^24 come back whole. */
@@ -75,7 +84,8 @@ static void test_round_trip(void **state) {
   Layers l = open_layers(NULL);
   write_layers(&l, false);
   static const char *const rgba[] = {"A", "R", "G", "B"}, *const depth[] = {"albedo.R", "Z"};
-  static const char *const ids[] = {"id.object", "id.material"}, *const lone[] = {"id.material"};
+  static const char *const ids[] = {"id.object", "id.material"}, *const lone[] = {
+                                                                     "id.material"};
   vlImage *image = NULL;
   vlError error;
   assert_int_equal(vl_image_read_channels(l.context, file, rgba, 4, &image, &error), VL_OK);
@@ -99,7 +109,8 @@ static void test_round_trip(void **state) {
   close_layers(&l);
 }
 
-/* Read as a whole, the image has floats and remembers the types of the file. `half` applies only to the first layer. */
+/* Read as a whole, the image has floats and remembers the types of the file. `half` applies
+ * only to the first layer. */
 static void test_stored_types(void **state) {
   (void)state;
   Layers l = open_layers(NULL);
@@ -110,7 +121,9 @@ static void test_stored_types(void **state) {
   assert_int_equal(vl_image_channels(image), 8);
   for (uint32_t i = 0; i < 8; i++) {
     const char *name = vl_image_channel_name(image, i);
-    vlPixelType expected = name[1] == 0 && name[0] != 'Z' ? VL_PIXEL_F16 : name[0] == 'i' ? VL_PIXEL_U32 : VL_PIXEL_F32;
+    vlPixelType expected = name[1] == 0 && name[0] != 'Z' ? VL_PIXEL_F16
+                           : name[0] == 'i'               ? VL_PIXEL_U32
+                                                          : VL_PIXEL_F32;
     assert_int_equal(vl_image_stored_type(image, i), expected);
   }
   int z = vl_image_find_channel(image, "Z");
@@ -123,8 +136,10 @@ static void test_stored_types(void **state) {
 static void test_refused(void **state) {
   (void)state;
   Layers l = open_layers(NULL);
-  vlImage *wide = make(l.context, 38, (const char *const[]){"W"}, 1, VL_PIXEL_F32), *image = NULL;
-  const vlImage *sizes[] = {l.color, wide}, *twice[] = {l.color, l.depth, l.depth}, *good[] = {l.color, l.ids};
+  vlImage *wide = make(l.context, 38, (const char *const[]){"W"}, 1, VL_PIXEL_F32),
+          *image = NULL;
+  const vlImage *sizes[] = {l.color, wide}, *twice[] = {l.color, l.depth, l.depth},
+                *good[] = {l.color, l.ids};
   const vlImage *hole[] = {l.color, NULL};
   vlError error;
   assert_int_equal(vl_image_write_layers(sizes, 2, file, NULL, &error), VL_ERROR_ARGUMENT);
@@ -133,17 +148,21 @@ static void test_refused(void **state) {
   assert_non_null(strstr(error.message, "\"Z\""));
   assert_int_equal(vl_image_write_layers(hole, 2, file, NULL, &error), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_image_write_layers(good, 0, file, NULL, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_image_write_layers(good, 2, "layers.png", NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_write_layers(good, 2, "layers.png", NULL, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, ".exr"));
   assert_int_not_equal(access(file, F_OK), 0);
   write_layers(&l, false);
   const char *names[] = {"Z", "depth"};
-  assert_int_equal(vl_image_read_channels(l.context, file, names, 2, &image, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_image_read_channels(l.context, file, names, 2, &image, &error),
+                   VL_ERROR_SCENE);
   assert_non_null(strstr(error.message, "\"depth\""));
   assert_null(image);
-  assert_int_equal(vl_image_read_channels(l.context, file, names + 1, 1, &image, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_image_read_channels(l.context, file, names + 1, 1, &image, &error),
+                   VL_ERROR_SCENE);
   assert_non_null(strstr(error.message, "\"depth\""));
-  assert_int_equal(vl_image_read_channels(l.context, file, names, 0, &image, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_read_channels(l.context, file, names, 0, &image, &error),
+                   VL_ERROR_ARGUMENT);
   vl_image_destroy(wide);
   close_layers(&l);
 }
@@ -161,8 +180,9 @@ static void test_out_of_memory(void **state) {
       vlImage *image = NULL;
       atomic_store(&allocator.refused, false);
       allocator.fail_at = atomic_load(&allocator.calls) + n;
-      vlResult result = reading ? vl_image_read_channels(l.context, file, names, 1, &image, NULL)
-                                : vl_image_write_layers(images, 3, file, NULL, NULL);
+      vlResult result = reading
+                            ? vl_image_read_channels(l.context, file, names, 1, &image, NULL)
+                            : vl_image_write_layers(images, 3, file, NULL, NULL);
       allocator.fail_at = 0;
       done = !atomic_load(&allocator.refused);
       assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);

@@ -1,5 +1,5 @@
-/* test/image/test_stop.c: a request to cancel stops the reading of one image file, and the making of one mipmap, in the
- * middle; nothing is left. */
+/* test/image/test_stop.c: a request to cancel stops the reading of one image file, and the
+ * making of one mipmap, in the middle; nothing is left. */
 #include "sample_images.h"
 
 #include "image/mipmap.h"
@@ -30,9 +30,11 @@ static void files_stop(void **state) {
     vlImage *read = NULL;
     vlError error = {0};
     vlTask task;
-    assert_int_equal(vl_image_write_memory(image, SUFFIXES[i], NULL, &data, &size, &error), VL_OK);
+    assert_int_equal(vl_image_write_memory(image, SUFFIXES[i], NULL, &data, &size, &error),
+                     VL_OK);
     vl_task_start(&task, cancel, request, cancel);
-    assert_int_equal(vl_image_decode(context, &task, "file", data, size, &read, &error), VL_CANCELLED);
+    assert_int_equal(vl_image_decode(context, &task, "file", data, size, &read, &error),
+                     VL_CANCELLED);
     assert_int_equal(error.code, VL_CANCELLED);
     assert_null(read);
     vl_cancel_clear(cancel);
@@ -52,7 +54,8 @@ static void mipmaps_stop(void **state) {
   vlContext *context = make_context(&failing);
   vlCancel *cancel = make_cancel(context);
   for (int bytes = 0; bytes < 2; bytes++) {
-    vlImage *image = make_image(context, 64, 64, 3, bytes ? VL_PIXEL_U8 : VL_PIXEL_F32, VL_ENCODING_SRGB);
+    vlImage *image =
+        make_image(context, 64, 64, 3, bytes ? VL_PIXEL_U8 : VL_PIXEL_F32, VL_ENCODING_SRGB);
     vlTask task;
     vlMipmapDef def = {.channel = {0, 1, 2}, .count = 3, .task = &task};
     vlMipmap *map;
@@ -70,6 +73,7 @@ static void mipmaps_stop(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(files_stop), cmocka_unit_test(mipmaps_stop)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(files_stop),
+                                     cmocka_unit_test(mipmaps_stop)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Views: from linear light to display values, against the published formulas computed with libm. */
+/* Views: from linear light to display values, against the published formulas computed with
+ * libm. */
 #include "sample_images.h"
 
 static double srgb(double v) {
@@ -12,7 +13,8 @@ static void neutral(const double in[3], double out[3]) {
   double x = fmin(in[0], fmin(in[1], in[2])), f = x <= 2 * f90 ? x - x * x / (4 * f90) : f90;
   double p = fmax(in[0], fmax(in[1], in[2])) - f;
   double pn = 1 - (1 - ks) * (1 - ks) / (p + 1 - 2 * ks), g = 1 / (kd * (p - pn) + 1);
-  for (int c = 0; c < 3; c++) out[c] = p <= ks ? in[c] - f : (in[c] - f) * pn / p * g + pn * (1 - g);
+  for (int c = 0; c < 3; c++)
+    out[c] = p <= ks ? in[c] - f : (in[c] - f) * pn / p * g + pn * (1 - g);
 }
 
 static void agx(const double in[3], double out[3]) {
@@ -26,26 +28,32 @@ static void agx(const double in[3], double out[3]) {
   for (int i = 0; i < 3; i++) {
     double s = fmax(A[i][0] * in[0] + A[i][1] * in[1] + A[i][2] * in[2], 1e-30);
     double x = fmin(fmax((log2(s) + 12.47393) / 16.499999, 0.0), 1.0);
-    v[i] = 15.5 * pow(x, 6) - 40.14 * pow(x, 5) + 31.96 * pow(x, 4) - 6.868 * pow(x, 3) + 0.4298 * x * x + 0.1191 * x -
-           0.00232;
+    v[i] = 15.5 * pow(x, 6) - 40.14 * pow(x, 5) + 31.96 * pow(x, 4) - 6.868 * pow(x, 3) +
+           0.4298 * x * x + 0.1191 * x - 0.00232;
   }
-  for (int i = 0; i < 3; i++) out[i] = B[i][0] * v[0] + B[i][1] * v[1] + B[i][2] * v[2];
+  for (int i = 0; i < 3; i++)
+    out[i] = B[i][0] * v[0] + B[i][1] * v[1] + B[i][2] * v[2];
 }
 
 static void expect(vlView view, const float *light, double exposure, double out[3]) {
   double in[3];
-  for (int c = 0; c < 3; c++) in[c] = light[c] * exp2(exposure);
+  for (int c = 0; c < 3; c++)
+    in[c] = light[c] * exp2(exposure);
   if (view == VL_VIEW_KHRONOS_NEUTRAL || view == VL_VIEW_AGX)
-    for (int c = 0; c < 3; c++) in[c] = fmax(in[c], 0.0);
+    for (int c = 0; c < 3; c++)
+      in[c] = fmax(in[c], 0.0);
   if (view == VL_VIEW_KHRONOS_NEUTRAL) {
     neutral(in, out);
-    for (int c = 0; c < 3; c++) out[c] = srgb(out[c]);
+    for (int c = 0; c < 3; c++)
+      out[c] = srgb(out[c]);
   } else if (view == VL_VIEW_AGX) {
     agx(in, out);
   } else {
-    for (int c = 0; c < 3; c++) out[c] = view == VL_VIEW_RAW ? in[c] : srgb(in[c]);
+    for (int c = 0; c < 3; c++)
+      out[c] = view == VL_VIEW_RAW ? in[c] : srgb(in[c]);
   }
-  for (int c = 0; c < 3; c++) out[c] = 255.0 * fmin(fmax(out[c], 0.0), 1.0);
+  for (int c = 0; c < 3; c++)
+    out[c] = 255.0 * fmin(fmax(out[c], 0.0), 1.0);
 }
 
 static void test_formulas(void **state) {
@@ -67,13 +75,15 @@ static void test_formulas(void **state) {
       uint64_t bad = 77;
       assert_int_equal(vl_image_view(image, (vlView)view, EXPOSURES[e], &bad, &seen), VL_OK);
       assert_int_equal(bad, 0);
-      assert_true(seen->type == VL_PIXEL_U8 && seen->encoding == VL_ENCODING_SRGB && seen->channels == 3);
+      assert_true(seen->type == VL_PIXEL_U8 && seen->encoding == VL_ENCODING_SRGB &&
+                  seen->channels == 3);
       const uint8_t *q = vl_image_const_pixels(seen);
       for (int i = 0; i < 4096; i++) {
         double want[3];
         expect((vlView)view, p + 3 * i, EXPOSURES[e], want);
         for (int c = 0; c < 3; c++)
-          if (fabs(q[3 * i + c] - want[c]) > 0.502) fail_msg("view %d: %d, not %g", view, q[3 * i + c], want[c]);
+          if (fabs(q[3 * i + c] - want[c]) > 0.502)
+            fail_msg("view %d: %d, not %g", view, q[3 * i + c], want[c]);
       }
       vl_image_destroy(seen);
     }
@@ -151,7 +161,8 @@ static void test_out_of_memory(void **state) {
     fail_after(&failing, n);
     result = vl_image_view(image, VL_VIEW_STANDARD, 0.0f, NULL, &seen);
     fail_after(&failing, -1);
-    if (result != VL_OK) assert_int_equal(result, VL_ERROR_MEMORY);
+    if (result != VL_OK)
+      assert_int_equal(result, VL_ERROR_MEMORY);
     vl_image_destroy(seen);
     assert_int_equal(failing.blocks, before);
   }

@@ -1,5 +1,5 @@
-/* test/import/gltf_load.h: writes glTF files made by gltf_writer.h to a directory of the test and loads them; a square
- * as a start. */
+/* test/import/gltf_load.h: writes glTF files made by gltf_writer.h to a directory of the test
+ * and loads them; a square as a start. */
 #ifndef TEST_IMPORT_GLTF_LOAD_H
 #define TEST_IMPORT_GLTF_LOAD_H
 
@@ -36,7 +36,8 @@ static inline void load(Loaded *l, const Gltf *g, const char *rest, const vlLoad
 
 static inline void fine_with(Loaded *l, const Gltf *g, const char *rest, const vlLoadDef *def) {
   load(l, g, rest, def);
-  if (l->result != VL_OK) print_message("%s: %s\n", l->error.file, l->error.message);
+  if (l->result != VL_OK)
+    print_message("%s: %s\n", l->error.file, l->error.message);
   assert_int_equal(l->result, VL_OK);
 }
 
@@ -56,7 +57,8 @@ static inline Gltf *new_square(void) {
 }
 
 #define SCENE "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-#define SQUARE_MESH "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
+#define SQUARE_MESH \
+  "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
 
 static inline const vlShapeDef *shape(const Loaded *l, size_t i) {
   assert_true(i < l->scene->shapes.count);

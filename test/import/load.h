@@ -26,12 +26,14 @@ typedef struct Loaded {
                    * " */
 } Loaded;
 
-static inline void note(void *user, vlLogLevel level, const vlError *where, const char *message) {
+static inline void note(void *user, vlLogLevel level, const vlError *where,
+                        const char *message) {
   Loaded *l = user;
   size_t n = strlen(l->log);
   static const char *const levels[] = {"error", "warning", "info", "debug"};
-  snprintf(l->log + n, sizeof l->log - n, "%s %s:%u:%u: %s\n", levels[level], where ? where->file : "",
-           where ? where->line : 0, where ? where->column : 0, message);
+  snprintf(l->log + n, sizeof l->log - n, "%s %s:%u:%u: %s\n", levels[level],
+           where ? where->file : "", where ? where->line : 0, where ? where->column : 0,
+           message);
 }
 
 static inline void start_load(Loaded *l) {
@@ -61,18 +63,24 @@ static inline void load_text(Loaded *l, const char *text, bool permissive) {
 static inline void load_fine(Loaded *l, const char *text) {
   load_text(l, text, false);
   if (l->result != VL_OK)
-    print_message("%s:%u:%u: %s\n", l->error.file, l->error.line, l->error.column, l->error.message);
+    print_message("%s:%u:%u: %s\n", l->error.file, l->error.line, l->error.column,
+                  l->error.message);
   assert_int_equal(l->result, VL_OK);
 }
 
-/* Expects the error as the program prints it: "file:line:column: message". Prints the difference. */
+/* Expects the error as the program prints it: "file:line:column: message". Prints the
+ * difference.
+ */
 static inline bool gives_error(const char *text, vlResult code, const char *expected) {
   Loaded l;
   char said[1200];
   load_text(&l, text, false);
-  snprintf(said, sizeof said, "%s:%u:%u: %s", l.error.file, l.error.line, l.error.column, l.error.message);
+  snprintf(said, sizeof said, "%s:%u:%u: %s", l.error.file, l.error.line, l.error.column,
+           l.error.message);
   bool fine = strcmp(said, expected) == 0 && l.result == code;
-  if (!fine) print_message("scene: %s\n said: %s (%s)\n not:  %s\n", text, said, vl_result_name(l.result), expected);
+  if (!fine)
+    print_message("scene: %s\n said: %s (%s)\n not:  %s\n", text, said,
+                  vl_result_name(l.result), expected);
   end_load(&l);
   return fine;
 }
@@ -82,7 +90,8 @@ static inline void assert_error(const char *text, vlResult code, const char *exp
 }
 
 static inline void assert_near(double a, double b, double tolerance) {
-  if (!(fabs(a - b) <= tolerance)) print_message("%.17g is not %.17g\n", a, b);
+  if (!(fabs(a - b) <= tolerance))
+    print_message("%.17g is not %.17g\n", a, b);
   assert_true(fabs(a - b) <= tolerance);
 }
 

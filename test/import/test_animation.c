@@ -1,23 +1,30 @@
-/* test/import/test_animation.c: several glTF animations at once; an automatic camera frames a whole animation. */
+/* test/import/test_animation.c: several glTF animations at once; an automatic camera frames a
+ * whole animation. */
 #include "import/gltf_load.h"
 #include "velo/shape.h"
 
 static void is_near(double a, double b, double most) {
-  if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);
+  if (!(fabs(a - b) <= most))
+    fail_msg("%.9g is not %.9g", a, b);
 }
 
-/* Two nodes: animation 0 (Walk) moves the first along x in 4 s, animation 1 (Jump) the second along y in 2 s. */
+/* Two nodes: animation 0 (Walk) moves the first along x in 4 s, animation 1 (Jump) the second
+ * along y in 2 s. */
 static Gltf *two_animations(void) {
   Gltf *g = new_square();
-  const float four[] = {0, 4}, two[] = {0, 2}, along[] = {0, 0, 0, 8, 0, 0}, up[] = {0, 0, 0, 0, 6, 0};
-  gltf_accessor(g, gltf_view(g, four, sizeof four, 0), 5126, 2, "SCALAR", ",\"min\":[0],\"max\":[4]"); /* 2 */
-  gltf_accessor(g, gltf_view(g, two, sizeof two, 0), 5126, 2, "SCALAR", ",\"min\":[0],\"max\":[2]");   /* 3 */
-  gltf_floats(g, along, 2, "VEC3", 3);                                                                 /* 4 */
-  gltf_floats(g, up, 2, "VEC3", 3);                                                                    /* 5 */
+  const float four[] = {0, 4}, two[] = {0, 2}, along[] = {0, 0, 0, 8, 0, 0},
+              up[] = {0, 0, 0, 0, 6, 0};
+  gltf_accessor(g, gltf_view(g, four, sizeof four, 0), 5126, 2, "SCALAR",
+                ",\"min\":[0],\"max\":[4]"); /* 2 */
+  gltf_accessor(g, gltf_view(g, two, sizeof two, 0), 5126, 2, "SCALAR",
+                ",\"min\":[0],\"max\":[2]"); /* 3 */
+  gltf_floats(g, along, 2, "VEC3", 3);       /* 4 */
+  gltf_floats(g, up, 2, "VEC3", 3);          /* 5 */
   return g;
 }
 
-#define CHANNEL(node) "\"channels\":[{\"sampler\":0,\"target\":{\"node\":" #node ",\"path\":\"translation\"}}]"
+#define CHANNEL(node) \
+  "\"channels\":[{\"sampler\":0,\"target\":{\"node\":" #node ",\"path\":\"translation\"}}]"
 #define ANIMATIONS \
   "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":1}],"                                \
   "\"animations\":[{\"name\":\"Walk\",\"samplers\":[{\"input\":2,\"output\":4}]," CHANNEL(0) "},"        \
@@ -51,7 +58,8 @@ static void several(void **state) {
   def.animation = "Walk,Run";
   load(&l, g, ANIMATIONS, &def);
   assert_int_equal(l.result, VL_ERROR_SCENE);
-  assert_non_null(strstr(l.error.message, "there is no animation \"Run\" (2 are there: Walk, Jump)"));
+  assert_non_null(
+      strstr(l.error.message, "there is no animation \"Run\" (2 are there: Walk, Jump)"));
   end_load(&l);
   free(g);
 }
@@ -83,7 +91,8 @@ static void framing(void **state) {
     const double point[3] = {k ? 9 : 0, 0.5, 0};
     double pixel[2];
     assert_true(vl_camera_project(&camera, point, pixel, NULL));
-    assert_true(pixel[0] > 0 && pixel[0] < camera.width && pixel[1] > 0 && pixel[1] < camera.height);
+    assert_true(pixel[0] > 0 && pixel[0] < camera.width && pixel[1] > 0 &&
+                pixel[1] < camera.height);
   }
   free(g);
 }

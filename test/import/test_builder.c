@@ -9,7 +9,8 @@ static const double *shape_matrix(const Loaded *l, size_t i) {
 }
 
 static void assert_matrix(const double *m, const double expected[16]) {
-  for (int i = 0; i < 16; i++) assert_near(m[i], expected[i], 1e-12);
+  for (int i = 0; i < 16; i++)
+    assert_near(m[i], expected[i], 1e-12);
 }
 
 static void transforms(void **state) {
@@ -26,39 +27,49 @@ static void transforms(void **state) {
       "AttributeBegin Translate 9 9 9 Shape \"sphere\" AttributeEnd Shape \"sphere\"\n"
       "TransformBegin Translate 9 9 9 TransformEnd Shape \"sphere\"\n"
       "CoordSysTransform \"here\" Shape \"sphere\"\n"
-      "CoordSysTransform \"world\" ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 1 0 0\n"
+      "CoordSysTransform \"world\" ActiveTransform StartTime Translate 1 0 0 ActiveTransform "
+      "EndTime Translate 1 0 0\n"
       "ActiveTransform All TransformBegin TransformEnd Shape \"sphere\"\n");
-  assert_matrix(shape_matrix(&l, 0), (double[]){1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1});
-  assert_matrix(shape_matrix(&l, 1), (double[]){2, 0, 0, 1, 0, 3, 0, 2, 0, 0, 4, 3, 0, 0, 0, 1});
-  assert_matrix(shape_matrix(&l, 2), (double[]){0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-  assert_matrix(shape_matrix(&l, 3), (double[]){1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 0),
+                (double[]){1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 1),
+                (double[]){2, 0, 0, 1, 0, 3, 0, 2, 0, 0, 4, 3, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 2),
+                (double[]){0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 3),
+                (double[]){1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1});
   const double here[] = {2, 0, 0, 6, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1},
                one[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   assert_matrix(shape_matrix(&l, 4), here);
-  assert_matrix(shape_matrix(&l, 5), (double[]){1, 0, 0, 9, 0, 1, 0, 9, 0, 0, 1, 9, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 5),
+                (double[]){1, 0, 0, 9, 0, 1, 0, 9, 0, 0, 1, 9, 0, 0, 0, 1});
   assert_matrix(shape_matrix(&l, 6), one);
   assert_matrix(shape_matrix(&l, 7), one);
   assert_matrix(shape_matrix(&l, 8), here);
-  assert_matrix(shape_matrix(&l, 9), (double[]){1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 9),
+                (double[]){1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
   end_load(&l);
 }
 
 static void shapes(void **state) {
   (void)state;
   Loaded l;
-  load_fine(&l, W
-            "Shape \"sphere\" \"float radius\" 2 \"float phimax\" 180\n"
-            "Shape \"sphere\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 1.5\n"
-            "Shape \"disk\" \"float height\" 3 \"float innerradius\" .5\n"
-            "Shape \"cylinder\" \"float zmin\" 4 \"float zmax\" -4\n"
-            "ReverseOrientation\n"
-            "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 1 3 2]\n"
-            "  \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1] \"vector3 S\" [1 0 0 1 0 0 1 0 0 1 0 0] \"point2 uv\" [0 0 1 0 0 "
-            "1 1 1]\n"
-            "  \"integer faceIndices\" [0 1]\n"
-            "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]\n"
-            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n"
-            "Shape \"sphere\" \"float zmin\" 9 \"float zmax\" -.5\n");
+  load_fine(
+      &l, W
+      "Shape \"sphere\" \"float radius\" 2 \"float phimax\" 180\n"
+      "Shape \"sphere\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 1.5\n"
+      "Shape \"disk\" \"float height\" 3 \"float innerradius\" .5\n"
+      "Shape \"cylinder\" \"float zmin\" 4 \"float zmax\" -4\n"
+      "ReverseOrientation\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 "
+      "1 2 1 3 2]\n"
+      "  \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1] \"vector3 S\" [1 0 0 1 0 0 1 0 0 1 0 0] "
+      "\"point2 uv\" [0 0 1 0 0 "
+      "1 1 1]\n"
+      "  \"integer faceIndices\" [0 1]\n"
+      "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n"
+      "Shape \"sphere\" \"float zmin\" 9 \"float zmax\" -.5\n");
   const vlShapeDef *s = l.scene->shapes.items;
   assert_near(s[0].z_min, -2, 0);
   assert_near(s[0].z_max, 2, 0);

@@ -1,4 +1,5 @@
-/* test/import/test_builder_camera.c: statements for pbrt's and the lecture's cameras, and the defs of the image. */
+/* test/import/test_builder_camera.c: statements for pbrt's and the lecture's cameras, and the
+ * defs of the image. */
 #include "import/load.h"
 #include "velo/shape.h"
 
@@ -9,7 +10,8 @@ static const double *shape_matrix(const Loaded *l, size_t i) {
 }
 
 static void assert_matrix(const double *m, const double expected[16]) {
-  for (int i = 0; i < 16; i++) assert_near(m[i], expected[i], 1e-12);
+  for (int i = 0; i < 16; i++)
+    assert_near(m[i], expected[i], 1e-12);
 }
 
 static vlCamera camera_of(Loaded *l, const char *text) {
@@ -17,24 +19,28 @@ static vlCamera camera_of(Loaded *l, const char *text) {
   vlError error;
   load_fine(l, text);
   vlResult result = vl_camera_make(&vl_scene_defs(l->scene)->camera, &camera, NULL, &error);
-  if (result != VL_OK) print_message("%s\n", error.message);
+  if (result != VL_OK)
+    print_message("%s\n", error.message);
   assert_int_equal(result, VL_OK);
   return camera;
 }
 
-static void assert_seen(const vlCamera *camera, double x, double y, double z, double px, double py) {
+static void assert_seen(const vlCamera *camera, double x, double y, double z, double px,
+                        double py) {
   double pixel[2], depth;
   assert_true(vl_camera_project(camera, (double[]){x, y, z}, pixel, &depth));
   assert_near(pixel[0], px, 1e-9);
   assert_near(pixel[1], py, 1e-9);
 }
 
-/* pbrt looks along +z, x to the right, y up, in a left-handed world; fov spans the smaller side. */
+/* pbrt looks along +z, x to the right, y up, in a left-handed world; fov spans the smaller
+ * side. */
 static void pbrt_cameras(void **state) {
   (void)state;
   Loaded l;
   vlCamera c = camera_of(&l,
-                         "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nCamera \"perspective\" "
+                         "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" "
+                         "100\nCamera \"perspective\" "
                          "\"float fov\" 90\n" W);
   assert_seen(&c, 0, 0, 1, 100, 50);
   assert_seen(&c, 1, 0, 1, 150, 50);
@@ -43,13 +49,16 @@ static void pbrt_cameras(void **state) {
   assert_int_equal(vl_scene_defs(l.scene)->camera_source.line, 2);
   end_load(&l);
   /* portrait: fov across */
-  c = camera_of(&l, "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\nCamera \"perspective\"\n" W);
+  c = camera_of(&l,
+                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\nCamera "
+                "\"perspective\"\n" W);
   assert_seen(&c, 1, 0, 1, 100, 100);
   assert_seen(&c, 0, 1, 1, 50, 50);
   end_load(&l);
   /* LookAt: from (0,0,-5) to the origin; right is +x in pbrt's numbers */
   c = camera_of(&l,
-                "LookAt 0 0 -5 0 0 0 0 1 0\nFilm \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" "
+                "LookAt 0 0 -5 0 0 0 0 1 0\nFilm \"rgb\" \"integer xresolution\" 100 \"integer "
+                "yresolution\" "
                 "100\nCamera \"perspective\"\n" W);
   assert_seen(&c, 5, 0, 0, 100, 50);
   assert_seen(&c, 0, 5, 0, 50, 0);
@@ -58,7 +67,8 @@ static void pbrt_cameras(void **state) {
   /* a mirroring transform before the camera swaps left and right */
   c = camera_of(
       &l,
-      "Scale -1 1 1\nFilm \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\nCamera \"perspective\"\n" W);
+      "Scale -1 1 1\nFilm \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" "
+      "100\nCamera \"perspective\"\n" W);
   assert_seen(&c, 1, 0, 1, 0, 50);
   end_load(&l);
   /* screen window: x 0..1, y 0..1 at fov 90: the quadrant right and above */
@@ -70,28 +80,34 @@ static void pbrt_cameras(void **state) {
   end_load(&l);
   /* a frame of another shape than the image: pixels are not square */
   c = camera_of(&l,
-                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\nCamera \"perspective\" \"float "
+                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\nCamera "
+                "\"perspective\" \"float "
                 "frameaspectratio\" 2\n" W);
   assert_seen(&c, 2, 1, 1, 100, 0);
   end_load(&l);
   c = camera_of(&l,
-                "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nCamera \"orthographic\" \"float "
+                "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nCamera "
+                "\"orthographic\" \"float "
                 "screenwindow\" [-4 4 -2 2]\n" W);
   assert_int_equal(c.projection, VL_PROJECTION_ORTHOGRAPHIC);
   assert_seen(&c, 2, 1, 7, 150, 25);
   end_load(&l);
   c = camera_of(&l,
-                "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nCamera \"orthographic\"\n" W);
+                "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nCamera "
+                "\"orthographic\"\n" W);
   assert_seen(&c, 2, 1, 7, 200, 0);
   end_load(&l);
-  c = camera_of(&l,
-                "Camera \"perspective\" \"float lensradius\" 0.5 \"float focaldistance\" 7 \"float shutteropen\" 1 "
-                "\"float shutterclose\" 3\n" W);
+  c = camera_of(
+      &l,
+      "Camera \"perspective\" \"float lensradius\" 0.5 \"float focaldistance\" 7 \"float "
+      "shutteropen\" 1 "
+      "\"float shutterclose\" 3\n" W);
   assert_near(c.lens_radius, 0.5, 0);
   assert_near(c.focus_distance, 7, 0);
   assert_near(c.shutter_open, 1, 0);
   assert_near(c.shutter_close, 3, 0);
-  assert_near(vl_scene_defs(l.scene)->develop.exposure, 2, 0); /* pbrt's imaging ratio counts the time */
+  assert_near(vl_scene_defs(l.scene)->develop.exposure, 2,
+              0); /* pbrt's imaging ratio counts the time */
   end_load(&l);
   c = camera_of(&l, "Camera \"perspective\" \"float lensradius\" 0.5\n" W);
   assert_near(c.focus_distance, 1e6, 0);
@@ -106,38 +122,47 @@ static void pbrt_cameras(void **state) {
 static void camera_system(void **state) {
   (void)state;
   Loaded l;
-  load_fine(&l,
-            "LookAt 1 2 3 1 2 9 0 1 0\nCamera \"perspective\"\n" W "CoordSysTransform \"camera\"\nShape \"sphere\"");
-  assert_matrix(shape_matrix(&l, 0), (double[]){1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1});
+  load_fine(&l, "LookAt 1 2 3 1 2 9 0 1 0\nCamera \"perspective\"\n" W
+                "CoordSysTransform \"camera\"\nShape \"sphere\"");
+  assert_matrix(shape_matrix(&l, 0),
+                (double[]){1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1});
   end_load(&l);
   load_fine(&l, "Camera \"pinhole\" \"point3 eye\" [1 2 3] \"point3 lookat\" [1 2 -9]\n" W
                 "CoordSysTransform \"camera\"\nShape \"sphere\"");
-  assert_matrix(shape_matrix(&l, 0), (double[]){1, 0, 0, 1, 0, 1, 0, 2, 0, 0, -1, 3, 0, 0, 0, 1});
+  assert_matrix(shape_matrix(&l, 0),
+                (double[]){1, 0, 0, 1, 0, 1, 0, 2, 0, 0, -1, 3, 0, 0, 0, 1});
   end_load(&l);
 }
 
-/* The lecture's words: d = x_v u + y_v v - d w with x_v = s (c - h/2 + p_x); rows in files count from the top. */
+/* The lecture's words: d = x_v u + y_v v - d w with x_v = s (c - h/2 + p_x); rows in files
+ * count from the top. */
 static void lecture_cameras(void **state) {
   (void)state;
   Loaded l;
-  vlCamera c = camera_of(
-      &l,
-      "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300\n"
-      "Camera \"pinhole\" \"point3 eye\" [0 0 500] \"point3 lookat\" [0 0 0] \"vector3 up\" [0 1 0] \"float d\" 400\n"
-      "  \"float zoom\" 1.5 \"float pixelsize\" 0.5 \"float exposuretime\" 2 \"float roll\" 0\n" W);
+  vlCamera c =
+      camera_of(&l,
+                "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300\n"
+                "Camera \"pinhole\" \"point3 eye\" [0 0 500] \"point3 lookat\" [0 0 0] "
+                "\"vector3 up\" [0 1 "
+                "0] \"float d\" 400\n"
+                "  \"float zoom\" 1.5 \"float pixelsize\" 0.5 \"float exposuretime\" 2 \"float "
+                "roll\" 0\n" W);
   assert_seen(&c, 0, 0, 0, 200, 150);
-  assert_seen(&c, 10, 20, 0, 200 + 1.5 * 400 / 0.5 * 10 / 500, 150 - 1.5 * 400 / 0.5 * 20 / 500);
+  assert_seen(&c, 10, 20, 0, 200 + 1.5 * 400 / 0.5 * 10 / 500,
+              150 - 1.5 * 400 / 0.5 * 20 / 500);
   assert_near(c.exposure_time, 2, 0);
   end_load(&l);
   c = camera_of(&l,
                 "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300\n"
-                "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"float fov\" 90 \"string fovaxis\" \"horizontal\" \"float "
+                "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"float fov\" 90 \"string fovaxis\" "
+                "\"horizontal\" \"float "
                 "roll\" 90\n" W);
   assert_near(c.fx, 200, 1e-9);
   assert_seen(&c, 0, 1, 4, 0, 150); /* the camera turned clockwise: up is on the left */
   end_load(&l);
   c = camera_of(&l,
-                "Camera \"thinlens\" \"float lensradius\" 2 \"float focusdistance\" 30 \"float fx\" 100 \"float cx\" 3 "
+                "Camera \"thinlens\" \"float lensradius\" 2 \"float focusdistance\" 30 \"float "
+                "fx\" 100 \"float cx\" 3 "
                 "\"float cy\" 4\n" W);
   assert_near(c.lens_radius, 2, 0);
   assert_near(c.focus_distance, 30, 0);
@@ -165,13 +190,16 @@ static void scene_defs(void **state) {
   load_fine(
       &l,
       "Option \"seed\" 17\nColorSpace \"rec2020\"\n"
-      "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" [ 50 ] \"string filename\" \"out.exr\" \"float "
+      "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" [ 50 ] \"string "
+      "filename\" \"out.exr\" \"float "
       "iso\" 200\n"
-      "  \"float cropwindow\" [ .101 .5 0 .21 ] \"bool savefp16\" false \"float diagonal\" 20 \"string sensor\" "
+      "  \"float cropwindow\" [ .101 .5 0 .21 ] \"bool savefp16\" false \"float diagonal\" "
+      "20 \"string sensor\" "
       "\"cie1931\"\n"
       "Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5\n"
       "PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" .5 \"float C\" .25\n"
-      "Integrator \"volpath\" \"integer maxdepth\" 12 \"string lightsampler\" \"power\" \"bool regularize\" true\n"
+      "Integrator \"volpath\" \"integer maxdepth\" 12 \"string lightsampler\" \"power\" "
+      "\"bool regularize\" true\n"
       "Accelerator \"kdtree\" \"integer intersectcost\" 5\nTransformTimes 0 1\n" W);
   s = vl_scene_defs(l.scene);
   assert_int_equal(s->film.crop[0], 11); /* rounded up, as pbrt */
@@ -191,11 +219,12 @@ static void scene_defs(void **state) {
   assert_int_equal(s->build.light_sampler, VL_LIGHT_SAMPLER_POWER);
   assert_true(s->build.regularize);
   end_load(&l);
-  load_fine(
-      &l,
-      "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 50 \"integer pixelbounds\" [ 10 20 -5 500 ]\n"
-      "Integrator \"ambientocclusion\" \"float maxdistance\" 4 \"bool cossample\" false\n"
-      "Sampler \"paddedsobol\" \"integer pixelsamples\" 8 \"integer seed\" 3 \"string randomization\" \"owen\"\n" W);
+  load_fine(&l,
+            "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 50 \"integer "
+            "pixelbounds\" [ 10 20 -5 500 ]\n"
+            "Integrator \"ambientocclusion\" \"float maxdistance\" 4 \"bool cossample\" false\n"
+            "Sampler \"paddedsobol\" \"integer pixelsamples\" 8 \"integer seed\" 3 \"string "
+            "randomization\" \"owen\"\n" W);
   s = vl_scene_defs(l.scene);
   assert_int_equal(s->film.crop[0], 10);
   assert_int_equal(s->film.crop[1], 0);
@@ -229,7 +258,8 @@ static void scene_defs(void **state) {
                   {"pmj02bn", VL_SAMPLER_ZSOBOL}};
   for (size_t i = 0; i < sizeof samplers / sizeof *samplers; i++) {
     char text[128];
-    snprintf(text, sizeof text, "Sampler \"%s\" \"integer pixelsamples\" 9\n" W, samplers[i].name);
+    snprintf(text, sizeof text, "Sampler \"%s\" \"integer pixelsamples\" 9\n" W,
+             samplers[i].name);
     load_fine(&l, text);
     assert_int_equal(vl_scene_defs(l.scene)->render.sampler, samplers[i].kind);
     assert_int_equal(vl_scene_defs(l.scene)->render.spp, 9);
@@ -257,7 +287,8 @@ static void scene_defs(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(pbrt_cameras), cmocka_unit_test(camera_system),
-                                     cmocka_unit_test(lecture_cameras), cmocka_unit_test(scene_defs)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(pbrt_cameras), cmocka_unit_test(camera_system),
+      cmocka_unit_test(lecture_cameras), cmocka_unit_test(scene_defs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* test/import/test_decimal.c: decimal numbers are converted to the nearest double, as by strtod, in every notation. */
+/* test/import/test_decimal.c: decimal numbers are converted to the nearest double, as by
+ * strtod, in every notation. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +17,8 @@ static void same(const char *text) {
   double value = 0, expected = strtod(text, NULL);
   bool valid = vl_number_parse(text, strlen(text), &value);
   assert_int_equal(valid, isfinite(expected));
-  if (valid && memcmp(&value, &expected, sizeof value) != 0) fail_msg("%s is %a, not %a", text, expected, value);
+  if (valid && memcmp(&value, &expected, sizeof value) != 0)
+    fail_msg("%s is %a, not %a", text, expected, value);
 }
 
 static void random_digits(void **state) {
@@ -26,36 +28,44 @@ static void random_digits(void **state) {
     char text[64];
     int digits = 1 + (int)(stat_bits(&rng) % 25), point = (int)(stat_bits(&rng) % 26), n = 0;
     for (int i = 0; i < digits; i++) {
-      if (i == point) text[n++] = '.';
+      if (i == point)
+        text[n++] = '.';
       text[n++] = (char)('0' + stat_bits(&rng) % 10);
     }
-    int range = k % 2 ? 30 : 345, exponent = (int)(stat_bits(&rng) % (uint64_t)(2 * range)) - range;
+    int range = k % 2 ? 30 : 345,
+        exponent = (int)(stat_bits(&rng) % (uint64_t)(2 * range)) - range;
     snprintf(text + n, sizeof text - (size_t)n, "e%d", exponent);
     same(text);
   }
 }
 
-/* Doubles as programs print them, and the midpoints between neighbouring doubles, which need more than 17 digits. */
+/* Doubles as programs print them, and the midpoints between neighbouring doubles, which need
+ * more than 17 digits. */
 static void doubles_and_ties(void **state) {
   (void)state;
   statRng rng = stat_rng(6);
   for (int k = 0; k < 3000; k++) {
     uint64_t bits = stat_bits(&rng) >> 1;
-    if (k % 10 == 0) bits >>= 12; /* denormal */
+    if (k % 10 == 0)
+      bits >>= 12; /* denormal */
     double x;
     memcpy(&x, &bits, sizeof x);
-    if (!isfinite(x)) continue;
+    if (!isfinite(x))
+      continue;
     static char text[1200];
     snprintf(text, sizeof text, "%.17g", x);
     same(text);
     double ulp = nextafter(x, INFINITY) - x;
-    if (sizeof(long double) == sizeof x || isinf(ulp)) continue;
+    if (sizeof(long double) == sizeof x || isinf(ulp))
+      continue;
     int n = snprintf(text, sizeof text, "%.1000Lg", (long double)x + (long double)ulp / 2);
     same(text);
     char *e = strchr(text, 'e');
     char tail[16] = "";
-    if (e) snprintf(tail, sizeof tail, "%s", e), n = (int)(e - text);
-    snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".", tail); /* above */
+    if (e)
+      snprintf(tail, sizeof tail, "%s", e), n = (int)(e - text);
+    snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".",
+             tail); /* above */
     same(text);
   }
 }
@@ -90,7 +100,8 @@ static void ends(void **state) {
                                "18446744073709551615",
                                "999999999999999999",
                                "1000000000000000000"};
-  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) same(texts[i]);
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+    same(texts[i]);
   static char text[4000];
   memset(text, '0', sizeof text - 1);
   text[1] = '.', text[3000] = '7';

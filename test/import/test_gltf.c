@@ -1,11 +1,13 @@
-/* test/import/test_gltf.c: glTF files made here become the scenes that the specification defines: arrays, modes, node
- * trees, animation, deformation, tangents, cameras. */
+/* test/import/test_gltf.c: glTF files made here become the scenes that the specification
+ * defines: arrays, modes, node trees, animation, deformation, tangents, cameras. */
 #include "import/gltf_load.h"
 #include "velo/material.h"
 #include "velo/render.h"
 #include "velo/shape.h"
 
-/* ---- the file ---------------------------------------------------------------------------------------------------- */
+/* ---- the file
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void containers(void **state) {
   (void)state;
@@ -40,11 +42,13 @@ static void containers(void **state) {
 static void arrays(void **state) {
   (void)state;
   Gltf *g = calloc(1, sizeof *g);
-  const int16_t quantised[] = {0, 0, 0, 99, 32767, 0, 0, 99, 0, -32768, 0, 99}; /* 8 bytes apart */
+  const int16_t quantised[] = {0, 0,  0, 99,     32767, 0,
+                               0, 99, 0, -32768, 0,     99}; /* 8 bytes apart */
   int view = gltf_view(g, quantised, sizeof quantised, 8);
   gltf_accessor(g, view, 5122, 3, "VEC3", ",\"normalized\":true");
   const uint8_t colors[] = {255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 0, 0}; /* 4 bytes apart */
-  gltf_accessor(g, gltf_view(g, colors, sizeof colors, 4), 5121, 3, "VEC3", ",\"normalized\":true");
+  gltf_accessor(g, gltf_view(g, colors, sizeof colors, 4), 5121, 3, "VEC3",
+                ",\"normalized\":true");
   const uint8_t where[] = {2, 0, 0, 0};
   const float put[] = {7, 8, 9};
   int indices = gltf_view(g, where, 1, 0), values = gltf_view(g, put, sizeof put, 0);
@@ -57,12 +61,16 @@ static void arrays(void **state) {
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+       "\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_"
+       "quantization\"],"
        "\"nodes\":[{\"mesh\":0}],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"NORMAL\":2}}]}]");
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"NORMAL\":"
+       "2}}]}"
+       "]");
   const vlShapeDef *s = shape(&l, 0);
   assert_int_equal(s->vertices, 3);
-  const float positions[] = {0, 0, 0, 1, 0, 0, 0, -1, 0}, normals[] = {0, 0, 0, 0, 0, 0, 7, 8, 9};
+  const float positions[] = {0, 0, 0, 1, 0, 0, 0, -1, 0},
+              normals[] = {0, 0, 0, 0, 0, 0, 7, 8, 9};
   assert_memory_equal(s->positions, positions, sizeof positions);
   assert_memory_equal(s->normals, normals, sizeof normals);
   assert_near((double)s->colors[0], 1, 0);
@@ -84,7 +92,8 @@ static void modes(void **state) {
     char rest[400];
     snprintf(rest, sizeof rest,
              SCENE
-             "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+             "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+             "\"POSITION\":0},"
              "\"mode\":%d}]}]",
              cases[i].mode);
     Loaded l;
@@ -94,7 +103,8 @@ static void modes(void **state) {
     const vlShapeDef *s = shape(&l, 0);
     double volume = 0;
     for (size_t f = 0; cases[i].mode < 4 && f < s->faces; f++) {
-      const float *a = s->positions + 3 * s->indices[3 * f], *b = s->positions + 3 * s->indices[3 * f + 1],
+      const float *a = s->positions + 3 * s->indices[3 * f],
+                  *b = s->positions + 3 * s->indices[3 * f + 1],
                   *c = s->positions + 3 * s->indices[3 * f + 2];
       volume += (double)a[0] * ((double)b[1] * c[2] - (double)b[2] * c[1]) -
                 (double)a[1] * ((double)b[0] * c[2] - (double)b[2] * c[0]) +
@@ -107,14 +117,18 @@ static void modes(void **state) {
   Gltf *g = new_square(); /* a strip of 4: 0 1 2, 1 3 2 */
   Loaded l;
   fine(&l, g,
-       SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":5}]}]");
+       SCENE
+       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+       "\"mode\":5}]}]");
   const uint32_t strip[] = {0, 1, 2, 1, 3, 2};
   assert_memory_equal(shape(&l, 0)->indices, strip, sizeof strip);
   end_load(&l);
   free(g);
 }
 
-/* ---- the tree ---------------------------------------------------------------------------------------------------- */
+/* ---- the tree
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void poses(void **state) {
   (void)state;
@@ -122,11 +136,13 @@ static void poses(void **state) {
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"nodes\":[{\"translation\":[1,2,3],\"rotation\":[0,0,0.70710678118,0.70710678118],\"children\":[1]},"
+       "\"nodes\":[{\"translation\":[1,2,3],\"rotation\":[0,0,0.70710678118,0.70710678118],"
+       "\"children\":[1]},"
        "{\"mesh\":0,\"matrix\":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}]," SQUARE_MESH);
   const double *m = shape(&l, 0)->group_from_shape;
   const double expected[16] = {0, -1, 0, 1, -2, 0, 0, 7, 0, 0, 1, 3, 0, 0, 0, 1};
-  for (int i = 0; i < 16; i++) assert_near(m[i], expected[i], 1e-9);
+  for (int i = 0; i < 16; i++)
+    assert_near(m[i], expected[i], 1e-9);
   assert_true(shape(&l, 0)->one_sided); /* the default material shows one side */
   end_load(&l);
   /* a mesh in two places is kept once */
@@ -139,11 +155,14 @@ static void poses(void **state) {
   const float places[] = {0, 0, 0, 2, 0, 0, 4, 0, 0};
   int translation = gltf_floats(g, places, 3, "VEC3", 3);
   char rest[600];
-  snprintf(rest, sizeof rest,
-           SCENE
-           "\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],\"nodes\":[{\"mesh\":0,\"translation\":[0,1,0],"
-           "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":%d}}}}]," SQUARE_MESH,
-           translation);
+  snprintf(
+      rest, sizeof rest,
+      SCENE
+      "\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],\"nodes\":[{\"mesh\":0,"
+      "\"translation\":[0,1,0],"
+      "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":%d}}}}]"
+      "," SQUARE_MESH,
+      translation);
   fine(&l, g, rest);
   assert_int_equal(l.scene->instances.count, 3);
   assert_near(l.scene->instances.items[2].world_from_group[3], 4, 0);
@@ -161,7 +180,8 @@ static double at_time(const Gltf *g, const char *rest, double time, int element)
   vlLoadDef def = vl_default_load_def();
   def.time = time;
   load(&l, g, rest, &def);
-  if (l.result != VL_OK) print_message("%s\n", l.error.message);
+  if (l.result != VL_OK)
+    print_message("%s\n", l.error.message);
   assert_int_equal(l.result, VL_OK);
   double x = shape(&l, 0)->group_from_shape[element];
   end_load(&l);
@@ -172,7 +192,8 @@ static void animation(void **state) {
   (void)state;
   Gltf *g = new_square();
   const float times[] = {1, 2, 4}, places[] = {0, 0, 0, 1, 0, 0, 3, 0, 0};
-  const float cubic[] = {0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0};
+  const float cubic[] = {0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0,
+                         0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0};
   const float turns[] = {0, 0, 0, 1, 0, 0, 0.70710678f, 0.70710678f, 0, 0, -1, 0};
   gltf_floats(g, times, 3, "SCALAR", 1); /* 2 */
   gltf_floats(g, places, 3, "VEC3", 3);  /* 3 */
@@ -186,51 +207,67 @@ static void animation(void **state) {
                                  {0, 0, 0.75, 1, 2, 3}};
   const double moments[6] = {0, 1, 1.5, 2, 3, 9};
   for (int k = 0; k < 3; k++) {
-    snprintf(rest, sizeof rest,
-             SCENE
-             "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":%d,"
-             "\"interpolation\":\"%s\"}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
-             "\"path\":\"translation\"}}]}]," SQUARE_MESH,
-             k == 2 ? 4 : 3, modes_of[k]);
-    for (int i = 0; i < 6; i++) assert_near(at_time(g, rest, moments[i], 3), expected[k][i], 1e-6);
+    snprintf(
+        rest, sizeof rest,
+        SCENE
+        "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":%d,"
+        "\"interpolation\":\"%s\"}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+        "\"path\":\"translation\"}}]}]," SQUARE_MESH,
+        k == 2 ? 4 : 3, modes_of[k]);
+    for (int i = 0; i < 6; i++)
+      assert_near(at_time(g, rest, moments[i], 3), expected[k][i], 1e-6);
     assert_near(at_time(g, rest, VL_UNSET, 3), 0, 0);
   }
-  snprintf(rest, sizeof rest,
-           SCENE
-           "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":5}],"
-           "\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"rotation\"}}]}]," SQUARE_MESH);
-  assert_near(at_time(g, rest, 1.5, 0), cos(3.14159265358979 / 4), 1e-6);  /* half of a quarter turn */
-  assert_near(at_time(g, rest, 3, 4), sin(3.14159265358979 * 0.75), 1e-6); /* the short way on */
+  snprintf(
+      rest, sizeof rest,
+      SCENE
+      "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":5}],"
+      "\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"rotation\"}}]}]"
+      "," SQUARE_MESH);
+  assert_near(at_time(g, rest, 1.5, 0), cos(3.14159265358979 / 4),
+              1e-6); /* half of a quarter turn */
+  assert_near(at_time(g, rest, 3, 4), sin(3.14159265358979 * 0.75),
+              1e-6); /* the short way on */
   free(g);
 }
 
 static void morph_and_skin(void **state) {
   (void)state;
   Gltf *g = new_square();
-  const float up[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, right[] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0};
+  const float up[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1},
+              right[] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0};
   gltf_floats(g, up, 4, "VEC3", 3);    /* 2 */
   gltf_floats(g, right, 4, "VEC3", 3); /* 3 */
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"nodes\":[{\"mesh\":0,\"weights\":[0.5,2]}],\"meshes\":[{\"weights\":[9,9],\"primitives\":[{"
-       "\"attributes\":{\"POSITION\":0},\"indices\":1,\"targets\":[{\"POSITION\":2},{\"POSITION\":3}]}]}]");
+       "\"nodes\":[{\"mesh\":0,\"weights\":[0.5,2]}],\"meshes\":[{\"weights\":[9,9],"
+       "\"primitives\":"
+       "[{"
+       "\"attributes\":{\"POSITION\":0},\"indices\":1,\"targets\":[{\"POSITION\":2},{"
+       "\"POSITION\":"
+       "3}]}]}]");
   assert_near((double)shape(&l, 0)->positions[2], 0.5, 0);
   assert_near((double)shape(&l, 0)->positions[0], 2, 0);
   end_load(&l);
   const uint16_t joints[16] = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
-  const float weights[16] = {0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0};
+  const float weights[16] = {0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0,
+                             0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0};
   const float bind[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -4, 0, 0, 1};
   gltf_accessor(g, gltf_view(g, joints, sizeof joints, 0), 5123, 4, "VEC4", NULL); /* 4 */
   gltf_floats(g, weights, 4, "VEC4", 4);                                           /* 5 */
   gltf_floats(g, bind, 2, "MAT4", 16);                                             /* 6 */
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},"
+       "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":["
+       "100,0,"
+       "0]},"
        "{\"translation\":[0,8,0]},{\"translation\":[4,0,16]}],"
        "\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":6}],\"meshes\":[{\"primitives\":[{"
        "\"attributes\":{\"POSITION\":0,\"JOINTS_0\":4,\"WEIGHTS_0\":5},\"indices\":1}]}]");
-  const float *p = shape(&l, 0)->positions; /* 1/4 of 8 up, 3/4 of 16 ahead; the node's own place does not count */
+  const float *p =
+      shape(&l, 0)
+          ->positions; /* 1/4 of 8 up, 3/4 of 16 ahead; the node's own place does not count */
   assert_near((double)p[0], 0, 1e-6);
   assert_near((double)p[1], 2, 1e-6);
   assert_near((double)p[2], 12, 1e-6);
@@ -239,10 +276,12 @@ static void morph_and_skin(void **state) {
   free(g);
 }
 
-/* ---- tangents ---------------------------------------------------------------------------------------------------- */
+/* ---- tangents
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-/* Two squares side by side, the right one's image mirrored; a normal map asks for tangents. The vertices between them
- * are shared and must be split. */
+/* Two squares side by side, the right one's image mirrored; a normal map asks for tangents. The
+ * vertices between them are shared and must be split. */
 static void tangents(void **state) {
   (void)state;
   Gltf *g = calloc(1, sizeof *g);
@@ -259,8 +298,11 @@ static void tangents(void **state) {
   fine(&l, g,
        SCENE
        "\"nodes\":[{\"mesh\":0}],\"images\":[{\"bufferView\":4,\"mimeType\":\"image/png\"}],"
-       "\"textures\":[{\"source\":0}],\"materials\":[{\"normalTexture\":{\"index\":0,\"scale\":0.5}}],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+       "\"textures\":[{\"source\":0}],\"materials\":[{\"normalTexture\":{\"index\":0,\"scale\":"
+       "0.5}}"
+       "],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_"
+       "0\":2},"
        "\"indices\":3,\"material\":0}]}]");
   const vlShapeDef *s = shape(&l, 0);
   assert_int_equal(s->vertices, 8);
@@ -283,16 +325,22 @@ static void tangents(void **state) {
   free(g);
 }
 
-/* ---- cameras, variants, extensions ------------------------------------------------------------------------------- */
+/* ---- cameras, variants, extensions
+ * ------------------------------------------------------------------------------- */
 
 static void cameras(void **state) {
   (void)state;
   Gltf *g = new_square();
   const char *rest =
-      "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"front\",\"camera\":0,\"translation\":[0,0,"
+      "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"front\",\"camera\":"
+      "0,"
+      "\"translation\":[0,0,"
       "5]},"
-      "{\"camera\":1,\"scale\":[2,2,2]}],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,"
-      "\"aspectRatio\":0.5,\"znear\":0.1}},{\"name\":\"flat\",\"type\":\"orthographic\",\"orthographic\":{\"xmag\":2,"
+      "{\"camera\":1,\"scale\":[2,2,2]}],\"cameras\":[{\"type\":\"perspective\","
+      "\"perspective\":{"
+      "\"yfov\":0.5,"
+      "\"aspectRatio\":0.5,\"znear\":0.1}},{\"name\":\"flat\",\"type\":\"orthographic\","
+      "\"orthographic\":{\"xmag\":2,"
       "\"ymag\":1,\"znear\":0,\"zfar\":10}}]," SQUARE_MESH;
   static const char *const wanted[] = {NULL, "front", "0", "flat", "1"};
   for (int i = 0; i < 5; i++) {
@@ -337,7 +385,9 @@ static void completion(void **state) {
   (void)state;
   Gltf *g = new_square();
   Loaded l;
-  fine(&l, g, SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[30,2,1],\"translation\":[100,7,-3]}]," SQUARE_MESH);
+  fine(&l, g,
+       SCENE
+       "\"nodes\":[{\"mesh\":0,\"scale\":[30,2,1],\"translation\":[100,7,-3]}]," SQUARE_MESH);
   vlCompleteDef def = vl_default_complete_def();
   def.width = 300, def.height = 200;
   def.ground = true;
@@ -364,9 +414,11 @@ static void completion(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(containers), cmocka_unit_test(arrays),    cmocka_unit_test(modes),
-      cmocka_unit_test(poses),      cmocka_unit_test(animation), cmocka_unit_test(morph_and_skin),
-      cmocka_unit_test(tangents),   cmocka_unit_test(cameras),   cmocka_unit_test(completion),
+      cmocka_unit_test(containers), cmocka_unit_test(arrays),
+      cmocka_unit_test(modes),      cmocka_unit_test(poses),
+      cmocka_unit_test(animation),  cmocka_unit_test(morph_and_skin),
+      cmocka_unit_test(tangents),   cmocka_unit_test(cameras),
+      cmocka_unit_test(completion),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -11,7 +11,8 @@ static void too_far(void **state) {
   vlWorld *world;
   vlError error;
   assert_int_equal(vl_world_build(l.scene, NULL, &world, &error), VL_ERROR_SCENE);
-  assert_string_equal(error.message, "the shape reaches from 0 to 1e+29: rays can be followed to 1e18 at most");
+  assert_string_equal(
+      error.message, "the shape reaches from 0 to 1e+29: rays can be followed to 1e18 at most");
   end_load(&l);
   free(g);
 }
@@ -21,31 +22,50 @@ static void errors(void **state) {
   static const struct {
     const char *rest, *message;
   } cases[] = {
-      {SCENE "\"nodes\":[{\"mesh\":1}]," SQUARE_MESH, "nodes[0].mesh: 1: there are only 1 (0 to 0)"},
-      {SCENE "\"nodes\":[{\"mesh\":\"a\"}]," SQUARE_MESH, "nodes[0].mesh: must be a whole number, found a string"},
-      {SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[1,2]}]," SQUARE_MESH, "nodes[0].scale: must hold 3 numbers, found 2"},
-      {SCENE "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]," SQUARE_MESH, "nodes[0]: is among its own children"},
+      {SCENE "\"nodes\":[{\"mesh\":1}]," SQUARE_MESH,
+       "nodes[0].mesh: 1: there are only 1 (0 to 0)"},
+      {SCENE "\"nodes\":[{\"mesh\":\"a\"}]," SQUARE_MESH,
+       "nodes[0].mesh: must be a whole number, found a string"},
+      {SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[1,2]}]," SQUARE_MESH,
+       "nodes[0].scale: must hold 3 numbers, found 2"},
+      {SCENE "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]," SQUARE_MESH,
+       "nodes[0]: is among its own children"},
       {SCENE "\"nodes\":[{\"children\":[1,1]},{}]," SQUARE_MESH,
        "nodes[0].children[1]: node 1 is already a child of node 0"},
-      {"\"scenes\":[{\"nodes\":[7]}],\"nodes\":[{}]," SQUARE_MESH, "scenes[0].nodes[0]: there is no such node"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1}}]}]",
+      {"\"scenes\":[{\"nodes\":[7]}],\"nodes\":[{}]," SQUARE_MESH,
+       "scenes[0].nodes[0]: there is no such node"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+             "\"POSITION\":1}}]}]",
        "meshes[0].primitives[0].attributes.POSITION: must be of type VEC3"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":0}]}]",
+      {SCENE
+       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
+       "0},\"indices\":0}]}]",
        "meshes[0].primitives[0].indices: must be SCALAR of unsigned whole numbers"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":9}]}]",
+      {SCENE
+       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
+       "0},\"mode\":9}]}]",
        "meshes[0].primitives[0].mode: 9 is not from 0 to 6"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2}]}]",
-       "accessors[2]: 100 elements of 2 bytes do not fit into bufferViews[1], which has 12 bytes"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":3}}]}]",
+      {SCENE
+       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
+       "0},\"indices\":2}]}]",
+       "accessors[2]: 100 elements of 2 bytes do not fit into bufferViews[1], which has 12 "
+       "bytes"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+             "\"POSITION\":3}}]}]",
        "accessors[3].count: 4000000000 zeros are out of proportion to the file"},
       {"\"extensionsRequired\":[\"KHR_materials_iridescense\"],\"nodes\":[]",
-       "extensionsRequired[0]: velo does not read KHR_material… (it reads KHR_materials_iridescence)"},
-      {"\"extensionsRequired\":[\"MPEG_media\"],\"nodes\":[]", "extensionsRequired[0]: velo does not read MPEG_media"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"GLASS\"}],\"meshes\":[{\"primitives\":[{"
+       "extensionsRequired[0]: velo does not read KHR_material… (it reads "
+       "KHR_materials_iridescence)"},
+      {"\"extensionsRequired\":[\"MPEG_media\"],\"nodes\":[]",
+       "extensionsRequired[0]: velo does not read MPEG_media"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"GLASS\"}],\"meshes\":[{"
+             "\"primitives\":[{"
              "\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
        "materials[0].alphaMode: unknown name \"GLASS\" (known: OPAQUE, MASK, BLEND)"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"textures\":[{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}],"
-             "\"materials\":[{\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}}],\"meshes\":[{"
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"textures\":[{\"extensions\":{\"KHR_texture_basisu\":{"
+             "\"source\":0}}}],"
+             "\"materials\":[{\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}}],"
+             "\"meshes\":[{"
              "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
        "textures[0]: its image is there by KHR_texture_basisu only, which velo does not read"},
   };
@@ -72,26 +92,33 @@ static void errors(void **state) {
   end_load(&l);
 }
 
-/* What the format does not know is ignored, with a word where it is nearly a name of the format's; factors beyond
- * their range are brought back into it. */
+/* What the format does not know is ignored, with a word where it is nearly a name of the
+ * format's; factors beyond their range are brought back into it. */
 static void misspelt(void **state) {
   (void)state;
   Gltf *g = new_square();
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"nodes\":[{\"mesh\":0,\"extras\":{\"trnaslation\":1}}],\"extensions\":{\"MINE_x\":{\"scalle\":1}},"
-       "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColourFactor\":[1,1,1,1],\"roughnessFactor\":-3,"
-       "\"metallicFactor\":2},\"quite_another\":1}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+       "\"nodes\":[{\"mesh\":0,\"extras\":{\"trnaslation\":1}}],\"extensions\":{\"MINE_x\":{"
+       "\"scalle\":1}},"
+       "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColourFactor\":[1,1,1,1],"
+       "\"roughnessFactor\":-3,"
+       "\"metallicFactor\":2},\"quite_another\":1}],\"meshes\":[{\"primitives\":[{"
+       "\"attributes\":{"
        "\"POSITION\":0,\"NROMAL\":0,\"TEXCOORD_9\":0,\"_MINE\":0},\"material\":0}]}]");
-  assert_non_null(strstr(l.log,
-                         "materials[0].pbrMetallicRoughness: unknown name \"baseColourFa…\" is ignored "
-                         "(did you mean \"baseColorFactor\"?)"));
-  assert_non_null(strstr(l.log, "attributes: unknown name \"NROMAL\" is ignored (did you mean \"NORMAL\"?)"));
-  assert_non_null(strstr(l.log, "roughnessFactor: -3 does not lie between 0 and 1: 0 is taken"));
+  assert_non_null(
+      strstr(l.log,
+             "materials[0].pbrMetallicRoughness: unknown name \"baseColourFa…\" is ignored "
+             "(did you mean \"baseColorFactor\"?)"));
+  assert_non_null(strstr(
+      l.log, "attributes: unknown name \"NROMAL\" is ignored (did you mean \"NORMAL\"?)"));
+  assert_non_null(
+      strstr(l.log, "roughnessFactor: -3 does not lie between 0 and 1: 0 is taken"));
   assert_non_null(strstr(l.log, "metallicFactor: 2 does not lie between 0 and 1: 1 is taken"));
   size_t unknown = 0;
-  for (const char *at = l.log; (at = strstr(at, "unknown name")); at++) unknown++;
+  for (const char *at = l.log; (at = strstr(at, "unknown name")); at++)
+    unknown++;
   assert_int_equal(unknown, 2);
   end_load(&l);
   free(g);
@@ -104,6 +131,7 @@ static void misspelt(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(too_far), cmocka_unit_test(errors), cmocka_unit_test(misspelt)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(too_far), cmocka_unit_test(errors),
+                                     cmocka_unit_test(misspelt)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

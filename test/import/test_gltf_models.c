@@ -1,35 +1,46 @@
-/* test/import/test_gltf_models.c: the features that Khronos' sample models show, each as a small file made here: skins
- * that share a mesh and joints, eight influences, many morph targets, Unicode names, deep and wide node trees, hidden
- * nodes, interleaved arrays, nearly empty files. */
+/* test/import/test_gltf_models.c: the features that Khronos' sample models show, each as a
+ * small file made here: skins that share a mesh and joints, eight influences, many morph
+ * targets, Unicode names, deep and wide node trees, hidden nodes, interleaved arrays, nearly
+ * empty files. */
 #include "import/gltf_load.h"
 #include "velo/shape.h"
 
 static void is_near(double a, double b, double most) {
-  if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);
+  if (!(fabs(a - b) <= most))
+    fail_msg("%.9g is not %.9g", a, b);
 }
 
-/* RecursiveSkeletons has two skins for one mesh, and one node is a child of a joint of its own skin. The joints
- * alone determine the position of a skinned mesh; its node's pose is ignored. */
+/* RecursiveSkeletons has two skins for one mesh, and one node is a child of a joint of its own
+ * skin. The joints alone determine the position of a skinned mesh; its node's pose is ignored.
+ */
 static void skins(void **state) {
   (void)state;
   Gltf *g = new_square();
   uint8_t joints[16] = {0};
   float weights[16] = {0}, bind[32] = {0};
-  for (int i = 0; i < 4; i++) joints[4 * i + 1] = 1, weights[4 * i] = 0.25f, weights[4 * i + 1] = 0.75f;
-  for (int i = 0; i < 8; i++) bind[5 * (i % 4) + 16 * (i / 4)] = 1;
+  for (int i = 0; i < 4; i++)
+    joints[4 * i + 1] = 1, weights[4 * i] = 0.25f, weights[4 * i + 1] = 0.75f;
+  for (int i = 0; i < 8; i++)
+    bind[5 * (i % 4) + 16 * (i / 4)] = 1;
   gltf_accessor(g, gltf_view(g, joints, sizeof joints, 0), 5121, 4, "VEC4", NULL); /* 2 */
   gltf_floats(g, weights, 4, "VEC4", 4);                                           /* 3 */
   gltf_floats(g, bind, 2, "MAT4", 16);                                             /* 4 */
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"nodes\":[{\"children\":[1,4]},{\"translation\":[4,0,0],\"children\":[2]},{\"translation\":[0,4,0],"
+       "\"nodes\":[{\"children\":[1,4]},{\"translation\":[4,0,0],\"children\":[2]},{"
+       "\"translation\":[0,4,0],"
        "\"children\":[3]},"
-       "{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},{\"translation\":[0,0,-8],\"children\":[5]},{\"scale\":[2,2,"
+       "{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},{\"translation\":[0,0,-8],"
+       "\"children\":["
+       "5]},{\"scale\":[2,2,"
        "2],"
-       "\"children\":[6]},{\"mesh\":0,\"skin\":1}],\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":4},{\"joints\":"
+       "\"children\":[6]},{\"mesh\":0,\"skin\":1}],\"skins\":[{\"joints\":[1,2],"
+       "\"inverseBindMatrices\":4},{\"joints\":"
        "[4,5],"
-       "\"inverseBindMatrices\":4,\"skeleton\":4}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+       "\"inverseBindMatrices\":4,\"skeleton\":4}],\"meshes\":[{\"primitives\":[{"
+       "\"attributes\":{"
+       "\"POSITION\":0,"
        "\"JOINTS_0\":2,"
        "\"WEIGHTS_0\":3},\"indices\":1}]}]");
   assert_int_equal(l.scene->shapes.count, 2);
@@ -57,13 +68,19 @@ static void eight_influences(void **state) {
   gltf_accessor(g, gltf_view(g, first, sizeof first, 0), 5121, 4, "VEC4", NULL);
   gltf_floats(g, weights, 4, "VEC4", 4);
   gltf_accessor(g, gltf_view(g, second, sizeof second, 0), 5123, 4, "VEC4", NULL);
-  gltf_accessor(g, gltf_view(g, rest_weights, sizeof rest_weights, 0), 5123, 4, "VEC4", ",\"normalized\":true");
+  gltf_accessor(g, gltf_view(g, rest_weights, sizeof rest_weights, 0), 5123, 4, "VEC4",
+                ",\"normalized\":true");
   Loaded l;
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6,7,8]}],\"nodes\":[{\"mesh\":0,\"skin\":0},{},{},{},{},{},{},{},"
-       "{\"translation\":[8,0,0]}],\"skins\":[{\"joints\":[1,2,3,4,5,6,7,8]}],\"meshes\":[{\"primitives\":[{"
+       "\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6,7,8]}],\"nodes\":[{\"mesh\":0,\"skin\":0},{},{},{"
+       "},{}"
+       ",{},{},{},"
+       "{\"translation\":[8,0,0]}],\"skins\":[{\"joints\":[1,2,3,4,5,6,7,8]}],\"meshes\":[{"
+       "\"primitives\":[{"
        "\"attributes\":{"
-       "\"POSITION\":0,\"JOINTS_0\":2,\"WEIGHTS_0\":3,\"JOINTS_1\":4,\"WEIGHTS_1\":5},\"indices\":1}]}]");
+       "\"POSITION\":0,\"JOINTS_0\":2,\"WEIGHTS_0\":3,\"JOINTS_1\":4,\"WEIGHTS_1\":5},"
+       "\"indices\":"
+       "1}]}]");
   is_near((double)shape(&l, 0)->positions[0] + shape(&l, 0)->group_from_shape[3], 1, 1e-3);
   end_load(&l);
   free(g);
@@ -78,21 +95,27 @@ static void many_targets(void **state) {
   float up[12] = {0}, keys[2 * TARGETS];
   const float times[2] = {0, 1};
   for (int k = 0; k < TARGETS; k++) {
-    for (int i = 0; i < 4; i++) up[3 * i + 2] = (float)(1 << k % 8);
-    sprintf(targets + strlen(targets), "%s{\"POSITION\":%d}", k ? "," : "", gltf_floats(g, up, 4, "VEC3", 3));
+    for (int i = 0; i < 4; i++)
+      up[3 * i + 2] = (float)(1 << k % 8);
+    sprintf(targets + strlen(targets), "%s{\"POSITION\":%d}", k ? "," : "",
+            gltf_floats(g, up, 4, "VEC3", 3));
     sprintf(weights + strlen(weights), "%s%g", k ? "," : "", k == 3 ? 0.5 : 0);
     keys[k] = 0, keys[TARGETS + k] = k == 15 ? 1 : k == 0 ? -1 : 0;
   }
-  int input = gltf_floats(g, times, 2, "SCALAR", 1), output = gltf_floats(g, keys, 2 * TARGETS, "SCALAR", 1);
+  int input = gltf_floats(g, times, 2, "SCALAR", 1),
+      output = gltf_floats(g, keys, 2 * TARGETS, "SCALAR", 1);
   char rest[3000];
-  snprintf(rest, sizeof rest,
-           SCENE
-           "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":%d,\"output\":%d}],\"channels\":[{"
-           "\"sampler\":"
-           "0,\"target\":{\"node\":0,\"path\":\"weights\"}}]}],\"meshes\":[{\"weights\":[%s],\"primitives\":[{"
-           "\"attributes\":{"
-           "\"POSITION\":0},\"indices\":1,\"targets\":[%s]}]}]",
-           input, output, weights, targets);
+  snprintf(
+      rest, sizeof rest,
+      SCENE
+      "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":%d,\"output\":%d}],"
+      "\"channels\":[{"
+      "\"sampler\":"
+      "0,\"target\":{\"node\":0,\"path\":\"weights\"}}]}],\"meshes\":[{\"weights\":[%s],"
+      "\"primitives\":[{"
+      "\"attributes\":{"
+      "\"POSITION\":0},\"indices\":1,\"targets\":[%s]}]}]",
+      input, output, weights, targets);
   Loaded l;
   fine(&l, g, rest);
   is_near((double)shape(&l, 0)->positions[2], 4, 1e-6);
@@ -109,16 +132,19 @@ static void many_targets(void **state) {
 static void unicode(void **state) {
   (void)state;
   Gltf *g = new_square();
-  static const char *const uris[] = {"Unicode\u2764\u267bData.bin", "Unicode%E2%9D%A4%e2%99%bbData.bin"};
+  static const char *const uris[] = {"Unicode\u2764\u267bData.bin",
+                                     "Unicode%E2%9D%A4%e2%99%bbData.bin"};
   gltf_file(in_folder(uris[0]), g->bytes, g->size);
   for (int i = 0; i < 2; i++) {
-    char *text = gltf_json(g, uris[i], SCENE "\"nodes\":[{\"mesh\":0,\"name\":\"\u2764\"}]," SQUARE_MESH);
+    char *text = gltf_json(g, uris[i],
+                           SCENE "\"nodes\":[{\"mesh\":0,\"name\":\"\u2764\"}]," SQUARE_MESH);
     gltf_file(in_folder("\u267b.gltf"), text, strlen(text));
     free(text);
     Loaded l;
     start_load(&l);
     l.result = vl_scene_load(l.scene, in_folder("\u267b.gltf"), NULL, &l.error);
-    if (l.result != VL_OK) fail_msg("%s", l.error.message);
+    if (l.result != VL_OK)
+      fail_msg("%s", l.error.message);
     assert_int_equal(shape(&l, 0)->vertices, 4);
     end_load(&l);
   }
@@ -135,8 +161,10 @@ static void many_nodes(void **state) {
     char *to = rest + sprintf(rest, SQUARE_MESH ",\"nodes\":[");
     for (int i = 0; i < NODES; i++) {
       to += sprintf(to, "%s{\"translation\":[%d,0,0]", i ? "," : "", deep ? 1 : i);
-      if (!deep || i == NODES - 1) to += sprintf(to, ",\"mesh\":0");
-      if (deep && i < NODES - 1) to += sprintf(to, ",\"children\":[%d]", i + 1);
+      if (!deep || i == NODES - 1)
+        to += sprintf(to, ",\"mesh\":0");
+      if (deep && i < NODES - 1)
+        to += sprintf(to, ",\"children\":[%d]", i + 1);
       to += sprintf(to, "}");
     }
     sprintf(to, "]");
@@ -158,10 +186,14 @@ static void hidden(void **state) {
   Gltf *g = new_square();
   Loaded l;
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0,2]}],\"extensionsUsed\":[\"KHR_node_visibility\",\"KHR_node_selectability\"],"
-       "\"nodes\":[{\"children\":[1],\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}},{\"mesh\":0},{"
+       "\"scenes\":[{\"nodes\":[0,2]}],\"extensionsUsed\":[\"KHR_node_visibility\",\"KHR_node_"
+       "selectability\"],"
+       "\"nodes\":[{\"children\":[1],\"extensions\":{\"KHR_node_visibility\":{\"visible\":"
+       "false}}},"
+       "{\"mesh\":0},{"
        "\"mesh\":0,"
-       "\"translation\":[0,7,0],\"extensions\":{\"KHR_node_visibility\":{\"visible\":true}}}]," SQUARE_MESH);
+       "\"translation\":[0,7,0],\"extensions\":{\"KHR_node_visibility\":{\"visible\":true}}}]"
+       "," SQUARE_MESH);
   assert_int_equal(l.scene->shapes.count, 1);
   is_near(shape(&l, 0)->group_from_shape[7], 7, 0);
   assert_string_equal(l.log, "");
@@ -175,7 +207,8 @@ static void interleaved(void **state) {
   Gltf *g = calloc(1, sizeof *g);
   float rows[4][9]; /* uv, position, normal, one more */
   for (int i = 0; i < 4; i++) {
-    const float row[9] = {0.25f, 0.5f, square[3 * i], square[3 * i + 1], square[3 * i + 2], 0, 0.6f, 0.8f, 99};
+    const float row[9] = {
+        0.25f, 0.5f, square[3 * i], square[3 * i + 1], square[3 * i + 2], 0, 0.6f, 0.8f, 99};
     memcpy(rows[i], row, sizeof row);
   }
   int view = gltf_view(g, rows, sizeof rows, 36);
@@ -186,7 +219,8 @@ static void interleaved(void **state) {
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":2,"
+       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+       "\"NORMAL\":2,"
        "\"TEXCOORD_0\":3},\"indices\":1}]}]");
   assert_memory_equal(shape(&l, 0)->positions, square, sizeof square);
   is_near((double)shape(&l, 0)->normals[4], 0.6, 1e-6);
@@ -199,8 +233,10 @@ static void next_to_nothing(void **state) {
   (void)state;
   static const char *const texts[] = {
       "{\"asset\":{\"version\":\"2.0\"}}",
-      "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.0\",\"extras\":null},\"scenes\":[{}],\"scene\":0}",
-      ("{\"asset\":{\"version\":\"2.1\",\"generator\":\"\"},\"nodes\":[{}],\"scenes\":[{\"nodes\":[0]}],\"materials\":["
+      "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.0\","
+      "\"extras\":null},\"scenes\":[{}],\"scene\":0}",
+      ("{\"asset\":{\"version\":\"2.1\",\"generator\":\"\"},"
+       "\"nodes\":[{}],\"scenes\":[{\"nodes\":[0]}],\"materials\":["
        "{"
        "}]}")};
   for (int i = 0; i < 3; i++) {
@@ -208,16 +244,18 @@ static void next_to_nothing(void **state) {
     Loaded l;
     start_load(&l);
     l.result = vl_scene_load(l.scene, in_folder("n.gltf"), NULL, &l.error);
-    if (l.result != VL_OK) fail_msg("%s: %s", texts[i], l.error.message);
+    if (l.result != VL_OK)
+      fail_msg("%s: %s", texts[i], l.error.message);
     assert_int_equal(l.scene->shapes.count, 0);
     end_load(&l);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(skins),        cmocka_unit_test(eight_influences),
-                                     cmocka_unit_test(many_targets), cmocka_unit_test(unicode),
-                                     cmocka_unit_test(many_nodes),   cmocka_unit_test(hidden),
-                                     cmocka_unit_test(interleaved),  cmocka_unit_test(next_to_nothing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(skins),        cmocka_unit_test(eight_influences),
+      cmocka_unit_test(many_targets), cmocka_unit_test(unicode),
+      cmocka_unit_test(many_nodes),   cmocka_unit_test(hidden),
+      cmocka_unit_test(interleaved),  cmocka_unit_test(next_to_nothing)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,5 +1,6 @@
-/* test/import/test_gltf_parts.c: parts of glTF files, each against the text of the specification: vertex colours of all
- * types, meshopt's filters, animation pointers, the six faces of cube maps, lights, emission, variants. */
+/* test/import/test_gltf_parts.c: parts of glTF files, each against the text of the
+ * specification: vertex colours of all types, meshopt's filters, animation pointers, the six
+ * faces of cube maps, lights, emission, variants. */
 #include <meshoptimizer.h>
 
 #include "image/image.h"
@@ -11,19 +12,24 @@
 #include "velo/texture.h"
 
 static void is_near(double a, double b, double most) {
-  if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);
+  if (!(fabs(a - b) <= most))
+    fail_msg("%.9g is not %.9g", a, b);
 }
 
-/* ---- colours ----------------------------------------------------------------------------------------------------- */
+/* ---- colours
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-/* COLOR_0: VEC3 or VEC4 of floats, normalised bytes or shorts; three are opaque. The colours are linear. */
+/* COLOR_0: VEC3 or VEC4 of floats, normalised bytes or shorts; three are opaque. The colours
+ * are linear. */
 static void vertex_colors(void **state) {
   (void)state;
   static const float floats[16] = {1, 0.5f, 0.25f, 0.75f, 0, 1, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
   uint8_t bytes[16], bytes3[16] = {0};
   uint16_t shorts[16], shorts3[16] = {0};
   float floats3[12];
-  for (int i = 0; i < 16; i++) bytes[i] = (uint8_t)(floats[i] * 255 + 0.5f), shorts[i] = (uint16_t)(floats[i] * 65535);
+  for (int i = 0; i < 16; i++)
+    bytes[i] = (uint8_t)(floats[i] * 255 + 0.5f), shorts[i] = (uint16_t)(floats[i] * 65535);
   for (int i = 0; i < 4; i++)
     for (int c = 0; c < 3; c++) {
       floats3[3 * i + c] = floats[4 * i + c];
@@ -34,27 +40,32 @@ static void vertex_colors(void **state) {
     size_t size;
     int stride, type;
     const char *shape;
-  } cases[] = {{floats, sizeof floats, 0, 5126, "VEC4"}, {floats3, sizeof floats3, 0, 5126, "VEC3"},
-               {bytes, sizeof bytes, 0, 5121, "VEC4"},   {bytes3, sizeof bytes3, 4, 5121, "VEC3"},
-               {shorts, sizeof shorts, 0, 5123, "VEC4"}, {shorts3, sizeof shorts3, 8, 5123, "VEC3"}};
+  } cases[] = {
+      {floats, sizeof floats, 0, 5126, "VEC4"}, {floats3, sizeof floats3, 0, 5126, "VEC3"},
+      {bytes, sizeof bytes, 0, 5121, "VEC4"},   {bytes3, sizeof bytes3, 4, 5121, "VEC3"},
+      {shorts, sizeof shorts, 0, 5123, "VEC4"}, {shorts3, sizeof shorts3, 8, 5123, "VEC3"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     Gltf *g = new_square();
-    gltf_accessor(g, gltf_view(g, cases[i].data, cases[i].size, cases[i].stride), cases[i].type, 4, cases[i].shape,
-                  cases[i].type == 5126 ? NULL : ",\"normalized\":true");
+    gltf_accessor(g, gltf_view(g, cases[i].data, cases[i].size, cases[i].stride), cases[i].type,
+                  4, cases[i].shape, cases[i].type == 5126 ? NULL : ",\"normalized\":true");
     Loaded l;
-    fine(&l, g,
-         SCENE
-         "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":2},"
-         "\"indices\":1}]}]");
+    fine(
+        &l, g,
+        SCENE
+        "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+        "\"COLOR_0\":2},"
+        "\"indices\":1}]}]");
     bool alpha = cases[i].shape[3] == '4';
     for (int k = 0; k < 16; k++)
-      is_near((double)shape(&l, 0)->colors[k], k % 4 == 3 && !alpha ? 1 : (double)floats[k], 0.003);
+      is_near((double)shape(&l, 0)->colors[k], k % 4 == 3 && !alpha ? 1 : (double)floats[k],
+              0.003);
     end_load(&l);
     free(g);
   }
 }
 
-/* Coverage is the base colour's fourth number times the vertices': by BLEND, by MASK with its cutoff, not in OPAQUE. */
+/* Coverage is the base colour's fourth number times the vertices': by BLEND, by MASK with its
+ * cutoff, not in OPAQUE. */
 static void vertex_alpha(void **state) {
   (void)state;
   static const char *const modes[] = {"OPAQUE", "BLEND", "MASK"};
@@ -63,12 +74,14 @@ static void vertex_alpha(void **state) {
   gltf_floats(g, colors, 4, "VEC4", 4);
   for (int i = 0; i < 3; i++) {
     char rest[600];
-    snprintf(rest, sizeof rest,
-             SCENE
-             "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"%s\",\"alphaCutoff\":0.3,"
-             "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.8]}}],\"meshes\":[{\"primitives\":[{"
-             "\"attributes\":{\"POSITION\":0,\"COLOR_0\":2},\"indices\":1,\"material\":0}]}]",
-             modes[i]);
+    snprintf(
+        rest, sizeof rest,
+        SCENE
+        "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"%s\",\"alphaCutoff\":0.3,"
+        "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.8]}}],\"meshes\":[{"
+        "\"primitives\":[{"
+        "\"attributes\":{\"POSITION\":0,\"COLOR_0\":2},\"indices\":1,\"material\":0}]}]",
+        modes[i]);
     Loaded l;
     fine(&l, g, rest);
     vlFloatInput alpha = shape(&l, 0)->alpha;
@@ -87,28 +100,36 @@ static void vertex_alpha(void **state) {
   free(g);
 }
 
-/* ---- packed numbers ---------------------------------------------------------------------------------------------- */
+/* ---- packed numbers
+ * ----------------------------------------------------------------------------------------------
+ */
 
-static void put_packed(Gltf *g, const unsigned char *data, size_t size, const char *filter, size_t count,
-                       size_t stride) {
-  int view = gltf_view(g, data, size, 0); /* its bytes; the view itself is replaced by the next */
+static void put_packed(Gltf *g, const unsigned char *data, size_t size, const char *filter,
+                       size_t count, size_t stride) {
+  int view =
+      gltf_view(g, data, size, 0); /* its bytes; the view itself is replaced by the next */
   char *text = strrchr(g->views, '{');
   unsigned offset = 0;
   sscanf(strstr(text, "byteOffset") + 12, "%u", &offset);
   snprintf(
       text, sizeof g->views - (size_t)(text - g->views),
-      "{\"buffer\":0,\"byteLength\":%zu,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%u,"
-      "\"byteLength\":%zu,\"byteStride\":%zu,\"count\":%zu,\"mode\":\"ATTRIBUTES\",\"filter\":\"%s\"}}}",
+      "{\"buffer\":0,\"byteLength\":%zu,\"extensions\":{\"EXT_meshopt_compression\":{"
+      "\"buffer\":0,\"byteOffset\":%u,"
+      "\"byteLength\":%zu,\"byteStride\":%zu,\"count\":%zu,\"mode\":\"ATTRIBUTES\",\"filter\":"
+      "\"%s\"}}}",
       count * stride, offset, size, stride, count, filter);
   (void)view;
 }
 
-/* Normals by OCTAHEDRAL (bytes and shorts), positions by EXPONENTIAL, rotations of instances by QUATERNION. */
+/* Normals by OCTAHEDRAL (bytes and shorts), positions by EXPONENTIAL, rotations of instances by
+ * QUATERNION. */
 static void filters(void **state) {
   (void)state;
-  static const float normals[16] = {0, 0, 1, 0, 0.6f, 0, 0.8f, 0, 0, -0.6f, -0.8f, 0, 1, 0, 0, 0};
+  static const float normals[16] = {0, 0,     1,     0, 0.6f, 0, 0.8f, 0,
+                                    0, -0.6f, -0.8f, 0, 1,    0, 0,    0};
   static const float places[12] = {0, 0, 0, 1.5f, 0, 0, 0, 2.25f, 0, 1.5f, 2.25f, -300};
-  static const float turns[16] = {0, 0, 0, 1, 0, 0.70710678f, 0, 0.70710678f, 0.5f, 0.5f, 0.5f, 0.5f, 0, -1, 0, 0};
+  static const float turns[16] = {0,    0,    0,    1,    0, 0.70710678f, 0, 0.70710678f,
+                                  0.5f, 0.5f, 0.5f, 0.5f, 0, -1,          0, 0};
   for (int wide = 0; wide < 2; wide++) {
     unsigned char raw[64], packed[400];
     size_t stride = wide ? 8 : 4;
@@ -129,9 +150,14 @@ static void filters(void **state) {
     Loaded l;
     fine(&l, g,
          SCENE
-         "\"extensionsUsed\":[\"EXT_meshopt_compression\",\"EXT_mesh_gpu_instancing\",\"KHR_mesh_quantization\"],"
-         "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":2}}}}],"
-         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":3}]}]");
+         "\"extensionsUsed\":[\"EXT_meshopt_compression\",\"EXT_mesh_gpu_instancing\",\"KHR_"
+         "mesh_"
+         "quantization\"],"
+         "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
+         "\"ROTATION\":2}}}}],"
+         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},"
+         "\"indices\":3}"
+         "]}]");
     const vlShapeDef *s = shape(&l, 0);
     for (int i = 0; i < 4; i++) {
       const float *p = s->normals + 3 * i;
@@ -154,7 +180,9 @@ static void filters(void **state) {
   }
 }
 
-/* ---- animation --------------------------------------------------------------------------------------------------- */
+/* ---- animation
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static void pointers(void **state) {
   (void)state;
@@ -169,11 +197,16 @@ static void pointers(void **state) {
   fine_with(
       &l, g,
       SCENE
-      "\"extensionsUsed\":[\"KHR_animation_pointer\"],\"extensionsRequired\":[\"KHR_animation_pointer\"],"
-      "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":3},{\"input\":2,\"output\":4}],"
-      "\"channels\":[{\"sampler\":0,\"target\":{\"path\":\"pointer\",\"extensions\":{\"KHR_animation_pointer\":{"
-      "\"pointer\":\"/nodes/0/translation\"}}}},{\"sampler\":1,\"target\":{\"path\":\"pointer\",\"extensions\":{"
-      "\"KHR_animation_pointer\":{\"pointer\":\"/materials/0/emissiveFactor\"}}}}]}]," SQUARE_MESH,
+      "\"extensionsUsed\":[\"KHR_animation_pointer\"],\"extensionsRequired\":[\"KHR_animation_"
+      "pointer\"],"
+      "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":3},{"
+      "\"input\":2,\"output\":4}],"
+      "\"channels\":[{\"sampler\":0,\"target\":{\"path\":\"pointer\",\"extensions\":{\"KHR_"
+      "animation_pointer\":{"
+      "\"pointer\":\"/nodes/0/"
+      "translation\"}}}},{\"sampler\":1,\"target\":{\"path\":\"pointer\",\"extensions\":{"
+      "\"KHR_animation_pointer\":{\"pointer\":\"/materials/0/"
+      "emissiveFactor\"}}}}]}]," SQUARE_MESH,
       &def);
   is_near(shape(&l, 0)->group_from_shape[3], 3, 1e-6);
   assert_non_null(strstr(l.log, "/materials/0… is not animated"));
@@ -181,10 +214,13 @@ static void pointers(void **state) {
   free(g);
 }
 
-/* ---- surroundings ------------------------------------------------------------------------------------------------ */
+/* ---- surroundings
+ * ------------------------------------------------------------------------------------------------
+ */
 
-/* Six faces in the order +x -x +y -y +z -z, as OpenGL's cube maps have them (specification 4.6, table 8.19): each of a
- * colour, a quarter at its image's top left in white. What is seen along each axis and towards that corner. */
+/* Six faces in the order +x -x +y -y +z -z, as OpenGL's cube maps have them (specification 4.6,
+ * table 8.19): each of a colour, a quarter at its image's top left in white. What is seen along
+ * each axis and towards that corner. */
 static void faces(void **state) {
   (void)state;
   static const uint8_t colors[6][3] = {{255, 0, 0},   {0, 255, 255}, {0, 255, 0},
@@ -201,7 +237,8 @@ static void faces(void **state) {
     for (uint32_t y = 0; y < 32; y++)
       for (uint32_t x = 0; x < 32; x++) {
         uint8_t *p = (uint8_t *)vl_image_row(image, y) + 3 * x;
-        for (int c = 0; c < 3; c++) p[c] = x < 8 && y < 8 ? 255 : colors[face][c];
+        for (int c = 0; c < 3; c++)
+          p[c] = x < 8 && y < 8 ? 255 : colors[face][c];
       }
     char name[20];
     snprintf(name, sizeof name, "f%d.png", face);
@@ -212,8 +249,11 @@ static void faces(void **state) {
   fine(&l, g,
        "\"scenes\":[{\"nodes\":[0],\"extensions\":{\"EXT_lights_image_based\":{\"light\":0}}}],"
        "\"extensionsUsed\":[\"EXT_lights_image_based\"],\"nodes\":[{\"mesh\":0}],"
-       "\"images\":[{\"uri\":\"f0.png\"},{\"uri\":\"f1.png\"},{\"uri\":\"f2.png\"},{\"uri\":\"f3.png\"},"
-       "{\"uri\":\"f4.png\"},{\"uri\":\"f5.png\"}],\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[{"
+       "\"images\":[{\"uri\":\"f0.png\"},{\"uri\":\"f1.png\"},{\"uri\":\"f2.png\"},{\"uri\":"
+       "\"f3."
+       "png\"},"
+       "{\"uri\":\"f4.png\"},{\"uri\":\"f5.png\"}],\"extensions\":{\"EXT_lights_image_based\":{"
+       "\"lights\":[{"
        "\"specularImageSize\":32,\"specularImages\":[[0,1,2,3,4,5]]}]}}," SQUARE_MESH);
   /* table 8.19: along the face's axis, with s and t running as below; top left is s = t = -1 */
   static const struct {
@@ -226,50 +266,64 @@ static void faces(void **state) {
   for (int face = 0; face < 6; face++)
     for (int corner = 0; corner < 4; corner++) {
       float s = corner & 1 ? 0.75f : -0.75f, t = corner & 2 ? 0.75f : -0.75f;
-      vlVec3 d = vl_add(table[face].axis, vl_add(vl_mul(table[face].s, s), vl_mul(table[face].t, t)));
+      vlVec3 d =
+          vl_add(table[face].axis, vl_add(vl_mul(table[face].s, s), vl_mul(table[face].t, t)));
       vlVec2 at = vl_octahedral_encode(vl_normalize(d));
       uint32_t x = (uint32_t)(at.x * (float)side), y = (uint32_t)(at.y * (float)side);
       for (uint32_t c = 0; c < 3; c++)
-        is_near((double)vl_image_get(light->image, x, y, c), corner == 0 ? 1 : colors[face][c] / 255.0, 0.02);
+        is_near((double)vl_image_get(light->image, x, y, c),
+                corner == 0 ? 1 : colors[face][c] / 255.0, 0.02);
     }
   end_load(&l);
   free(g);
 }
 
-/* ---- variants ---------------------------------------------------------------------------------------------------- */
+/* ---- variants
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-/* Without a choice, and for a variant that a primitive does not name: the primitive's own material. */
+/* Without a choice, and for a variant that a primitive does not name: the primitive's own
+ * material.
+ */
 static void variants(void **state) {
   (void)state;
   Gltf *g = new_square();
   const char *rest = SCENE
       "\"nodes\":[{\"mesh\":0}],\"extensionsUsed\":[\"KHR_materials_variants\"],"
-      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"day\"},{\"name\":\"night\"},{\"name\":"
+      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"day\"},{\"name\":"
+      "\"night\"},{\"name\":"
       "\"dusk\"}]}},"
-      "\"materials\":[{\"name\":\"own\"},{\"name\":\"dark\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+      "\"materials\":[{\"name\":\"own\"},{\"name\":\"dark\"}],\"meshes\":[{\"primitives\":[{"
+      "\"attributes\":{"
       "\"POSITION\":0},"
-      "\"indices\":1,\"material\":0,\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,"
+      "\"indices\":1,\"material\":0,\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{"
+      "\"material\":1,"
       "\"variants\":[1,2]}]}}}]}]";
-  static const char *const cases[][2] = {{NULL, "own"}, {"day", "own"}, {"night", "dark"}, {"dusk", "dark"}};
+  static const char *const cases[][2] = {
+      {NULL, "own"}, {"day", "own"}, {"night", "dark"}, {"dusk", "dark"}};
   for (int i = 0; i < 4; i++) {
     vlLoadDef def = vl_default_load_def();
     def.variant = cases[i][0];
     Loaded l;
     fine_with(&l, g, rest, &def);
-    assert_string_equal(l.scene->materials.items[shape(&l, 0)->material.index - 1].name, cases[i][1]);
+    assert_string_equal(l.scene->materials.items[shape(&l, 0)->material.index - 1].name,
+                        cases[i][1]);
     end_load(&l);
   }
   free(g);
 }
 
-/* ---- anisotropy -------------------------------------------------------------------------------------------------- */
+/* ---- anisotropy
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* Red and green of the texture are the direction, from -1 to 1: it becomes an angle modulo pi, plus the rotation. A
- * mesh without normals gets flat ones, and tangents along u. */
+/* Red and green of the texture are the direction, from -1 to 1: it becomes an angle modulo pi,
+ * plus the rotation. A mesh without normals gets flat ones, and tangents along u. */
 static void anisotropy(void **state) {
   (void)state;
   static const uint8_t pixels[12] = {255, 128, 255, 128, 255, 255, 0, 128, 255, 128, 0, 255};
-  static const double directions[4][2] = {{1, 1. / 255}, {1. / 255, 1}, {-1, 1. / 255}, {1. / 255, -1}};
+  static const double directions[4][2] = {
+      {1, 1. / 255}, {1. / 255, 1}, {-1, 1. / 255}, {1. / 255, -1}};
   static const float uvs[8] = {0, 0, 1, 0, 0, 1, 1, 1};
   vlContext *context;
   vlImage *image;
@@ -286,13 +340,20 @@ static void anisotropy(void **state) {
   Gltf *g = new_square();
   gltf_floats(g, uvs, 4, "VEC2", 2);
   Loaded l;
-  fine(&l, g,
-       SCENE
-       "\"nodes\":[{\"mesh\":0}],\"images\":[{\"uri\":\"directions.png\"}],\"textures\":[{\"source\":0}],"
-       "\"extensionsUsed\":[\"KHR_materials_anisotropy\"],\"materials\":[{\"extensions\":{\"KHR_materials_anisotropy\":"
-       "{\"anisotropyStrength\":0.5,\"anisotropyRotation\":0.25,\"anisotropyTexture\":{\"index\":0}}}}],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},\"indices\":1,"
-       "\"material\":0}]}]");
+  fine(
+      &l, g,
+      SCENE
+      "\"nodes\":[{\"mesh\":0}],\"images\":[{\"uri\":\"directions.png\"}],\"textures\":[{"
+      "\"source\":0}],"
+      "\"extensionsUsed\":[\"KHR_materials_anisotropy\"],\"materials\":[{\"extensions\":{\"KHR_"
+      "materials_anisotropy\":"
+      "{\"anisotropyStrength\":0.5,\"anisotropyRotation\":0.25,\"anisotropyTexture\":{"
+      "\"index\":0}"
+      "}}}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},"
+      "\"indices\":"
+      "1,"
+      "\"material\":0}]}]");
   const vlPrincipledDef *p = &l.scene->materials.items[l.scene->materials.count - 1].principled;
   const vlTextureDef *strength = &l.scene->textures.items[p->anisotropy.texture.index - 1];
   const vlTextureDef *turn = &l.scene->textures.items[p->anisotropy_rotation.texture.index - 1];
@@ -301,7 +362,8 @@ static void anisotropy(void **state) {
   assert_int_equal(turn->filter, VL_FILTER_POINT);
   for (int i = 0; i < 4; i++) {
     double wanted = atan2(directions[i][1], directions[i][0]) + 0.25, apart;
-    apart = fabs(remainder((double)((const float *)vl_image_pixels((vlImage *)turn->image))[i] - wanted, M_PI));
+    apart = fabs(remainder(
+        (double)((const float *)vl_image_pixels((vlImage *)turn->image))[i] - wanted, M_PI));
     is_near(apart, 0, 1e-5);
   }
   assert_int_equal(shape(&l, 0)->vertices, 6);
@@ -314,9 +376,10 @@ static void anisotropy(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(vertex_colors), cmocka_unit_test(vertex_alpha),
-                                     cmocka_unit_test(filters),       cmocka_unit_test(pointers),
-                                     cmocka_unit_test(faces),         cmocka_unit_test(variants),
-                                     cmocka_unit_test(anisotropy)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(vertex_colors), cmocka_unit_test(vertex_alpha),
+      cmocka_unit_test(filters),       cmocka_unit_test(pointers),
+      cmocka_unit_test(faces),         cmocka_unit_test(variants),
+      cmocka_unit_test(anisotropy)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

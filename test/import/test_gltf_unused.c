@@ -1,4 +1,5 @@
-/* test/import/test_gltf_unused.c: `velo scene check` reads what no scene of a glTF file uses. */
+/* test/import/test_gltf_unused.c: `velo scene check` reads what no scene of a glTF file uses.
+ */
 #include "import/gltf_load.h"
 #include "velo/check.h"
 
@@ -15,7 +16,8 @@ static void diagnose(Loaded *l, const Gltf *g, const char *rest) {
 }
 
 static void says(const Loaded *l, const char *text) {
-  if (!strstr(l->log, text)) fail_msg("\"%s\" is not in:\n%s", text, l->log);
+  if (!strstr(l->log, text))
+    fail_msg("\"%s\" is not in:\n%s", text, l->log);
 }
 
 static void broken(void **state) {
@@ -23,8 +25,9 @@ static void broken(void **state) {
   Gltf *g = new_square();
   const uint16_t wrong[] = {0, 1, 9};
   const float high[] = {0, 1, 2};
-  gltf_shorts(g, wrong, 3);                                                                              /* 2 */
-  gltf_accessor(g, gltf_view(g, high, sizeof high, 0), 5126, 3, "SCALAR", ",\"min\":[0],\"max\":[1.5]"); /* 3 */
+  gltf_shorts(g, wrong, 3); /* 2 */
+  gltf_accessor(g, gltf_view(g, high, sizeof high, 0), 5126, 3, "SCALAR",
+                ",\"min\":[0],\"max\":[1.5]"); /* 3 */
   const char *rest = SCENE
       "\"nodes\":[{\"mesh\":0},{\"mesh\":1}],"
       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]},"
@@ -32,7 +35,8 @@ static void broken(void **state) {
       "{\"primitives\":[{\"attributes\":{\"POSITION\":7}}]}],"
       "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":4}}}],"
       "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":9,\"znear\":0.1}}],"
-      "\"animations\":[{\"samplers\":[{\"input\":3}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+      "\"animations\":[{\"samplers\":[{\"input\":3}],\"channels\":[{\"sampler\":0,\"target\":{"
+      "\"node\":0,"
       "\"path\":\"scale\"}}]}]";
   Loaded l;
   diagnose(&l, g, rest);
@@ -61,7 +65,8 @@ static void good(void **state) {
   Loaded l;
   diagnose(&l, g,
            SCENE
-           "\"nodes\":[{\"mesh\":0}],\"materials\":[{}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+           "\"nodes\":[{\"mesh\":0}],\"materials\":[{}],\"meshes\":[{\"primitives\":[{"
+           "\"attributes\":"
            "{\"POSITION\":0},\"indices\":1,\"material\":0}]}]");
   assert_string_equal(l.log, "");
   end_load(&l);

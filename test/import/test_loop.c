@@ -22,19 +22,21 @@ static void free_mesh(vlLoopMesh *m) {
   vl_free(context, m->indices);
 }
 
-static void subdivide(uint32_t vertices, const float *p, uint32_t faces, const uint32_t *v, uint32_t levels,
-                      vlLoopMesh *m) {
+static void subdivide(uint32_t vertices, const float *p, uint32_t faces, const uint32_t *v,
+                      uint32_t levels, vlLoopMesh *m) {
   vlError error;
   vlResult result = vl_loop_subdivide(context, vertices, p, faces, v, levels, m, &error);
-  if (result != VL_OK) print_message("%s\n", error.message);
+  if (result != VL_OK)
+    print_message("%s\n", error.message);
   assert_int_equal(result, VL_OK);
 }
 
 static const float octahedron[] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
-static const uint32_t octahedron_faces[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+static const uint32_t octahedron_faces[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                            2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
 
-/* A closed mesh: V - E + F = 2 at every level; the limit points of the first vertices do not hang on the level; normals
- * all point to one side; everything keeps the symmetry. */
+/* A closed mesh: V - E + F = 2 at every level; the limit points of the first vertices do not
+ * hang on the level; normals all point to one side; everything keeps the symmetry. */
 static void closed(void **state) {
   (void)state;
   float first = 0;
@@ -43,21 +45,28 @@ static void closed(void **state) {
     subdivide(6, octahedron, 8, octahedron_faces, levels, &m);
     assert_int_equal(m.faces, 8u << 2 * levels);
     assert_int_equal(m.vertices, 2 + m.faces / 2);
-    if (levels == 0) first = m.positions[0];
+    if (levels == 0)
+      first = m.positions[0];
     for (uint32_t i = 0; i < 6; i++)
-      for (int k = 0; k < 3; k++) assert_near(m.positions[3 * i + k], octahedron[3 * i + k] * first, 2e-6);
+      for (int k = 0; k < 3; k++)
+        assert_near(m.positions[3 * i + k], octahedron[3 * i + k] * first, 2e-6);
     for (uint32_t i = 0; i < m.vertices; i++) {
       const float *p = &m.positions[3 * i], *n = &m.normals[3 * i];
-      assert_true(p[0] * n[0] + p[1] * n[1] + p[2] * n[2] < 0); /* against the winding, as pbrt has them */
+      assert_true(p[0] * n[0] + p[1] * n[1] + p[2] * n[2] <
+                  0); /* against the winding, as pbrt has them */
     }
-    for (uint32_t i = 0; i < 3 * m.faces; i++) assert_true(m.indices[i] < m.vertices);
+    for (uint32_t i = 0; i < 3 * m.faces; i++)
+      assert_true(m.indices[i] < m.vertices);
     free_mesh(&m);
   }
-  /* valence 4: the limit mask is (1 - 4 g) p + g * ring with g = 1/(4 + 3/(8 b)), b = 3/32; the ring sums to zero */
+  /* valence 4: the limit mask is (1 - 4 g) p + g * ring with g = 1/(4 + 3/(8 b)), b = 3/32; the
+   * ring sums to zero */
   assert_near(first, 1 - 4.0 / 8.0, 1e-6);
 }
 
-/* A flat grid stays flat; a border of collinear vertices stays a line; the normals are the plane's. */
+/* A flat grid stays flat; a border of collinear vertices stays a line; the normals are the
+ * plane's.
+ */
 static void flat(void **state) {
   (void)state;
   enum { N = 4 };
@@ -85,9 +94,11 @@ static void flat(void **state) {
     assert_true(k[2] < 0 && fabsf(k[0]) < -1e-4f * k[2] && fabsf(k[1]) < -1e-4f * k[2]);
   }
   for (uint32_t f = 0; f < m.faces; f++) {
-    const float *a = &m.positions[3 * m.indices[3 * f]], *b = &m.positions[3 * m.indices[3 * f + 1]],
+    const float *a = &m.positions[3 * m.indices[3 * f]],
+                *b = &m.positions[3 * m.indices[3 * f + 1]],
                 *c = &m.positions[3 * m.indices[3 * f + 2]];
-    double twice = (double)(b[0] - a[0]) * (double)(c[1] - a[1]) - (double)(b[1] - a[1]) * (double)(c[0] - a[0]);
+    double twice = (double)(b[0] - a[0]) * (double)(c[1] - a[1]) -
+                   (double)(b[1] - a[1]) * (double)(c[0] - a[0]);
     assert_true(twice > 0); /* no face turned over */
     area += 0.5 * twice;
   }
@@ -127,8 +138,10 @@ static void refused(void **state) {
   vlError error;
   assert_int_equal(vl_loop_subdivide(context, 5, p, 1, twice, 1, &m, &error), VL_ERROR_SCENE);
   assert_string_equal(error.message, "face 0 names vertex 1 twice");
-  assert_int_equal(vl_loop_subdivide(context, 5, p, 2, same_way, 1, &m, &error), VL_ERROR_SCENE);
-  /* three faces at an edge, a vertex of two fans, a vertex of none: odd, but there is an answer */
+  assert_int_equal(vl_loop_subdivide(context, 5, p, 2, same_way, 1, &m, &error),
+                   VL_ERROR_SCENE);
+  /* three faces at an edge, a vertex of two fans, a vertex of none: odd, but there is an answer
+   */
   const uint32_t book[] = {0, 1, 2, 1, 0, 3, 0, 1, 4}, bow[] = {0, 1, 2, 0, 3, 4};
   subdivide(5, p, 3, book, 3, &m);
   free_mesh(&m);
@@ -139,7 +152,8 @@ static void refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(closed), cmocka_unit_test(flat), cmocka_unit_test(regular_vertex),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(closed), cmocka_unit_test(flat),
+                                     cmocka_unit_test(regular_vertex),
                                      cmocka_unit_test(refused)};
   return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -1,5 +1,6 @@
-/* test/import/test_motion.c: pbrt's animated transforms: moving shapes become groups and instances with two poses at
- * pbrt's times; moving parts of objects move with each instance; the camera's two poses. */
+/* test/import/test_motion.c: pbrt's animated transforms: moving shapes become groups and
+ * instances with two poses at pbrt's times; moving parts of objects move with each instance;
+ * the camera's two poses. */
 #include "import/load.h"
 #include "velo/light.h"
 #include "velo/shape.h"
@@ -15,14 +16,16 @@ static void shapes_move(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l, "TransformTimes 2 5\n" W
-                "Shape \"sphere\"\nTranslate 1 0 0\nActiveTransform EndTime\nTranslate 0 3 0\nActiveTransform All\n"
+                "Shape \"sphere\"\nTranslate 1 0 0\nActiveTransform EndTime\nTranslate 0 3 "
+                "0\nActiveTransform All\n"
                 "Shape \"sphere\"\nShape \"disk\"\nTranslate 0 0 7\nShape \"sphere\"\n"
                 "AreaLightSource \"diffuse\"\nShape \"sphere\"\n");
   assert_int_equal(l.scene->shapes.count, 5);
   assert_int_equal(l.scene->groups.count, 2); /* two that follow each other share theirs */
   assert_int_equal(l.scene->instances.count, 2);
   const uint32_t groups[5] = {0, 1, 1, 2, 2};
-  for (int i = 0; i < 5; i++) assert_int_equal(l.scene->shapes.items[i].group.index, groups[i]);
+  for (int i = 0; i < 5; i++)
+    assert_int_equal(l.scene->shapes.items[i].group.index, groups[i]);
   const vlSceneInstance *q = l.scene->instances.items;
   for (int i = 0; i < 2; i++) {
     assert_int_equal(q[i].keys, 2);
@@ -39,9 +42,12 @@ static void instances_move(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l, W
-            "ObjectBegin \"o\"\nShape \"sphere\"\nAttributeBegin\nActiveTransform EndTime\nTranslate 0 0 4\n"
+            "ObjectBegin \"o\"\nShape \"sphere\"\nAttributeBegin\nActiveTransform "
+            "EndTime\nTranslate 0 0 "
+            "4\n"
             "Shape \"disk\"\nAttributeEnd\nObjectEnd\n"
-            "ObjectInstance \"o\"\nActiveTransform StartTime\nTranslate 1 2 0\nObjectInstance \"o\"\n");
+            "ObjectInstance \"o\"\nActiveTransform StartTime\nTranslate 1 2 0\nObjectInstance "
+            "\"o\"\n");
   /* the object's own group, and that of its part; two instances of each */
   assert_int_equal(l.scene->groups.count, 2);
   assert_int_equal(l.scene->instances.count, 4);
@@ -51,7 +57,8 @@ static void instances_move(void **state) {
   assert_pose(q[1].poses, 1, 2, 0), assert_pose(q[1].poses + 16, 0, 0, 0);
   for (int i = 2; i < 4; i++) {
     assert_int_equal(q[i].group.index, 2);
-    const double *first = q[i].poses, *last = q[i].poses + 16 * (q[i].keys - 1), *middle = first + 8 * (q[i].keys - 1);
+    const double *first = q[i].poses, *last = q[i].poses + 16 * (q[i].keys - 1),
+                 *middle = first + 8 * (q[i].keys - 1);
     assert_pose(first, i == 3 ? 1 : 0, i == 3 ? 2 : 0, 0);
     assert_pose(middle, i == 3 ? 0.5 : 0, i == 3 ? 1 : 0, 2);
     assert_pose(last, 0, 0, 4);
@@ -64,7 +71,8 @@ static void cameras_move(void **state) {
   Loaded l;
   vlCamera camera;
   load_fine(&l,
-            "TransformTimes 1 3\nLookAt 0 0 -5 0 0 0 0 1 0\nActiveTransform EndTime\nTranslate 2 0 0\n"
+            "TransformTimes 1 3\nLookAt 0 0 -5 0 0 0 0 1 0\nActiveTransform EndTime\nTranslate "
+            "2 0 0\n"
             "Camera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 2\n" W);
   const vlCameraDef *def = &vl_scene_defs(l.scene)->camera;
   assert_int_equal(vl_camera_make(def, &camera, NULL, NULL), VL_OK);
@@ -72,17 +80,19 @@ static void cameras_move(void **state) {
   assert_pose(camera.world_from_camera, 0, 0, -5);
   assert_pose(camera.world_from_camera_close, -2, 0, -5);
   end_load(&l);
-  load_fine(
-      &l,
-      "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"point3 eyeclose\" [1 0 5] \"float rollclose\" 90\n"
-      "\"float shutteropen\" 1 \"float shutterclose\" 2 \"float readout\" 0.5 \"string readoutdirection\" \"up\"\n"
-      "\"string shuttercurve\" \"trapezoid\" \"float shutterrise\" 0.25\n" W);
+  load_fine(&l,
+            "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"point3 eyeclose\" [1 0 5] \"float "
+            "rollclose\" 90\n"
+            "\"float shutteropen\" 1 \"float shutterclose\" 2 \"float readout\" 0.5 \"string "
+            "readoutdirection\" \"up\"\n"
+            "\"string shuttercurve\" \"trapezoid\" \"float shutterrise\" 0.25\n" W);
   def = &vl_scene_defs(l.scene)->camera;
   assert_int_equal(vl_camera_make(def, &camera, NULL, NULL), VL_OK);
   assert_true(camera.moves && camera.pose_times[0] == 1 && camera.pose_times[1] == 2.5);
   assert_pose(camera.world_from_camera_close, 1, 0, 5);
   assert_true(camera.readout == 0.5 && camera.readout_direction == VL_READOUT_UP);
-  assert_true(camera.shutter_points == 4 && camera.shutter_at[1] == 0.25 && camera.shutter_at[2] == 0.75);
+  assert_true(camera.shutter_points == 4 && camera.shutter_at[1] == 0.25 &&
+              camera.shutter_at[2] == 0.75);
   end_load(&l);
 }
 

@@ -1,4 +1,5 @@
-/* test/import/test_obj.c: OBJ with its MTL libraries, and PLY as a scene: accepted and rejected content. */
+/* test/import/test_obj.c: OBJ with its MTL libraries, and PLY as a scene: accepted and rejected
+ * content. */
 #include "import/load.h"
 
 #include "failing_allocator.h"
@@ -52,7 +53,8 @@ static void wrong(const char *text, uint32_t line, uint32_t column, const char *
   Loaded l;
   load_obj(&l, text);
   assert_int_equal(l.result, VL_ERROR_SCENE);
-  if (!strstr(l.error.message, part)) fail_msg("\"%s\" does not say \"%s\"", l.error.message, part);
+  if (!strstr(l.error.message, part))
+    fail_msg("\"%s\" does not say \"%s\"", l.error.message, part);
   assert_int_equal(l.error.line, line);
   assert_int_equal(l.error.column, column);
   end_load(&l);
@@ -79,7 +81,8 @@ static void corners(void **state) {
     assert_int_equal(d->faces, 2);
     assert_int_equal(d->vertices, 4);
     assert_int_equal(d->normals != NULL, i == 4);
-    assert_true(vl_scene_defs(l.scene)->camera_missing && vl_scene_defs(l.scene)->light_missing);
+    assert_true(vl_scene_defs(l.scene)->camera_missing &&
+                vl_scene_defs(l.scene)->light_missing);
     end_load(&l);
   }
 }
@@ -90,7 +93,8 @@ static double area(const vlShapeDef *d, double *least) {
   *least = 1e9;
   for (uint32_t f = 0; f < d->faces; f++) {
     const float *p[3];
-    for (int k = 0; k < 3; k++) p[k] = d->positions + 3 * (size_t)d->indices[3 * f + (uint32_t)k];
+    for (int k = 0; k < 3; k++)
+      p[k] = d->positions + 3 * (size_t)d->indices[3 * f + (uint32_t)k];
     double a = ((double)p[1][0] - p[0][0]) * ((double)p[2][1] - p[0][1]) -
                ((double)p[1][1] - p[0][1]) * ((double)p[2][0] - p[0][0]);
     sum += a;
@@ -141,7 +145,8 @@ static void smoothing(void **state) {
   load_obj(&l, text);
   assert_null(l.scene->shapes.items[0].normals);
   end_load(&l);
-  snprintf(text, sizeof text, "%ss 1\nf 1 2 3 4\ns 0\nf 4 3 5 6\n", roof); /* the second one flat beside it */
+  snprintf(text, sizeof text, "%ss 1\nf 1 2 3 4\ns 0\nf 4 3 5 6\n",
+           roof); /* the second one flat beside it */
   load_obj(&l, text);
   d = &l.scene->shapes.items[0];
   assert_int_equal(d->vertices, 10);
@@ -160,7 +165,8 @@ static void colors(void **state) {
   assert_int_not_equal(l.scene->materials.items[0].reflectance.texture.index, 0);
   end_load(&l);
   write_text("c.ply",
-             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float "
+             "y\nproperty float z\n"
              "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
              "property list uchar int vertex_indices\nend_header\n"
              "0 0 0 255 0 0\n1 0 0 0 128 0\n1 1 0 0 0 255\n0 1 0 255 255 255\n4 0 1 2 3\n");
@@ -186,8 +192,10 @@ static void materials(void **state) {
              "newmtl pbr\nPr 0.3\nPm 0.9\nPc 0.5\nPcr 0.1\naniso 0.25\n");
   Loaded l;
   load_obj(&l, "mtllib m.mtl\n" SQUARE
-               "usemtl plain\nf 1 2 3\nusemtl matt\nf 1 2 3\nusemtl gold\nf 1 2 3\nusemtl glass\nf 1 2 3\n"
-               "usemtl lamp\nf 1 2 3\nusemtl sheer\nf 1 2 3\nusemtl pbr\nf 1 2 3\nusemtl plain\nf 1 2 3\n");
+               "usemtl plain\nf 1 2 3\nusemtl matt\nf 1 2 3\nusemtl gold\nf 1 2 3\nusemtl "
+               "glass\nf 1 2 3\n"
+               "usemtl lamp\nf 1 2 3\nusemtl sheer\nf 1 2 3\nusemtl pbr\nf 1 2 3\nusemtl "
+               "plain\nf 1 2 3\n");
   assert_int_equal(l.result, VL_OK);
   assert_int_equal(l.scene->shapes.count, 8);
   assert_int_equal(l.scene->materials.count, 7);
@@ -209,7 +217,8 @@ static void materials(void **state) {
   assert_float_equal(l.scene->shapes.items[5].alpha.value, 0.25, 1e-6);
   assert_float_equal(m[6].principled.metallic.value, 0.9, 1e-6);
   assert_float_equal(m[6].principled.clearcoat_roughness.value, 0.1, 1e-6);
-  assert_int_equal(l.scene->shapes.items[0].material.index, l.scene->shapes.items[7].material.index);
+  assert_int_equal(l.scene->shapes.items[0].material.index,
+                   l.scene->shapes.items[7].material.index);
   end_load(&l);
 }
 
@@ -219,13 +228,15 @@ static void maps(void **state) {
   write_text("i.ppm", "P3 2 1 255 255 0 0 0 255 0\n");
   write_text("wall_normal.ppm", "P3 1 1 255 128 128 255\n");
   write_text("i.xcf", "gimp");
-  write_text("i.mtl",
-             "newmtl all\nKd 0 0 0\nmap_Kd -clamp on -o 0.5 0.25 -s 2 3 1 -mm 0.1 0.7 i.ppm\n"
-             "Pm 0.5\nmap_Pm -imfchan r i.ppm\nmap_Pr -mm 0.25 0.5 -imfchan g -type sphere i.ppm\n"
-             "map_d -blendu off -texres 8 -t 1 i.ppm\nmap_Ke i.ppm\nmap_Bump -bm 0.5 i.ppm\nPs 0.25\n"
-             "newmtl named\nbump -bm 2 wall_normal.ppm\nmap_Kd i.xcf\nKe xyz 1 1 1\nKs spectral a.rfl 1\n"
-             "newmtl normal\nnorm -bm 3 i.ppm\nKd 0.5\nKe 1\nmap_Ke i.ppm\n"
-             "newmtl solid\nKd 0 0 0\nNi 1.3\nillum 6\nd 0.4\nmap_d i.ppm\n");
+  write_text(
+      "i.mtl",
+      "newmtl all\nKd 0 0 0\nmap_Kd -clamp on -o 0.5 0.25 -s 2 3 1 -mm 0.1 0.7 i.ppm\n"
+      "Pm 0.5\nmap_Pm -imfchan r i.ppm\nmap_Pr -mm 0.25 0.5 -imfchan g -type sphere i.ppm\n"
+      "map_d -blendu off -texres 8 -t 1 i.ppm\nmap_Ke i.ppm\nmap_Bump -bm 0.5 i.ppm\nPs 0.25\n"
+      "newmtl named\nbump -bm 2 wall_normal.ppm\nmap_Kd i.xcf\nKe xyz 1 1 1\nKs spectral a.rfl "
+      "1\n"
+      "newmtl normal\nnorm -bm 3 i.ppm\nKd 0.5\nKe 1\nmap_Ke i.ppm\n"
+      "newmtl solid\nKd 0 0 0\nNi 1.3\nillum 6\nd 0.4\nmap_d i.ppm\n");
   Loaded l;
   load_obj(&l, "mtllib i.mtl\n" SQUARE
                "usemtl all\nf 1 2 3\nusemtl named\nf 1 2 3\nusemtl normal\nf 1 2 3\n"
@@ -264,21 +275,23 @@ static void maps(void **state) {
   assert_float_equal(m[3].reflectance.value.rgb[2], 1, 0);
   assert_int_equal(l.scene->shapes.items[3].alpha.texture.index, 0);
   end_load(&l);
-  static const char *const broken[][2] = {{"map_Kd -bm i.ppm", "-bm: 0 numbers, 1 are needed"},
-                                          {"map_Kd -clamp", "-clamp: its value is missing"},
-                                          {"map_Kd -imfchan", "-imfchan: its value is missing"},
-                                          {"map_Kd -mm 1 i.ppm", "-mm: 1 numbers, 2 are needed"},
-                                          {"map_Kd -s i.ppm", "0 numbers, 1 are needed"},
-                                          {"map_Kd -cc on", "the name of an image is missing"},
-                                          {"Ns fast", "Ns"},
-                                          {"Tr", "Tr needs a number"}};
+  static const char *const broken[][2] = {
+      {"map_Kd -bm i.ppm", "-bm: 0 numbers, 1 are needed"},
+      {"map_Kd -clamp", "-clamp: its value is missing"},
+      {"map_Kd -imfchan", "-imfchan: its value is missing"},
+      {"map_Kd -mm 1 i.ppm", "-mm: 1 numbers, 2 are needed"},
+      {"map_Kd -s i.ppm", "0 numbers, 1 are needed"},
+      {"map_Kd -cc on", "the name of an image is missing"},
+      {"Ns fast", "Ns"},
+      {"Tr", "Tr needs a number"}};
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
     char text[100];
     snprintf(text, sizeof text, "newmtl a\n%s\n", broken[i][0]);
     write_text("b.mtl", text);
     load_obj(&l, "mtllib b.mtl\n");
     assert_int_equal(l.result, VL_ERROR_SCENE);
-    if (!strstr(l.error.message, broken[i][1])) fail_msg("%s: %s", broken[i][0], l.error.message);
+    if (!strstr(l.error.message, broken[i][1]))
+      fail_msg("%s: %s", broken[i][0], l.error.message);
     assert_int_equal(l.error.line, 2);
     end_load(&l);
   }
@@ -328,8 +341,11 @@ static void errors(void **state) {
 static void damaged(void **state) {
   (void)state;
   static const char whole[] =
-      "mtllib d.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 1\nvt 0 0\nvt 1 0.5\nvn 0 0 1\no a\nusemtl a\n"
-      "s 1\nf 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -1 -2 -3\ng b\nusemtl b\nf 1//1 2//1 \\\n 3//1\n";
+      "mtllib d.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 1\nvt 0 0\nvt 1 0.5\nvn "
+      "0 0 "
+      "1\no a\nusemtl a\n"
+      "s 1\nf 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -1 -2 -3\ng b\nusemtl b\nf 1//1 2//1 \\\n "
+      "3//1\n";
   static const char library[] =
       "newmtl a\nKd 1 0 0\nmap_Kd -o 1 2 -s 3 none.png\nTr 0.2\nnewmtl b\nillum 7\nKe 1 1 1\n";
   for (uint32_t k = 0; k < 1500; k++) {
@@ -358,7 +374,8 @@ static vlResult load_again(vlContext *context, void *user) {
   vlError error = {0};
   snprintf(path, sizeof path, "%s/o.obj", folder);
   vlResult result = vl_scene_create(context, &scene);
-  if (result == VL_OK) result = vl_scene_load(scene, path, NULL, &error);
+  if (result == VL_OK)
+    result = vl_scene_load(scene, path, NULL, &error);
   vl_scene_destroy(scene);
   return result;
 }
@@ -366,16 +383,18 @@ static vlResult load_again(vlContext *context, void *user) {
 static void memory(void **state) {
   (void)state;
   write_text("o.mtl", "newmtl a\nKd 1 0 0\nKe 1 1 1\nnewmtl b\nillum 7\n");
-  write_text("o.obj",
-             "mtllib o.mtl\nv 0 0 0 1 1 1\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nvt 0 0\ns 1\nusemtl a\n"
-             "f 1/1 2/1 3/1 4/1\nusemtl b\nf 1 2 3 4 5\n");
+  write_text(
+      "o.obj",
+      "mtllib o.mtl\nv 0 0 0 1 1 1\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nvt 0 0\ns 1\nusemtl a\n"
+      "f 1/1 2/1 3/1 4/1\nusemtl b\nf 1 2 3 4 5\n");
   fail_everywhere(load_again, NULL, 30);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(corners),   cmocka_unit_test(polygons), cmocka_unit_test(smoothing), cmocka_unit_test(colors),
-      cmocka_unit_test(materials), cmocka_unit_test(missing),  cmocka_unit_test(errors),    cmocka_unit_test(damaged),
-      cmocka_unit_test(memory),    cmocka_unit_test(maps)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(corners),   cmocka_unit_test(polygons),
+                                     cmocka_unit_test(smoothing), cmocka_unit_test(colors),
+                                     cmocka_unit_test(materials), cmocka_unit_test(missing),
+                                     cmocka_unit_test(errors),    cmocka_unit_test(damaged),
+                                     cmocka_unit_test(memory),    cmocka_unit_test(maps)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

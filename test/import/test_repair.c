@@ -11,7 +11,8 @@ static const char *folder(const char *name) {
   static char path[300];
   static char made[200];
   if (!made[0]) {
-    snprintf(made, sizeof made, "%s/velo_repair_XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
+    snprintf(made, sizeof made, "%s/velo_repair_XXXXXX",
+             getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
     assert_non_null(mkdtemp(made));
   }
   snprintf(path, sizeof path, "%s/%s", made, name);
@@ -32,11 +33,16 @@ static void load_named(Loaded *l, const char *name, bool permissive, bool strict
   l->result = vl_scene_load(l->scene, folder(name), &def, &l->error);
 }
 
-#define PLY                                                                                         \
-  "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" \
-  "property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n"   \
-  "element face 2\nproperty list uchar int vertex_indices\nend_header\n"                            \
-  "0 0 0  nan 0 0  0 0\n1 0 0  0 0 0  nan 0\n1 1 0  0 0 -1  1 1\n0 1 0  0 0 -1  0 1\n3 0 1 2\n3 0 2 3\n"
+#define PLY                                                                                    \
+  "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "     \
+  "float "                                                                                     \
+  "z\n"                                                                                        \
+  "property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float " \
+  "v\n"                                                                                        \
+  "element face 2\nproperty list uchar int vertex_indices\nend_header\n"                       \
+  "0 0 0  nan 0 0  0 0\n1 0 0  0 0 0  nan 0\n1 1 0  0 0 -1  1 1\n0 1 0  0 0 -1  0 1\n3 0 1 "   \
+  "2\n3 "                                                                                      \
+  "0 2 3\n"
 
 static void check_normals(const Loaded *l) {
   const vlShapeDef *shape = &l->scene->shapes.items[0];
@@ -65,7 +71,8 @@ static void meshes(void **state) {
     end_load(&l);
   }
   write_file("m.obj",
-             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn nan 0 0\nvn 0 0 0\nvn 0 0 -1\nvt 0 0\nvt -nan(ind) 0\n"
+             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn nan 0 0\nvn 0 0 0\nvn 0 0 -1\nvt 0 0\nvt "
+             "-nan(ind) 0\n"
              "f 1/1/1 2/2/2 3/1/3\nf 1/1/1 3/1/3 4/1/3\n");
   load_named(&l, "m.obj", true, false);
   assert_int_equal(l.result, VL_OK);
@@ -73,12 +80,15 @@ static void meshes(void **state) {
   end_load(&l);
 }
 
-/* The faces of a vertex are weighted by area. A zero normal is a normal of the file unless permissive. */
+/* The faces of a vertex are weighted by area. A zero normal is a normal of the file unless
+ * permissive. */
 static void zero_normals(void **state) {
   (void)state;
   Loaded l;
   const char *text = W
-      "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  2 0 0  0 1 0  0 0 1 ] \"integer indices\" [ 0 1 2  0 3 1 ]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  2 0 0  0 1 0  0 0 1 ] \"integer indices\" "
+      "[ 0 "
+      "1 2  0 3 1 ]\n"
       "\"normal N\" [ 0 0 0  0 0 1  0 0 1  0 1 0 ]";
   load_text(&l, text, false);
   assert_int_equal(l.result, VL_OK);
@@ -122,19 +132,25 @@ static void images(void **state) {
 static void other_formats(void **state) {
   (void)state;
   Loaded l;
-  write_file("t.gltf",
-             "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
-             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],"
-             "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,0.5,"
-             "0.25,1]},\"occlusionTexture\":{\"index\":0},\"normalTexture\":{\"index\":1}}],"
-             "\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"gone.png\"},{\"uri\":\"https://"
-             "example.org/a.png\"}],"
-             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
-             "\"max\":[1,1,0]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
-             "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
-             "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}");
+  write_file(
+      "t.gltf",
+      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
+      "{\"mesh\":0}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],"
+      "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},"
+      "\"baseColorFactor\":[1,0.5,"
+      "0.25,1]},\"occlusionTexture\":{\"index\":0},\"normalTexture\":{\"index\":1}}],"
+      "\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"gone.png\"},{"
+      "\"uri\":\"https://"
+      "example.org/a.png\"}],"
+      "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":"
+      "\"VEC3\",\"min\":[0,0,0],"
+      "\"max\":[1,1,0]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+      "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}");
   load_named(&l, "t.gltf", false, false);
-  if (l.result != VL_OK) print_message("%s\n", l.error.message);
+  if (l.result != VL_OK)
+    print_message("%s\n", l.error.message);
   assert_int_equal(l.result, VL_OK);
   assert_non_null(strstr(l.log, "gone.png\": no such file; done without"));
   assert_non_null(strstr(l.log, "2 images are missing"));
@@ -156,7 +172,7 @@ static void other_formats(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(meshes), cmocka_unit_test(zero_normals), cmocka_unit_test(images),
-                                     cmocka_unit_test(other_formats)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(meshes), cmocka_unit_test(zero_normals),
+                                     cmocka_unit_test(images), cmocka_unit_test(other_formats)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

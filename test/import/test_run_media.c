@@ -1,5 +1,6 @@
-/* Shapes that are combined (curves, small meshes, spheres) have the media of the Shapes from which they are made.
- * These are the media of the state at each Shape, not those of the state when the run of shapes ends. */
+/* Shapes that are combined (curves, small meshes, spheres) have the media of the Shapes from
+ * which they are made. These are the media of the state at each Shape, not those of the state
+ * when the run of shapes ends. */
 #include "import/load.h"
 #include "velo/shape.h"
 
@@ -11,19 +12,22 @@ static const char *const kinds[3] = {
     "Shape \"sphere\"\n",
 };
 
-/* Makes the text of a scene: four shapes in fog, four between mist and fog, and four without media. `integrator` is
- * written before them. */
+/* Makes the text of a scene: four shapes in fog, four between mist and fog, and four without
+ * media. `integrator` is written before them. */
 static char *text_of(const char *shape, const char *integrator) {
   char *text = malloc(20 * (size_t)BEFORE + 4000), *at = text;
   at += sprintf(at, "%sWorldBegin\n", integrator);
   at += sprintf(at,
                 "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
                 "MakeNamedMedium \"mist\" \"string type\" \"homogeneous\"\n");
-  for (int i = 0; i < BEFORE; i++) at += sprintf(at, "Shape \"disk\"\n");
-  static const char *const media[3] = {"MediumInterface \"fog\" \"\"\n", "MediumInterface \"mist\" \"fog\"\n", ""};
+  for (int i = 0; i < BEFORE; i++)
+    at += sprintf(at, "Shape \"disk\"\n");
+  static const char *const media[3] = {"MediumInterface \"fog\" \"\"\n",
+                                       "MediumInterface \"mist\" \"fog\"\n", ""};
   for (int k = 0; k < 3; k++) {
     at += sprintf(at, "AttributeBegin\n%s", media[k]);
-    for (int i = 0; i < 4; i++) at += sprintf(at, "%s", shape);
+    for (int i = 0; i < 4; i++)
+      at += sprintf(at, "%s", shape);
     at += sprintf(at, "AttributeEnd\n");
   }
   return text;
@@ -37,10 +41,13 @@ static void runs_lie_in_their_media(void **state) {
     load_fine(&l, text);
     uint32_t seen[3] = {0};
     size_t shapes = l.scene->shapes.count - BEFORE;
-    assert_true(shapes <= 4); /* 12 Shapes in 3 runs; for curves a change of state alone may also end a run */
+    assert_true(
+        shapes <=
+        4); /* 12 Shapes in 3 runs; for curves a change of state alone may also end a run */
     for (size_t i = 0; i < l.scene->shapes.count; i++) {
       const vlShapeDef *d = &l.scene->shapes.items[i];
-      if (d->kind == VL_SHAPE_DISK) continue;
+      if (d->kind == VL_SHAPE_DISK)
+        continue;
       uint32_t which = d->inside.index == 1 && !d->outside.index       ? 0
                        : d->inside.index == 2 && d->outside.index == 1 ? 1
                        : d->inside.index == 0 && d->outside.index == 0 ? 2
@@ -49,7 +56,8 @@ static void runs_lie_in_their_media(void **state) {
       seen[which] += d->faces;
     }
     for (int m = 0; m < 3; m++)
-      if (seen[m] != 4) fail_msg("kind %d: %u shapes in media %d, not 4", k, seen[m], m);
+      if (seen[m] != 4)
+        fail_msg("kind %d: %u shapes in media %d, not 4", k, seen[m], m);
     end_load(&l);
     free(text);
   }
@@ -64,7 +72,8 @@ static void runs_are_warned_of(void **state) {
     load_fine(&l, text);
     char place[40];
     snprintf(place, sizeof place, "t.pbrt:%d:1: integrator \"path\"", 4 + BEFORE + 3);
-    if (!strstr(l.log, place)) fail_msg("kind %d: no warning at %s in\n%s", k, place, l.log);
+    if (!strstr(l.log, place))
+      fail_msg("kind %d: no warning at %s in\n%s", k, place, l.log);
     end_load(&l);
     free(text);
   }

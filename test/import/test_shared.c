@@ -1,5 +1,5 @@
-/* test/import/test_shared.c: published scenes from ../shared/scenes/pbrt: each loads or names what is not supported;
- * with permissive, all load. Skipped without that folder. */
+/* test/import/test_shared.c: published scenes from ../shared/scenes/pbrt: each loads or names
+ * what is not supported; with permissive, all load. Skipped without that folder. */
 #include <dirent.h>
 
 #include "base/text.h"
@@ -39,7 +39,8 @@ static const Expected scenes[] = {
 };
 
 static bool absent(void) {
-  if (access(SCENES, R_OK) == 0) return false;
+  if (access(SCENES, R_OK) == 0)
+    return false;
   print_message("skipped: %s is not there\n", SCENES);
   return true;
 }
@@ -55,27 +56,32 @@ static void load(Loaded *l, const char *file, bool permissive) {
 
 static void as_they_are(void **state) {
   (void)state;
-  if (absent()) skip();
+  if (absent())
+    skip();
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     Loaded l;
     char said[800];
     load(&l, scenes[i].file, false);
     snprintf(said, sizeof said, "%u:%u: %s", l.error.line, l.error.column, l.error.message);
-    if ((l.result != VL_OK) != (scenes[i].error != NULL)) print_message("%s: %s\n", scenes[i].file, said);
+    if ((l.result != VL_OK) != (scenes[i].error != NULL))
+      print_message("%s: %s\n", scenes[i].file, said);
     assert_int_equal(l.result, scenes[i].error ? VL_ERROR_SCENE : VL_OK);
-    if (scenes[i].error) assert_string_equal(said, scenes[i].error);
+    if (scenes[i].error)
+      assert_string_equal(said, scenes[i].error);
     end_load(&l);
   }
 }
 
 static void permissive(void **state) {
   (void)state;
-  if (absent()) skip();
+  if (absent())
+    skip();
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     Loaded l;
     vlSceneInfo info;
     load(&l, scenes[i].file, true);
-    if (l.result != VL_OK) print_message("%s: %s\n", scenes[i].file, l.error.message);
+    if (l.result != VL_OK)
+      print_message("%s: %s\n", scenes[i].file, l.error.message);
     assert_int_equal(l.result, VL_OK);
     vl_scene_info(l.scene, &info);
     assert_int_equal(info.shapes, scenes[i].shapes);
@@ -83,7 +89,8 @@ static void permissive(void **state) {
     assert_int_equal(info.materials, scenes[i].materials);
     assert_int_equal(info.lights, scenes[i].lights);
     assert_int_equal(info.emissive_shapes, scenes[i].emissive);
-    if (scenes[i].error) assert_non_null(strstr(l.log, "warning"));
+    if (scenes[i].error)
+      assert_non_null(strstr(l.log, "warning"));
     end_load(&l);
   }
 }
@@ -91,7 +98,8 @@ static void permissive(void **state) {
 /* Every mesh that is there, also those that no scene names. */
 static void all_meshes(void **state) {
   (void)state;
-  if (absent()) skip();
+  if (absent())
+    skip();
   vlContext *context;
   assert_int_equal(vl_context_create(NULL, &context), VL_OK);
   size_t meshes = 0;
@@ -101,15 +109,18 @@ static void all_meshes(void **state) {
     char folder[1024];
     snprintf(folder, sizeof folder, "%s/%s/models", SCENES, scene->d_name);
     DIR *models = opendir(folder);
-    if (!models) continue;
+    if (!models)
+      continue;
     for (struct dirent *model; (model = readdir(models));) {
       char path[1400];
       vlPlyMesh mesh;
       vlError error;
-      if (!vl_ends_with(model->d_name, ".ply")) continue;
+      if (!vl_ends_with(model->d_name, ".ply"))
+        continue;
       snprintf(path, sizeof path, "%s/%s", folder, model->d_name);
       vlResult result = vl_ply_read(context, NULL, path, false, &mesh, &error);
-      if (result != VL_OK) print_message("%s: %s\n", path, error.message);
+      if (result != VL_OK)
+        print_message("%s: %s\n", path, error.message);
       assert_int_equal(result, VL_OK);
       assert_true(mesh.vertices > 0 && mesh.triangles + mesh.quads > 0);
       vl_ply_free(context, &mesh);
@@ -125,7 +136,8 @@ static void all_meshes(void **state) {
 /* The contents of cornell-box.pbrt. */
 static void cornell_box(void **state) {
   (void)state;
-  if (absent()) skip();
+  if (absent())
+    skip();
   Loaded l;
   load(&l, "cornell-box/cornell-box.pbrt", false);
   const vlSceneDefs *s = vl_scene_defs(l.scene);
@@ -149,7 +161,8 @@ static void cornell_box(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(as_they_are), cmocka_unit_test(permissive),
-                                     cmocka_unit_test(all_meshes), cmocka_unit_test(cornell_box)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(as_they_are),
+                                     cmocka_unit_test(permissive), cmocka_unit_test(all_meshes),
+                                     cmocka_unit_test(cornell_box)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* test/import/test_upgrade.c: pbrt-v3 text becomes pbrt-v4 text: each kind of statement, files, images of lights. */
+/* test/import/test_upgrade.c: pbrt-v3 text becomes pbrt-v4 text: each kind of statement, files,
+ * images of lights. */
 #include <sys/stat.h>
 
 #include "image/image.h"
@@ -14,7 +15,8 @@ static const char *in_folder(const char *name) {
   static int next;
   char *path = paths[next = (next + 1) % 4];
   if (!folder[0]) {
-    snprintf(folder, sizeof folder, "%s/velo_upgrade_XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
+    snprintf(folder, sizeof folder, "%s/velo_upgrade_XXXXXX",
+             getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
     assert_non_null(mkdtemp(folder));
     mkdir(in_folder("old"), 0700);
     mkdir(in_folder("old/parts"), 0700);
@@ -35,7 +37,8 @@ static const char *read_file(const char *name) {
   static char text[65536];
   FILE *f = fopen(in_folder(name), "rb");
   text[0] = 0;
-  if (!f) return "(no file)";
+  if (!f)
+    return "(no file)";
   text[fread(text, 1, sizeof text - 1, f)] = 0;
   fclose(f);
   return text;
@@ -53,10 +56,12 @@ static void take(void *user, vlUpgradeNote note, const vlError *place, const cha
   n->wrote += note == VL_UPGRADE_WROTE;
   size_t at = strlen(n->text);
   const char *slash = strrchr(place->file, '/');
-  snprintf(n->text + at, sizeof n->text - at, "%s:%u: %s\n", slash ? slash + 1 : place->file, place->line, message);
+  snprintf(n->text + at, sizeof n->text - at, "%s:%u: %s\n", slash ? slash + 1 : place->file,
+           place->line, message);
 }
 
-static vlResult upgrade(const char *from, const char *to, bool strict, Notes *notes, vlError *error) {
+static vlResult upgrade(const char *from, const char *to, bool strict, Notes *notes,
+                        vlError *error) {
   vlContext *context;
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
@@ -72,7 +77,9 @@ static vlResult upgrade(const char *from, const char *to, bool strict, Notes *no
   return r;
 }
 
-/* Statements after WorldBegin, and what becomes of them. lost: number of notes without counterpart. */
+/* Statements after WorldBegin, and what becomes of them. lost: number of notes without
+ * counterpart.
+ */
 static const struct {
   const char *from, *to;
   int lost;
@@ -81,219 +88,347 @@ static const struct {
      "Material \"diffuse\" \"rgb reflectance\" [ .5 .25 1e-2 ] # kept\n", 0},
     {"Material \"matte\" \"float sigma\" 0\n", "Material \"diffuse\"\n", 0},
     {"Material \"matte\" \"float sigma\" 20\n", "Material \"diffuse\"\n", 1},
-    {"Material \"plastic\"\n  \"rgb Kd\" [ .1 .2 .3 ]\n  \"bool remaproughness\" [ \"false\" ]\n",
-     "Material \"coateddiffuse\"\n  \"rgb reflectance\" [ .1 .2 .3 ]\n  \"bool remaproughness\" [ false ]\n"
+    {"Material \"plastic\"\n  \"rgb Kd\" [ .1 .2 .3 ]\n  \"bool remaproughness\" [ \"false\" "
+     "]\n",
+     "Material \"coateddiffuse\"\n  \"rgb reflectance\" [ .1 .2 .3 ]\n  \"bool "
+     "remaproughness\" [ "
+     "false ]\n"
      "  \"float roughness\" 0.1\n",
      0},
-    {"Material \"plastic\" \"rgb Ks\" [ 0 0 0 ]\n", "Material \"diffuse\" \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n", 0},
-    {"Material \"metal\" \"spectrum eta\" \"spds/Au.eta.spd\" \"spectrum k\" \"spds/Au.k.spd\"\n",
-     "Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\" \"float roughness\" "
+    {"Material \"plastic\" \"rgb Ks\" [ 0 0 0 ]\n",
+     "Material \"diffuse\" \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n", 0},
+    {"Material \"metal\" \"spectrum eta\" \"spds/Au.eta.spd\" \"spectrum k\" "
+     "\"spds/Au.k.spd\"\n",
+     "Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\" "
+     "\"float roughness\" "
      "0.01\n",
      0},
-    {"Material \"mirror\"\n", "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n", 0},
+    {"Material \"mirror\"\n", "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n",
+     0},
     {"Material \"glass\" \"float index\" 1.33 \"color Kr\" [ 1 1 1 ] \"color Kt\" [ 1 1 1 ]\n",
      "Material \"dielectric\" \"float eta\" 1.33\n", 0},
     {"Material \"glass\" \"color Kt\" [ 1 .5 1 ]\n", "Material \"dielectric\"\n", 1},
     {"Material \"substrate\" \"rgb Kd\" [ .3 .3 .3 ] \"float uroughness\" .05\n",
-     "Material \"coateddiffuse\" \"rgb reflectance\" [ .3 .3 .3 ] \"float uroughness\" .05 \"float vroughness\" 0.1\n",
+     "Material \"coateddiffuse\" \"rgb reflectance\" [ .3 .3 .3 ] \"float uroughness\" .05 "
+     "\"float "
+     "vroughness\" 0.1\n",
      0},
-    {"Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb Ks\" [ 0 0 0 ] \"rgb opacity\" [ 1 1 1 ]\n",
+    {"Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb Ks\" [ 0 0 0 ] \"rgb opacity\" [ 1 1 1 "
+     "]\n",
      "Material \"diffuse\" \"rgb reflectance\" [ .3 .3 .3 ]\n", 0},
     {"  Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb opacity\" [ .25 .25 .25 ]\n",
      "  MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\n"
-     "  MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"rgb reflectance\" [ .3 .3 .3 ] \"float "
+     "  MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"rgb reflectance\" [ "
+     ".3 "
+     ".3 .3 ] \"float "
      "roughness\" 0.1\n"
-     "  Material \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] \"float amount\" 0.25\n",
+     "  Material \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] \"float amount\" "
+     "0.25\n",
      0},
     {"Material \"translucent\" \"rgb Kd\" [ .5 .5 .5 ] \"rgb reflect\" [ 1 .5 0 ]\n",
-     "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.5 0.25 0 ] \"rgb transmittance\" [ 0.25 0.25 0.25 ]\n",
+     "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.5 0.25 0 ] \"rgb "
+     "transmittance\" [ "
+     "0.25 0.25 0.25 ]\n",
      0},
-    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMakeNamedMaterial \"b\" \"string type\" [ \"mirror\" ]\n"
-     "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"rgb amount\" [ .75 .75 .75 "
+    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMakeNamedMaterial \"b\" \"string "
+     "type\" [ "
+     "\"mirror\" ]\n"
+     "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"rgb "
+     "amount\" [ .75 .75 .75 "
      "]\n",
-     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" [ \"conductor\" ] "
+     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string "
+     "type\" "
+     "[ \"conductor\" ] "
      "\"rgb reflectance\" [ 0.9 0.9 0.9 ]\n"
      "Material \"mix\" \"string materials\" [ \"b\" \"a\" ] \"float amount\" .75\n",
      0},
     {"Material \"kdsubsurface\" \"color Kd\" [ .8 .7 .6 ] \"color mfp\" [ .1 .1 .1 ]\n",
-     "Material \"subsurface\" \"rgb reflectance\" [ .8 .7 .6 ] \"rgb mfp\" [ .1 .1 .1 ] \"float eta\" 1.3\n", 0},
+     "Material \"subsurface\" \"rgb reflectance\" [ .8 .7 .6 ] \"rgb mfp\" [ .1 .1 .1 ] "
+     "\"float "
+     "eta\" 1.3\n",
+     0},
     {"Material \"subsurface\" \"string name\" \"Skin1\" \"rgb sigma_a\" [ 1 1 1 ]\n",
      "Material \"subsurface\" \"string name\" \"Skin1\"\n", 0},
-    {"Material \"hair\" \"rgb color\" [ .3 .2 .1 ]\n", "Material \"hair\" \"rgb reflectance\" [ .3 .2 .1 ]\n", 0},
+    {"Material \"hair\" \"rgb color\" [ .3 .2 .1 ]\n",
+     "Material \"hair\" \"rgb reflectance\" [ .3 .2 .1 ]\n", 0},
     {"Material \"disney\" \"rgb color\" [ .3 .2 .1 ] \"float metallic\" .5 \"float sheen\" 1\n",
-     "Material \"principled\" \"rgb basecolor\" [ .3 .2 .1 ] \"float metallic\" .5 \"float roughness\" 0.5\n", 2},
+     "Material \"principled\" \"rgb basecolor\" [ .3 .2 .1 ] \"float metallic\" .5 \"float "
+     "roughness\" 0.5\n",
+     2},
     {"Material \"fourier\" \"string bsdffile\" \"x.bsdf\"\n", "Material \"diffuse\"\n", 1},
-    {"Material \"none\"\nMaterial \"\"\n", "Material \"interface\"\nMaterial \"interface\"\n", 0},
+    {"Material \"none\"\nMaterial \"\"\n", "Material \"interface\"\nMaterial \"interface\"\n",
+     0},
     {"Texture \"t\" \"color\" \"constant\" \"color value\" [ 1 0 0 ]\n",
      "Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ 1 0 0 ]\n", 0},
     {"Texture \"t\" \"spectrum\" \"uv\"\n",
-     "Texture \"t\" \"spectrum\" \"bilerp\" \"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb "
+     "Texture \"t\" \"spectrum\" \"bilerp\" \"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb "
+     "v10\" [ 1 0 0 ] \"rgb "
      "v11\" "
      "[ 1 1 0 ]\n",
      0},
-    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"color tex2\" [ "
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" "
+     "\"a\" \"color tex2\" [ "
      ".5 .5 "
      ".5 ]\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float "
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture "
+     "tex\" \"a\" \"float "
      "scale\" "
      ".5\n",
      0},
-    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"color tex1\" [ 2 2 2 ] \"texture "
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"color tex1\" [ "
+     "2 2 "
+     "2 ] \"texture "
      "tex2\" "
      "\"a\"\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"float scale\" 2 \"texture tex\" "
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"float "
+     "scale\" 2 \"texture tex\" "
      "\"a\"\n",
      0},
     {"Texture \"t\" \"color\" \"fbm\" \"integer octaves\" 3\n",
-     "Texture \"t-float\" \"float\" \"fbm\" \"integer octaves\" 3\nTexture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 "
+     "Texture \"t-float\" \"float\" \"fbm\" \"integer octaves\" 3\nTexture \"t\" \"spectrum\" "
+     "\"mix\" \"rgb tex1\" [ 0 "
      "0 0 "
      "] \"rgb tex2\" [ 1 1 1 ] \"texture amount\" \"t-float\"\n",
      0},
-    {"Texture \"w\" \"color\" \"windy\"\nTexture \"c\" \"color\" \"checkerboard\"\nTexture \"t\" \"color\" \"scale\" "
+    {"Texture \"w\" \"color\" \"windy\"\nTexture \"c\" \"color\" \"checkerboard\"\nTexture "
+     "\"t\" "
+     "\"color\" \"scale\" "
      "\"texture tex1\" \"w\" \"texture tex2\" \"c\"\n",
-     "Texture \"w-float\" \"float\" \"windy\"\nTexture \"w\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" "
-     "[ 1 1 1 ] \"texture amount\" \"w-float\"\nTexture \"c\" \"spectrum\" \"checkerboard\"\nTexture \"t\" "
+     "Texture \"w-float\" \"float\" \"windy\"\nTexture \"w\" \"spectrum\" \"mix\" \"rgb tex1\" "
+     "[ 0 "
+     "0 0 ] \"rgb tex2\" "
+     "[ 1 1 1 ] \"texture amount\" \"w-float\"\nTexture \"c\" \"spectrum\" "
+     "\"checkerboard\"\nTexture \"t\" "
      "\"spectrum\" \"scale\" \"texture scale\" \"w-float\" \"texture tex\" \"c\"\n",
      0},
     {"Texture \"t\" \"float\" \"marble\" \"integer octaves\" 3 \"float scale\" 2\n",
      "Texture \"t\" \"float\" \"constant\"\n", 1},
     {"Texture \"t\" \"float\" \"checkerboard\" \"string aamode\" \"none\" \"float tex1\" .3\n",
      "Texture \"t\" \"float\" \"checkerboard\" \"float tex1\" .3\n", 0},
-    {"LightSource \"point\" \"point from\" [ 1 2 3 ] \"color I\" [ 1 2 3 ] \"color scale\" [ 2 2 2 ]\n",
-     "LightSource \"point\" \"point3 from\" [ 1 2 3 ] \"rgb I\" [ 1 2 3 ] \"float scale\" 2\n", 0},
+    {"LightSource \"point\" \"point from\" [ 1 2 3 ] \"color I\" [ 1 2 3 ] \"color scale\" [ 2 "
+     "2 2 "
+     "]\n",
+     "LightSource \"point\" \"point3 from\" [ 1 2 3 ] \"rgb I\" [ 1 2 3 ] \"float scale\" 2\n",
+     0},
     {"LightSource \"distant\" \"rgb L\" [ 1 2 3 ] \"rgb scale\" [ 2 1 .5 ]\n",
      "LightSource \"distant\" \"rgb L\" [ 2 2 1.5 ]\n", 0},
-    {"LightSource \"point\" \"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 740 2 900 2 ]\n",
-     "LightSource \"point\" \"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 740 2 900 2 ] \"float "
+    {"LightSource \"point\" \"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 "
+     "740 2 "
+     "900 2 ]\n",
+     "LightSource \"point\" \"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 "
+     "740 2 "
+     "900 2 ] \"float "
      "scale\" 2\n",
      0},
-    {"LightSource \"infinite\" \"integer nsamples\" 4 \"integer samples\" 4 \"rgb L\" [ 1 1 1 ]\n",
+    {"LightSource \"infinite\" \"integer nsamples\" 4 \"integer samples\" 4 \"rgb L\" [ 1 1 1 "
+     "]\n",
      "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n", 0},
-    {"AreaLightSource \"area\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" \"true\" \"integer nsamples\" [ 8 ]\n",
+    {"AreaLightSource \"area\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" \"true\" \"integer "
+     "nsamples\" "
+     "[ 8 ]\n",
      "AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" true\n", 0},
-    {"Shape \"trianglemesh\" \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"float st\" [ 0 0 1 0 0 1 ] \"integer indices\" [ 0 1 "
+    {"Shape \"trianglemesh\" \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"float st\" [ 0 0 1 0 0 1 ] "
+     "\"integer indices\" [ 0 1 "
      "2 ]\n",
-     "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ] \"integer indices\" [ 0 "
+     "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ] "
+     "\"integer indices\" [ 0 "
      "1 2 "
      "]\n",
      0},
-    {"Shape \"loopsubdiv\" \"integer nlevels\" 2 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]\n",
-     "Shape \"loopsubdiv\" \"integer levels\" 2 \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]\n", 0},
-    {"Shape \"sphere\" \"float radius\" 2 \"rgb Kd\" [ 1 0 0 ]\n", "Shape \"sphere\" \"float radius\" 2\n", 1},
+    {"Shape \"loopsubdiv\" \"integer nlevels\" 2 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer "
+     "indices\" [ 0 1 2 ]\n",
+     "Shape \"loopsubdiv\" \"integer levels\" 2 \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer "
+     "indices\" [ 0 1 2 ]\n",
+     0},
+    {"Shape \"sphere\" \"float radius\" 2 \"rgb Kd\" [ 1 0 0 ]\n",
+     "Shape \"sphere\" \"float radius\" 2\n", 1},
     {"Shape \"nurbs\" \"integer nu\" 4\n", "", 1},
-    {"TransformBegin\nTranslate [ 1 2 3 ]\nTransform 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\nTransformEnd\n",
-     "AttributeBegin\nTranslate  1 2 3 \nTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ]\nAttributeEnd\n", 0},
-    {"TransformBegin\n  AttributeBegin\n    Material \"mirror\"\n  AttributeEnd\n  Material \"matte\"\n    \"rgb Kd\" "
+    {"TransformBegin\nTranslate [ 1 2 3 ]\nTransform 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 "
+     "1\nTransformEnd\n",
+     "AttributeBegin\nTranslate  1 2 3 \nTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 "
+     "]\nAttributeEnd\n",
+     0},
+    {"TransformBegin\n  AttributeBegin\n    Material \"mirror\"\n  AttributeEnd\n  Material "
+     "\"matte\"\n    \"rgb Kd\" "
      "[ 1 1 1 ]\n"
      "TransformEnd\nShape \"sphere\"\n",
-     "AttributeBegin\n  AttributeBegin\n    Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n  "
+     "AttributeBegin\n  AttributeBegin\n    Material \"conductor\" \"rgb reflectance\" [ 0.9 "
+     "0.9 "
+     "0.9 ]\n  "
      "AttributeEnd\n  Material \"diffuse\"\n    \"rgb reflectance\" [ 1 1 1 ]\n"
-     "AttributeEnd\nMaterial \"diffuse\"\n    \"rgb reflectance\" [ 1 1 1 ]\nShape \"sphere\"\n",
+     "AttributeEnd\nMaterial \"diffuse\"\n    \"rgb reflectance\" [ 1 1 1 ]\nShape "
+     "\"sphere\"\n",
      0},
-    {"MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 "
+    {"MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" \"integer nx\" 1 \"integer ny\" "
+     "1 "
+     "\"integer nz\" 1 "
      "\"float "
      "density\" 1 \"color sigma_a\" [ 1 1 1 ]\n",
-     "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 \"float "
+     "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 "
+     "\"integer nz\" 1 \"float "
      "density\" 1 \"rgb sigma_a\" [ 1 1 1 ]\n",
      0},
-    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"bool trilinear\" \"true\" \"bool gamma\" "
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"bool trilinear\" "
+     "\"true\" \"bool gamma\" "
      "true\n",
-     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string filter\" \"trilinear\" "
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string "
+     "filter\" \"trilinear\" "
      "\"string encoding\" \"sRGB\"\n",
      0},
-    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"float gamma\" 2.5 \"bool trilinear\" "
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"float gamma\" 2.5 "
+     "\"bool trilinear\" "
      "false\n",
-     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string encoding\" \"gamma 2.5\"\n",
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string "
+     "encoding\" \"gamma 2.5\"\n",
      0},
     {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"float gamma\" 1\n",
-     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string encoding\" \"linear\"\n",
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string "
+     "encoding\" \"linear\"\n",
      0},
-    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nMaterial \"uber\" \"texture opacity\" "
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nMaterial \"uber\" "
+     "\"texture opacity\" "
      "\"t\"\n",
-     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"t-float\" \"float\" "
-     "\"imagemap\" \"string filename\" \"../old/a.png\"\nMakeNamedMaterial \"see-through\" \"string type\" "
-     "\"interface\"\nMakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float roughness\" 0.1 \"rgb "
-     "reflectance\" [ 0.25 0.25 0.25 ]\nMaterial \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] "
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\nTexture "
+     "\"t-float\" \"float\" "
+     "\"imagemap\" \"string filename\" \"../old/a.png\"\nMakeNamedMaterial \"see-through\" "
+     "\"string type\" "
+     "\"interface\"\nMakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float "
+     "roughness\" 0.1 \"rgb "
+     "reflectance\" [ 0.25 0.25 0.25 ]\nMaterial \"mix\" \"string materials\" [ "
+     "\"see-through\" "
+     "\"solid-1\" ] "
      "\"texture amount\" \"t-float\"\n",
      0},
-    {"Texture \"a\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"scale\" \"texture tex1\" \"a\" \"float tex2\" "
+    {"Texture \"a\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"scale\" \"texture tex1\" "
+     "\"a\" \"float tex2\" "
      ".5\n",
-     "Texture \"a\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"scale\" \"texture tex\" \"a\" \"float scale\" "
+     "Texture \"a\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"scale\" \"texture tex\" "
+     "\"a\" \"float scale\" "
      ".5\n",
      0},
-    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"rgb tex2\" [ 1 "
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" "
+     "\"a\" \"rgb tex2\" [ 1 "
      ".5 0 ]\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float "
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture "
+     "tex\" \"a\" \"float "
      "scale\" 0.5\n",
      1},
-    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"spectrum tex2\" "
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" "
+     "\"a\" \"spectrum tex2\" "
      "[ 400 1 700 2 ]\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\"\n", 1},
-    {"Texture \"a\" \"color\" \"constant\"\nTexture \"b\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" "
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture "
+     "tex\" \"a\"\n",
+     1},
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"b\" \"color\" \"constant\"\nTexture "
+     "\"t\" "
+     "\"color\" \"scale\" "
      "\"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"b\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" "
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"b\" \"spectrum\" "
+     "\"constant\"\nTexture "
+     "\"t\" \"spectrum\" "
      "\"scale\" \"texture tex\" \"a\"\n",
      1},
-    {"Texture \"a\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"b\" \"color\" \"imagemap\" "
-     "\"string filename\" \"a.png\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
-     "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"b\" \"spectrum\" "
-     "\"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"b-float\" \"float\" \"imagemap\" \"string "
-     "filename\" \"../old/a.png\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"texture scale\" "
+    {"Texture \"a\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"b\" "
+     "\"color\" "
+     "\"imagemap\" "
+     "\"string filename\" \"a.png\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" "
+     "\"texture tex2\" \"b\"\n",
+     "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\nTexture "
+     "\"b\" "
+     "\"spectrum\" "
+     "\"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"b-float\" \"float\" "
+     "\"imagemap\" \"string "
+     "filename\" \"../old/a.png\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" "
+     "\"texture scale\" "
      "\"b-float\"\n",
      1},
-    {"LightSource \"goniometric\" \"string mapname\" \"around.exr\" \"rgb I\" [ 1 2 3 ] \"rgb scale\" [ 2 1 1 ]\n",
-     "LightSource \"goniometric\" \"string filename\" \"around-equiarea.exr\" \"rgb I\" [ 2 2 3 ]\n", 0},
-    {"LightSource \"projection\" \"string mapname\" \"a.png\" \"rgb I\" [ 1 2 3 ] \"rgb scale\" [ 2 1 1 ]\n",
+    {"LightSource \"goniometric\" \"string mapname\" \"around.exr\" \"rgb I\" [ 1 2 3 ] \"rgb "
+     "scale\" [ 2 1 1 ]\n",
+     "LightSource \"goniometric\" \"string filename\" \"around-equiarea.exr\" \"rgb I\" [ 2 2 "
+     "3 "
+     "]\n",
+     0},
+    {"LightSource \"projection\" \"string mapname\" \"a.png\" \"rgb I\" [ 1 2 3 ] \"rgb "
+     "scale\" [ "
+     "2 1 1 ]\n",
      "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float fov\" 45\n", 2},
     {"LightSource \"projection\" \"string mapname\" \"a.png\" \"blackbody I\" [ 3000 2 ]\n",
      "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float fov\" 45\n", 1},
     {"LightSource \"projection\" \"string mapname\" \"a.png\" \"rgb I\" [ 2 2 2 ]\n",
-     "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float scale\" 2 \"float fov\" 45\n", 0},
+     "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float scale\" 2 "
+     "\"float "
+     "fov\" 45\n",
+     0},
     {"LightSource \"infinite\" \"string mapname\" \"around.exr\" \"rgb L\" [ 1 2 3 ]\n",
      "LightSource \"infinite\" \"string filename\" \"around-equiarea.exr\"\n", 0},
     {"LightSource \"infinite\" \"string mapname\" \"\" \"rgb L\" [ 1 2 3 ]\n",
      "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ]\n", 0},
-    {"LightSource \"point\" \"rgb scale\" [ 1 2 3 ]\n", "LightSource \"point\" \"rgb I\" [ 1 2 3 ]\n", 0},
-    {"LightSource \"distant\" \"rgb scale\" [ 1 2 3 ]\n", "LightSource \"distant\" \"rgb L\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"point\" \"rgb scale\" [ 1 2 3 ]\n",
+     "LightSource \"point\" \"rgb I\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"distant\" \"rgb scale\" [ 1 2 3 ]\n",
+     "LightSource \"distant\" \"rgb L\" [ 1 2 3 ]\n", 0},
     {"LightSource \"point\" \"spectrum I\" [ 360 1 830 1 ] \"rgb scale\" [ 1 2 3 ]\n",
      "LightSource \"point\" \"spectrum I\" [ 360 1 830 1 ]\n", 1},
     {"LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"spectrum scale\" [ 400 1 700 1 ]\n",
      "LightSource \"point\" \"rgb I\" [ 1 1 1 ]\n", 1},
     {"LightSource \"beam\"\n", "", 1},
     {"AreaLightSource \"sphere\"\n", "", 1},
-    {"MakeNamedMaterial \"m\" \"string type\" \"uber\" \"rgb opacity\" [ .5 .25 .75 ] \"rgb Kr\" [ 0 0 0 "
+    {"MakeNamedMaterial \"m\" \"string type\" \"uber\" \"rgb opacity\" [ .5 .25 .75 ] \"rgb "
+     "Kr\" [ "
+     "0 0 0 "
      "]\nNamedMaterial \"m\"\n",
-     "MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\nMakeNamedMaterial \"m-solid\" \"string type\" "
-     "\"coateddiffuse\" \"float roughness\" 0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\nMakeNamedMaterial \"m\" "
-     "\"string type\" \"mix\" \"string materials\" [ \"see-through\" \"m-solid\" ] \"float amount\" 0.5\nNamedMaterial "
+     "MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\nMakeNamedMaterial "
+     "\"m-solid\" \"string type\" "
+     "\"coateddiffuse\" \"float roughness\" 0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 "
+     "]\nMakeNamedMaterial \"m\" "
+     "\"string type\" \"mix\" \"string materials\" [ \"see-through\" \"m-solid\" ] \"float "
+     "amount\" 0.5\nNamedMaterial "
      "\"m\"\n",
      1},
     {"Texture \"a\" \"color\" \"constant\"\nMaterial \"uber\" \"texture opacity\" \"a\"\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nMakeNamedMaterial \"see-through\" \"string type\" "
-     "\"interface\"\nMakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float roughness\" 0.1 \"rgb "
-     "reflectance\" [ 0.25 0.25 0.25 ]\nMaterial \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] \"float "
+     "Texture \"a\" \"spectrum\" \"constant\"\nMakeNamedMaterial \"see-through\" \"string "
+     "type\" "
+     "\"interface\"\nMakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float "
+     "roughness\" 0.1 \"rgb "
+     "reflectance\" [ 0.25 0.25 0.25 ]\nMaterial \"mix\" \"string materials\" [ "
+     "\"see-through\" "
+     "\"solid-1\" ] \"float "
      "amount\" 0.5\n",
      1},
     {"Texture \"a\" \"color\" \"constant\"\nMaterial \"translucent\" \"texture Kd\" \"a\"\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nMaterial \"diffusetransmission\" \"texture reflectance\" \"a\" "
+     "Texture \"a\" \"spectrum\" \"constant\"\nMaterial \"diffusetransmission\" \"texture "
+     "reflectance\" \"a\" "
      "\"texture transmittance\" \"a\" \"float scale\" 0.5\n",
      0},
-    {"Texture \"a\" \"color\" \"constant\"\nMaterial \"translucent\" \"texture Kd\" \"a\" \"rgb reflect\" [ 0 0 0 ]\n",
-     "Texture \"a\" \"spectrum\" \"constant\"\nMaterial \"diffusetransmission\" \"rgb reflectance\" [ 0 0 0 ] "
+    {"Texture \"a\" \"color\" \"constant\"\nMaterial \"translucent\" \"texture Kd\" \"a\" "
+     "\"rgb "
+     "reflect\" [ 0 0 0 ]\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nMaterial \"diffusetransmission\" \"rgb "
+     "reflectance\" [ 0 0 0 ] "
      "\"texture transmittance\" \"a\"\n",
      1},
-    {"Material \"translucent\" \"spectrum Kd\" [ 400 1 700 1 ] \"spectrum reflect\" [ 400 1 700 1 ]\n",
-     "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.125 0.125 0.125 ] \"rgb transmittance\" [ 0.125 0.125 "
+    {"Material \"translucent\" \"spectrum Kd\" [ 400 1 700 1 ] \"spectrum reflect\" [ 400 1 "
+     "700 1 "
+     "]\n",
+     "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.125 0.125 0.125 ] \"rgb "
+     "transmittance\" [ 0.125 0.125 "
      "0.125 ]\n",
      2},
-    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMaterial \"mix\" \"string namedmaterial1\" \"a\" \"string "
+    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMaterial \"mix\" \"string "
+     "namedmaterial1\" \"a\" \"string "
      "namedmaterial2\" \"a\" \"rgb amount\" [ .5 .25 .75 ]\n",
-     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string materials\" [ \"a\" \"a\" ] "
+     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string "
+     "materials\" [ "
+     "\"a\" \"a\" ] "
      "\"float amount\" 0.5\n",
      1},
-    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMaterial \"mix\" \"string namedmaterial1\" \"a\" \"string "
+    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMaterial \"mix\" \"string "
+     "namedmaterial1\" \"a\" \"string "
      "namedmaterial2\" \"a\"\n",
-     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string materials\" [ \"a\" \"a\" ]\n", 0},
+     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string "
+     "materials\" [ "
+     "\"a\" \"a\" ]\n",
+     0},
 };
 
 /* Two images that the statements name. */
@@ -306,7 +441,8 @@ static void write_images(void) {
   vlImageDef def = vl_default_image_def(4, 2, 3);
   def.type = VL_PIXEL_F32;
   assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
-  for (int i = 0; i < 24; i++) ((float *)vl_image_pixels(image))[i] = 0.5f;
+  for (int i = 0; i < 24; i++)
+    ((float *)vl_image_pixels(image))[i] = 0.5f;
   assert_int_equal(vl_image_write(image, in_folder("old/around.exr"), NULL, &error), VL_OK);
   assert_int_equal(vl_image_write(image, in_folder("old/a.png"), NULL, &error), VL_OK);
   vl_image_destroy(image);
@@ -322,19 +458,25 @@ static void statements(void **state) {
   write_images();
   for (size_t i = 0; i < sizeof world / sizeof *world; i++) {
     char text[4096], wanted[4096];
-    snprintf(text, sizeof text, "Film \"rgb\"\nPixelFilter \"box\"\nWorldBegin\n%sWorldEnd\n", world[i].from);
-    snprintf(wanted, sizeof wanted, "Film \"rgb\"\nPixelFilter \"box\"\nWorldBegin\n%s", world[i].to);
+    snprintf(text, sizeof text, "Film \"rgb\"\nPixelFilter \"box\"\nWorldBegin\n%sWorldEnd\n",
+             world[i].from);
+    snprintf(wanted, sizeof wanted, "Film \"rgb\"\nPixelFilter \"box\"\nWorldBegin\n%s",
+             world[i].to);
     write_file("old/s.pbrt", text);
-    unlink(in_folder("new/around-equiarea.exr")); /* of another scene: it would not be overwritten */
+    unlink(in_folder(
+        "new/around-equiarea.exr")); /* of another scene: it would not be overwritten */
     vlResult r = upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error);
     const char *got = r == VL_OK ? read_file("new/s.pbrt") : error.message;
     bool same = strcmp(got, wanted) == 0 && notes.lost == world[i].lost;
-    if (!same) print_message("%s lost %d\n got: %s\n not: %s\n%s", world[i].from, notes.lost, got, wanted, notes.text);
+    if (!same)
+      print_message("%s lost %d\n got: %s\n not: %s\n%s", world[i].from, notes.lost, got,
+                    wanted, notes.text);
     wrong += !same;
     Loaded l;
     start_load(&l);
     l.result = vl_scene_load(l.scene, in_folder("new/s.pbrt"), NULL, &l.error);
-    if (l.result != VL_OK) print_message("%s\n%s\n", got, l.error.message), wrong++;
+    if (l.result != VL_OK)
+      print_message("%s\n%s\n", got, l.error.message), wrong++;
     end_load(&l);
   }
   assert_int_equal(wrong, 0);
@@ -345,32 +487,40 @@ static void settings(void **state) {
   (void)state;
   Notes notes;
   vlError error;
-  write_file("old/s.pbrt",
-             "# head\nLookAt 0 0 -5  0 0 0  0 1 0\n"
-             "Camera \"perspective\" \"float halffov\" 30 \"float shutterclose\" .5\n"
-             "Film \"image\" \"integer xresolution\" [ 64 ] \"integer yresolution\" 48\n"
-             "     \"float scale\" 2 \"float maxsampleluminance\" 10 \"string filename\" \"a.exr\"\n"
-             "Sampler \"02sequence\" \"integer pixelsamples\" 4\nPixelFilter \"gaussian\" \"float xwidth\" 1.5 \"float "
-             "alpha\" 2\n"
-             "Integrator \"directlighting\" \"integer maxdepth\" 3\nAccelerator \"kdtree\"\nWorldBegin\nWorldEnd\n");
+  write_file(
+      "old/s.pbrt",
+      "# head\nLookAt 0 0 -5  0 0 0  0 1 0\n"
+      "Camera \"perspective\" \"float halffov\" 30 \"float shutterclose\" .5\n"
+      "Film \"image\" \"integer xresolution\" [ 64 ] \"integer yresolution\" 48\n"
+      "     \"float scale\" 2 \"float maxsampleluminance\" 10 \"string filename\" \"a.exr\"\n"
+      "Sampler \"02sequence\" \"integer pixelsamples\" 4\nPixelFilter \"gaussian\" \"float "
+      "xwidth\" 1.5 \"float "
+      "alpha\" 2\n"
+      "Integrator \"directlighting\" \"integer maxdepth\" 3\nAccelerator "
+      "\"kdtree\"\nWorldBegin\nWorldEnd\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
   assert_string_equal(
       read_file("new/s.pbrt"),
       "# head\nLookAt 0 0 -5  0 0 0  0 1 0\n"
       "Camera \"perspective\" \"float fov\" 60 \"float shutterclose\" .5\n"
-      "Film \"rgb\" \"integer xresolution\" [ 64 ] \"integer yresolution\" 48 \"float maxcomponentvalue\" 10 \"string "
+      "Film \"rgb\" \"integer xresolution\" [ 64 ] \"integer yresolution\" 48 \"float "
+      "maxcomponentvalue\" 10 \"string "
       "filename\" \"a.exr\" \"float iso\" 400\n"
-      "Sampler \"paddedsobol\" \"integer pixelsamples\" 4\nPixelFilter \"gaussian\" \"float xradius\" 1.5 \"float "
+      "Sampler \"paddedsobol\" \"integer pixelsamples\" 4\nPixelFilter \"gaussian\" \"float "
+      "xradius\" 1.5 \"float "
       "sigma\" 0.5 \"float yradius\" 2\n"
       "Integrator \"path\" \"integer maxdepth\" 3\nAccelerator \"kdtree\"\nWorldBegin\n");
   assert_int_equal(notes.lost, 1);
-  assert_non_null(strstr(
-      notes.text, "s.pbrt:4: Film: without scale, \"image\" -> \"rgb\", maxsampleluminance -> maxcomponentvalue"));
+  assert_non_null(
+      strstr(notes.text,
+             "s.pbrt:4: Film: without scale, \"image\" -> \"rgb\", maxsampleluminance "
+             "-> maxcomponentvalue"));
   write_file("old/s.pbrt", "Camera \"environment\"\nWorldBegin\nShape \"sphere\"\nWorldEnd");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
-  assert_string_equal(read_file("new/s.pbrt"),
-                      "Camera \"spherical\" \"string mapping\" \"equirectangular\"\nPixelFilter "
-                      "\"box\"\nWorldBegin\nShape \"sphere\"\n");
+  assert_string_equal(
+      read_file("new/s.pbrt"),
+      "Camera \"spherical\" \"string mapping\" \"equirectangular\"\nPixelFilter "
+      "\"box\"\nWorldBegin\nShape \"sphere\"\n");
 }
 
 /* A scene of pbrt-v4 stays as it is. */
@@ -379,9 +529,12 @@ static void new_scene(void **state) {
   Notes notes;
   vlError error;
   const char *text =
-      "Film \"rgb\" \"string sensor\" \"cie1931\"\nSampler \"zsobol\"\nPixelFilter \"gaussian\"\nIntegrator "
-      "\"volpath\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [ 1 1 1 ] \"float scale\" 2\n"
-      "Material \"diffuse\" \"rgb reflectance\" [ .1 .1 .1 ]\nAttributeBegin\nShape \"sphere\"\nAttributeEnd\n";
+      "Film \"rgb\" \"string sensor\" \"cie1931\"\nSampler \"zsobol\"\nPixelFilter "
+      "\"gaussian\"\nIntegrator "
+      "\"volpath\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [ 1 1 1 ] \"float scale\" "
+      "2\n"
+      "Material \"diffuse\" \"rgb reflectance\" [ .1 .1 .1 ]\nAttributeBegin\nShape "
+      "\"sphere\"\nAttributeEnd\n";
   write_file("old/s.pbrt", text);
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
   assert_string_equal(read_file("new/s.pbrt"), text);
@@ -394,9 +547,14 @@ static void damaged(void **state) {
   Notes notes;
   vlError error;
   const char *text =
-      "Film \"image\" \"float scale\" [ 2 ] # a\nWorldBegin\nTransformBegin\nMaterial \"uber\" \"rgb opacity\" [ "
-      ".5 .5 .5 ] \"texture Kd\" \"t\"\nTransformEnd\nLightSource \"point\" \"spectrum I\" [ 400 1 700 2 ]\n"
-      "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [ 0 0 0 1 ]\nTransform [ 1 0 0 0 0 1 0 "
+      "Film \"image\" \"float scale\" [ 2 ] # a\nWorldBegin\nTransformBegin\nMaterial \"uber\" "
+      "\"rgb opacity\" [ "
+      ".5 .5 .5 ] \"texture Kd\" \"t\"\nTransformEnd\nLightSource \"point\" \"spectrum I\" [ "
+      "400 1 "
+      "700 2 ]\n"
+      "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [ 0 0 0 1 "
+      "]\nTransform "
+      "[ 1 0 0 0 0 1 0 "
       "0 0 0 1 0 0 0 0 1 ]\nWorldEnd\n";
   char part[1000];
   size_t n = strlen(text);
@@ -412,19 +570,24 @@ static void damaged(void **state) {
   }
 }
 
-/* Included files are written beside the new scene where they change; names of other files lead to the old folder. */
+/* Included files are written beside the new scene where they change; names of other files lead
+ * to the old folder. */
 static void files(void **state) {
   (void)state;
   Notes notes;
   vlError error;
   write_file("old/parts/plain.pbrt", "Shape \"sphere\"\n");
-  write_file("old/parts/m.pbrt", "Material \"matte\" # mine\nShape \"plymesh\" \"string filename\" \"parts/a.ply\"\n");
-  write_file("old/parts/a.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-             "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
-             "0\n0 1 0\n3 0 1 2\n");
+  write_file(
+      "old/parts/m.pbrt",
+      "Material \"matte\" # mine\nShape \"plymesh\" \"string filename\" \"parts/a.ply\"\n");
+  write_file(
+      "old/parts/a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+      "0\n0 1 0\n3 0 1 2\n");
   write_file("old/s.pbrt",
-             "PixelFilter \"box\"\nWorldBegin\nInclude \"parts/m.pbrt\"\nInclude \"parts/plain.pbrt\"\n"
+             "PixelFilter \"box\"\nWorldBegin\nInclude \"parts/m.pbrt\"\nInclude "
+             "\"parts/plain.pbrt\"\n"
              "Include \"parts/m.pbrt\"\nWorldEnd\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/t.pbrt", false, &notes, &error), VL_OK);
   assert_string_equal(read_file("new/t.pbrt"),
@@ -437,7 +600,8 @@ static void files(void **state) {
   Loaded l;
   start_load(&l);
   l.result = vl_scene_load(l.scene, in_folder("new/t.pbrt"), NULL, &l.error);
-  if (l.result != VL_OK) print_message("%s\n", l.error.message);
+  if (l.result != VL_OK)
+    print_message("%s\n", l.error.message);
   assert_int_equal(l.result, VL_OK);
   assert_int_equal(l.scene->shapes.count, 3);
   end_load(&l);
@@ -446,9 +610,11 @@ static void files(void **state) {
   assert_string_equal(read_file("old/s4.pbrt"),
                       "PixelFilter \"box\"\nWorldBegin\nInclude \"parts/m-v4.pbrt\"\nInclude "
                       "\"parts/plain.pbrt\"\nInclude \"parts/m-v4.pbrt\"\n");
-  assert_string_equal(read_file("old/parts/m-v4.pbrt"),
-                      "Material \"diffuse\" # mine\nShape \"plymesh\" \"string filename\" \"parts/a.ply\"\n");
-  assert_int_equal(upgrade("old/s.pbrt", "old/s.pbrt", false, &notes, &error), VL_ERROR_ARGUMENT);
+  assert_string_equal(
+      read_file("old/parts/m-v4.pbrt"),
+      "Material \"diffuse\" # mine\nShape \"plymesh\" \"string filename\" \"parts/a.ply\"\n");
+  assert_int_equal(upgrade("old/s.pbrt", "old/s.pbrt", false, &notes, &error),
+                   VL_ERROR_ARGUMENT);
 }
 
 /* The direction of the brightest pixel stays. */
@@ -465,17 +631,20 @@ static void environment(void **state) {
   assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
   memset(vl_image_pixels(image), 0, 64 * 32 * 12);
   for (int y = 8; y < 10; y++)
-    for (int x = 20; x < 22; x++) ((float *)vl_image_pixels(image))[3 * (64 * y + x) + 1] = 1;
+    for (int x = 20; x < 22; x++)
+      ((float *)vl_image_pixels(image))[3 * (64 * y + x) + 1] = 1;
   assert_int_equal(vl_image_write(image, in_folder("old/sky.exr"), NULL, &error), VL_OK);
   vl_image_destroy(image);
   write_file("old/s.pbrt",
-             "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string mapname\" \"sky.exr\" \"rgb "
+             "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string mapname\" "
+             "\"sky.exr\" \"rgb "
              "L\" [ 1 3 1 ] \"rgb scale\" [ 2 2 2 ]\nWorldEnd\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
   assert_string_equal(read_file("new/s.pbrt"),
                       "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string "
                       "filename\" \"sky-equiarea.exr\" \"float scale\" 2\n");
-  assert_int_equal(vl_image_read(context, in_folder("new/sky-equiarea.exr"), &image, &error), VL_OK);
+  assert_int_equal(vl_image_read(context, in_folder("new/sky-equiarea.exr"), &image, &error),
+                   VL_OK);
   uint32_t channel[4], count = vl_image_color(image, channel), n = image->width;
   float *p;
   assert_int_equal(n, image->height);
@@ -483,7 +652,8 @@ static void environment(void **state) {
   double sum[3] = {0, 0, 0}, total = 0;
   for (uint32_t i = 0; i < n * n; i++) {
     double w = (double)p[count * i + 1];
-    vlVec3 d = vl_octahedral_decode(((float)(i % n) + 0.5f) / (float)n, ((float)(i / n) + 0.5f) / (float)n);
+    vlVec3 d = vl_octahedral_decode(((float)(i % n) + 0.5f) / (float)n,
+                                    ((float)(i / n) + 0.5f) / (float)n);
     sum[0] += w * (double)d.x, sum[1] += w * (double)d.y, sum[2] += w * (double)d.z, total += w;
   }
   double theta = M_PI * 9 / 32, phi = 2 * M_PI * 21 / 64;
@@ -504,7 +674,8 @@ static void black_bodies(void **state) {
   Notes notes;
   vlError error;
   write_file("old/s.pbrt",
-             "PixelFilter \"box\"\nWorldBegin\nLightSource \"point\" \"blackbody I\" [ 3000 2 ]\nWorldEnd\n");
+             "PixelFilter \"box\"\nWorldBegin\nLightSource \"point\" \"blackbody I\" [ 3000 2 "
+             "]\nWorldEnd\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
   const char *text = read_file("new/s.pbrt"), *scale = strstr(text, "\"float scale\" ");
   assert_non_null(strstr(text, "\"blackbody I\" 3000"));
@@ -515,7 +686,8 @@ static void black_bodies(void **state) {
     double y = 0.821 * exp(-0.5 * pow((l - 568.8) / (l < 568.8 ? 46.9 : 40.5), 2)) +
                0.286 * exp(-0.5 * pow((l - 530.9) / (l < 530.9 ? 16.3 : 31.1), 2));
     all += y;
-    sum += y * pow(peak / (l * 1e-9), 5) * (exp(c2 / (peak * 3000)) - 1) / (exp(c2 / (l * 1e-9 * 3000)) - 1);
+    sum += y * pow(peak / (l * 1e-9), 5) * (exp(c2 / (peak * 3000)) - 1) /
+           (exp(c2 / (l * 1e-9 * 3000)) - 1);
   }
   assert_near(atof(scale + 14) / (2 * sum / all), 1, 0.005);
 }
@@ -525,12 +697,15 @@ static void strict(void **state) {
   Notes notes;
   vlError error;
   write_file("old/s.pbrt", "WorldBegin\nShape \"nurbs\"\nWorldEnd\n");
-  assert_int_equal(upgrade("old/s.pbrt", "new/none.pbrt", true, &notes, &error), VL_ERROR_UNSUPPORTED);
+  assert_int_equal(upgrade("old/s.pbrt", "new/none.pbrt", true, &notes, &error),
+                   VL_ERROR_UNSUPPORTED);
   assert_string_equal(read_file("new/none.pbrt"), "(no file)");
   write_file("old/s.pbrt", "WorldBegin\nMaterial \"matte\" \"Kd\" 3\n");
-  assert_int_equal(upgrade("old/s.pbrt", "new/none.pbrt", false, &notes, &error), VL_ERROR_SCENE);
+  assert_int_equal(upgrade("old/s.pbrt", "new/none.pbrt", false, &notes, &error),
+                   VL_ERROR_SCENE);
   assert_int_equal(error.line, 2);
-  assert_int_equal(upgrade("old/gone.pbrt", "new/none.pbrt", false, &notes, &error), VL_ERROR_MISSING);
+  assert_int_equal(upgrade("old/gone.pbrt", "new/none.pbrt", false, &notes, &error),
+                   VL_ERROR_MISSING);
 }
 
 /* Solids that pbrt-v4 does not have: their triangles lie on them. */
@@ -539,14 +714,17 @@ static void solids(void **state) {
   Notes notes;
   vlError error;
   Loaded l;
-  write_file("old/s.pbrt",
-             "WorldBegin\nShape \"cone\" \"float radius\" 2 \"float height\" 3\n"
-             "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 3 \"float Pz\" [ 0 1 2 3 4 5 ]\n"
-             "Shape \"paraboloid\"\nShape \"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 0 1 1 ]\n");
+  write_file(
+      "old/s.pbrt",
+      "WorldBegin\nShape \"cone\" \"float radius\" 2 \"float height\" 3\n"
+      "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 3 \"float Pz\" [ 0 1 2 3 4 5 ]\n"
+      "Shape \"paraboloid\"\nShape \"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 0 1 1 "
+      "]\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
   start_load(&l);
   l.result = vl_scene_load(l.scene, in_folder("new/s.pbrt"), NULL, &l.error);
-  if (l.result != VL_OK) print_message("%s\n", l.error.message);
+  if (l.result != VL_OK)
+    print_message("%s\n", l.error.message);
   assert_int_equal(l.result, VL_OK);
   assert_int_equal(l.scene->shapes.count, 4);
   const vlShapeDef *cone = &l.scene->shapes.items[0], *field = &l.scene->shapes.items[1];
@@ -568,16 +746,19 @@ static void recognised(void **state) {
   static const struct {
     const char *text, *sign;
     int version, line, column;
-  } cases[] = {{"Film \"image\"\nWorldBegin\nMaterial \"matte\"\nWorldEnd\n", "Film \"image\"", 3, 1, 1},
-               {"WorldBegin\nShape \"sphere\"\n  WorldEnd\n", "WorldEnd", 3, 3, 3},
-               {"Film \"image\"\nSurfaceIntegrator \"path\"\nWorldBegin\nWorldEnd\n", "SurfaceIntegrator", 2, 2, 1}};
+  } cases[] = {
+      {"Film \"image\"\nWorldBegin\nMaterial \"matte\"\nWorldEnd\n", "Film \"image\"", 3, 1, 1},
+      {"WorldBegin\nShape \"sphere\"\n  WorldEnd\n", "WorldEnd", 3, 3, 3},
+      {"Film \"image\"\nSurfaceIntegrator \"path\"\nWorldBegin\nWorldEnd\n",
+       "SurfaceIntegrator", 2, 2, 1}};
   for (int i = 0; i < 3; i++) {
     write_file("old/r.pbrt", cases[i].text);
     start_load(&l);
     l.result = vl_scene_load(l.scene, in_folder("old/r.pbrt"), NULL, &l.error);
     assert_int_equal(l.result, VL_ERROR_SCENE);
     snprintf(wanted, sizeof wanted,
-             "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 scene of it",
+             "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 "
+             "scene of it",
              cases[i].version, cases[i].sign, in_folder("old/r.pbrt"));
     assert_string_equal(l.error.message, wanted);
     assert_int_equal(l.error.line, cases[i].line);
@@ -587,10 +768,10 @@ static void recognised(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(statements),   cmocka_unit_test(settings),
-                                     cmocka_unit_test(files),        cmocka_unit_test(environment),
-                                     cmocka_unit_test(black_bodies), cmocka_unit_test(strict),
-                                     cmocka_unit_test(new_scene),    cmocka_unit_test(damaged),
-                                     cmocka_unit_test(solids),       cmocka_unit_test(recognised)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(statements),  cmocka_unit_test(settings),     cmocka_unit_test(files),
+      cmocka_unit_test(environment), cmocka_unit_test(black_bodies), cmocka_unit_test(strict),
+      cmocka_unit_test(new_scene),   cmocka_unit_test(damaged),      cmocka_unit_test(solids),
+      cmocka_unit_test(recognised)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

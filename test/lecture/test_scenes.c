@@ -1,5 +1,5 @@
-/* test/lecture/test_scenes.c: every scene of the lecture loads, and its camera has the slide's eye, lookat and f = zoom
- * d / s. */
+/* test/lecture/test_scenes.c: every scene of the lecture loads, and its camera has the slide's
+ * eye, lookat and f = zoom d / s. */
 #include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
@@ -45,9 +45,15 @@ static const struct {
     {"property_5", {0, 0, 500}, {0, 0, 0}, 500},
     {"property_6", {300, 300, 300}, {0, 0, 0}, 120},
     {"wide_perspective", {0, 0, 0}, {0, 0, -1}, 111.91383796},
-    {"wide_panini", {0, 0, 0}, {0, 0, -1}, 188.36226925409883}, /* 240 / (2 tan 32.5 degrees), */
+    {"wide_panini",
+     {0, 0, 0},
+     {0, 0, -1},
+     188.36226925409883}, /* 240 / (2 tan 32.5 degrees), */
     {"wide_stereographic", {0, 0, 0}, {0, 0, -1}, 188.36226925409883},
-    {"wide_equirectangular", {0, 0, 0}, {0, 0, -1}, 211.55364743291935}, /* and 240 / 65 degrees */
+    {"wide_equirectangular",
+     {0, 0, 0},
+     {0, 0, -1},
+     211.55364743291935}, /* and 240 / 65 degrees */
 };
 enum { COUNT = sizeof scenes / sizeof scenes[0] };
 
@@ -74,18 +80,21 @@ static void cameras_are_the_slides(void **state) {
     snprintf(path, sizeof path, "%s/scenes/lecture/%s.pbrt", VELO_SOURCE_DIR, scenes[k].name);
     assert_int_equal(vl_scene_create(context, &scene), VL_OK);
     if (vl_scene_load(scene, path, NULL, &error) != VL_OK)
-      fail_msg("%s: %s:%u:%u: %s", scenes[k].name, error.file, error.line, error.column, error.message);
+      fail_msg("%s: %s:%u:%u: %s", scenes[k].name, error.file, error.line, error.column,
+               error.message);
     vlCamera camera;
     const char *warning;
     if (vl_camera_make(&vl_scene_defs(scene)->camera, &camera, &warning, &error) != VL_OK)
       fail_msg("%s: %s", scenes[k].name, error.message);
     assert_null(warning);
-    assert_true(fabs(camera.fx / scenes[k].f - 1) < 1e-7 && fabs(camera.fy / scenes[k].f - 1) < 1e-7);
+    assert_true(fabs(camera.fx / scenes[k].f - 1) < 1e-7 &&
+                fabs(camera.fy / scenes[k].f - 1) < 1e-7);
     assert_true(camera.cx == camera.width / 2.0 && camera.cy == camera.height / 2.0);
     const double *m = camera.world_from_camera;
     for (int a = 0; a < 3; a++)
       assert_true(fabs(m[4 * a + 3] - scenes[k].eye[a]) < 1e-6 * (1 + fabs(scenes[k].eye[a])));
-    /* lookat in the middle; what is above it (up = y) above the middle, what is to the right to the right */
+    /* lookat in the middle; what is above it (up = y) above the middle, what is to the right to
+     * the right */
     double pixel[2], z;
     assert_true(vl_camera_project(&camera, scenes[k].lookat, pixel, &z));
     assert_true(fabs(pixel[0] - camera.cx) < 1e-4 && fabs(pixel[1] - camera.cy) < 1e-4);
@@ -108,11 +117,14 @@ static void all_scenes_are_listed(void **state) {
   int seen = 0;
   for (struct dirent *entry; (entry = readdir(folder));) {
     char *dot = strrchr(entry->d_name, '.');
-    if (!dot || strcmp(dot, ".pbrt") != 0) continue;
+    if (!dot || strcmp(dot, ".pbrt") != 0)
+      continue;
     *dot = 0;
     int found = 0;
-    for (int k = 0; k < COUNT; k++) found += strcmp(entry->d_name, scenes[k].name) == 0;
-    if (found != 1) fail_msg("scenes/lecture/%s.pbrt is not checked here", entry->d_name);
+    for (int k = 0; k < COUNT; k++)
+      found += strcmp(entry->d_name, scenes[k].name) == 0;
+    if (found != 1)
+      fail_msg("scenes/lecture/%s.pbrt is not checked here", entry->d_name);
     seen++;
   }
   closedir(folder);
@@ -120,6 +132,7 @@ static void all_scenes_are_listed(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cameras_are_the_slides), cmocka_unit_test(all_scenes_are_listed)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(cameras_are_the_slides),
+                                     cmocka_unit_test(all_scenes_are_listed)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -12,10 +12,13 @@ static void test_bits(void **state) {
   (void)state;
   statRng rng = stat_rng(1);
   for (int k = 0; k < 10000; k++) {
-    uint32_t x = (uint32_t)stat_bits(&rng), reversed = 0, y = (uint32_t)stat_bits(&rng), morton = 0;
-    for (int i = 0; i < 32; i++) reversed |= (x >> i & 1) << (31 - i);
+    uint32_t x = (uint32_t)stat_bits(&rng), reversed = 0, y = (uint32_t)stat_bits(&rng),
+             morton = 0;
+    for (int i = 0; i < 32; i++)
+      reversed |= (x >> i & 1) << (31 - i);
     assert_int_equal(vl_reverse_bits(x), reversed);
-    for (int i = 0; i < 16; i++) morton |= (x >> i & 1) << 2 * i | (y >> i & 1) << (2 * i + 1);
+    for (int i = 0; i < 16; i++)
+      morton |= (x >> i & 1) << 2 * i | (y >> i & 1) << (2 * i + 1);
     assert_int_equal(vl_morton(x & 0xffff, y & 0xffff), morton);
     float u = vl_fraction_float(x);
     assert_true(u >= 0 && u < 1 && fabs(u - x * 0x1p-32) <= 0x1p-24);
@@ -23,12 +26,15 @@ static void test_bits(void **state) {
   uint32_t primes = 0;
   for (uint32_t n = 2; primes < VL_PRIME_COUNT; n++) {
     bool prime = true;
-    for (uint32_t d = 2; d * d <= n; d++) prime = prime && n % d != 0;
-    if (prime) assert_int_equal(vl_primes[primes++], n);
+    for (uint32_t d = 2; d * d <= n; d++)
+      prime = prime && n % d != 0;
+    if (prime)
+      assert_int_equal(vl_primes[primes++], n);
   }
 }
 
-/* Direction numbers of the primitive polynomial x + 1 (Bratley and Fox 1988): m_i = 2 m_{i-1} xor m_{i-1}. */
+/* Direction numbers of the primitive polynomial x + 1 (Bratley and Fox 1988): m_i = 2 m_{i-1}
+ * xor m_{i-1}. */
 static void test_sobol2(void **state) {
   (void)state;
   uint32_t direction[32], m = 1;
@@ -39,12 +45,14 @@ static void test_sobol2(void **state) {
   statRng rng = stat_rng(2);
   for (int k = 0; k < 10000; k++) {
     uint32_t index = k < 1000 ? (uint32_t)k : (uint32_t)stat_bits(&rng), x = 0;
-    for (int i = 0; i < 32; i++) x ^= index >> i & 1 ? direction[i] : 0;
+    for (int i = 0; i < 32; i++)
+      x ^= index >> i & 1 ? direction[i] : 0;
     assert_int_equal(vl_reverse_bits(vl_sobol2_reversed(index)), x);
   }
 }
 
-/* A nested scramble: the top k bits of the result are a permutation of the top k bits; each bit flips half of the time.
+/* A nested scramble: the top k bits of the result are a permutation of the top k bits; each bit
+ * flips half of the time.
  */
 static void test_owen(void **state) {
   (void)state;
@@ -65,10 +73,12 @@ static void test_owen(void **state) {
       uint32_t x = vl_hash(i), seed = vl_hash(i + 12345), up = 1u << 31 >> (bit / 2);
       uint32_t a = vl_owen(x, seed) ^ x, b = vl_owen(x ^ up, seed) ^ x ^ up;
       flips += a >> (31 - bit) & 1;
-      both += (a ^ b) >> (31 - bit) & 1; /* if a bit above differs, the flip differs half of the time */
+      both += (a ^ b) >> (31 - bit) &
+              1; /* if a bit above differs, the flip differs half of the time */
     }
     assert_true(fabs(flips - N * 0.5) < 5 * sqrt(N * 0.25));
-    if (bit > 4) assert_true(fabs(both - N * 0.5) < 0.1 * N);
+    if (bit > 4)
+      assert_true(fabs(both - N * 0.5) < 0.1 * N);
   }
 }
 
@@ -90,17 +100,20 @@ static void test_permutation(void **state) {
     enum { TRIES = 20000 };
     static uint32_t counts[3125];
     uint32_t all = 1, found = 0;
-    for (uint32_t i = 2; i <= n; i++) all *= i;
+    for (uint32_t i = 2; i <= n; i++)
+      all *= i;
     memset(counts, 0, sizeof counts);
     vlPermutation p = vl_permutation(n);
     for (uint32_t t = 0; t < TRIES; t++) {
       uint32_t id = 0;
-      for (uint32_t i = 0; i < n; i++) id = id * n + vl_permute(p, i, t + 1000000 * n);
+      for (uint32_t i = 0; i < n; i++)
+        id = id * n + vl_permute(p, i, t + 1000000 * n);
       counts[id]++;
     }
     statCell cells[120];
     for (int i = 0; i < 3125; i++)
-      if (counts[i]) cells[found++] = (statCell){counts[i], (double)TRIES / all};
+      if (counts[i])
+        cells[found++] = (statCell){counts[i], (double)TRIES / all};
     assert_int_equal(found, all);
     assert_true(stat_accept(stat_chi2(cells, found, 1), 20));
   }
@@ -112,11 +125,13 @@ static void test_permutation(void **state) {
     for (uint32_t second = 1; second < n; second += n / 3) {
       static uint32_t counts[1600];
       memset(counts, 0, sizeof counts);
-      for (uint32_t t = 0; t < 40000; t++) counts[vl_permute(p, 0, t * 3 + n) * n + vl_permute(p, second, t * 3 + n)]++;
+      for (uint32_t t = 0; t < 40000; t++)
+        counts[vl_permute(p, 0, t * 3 + n) * n + vl_permute(p, second, t * 3 + n)]++;
       static statCell cells[1600];
       uint32_t k = 0;
       for (uint32_t i = 0; i < n * n; i++)
-        if (i / n != i % n) cells[k++] = (statCell){counts[i], 40000.0 / (n * (n - 1))};
+        if (i / n != i % n)
+          cells[k++] = (statCell){counts[i], 40000.0 / (n * (n - 1))};
       assert_true(stat_accept(stat_chi2(cells, k, 1), 20));
     }
   }
@@ -135,8 +150,9 @@ static void test_division(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bits),        cmocka_unit_test(test_sobol2),   cmocka_unit_test(test_owen),
-      cmocka_unit_test(test_permutation), cmocka_unit_test(test_division),
+      cmocka_unit_test(test_bits),     cmocka_unit_test(test_sobol2),
+      cmocka_unit_test(test_owen),     cmocka_unit_test(test_permutation),
+      cmocka_unit_test(test_division),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

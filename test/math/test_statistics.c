@@ -1,5 +1,5 @@
-/* The statistical tests themselves: known values of the chi-square distribution; correct samplers pass, slightly wrong
- * ones fail. */
+/* The statistical tests themselves: known values of the chi-square distribution; correct
+ * samplers pass, slightly wrong ones fail. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,7 +28,8 @@ static statResult try_cosine(uint64_t seed, double power, double keep, int n) {
   statRng rng = stat_rng(seed);
   statSphere hist = stat_sphere_new(16, 32);
   for (int i = 0; i < n; i++) {
-    double z = pow(stat_double(&rng), power), phi = 6.283185307179586 * stat_double(&rng), r = sqrt(1 - z * z);
+    double z = pow(stat_double(&rng), power), phi = 6.283185307179586 * stat_double(&rng),
+           r = sqrt(1 - z * z);
     if (stat_double(&rng) < keep)
       stat_sphere_add(hist, r * cos(phi), r * sin(phi), z);
     else
@@ -62,7 +63,8 @@ static void test_pooling(void **state) {
   assert_true(stat_chi2(impossible, 3, 1).p == 0);
   statCell negative[2] = {{50, 50}, {50, -1}};
   assert_true(stat_chi2(negative, 2, 1).p == 0);
-  uint32_t even[8] = {100, 104, 96, 101, 99, 100, 95, 105}, odd[8] = {100, 100, 100, 100, 100, 100, 160, 40};
+  uint32_t even[8] = {100, 104, 96, 101, 99, 100, 95, 105},
+           odd[8] = {100, 100, 100, 100, 100, 100, 160, 40};
   assert_true(stat_chi2_uniform(even, 8).p > 0.5 && stat_chi2_uniform(odd, 8).p < 1e-6);
 }
 

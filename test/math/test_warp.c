@@ -30,7 +30,8 @@ static double triangle_density(void *user, double x, double y) {
 static void test_flat(void **state) {
   (void)state;
   statRng rng = stat_rng(1);
-  statGrid *disk = stat_grid_new(24, 24, -1, 1, -1, 1), *triangle = stat_grid_new(24, 24, 0, 1, 0, 1);
+  statGrid *disk = stat_grid_new(24, 24, -1, 1, -1, 1),
+           *triangle = stat_grid_new(24, 24, 0, 1, 0, 1);
   for (int i = 0; i < COUNT; i++) {
     float u = stat_float(&rng), v = stat_float(&rng);
     vlDiskPoint d = vl_warp_disk(u, v);
@@ -72,9 +73,11 @@ static void test_directions(void **state) {
   statRng rng = stat_rng(2);
   enum { CONES = 5 };
   float cones[CONES] = {1, 0.5f, 0.125f, 1.5f, 2};
-  statSphere cosine = stat_sphere_new(32, 32), sphere = stat_sphere_new(32, 32), octahedral = stat_sphere_new(32, 32);
+  statSphere cosine = stat_sphere_new(32, 32), sphere = stat_sphere_new(32, 32),
+             octahedral = stat_sphere_new(32, 32);
   statSphere cone[CONES];
-  for (int k = 0; k < CONES; k++) cone[k] = stat_sphere_new(48, 32);
+  for (int k = 0; k < CONES; k++)
+    cone[k] = stat_sphere_new(48, 32);
   for (int i = 0; i < COUNT; i++) {
     float u = stat_float(&rng), v = stat_float(&rng);
     vlVec3 w = vl_warp_cosine_hemisphere(u, v);
@@ -89,20 +92,23 @@ static void test_directions(void **state) {
       assert_true(1 - w.z <= cones[k] + 1e-6f);
       stat_sphere_add(cone[k], w.x, w.y, w.z);
       back = vl_unwarp_cone(w, cones[k]);
-      if (w.z > -0.9f) assert_true(fabsf(back.x - u) < 2e-6f && fabsf(back.y - v) < 2e-6f);
+      if (w.z > -0.9f)
+        assert_true(fabsf(back.x - u) < 2e-6f && fabsf(back.y - v) < 2e-6f);
     }
     w = vl_warp_sphere(u, v);
     assert_unit(w);
     stat_sphere_add(sphere, w.x, w.y, w.z);
     back = vl_unwarp_sphere(w);
     assert_true(fabsf(back.x - u) < 1e-6f);
-    if (u > 1e-4f && u < 1 - 1e-4f) assert_true(fabsf(back.y - v) < 1e-5f || fabsf(back.y - v) > 1 - 1e-5f);
+    if (u > 1e-4f && u < 1 - 1e-4f)
+      assert_true(fabsf(back.y - v) < 1e-5f || fabsf(back.y - v) > 1 - 1e-5f);
     w = vl_octahedral_decode(u, v);
     assert_unit(w);
     stat_sphere_add(octahedral, w.x, w.y, w.z);
     back = vl_octahedral_encode(w);
     /* near the poles 1 - |z| has few bits left; on the outer edge the square meets itself */
-    if (fabsf(w.z) < 0.999f) assert_true(fabsf(back.x - u) < 2e-5f && fabsf(back.y - v) < 2e-5f);
+    if (fabsf(w.z) < 0.999f)
+      assert_true(fabsf(back.x - u) < 2e-5f && fabsf(back.y - v) < 2e-5f);
   }
   statResult r = stat_sphere_test(cosine, cosine_pdf, NULL, 0);
   assert_true(stat_accept(r, TESTS) && fabs(r.integral - 1) < 1e-6);
@@ -131,7 +137,8 @@ static void test_small_cone(void **state) {
   assert_true(fabs(sum / 10000 / (sin_max * sin_max) - 0.5) < 0.01);
 }
 
-/* The equal-area map as pbrt draws it (book, figure 3.8.3): corners and middles of the square. */
+/* The equal-area map as pbrt draws it (book, figure 3.8.3): corners and middles of the square.
+ */
 static void test_octahedral_convention(void **state) {
   (void)state;
   static const struct {
@@ -162,7 +169,8 @@ typedef struct Triangle {
 static double spherical_pdf(void *user, const double d[3]) {
   const Triangle *t = user;
   for (int k = 0; k < 3; k++)
-    if (t->n[k][0] * d[0] + t->n[k][1] * d[1] + t->n[k][2] * d[2] < 0) return 0;
+    if (t->n[k][0] * d[0] + t->n[k][1] * d[1] + t->n[k][2] * d[2] < 0)
+      return 0;
   return t->pdf;
 }
 static vlVec3 unit(double x, double y, double z) {
@@ -174,7 +182,8 @@ static void side_normal(vlVec3 a, vlVec3 b, vlVec3 inside, double n[3]) {
   n[1] = (double)a.z * b.x - (double)a.x * b.z;
   n[2] = (double)a.x * b.y - (double)a.y * b.x;
   double side = n[0] * inside.x + n[1] * inside.y + n[2] * inside.z;
-  for (int k = 0; k < 3; k++) n[k] *= side < 0 ? -1 : 1;
+  for (int k = 0; k < 3; k++)
+    n[k] *= side < 0 ? -1 : 1;
 }
 
 static void test_spherical_triangle(void **state) {
@@ -189,40 +198,49 @@ static void test_spherical_triangle(void **state) {
   statRng rng = stat_rng(4);
   for (size_t k = 0; k < sizeof corners / sizeof corners[0]; k++)
     for (int turn = 0; turn < 3; turn++) {
-      vlVec3 a = corners[k][turn], b = corners[k][(turn + 1) % 3], c = corners[k][(turn + 2) % 3];
+      vlVec3 a = corners[k][turn], b = corners[k][(turn + 1) % 3],
+             c = corners[k][(turn + 2) % 3];
       vlSphericalTriangle s = vl_spherical_triangle(a, b, c);
-      if (k == 0) assert_true(fabs(s.solid_angle - 1.5707963) < 1e-6);
+      if (k == 0)
+        assert_true(fabs(s.solid_angle - 1.5707963) < 1e-6);
       Triangle t = {.pdf = 1.0 / s.solid_angle};
       side_normal(a, b, c, t.n[0]);
       side_normal(b, c, a, t.n[1]);
       side_normal(c, a, b, t.n[2]);
-      /* Histogram over the bounding box of angles that the samples fill, so that cells are small beside the triangle */
+      /* Histogram over the bounding box of angles that the samples fill, so that cells are
+       * small beside the triangle */
       static double phi[COUNT / 4], theta[COUNT / 4];
       double box[4] = {10, -10, 10, -10};
       for (int i = 0; i < COUNT / 4; i++) {
         vlVec3 w = vl_warp_spherical_triangle(s, stat_float(&rng), stat_float(&rng));
         assert_unit(w);
-        for (int e = 0; e < 3; e++) assert_true(t.n[e][0] * w.x + t.n[e][1] * w.y + t.n[e][2] * w.z > -1e-6);
+        for (int e = 0; e < 3; e++)
+          assert_true(t.n[e][0] * w.x + t.n[e][1] * w.y + t.n[e][2] * w.z > -1e-6);
         phi[i] = atan2(w.y, w.x), theta[i] = acos(w.z);
-        if (k == 4 && phi[i] < 0) phi[i] += 6.283185307179586;
+        if (k == 4 && phi[i] < 0)
+          phi[i] += 6.283185307179586;
         box[0] = fmin(box[0], phi[i]), box[1] = fmax(box[1], phi[i]);
         box[2] = fmin(box[2], theta[i]), box[3] = fmax(box[3], theta[i]);
       }
       double rim_x = 0.01 * (box[1] - box[0]), rim_y = 0.01 * (box[3] - box[2]);
       box[0] -= rim_x, box[1] += rim_x;
-      if (box[1] - box[0] > 6.2) box[0] = -3.14159265358979, box[1] = 3.14159265358979; /* all around */
-      statGrid *grid =
-          stat_grid_new(20, 20, box[0], box[1], fmax(0, box[2] - rim_y), fmin(3.14159265358979, box[3] + rim_y));
-      for (int i = 0; i < COUNT / 4; i++) stat_grid_add(grid, phi[i], theta[i]);
+      if (box[1] - box[0] > 6.2)
+        box[0] = -3.14159265358979, box[1] = 3.14159265358979; /* all around */
+      statGrid *grid = stat_grid_new(20, 20, box[0], box[1], fmax(0, box[2] - rim_y),
+                                     fmin(3.14159265358979, box[3] + rim_y));
+      for (int i = 0; i < COUNT / 4; i++)
+        stat_grid_add(grid, phi[i], theta[i]);
       statSphereUser user = {spherical_pdf, &t};
       statResult r = stat_grid_test(grid, stat_sphere_density, &user, 3e-6);
-      if (!stat_accept(r, TESTS)) fail_msg("triangle %zu from corner %d", k, turn);
+      if (!stat_accept(r, TESTS))
+        fail_msg("triangle %zu from corner %d", k, turn);
       assert_true(fabs(r.integral - 1) < 2e-3);
     }
   /* u = 0, v = 0 and the rest of the border */
   vlSphericalTriangle s = vl_spherical_triangle(corners[2][0], corners[2][1], corners[2][2]);
   for (int i = 0; i < 4; i++) {
-    vlVec3 w = vl_warp_spherical_triangle(s, i & 1 ? VL_ONE_MINUS_EPSILON : 0, i & 2 ? VL_ONE_MINUS_EPSILON : 0);
+    vlVec3 w = vl_warp_spherical_triangle(s, i & 1 ? VL_ONE_MINUS_EPSILON : 0,
+                                          i & 2 ? VL_ONE_MINUS_EPSILON : 0);
     assert_unit(w);
   }
   vlSphericalTriangle flat = vl_spherical_triangle(corners[0][0], corners[0][0], corners[0][1]);

@@ -1,4 +1,5 @@
-/* test/render/fog.h: participating media for a stage: their defs, and spheres that contain them. */
+/* test/render/fog.h: participating media for a stage: their defs, and spheres that contain
+ * them. */
 #ifndef TEST_RENDER_FOG_H
 #define TEST_RENDER_FOG_H
 
@@ -8,7 +9,8 @@
 static UNUSED vlMediumId add_medium(Stage *s, const vlMediumDef *def) {
   vlMediumId id = vl_scene_add_medium(s->scene, def);
   vlError error;
-  if (vl_scene_result(s->scene, &error) != VL_OK) fail_msg("medium: %s", error.message);
+  if (vl_scene_result(s->scene, &error) != VL_OK)
+    fail_msg("medium: %s", error.message);
   return id;
 }
 
@@ -17,8 +19,8 @@ static UNUSED vlMaterialId interface(Stage *s) {
   return vl_scene_add_material(s->scene, &def);
 }
 
-static UNUSED void add_ball(Stage *s, float z, float radius, vlMaterialId material, vlMediumId inside,
-                            vlMediumId outside) {
+static UNUSED void add_ball(Stage *s, float z, float radius, vlMaterialId material,
+                            vlMediumId inside, vlMediumId outside) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   def.radius = radius, def.z_min = -radius, def.z_max = radius;
   set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z);

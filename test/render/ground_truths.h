@@ -1,5 +1,5 @@
-/* test/render/ground_truths.h: ground truth of a stage (shots.h): rendered, read by channel and pixel, compared bit by
- * bit. */
+/* test/render/ground_truths.h: ground truth of a stage (shots.h): rendered, read by channel and
+ * pixel, compared bit by bit. */
 #ifndef TEST_RENDER_GROUND_TRUTHS_H
 #define TEST_RENDER_GROUND_TRUTHS_H
 
@@ -20,8 +20,10 @@ static UNUSED GroundTruth ground_truth_begin(Stage *s) {
   GroundTruth t;
   memset(&t, 0, sizeof t);
   vlError error = {0};
-  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
-  if (vl_camera_make(&s->camera, &t.camera, NULL, &error) != VL_OK) fail_msg("camera: %s", error.message);
+  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK)
+    fail_msg("build: %s", error.message);
+  if (vl_camera_make(&s->camera, &t.camera, NULL, &error) != VL_OK)
+    fail_msg("camera: %s", error.message);
   return t;
 }
 
@@ -39,7 +41,8 @@ static UNUSED void ground_truth_free(GroundTruth *t) {
   vl_world_destroy(t->world);
 }
 
-static UNUSED const float *place(const GroundTruth *t, uint32_t x, uint32_t y, const char *name) {
+static UNUSED const float *place(const GroundTruth *t, uint32_t x, uint32_t y,
+                                 const char *name) {
   int channel = vl_image_find_channel(t->floats, name);
   assert_true(channel >= 0);
   return (const float *)vl_image_const_pixels(t->floats) +
@@ -53,7 +56,8 @@ static UNUSED uint32_t id(const GroundTruth *t, uint32_t x, uint32_t y, const ch
   assert_true(channel >= 0);
   assert_int_equal(vl_image_type(t->ids), VL_PIXEL_U32);
   const uint32_t *pixels = vl_image_const_pixels(t->ids);
-  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
+  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) +
+                (size_t)channel];
 }
 
 /* Expects b to equal a from pixel (dx, dy) on. */
@@ -67,23 +71,25 @@ static UNUSED void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, ui
                           q + ((size_t)y * vl_image_width(b) + x) * step, step * sizeof *p);
 }
 
-/* An empty stage with the same defs on that instruction set and with other numbers of threads. False: the machine does
- * not have it. */
+/* An empty stage with the same defs on that instruction set and with other numbers of threads.
+ * False: the machine does not have it. */
 static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
   *other = *s;
   vlContextDef def = vl_default_context_def();
   def.threads = isa == VL_ISA_BASE ? 1 : 3;
   def.isa = (vlIsa)isa;
   vlResult made = vl_context_create(&def, &other->context);
-  if (made == VL_ERROR_UNSUPPORTED) return false;
+  if (made == VL_ERROR_UNSUPPORTED)
+    return false;
   assert_int_equal(made, VL_OK);
   assert_int_equal(vl_scene_create(other->context, &other->scene), VL_OK);
   return true;
 }
 
-/* Fills and builds a 16 x 8 stage by `fill` and `begin`, then calls `take` while each allocation in turn fails. It must
- * report the failure and leak nothing. */
-static UNUSED void ground_truth_out_of_memory(void (*fill)(Stage *s), GroundTruth (*begin)(Stage *s),
+/* Fills and builds a 16 x 8 stage by `fill` and `begin`, then calls `take` while each
+ * allocation in turn fails. It must report the failure and leak nothing. */
+static UNUSED void ground_truth_out_of_memory(void (*fill)(Stage *s),
+                                              GroundTruth (*begin)(Stage *s),
                                               vlResult (*take)(Stage *s, GroundTruth *t)) {
   bool done = false;
   for (long n = 1; !done; n++) {

@@ -1,5 +1,5 @@
-/* test/render/lamp_room.h: what the tests of inner connections share: parts of a closed room whose lamp stands in a
- * shade, so that most light is indirect; its noise; a white furnace. */
+/* test/render/lamp_room.h: what the tests of inner connections share: parts of a closed room
+ * whose lamp stands in a shade, so that most light is indirect; its noise; a white furnace. */
 #ifndef TEST_RENDER_LAMP_ROOM_H
 #define TEST_RENDER_LAMP_ROOM_H
 
@@ -7,7 +7,8 @@
 #include "shots.h"
 
 /* A tube that is closed below. */
-static UNUSED void add_tube(Stage *s, float y, float height, float radius, vlMaterialId material) {
+static UNUSED void add_tube(Stage *s, float y, float height, float radius,
+                            vlMaterialId material) {
   for (int k = 0; k < 2; k++) { /* the tube and its bottom */
     vlShapeDef def = vl_default_shape_def(k ? VL_SHAPE_DISK : VL_SHAPE_CYLINDER);
     def.radius = radius, def.z_min = 0, def.z_max = height, def.height = 0;
@@ -17,7 +18,8 @@ static UNUSED void add_tube(Stage *s, float y, float height, float radius, vlMat
   }
 }
 
-static UNUSED void add_ball_of(Stage *s, float x, float y, float radius, vlMaterialId material, vlEmissionId emission) {
+static UNUSED void add_ball_of(Stage *s, float x, float y, float radius, vlMaterialId material,
+                               vlEmissionId emission) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, -3);
   def.radius = radius, def.z_min = -radius, def.z_max = radius;
@@ -67,7 +69,8 @@ static UNUSED void add_furnace(Stage *s) {
 /* The bidirectional radiance of a furnace is `times` its emission everywhere. */
 static UNUSED void assert_furnace(MakeStage *furnace, const void *user, double times) {
   Stage s = furnace(user, VL_TRACER_RAYCAST);
-  s.render.tracer = VL_TRACER_RAYCAST, s.render.spp = 256; /* emission of 1 in the colours of the film */
+  s.render.tracer = VL_TRACER_RAYCAST,
+  s.render.spp = 256; /* emission of 1 in the colours of the film */
   Image one = stage_finish(&s);
   Measure m = measure(furnace, user, VL_TRACER_BIDIRECTIONAL);
   for (int c = 0; c < AGREEMENT_CHANNELS; c++)

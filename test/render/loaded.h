@@ -1,4 +1,5 @@
-/* test/render/loaded.h: a scene file as a world and a camera, for tests that render it several times. */
+/* test/render/loaded.h: a scene file as a world and a camera, for tests that render it several
+ * times. */
 #ifndef TEST_RENDER_LOADED_H
 #define TEST_RENDER_LOADED_H
 
@@ -29,13 +30,17 @@ static inline bool load_world(Loaded *l, const char *name, uint32_t width, uint3
   char path[600];
   def.threads = 2;
   *l = (Loaded){.context = NULL};
-  if (vl_context_create(&def, &l->context) != VL_OK || vl_scene_create(l->context, &scene) != VL_OK) return false;
+  if (vl_context_create(&def, &l->context) != VL_OK ||
+      vl_scene_create(l->context, &scene) != VL_OK)
+    return false;
   snprintf(path, sizeof path, "%s/scenes/%s", VELO_SOURCE_DIR, name);
   vlResult result = vl_scene_load(scene, path, NULL, &error);
   vlCameraDef camera_def = vl_scene_defs(scene)->camera;
   camera_def.width = width, camera_def.height = height;
-  if (result == VL_OK) result = vl_camera_make(&camera_def, &l->camera, NULL, &error);
-  if (result == VL_OK) result = vl_world_build(scene, NULL, &l->world, &error);
+  if (result == VL_OK)
+    result = vl_camera_make(&camera_def, &l->camera, NULL, &error);
+  if (result == VL_OK)
+    result = vl_world_build(scene, NULL, &l->world, &error);
   vl_scene_destroy(scene);
   return result == VL_OK;
 }

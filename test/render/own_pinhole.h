@@ -1,4 +1,5 @@
-/* render/own_pinhole.h: a camera of one's own that is velo's perspective camera of the small world (api/small_world.h).
+/* render/own_pinhole.h: a camera of one's own that is velo's perspective camera of the small
+ * world (api/small_world.h).
  */
 #ifndef TEST_RENDER_OWN_PINHOLE_H
 #define TEST_RENDER_OWN_PINHOLE_H
@@ -21,7 +22,8 @@ static void pinhole_rays(void *user, const vlOwnFilmPoints *points, const vlOwnR
 static void pinhole_pixels(void *user, const vlOwnSpacePoints *points) {
   const Pinhole *p = user;
   for (uint32_t i = 0; i < points->count; i++) {
-    if (!(points->z[i] > 0)) continue;
+    if (!(points->z[i] > 0))
+      continue;
     points->film_x[i] = p->focal * points->x[i] / points->z[i] + 0.5 * points->width;
     points->film_y[i] = p->focal * points->y[i] / points->z[i] + 0.5 * points->height;
   }

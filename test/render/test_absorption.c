@@ -1,5 +1,6 @@
-/* Absorption by RGB channel (vlMediumDef.rgb_absorption): each channel of white light is multiplied by exp(-sigma_a x),
- * in both colour modes, for every tracer, for any depth and any number of segments. */
+/* Absorption by RGB channel (vlMediumDef.rgb_absorption): each channel of white light is
+ * multiplied by exp(-sigma_a x), in both colour modes, for every tracer, for any depth and any
+ * number of segments. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -14,7 +15,8 @@ static const double attenuation[3] = {0.8, 0.95, 1.0}; /* over a unit of depth *
 static vlMediumId glass_of(Stage *s, double depth, const double color[3], float scattering) {
   vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
   float sigma[3];
-  for (int c = 0; c < 3; c++) sigma[c] = (float)(-log(color[c]) * depth / 2);
+  for (int c = 0; c < 3; c++)
+    sigma[c] = (float)(-log(color[c]) * depth / 2);
   def.sigma_a = vl_spectrum_rgb(sigma[0], sigma[1], sigma[2]);
   def.sigma_s = vl_spectrum_constant(scattering);
   def.rgb_absorption = true;
@@ -48,10 +50,12 @@ static void one_piece(void **state) {
       for (int mode = 0; mode < 2; mode++) {
         Stage s = open_stage((vlColorMode)mode, tracers[k], 16, 256);
         s.camera.fov = 0.02;
-        add_ball(&s, -3, 1, interface(&s), glass_of(&s, depths[d], attenuation, 0), (vlMediumId){0});
+        add_ball(&s, -3, 1, interface(&s), glass_of(&s, depths[d], attenuation, 0),
+                 (vlMediumId){0});
         Image p = stage_finish(&s);
         double expected[3];
-        for (int c = 0; c < 3; c++) expected[c] = pow(attenuation[c], depths[d]);
+        for (int c = 0; c < 3; c++)
+          expected[c] = pow(attenuation[c], depths[d]);
         assert_law(mode ? "a slab, RGB" : "a slab, spectral", &p, expected);
         image_free(&p);
       }
@@ -65,26 +69,30 @@ static void several_pieces(void **state) {
     Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, 16, 256);
     s.camera.fov = 0.02;
     double expected[3];
-    for (int c = 0; c < 3; c++) expected[c] = pow(attenuation[c], depth[0] + depth[2]) * pow(other[c], depth[1]);
+    for (int c = 0; c < 3; c++)
+      expected[c] = pow(attenuation[c], depth[0] + depth[2]) * pow(other[c], depth[1]);
     for (int k = 0; k < 3; k++)
-      add_ball(&s, -3 - 3 * (float)k, 1, interface(&s), glass_of(&s, depth[k], k == 1 ? other : attenuation, 0),
-               (vlMediumId){0});
+      add_ball(&s, -3 - 3 * (float)k, 1, interface(&s),
+               glass_of(&s, depth[k], k == 1 ? other : attenuation, 0), (vlMediumId){0});
     Image p = stage_finish(&s);
     assert_law("three in a row", &p, expected);
     image_free(&p);
   }
 }
 
-/* The camera and a lamp are in the medium, 2 in front of a wall, so light crosses the medium twice. `merged`: most
- * of the light is found by light paths that merge with camera paths at the wall. */
+/* The camera and a lamp are in the medium, 2 in front of a wall, so light crosses the medium
+ * twice. `merged`: most of the light is found by light paths that merge with camera paths at
+ * the wall. */
 static void see_wall(bool merged, bool absorbs, double mean[3]) {
   Stage s = stage_open(8, 8);
   s.camera.fov = 0.02;
   s.render.spp = 1024;
   s.render.tracer = merged ? VL_TRACER_MERGING : VL_TRACER_VOLPATH;
-  if (merged) s.render.merge_radius = 0.4, s.render.light_paths = 512;
+  if (merged)
+    s.render.merge_radius = 0.4, s.render.light_paths = 512;
   vlMediumDef none = fog(0, 0, 0);
-  vlMediumId medium = absorbs ? glass_of(&s, 2 * 5, attenuation, 0) : add_medium(&s, &none); /* 5 units a length of 1 */
+  vlMediumId medium = absorbs ? glass_of(&s, 2 * 5, attenuation, 0)
+                              : add_medium(&s, &none); /* 5 units a length of 1 */
   vl_scene_defs(s.scene)->camera_medium = medium;
   add_ball(&s, -102, 100, add_diffuse(&s, 0.5f, 0.5f, 0.5f), (vlMediumId){0}, medium);
   vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);
@@ -92,11 +100,13 @@ static void see_wall(bool merged, bool absorbs, double mean[3]) {
   lamp.medium = medium;
   assert_int_not_equal(vl_scene_add_light(s.scene, &lamp).index, 0);
   Image p = stage_finish(&s);
-  for (int c = 0; c < 3; c++) mean[c] = image_mean(&p, c);
+  for (int c = 0; c < 3; c++)
+    mean[c] = image_mean(&p, c);
   image_free(&p);
 }
 
-/* merged: where the disk is wide, paths are a little longer, so a few percent more light is absorbed. */
+/* merged: where the disk is wide, paths are a little longer, so a few percent more light is
+ * absorbed. */
 static void there_and_back(void **state) {
   (void)state;
   for (int merged = 0; merged < 2; merged++) {
@@ -105,17 +115,20 @@ static void there_and_back(void **state) {
     for (int c = 0; c < 3; c++) { /* 2 there, 2 back */
       double expected = pow(attenuation[c], 4 * 5), value = seen[c] / clear[c];
       if (fabs(value - expected) > (merged ? 0.03 : 0.01) * expected + 2e-3)
-        fail_msg("%s: channel %d: %.5f, expected %.5f", merged ? "merged" : "asked for", c, value, expected);
+        fail_msg("%s: channel %d: %.5f, expected %.5f", merged ? "merged" : "asked for", c,
+                 value, expected);
     }
   }
 }
 
-static void add_box(Stage *s, const float low[3], const float high[3], vlMaterialId material, vlMediumId inside) {
+static void add_box(Stage *s, const float low[3], const float high[3], vlMaterialId material,
+                    vlMediumId inside) {
   float p[24];
   static const uint32_t faces[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                      2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   for (int i = 0; i < 8; i++)
-    for (int k = 0; k < 3; k++) p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
+    for (int k = 0; k < 3; k++)
+      p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.positions = p, def.vertices = 8;
   def.indices = faces, def.faces = 12;
@@ -132,7 +145,8 @@ static void assert_same_law(const char *what, const Image images[2]) {
   }
 }
 
-/* From inside a glass rod, light arrives through the end of the rod after many total internal reflections. */
+/* From inside a glass rod, light arrives through the end of the rod after many total internal
+ * reflections. */
 static void total_reflection(void **state) {
   (void)state;
   Image images[2];
@@ -143,18 +157,19 @@ static void total_reflection(void **state) {
     s.render.max_depth = 60;
     vlMaterialDef glass = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
     vlMediumId inside = glass_of(&s, 4, attenuation, 0);
-    add_box(&s, (float[3]){-0.2f, -0.2f, -4}, (float[3]){0.2f, 0.2f, 1}, vl_scene_add_material(s.scene, &glass),
-            inside);
+    add_box(&s, (float[3]){-0.2f, -0.2f, -4}, (float[3]){0.2f, 0.2f, 1},
+            vl_scene_add_material(s.scene, &glass), inside);
     vl_scene_defs(s.scene)->camera_medium = inside;
     images[mode] = stage_finish(&s);
   }
   assert_true(image_mean(&images[1], 0) < 0.5 * image_mean(&images[1], 2)); /* it is deep */
   assert_same_law("a rod", images);
-  for (int mode = 0; mode < 2; mode++) image_free(&images[mode]);
+  for (int mode = 0; mode < 2; mode++)
+    image_free(&images[mode]);
 }
 
-/* Scattering in a coloured ball with a grey ball inside. Paths have many segments, which the tracers connect in many
- * ways. */
+/* Scattering in a coloured ball with a grey ball inside. Paths have many segments, which the
+ * tracers connect in many ways. */
 static void scattered(void **state) {
   (void)state;
   const vlTracer tracers[3] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
@@ -174,15 +189,17 @@ static void scattered(void **state) {
     }
     assert_true(image_mean(&images[1], 0) < 0.4 * image_mean(&images[1], 2));
     assert_same_law(k == 0 ? "volpath" : k == 1 ? "bidirectional" : "merging", images);
-    for (int mode = 0; mode < 2; mode++) image_free(&images[mode]);
+    for (int mode = 0; mode < 2; mode++)
+      image_free(&images[mode]);
   }
 }
 
-/* The tint of a principled solid (MTL's Tf, glTF's base colour) is applied at both crossings, whatever lies between
- * them. The tint of a sheet is applied once. */
+/* The tint of a principled solid (MTL's Tf, glTF's base colour) is applied at both crossings,
+ * whatever lies between them. The tint of a sheet is applied once. */
 static void tints(void **state) {
   (void)state;
-  static const float colors[3][3] = {{0.8f, 0.95f, 1.0f}, {0.9f, 0.5f, 0.1f}, {0.2f, 0.6f, 0.3f}};
+  static const float colors[3][3] = {
+      {0.8f, 0.95f, 1.0f}, {0.9f, 0.5f, 0.1f}, {0.2f, 0.6f, 0.3f}};
   static const float depths[3] = {0.01f, 1.0f, 100.0f};
   for (int k = 0; k < 3; k++)
     for (int d = 0; d < 4; d++) /* the last: a sheet */
@@ -190,7 +207,8 @@ static void tints(void **state) {
         Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, 16, 256);
         s.camera.fov = 0.02;
         vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
-        def.reflectance = vl_spectrum_input(vl_spectrum_rgb(colors[k][0], colors[k][1], colors[k][2]));
+        def.reflectance =
+            vl_spectrum_input(vl_spectrum_rgb(colors[k][0], colors[k][1], colors[k][2]));
         def.eta = vl_spectrum_input(vl_spectrum_constant(d == 0 ? 1.0f : 1.01f));
         def.principled.metallic = vl_float_input(0);
         def.principled.transmission = vl_float_input(1);
@@ -202,10 +220,12 @@ static void tints(void **state) {
         if (d == 3)
           add_quad(&s, &sheet);
         else
-          add_box(&s, (float[3]){-900, -900, -2 - depths[d]}, (float[3]){900, 900, -2}, glass, (vlMediumId){0});
+          add_box(&s, (float[3]){-900, -900, -2 - depths[d]}, (float[3]){900, 900, -2}, glass,
+                  (vlMediumId){0});
         Image p = stage_finish(&s);
         double expected[3];
-        for (int c = 0; c < 3; c++) expected[c] = pow((double)colors[k][c], d == 3 ? 1 : 2);
+        for (int c = 0; c < 3; c++)
+          expected[c] = pow((double)colors[k][c], d == 3 ? 1 : 2);
         assert_law(mode ? "a tint, RGB" : "a tint, spectral", &p, expected);
         image_free(&p);
       }
@@ -221,21 +241,25 @@ static void tint_of_mtl(void **state) {
   snprintf(mtl, sizeof mtl, "%s/slab.mtl", folder);
   FILE *file = fopen(mtl, "w");
   assert_non_null(file);
-  fputs("newmtl glass\nKd 0 0 0\nKs 0 0 0\nNs 100000000\nNi 1.01\nillum 7\nTf 0.9 0.5 0.1\n", file);
+  fputs("newmtl glass\nKd 0 0 0\nKs 0 0 0\nNs 100000000\nNi 1.01\nillum 7\nTf 0.9 0.5 0.1\n",
+        file);
   fclose(file);
   assert_non_null(file = fopen(obj, "w"));
   fputs("mtllib slab.mtl\nusemtl glass\n", file);
-  for (int i = 0; i < 8; i++) fprintf(file, "v %d %d %d\n", i & 1 ? 9 : -9, i & 2 ? 9 : -9, i & 4 ? -2 : -5);
+  for (int i = 0; i < 8; i++)
+    fprintf(file, "v %d %d %d\n", i & 1 ? 9 : -9, i & 2 ? 9 : -9, i & 4 ? -2 : -5);
   fputs("f 5 6 8 7\nf 2 1 3 4\nf 6 2 4 8\nf 1 5 7 3\nf 7 8 4 3\nf 1 2 6 5\n", file);
   fclose(file);
   for (int mode = 0; mode < 2; mode++) {
     Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, 16, 256);
     vlError error = {0};
     s.camera.fov = 0.02;
-    if (vl_scene_load(s.scene, obj, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+    if (vl_scene_load(s.scene, obj, NULL, &error) != VL_OK)
+      fail_msg("%s", error.message);
     Image p = stage_finish(&s);
     double expected[3];
-    for (int c = 0; c < 3; c++) expected[c] = color[c] * color[c];
+    for (int c = 0; c < 3; c++)
+      expected[c] = color[c] * color[c];
     assert_law(mode ? "Tf, RGB" : "Tf, spectral", &p, expected);
     image_free(&p);
   }
@@ -247,10 +271,13 @@ static void refused(void **state) {
   (void)state;
   for (int what = 0; what < 3; what++) {
     Stage s = stage_open(4, 4);
-    vlMediumDef def = vl_default_medium_def(what == 0 ? VL_MEDIUM_CLOUD : VL_MEDIUM_HOMOGENEOUS);
+    vlMediumDef def =
+        vl_default_medium_def(what == 0 ? VL_MEDIUM_CLOUD : VL_MEDIUM_HOMOGENEOUS);
     def.rgb_absorption = true;
-    if (what == 1) def.sigma_a = vl_spectrum_blackbody(5000);
-    if (what == 2) def.emission = vl_spectrum_rgb(1, 0, 0);
+    if (what == 1)
+      def.sigma_a = vl_spectrum_blackbody(5000);
+    if (what == 2)
+      def.emission = vl_spectrum_rgb(1, 0, 0);
     assert_int_equal(vl_scene_add_medium(s.scene, &def).index, 0);
     assert_int_equal(vl_scene_result(s.scene, NULL), VL_ERROR_SCENE);
     stage_close(&s);

@@ -1,5 +1,6 @@
-/* Adaptive sampling: for every tracer, a film whose blocks have different numbers of samples is filled up to the film
- * of a plain render; a threshold that every block is below stops all at the first comparison; wrong defs. */
+/* Adaptive sampling: for every tracer, a film whose blocks have different numbers of samples is
+ * filled up to the film of a plain render; a threshold that every block is below stops all at
+ * the first comparison; wrong defs. */
 #include "loaded.h"
 #include "velo/render.h"
 
@@ -59,7 +60,8 @@ static void filled(void **state) {
     assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, &stats, NULL), VL_OK);
     assert_true(stats.mean_spp == 40 && stats.noisy_blocks == 0);
     assert_int_equal(vl_render(loaded.world, &loaded.camera, whole, &def, NULL, NULL), VL_OK);
-    if (!same(parts, whole)) fail_msg("tracer %d: the filled film differs", tracer);
+    if (!same(parts, whole))
+      fail_msg("tracer %d: the filled film differs", tracer);
     vl_film_destroy(parts);
     vl_film_destroy(whole);
   }
@@ -72,7 +74,8 @@ static void first_comparison(void **state) {
   vlRenderDef def = render_def(VL_TRACER_PATH, 0.9, 1000);
   vlRenderStats stats;
   assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, &stats, NULL), VL_OK);
-  assert_int_equal(stats.spp, 9); /* compared at 8; one more that knows nothing of the decision */
+  assert_int_equal(stats.spp,
+                   9); /* compared at 8; one more that knows nothing of the decision */
   assert_true(stats.mean_spp == 9 && stats.noisy_blocks == 0);
   def.noise = 1e-9;
   def.spp = 24;
@@ -86,22 +89,27 @@ static void wrong_defs(void **state) {
   vlFilm *plain = make_film(false), *film = make_film(true);
   vlError error;
   vlRenderDef def = render_def(VL_TRACER_PATH, 0.1, 4);
-  assert_int_equal(vl_render(loaded.world, &loaded.camera, plain, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, plain, &def, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   def.noise = -1;
-  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   def.noise = 0.1;
   def.first_sample = 2;
-  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   def.first_sample = 0;
   def.noise_scale = 0;
-  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "noise"));
   vl_film_destroy(plain);
   vl_film_destroy(film);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(filled), cmocka_unit_test(first_comparison),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(filled),
+                                     cmocka_unit_test(first_comparison),
                                      cmocka_unit_test(wrong_defs)};
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -1,5 +1,6 @@
-/* Images of known value: closed spheres with light inside (pbrt's analytic integrator tests), white furnaces, solid
- * angles. Means over the whole image are compared with the exact number. */
+/* Images of known value: closed spheres with light inside (pbrt's analytic integrator tests),
+ * white furnaces, solid angles. Means over the whole image are compared with the exact number.
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,7 +27,8 @@ static Bench begin(void) {
   return b;
 }
 
-static vlShapeId add_sphere(Bench *b, double radius, vlMaterialId material, vlEmissionId emission, bool inside_out) {
+static vlShapeId add_sphere(Bench *b, double radius, vlMaterialId material,
+                            vlEmissionId emission, bool inside_out) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   def.radius = (float)radius;
   def.z_min = (float)-radius;
@@ -38,7 +40,8 @@ static vlShapeId add_sphere(Bench *b, double radius, vlMaterialId material, vlEm
 }
 
 /* A sphere of triangles: a subdivided octahedron, its vertices on the sphere. */
-static void add_mesh_sphere(Bench *b, float radius, vlMaterialId material, vlEmissionId emission, bool inside_out) {
+static void add_mesh_sphere(Bench *b, float radius, vlMaterialId material,
+                            vlEmissionId emission, bool inside_out) {
   enum { N = 24 };
   static float p[(N + 1) * (2 * N + 1) * 3];
   static uint32_t index[N * 2 * N * 6];
@@ -92,7 +95,9 @@ typedef struct Shot {
   vlColorMode color;
 } Shot;
 
-/* Renders and returns the means of R, G, B; extremes of G in range, if asked for. Frees the bench. */
+/* Renders and returns the means of R, G, B; extremes of G in range, if asked for. Frees the
+ * bench.
+ */
 static void finish(Bench *b, Shot shot, double mean[3], double range[2]) {
   vlBuildDef build = vl_default_build_def();
   build.color = shot.color;
@@ -121,13 +126,16 @@ static void finish(Bench *b, Shot shot, double mean[3], double range[2]) {
   double low = INFINITY, high = -INFINITY;
   for (uint32_t y = 0; y < shot.size; y++)
     for (uint32_t x = 0; x < shot.size; x++) {
-      for (uint32_t c = 0; c < 3; c++) mean[c] += vl_image_get(image, x, y, c);
+      for (uint32_t c = 0; c < 3; c++)
+        mean[c] += vl_image_get(image, x, y, c);
       double g = vl_image_get(image, x, y, 1);
       low = g < low ? g : low;
       high = g > high ? g : high;
     }
-  for (int c = 0; c < 3; c++) mean[c] /= (double)shot.size * shot.size;
-  if (range) range[0] = low, range[1] = high;
+  for (int c = 0; c < 3; c++)
+    mean[c] /= (double)shot.size * shot.size;
+  if (range)
+    range[0] = low, range[1] = high;
   vl_image_destroy(image);
   vl_film_destroy(film);
   vl_world_destroy(world);
@@ -137,10 +145,12 @@ static void finish(Bench *b, Shot shot, double mean[3], double range[2]) {
   vl_context_destroy(b->context);
 }
 
-static void assert_mean(const char *what, const double mean[3], double expected, double tolerance) {
+static void assert_mean(const char *what, const double mean[3], double expected,
+                        double tolerance) {
   for (int c = 0; c < 3; c++)
     if (!(fabs(mean[c] - expected) <= tolerance * expected))
-      fail_msg("%s: channel %d has mean %.6f, expected %.6f within %.2g", what, c, mean[c], expected, tolerance);
+      fail_msg("%s: channel %d has mean %.6f, expected %.6f within %.2g", what, c, mean[c],
+               expected, tolerance);
 }
 
 static const Shot inside = {{0, 0, 0}, {0.2, 0.1, -1}, 1.2, 48, 64, 200, VL_COLOR_SPECTRAL};
@@ -168,7 +178,8 @@ static void emissive_mesh_sphere(void **state) {
   assert_mean("emissive sphere of triangles", mean, 1, 1e-3);
 }
 
-/* A point light of intensity I in the middle lights the wall with I; the wall reflects albedo / pi of it, and so on. */
+/* A point light of intensity I in the middle lights the wall with I; the wall reflects albedo /
+ * pi of it, and so on. */
 static void point_light_in_sphere(void **state) {
   (void)state;
   Bench b = begin();
@@ -194,11 +205,13 @@ static void closed_mesh_is_tight(void **state) {
     Shot shot = inside;
     shot.spp = 16;
     finish(&b, shot, mean, NULL);
-    for (int c = 0; c < 3; c++) assert_true(mean[c] == 0);
+    for (int c = 0; c < 3; c++)
+      assert_true(mean[c] == 0);
   }
 }
 
-/* ---- white furnaces: what loses no light cannot be seen before a white sky --------------------------------------- */
+/* ---- white furnaces: what loses no light cannot be seen before a white sky
+ * --------------------------------------- */
 
 static void furnace(const char *what, vlMaterialDef *def, bool mesh) {
   Bench b = begin();

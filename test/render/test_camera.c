@@ -1,11 +1,13 @@
-/* Effects of the camera on the image: circle of confusion, near and far plane, orthographic projection, exposure time,
- * crop; also depths and tracers of a render. */
+/* Effects of the camera on the image: circle of confusion, near and far plane, orthographic
+ * projection, exposure time, crop; also depths and tracers of a render. */
 #include "render/shots.h"
 
-/* ---- lens -------------------------------------------------------------------------------------------------------- */
+/* ---- lens
+ * --------------------------------------------------------------------------------------------------------
+ */
 
-/* A small bright square out of focus becomes a uniformly bright disk of radius lens_radius * |1/z - 1/focus| * fx
- * pixels. */
+/* A small bright square out of focus becomes a uniformly bright disk of radius lens_radius *
+ * |1/z - 1/focus| * fx pixels. */
 static void circle_of_confusion(void **state) {
   (void)state;
   const double depths[3] = {1.5, 4, 9};
@@ -17,7 +19,8 @@ static void circle_of_confusion(void **state) {
     s.camera.fx = s.camera.fy = 60;
     s.camera.lens_radius = 0.4, s.camera.focus_distance = 2.5;
     double z = depths[i], side = 0.02 * z, radius = 0.4 * fabs(1 / z - 1 / 2.5) * 60;
-    Quad q = quad_at((float)(0.1 * z), (float)(-0.05 * z), (float)-z, (float)side, 0, 0, 0, (float)side, 0);
+    Quad q = quad_at((float)(0.1 * z), (float)(-0.05 * z), (float)-z, (float)side, 0, 0, 0,
+                     (float)side, 0);
     q.emission = add_emission(&s, 100, true);
     add_quad(&s, &q);
     Image p = stage_finish(&s);
@@ -50,8 +53,9 @@ static void near_and_far(void **state) {
     s.camera.projection = projection ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
     s.camera.near_plane = 2, s.camera.far_plane = 4;
     s.render.max_depth = 0;
-    /* Three walls: in front of the near plane, between the planes (left half), behind the far plane. The limits are
-     * planes, not distances: the whole wall at depth 3.99 is visible, including the corners. */
+    /* Three walls: in front of the near plane, between the planes (left half), behind the far
+     * plane. The limits are planes, not distances: the whole wall at depth 3.99 is visible,
+     * including the corners. */
     const float z[3] = {-1.9f, -3.99f, -4.01f}, light[3] = {5, 1, 7};
     for (int k = 0; k < 3; k++) {
       Quad q = quad_at(k == 1 ? -10 : 0, 0, z[k], k == 1 ? 10 : 50, 0, 0, 0, 50, 0);
@@ -71,7 +75,8 @@ static void orthographic(void **state) {
   for (int k = 0; k < 2; k++) {
     Stage s = stage_open(40, 40);
     s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
-    s.camera.screen_min_x = s.camera.screen_min_y = -2, s.camera.screen_max_x = s.camera.screen_max_y = 2;
+    s.camera.screen_min_x = s.camera.screen_min_y = -2,
+    s.camera.screen_max_x = s.camera.screen_max_y = 2;
     s.render.max_depth = 0;
     s.render.spp = 64;
     Quad q = quad_at(0.5f, 0.25f, k ? -30 : -1, 0.8f, 0, 0, 0, 0.6f, 0);
@@ -100,23 +105,29 @@ static void exposure_and_crop(void **state) {
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
     set_matrix(def.group_from_shape, 1, 0, 0, 0.3, 0, 1, 0, 0, 0, 0, 1, -3);
     vl_scene_add_shape(s.scene, &def);
-    if (k == 1) s.camera.exposure_time = 2;
-    if (k == 2) s.film.crop[0] = 7, s.film.crop[1] = 5, s.film.crop[2] = 30, s.film.crop[3] = 17;
+    if (k == 1)
+      s.camera.exposure_time = 2;
+    if (k == 2)
+      s.film.crop[0] = 7, s.film.crop[1] = 5, s.film.crop[2] = 30, s.film.crop[3] = 17;
     p[k] = stage_finish(&s);
   }
   for (uint32_t y = 0; y < 36; y++)
     for (uint32_t x = 0; x < 48; x++)
       for (int c = 0; c < 3; c++)
-        assert_ratio("twice the exposure", image_at(&p[1], x, y, c), 2 * image_at(&p[0], x, y, c), 1e-5);
+        assert_ratio("twice the exposure", image_at(&p[1], x, y, c),
+                     2 * image_at(&p[0], x, y, c), 1e-5);
   assert_int_equal(p[2].width, 23);
   assert_int_equal(p[2].height, 12);
   for (uint32_t y = 0; y < 12; y++)
     for (uint32_t x = 0; x < 23; x++)
-      for (int c = 0; c < 4; c++) assert_true(image_at(&p[2], x, y, c) == image_at(&p[0], x + 7, y + 5, c));
-  for (int k = 0; k < 3; k++) image_free(&p[k]);
+      for (int c = 0; c < 4; c++)
+        assert_true(image_at(&p[2], x, y, c) == image_at(&p[0], x + 7, y + 5, c));
+  for (int k = 0; k < 3; k++)
+    image_free(&p[k]);
 }
 
-/* ---- depths and tracers ------------------------------------------------------------------------------------------ */
+/* ---- depths and tracers
+ * ------------------------------------------------------------------------------------------ */
 
 /* In a closed emissive sphere depth n holds the first n + 1 terms of a geometric series. */
 static void depths(void **state) {
@@ -132,12 +143,14 @@ static void depths(void **state) {
       vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
       def.reverse_orientation = true;
       def.material = add_diffuse(&s, 0.6f, 0.6f, 0.6f);
-      if (light == 0) def.emission = add_emission(&s, 1, false);
-      if (light == 1) add_point(&s, 0, 0, 0, (float)M_PI);
+      if (light == 0)
+        def.emission = add_emission(&s, 1, false);
+      if (light == 1)
+        add_point(&s, 0, 0, 0, (float)M_PI);
       vl_scene_add_shape(s.scene, &def);
       Image p = stage_finish(&s);
-      assert_near(light ? "point light, depth" : "emission, depth", image_mean(&p, 1), light ? expected - 1 : expected,
-                  0.006 * expected);
+      assert_near(light ? "point light, depth" : "emission, depth", image_mean(&p, 1),
+                  light ? expected - 1 : expected, 0.006 * expected);
       image_free(&p);
     }
   }
@@ -159,8 +172,10 @@ static void raycast(void **state) {
   Image p = stage_finish(&s);
   for (uint32_t y = 0; y < 32; y++)
     for (uint32_t x = 0; x < 32; x++) {
-      double u = (x + 0.5) / 16 - 1, v = (y + 0.5) / 16 - 1, r2 = (u * u + v * v) / (0.75 * 0.75);
-      if (fabs(r2 - 1) < 0.05) continue;
+      double u = (x + 0.5) / 16 - 1, v = (y + 0.5) / 16 - 1,
+             r2 = (u * u + v * v) / (0.75 * 0.75);
+      if (fabs(r2 - 1) < 0.05)
+        continue;
       double cosine = r2 < 1 ? sqrt(1 - r2) : 0;
       assert_near("raycast red", image_at(&p, x, y, 0), r2 < 1 ? 0.8 * cosine : 0.3, 2e-4);
       assert_near("raycast blue", image_at(&p, x, y, 2), r2 < 1 ? 0.2 * cosine : 0.3, 2e-4);
@@ -168,8 +183,9 @@ static void raycast(void **state) {
   image_free(&p);
 }
 
-/* A free plane is open everywhere; beside an endless wall at right angles half of the cosine-weighted sky is left, at
- * the very edge; a low ceiling within reach shuts all, out of reach nothing. */
+/* A free plane is open everywhere; beside an endless wall at right angles half of the
+ * cosine-weighted sky is left, at the very edge; a low ceiling within reach shuts all, out of
+ * reach nothing. */
 static void ambient_occlusion(void **state) {
   (void)state;
   const double expected[4] = {1, 0.5, 0, 1};
@@ -184,19 +200,25 @@ static void ambient_occlusion(void **state) {
         s.camera.eye[2] = 0.001;
         s.camera.screen_min_x = 1e-4, s.camera.screen_max_x = 2e-4;
         s.camera.screen_min_y = -0.5e-4, s.camera.screen_max_y = 0.5e-4;
-        if (k > 1) s.camera.eye[2] = 0.4;
+        if (k > 1)
+          s.camera.eye[2] = 0.4;
         /* a wall of constant shading normals that lean: openness is of the true surface */
         static const float p[12] = {-100, -100, 0, 100, -100, 0, -100, 100, 0, 100, 100, 0};
         static const float n[12] = {0.6f, 0, 0.8f, 0.6f, 0, 0.8f, 0.6f, 0, 0.8f, 0.6f, 0, 0.8f};
         static const uint32_t f[6] = {0, 1, 3, 0, 3, 2};
         vlShapeDef floor = vl_default_shape_def(VL_SHAPE_TRIANGLES);
         floor.vertices = 4, floor.faces = 2, floor.positions = p, floor.indices = f;
-        if (smooth) floor.normals = n;
+        if (smooth)
+          floor.normals = n;
         vl_scene_add_shape(s.scene, &floor);
-        Quad wall = quad_at(0, 0, 0, 0, 0, 1000, 0, 1000, 0), ceiling = quad_at(0, 0, 0.5f, 50, 0, 0, 0, 50, 0);
-        if (k == 1) add_quad(&s, &wall);
-        if (k > 1) add_quad(&s, &ceiling);
-        if (k == 3) s.render.ao_distance = 0.45f;
+        Quad wall = quad_at(0, 0, 0, 0, 0, 1000, 0, 1000, 0),
+             ceiling = quad_at(0, 0, 0.5f, 50, 0, 0, 0, 50, 0);
+        if (k == 1)
+          add_quad(&s, &wall);
+        if (k > 1)
+          add_quad(&s, &ceiling);
+        if (k == 3)
+          s.render.ao_distance = 0.45f;
         Image q = stage_finish(&s);
         char what[64];
         snprintf(what, sizeof what, "openness, case %d, %s", k, cosine ? "cosine" : "uniform");
@@ -218,19 +240,23 @@ static void modes_agree_on_greys(void **state) {
     add_point(&s, 2, 2, 0, 8);
     vlMaterialDef defs[4];
     for (int k = 0; k < 4; k++) {
-      defs[k] = vl_default_material_def((vlMaterialKind[4]){VL_MATERIAL_DIFFUSE, VL_MATERIAL_COATED_DIFFUSE,
-                                                            VL_MATERIAL_DIELECTRIC, VL_MATERIAL_CONDUCTOR}[k]);
+      defs[k] = vl_default_material_def(
+          (vlMaterialKind[4]){VL_MATERIAL_DIFFUSE, VL_MATERIAL_COATED_DIFFUSE,
+                              VL_MATERIAL_DIELECTRIC, VL_MATERIAL_CONDUCTOR}[k]);
       if (k == 3) {
-        defs[k].use_reflectance = true, defs[k].reflectance = vl_spectrum_input(vl_spectrum_constant(0.7f));
+        defs[k].use_reflectance = true,
+        defs[k].reflectance = vl_spectrum_input(vl_spectrum_constant(0.7f));
         defs[k].u_roughness = defs[k].v_roughness = vl_float_input(0.2f);
       }
       vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-      set_matrix(ball.group_from_shape, 0.4, 0, 0, 0.9 * k - 1.35, 0, 0.4, 0, 0, 0, 0, 0.4, -3.5);
+      set_matrix(ball.group_from_shape, 0.4, 0, 0, 0.9 * k - 1.35, 0, 0.4, 0, 0, 0, 0, 0.4,
+                 -3.5);
       ball.material = vl_scene_add_material(s.scene, &defs[k]);
       vl_scene_add_shape(s.scene, &ball);
     }
     Image p = stage_finish(&s);
-    for (int c = 0; c < 3; c++) mean[mode][c] = image_mean(&p, c);
+    for (int c = 0; c < 3; c++)
+      mean[mode][c] = image_mean(&p, c);
     image_free(&p);
   }
   for (int c = 0; c < 3; c++) {

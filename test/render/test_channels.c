@@ -1,5 +1,6 @@
-/* Ground truth: the channels agree with each other and with the camera, ids are those of a ray cast by the test, planes
- * have the exact depth, and the bits do not depend on threads, instruction set or crop. */
+/* Ground truth: the channels agree with each other and with the camera, ids are those of a ray
+ * cast by the test, planes have the exact depth, and the bits do not depend on threads,
+ * instruction set or crop. */
 #include "render/ground_truths.h"
 #include "velo/channels.h"
 
@@ -7,14 +8,16 @@
 static GroundTruth ground_truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
   GroundTruth t = ground_truth_begin(s);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
-  if (crop) memcpy(def.crop, crop, sizeof def.crop);
+  if (crop)
+    memcpy(def.crop, crop, sizeof def.crop);
   def.channels = channels;
   def.samples = 7;
   ground_truth_channels(&t, &def);
   return t;
 }
 
-static void vector(const GroundTruth *t, uint32_t x, uint32_t y, const char *name, double v[3]) {
+static void vector(const GroundTruth *t, uint32_t x, uint32_t y, const char *name,
+                   double v[3]) {
   char part[16];
   for (int k = 0; k < 3; k++) {
     snprintf(part, sizeof part, "%s.%c", name, 'X' + k);
@@ -22,8 +25,8 @@ static void vector(const GroundTruth *t, uint32_t x, uint32_t y, const char *nam
   }
 }
 
-/* A floor, a sphere, a mirrored and rotated instance of a mesh and a patch, a cylinder. The camera looks from the
- * side and has an unusual principal point, skew, roll and a lens. */
+/* A floor, a sphere, a mirrored and rotated instance of a mesh and a patch, a cylinder. The
+ * camera looks from the side and has an unusual principal point, skew, roll and a lens. */
 static void fill(Stage *s) {
   Quad floor = quad_at(0, -1, -6, 2.5f, 0, 0, 0, 0, -2.5f);
   floor.material = add_diffuse(s, 0.5f, 0.5f, 0.5f);
@@ -53,7 +56,8 @@ static void fill(Stage *s) {
   s->camera.eye[0] = 1.1, s->camera.eye[1] = 1.7, s->camera.eye[2] = 0.3;
   s->camera.lookat[0] = 0.2, s->camera.lookat[1] = -0.3, s->camera.lookat[2] = -5;
   s->camera.roll = 0.1;
-  s->camera.fx = 70, s->camera.fy = 66, s->camera.skew = 1.5, s->camera.cx = 37.25, s->camera.cy = 20.75;
+  s->camera.fx = 70, s->camera.fy = 66, s->camera.skew = 1.5, s->camera.cx = 37.25,
+  s->camera.cy = 20.75;
   s->camera.lens_radius = 0.3, s->camera.focus_distance = 3;
 }
 
@@ -68,7 +72,8 @@ static void consistent(GroundTruth *t) {
       double o[3], d[3], p[3], ray[3], n[3], pixel[2], z;
       assert_true(vl_camera_unproject(&t->camera, x + 0.5, y + 0.5, o, d));
       vector(t, x, y, "ray", ray);
-      for (int k = 0; k < 3; k++) assert_near("ray", ray[k], d[k], 1e-7);
+      for (int k = 0; k < 3; k++)
+        assert_near("ray", ray[k], d[k], 1e-7);
       vector(t, x, y, "P", p);
       vector(t, x, y, "N", n);
       assert_int_equal(id(t, x, y, "samples"), 7);
@@ -76,13 +81,16 @@ static void consistent(GroundTruth *t) {
         misses++;
         assert_true(isinf(number(t, x, y, "Z")) && isinf(number(t, x, y, "distance.Y")));
         assert_true(length3(p) == 0 && length3(n) == 0);
-        assert_int_equal(id(t, x, y, "id.material") + id(t, x, y, "id.primitive") + id(t, x, y, "id.instance"), 0);
+        assert_int_equal(id(t, x, y, "id.material") + id(t, x, y, "id.primitive") +
+                             id(t, x, y, "id.instance"),
+                         0);
         continue;
       }
       hits++;
       double size = fmax(length3(p), length3(o));
       for (int k = 0; k < 3; k++)
-        assert_near("P = o + t d", p[k], o[k] + (double)number(t, x, y, "distance.Y") * ray[k], 2e-7 * size);
+        assert_near("P = o + t d", p[k], o[k] + (double)number(t, x, y, "distance.Y") * ray[k],
+                    2e-7 * size);
       assert_true(vl_camera_project(&t->camera, p, pixel, &z));
       assert_near("Z", number(t, x, y, "Z"), z, 2e-7 * size);
       assert_near("pixel x", pixel[0], x + 0.5, 1e-6 * t->camera.width);
@@ -91,7 +99,8 @@ static void consistent(GroundTruth *t) {
       vector(t, x, y, "Ng", n);
       assert_near("|Ng|", length3(n), 1, 1e-6);
     }
-  if (hits < 500 || misses < 100) fail_msg("%u pixels with a surface, %u without", hits, misses);
+  if (hits < 500 || misses < 100)
+    fail_msg("%u pixels with a surface, %u without", hits, misses);
 }
 
 static void test_consistent(void **state) {
@@ -110,7 +119,8 @@ static void test_consistent(void **state) {
   }
 }
 
-/* The distance is that to the exact surface of an analytic sphere and plane, to the last bit of a float. */
+/* The distance is that to the exact surface of an analytic sphere and plane, to the last bit of
+ * a float. */
 static void test_exact_distance_and_ids(void **state) {
   (void)state;
   Stage s = stage_open(64, 64);
@@ -127,15 +137,20 @@ static void test_exact_distance_and_ids(void **state) {
     for (uint32_t x = 0; x < 64; x++) {
       double o[3], d[3];
       vl_camera_unproject(&t.camera, x + 0.5, y + 0.5, o, d);
-      double b = d[0] * 0.25 + d[1] * -0.5 + d[2] * -5, c = 0.0625 + 0.25 + 25 - 2.25, root = b * b - c;
-      if (fabs(root) < 1e-3) continue; /* at grazing angles both results are correct */
+      double b = d[0] * 0.25 + d[1] * -0.5 + d[2] * -5, c = 0.0625 + 0.25 + 25 - 2.25,
+             root = b * b - c;
+      if (fabs(root) < 1e-3)
+        continue; /* at grazing angles both results are correct */
       bool sphere_met = root > 0;
       on_sphere += sphere_met;
       assert_int_equal(id(&t, x, y, "id.object"), sphere_met ? 2 : 1);
-      assert_int_equal(id(&t, x, y, "id.material"), sphere_met ? 1 : 2); /* the sphere has the default material */
+      assert_int_equal(id(&t, x, y, "id.material"),
+                       sphere_met ? 1 : 2); /* the sphere has the default material */
       double expected = sphere_met ? b - sqrt(root) : -9 / d[2];
-      assert_near("distance", number(&t, x, y, "distance.Y"), expected, 1e-7 * expected + (sphere_met ? 2e-6 : 0));
-      if (sphere_met) continue;
+      assert_near("distance", number(&t, x, y, "distance.Y"), expected,
+                  1e-7 * expected + (sphere_met ? 2e-6 : 0));
+      if (sphere_met)
+        continue;
       assert_true(number(&t, x, y, "Z") == 9.0f);
       assert_in_range(id(&t, x, y, "id.primitive"), 1, 2);
     }
@@ -151,8 +166,8 @@ static void test_exact_distance_and_ids(void **state) {
   stage_close(&s);
 }
 
-/* A plane parallel to the view plane has one depth for every position of the camera, even if its triangles are
- * instances. */
+/* A plane parallel to the view plane has one depth for every position of the camera, even if
+ * its triangles are instances. */
 static void test_plane_has_one_depth(void **state) {
   (void)state;
   Stage s = stage_open(80, 60);
@@ -185,7 +200,8 @@ static void test_plane_has_one_depth(void **state) {
 static void test_planes_cut(void **state) {
   (void)state;
   Stage s = stage_open(16, 16);
-  Quad near_wall = quad_at(0, 0, -2, 9, 0, 0, 0, 9, 0), far_wall = quad_at(0, 0, -4, 9, 0, 0, 0, 9, 0);
+  Quad near_wall = quad_at(0, 0, -2, 9, 0, 0, 0, 9, 0),
+       far_wall = quad_at(0, 0, -4, 9, 0, 0, 0, 9, 0);
   add_quad(&s, &near_wall);
   add_quad(&s, &far_wall);
   s.camera.near_plane = 3;
@@ -202,7 +218,8 @@ static void test_planes_cut(void **state) {
 
 static void test_albedo(void **state) {
   (void)state;
-  static const float colours[4][3] = {{0.8f, 0.3f, 0.1f}, {0.5f, 0.5f, 0.5f}, {0.05f, 0.6f, 0.7f}, {0.9f, 0.85f, 0.2f}};
+  static const float colours[4][3] = {
+      {0.8f, 0.3f, 0.1f}, {0.5f, 0.5f, 0.5f}, {0.05f, 0.6f, 0.7f}, {0.9f, 0.85f, 0.2f}};
   for (int mode = 0; mode < 2; mode++) {
     Stage s = stage_open(64, 16);
     s.build.color = mode ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
@@ -215,7 +232,8 @@ static void test_albedo(void **state) {
     for (uint32_t i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++) {
         static const char *const names[3] = {"albedo.R", "albedo.G", "albedo.B"};
-        assert_near(names[k], number(&t, 8 + 16 * i, 8, names[k]), colours[i][k], mode ? 1e-6 : 3e-3);
+        assert_near(names[k], number(&t, 8 + 16 * i, 8, names[k]), colours[i][k],
+                    mode ? 1e-6 : 3e-3);
       }
     ground_truth_free(&t);
     stage_close(&s);
@@ -232,9 +250,11 @@ static void test_same_bits(void **state) {
   same_bits(whole.floats, part.floats, 13, 5);
   same_bits(whole.ids, part.ids, 13, 5);
   for (int isa = VL_ISA_BASE; isa <= VL_ISA_V4; isa++) {
-    if (isa == VL_ISA_V2) continue; /* BASE is V2 on x86-64 */
+    if (isa == VL_ISA_V2)
+      continue; /* BASE is V2 on x86-64 */
     Stage other;
-    if (!stage_like(&s, isa, &other)) continue;
+    if (!stage_like(&s, isa, &other))
+      continue;
     fill(&other);
     GroundTruth t = ground_truth_take(&other, NULL, VL_CHANNEL_ALL);
     same_bits(whole.floats, t.floats, 0, 0);
@@ -255,15 +275,20 @@ static void test_wrong_arguments(void **state) {
   vlImage *floats = NULL, *ids = NULL;
   vlError error;
   vlChannelsDef def = vl_default_channels_def(16, 8);
-  assert_int_equal(vl_render_channels(NULL, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render_channels(NULL, &t.camera, &def, &floats, &ids, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   def.channels = 0;
-  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
+                   VL_ERROR_ARGUMENT);
   def = vl_default_channels_def(17, 8);
-  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
+                   VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "17"));
   def.cookie = 0;
-  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
+                   VL_ERROR_ARGUMENT);
   assert_null(vl_channel_name(VL_CHANNEL_COUNT));
   assert_string_equal(vl_channel_name(0), "Z");
   ground_truth_free(&t);
@@ -279,7 +304,8 @@ static vlResult take_standard(Stage *s, GroundTruth *t) {
   (void)s;
   vlChannelsDef def = vl_default_channels_def(16, 8);
   vlResult result = vl_render_channels(t->world, &t->camera, &def, &t->floats, &t->ids, NULL);
-  if (result != VL_OK) assert_true(!t->floats && !t->ids);
+  if (result != VL_OK)
+    assert_true(!t->floats && !t->ids);
   return result;
 }
 

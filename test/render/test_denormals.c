@@ -1,5 +1,6 @@
 /* test/render/test_denormals.c: numbers below the smallest normal float are kept
- * (docs/decisions/0024-denormal-numbers.md), in whatever floating-point state the caller's threads are. */
+ * (docs/decisions/0024-denormal-numbers.md), in whatever floating-point state the caller's
+ * threads are. */
 #include "render/shots.h"
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -27,12 +28,14 @@ static void denormal_albedo_is_kept(void **state) {
   (void)state;
   for (int rgb = 0; rgb < 2; rgb++) {
     Image p = denormal_ball(rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
-    for (int c = 0; c < 3; c++) assert_ratio("ball", image_at(&p, 3, 3, c), 5e-3, 0.05);
+    for (int c = 0; c < 3; c++)
+      assert_ratio("ball", image_at(&p, 3, 3, c), 5e-3, 0.05);
     image_free(&p);
   }
 }
 
-/* Libraries that were compiled with -ffast-math set the mode that makes denormals 0, and threads inherit it. */
+/* Libraries that were compiled with -ffast-math set the mode that makes denormals 0, and
+ * threads inherit it. */
 static void state_of_the_caller_does_not_count(void **state) {
   (void)state;
 #if defined(__SSE__)

@@ -1,14 +1,17 @@
-/* Standard errors against true ones: of images of 20 seeds, the root of the mean of stated variances over that of the
- * true ones, for each sampler, for own and shared samples, filters, colours, numbers of samples. */
+/* Standard errors against true ones: of images of 20 seeds, the root of the mean of stated
+ * variances over that of the true ones, for each sampler, for own and shared samples, filters,
+ * colours, numbers of samples. */
 #include "render/shots.h"
 
 enum { WIDTH = 32, HEIGHT = 24, SEEDS = 20, VALUES = WIDTH * HEIGHT * 3 };
 
 /* A room: a floor, a wall, a ball, a lamp in the image. */
 static void fill(Stage *s) {
-  Quad floor = quad_at(-4, -1, -1, 8, 0, 0, 0, 0, -6), wall = quad_at(-4, -1, -6, 8, 0, 0, 0, 5, 0);
+  Quad floor = quad_at(-4, -1, -1, 8, 0, 0, 0, 0, -6),
+       wall = quad_at(-4, -1, -6, 8, 0, 0, 0, 5, 0);
   Quad lamp = quad_at(-1, 1.5f, -4, 1.2f, 0.3f, 0, 0, -0.2f, -0.8f);
-  floor.material = add_diffuse(s, 0.7f, 0.7f, 0.6f), wall.material = add_diffuse(s, 0.6f, 0.3f, 0.2f);
+  floor.material = add_diffuse(s, 0.7f, 0.7f, 0.6f),
+  wall.material = add_diffuse(s, 0.6f, 0.3f, 0.2f);
   lamp.material = add_diffuse(s, 0, 0, 0), lamp.emission = add_emission(s, 12, true);
   add_quad(s, &floor);
   add_quad(s, &wall);
@@ -28,7 +31,8 @@ typedef struct Case {
   uint32_t spp, sequence;
 } Case;
 
-/* The ratio of an image's stated to true errors, and that of errors which take the samples as independent. */
+/* The ratio of an image's stated to true errors, and that of errors which take the samples as
+ * independent. */
 static void measure(const Case *c, double ratio[2]) {
   Stage s = stage_open(WIDTH, HEIGHT);
   vlWorld *world;
@@ -62,25 +66,30 @@ static void measure(const Case *c, double ratio[2]) {
       develop.independent = k;
       assert_int_equal(vl_film_errors(film, &develop, &image), VL_OK);
       p = vl_image_const_pixels(image);
-      for (int i = 0; i < VALUES; i++) stated[k] += (double)p[i] * (double)p[i] / SEEDS;
+      for (int i = 0; i < VALUES; i++)
+        stated[k] += (double)p[i] * (double)p[i] / SEEDS;
       vl_image_destroy(image);
     }
   }
-  for (int i = 0; i < VALUES; i++) variance += (squares[i] - sum[i] * sum[i] / SEEDS) / (SEEDS - 1);
-  for (int k = 0; k < 2; k++) ratio[k] = sqrt(stated[k] / variance);
+  for (int i = 0; i < VALUES; i++)
+    variance += (squares[i] - sum[i] * sum[i] / SEEDS) / (SEEDS - 1);
+  for (int k = 0; k < 2; k++)
+    ratio[k] = sqrt(stated[k] / variance);
   vl_film_destroy(film);
   vl_world_destroy(world);
   stage_close(&s);
 }
 
-/* The ratio lies between 0.85 and 1.15; its own statistical error is 0.04 with 20 seeds. The errors of independent
- * samples are at least `independent` times the true ones, so that they would fail. */
+/* The ratio lies between 0.85 and 1.15; its own statistical error is 0.04 with 20 seeds. The
+ * errors of independent samples are at least `independent` times the true ones, so that they
+ * would fail.
+ */
 static void check(const char *what, const Case *c, double independent) {
   double ratio[2];
   measure(c, ratio);
   if (!(ratio[0] > 0.85 && ratio[0] < 1.15 && ratio[1] > independent))
-    fail_msg("%s, sampler %d, %u samples: %.3f times the true errors, independent %.3f", what, (int)c->sampler, c->spp,
-             ratio[0], ratio[1]);
+    fail_msg("%s, sampler %d, %u samples: %.3f times the true errors, independent %.3f", what,
+             (int)c->sampler, c->spp, ratio[0], ratio[1]);
 }
 
 /* Samplers that can go on without end, with one sequence. */
@@ -94,10 +103,12 @@ static void one_sequence(void **state) {
   c.sampler = VL_SAMPLER_SOBOL;
   check("one sequence", &c, 2);
   c.sampler = VL_SAMPLER_ZSOBOL;
-  for (c.spp = 16; c.spp <= 64; c.spp *= 2) check("one sequence", &c, 2);
+  for (c.spp = 16; c.spp <= 64; c.spp *= 2)
+    check("one sequence", &c, 2);
 }
 
-/* Samplers that divide the square into cells, with two sequences, which are independent of each other. */
+/* Samplers that divide the square into cells, with two sequences, which are independent of each
+ * other. */
 static void two_sequences(void **state) {
   (void)state;
   Case c = {.filter = VL_PIXEL_FILTER_GAUSSIAN, .share = true, .spp = 32, .sequence = 16};
@@ -123,7 +134,8 @@ static void filters_and_colours(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(one_sequence), cmocka_unit_test(two_sequences),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(one_sequence),
+                                     cmocka_unit_test(two_sequences),
                                      cmocka_unit_test(filters_and_colours)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* test_film_limit.c: vlFilmDef.max_component: samples above the limit are scaled down as a whole, others are unchanged.
+/* test_film_limit.c: vlFilmDef.max_component: samples above the limit are scaled down as a
+ * whole, others are unchanged.
  */
 #include "render/shots.h"
 
@@ -17,7 +18,8 @@ static void limits(void **state) {
   (void)state;
   Image p = sky(10, 2, VL_COLOR_RGB);
   /* white of D65 has Z = 1.089 Y */
-  for (int c = 0; c < 3; c++) assert_ratio("limited", image_mean(&p, c), 2 / 1.08883, 1e-3);
+  for (int c = 0; c < 3; c++)
+    assert_ratio("limited", image_mean(&p, c), 2 / 1.08883, 1e-3);
   image_free(&p);
   p = sky(10, 0, VL_COLOR_RGB);
   assert_true(image_mean(&p, 1) == 0);

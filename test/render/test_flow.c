@@ -13,13 +13,14 @@ static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_
   return t;
 }
 
-/* A wall at depth 8, and in front of it a narrow wall at depth 4. The other camera is 1 to the right. The focal
- * length is 60, so the wall moves 7.5 pixels to the left and the narrow wall 15. Stripes 7.5 pixels wide appear and
- * disappear. */
+/* A wall at depth 8, and in front of it a narrow wall at depth 4. The other camera is 1 to the
+ * right. The focal length is 60, so the wall moves 7.5 pixels to the left and the narrow
+ * wall 15. Stripes 7.5 pixels wide appear and disappear. */
 static void test_two_walls(void **state) {
   (void)state;
   Stage s = stage_open(120, 40);
-  Quad wall = quad_at(0, 0, -8, 40, 0, 0, 0, 40, 0), narrow = quad_at(0, 0, -4, 0.8f, 0, 0, 0, 40, 0);
+  Quad wall = quad_at(0, 0, -8, 40, 0, 0, 0, 40, 0),
+       narrow = quad_at(0, 0, -4, 0.8f, 0, 0, 0, 40, 0);
   add_quad(&s, &wall);
   add_quad(&s, &narrow);
   s.camera.fx = s.camera.fy = 60;
@@ -35,8 +36,11 @@ static void test_two_walls(void **state) {
       assert_near("u", number(&t, x, y, "forward.U"), u, 2e-5);
       assert_near("v", number(&t, x, y, "forward.V"), 0, 2e-5);
       /* the narrow wall covers columns 33 to 57 of the other image */
-      uint32_t expected = at < 0 ? VL_HIDDEN_OUTSIDE : !front && at > 33 && at < 57 ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
-      if (at == 33 || at == 57 || at == 0) continue; /* pixels on the edge are not tested */
+      uint32_t expected = at < 0                         ? VL_HIDDEN_OUTSIDE
+                          : !front && at > 33 && at < 57 ? VL_HIDDEN_BEHIND
+                                                         : VL_HIDDEN_NOT;
+      if (at == 33 || at == 57 || at == 0)
+        continue; /* pixels on the edge are not tested */
       counts[expected]++;
       assert_int_equal(id(&t, x, y, "forward.hidden"), expected);
     }
@@ -45,7 +49,8 @@ static void test_two_walls(void **state) {
   stage_close(&s);
 }
 
-/* The other camera looks away, or has another projection. The sky's flow depends on the camera's rotation. */
+/* The other camera looks away, or has another projection. The sky's flow depends on the
+ * camera's rotation. */
 static void test_sky_and_nowhere(void **state) {
   (void)state;
   Stage s = stage_open(64, 64);
@@ -60,7 +65,8 @@ static void test_sky_and_nowhere(void **state) {
   }
   ground_truth_free(&t);
   other = s.camera;
-  other.eye[0] = 100; /* the sky's flow depends on the camera's orientation, not on its position */
+  other.eye[0] =
+      100; /* the sky's flow depends on the camera's orientation, not on its position */
   other.lookat[0] = 100 + 0.1;
   other.lookat[2] = -1;
   t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
@@ -76,8 +82,8 @@ static void test_sky_and_nowhere(void **state) {
   stage_close(&s);
 }
 
-/* No surface hides itself. The scene is a ball and a floor at grazing angles, far from the origin. The reference is
- * the other camera's own ground truth at that place. */
+/* No surface hides itself. The scene is a ball and a floor at grazing angles, far from the
+ * origin. The reference is the other camera's own ground truth at that place. */
 static void test_no_self_occlusion(void **state) {
   (void)state;
   Stage s = stage_open(90, 70);
@@ -101,20 +107,24 @@ static void test_no_self_occlusion(void **state) {
   for (uint32_t y = 0; y < 70; y++)
     for (uint32_t x = 0; x < 90; x++) {
       uint32_t h = id(&t, x, y, "forward.hidden"), object = id(&t, x, y, "id.object");
-      if (object == 0 || h > VL_HIDDEN_BEHIND) continue;
+      if (object == 0 || h > VL_HIDDEN_BEHIND)
+        continue;
       double p[3], n[3], to[3], along = 0;
-      static const char *const P[3] = {"P.X", "P.Y", "P.Z"}, *const G[3] = {"Ng.X", "Ng.Y", "Ng.Z"};
+      static const char *const P[3] = {"P.X", "P.Y", "P.Z"}, *const G[3] = {"Ng.X", "Ng.Y",
+                                                                            "Ng.Z"};
       for (int k = 0; k < 3; k++) {
         p[k] = number(&t, x, y, P[k]), n[k] = number(&t, x, y, G[k]);
         to[k] = other.eye[k] - p[k];
         along += to[k] * n[k];
       }
-      /* of convex things: what is turned away is hidden by itself; what is turned there can be hidden by others only */
+      /* of convex things: what is turned away is hidden by itself; what is turned there can be
+       * hidden by others only */
       bool away = object == 2 && along < -0.02;
       bool ball_between = false, mesh_between = false;
       for (int step = 1; step < 400; step++) {
         double q[3];
-        for (int k = 0; k < 3; k++) q[k] = p[k] + to[k] * step / 400;
+        for (int k = 0; k < 3; k++)
+          q[k] = p[k] + to[k] * step / 400;
         double a = hypot(hypot(q[0] - (double)far_off, q[1]), q[2] + 5);
         double b = hypot(hypot(q[0] - (double)far_off - 2, q[1] + 0.3), q[2] + 6);
         ball_between = ball_between || (object != 2 && a < 1);
@@ -122,19 +132,23 @@ static void test_no_self_occlusion(void **state) {
       }
       seen += h == VL_HIDDEN_NOT, hidden += h == VL_HIDDEN_BEHIND;
       bool expected = away || ball_between || mesh_between;
-      if (object == 3) continue;
+      if (object == 3)
+        continue;
       wrong += expected != (h == VL_HIDDEN_BEHIND);
     }
-  if (seen < 1000 || hidden < 40 || wrong > 5) fail_msg("%u seen, %u hidden, %u wrong", seen, hidden, wrong);
+  if (seen < 1000 || hidden < 40 || wrong > 5)
+    fail_msg("%u seen, %u hidden, %u wrong", seen, hidden, wrong);
   ground_truth_free(&t);
   stage_close(&s);
 }
 
-/* Boxes of a square that is half occluded by another, and of an instance that extends beyond the image. */
+/* Boxes of a square that is half occluded by another, and of an instance that extends beyond
+ * the image. */
 static void test_boxes(void **state) {
   (void)state;
   Stage s = stage_open(100, 60);
-  Quad back = quad_at(0.5f, 0, -4, 1, 0, 0, 0, 1, 0), front = quad_at(-0.25f, 0, -2, 0.5f, 0, 0, 0, 0.5f, 0);
+  Quad back = quad_at(0.5f, 0, -4, 1, 0, 0, 0, 1, 0),
+       front = quad_at(-0.25f, 0, -2, 0.5f, 0, 0, 0, 0.5f, 0);
   add_quad(&s, &back);
   add_quad(&s, &front);
   vlGroupId group = vl_scene_add_group(s.scene, "tile");
@@ -158,7 +172,8 @@ static void test_boxes(void **state) {
   assert_memory_equal(objects[0].all_box, all, sizeof all);
   assert_int_equal(objects[1].all, 400);
   assert_int_equal(objects[1].seen, 400);
-  for (int k = 0; k < 4; k++) assert_near("outline", objects[0].outline[k], all[k], 1e-9);
+  for (int k = 0; k < 4; k++)
+    assert_near("outline", objects[0].outline[k], all[k], 1e-9);
   assert_true(objects[0].has_outline && objects[0].has_space && !objects[0].grouped);
   assert_near("x", objects[0].low[0], -0.5, 0);
   assert_near("x", objects[0].high[0], 1.5, 0);
@@ -166,20 +181,25 @@ static void test_boxes(void **state) {
   assert_int_equal(instances[0].seen, 6 * 16);
   assert_true(instances[0].has_outline && objects[2].grouped && !objects[2].has_outline);
   const double outline[4] = {94, 22, 110, 38};
-  for (int k = 0; k < 4; k++) assert_near("outline", instances[0].outline[k], outline[k], 1e-5);
+  for (int k = 0; k < 4; k++)
+    assert_near("outline", instances[0].outline[k], outline[k], 1e-5);
   assert_near("box", instances[0].low[0], -1, 0);
-  for (int i = 0; i < 16; i++) assert_near("pose", instances[0].world_from_box[i], m[i], 1e-6);
+  for (int i = 0; i < 16; i++)
+    assert_near("pose", instances[0].world_from_box[i], m[i], 1e-6);
   uint64_t counted[3] = {0, 0, 0};
   for (uint32_t y = 0; y < 60; y++)
     for (uint32_t x = 0; x < 100; x++)
-      if (id(&t, x, y, "id.object")) counted[id(&t, x, y, "id.object") - 1]++;
-  for (int i = 0; i < 3; i++) assert_int_equal(counted[i], objects[i].seen);
+      if (id(&t, x, y, "id.object"))
+        counted[id(&t, x, y, "id.object") - 1]++;
+  for (int i = 0; i < 3; i++)
+    assert_int_equal(counted[i], objects[i].seen);
   def.crop[0] = 50, def.crop[2] = 60;
   assert_int_equal(vl_world_boxes(t.world, &t.camera, &def, objects, NULL, &error), VL_OK);
   assert_int_equal(objects[0].all, 10 * 20);
   assert_int_equal(objects[0].seen, 5 * 20);
   def.crop[2] = 101;
-  assert_int_equal(vl_world_boxes(t.world, &t.camera, &def, objects, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_world_boxes(t.world, &t.camera, &def, objects, NULL, &error),
+                   VL_ERROR_ARGUMENT);
   ground_truth_free(&t);
   stage_close(&s);
 }

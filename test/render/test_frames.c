@@ -19,9 +19,12 @@ static int begin(void **state) {
   vlScene *scene = NULL;
   vlError error;
   def.threads = 2;
-  if (vl_context_create(&def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK) return 1;
-  vlResult result = vl_scene_load(scene, VELO_SOURCE_DIR "/scenes/cameras/perspective.pbrt", NULL, &error);
-  if (result == VL_OK) result = vl_world_build(scene, NULL, &world, &error);
+  if (vl_context_create(&def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK)
+    return 1;
+  vlResult result =
+      vl_scene_load(scene, VELO_SOURCE_DIR "/scenes/cameras/perspective.pbrt", NULL, &error);
+  if (result == VL_OK)
+    result = vl_world_build(scene, NULL, &world, &error);
   vl_scene_destroy(scene);
   return result != VL_OK;
 }
@@ -57,13 +60,15 @@ static vlImage *image(vlFilm *film, double x, uint32_t spp, bool errors) {
   vlImage *image;
   def.spp = spp;
   assert_int_equal(vl_render(world, &camera, film, &def, NULL, NULL), VL_OK);
-  assert_int_equal(errors ? vl_film_errors(film, NULL, &image) : vl_film_develop(film, NULL, &image), VL_OK);
+  assert_int_equal(
+      errors ? vl_film_errors(film, NULL, &image) : vl_film_develop(film, NULL, &image), VL_OK);
   return image;
 }
 
 static void same(const vlImage *a, const vlImage *b) {
-  assert_memory_equal(vl_image_const_pixels(a), vl_image_const_pixels(b),
-                      (size_t)vl_image_width(a) * vl_image_height(a) * vl_image_channels(a) * sizeof(float));
+  assert_memory_equal(
+      vl_image_const_pixels(a), vl_image_const_pixels(b),
+      (size_t)vl_image_width(a) * vl_image_height(a) * vl_image_channels(a) * sizeof(float));
 }
 
 static void a_cleared_film_is_new(void **state) {
@@ -85,7 +90,9 @@ static void a_cleared_film_is_new(void **state) {
       }
 }
 
-/* After the first image no more memory is allocated: the tenth image holds as much as the second. */
+/* After the first image no more memory is allocated: the tenth image holds as much as the
+ * second.
+ */
 static void frames_take_no_memory(void **state) {
   (void)state;
   vlFilm *film = make_film(false);
@@ -93,13 +100,16 @@ static void frames_take_no_memory(void **state) {
   for (int i = 0; i < 10; i++) {
     vl_film_clear(film);
     vl_image_destroy(image(film, 0.1 * i, 1, false));
-    if (i == 1) held = vl_context_memory(context, NULL);
-    if (i > 1) assert_int_equal(vl_context_memory(context, NULL), held);
+    if (i == 1)
+      held = vl_context_memory(context, NULL);
+    if (i > 1)
+      assert_int_equal(vl_context_memory(context, NULL), held);
   }
   vl_film_destroy(film);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_cleared_film_is_new), cmocka_unit_test(frames_take_no_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_cleared_film_is_new),
+                                     cmocka_unit_test(frames_take_no_memory)};
   return cmocka_run_group_tests(tests, begin, end);
 }

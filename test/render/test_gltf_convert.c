@@ -1,5 +1,5 @@
-/* test_gltf_convert.c: glTF converted to pbrt gives nearly the same image: spheres of dielectrics and metals, a wall
- * with an emissive image whose uvs are far from the origin. */
+/* test_gltf_convert.c: glTF converted to pbrt gives nearly the same image: spheres of
+ * dielectrics and metals, a wall with an emissive image whose uvs are far from the origin. */
 #include "render/gltf_shots.h"
 #include "velo/export.h"
 #include "velo/load.h"
@@ -10,8 +10,10 @@ static void both_ways(const Gltf *g, const char *rest, Image *own, Image *writte
   assert_non_null(mkdtemp(folder));
   snprintf(from, sizeof from, "%s/a.gltf", folder);
   snprintf(to, sizeof to, "%s/b.pbrt", folder);
-  uint8_t pixels[48]; /* red, green, blue, white: pbrt's emission goes smoothly from texel to texel */
-  for (int i = 0; i < 48; i++) pixels[i] = i >= 36 || i / 12 == i % 3 ? 255 : 0;
+  uint8_t pixels[48]; /* red, green, blue, white: pbrt's emission goes smoothly from texel to
+                         texel */
+  for (int i = 0; i < 48; i++)
+    pixels[i] = i >= 36 || i / 12 == i % 3 ? 255 : 0;
   char name[80];
   snprintf(name, sizeof name, "%s/p.png", folder);
   gltf_write_text(g, from, rest);
@@ -29,11 +31,14 @@ static void both_ways(const Gltf *g, const char *rest, Image *own, Image *writte
       assert_int_equal(vl_image_write(image, name, NULL, NULL), VL_OK);
       vl_image_destroy(image);
     }
-    if (vl_scene_load(s.scene, pass ? to : from, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+    if (vl_scene_load(s.scene, pass ? to : from, NULL, &error) != VL_OK)
+      fail_msg("%s", error.message);
     vlCompleteDef complete = vl_default_complete_def();
     complete.environment = VL_ENVIRONMENT_WHITE;
-    if (pass == 0 && vl_scene_complete(s.scene, &complete, &error) != VL_OK) fail_msg("%s", error.message);
-    if (pass == 0 && vl_scene_save(s.scene, to, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+    if (pass == 0 && vl_scene_complete(s.scene, &complete, &error) != VL_OK)
+      fail_msg("%s", error.message);
+    if (pass == 0 && vl_scene_save(s.scene, to, NULL, &error) != VL_OK)
+      fail_msg("%s", error.message);
     s.camera = vl_scene_defs(s.scene)->camera;
     s.camera.width = s.camera.height = 32;
     s.build.color = VL_COLOR_RGB;
@@ -46,28 +51,34 @@ static void both_ways(const Gltf *g, const char *rest, Image *own, Image *writte
   assert_int_equal(system(command), 0);
 }
 
-#define NODES                                                                                                   \
-  "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":0,\"translation\":[0,0,10]}]" \
+#define NODES                                                                         \
+  "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":0," \
+  "\"translation\":[0,0,10]}]"                                                        \
   "," SHOT_CAMERA
 
-/* A coat reflects light back to the base, so the base's colour must be brighter for the same appearance; so must rough
- * metals be, which lose light between their microfacets in pbrt. pbrt's Fresnel curve of dark metals is steeper. */
+/* A coat reflects light back to the base, so the base's colour must be brighter for the same
+ * appearance; so must rough metals be, which lose light between their microfacets in pbrt.
+ * pbrt's Fresnel curve of dark metals is steeper. */
 static void balls(void **state) {
   (void)state;
   static const struct {
     double base, metal, rough, most;
-  } cases[] = {{0.5, 0, 0.1, 0.03}, {0.8, 0, 0.3, 0.05}, {0.2, 0, 0.2, 0.03}, {0.5, 0, 0.6, 0.03}, {0.05, 0, 0.6, 0.03},
-               {0.7, 1, 0.2, 0.03}, {0.7, 1, 0.6, 0.03}, {0.7, 1, 0.8, 0.04}, {0.1, 1, 0.4, 0.03}};
+  } cases[] = {{0.5, 0, 0.1, 0.03}, {0.8, 0, 0.3, 0.05},  {0.2, 0, 0.2, 0.03},
+               {0.5, 0, 0.6, 0.03}, {0.05, 0, 0.6, 0.03}, {0.7, 1, 0.2, 0.03},
+               {0.7, 1, 0.6, 0.03}, {0.7, 1, 0.8, 0.04},  {0.1, 1, 0.4, 0.03}};
   Gltf *g = calloc(1, sizeof *g);
   put_ball(g);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     char rest[1000];
-    snprintf(rest, sizeof rest,
-             NODES
-             ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[%g,%g,%g,1],\"metallicFactor\":%g,"
-             "\"roughnessFactor\":%g}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,"
-             "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
-             cases[i].base, cases[i].base, cases[i].base, cases[i].metal, cases[i].rough);
+    snprintf(
+        rest, sizeof rest,
+        NODES
+        ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[%g,%g,%g,1],"
+        "\"metallicFactor\":%g,"
+        "\"roughnessFactor\":%g}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
+        "0,\"NORMAL\":0,"
+        "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
+        cases[i].base, cases[i].base, cases[i].base, cases[i].metal, cases[i].rough);
     Image own, written;
     both_ways(g, rest, &own, &written);
     assert_near("ball", image_mean(&written, 1), image_mean(&own, 1), cases[i].most);
@@ -87,23 +98,30 @@ static void wall(void **state) {
   gltf_floats(g, uv, 4, "VEC2", 2);
   gltf_shorts(g, faces, 6);
   static const char *const materials[] = {
-      "\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0},\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,"
+      "\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0},\"pbrMetallicRoughness\":{"
+      "\"baseColorFactor\":[0,0,"
       "0,1],"
-      "\"metallicFactor\":0},\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
-      "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0,\"roughnessFactor\":0.1}"};
+      "\"metallicFactor\":0},\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}"
+      "}",
+      "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0,"
+      "\"roughnessFactor\":0.1}"};
   for (int i = 0; i < 2; i++) {
     char rest[1400];
-    snprintf(rest, sizeof rest,
-             NODES
-             ",\"images\":[{\"uri\":\"p.png\"}],\"samplers\":[{\"magFilter\":9728}],\"textures\":[{\"source\":0,"
-             "\"sampler\":0}],\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
-             "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
-             materials[i]);
+    snprintf(
+        rest, sizeof rest,
+        NODES
+        ",\"images\":[{\"uri\":\"p.png\"}],\"samplers\":[{\"magFilter\":9728}],\"textures\":[{"
+        "\"source\":0,"
+        "\"sampler\":0}],\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+        "\"POSITION\":0,"
+        "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
+        materials[i]);
     Image own, written;
     both_ways(g, rest, &own, &written);
     for (uint32_t k = 0; k < 4; k++) /* red, green, blue, white */
       for (int c = 0; c < 3; c++)
-        assert_near(i ? "painted" : "emissive", image_region(&written, 8 * k + 2, 8, 8 * k + 6, 24, c),
+        assert_near(i ? "painted" : "emissive",
+                    image_region(&written, 8 * k + 2, 8, 8 * k + 6, 24, c),
                     image_region(&own, 8 * k + 2, 8, 8 * k + 6, 24, c), i ? 0.04 : 0.01);
     assert_true(image_region(&own, 2, 8, 6, 24, 0) > 0.9);
     image_free(&own);

@@ -1,25 +1,29 @@
-/* test_gltf_lobes.c: each lobe of glTF's materials, read from a file and rendered: spheres in a white room against
- * albedos integrated here, walls against reflectances at normal incidence, slabs against the transmittance of glass of
- * known thickness. */
+/* test_gltf_lobes.c: each lobe of glTF's materials, read from a file and rendered: spheres in a
+ * white room against albedos integrated here, walls against reflectances at normal incidence,
+ * slabs against the transmittance of glass of known thickness. */
 #include "render/gltf_shots.h"
 
 #include "world/material/principled.h"
 
-/* ---- albedos, without velo's tables ------------------------------------------------------------------------------ */
+/* ---- albedos, without velo's tables
+ * ------------------------------------------------------------------------------ */
 
-/* The albedo of GGX microfacets with single scattering for F0 and F90, integrated in double over the half vectors
- * that are visible from o (Heitz 2018). */
+/* The albedo of GGX microfacets with single scattering for F0 and F90, integrated in double
+ * over the half vectors that are visible from o (Heitz 2018). */
 static double ggx_albedo(double cosine, double alpha, double f0, double f90) {
   enum { U = 24, V = 200 };
-  double ox = sqrt(1 - cosine * cosine), sum = 0, wx = alpha * ox, length = sqrt(wx * wx + cosine * cosine);
+  double ox = sqrt(1 - cosine * cosine), sum = 0, wx = alpha * ox,
+         length = sqrt(wx * wx + cosine * cosine);
   wx /= length;
   double wz = cosine / length, lo = sqrt(alpha * alpha * ox * ox + cosine * cosine);
   for (int i = 0; i < U * V; i++) {
     double phi = M_PI * (i % U + 0.5) / U, z = (1 - (i / U + 0.5) / V) * (1 + wz) - wz;
-    double r = sqrt(fmax(0, 1 - z * z)), hx = alpha * (r * cos(phi) + wx), hy = alpha * r * sin(phi), hz = z + wz;
+    double r = sqrt(fmax(0, 1 - z * z)), hx = alpha * (r * cos(phi) + wx),
+           hy = alpha * r * sin(phi), hz = z + wz;
     double n = 1 / sqrt(hx * hx + hy * hy + hz * hz), oh = (ox * hx + cosine * hz) * n;
     double ix = 2 * oh * hx * n - ox, iy = 2 * oh * hy * n, iz = 2 * oh * hz * n - cosine;
-    if (iz <= 0) continue;
+    if (iz <= 0)
+      continue;
     double li = sqrt(alpha * alpha * (ix * ix + iy * iy) + iz * iz);
     sum += iz * (lo + cosine) / (lo * iz + li * cosine) * (f0 + (f90 - f0) * pow(1 - oh, 5));
   }
@@ -40,8 +44,12 @@ static double metal_mean(double alpha, double base) {
   return ggx_mean(alpha, base, 1) + f * f * one / (1 - f * (1 - one)) * (1 - one);
 }
 
-#define PBR "\"pbrMetallicRoughness\":{\"baseColorFactor\":[%g,%g,%g,1],\"metallicFactor\":%g,\"roughnessFactor\":%g}"
-#define BLACK "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1],\"metallicFactor\":0,\"roughnessFactor\":0}"
+#define PBR                                                                           \
+  "\"pbrMetallicRoughness\":{\"baseColorFactor\":[%g,%g,%g,1],\"metallicFactor\":%g," \
+  "\"roughnessFactor\":%g}"
+#define BLACK                                                                     \
+  "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1],\"metallicFactor\":0," \
+  "\"roughnessFactor\":0}"
 #define NO_SPECULAR "\"KHR_materials_specular\":{\"specularFactor\":0}"
 static char text[1024];
 static const char *pbr(double base, double metal, double rough, const char *more) {
@@ -50,7 +58,9 @@ static const char *pbr(double base, double metal, double rough, const char *more
   return text;
 }
 
-/* ---- balls ------------------------------------------------------------------------------------------------------- */
+/* ---- balls
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static void metallic_roughness(void **state) {
   (void)state;
@@ -61,7 +71,8 @@ static void metallic_roughness(void **state) {
       char name[80];
       double metal = metal_mean(alpha, base);
       for (double share = 0; share <= 1; share += 0.5) {
-        snprintf(name, sizeof name, "base %g, metallic %g, roughness %g", base, share, roughs[i]);
+        snprintf(name, sizeof name, "base %g, metallic %g, roughness %g", base, share,
+                 roughs[i]);
         Shot shot = {.material = pbr(base, share, roughs[i], ""), .spp = base == 1 ? 256 : 64};
         double e = share * metal + (1 - share) * (shine + base * (1 - shine));
         expect_shot(name, &shot, e, e, e, base == 1 ? 0.003 : 0.005);
@@ -78,7 +89,8 @@ static void diffuse_and_layers(void **state) {
   for (double base = 0; base <= 0.8; base += 0.8) {
     shot.material = pbr(base, 0, 1,
                         "\"extensions\":{" NO_SPECULAR
-                        ",\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatRoughnessFactor\":0.3}}");
+                        ",\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,"
+                        "\"clearcoatRoughnessFactor\":0.3}}");
     double e = coat + base * (1 - coat);
     expect_shot("clear coat", &shot, e, e, e, 0.005);
   }
@@ -87,20 +99,25 @@ static void diffuse_and_layers(void **state) {
     double o = (i + 0.5) / 40, sine = sqrt(1 - o * o), sum = 0;
     for (int k = 0; k < 40 * 60; k++) {
       double z = (k % 40 + 0.5) / 40, r = sqrt(1 - z * z), phi = M_PI * (k / 40 + 0.5) / 60;
-      double h = (o + z) / sqrt(pow(sine + r * cos(phi), 2) + pow(r * sin(phi), 2) + (o + z) * (o + z));
-      sum += (double)vl_sheen((float)o, (float)z, (float)h, (float)(rough * rough)) * 2 * M_PI / (40 * 60);
+      double h = (o + z) /
+                 sqrt(pow(sine + r * cos(phi), 2) + pow(r * sin(phi), 2) + (o + z) * (o + z));
+      sum += (double)vl_sheen((float)o, (float)z, (float)h, (float)(rough * rough)) * 2 * M_PI /
+             (40 * 60);
     }
     fuzz += 2 * o / 40 * fmin(sum, 1);
   }
   shot.material = pbr(0, 0, 1,
                       "\"extensions\":{" NO_SPECULAR
-                      ",\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,0.5,0.25],\"sheenRoughnessFactor\":0.6}}");
+                      ",\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,0.5,0.25],"
+                      "\"sheenRoughnessFactor\":0.6}}");
   expect_shot("sheen", &shot, fuzz, 0.5 * fuzz, 0.25 * fuzz, 0.006);
-  shot.material = pbr(1, 1, 0.5,
-                      "\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0.6,"
-                      "\"anisotropyRotation\":0.7}}");
+  shot.material =
+      pbr(1, 1, 0.5,
+          "\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0.6,"
+          "\"anisotropyRotation\":0.7}}");
   expect_shot("anisotropy", &shot, 1, 1, 1, 0.03);
-  shot.material = pbr(1, 1, 0.4, "\"extensions\":{\"KHR_materials_iridescence\":{\"iridescenceFactor\":1}}");
+  shot.material = pbr(
+      1, 1, 0.4, "\"extensions\":{\"KHR_materials_iridescence\":{\"iridescenceFactor\":1}}");
   expect_shot("film over a white metal", &shot, 1, 1, 1, 0.006);
 }
 
@@ -110,25 +127,32 @@ static void glass(void **state) {
   char more[300];
   for (int solid = 0; solid < 2; solid++)
     for (double rough = 0; rough <= 1; rough += 0.25) {
-      snprintf(more, sizeof more, "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}%s}",
+      snprintf(more, sizeof more,
+               "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}%s}",
                bodies[solid]);
       Shot shot = {.material = pbr(1, 0, rough, more), .depth = 200};
       expect_shot(solid ? "clear solid" : "clear sheet", &shot, 1, 1, 1, 0.006);
     }
-  /* A ball of thin glass: F + b^2 (1 - F) for each ray, with the Schlick mean .04 + .96 / 21. */
+  /* A ball of thin glass: F + b^2 (1 - F) for each ray, with the Schlick mean .04 + .96 / 21.
+   */
   double f = 0.04 + 0.96 / 21, e = f + 0.25 * (1 - f);
-  Shot shot = {.material =
-                   pbr(0.5, 0, 0, "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}")};
+  Shot shot = {
+      .material =
+          pbr(0.5, 0, 0,
+              "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}")};
   expect_shot("tinted sheet", &shot, e, e, e, 0.006);
-  shot.material = pbr(1, 0, 0.4,
-                      "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
-                      "\"KHR_materials_volume\":{\"thicknessFactor\":1},\"KHR_materials_dispersion\":{"
-                      "\"dispersion\":2}}");
+  shot.material =
+      pbr(1, 0, 0.4,
+          "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
+          "\"KHR_materials_volume\":{\"thicknessFactor\":1},\"KHR_materials_dispersion\":{"
+          "\"dispersion\":2}}");
   shot.spectral = true, shot.depth = 200;
   expect_shot("dispersion", &shot, 1, 1, 1, 0.015);
 }
 
-/* ---- walls ------------------------------------------------------------------------------------------------------- */
+/* ---- walls
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static void normal_incidence(void **state) {
   (void)state;
@@ -140,20 +164,26 @@ static void normal_incidence(void **state) {
        "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.9,0.6,0.3,1],\"roughnessFactor\":0}",
        {0.9, 0.6, 0.3}},
       {"4 % without a word", BLACK, {0.04, 0.04, 0.04}},
-      {"ior 2", BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":2}}", {1 / 9.0, 1 / 9.0, 1 / 9.0}},
+      {"ior 2",
+       BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":2}}",
+       {1 / 9.0, 1 / 9.0, 1 / 9.0}},
       {"ior 1", BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":1}}", {0, 0, 0}},
       {"ior 0",
-       BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":0},\"KHR_materials_specular\":{\"specularColorFactor\":"
+       BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":0},\"KHR_materials_specular\":{"
+             "\"specularColorFactor\":"
              "[0.5,0.25,1]}}",
        {0.5, 0.25, 1}},
       {"specular",
-       BLACK ",\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularColorFactor\":[0.5,1,2]}}",
+       BLACK ",\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,"
+             "\"specularColorFactor\":[0.5,1,2]}}",
        {0.01, 0.02, 0.04}},
       {"clear coat",
-       BLACK ",\"extensions\":{" NO_SPECULAR ",\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75}}",
+       BLACK ",\"extensions\":{" NO_SPECULAR
+             ",\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75}}",
        {0.03, 0.03, 0.03}},
       {"specular-glossiness",
-       "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.4,0.2,0.8,1],"
+       "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.4,0.2,0."
+       "8,1],"
        "\"specularFactor\":[0.2,0.2,0.2],\"glossinessFactor\":1}}",
        {0.2 + 0.4 * 0.8, 0.2 + 0.2 * 0.8, 0.2 + 0.8 * 0.8}},
       {"diffuse transmission",
@@ -162,19 +192,23 @@ static void normal_incidence(void **state) {
        "\"diffuseTransmissionFactor\":0.25,\"diffuseTransmissionColorFactor\":[0.4,0.8,0]}}",
        {0.7, 0.8, 0.6}},
       {"unlit",
-       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.2,0.4,0.8,1]},\"extensions\":{\"KHR_materials_unlit\":{}}",
+       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.2,0.4,0.8,1]},\"extensions\":{\"KHR_"
+       "materials_unlit\":{}}",
        {0.2, 0.4, 0.8}},
       {"emission",
        BLACK ",\"emissiveFactor\":[0.5,0.25,1],\"extensions\":{" NO_SPECULAR
              ",\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4}}",
        {2, 1, 4}},
       {"thin glass",
-       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,1,1],\"metallicFactor\":0,\"roughnessFactor\":0},"
+       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,1,1],\"metallicFactor\":0,"
+       "\"roughnessFactor\":0},"
        "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}",
        {0.04 + 0.24, 0.04 + 0.48, 1}},
       {"half thin glass, half black",
-       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0,1],\"metallicFactor\":0,\"roughnessFactor\":0},"
-       "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}," NO_SPECULAR "}",
+       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0,1],\"metallicFactor\":0,"
+       "\"roughnessFactor\":0},"
+       "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}," NO_SPECULAR
+       "}",
        {1, 0.5, 0}},
   };
   for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
@@ -183,7 +217,9 @@ static void normal_incidence(void **state) {
   }
 }
 
-/* A film of index 1.8, 300 nm thick, on glass of 1.5: Airy's sum for three wavelengths a channel. */
+/* A film of index 1.8, 300 nm thick, on glass of 1.5: Airy's sum for three wavelengths a
+ * channel.
+ */
 static void film(void **state) {
   (void)state;
   static const double waves[3][3] = {{595, 615, 635}, {525, 545, 565}, {435, 452, 470}};
@@ -203,22 +239,28 @@ static void film(void **state) {
   assert_true(fabs(rgb[0] - rgb[2]) > 0.02); /* it has a colour */
 }
 
-/* ---- slabs ------------------------------------------------------------------------------------------------------- */
+/* ---- slabs
+ * -------------------------------------------------------------------------------------------------------
+ */
 
-/* Glass 1 thick in front of a white room: F + (1 - F)^2 a / (1 - F a), a = colour^(1 / attenuationDistance).
+/* Glass 1 thick in front of a white room: F + (1 - F)^2 a / (1 - F a), a = colour^(1 /
+ * attenuationDistance).
  */
 static void attenuation(void **state) {
   (void)state;
-  static const struct { double ior, distance; } slabs[] = {{1.5, 1}, {1.5, 0.5}, {1.5, 4}, {1.33, 1}};
+  static const struct {
+    double ior, distance;
+  } slabs[] = {{1.5, 1}, {1.5, 0.5}, {1.5, 4}, {1.33, 1}};
   static const double color[3] = {0.25, 0.5, 0.9};
   char more[400];
   for (size_t i = 0; i < sizeof slabs / sizeof *slabs; i++) {
-    snprintf(
-        more, sizeof more,
-        "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_ior\":{\"ior\":%g},"
-        "\"KHR_materials_volume\":{\"thicknessFactor\":0.1,\"attenuationDistance\":%g,\"attenuationColor\":[0.25,0.5,0."
-        "9]}}",
-        slabs[i].ior, slabs[i].distance);
+    snprintf(more, sizeof more,
+             "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_"
+             "materials_ior\":{\"ior\":%g},"
+             "\"KHR_materials_volume\":{\"thicknessFactor\":0.1,\"attenuationDistance\":%g,"
+             "\"attenuationColor\":[0.25,0.5,0."
+             "9]}}",
+             slabs[i].ior, slabs[i].distance);
     double f = pow((slabs[i].ior - 1) / (slabs[i].ior + 1), 2), rgb[3];
     for (int c = 0; c < 3; c++) {
       double a = pow(color[c], 1 / slabs[i].distance);

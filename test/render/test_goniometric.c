@@ -1,5 +1,6 @@
-/* test_goniometric.c: goniometric and projection lights: their intensity where a formula gives it, the orientation of
- * their images, their power. A wall is at z = -2, camera and light at the origin. */
+/* test_goniometric.c: goniometric and projection lights: their intensity where a formula gives
+ * it, the orientation of their images, their power. A wall is at z = -2, camera and light at
+ * the origin. */
 #include "render/shots.h"
 
 #define PI 3.14159265358979
@@ -42,14 +43,16 @@ static void goniometric(void **state) {
     Stage s = stage();
     vlImage *image = gradient_image(&s, 16, 16);
     for (uint32_t y = 0; y < 16; y++)
-      for (uint32_t x = 0; x < 16; x++) { /* the diamond in the middle is the half about the axis */
+      for (uint32_t x = 0; x < 16;
+           x++) { /* the diamond in the middle is the half about the axis */
         bool upper = fabs(x + 0.5 - 8) + fabs(y + 0.5 - 8) < 8;
         float v = which == 0 || upper == (which != 2) ? 1 : 0;
         set(image, x, y, 3 * v, 0, 0); /* channels count by their mean */
       }
     vlLightDef def = vl_default_light_def(VL_LIGHT_GONIOMETRIC);
     def.image = image;
-    if (which == 3) def.power = 100;
+    if (which == 3)
+      def.power = 100;
     /* the light's y to the world's -z */
     const double turn[16] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
     memcpy(def.world_from_light, turn, sizeof turn);
@@ -58,7 +61,8 @@ static void goniometric(void **state) {
     Image p = stage_finish(&s);
     double upper_share = 0;
     for (int y = 0; y < 16; y++)
-      for (int x = 0; x < 16; x++) upper_share += (fabs(x + 0.5 - 8) + fabs(y + 0.5 - 8) < 8) / 256.0;
+      for (int x = 0; x < 16; x++)
+        upper_share += (fabs(x + 0.5 - 8) + fabs(y + 0.5 - 8) < 8) / 256.0;
     double intensity = which == 2 ? 0 : which == 3 ? 100 / (4 * PI * upper_share) : 1;
     for (uint32_t k = 0; k < 31; k += 5)
       assert_near("goniometric", image_at(&p, k, 15, 0), intensity * expected(k, 15),
@@ -83,8 +87,10 @@ static void projection(void **state) {
     vlLightDef def = vl_default_light_def(VL_LIGHT_PROJECTION);
     def.image = image;
     def.fov = which == 2 ? (float)(PI / 2) : (float)(2 * atan(0.4));
-    if (which == 2) def.power = 10;
-    /* z ahead, to the world's -z; y up; so x goes to the left of one who looks along it, in numbers: -x */
+    if (which == 2)
+      def.power = 10;
+    /* z ahead, to the world's -z; y up; so x goes to the left of one who looks along it, in
+     * numbers: -x */
     const double turn[16] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
     memcpy(def.world_from_light, turn, sizeof turn);
     assert_int_not_equal(vl_scene_add_light(s.scene, &def).index, 0);
@@ -92,19 +98,23 @@ static void projection(void **state) {
     Image p = stage_finish(&s);
     if (which == 2) { /* a sixth of the sphere */
       for (uint32_t k = 1; k < 30; k += 4)
-        assert_ratio("power", image_at(&p, k, 15, 0), 10 / (4 * PI / 6) * expected(k, 15), 0.02);
+        assert_ratio("power", image_at(&p, k, 15, 0), 10 / (4 * PI / 6) * expected(k, 15),
+                     0.02);
     } else {
       double half = which == 1 ? 0.8 : 0.4;
       for (uint32_t y = 0; y < 31; y++)
         for (uint32_t x = 0; x < 31; x++) {
           double a = (x + 0.5) / 15.5 - 1, b = (y + 0.5) / 15.5 - 1; /* b downwards */
-          bool edge = fabs(fabs(a) - half) < 0.04 || fabs(fabs(b) - 0.4) < 0.04 || fabs(a) < 0.04 || fabs(b) < 0.04;
-          if (edge) continue;
+          bool edge = fabs(fabs(a) - half) < 0.04 || fabs(fabs(b) - 0.4) < 0.04 ||
+                      fabs(a) < 0.04 || fabs(b) < 0.04;
+          if (edge)
+            continue;
           bool in = fabs(a) < half && fabs(b) < 0.4;
           double e = expected(x, y);
           double want[3] = {in && a > 0 ? e : 0, in && b < 0 ? e : 0,
                             in ? e : 0}; /* a world that is mirrored to pbrt's */
-          for (int c = 0; c < 3; c++) assert_near("slide", image_at(&p, x, y, c), want[c], 0.02 * e);
+          for (int c = 0; c < 3; c++)
+            assert_near("slide", image_at(&p, x, y, c), want[c], 0.02 * e);
         }
     }
     image_free(&p);
@@ -112,6 +122,7 @@ static void projection(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(goniometric), cmocka_unit_test(projection)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(goniometric),
+                                     cmocka_unit_test(projection)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

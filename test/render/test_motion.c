@@ -1,5 +1,6 @@
-/* Images of moving objects: the mean of many images at fixed times (z-test), the same bits on every instruction set, no
- * self-intersection, moving vertices against equally moving instances, the slope of an edge with a rolling shutter. */
+/* Images of moving objects: the mean of many images at fixed times (z-test), the same bits on
+ * every instruction set, no self-intersection, moving vertices against equally moving
+ * instances, the slope of an edge with a rolling shutter. */
 #include "render/shots.h"
 #include "velo/texture.h"
 
@@ -7,13 +8,15 @@ enum { W = 24, H = 18 };
 
 /* Where the wheel is: turned by 120 degrees in the first half second, by 60 in the second. */
 static void wheel_pose(double t, double m[16]) {
-  double f = t < 0.5 ? 2 * t : 2 * t - 1, angle = (t < 0.5 ? 120 * f : 120 + 60 * f) * M_PI / 180;
-  double x = t < 0.5 ? -0.6 : -0.6 + 0.8 * f, y = t < 0.5 ? 0.1 * f : 0.1 + 0.1 * f, z = t < 0.5 ? -3 : -3 + 0.2 * f;
+  double f = t < 0.5 ? 2 * t : 2 * t - 1,
+         angle = (t < 0.5 ? 120 * f : 120 + 60 * f) * M_PI / 180;
+  double x = t < 0.5 ? -0.6 : -0.6 + 0.8 * f, y = t < 0.5 ? 0.1 * f : 0.1 + 0.1 * f,
+         z = t < 0.5 ? -3 : -3 + 0.2 * f;
   set_matrix(m, cos(angle), -sin(angle), 0, x, sin(angle), cos(angle), 0, y, 0, 0, 1, z);
 }
 
-/* A wheel of boards, a sphere and a mesh whose vertices move, over a floor; the camera may move, too. held >= 0: all
- * rests, but where it is at that time. */
+/* A wheel of boards, a sphere and a mesh whose vertices move, over a floor; the camera may
+ * move, too. held >= 0: all rests, but where it is at that time. */
 static void fill(Stage *s, bool camera_moves, double held) {
   s->camera.fov = 0.9;
   s->camera.shutter_open = 0.25, s->camera.shutter_close = 0.75;
@@ -32,11 +35,15 @@ static void fill(Stage *s, bool camera_moves, double held) {
   add_quad(s, &floor);
   vlGroupId group = vl_scene_add_group(s->scene, "wheel");
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
-  checks.su = 5, checks.sv = 5, checks.float_a = vl_float_input(1), checks.float_b = vl_float_input(0);
+  checks.su = 5, checks.sv = 5, checks.float_a = vl_float_input(1),
+  checks.float_b = vl_float_input(0);
   for (int k = 0; k < 3; k++) {
-    Quad board = quad_at(0, 0, 0.1f * (float)k, k == 0 ? 0.6f : 0.1f, 0, 0, 0, k == 0 ? 0.1f : 0.6f, 0);
-    board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f), board.group = group, board.patch = k == 2;
-    if (k == 1) board.alpha.texture = vl_scene_add_texture(s->scene, &checks);
+    Quad board =
+        quad_at(0, 0, 0.1f * (float)k, k == 0 ? 0.6f : 0.1f, 0, 0, 0, k == 0 ? 0.1f : 0.6f, 0);
+    board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f), board.group = group,
+    board.patch = k == 2;
+    if (k == 1)
+      board.alpha.texture = vl_scene_add_texture(s->scene, &checks);
     add_quad(s, &board);
   }
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
@@ -45,8 +52,10 @@ static void fill(Stage *s, bool camera_moves, double held) {
   assert_int_not_equal(vl_scene_add_shape(s->scene, &ball).index, 0);
   const double times[3] = {0, 0.5, 1};
   double poses[48];
-  for (int k = 0; k < 3; k++) wheel_pose(times[k], poses + 16 * k);
-  if (held >= 0) wheel_pose(held, poses);
+  for (int k = 0; k < 3; k++)
+    wheel_pose(times[k], poses + 16 * k);
+  if (held >= 0)
+    wheel_pose(held, poses);
   if (held >= 0)
     vl_scene_add_instance(s->scene, group, poses, (vlSource){0});
   else
@@ -55,20 +64,23 @@ static void fill(Stage *s, bool camera_moves, double held) {
   vlShapeDef mesh = mesh_sphere(6, 0.4f, true, &block);
   set_matrix(mesh.group_from_shape, 1, 0, 0, 0.7, 0, 1, 0, 0, 0, 0, 1, -3);
   for (uint32_t i = 0; i < 3 * mesh.vertices; i++)
-    close[i] = mesh.positions[i] * 0.6f + (i % 3 == 1 ? 0.6f * fabsf(mesh.positions[i - 1]) : 0);
+    close[i] =
+        mesh.positions[i] * 0.6f + (i % 3 == 1 ? 0.6f * fabsf(mesh.positions[i - 1]) : 0);
   double f = fmin(fmax((held - 0.25) / 0.25, 0), 1);
   for (uint32_t i = 0; held >= 0 && i < 3 * mesh.vertices; i++)
     close[i] = (float)((double)mesh.positions[i] * (1 - f) + (double)close[i] * f);
-  if (held >= 0) mesh.positions = close;
-  if (held < 0) mesh.positions_close = close, mesh.normals_close = mesh.normals;
+  if (held >= 0)
+    mesh.positions = close;
+  if (held < 0)
+    mesh.positions_close = close, mesh.normals_close = mesh.normals;
   mesh.times[0] = 0.25, mesh.times[1] = 0.5;
   mesh.material = add_diffuse(s, 0.3f, 0.7f, 0.3f);
   assert_int_not_equal(vl_scene_add_shape(s->scene, &mesh).index, 0);
   free(block);
 }
 
-/* Independent samples: the mean of N images of worlds at rest, spread over the time, and a blurred one have the same
- * expectation. */
+/* Independent samples: the mean of N images of worlds at rest, spread over the time, and a
+ * blurred one have the same expectation. */
 static void blur_is_the_mean_of_held_images(void **state) {
   (void)state;
   enum { HELD = 400, SPP = 4 };
@@ -92,7 +104,8 @@ static void blur_is_the_mean_of_held_images(void **state) {
       vlImage *image = NULL;
       s.render.seed = (uint32_t)(k + 1000 * moves), s.render.spp = SPP;
       assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
-      assert_int_equal(vl_render(world, set ? &held : &camera, film, &s.render, NULL, &error), VL_OK);
+      assert_int_equal(vl_render(world, set ? &held : &camera, film, &s.render, NULL, &error),
+                       VL_OK);
       assert_int_equal(vl_film_develop(film, NULL, &image), VL_OK);
       for (uint32_t i = 0; i < W * H; i++) {
         double v = vl_image_get(image, i % W, i / W, 1);
@@ -109,13 +122,15 @@ static void blur_is_the_mean_of_held_images(void **state) {
       double mean[2], variance = 0;
       for (int k = 0; k < 2; k++) {
         mean[k] = sum[k][i] / HELD;
-        variance += (square[k][i] / HELD - mean[k] * mean[k]) / HELD; /* of held ones: too much, if anything */
+        variance += (square[k][i] / HELD - mean[k] * mean[k]) /
+                    HELD; /* of held ones: too much, if anything */
       }
       double z = (mean[0] - mean[1]) / sqrt(variance + 1e-12);
       chi2 += z * z;
       far += fabs(z) > 3;
       if (fabs(z) > 5)
-        fail_msg("moves %d, pixel %d %d: blurred %g, held %g, z %g", moves, i % W, i / W, mean[0], mean[1], z);
+        fail_msg("moves %d, pixel %d %d: blurred %g, held %g, z %g", moves, i % W, i / W,
+                 mean[0], mean[1], z);
     }
     double freedom = W * H;
     assert_true(chi2 < freedom + 5 * sqrt(2 * freedom));
@@ -134,7 +149,8 @@ static void same_bits(void **state) {
     Stage s = stage_open(80, 60);
     vl_scene_destroy(s.scene);
     vl_context_destroy(s.context);
-    if (vl_context_create(&def, &s.context) == VL_ERROR_UNSUPPORTED) continue; /* this machine lacks it */
+    if (vl_context_create(&def, &s.context) == VL_ERROR_UNSUPPORTED)
+      continue; /* this machine lacks it */
     assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
     fill(&s, true, -1);
     s.render.spp = 16;
@@ -151,8 +167,8 @@ static void same_bits(void **state) {
   image_free(&first);
 }
 
-/* Ambient occlusion of single convex objects: every sample that hits one is white, however fast it moves, unless a
- * ray that leaves the surface hits the object again. */
+/* Ambient occlusion of single convex objects: every sample that hits one is white, however fast
+ * it moves, unless a ray that leaves the surface hits the object again. */
 static void nothing_hides_itself(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) { /* turning, far from the origin, growing, vertices */
@@ -165,7 +181,8 @@ static void nothing_hides_itself(void **state) {
     float *block;
     vlShapeDef ball = mesh_sphere(12, 1, false, &block);
     float *close = malloc(3 * ball.vertices * sizeof(float));
-    for (uint32_t i = 0; i < 3 * ball.vertices; i++) close[i] = ball.positions[i] * 0.7f + (i % 3 == 0 ? 0.9f : 0);
+    for (uint32_t i = 0; i < 3 * ball.vertices; i++)
+      close[i] = ball.positions[i] * 0.7f + (i % 3 == 0 ? 0.9f : 0);
     ball.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
     if (k == 3) {
       ball.positions_close = close;
@@ -177,7 +194,8 @@ static void nothing_hides_itself(void **state) {
     double g = k == 2 ? 0.3 : 1;
     set_matrix(poses, 1, 0, 0, far, 0, 1, 0, 0, 0, 0, 1, -5);
     set_matrix(poses + 16, 0, -g, 0, far + 1, g, 0, 0, 0, 0, 0, g, -4.5);
-    if (k < 3) vl_scene_add_moving_instance(s.scene, ball.group, 2, times, poses, (vlSource){0});
+    if (k < 3)
+      vl_scene_add_moving_instance(s.scene, ball.group, 2, times, poses, (vlSource){0});
     Image p = stage_finish(&s);
     int inside = 0;
     for (uint32_t i = 0; i < p.width * p.height; i++) {
@@ -210,11 +228,15 @@ static void ways_to_move_agree(void **state) {
     poses[19] = 0.5, poses[23] = 0.25;
     for (uint32_t i = 0; i < 3 * ball.vertices; i++)
       close[i] = ball.positions[i] + (i % 3 == 0 ? 1.0f : i % 3 == 1 ? 0.25f : 0.0f);
-    if (k == 0) ball.group = vl_scene_add_group(s.scene, "ball");
-    if (k > 0) memcpy(ball.group_from_shape, poses, sizeof ball.group_from_shape);
-    if (k == 1) ball.positions_close = close;
+    if (k == 0)
+      ball.group = vl_scene_add_group(s.scene, "ball");
+    if (k > 0)
+      memcpy(ball.group_from_shape, poses, sizeof ball.group_from_shape);
+    if (k == 1)
+      ball.positions_close = close;
     vl_scene_add_shape(s.scene, &ball);
-    if (k == 0) vl_scene_add_moving_instance(s.scene, ball.group, 2, times, poses, (vlSource){0});
+    if (k == 0)
+      vl_scene_add_moving_instance(s.scene, ball.group, 2, times, poses, (vlSource){0});
     if (k == 2) {
       double eye[3] = {-1, -0.25, 0}, lookat[3] = {-1, -0.25, -1};
       memcpy(s.camera.eye_close, eye, sizeof eye);
@@ -225,17 +247,21 @@ static void ways_to_move_agree(void **state) {
   }
   for (int k = 1; k < 3; k++) {
     double differing = 0;
-    for (size_t i = 0; i < 32 * 24; i++) differing += fabs((double)p[0].rgba[4 * i + 3] - (double)p[k].rgba[4 * i + 3]);
+    for (size_t i = 0; i < 32 * 24; i++)
+      differing += fabs((double)p[0].rgba[4 * i + 3] - (double)p[k].rgba[4 * i + 3]);
     assert_true(differing < 0.2); /* a few samples on edges, of 24,576 */
   }
   assert_true(image_region(&p[0], 0, 0, 32, 24, 3) > 0.02);
-  for (int k = 0; k < 3; k++) image_free(&p[k]);
+  for (int k = 0; k < 3; k++)
+    image_free(&p[k]);
 }
 
-/* A white card's vertical edge moves to the right; rows are read one after the other: where each row sees it. */
+/* A white card's vertical edge moves to the right; rows are read one after the other: where
+ * each row sees it. */
 static void rolling_shutter_slants_edges(void **state) {
   (void)state;
-  for (int k = 0; k < 3; k++) { /* down, up; exposed for long: the edge is soft, its middle the same */
+  for (int k = 0; k < 3;
+       k++) { /* down, up; exposed for long: the edge is soft, its middle the same */
     enum { WIDTH = 96, HEIGHT = 64 };
     Stage s = stage_open(WIDTH, HEIGHT);
     s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
@@ -257,7 +283,8 @@ static void rolling_shutter_slants_edges(void **state) {
     double sy = 0, sx = 0, syy = 0, sxy = 0;
     for (uint32_t y = 0; y < HEIGHT; y++) {
       double x = 0; /* the edge: how many pixels the card covers */
-      for (uint32_t i = 0; i < WIDTH; i++) x += (double)image_at(&p, i, y, 3);
+      for (uint32_t i = 0; i < WIDTH; i++)
+        x += (double)image_at(&p, i, y, 3);
       sy += y, sx += x, syy += (double)y * y, sxy += x * y;
     }
     double slope = (HEIGHT * sxy - sx * sy) / (HEIGHT * syy - sy * sy), sign = k == 1 ? -1 : 1;
@@ -277,16 +304,22 @@ static void nonsense_is_refused(void **state) {
     double times[2] = {0, k == 0 ? 0 : 1}, poses[32];
     set_matrix(poses, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
     memcpy(poses + 16, poses, 16 * sizeof *poses);
-    if (k == 1) poses[16] = -1;
-    if (k == 2) poses[16] = 0;
-    if (k == 3) poses[20] = NAN;
+    if (k == 1)
+      poses[16] = -1;
+    if (k == 2)
+      poses[16] = 0;
+    if (k == 3)
+      poses[20] = NAN;
     float *block, close[3 * 5 * 3] = {0};
     vlShapeDef mesh = mesh_sphere(2, 1, true, &block);
     mesh.positions_close = close;
     mesh.normals_close = mesh.normals;
-    if (k == 4) mesh.times[1] = -1;
-    if (k == 5) mesh.normals_close = NULL;
-    if (k == 6) close[7] = INFINITY;
+    if (k == 4)
+      mesh.times[1] = -1;
+    if (k == 5)
+      mesh.normals_close = NULL;
+    if (k == 6)
+      close[7] = INFINITY;
     if (k < 4)
       vl_scene_add_moving_instance(s.scene, group, 2, times, poses, (vlSource){0});
     else

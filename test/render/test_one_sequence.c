@@ -1,5 +1,6 @@
-/* A sample depends on the length of the sequence, not on the planned number of samples. So a film that is continued,
- * rendered in parts, or rendered for a given time equals the film of a single render. */
+/* A sample depends on the length of the sequence, not on the planned number of samples. So a
+ * film that is continued, rendered in parts, or rendered for a given time equals the film of a
+ * single render. */
 #include "loaded.h"
 #include "velo/render.h"
 
@@ -41,14 +42,16 @@ static bool same(const vlFilm *a, const vlFilm *b) {
   }
   for (int k = 0; k < 2; k++) {
     size_t size = (size_t)SIDE * SIDE * vl_image_channels(images[k][0]) * sizeof(float);
-    equal = equal && memcmp(vl_image_const_pixels(images[k][0]), vl_image_const_pixels(images[k][1]), size) == 0;
+    equal = equal && memcmp(vl_image_const_pixels(images[k][0]),
+                            vl_image_const_pixels(images[k][1]), size) == 0;
     vl_image_destroy(images[k][0]);
     vl_image_destroy(images[k][1]);
   }
   return equal;
 }
 
-/* Renders to `stop` samples and continues to `all`. Returns whether the film equals one rendered to `all` at once. */
+/* Renders to `stop` samples and continues to `all`. Returns whether the film equals one
+ * rendered to `all` at once. */
 static bool continues(vlRenderDef def, uint32_t stop, uint32_t all) {
   vlFilm *parts = make_film(), *whole = make_film();
   assert_int_equal(render(parts, def, stop), VL_OK);
@@ -66,22 +69,25 @@ static void each_tracer_continues(void **state) {
   for (int tracer = 0; tracer < TRACERS; tracer++) {
     vlRenderDef def = vl_default_render_def();
     def.tracer = (vlTracer)tracer;
-    if (!continues(def, 2, 7)) fail_msg("tracer %d", tracer);
+    if (!continues(def, 2, 7))
+      fail_msg("tracer %d", tracer);
   }
 }
 
-/* For samplers that divide the sequence into cells, the length is that of the first render. A single render must be
- * given the same length. */
+/* For samplers that divide the sequence into cells, the length is that of the first render. A
+ * single render must be given the same length. */
 static void each_sampler_continues(void **state) {
   (void)state;
   for (int sampler = 0; sampler < SAMPLERS; sampler++) {
     vlRenderDef def = vl_default_render_def();
     def.sampler = (vlSamplerKind)sampler;
-    bool open = sampler == VL_SAMPLER_INDEPENDENT || sampler == VL_SAMPLER_HALTON || sampler == VL_SAMPLER_SOBOL ||
-                sampler == VL_SAMPLER_ZSOBOL;
-    if (continues(def, 3, 9) != open) fail_msg("sampler %d", sampler);
+    bool open = sampler == VL_SAMPLER_INDEPENDENT || sampler == VL_SAMPLER_HALTON ||
+                sampler == VL_SAMPLER_SOBOL || sampler == VL_SAMPLER_ZSOBOL;
+    if (continues(def, 3, 9) != open)
+      fail_msg("sampler %d", sampler);
     def.sequence = 3;
-    if (!continues(def, 3, 9) || !continues(def, 5, 9)) fail_msg("sampler %d of length 3", sampler);
+    if (!continues(def, 3, 9) || !continues(def, 5, 9))
+      fail_msg("sampler %d of length 3", sampler);
   }
 }
 
@@ -128,7 +134,8 @@ static void a_later_first_sample_is_another_image(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(each_tracer_continues), cmocka_unit_test(each_sampler_continues),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(each_tracer_continues),
+                                     cmocka_unit_test(each_sampler_continues),
                                      cmocka_unit_test(another_length_is_refused),
                                      cmocka_unit_test(a_time_limit_is_the_samples_it_reached),
                                      cmocka_unit_test(a_later_first_sample_is_another_image)};

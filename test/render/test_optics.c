@@ -1,10 +1,11 @@
-/* test/render/test_optics.c: lenses in images: blur shape, autofocus, natural vignetting; a lens of many elements:
- * field of view, brightness, mechanical vignetting. */
+/* test/render/test_optics.c: lenses in images: blur shape, autofocus, natural vignetting; a
+ * lens of many elements: field of view, brightness, mechanical vignetting. */
 #include "render/shots.h"
 
 #include "velo/focus.h"
 
-/* A bright dot out of focus shows the opening upright: more light below the middle of a triangle's corner than above.
+/* A bright dot out of focus shows the opening upright: more light below the middle of a
+ * triangle's corner than above.
  */
 static void blur_has_the_openings_shape(void **state) {
   (void)state;
@@ -34,7 +35,8 @@ static void blur_has_the_openings_shape(void **state) {
         }
     assert_near("centre of the blur, x", mean[0] / sum, 0, 0.05);
     assert_near("centre of the blur, y", mean[1] / sum, 0, 0.05);
-    /* an equilateral triangle, corner up: the mean of (y up)^3 is R^3/40, of x^2 and y^2 R^2/8 */
+    /* an equilateral triangle, corner up: the mean of (y up)^3 is R^3/40, of x^2 and y^2 R^2/8
+     */
     double r = 0.4 * fabs(1 / 4.0 - (k ? 1 / 9.0 : 1 / 2.0)) * 60;
     double dot = 0.08 / 4 * 60, small = dot * dot / 3 + 1.0 / 12;
     assert_ratio("x of the triangle", second[0] / sum, r * r / 8 + small, 0.02);
@@ -45,7 +47,8 @@ static void blur_has_the_openings_shape(void **state) {
   }
 }
 
-/* A camera focused on a pixel equals one focused at that pixel's depth, to the last bit. Walls at depths 3 and 8. */
+/* A camera focused on a pixel equals one focused at that pixel's depth, to the last bit. Walls
+ * at depths 3 and 8. */
 static void autofocus(void **state) {
   (void)state;
   Image p[2];
@@ -77,9 +80,11 @@ static void autofocus(void **state) {
       assert_near("distance", distance, 8 + 0.1 * 8 * 4 / 16, 1e-9);
       camera.lens.tilt[1] = 0;
       camera.near_plane = 3.5; /* cuts the nearer wall away */
-      assert_int_equal(vl_autofocus(world, &camera, 8, 16, &distance, &error), VL_ERROR_ARGUMENT);
+      assert_int_equal(vl_autofocus(world, &camera, 8, 16, &distance, &error),
+                       VL_ERROR_ARGUMENT);
       assert_non_null(strstr(error.message, "nothing is seen there"));
-      assert_int_equal(vl_autofocus(world, &camera, 48.5, 16, &distance, &error), VL_ERROR_ARGUMENT);
+      assert_int_equal(vl_autofocus(world, &camera, 48.5, 16, &distance, &error),
+                       VL_ERROR_ARGUMENT);
       assert_non_null(strstr(error.message, "outside the image"));
       camera.near_plane = 0;
       assert_int_equal(vl_camera_autofocus(world, &camera, &error), VL_OK);
@@ -91,7 +96,8 @@ static void autofocus(void **state) {
   }
   /* the distance is 3 up to rounding, so some rays differ in their last bit */
   double off = 0;
-  for (uint32_t i = 0; i < 48 * 32 * 4; i++) off += fabs((double)p[0].rgba[i] - (double)p[1].rgba[i]);
+  for (uint32_t i = 0; i < 48 * 32 * 4; i++)
+    off += fabs((double)p[0].rgba[i] - (double)p[1].rgba[i]);
   assert_true(off / (48 * 32 * 4) < 1e-3);
   image_free(&p[0]);
   image_free(&p[1]);
@@ -116,8 +122,10 @@ static void natural_vignetting(void **state) {
   image_free(&p);
 }
 
-/* A double Gauss lens in front of a bright wall: pi / (4 N^2) of its light in the middle, less in the corners, alpha
- * 1. Against an empty background the barrel is black and opaque. A dot is imaged where the chief ray meets the film. */
+/* A double Gauss lens in front of a bright wall: pi / (4 N^2) of its light in the middle, less
+ * in the corners, alpha
+ * 1. Against an empty background the barrel is black and opaque. A dot is imaged where the
+ * chief ray meets the film. */
 static void many_elements(void **state) {
   (void)state;
   vlOpticsDef def = vl_default_optics_def();
@@ -126,19 +134,23 @@ static void many_elements(void **state) {
     Stage s = stage_open(72, 48);
     vlOptics *optics = NULL;
     vlError error = {0};
-    if (vl_optics_load(s.context, VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat", &def, &optics,
-                       &error) != VL_OK)
+    if (vl_optics_load(s.context,
+                       VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat", &def,
+                       &optics, &error) != VL_OK)
       fail_msg("%s", error.message);
     s.camera.projection = VL_PROJECTION_OPTICS, s.camera.lens.optics = optics;
     s.render.spp = 256, s.render.max_depth = 0;
     vlCamera camera;
     assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
     double dot[3] = {0.3, -0.2, -2}, pixel[2] = {0, 0};
-    Quad q = k == 0 ? quad_at(0, 0, -2, 50, 0, 0, 0, 50, 0) : quad_at(0.3f, -0.2f, -2, 0.01f, 0, 0, 0, 0.01f, 0);
+    Quad q = k == 0 ? quad_at(0, 0, -2, 50, 0, 0, 0, 50, 0)
+                    : quad_at(0.3f, -0.2f, -2, 0.01f, 0, 0, 0, 0.01f, 0);
     q.emission = add_emission(&s, 1, true);
-    if (k < 2) add_quad(&s, &q);
+    if (k < 2)
+      add_quad(&s, &q);
     if (k == 2) {
-      Quad hidden = quad_at(0, 0, -0.02f, 50, 0, 0, 0, 50, 0); /* between film and lens: not seen */
+      Quad hidden =
+          quad_at(0, 0, -0.02f, 50, 0, 0, 0, 50, 0); /* between film and lens: not seen */
       hidden.emission = add_emission(&s, 9, true);
       add_quad(&s, &hidden);
     }
@@ -147,10 +159,12 @@ static void many_elements(void **state) {
     if (k == 0) {
       vlOpticsInfo info;
       vl_optics_info(optics, &info);
-      double n = info.f_number * info.rear_principal / info.focal_length; /* focused near: the working f-number */
+      double n = info.f_number * info.rear_principal /
+                 info.focal_length; /* focused near: the working f-number */
       assert_ratio("middle", image_at(&p, 36, 24, 1), 3.14159265 / (4 * n * n), 0.05);
       assert_true(image_at(&p, 0, 0, 1) < 0.9 * image_at(&p, 36, 24, 1));
-      for (uint32_t i = 0; i < 72 * 48; i++) assert_true(p.rgba[4 * i + 3] == 1);
+      for (uint32_t i = 0; i < 72 * 48; i++)
+        assert_true(p.rgba[4 * i + 3] == 1);
     } else if (k == 1) {
       double sum = 0, mx = 0, my = 0;
       for (uint32_t y = 0; y < 48; y++)
@@ -163,7 +177,8 @@ static void many_elements(void **state) {
       assert_true(pixel[0] > 36 && pixel[1] > 24);      /* right and below */
       assert_true(p.rgba[4 * (24 * 72 + 5) + 3] < 0.3); /* sky but for the barrel */
     } else {
-      for (uint32_t i = 0; i < 72 * 48; i++) assert_true(p.rgba[4 * i + 1] == 0);
+      for (uint32_t i = 0; i < 72 * 48; i++)
+        assert_true(p.rgba[4 * i + 1] == 0);
     }
     image_free(&p);
     vl_optics_destroy(optics);

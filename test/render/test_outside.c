@@ -1,5 +1,5 @@
-/* test/render/test_outside.c: pixels without a camera ray are black with alpha 0, under a sky and inside a closed room.
- * Within the image circle the image is as without the limit. */
+/* test/render/test_outside.c: pixels without a camera ray are black with alpha 0, under a sky
+ * and inside a closed room. Within the image circle the image is as without the limit. */
 #include "render/shots.h"
 
 static void image_circle(void **state) {
@@ -8,7 +8,8 @@ static void image_circle(void **state) {
     Stage s = stage_open(48, 48);
     s.camera.projection = closed ? VL_PROJECTION_PERSPECTIVE : VL_PROJECTION_EQUIDISTANT;
     if (closed) { /* r (1 - 0.4 r^2) reaches no further than 0.6086 */
-      s.camera.fx = 30, s.camera.distortion = VL_DISTORTION_RADIAL, s.camera.distortion_count = 1;
+      s.camera.fx = 30, s.camera.distortion = VL_DISTORTION_RADIAL,
+      s.camera.distortion_count = 1;
       s.camera.distortion_coefficients[0] = -0.4;
     }
     add_sky(&s, 1);
@@ -25,9 +26,12 @@ static void image_circle(void **state) {
       for (uint32_t x = 0; x < 48; x++) {
         double r = hypot(x + 0.5 - 24, y + 0.5 - 24);
         if (r > radius + 0.75)
-          for (int c = 0; c < 4; c++) assert_true(image_at(&p, x, y, c) == 0);
-        if (r < radius - 0.75 && closed) assert_near("alpha", image_at(&p, x, y, 3), 1, 1e-6);
-        if (r < radius - 0.75 && !closed) assert_true(image_at(&p, x, y, 1) > 0);
+          for (int c = 0; c < 4; c++)
+            assert_true(image_at(&p, x, y, c) == 0);
+        if (r < radius - 0.75 && closed)
+          assert_near("alpha", image_at(&p, x, y, 3), 1, 1e-6);
+        if (r < radius - 0.75 && !closed)
+          assert_true(image_at(&p, x, y, 1) > 0);
       }
     image_free(&p);
   }

@@ -1,5 +1,5 @@
-/* Portals: a portal over a room's only window gives the same image as without it, with every tracer, with less noise.
- * Behind a portal and beside it there is no light. */
+/* Portals: a portal over a room's only window gives the same image as without it, with every
+ * tracer, with less noise. Behind a portal and beside it there is no light. */
 #include "render/shots.h"
 
 enum { SIZE = 16, SEEDS = 20, BLOCKS = 4, SKY = 32 };
@@ -28,14 +28,18 @@ static void add_room(Stage *s) {
 static void add_imaged_sky(Stage *s, bool portal) {
   float sky[SKY * SKY * 3];
   for (int i = 0; i < SKY * SKY; i++)
-    for (int c = 0; c < 3; c++) sky[3 * i + c] = i % 5 == 0 ? 0.0f : 0.5f + 0.4f * (float)((i * (c + 3)) % 7);
-  for (int c = 0; c < 3; c++) sky[3 * (SKY * (SKY / 2 + 2) + SKY / 2 + 3) + c] = 300; /* a sun, high up */
+    for (int c = 0; c < 3; c++)
+      sky[3 * i + c] = i % 5 == 0 ? 0.0f : 0.5f + 0.4f * (float)((i * (c + 3)) % 7);
+  for (int c = 0; c < 3; c++)
+    sky[3 * (SKY * (SKY / 2 + 2) + SKY / 2 + 3) + c] = 300; /* a sun, high up */
   vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
   vlImage *image = make_image(s, SKY, SKY, sky);
   def.image = image;
-  set_matrix(def.world_from_light, 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0); /* its zenith is the world's y */
+  set_matrix(def.world_from_light, 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0,
+             0); /* its zenith is the world's y */
   /* (last - first) x (second - first) = z x x = y */
-  const float corners[4][3] = {{-0.2f, 1, -0.3f}, {0.6f, 1, -0.3f}, {0.6f, 1, 0.3f}, {-0.2f, 1, 0.3f}};
+  const float corners[4][3] = {
+      {-0.2f, 1, -0.3f}, {0.6f, 1, -0.3f}, {0.6f, 1, 0.3f}, {-0.2f, 1, 0.3f}};
   def.has_portal = portal;
   memcpy(def.portal, corners, sizeof corners);
   assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
@@ -81,16 +85,19 @@ static Blocks measure(vlTracer tracer, bool portal, uint32_t spp) {
   return b;
 }
 
-/* z of each block, and of all together. Student's t with 38 degrees of freedom: |t| > 4.5 by chance 6e-5. */
+/* z of each block, and of all together. Student's t with 38 degrees of freedom: |t| > 4.5 by
+ * chance 6e-5. */
 static void compare(const char *what, const Blocks *a, const Blocks *b) {
   double difference = 0, variance = 0, total = 0;
   for (int k = 0; k < BLOCKS * BLOCKS; k++) {
     double v = a->variance[k] + b->variance[k], z = (a->mean[k] - b->mean[k]) / sqrt(v);
-    if (!(fabs(z) < 4.5)) fail_msg("%s: block %d: %g against %g, z = %g", what, k, a->mean[k], b->mean[k], z);
+    if (!(fabs(z) < 4.5))
+      fail_msg("%s: block %d: %g against %g, z = %g", what, k, a->mean[k], b->mean[k], z);
     difference += a->mean[k] - b->mean[k], variance += v, total += a->mean[k];
   }
   assert_near(what, difference / sqrt(variance), 0, 4);
-  if (!(sqrt(variance) < 0.03 * total)) fail_msg("%s: too noisy to tell: %g", what, sqrt(variance) / total);
+  if (!(sqrt(variance) < 0.03 * total))
+    fail_msg("%s: too noisy to tell: %g", what, sqrt(variance) / total);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -100,14 +107,17 @@ static int ascending(const void *a, const void *b) {
 
 static void room_with_and_without(void **state) {
   (void)state;
-  Blocks plain = measure(VL_TRACER_PATH, false, 256), portal = measure(VL_TRACER_PATH, true, 64);
+  Blocks plain = measure(VL_TRACER_PATH, false, 256),
+         portal = measure(VL_TRACER_PATH, true, 64);
   compare("path tracing", &plain, &portal);
   /* The variance of a sample, block by block: rare bright samples rule the sum over all. */
   double ratio[BLOCKS * BLOCKS];
-  for (int k = 0; k < BLOCKS * BLOCKS; k++) ratio[k] = 64 * portal.variance[k] / (256 * plain.variance[k]);
+  for (int k = 0; k < BLOCKS * BLOCKS; k++)
+    ratio[k] = 64 * portal.variance[k] / (256 * plain.variance[k]);
   qsort(ratio, BLOCKS * BLOCKS, sizeof *ratio, ascending);
   double median = ratio[BLOCKS * BLOCKS / 2];
-  if (!(median < 0.5)) fail_msg("a portal must help: median ratio of the variances %g", median);
+  if (!(median < 0.5))
+    fail_msg("a portal must help: median ratio of the variances %g", median);
   const vlTracer tracers[] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL};
   for (int i = 0; i < 2; i++) {
     Blocks other = measure(tracers[i], true, 64);
@@ -115,7 +125,8 @@ static void room_with_and_without(void **state) {
   }
 }
 
-/* Seen straight: the sky's own texels inside the frame, black outside, and black from the other side. */
+/* Seen straight: the sky's own texels inside the frame, black outside, and black from the other
+ * side. */
 static void seen_from_both_sides(void **state) {
   (void)state;
   for (int side = 0; side < 3; side++) {
@@ -134,7 +145,8 @@ static void seen_from_both_sides(void **state) {
       for (uint32_t x = 0; x < 32; x++) { /* 90 degrees: at distance 0.5 the image is 1 wide */
         double px = fabs((x + 0.5) / 32 - 0.5), py = fabs((y + 0.5) / 32 - 0.5);
         bool inside = side == 0 && px < 0.4 && py < 0.3;
-        assert_near("sky in a portal", image_at(&p[1], x, y, 1), inside ? image_at(&p[0], x, y, 1) : 0, 1e-6);
+        assert_near("sky in a portal", image_at(&p[1], x, y, 1),
+                    inside ? image_at(&p[0], x, y, 1) : 0, 1e-6);
       }
     image_free(&p[0]), image_free(&p[1]);
   }
@@ -155,11 +167,13 @@ static void floor_under_a_portal(void **state) {
   q.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
   add_quad(&s, &q);
   float sky[3 * 16];
-  for (int i = 0; i < 48; i++) sky[i] = 3; /* the same from everywhere */
+  for (int i = 0; i < 48; i++)
+    sky[i] = 3; /* the same from everywhere */
   vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
   vlImage *image = make_image(&s, 4, 4, sky);
   def.image = image, def.has_portal = true;
-  const float corners[4][3] = {{-0.2f, 1, -0.3f}, {0.6f, 1, -0.3f}, {0.6f, 1, 0.3f}, {-0.2f, 1, 0.3f}};
+  const float corners[4][3] = {
+      {-0.2f, 1, -0.3f}, {0.6f, 1, -0.3f}, {0.6f, 1, 0.3f}, {-0.2f, 1, 0.3f}};
   memcpy(def.portal, corners, sizeof corners);
   vl_scene_add_light(s.scene, &def);
   vl_image_destroy(image);
@@ -167,7 +181,8 @@ static void floor_under_a_portal(void **state) {
   double sum = 0;
   for (int i = 0; i < 200; i++)
     for (int j = 0; j < 200; j++) {
-      double x = 0.8 * ((i + 0.5) / 200 - 0.5), z = 0.6 * ((j + 0.5) / 200 - 0.5), d2 = x * x + z * z + 4;
+      double x = 0.8 * ((i + 0.5) / 200 - 0.5), z = 0.6 * ((j + 0.5) / 200 - 0.5),
+             d2 = x * x + z * z + 4;
       sum += 4 / (d2 * d2) * 0.48 / 40000; /* cos cos / d^2 dA at distance 2 */
     }
   assert_ratio("floor under a portal", image_mean(&p, 1), 0.5 / M_PI * 3 * sum, 2e-3);

@@ -1,6 +1,7 @@
-/* Lights that only next-event estimation finds: for each transmissive material, point lights behind, in front and
- * beside it give the same mean with the light tree as with sampling by power. A bound of zero where light arrives would
- * appear as darkness, a bound far too small as noise. */
+/* Lights that only next-event estimation finds: for each transmissive material, point lights
+ * behind, in front and beside it give the same mean with the light tree as with sampling by
+ * power. A bound of zero where light arrives would appear as darkness, a bound far too small as
+ * noise. */
 #include "render/shots.h"
 
 #include "import/import.h"
@@ -13,10 +14,16 @@ typedef struct Material {
 } Material;
 
 static const char quad[] =
-    "Shape \"trianglemesh\" \"point3 P\" [-2 -2 -3  2 -2 -3  2 2 -3  -2 2 -3] \"integer indices\" [0 1 2 0 2 3]";
+    "Shape \"trianglemesh\" \"point3 P\" [-2 -2 -3  2 -2 -3  2 2 -3  -2 2 -3] \"integer "
+    "indices\" "
+    "[0 1 2 0 2 3]";
 static const char slab[] =
-    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3  9 -9 -3  9 9 -3  -9 9 -3] \"integer indices\" [0 1 2 0 2 3]\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3.1  9 -9 -3.1  9 9 -3.1  -9 9 -3.1] \"integer indices\" [0 2 1 0 3 "
+    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3  9 -9 -3  9 9 -3  -9 9 -3] \"integer "
+    "indices\" "
+    "[0 1 2 0 2 3]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3.1  9 -9 -3.1  9 9 -3.1  -9 9 -3.1] "
+    "\"integer "
+    "indices\" [0 2 1 0 3 "
     "2]";
 static const char hairs[] =
     "Shape \"curve\" \"point3 P\" [-1 -3 -3  -1 -1 -3  -1 1 -3  -1 3 -3] \"float width\" 1.2\n"
@@ -27,15 +34,19 @@ static const Material materials[] = {
     {"diffuse", "\"diffuse\"", quad, false, true},
     {"coated", "\"coateddiffuse\"", quad, false, true},
     {"conductor", "\"conductor\" \"float roughness\" 0.5", quad, false, true},
-    {"diffuse transmission", "\"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.3]", quad, true, true},
-    {"transmission alone", "\"diffusetransmission\" \"rgb reflectance\" [0 0 0]", quad, true, false},
+    {"diffuse transmission", "\"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.3]", quad,
+     true, true},
+    {"transmission alone", "\"diffusetransmission\" \"rgb reflectance\" [0 0 0]", quad, true,
+     false},
     {"rough glass, one surface", "\"dielectric\" \"float roughness\" 0.5", quad, true, true},
     {"rough glass, a slab", "\"dielectric\" \"float roughness\" 0.5", slab, true, true},
     {"hair", "\"hair\" \"float eumelanin\" 0.1", hairs, true, true},
-    {"wide hair", "\"hair\" \"float eumelanin\" 0.3 \"float beta_m\" 0.9 \"float beta_n\" 0.9", hairs, true, true},
+    {"wide hair", "\"hair\" \"float eumelanin\" 0.3 \"float beta_m\" 0.9 \"float beta_n\" 0.9",
+     hairs, true, true},
 };
 
-/* Mean green of the material under lights: where 0 behind, 1 before, 2 all round and nearly in its plane. */
+/* Mean green of the material under lights: where 0 behind, 1 before, 2 all round and nearly in
+ * its plane. */
 static double mean_of(const Material *m, int where, vlLightSampler sampler, double *noise) {
   static const float places[3][4][3] = {
       {{0.5f, 0.3f, -5}, {-1, 1, -4}, {2, -1, -6}, {-2, -2, -4}},
@@ -46,7 +57,8 @@ static double mean_of(const Material *m, int where, vlLightSampler sampler, doub
   at += sprintf(at, "WorldBegin\n");
   for (int i = 0; i < 4; i++)
     at += sprintf(at, "LightSource \"point\" \"point3 from\" [%g %g %g] \"rgb I\" [3 3 3]\n",
-                  (double)places[where][i][0], (double)places[where][i][1], (double)places[where][i][2]);
+                  (double)places[where][i][0], (double)places[where][i][1],
+                  (double)places[where][i][2]);
   sprintf(at, "Material %s\n%s\n", m->text, m->shape);
   Stage s = stage_open(SIZE, SIZE);
   vlError error = {0};
@@ -60,7 +72,8 @@ static double mean_of(const Material *m, int where, vlLightSampler sampler, doub
   s.render.tracer = VL_TRACER_PATH;
   Image p = stage_finish(&s);
   double mean = image_mean(&p, 1), most = 0;
-  for (uint32_t i = 0; i < SIZE * SIZE; i++) most = fmax(most, p.rgba[4 * i + 1]);
+  for (uint32_t i = 0; i < SIZE * SIZE; i++)
+    most = fmax(most, p.rgba[4 * i + 1]);
   *noise = mean > 0 ? most / mean : 0;
   image_free(&p);
   return mean;
@@ -75,11 +88,16 @@ static void every_light_is_asked(void **state) {
       double tree = mean_of(m, where, VL_LIGHT_SAMPLER_BVH, &most_tree);
       double power = mean_of(m, where, VL_LIGHT_SAMPLER_POWER, &most_power);
       char what[100];
-      snprintf(what, sizeof what, "%s, lights %s", m->name, where == 0 ? "behind" : where == 1 ? "before" : "beside");
+      snprintf(what, sizeof what, "%s, lights %s", m->name,
+               where == 0   ? "behind"
+               : where == 1 ? "before"
+                            : "beside");
       bool dark = (where == 0 && !m->through) || (where == 1 && !m->back);
-      if (dark != !(power > 1e-6)) fail_msg("%s: %g by power", what, power);
+      if (dark != !(power > 1e-6))
+        fail_msg("%s: %g by power", what, power);
       assert_near(what, tree, power, 0.04 * power);
-      if (most_tree > 2 * most_power + 1) fail_msg("%s: a pixel of %g times the mean", what, most_tree);
+      if (most_tree > 2 * most_power + 1)
+        fail_msg("%s: a pixel of %g times the mean", what, most_tree);
     }
 }
 

@@ -1,5 +1,5 @@
-/* Pixels that share samples: weights follow the filter and sum to 1 over the pixels; the sums of a block are those of a
- * direct double loop; which films share. */
+/* Pixels that share samples: weights follow the filter and sum to 1 over the pixels; the sums
+ * of a block are those of a direct double loop; which films share. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,8 +40,8 @@ static const vlPixelFilter filters[] = {
 };
 enum { FILTERS = sizeof filters / sizeof *filters };
 
-/* A sample's weights in the pixels around are the filter there, scaled to an integral of 1; they sum to 1 in the mean,
- * for a triangle of radius 1 always. */
+/* A sample's weights in the pixels around are the filter there, scaled to an integral of 1;
+ * they sum to 1 in the mean, for a triangle of radius 1 always. */
 static void weights(void **state) {
   (void)state;
   vlContext *context = make_context();
@@ -54,7 +54,8 @@ static void weights(void **state) {
     for (int axis = 0; axis < 2; axis++) {
       double radius = axis ? f->radius_y : f->radius_x;
       for (int i = 0; i < STEPS; i++)
-        integral[axis] += vl_filter_value(f, axis, radius * (2 * (i + 0.5) / STEPS - 1)) * 2 * radius / STEPS;
+        integral[axis] +=
+            vl_filter_value(f, axis, radius * (2 * (i + 0.5) / STEPS - 1)) * 2 * radius / STEPS;
     }
     double mean = 0;
     enum { SIDE = 64 };
@@ -65,19 +66,26 @@ static void weights(void **state) {
         for (int32_t dx = -3; dx <= 3; dx++) {
           double w = vl_shared_weight(&r, x, y, dx, dy), u = x - 0.5 - dx, v = y - 0.5 - dy;
           bool inside = fabs(u) < f->radius_x && fabs(v) < f->radius_y;
-          double exact = inside ? vl_filter_value(f, 0, u) * vl_filter_value(f, 1, v) / (integral[0] * integral[1]) : 0;
-          if (fabs(w - exact) > 1e-5) fail_msg("filter %d at %g, %g: %g, not %g", k, u, v, w, exact);
+          double exact = inside ? vl_filter_value(f, 0, u) * vl_filter_value(f, 1, v) /
+                                      (integral[0] * integral[1])
+                                : 0;
+          if (fabs(w - exact) > 1e-5)
+            fail_msg("filter %d at %g, %g: %g, not %g", k, u, v, w, exact);
           bool reaches = (uint32_t)abs(dx) <= r.border[0] && (uint32_t)abs(dy) <= r.border[1];
           assert_true(reaches || w == 0);
           sum += w;
         }
-      if (k == 0) assert_true(fabs(sum - 1) < 1e-6);
+      if (k == 0)
+        assert_true(fabs(sum - 1) < 1e-6);
       mean += sum / (SIDE * SIDE);
     }
     double correlation = vl_reconstruction_correlation(&r);
-    if (k == 0) assert_true(fabs(correlation - 1.125 * 1.125) < 1e-3); /* 1/4 one pixel away: (1/6) / (2/3) */
+    if (k == 0)
+      assert_true(fabs(correlation - 1.125 * 1.125) <
+                  1e-3); /* 1/4 one pixel away: (1/6) / (2/3) */
     assert_true(correlation > 1 && correlation < 25);
-    if (fabs(mean - 1) > 2e-3) fail_msg("filter %d: weights sum to %g", k, mean);
+    if (fabs(mean - 1) > 2e-3)
+      fail_msg("filter %d: weights sum to %g", k, mean);
     vl_filter_free(context, &table_);
   }
   vl_context_destroy(context);
@@ -91,20 +99,25 @@ static void sums(void **state) {
     assert_int_equal(vl_filter_compile(context, &filters[k], &table_), VL_OK);
     vlReconstruction r = vl_reconstruction_of(&table_);
     const vlSharedBlock block = {.x0 = 40, .y0 = 7, .width = WIDTH, .height = HEIGHT};
-    uint32_t stride = WIDTH + 2 * r.border[0], rows = HEIGHT + 2 * r.border[1], count = stride * rows;
+    uint32_t stride = WIDTH + 2 * r.border[0], rows = HEIGHT + 2 * r.border[1],
+             count = stride * rows;
     static float values[VL_SHARED_GRID][4], points[VL_SHARED_GRID][2];
     for (uint32_t i = 0; i < count; i++) {
-      for (int c = 0; c < 4; c++) values[i][c] = random_number();
-      for (int c = 0; c < 2; c++) points[i][c] = random_number();
+      for (int c = 0; c < 4; c++)
+        values[i][c] = random_number();
+      for (int c = 0; c < 2; c++)
+        points[i][c] = random_number();
       vlSharedTaps taps;
       _Alignas(64) float x[VL_PAD(1)] = {points[i][0]}, y[VL_PAD(1)] = {points[i][1]};
       for (int axis = 0; axis < 2; axis++)
-        vl_shared_taps(&r, vl_filter_kernels(vl_isa_best()), axis, 1, axis ? y : x, taps.along[axis][0],
-                       VL_SHARED_LANES);
+        vl_shared_taps(&r, vl_filter_kernels(vl_isa_best()), axis, 1, axis ? y : x,
+                       taps.along[axis][0], VL_SHARED_LANES);
       bool counts = i % 50 != 3;
-      if (!counts) values[i][0] = NAN, points[i][0] = 99; /* no weight in any pixel */
+      if (!counts)
+        values[i][0] = NAN, points[i][0] = 99; /* no weight in any pixel */
       vl_shared_store(&r, &grid_, i, values[i], &taps, 0, counts);
-      for (int c = 0; c < 4 && !counts; c++) values[i][c] = 0;
+      for (int c = 0; c < 4 && !counts; c++)
+        values[i][c] = 0;
     }
     float color[4][WIDTH * HEIGHT], weight[WIDTH * HEIGHT];
     float *const rows_of[4] = {color[0], color[1], color[2], color[3]};
@@ -117,19 +130,22 @@ static void sums(void **state) {
           int32_t dx = (int32_t)(x + r.border[0]) - (int32_t)(i % stride);
           int32_t dy = (int32_t)(y + r.border[1]) - (int32_t)(i / stride);
           double w = vl_shared_weight(&r, points[i][0], points[i][1], dx, dy);
-          for (int c = 0; c < 4; c++) sum[c] += w * values[i][c];
+          for (int c = 0; c < 4; c++)
+            sum[c] += w * values[i][c];
           sum[4] += w;
         }
         uint32_t at = (y - first) * WIDTH + x;
         assert_true(fabs(weight[at] - sum[4]) < 1e-5 * sum[4]);
-        for (int c = 0; c < 4; c++) assert_true(fabs(color[c][at] - sum[c] / sum[4]) < 1e-5);
+        for (int c = 0; c < 4; c++)
+          assert_true(fabs(color[c][at] - sum[c] / sum[4]) < 1e-5);
       }
     vl_filter_free(context, &table_);
   }
   vl_context_destroy(context);
 }
 
-/* A sample of the border counts where it has a weight in a pixel of the block, and nowhere else. */
+/* A sample of the border counts where it has a weight in a pixel of the block, and nowhere
+ * else. */
 static void border(void **state) {
   (void)state;
   vlContext *context = make_context();
@@ -145,12 +161,15 @@ static void border(void **state) {
       float x = random_number(), y = random_number(), most = 0;
       for (uint32_t j = b[1]; j < b[1] + block.height; j++)
         for (uint32_t l = b[0]; l < b[0] + block.width; l++)
-          most = fmaxf(most, vl_shared_weight(&r, x, y, (int32_t)l - (int32_t)u, (int32_t)j - (int32_t)v));
+          most = fmaxf(most, vl_shared_weight(&r, x, y, (int32_t)l - (int32_t)u,
+                                              (int32_t)j - (int32_t)v));
       bool counts = vl_shared_counts(&r, &block, u, v, x, y);
-      if (counts != (most > 0)) fail_msg("filter %d at %u, %u: weight %g, counts %d", k, u, v, (double)most, counts);
+      if (counts != (most > 0))
+        fail_msg("filter %d at %u, %u: weight %g, counts %d", k, u, v, (double)most, counts);
       skipped += !counts;
     }
-    if (r.skips != (skipped > 0)) fail_msg("filter %d: %u samples need not be traced", k, skipped);
+    if (r.skips != (skipped > 0))
+      fail_msg("filter %d: %u samples need not be traced", k, skipped);
     vl_filter_free(context, &table_);
   }
   vl_context_destroy(context);
@@ -187,7 +206,7 @@ static void rules(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(weights), cmocka_unit_test(sums), cmocka_unit_test(border),
-                                     cmocka_unit_test(rules)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(weights), cmocka_unit_test(sums),
+                                     cmocka_unit_test(border), cmocka_unit_test(rules)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* test_regularize.c: regularisation of scattered paths (vlBuildDef.regularize). Surfaces seen directly and in mirrors
- * are bit-identical; surfaces met after scattering are, to the bit, those of the larger alpha. */
+/* test_regularize.c: regularisation of scattered paths (vlBuildDef.regularize). Surfaces seen
+ * directly and in mirrors are bit-identical; surfaces met after scattering are, to the bit,
+ * those of the larger alpha. */
 #include "render/shots.h"
 #include "velo/medium.h"
 
@@ -12,14 +13,15 @@ static float widened(float alpha) {
 
 /* A material of alphas u and v. */
 static vlMaterialId shiny(Stage *s, int kind, float u, float v) {
-  static const vlMaterialKind kinds[KINDS] = {VL_MATERIAL_DIELECTRIC,     VL_MATERIAL_CONDUCTOR,
-                                              VL_MATERIAL_COATED_DIFFUSE, VL_MATERIAL_COATED_CONDUCTOR,
-                                              VL_MATERIAL_COATED_DIFFUSE, VL_MATERIAL_PRINCIPLED};
+  static const vlMaterialKind kinds[KINDS] = {
+      VL_MATERIAL_DIELECTRIC,       VL_MATERIAL_CONDUCTOR,      VL_MATERIAL_COATED_DIFFUSE,
+      VL_MATERIAL_COATED_CONDUCTOR, VL_MATERIAL_COATED_DIFFUSE, VL_MATERIAL_PRINCIPLED};
   vlMaterialDef def = vl_default_material_def(kinds[kind]);
   def.remap_roughness = false;
   def.u_roughness = vl_float_input(u), def.v_roughness = vl_float_input(v);
   def.coat_u_roughness = vl_float_input(u), def.coat_v_roughness = vl_float_input(v);
-  if (kind == WALKED_COAT) def.albedo = vl_spectrum_input(vl_spectrum_constant(0.5f));
+  if (kind == WALKED_COAT)
+    def.albedo = vl_spectrum_input(vl_spectrum_constant(0.5f));
   if (kind == PRINCIPLED) {
     def.principled.roughness = vl_float_input(sqrtf(u));
     def.principled.clearcoat = vl_float_input(0.5f);
@@ -29,7 +31,8 @@ static vlMaterialId shiny(Stage *s, int kind, float u, float v) {
 }
 
 /* The eye sees a grey wall; the material is behind it. Or, first: before it. */
-static Image room(int kind, float u, float v, bool regularize, bool first, uint32_t depth, bool medium) {
+static Image room(int kind, float u, float v, bool regularize, bool first, uint32_t depth,
+                  bool medium) {
   Stage s = stage_open(24, 24);
   s.build.regularize = regularize;
   s.render.spp = 8;
@@ -62,34 +65,45 @@ static void rougher(void **state) {
     for (int kind = 0; kind < KINDS; kind++)
       for (int i = 0; i < 4; i++) {
         float u = alphas[i][0], v = alphas[i][1];
-        if (kind == PRINCIPLED && i == 0) continue; /* has a least alpha of its own */
-        Image on = room(kind, u, v, true, false, 3, medium), off = room(kind, u, v, false, false, 3, medium);
+        if (kind == PRINCIPLED && i == 0)
+          continue; /* has a least alpha of its own */
+        Image on = room(kind, u, v, true, false, 3, medium),
+              off = room(kind, u, v, false, false, 3, medium);
         Image rough = room(kind, widened(u), widened(v), false, false, 3, medium);
         if (kind == PRINCIPLED) { /* its roughness is the root: rounded */
           double differing = image_differing(&on, &rough, 1e-3);
-          if (differing > 0.02) fail_msg("kind %d alphas %d: %g of the pixels differ", kind, i, differing);
+          if (differing > 0.02)
+            fail_msg("kind %d alphas %d: %g of the pixels differ", kind, i, differing);
         } else if (!same(&on, &rough)) {
           fail_msg("kind %d alphas %d medium %d: not as the rougher one", kind, i, medium);
         }
-        if (same(&on, &off)) fail_msg("kind %d alphas %d: nothing has changed", kind, i);
+        if (same(&on, &off))
+          fail_msg("kind %d alphas %d: nothing has changed", kind, i);
         image_free(&on), image_free(&off), image_free(&rough);
       }
 }
 
-/* The first surface that the camera sees does not change, nor does a surface that is rough enough or has no alpha. */
+/* The first surface that the camera sees does not change, nor does a surface that is rough
+ * enough or has no alpha. */
 static void unchanged(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++) {
-    Image on = room(kind, 0.05f, 0.05f, true, true, 1, false), off = room(kind, 0.05f, 0.05f, false, true, 1, false);
-    if (!same(&on, &off)) fail_msg("kind %d: the first hit has changed", kind);
+    Image on = room(kind, 0.05f, 0.05f, true, true, 1, false),
+          off = room(kind, 0.05f, 0.05f, false, true, 1, false);
+    if (!same(&on, &off))
+      fail_msg("kind %d: the first hit has changed", kind);
     image_free(&on), image_free(&off);
-    on = room(kind, 0.5f, 0.4f, true, false, 4, false), off = room(kind, 0.5f, 0.4f, false, false, 4, false);
-    if (!same(&on, &off)) fail_msg("kind %d: what was rough has changed", kind);
+    on = room(kind, 0.5f, 0.4f, true, false, 4, false),
+    off = room(kind, 0.5f, 0.4f, false, false, 4, false);
+    if (!same(&on, &off))
+      fail_msg("kind %d: what was rough has changed", kind);
     image_free(&on), image_free(&off);
   }
 }
 
-/* eye -> mirror -> metal: both as they are. The metal scatters: what the next ray meets is rougher. */
+/* eye -> mirror -> metal: both as they are. The metal scatters: what the next ray meets is
+ * rougher.
+ */
 static void in_a_mirror(void **state) {
   (void)state;
   Image p[2][2];
@@ -99,7 +113,8 @@ static void in_a_mirror(void **state) {
       s.build.regularize = on;
       s.render.spp = 16;
       s.render.max_depth = deep ? 4 : 2;
-      Quad mirror = quad_at(0, 0, -1, 3, 0, 0, 0, 3, 0), metal = quad_at(0, 0, 1, -3, 0, 0, 0, 3, 0);
+      Quad mirror = quad_at(0, 0, -1, 3, 0, 0, 0, 3, 0),
+           metal = quad_at(0, 0, 1, -3, 0, 0, 0, 3, 0);
       mirror.material = shiny(&s, CONDUCTOR, 0, 0);
       metal.material = shiny(&s, CONDUCTOR, 0.15f, 0.15f);
       add_quad(&s, &mirror), add_quad(&s, &metal);
@@ -108,7 +123,8 @@ static void in_a_mirror(void **state) {
     }
   assert_true(same(&p[0][0], &p[0][1]));
   assert_false(same(&p[1][0], &p[1][1]));
-  for (int i = 0; i < 4; i++) image_free(&p[i / 2][i % 2]);
+  for (int i = 0; i < 4; i++)
+    image_free(&p[i / 2][i % 2]);
 }
 
 /* A medium scatters, too: then a mirror finds the lamp. */
@@ -141,6 +157,7 @@ static void in_a_medium(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(rougher), cmocka_unit_test(unchanged),
-                                     cmocka_unit_test(in_a_mirror), cmocka_unit_test(in_a_medium)};
+                                     cmocka_unit_test(in_a_mirror),
+                                     cmocka_unit_test(in_a_medium)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,13 +12,15 @@ static double seconds(void) {
 
 static void assert_clean(const char *what, Image *p) {
   for (size_t i = 0; i < (size_t)p->width * p->height * 4; i++)
-    if (!isfinite(p->rgba[i])) fail_msg("%s: a pixel is not finite", what);
+    if (!isfinite(p->rgba[i]))
+      fail_msg("%s: a pixel is not finite", what);
 }
 
 static void done(const char *what, Stage *s, bool all_finite) {
   Image p = stage_finish(s);
   assert_clean(what, &p);
-  if (all_finite && p.stats.not_finite) fail_msg("%s: %g samples not finite", what, (double)p.stats.not_finite);
+  if (all_finite && p.stats.not_finite)
+    fail_msg("%s: %g samples not finite", what, (double)p.stats.not_finite);
   image_free(&p);
 }
 
@@ -28,9 +30,11 @@ static void nothing_at_all(void **state) {
     for (int sky = 0; sky < 2; sky++) {
       Stage s = stage_open(5, 3);
       s.render.tracer = (vlTracer)tracer;
-      if (sky) add_sky(&s, 1);
+      if (sky)
+        add_sky(&s, 1);
       Image p = stage_finish(&s);
-      assert_near("empty scene", image_mean(&p, 1), sky && tracer != VL_TRACER_AMBIENT_OCCLUSION, 0.1);
+      assert_near("empty scene", image_mean(&p, 1),
+                  sky && tracer != VL_TRACER_AMBIENT_OCCLUSION, 0.1);
       image_free(&p);
     }
   Stage s = stage_open(1, 1); /* one pixel, an empty group, a group nobody places */
@@ -53,15 +57,20 @@ static void degenerate_triangles(void **state) {
                               -1, 0, -2, 0, 1, -2, -1, 0, -2, 1e-38f, 1e-38f, -1, 0, 0, -1};
   static const float n[30] = {0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1e-30f};
   static const float uv[20] = {0};
-  static const uint32_t f[24] = {0, 0, 0, 0, 1, 2, 0, 1, 3, 0, 4, 5, 0, 6, 7, 8, 9, 8, 1, 1, 4, 0, 1, 4};
+  static const uint32_t f[24] = {0, 0, 0, 0, 1, 2, 0, 1, 3, 0, 4, 5,
+                                 0, 6, 7, 8, 9, 8, 1, 1, 4, 0, 1, 4};
   for (int k = 0; k < 8; k++) {
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
     def.vertices = 10, def.faces = 8, def.positions = p, def.indices = f;
-    if (k & 1) def.normals = n, def.tangents = n;
-    if (k & 2) def.uvs = uv;
-    if (k & 4) def.emission = add_emission(&s, 1, true);
+    if (k & 1)
+      def.normals = n, def.tangents = n;
+    if (k & 2)
+      def.uvs = uv;
+    if (k & 4)
+      def.emission = add_emission(&s, 1, true);
     vlTextureDef h = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
-    vlMaterialDef m = vl_default_material_def(k & 1 ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_COATED_DIFFUSE);
+    vlMaterialDef m =
+        vl_default_material_def(k & 1 ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_COATED_DIFFUSE);
     m.displacement.texture = vl_scene_add_texture(s.scene, &h);
     def.material = vl_scene_add_material(s.scene, &m);
     set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0.2 * k - 0.8, 0, 0, 1, 0.01 * k);
@@ -92,22 +101,25 @@ static void scales(void **state) {
   for (int k = 0; k < 5; k++) {
     Stage s = stage_open(32, 24);
     add_sky(&s, 0.5f);
-    add_point(&s, (float)(2 * scale[k]), (float)(2 * scale[k]), 0, (float)(5 * scale[k] * scale[k]));
-    Quad floor =
-        quad_at(0, (float)-scale[k], (float)(-3 * scale[k]), (float)(3 * scale[k]), 0, 0, 0, 0, (float)(-3 * scale[k]));
+    add_point(&s, (float)(2 * scale[k]), (float)(2 * scale[k]), 0,
+              (float)(5 * scale[k] * scale[k]));
+    Quad floor = quad_at(0, (float)-scale[k], (float)(-3 * scale[k]), (float)(3 * scale[k]), 0,
+                         0, 0, 0, (float)(-3 * scale[k]));
     add_quad(&s, &floor);
-    Quad light = quad_at(0, (float)scale[k], (float)(-3 * scale[k]), (float)(0.3 * scale[k]), 0, 0, 0, 0,
-                         (float)(0.3 * scale[k]));
+    Quad light = quad_at(0, (float)scale[k], (float)(-3 * scale[k]), (float)(0.3 * scale[k]), 0,
+                         0, 0, 0, (float)(0.3 * scale[k]));
     light.emission = add_emission(&s, 3, false);
     add_quad(&s, &light);
     vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-    set_matrix(ball.group_from_shape, scale[k], 0, 0, -scale[k], 0, scale[k], 0, 0, 0, 0, scale[k], -4 * scale[k]);
+    set_matrix(ball.group_from_shape, scale[k], 0, 0, -scale[k], 0, scale[k], 0, 0, 0, 0,
+               scale[k], -4 * scale[k]);
     vl_scene_add_shape(s.scene, &ball);
     float *block = NULL;
     vlShapeDef mesh = mesh_sphere(12, 1, true, &block);
     vlMaterialDef glass = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
     mesh.material = vl_scene_add_material(s.scene, &glass);
-    set_matrix(mesh.group_from_shape, scale[k], 0, 0, scale[k], 0, scale[k], 0, 0, 0, 0, scale[k], -4 * scale[k]);
+    set_matrix(mesh.group_from_shape, scale[k], 0, 0, scale[k], 0, scale[k], 0, 0, 0, 0,
+               scale[k], -4 * scale[k]);
     vl_scene_add_shape(s.scene, &mesh);
     free(block);
     s.render.spp = 64;
@@ -126,17 +138,22 @@ static void eye_inside_and_on_things(void **state) {
   for (int k = 0; k < 6; k++) {
     Stage s = stage_open(24, 24);
     add_sky(&s, 1);
-    vlMaterialDef def = vl_default_material_def(k < 3 ? VL_MATERIAL_DIELECTRIC : VL_MATERIAL_DIFFUSE);
+    vlMaterialDef def =
+        vl_default_material_def(k < 3 ? VL_MATERIAL_DIELECTRIC : VL_MATERIAL_DIFFUSE);
     float *block = NULL;
-    vlShapeDef ball = k & 1 ? mesh_sphere(8, 1, false, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
+    vlShapeDef ball =
+        k & 1 ? mesh_sphere(8, 1, false, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
     ball.material = vl_scene_add_material(s.scene, &def);
     vl_scene_add_shape(s.scene, &ball);
     vl_scene_add_shape(s.scene, &ball); /* twice the same surface */
     free(block);
-    s.camera.eye[2] = k % 3 == 0 ? 0 : k % 3 == 1 ? 1 : 1 + 1e-7; /* in the middle, on the surface, just off it */
+    s.camera.eye[2] = k % 3 == 0   ? 0
+                      : k % 3 == 1 ? 1
+                                   : 1 + 1e-7; /* in the middle, on the surface, just off it */
     s.camera.lookat[2] = s.camera.eye[2] - 1;
     add_point(&s, 0, 0, (float)s.camera.eye[2], 1); /* a light in the very eye */
-    done("eye inside", &s, k % 3 == 0);             /* on the surface the light is nearer than what a film can hold */
+    done("eye inside", &s,
+         k % 3 == 0); /* on the surface the light is nearer than what a film can hold */
   }
 }
 
@@ -170,7 +187,9 @@ static void dark_and_wild_lights(void **state) {
       vlLightDef light = vl_default_light_def((vlLightKind)(k % 4));
       light.scale = k < 4 ? 0 : k == 4 ? 1e30f : -1;
       vl_scene_add_light(s.scene, &light);
-      if (k == 2) light.color = vl_spectrum_constant(0), light.scale = 1, vl_scene_add_light(s.scene, &light);
+      if (k == 2)
+        light.color = vl_spectrum_constant(0), light.scale = 1,
+        vl_scene_add_light(s.scene, &light);
       vlEmissionDef emission = vl_default_emission_def();
       emission.scale = k == 5 ? 1e30f : 0;
       emission.power = k == 1 ? 0 : VL_UNSET;
@@ -178,8 +197,11 @@ static void dark_and_wild_lights(void **state) {
       add_quad(&s, &q);
       Image p = stage_finish(&s);
       assert_clean("dark and wild lights", &p);
-      if (k < 4) assert_int_equal(p.stats.not_finite, 0);
-      if (k == 5) assert_true(p.stats.not_finite > 0); /* brighter than a film can hold: dropped, and counted */
+      if (k < 4)
+        assert_int_equal(p.stats.not_finite, 0);
+      if (k == 5)
+        assert_true(p.stats.not_finite >
+                    0); /* brighter than a film can hold: dropped, and counted */
       image_free(&p);
     }
 }
@@ -195,9 +217,12 @@ static void wild_materials(void **state) {
       add_point(&s, 1, 1, 1, 5);
       vlMaterialDef def = vl_default_material_def((vlMaterialKind)kind);
       def.reflectance = vl_spectrum_input(vl_spectrum_constant(wild[k]));
-      def.u_roughness = vl_float_input(wild[k]), def.v_roughness = vl_float_input(wild[(k + 3) % 8]);
-      if (kind == VL_MATERIAL_CONDUCTOR && k & 1) def.eta = def.k = vl_spectrum_input(vl_spectrum_constant(wild[k]));
-      if (kind == VL_MATERIAL_COATED_DIFFUSE) def.thickness = vl_float_input(wild[k] > 0 ? wild[k] : 0);
+      def.u_roughness = vl_float_input(wild[k]),
+      def.v_roughness = vl_float_input(wild[(k + 3) % 8]);
+      if (kind == VL_MATERIAL_CONDUCTOR && k & 1)
+        def.eta = def.k = vl_spectrum_input(vl_spectrum_constant(wild[k]));
+      if (kind == VL_MATERIAL_COATED_DIFFUSE)
+        def.thickness = vl_float_input(wild[k] > 0 ? wild[k] : 0);
       vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
       set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
       ball.material = vl_scene_add_material(s.scene, &def);
@@ -221,7 +246,8 @@ static void wild_images(void **state) {
   for (int k = 0; k < 4; k++)
     for (int use = 0; use < 5; use++) { /* reflectance, roughness, sky, displacement, alpha */
       float rgb[4 * 4 * 3];
-      for (int i = 0; i < 48; i++) rgb[i] = i / 3 % 5 == 2 ? bad[k] : 0.5f;
+      for (int i = 0; i < 48; i++)
+        rgb[i] = i / 3 % 5 == 2 ? bad[k] : 0.5f;
       Stage s = stage_open(16, 16);
       add_point(&s, 1, 1, 1, 5);
       vlImage *image = make_image(&s, 4, 4, rgb);
@@ -234,13 +260,18 @@ static void wild_images(void **state) {
       def.image = image;
       def.filter = (vlTextureFilter)(k % 4);
       vlTextureId id = vl_scene_add_texture(s.scene, &def);
-      vlMaterialDef m = vl_default_material_def(use == 1 ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
-      if (use == 0) m.reflectance.texture = id;
-      if (use == 1) m.u_roughness.texture = m.v_roughness.texture = id;
-      if (use == 3) m.displacement.texture = id;
+      vlMaterialDef m =
+          vl_default_material_def(use == 1 ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
+      if (use == 0)
+        m.reflectance.texture = id;
+      if (use == 1)
+        m.u_roughness.texture = m.v_roughness.texture = id;
+      if (use == 3)
+        m.displacement.texture = id;
       Quad q = quad_at(0, 0, -2, 1, 0, 0, 0, 1, 0);
       q.material = vl_scene_add_material(s.scene, &m);
-      if (use == 4) q.alpha.texture = id;
+      if (use == 4)
+        q.alpha.texture = id;
       add_quad(&s, &q);
       vl_image_destroy(image);
       vlWorld *world = NULL;
@@ -266,18 +297,21 @@ static void thousands_of_materials(void **state) {
     double start = seconds();
     vlMaterialId grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
     for (int k = 0; k < 5000; k++) {
-      Quad q = quad_at(-1 + 0.02f * (float)(k % 100), -1 + 0.04f * (float)(k / 100), -1.5f, 0.01f, 0, 0, 0, 0.02f, 0);
+      Quad q = quad_at(-1 + 0.02f * (float)(k % 100), -1 + 0.04f * (float)(k / 100), -1.5f,
+                       0.01f, 0, 0, 0, 0.02f, 0);
       q.material = many ? add_diffuse(&s, 0.5f, 0.5f, 0.5f) : grey;
       add_quad(&s, &q);
     }
     p[many] = stage_finish(&s);
-    if (seconds() - start > 20) fail_msg("5000 materials took %.1f s", seconds() - start);
+    if (seconds() - start > 20)
+      fail_msg("5000 materials took %.1f s", seconds() - start);
   }
   assert_true(image_differing(&p[0], &p[1], 1e-6) == 0);
   image_free(&p[0]), image_free(&p[1]);
 }
 
-/* A cloud of 100 000 tiny lights lights a floor as one large light of the same power does from afar. */
+/* A cloud of 100 000 tiny lights lights a floor as one large light of the same power does from
+ * afar. */
 static void a_hundred_thousand_lights(void **state) {
   (void)state;
   enum { N = 50000 };
@@ -285,8 +319,10 @@ static void a_hundred_thousand_lights(void **state) {
   uint32_t *f = malloc(N * 6 * sizeof *f), seed = 1;
   for (uint32_t k = 0; k < N; k++) {
     float c[2];
-    for (int i = 0; i < 2; i++) seed = seed * 1664525u + 1013904223u, c[i] = (float)(seed >> 8) * 0x1p-23f - 1;
-    const float at[12] = {c[0], 1, c[1], c[0] + 1e-3f, 1, c[1], c[0], 1, c[1] + 1e-3f, c[0] + 1e-3f, 1, c[1] + 1e-3f};
+    for (int i = 0; i < 2; i++)
+      seed = seed * 1664525u + 1013904223u, c[i] = (float)(seed >> 8) * 0x1p-23f - 1;
+    const float at[12] = {c[0], 1, c[1],         c[0] + 1e-3f, 1, c[1],
+                          c[0], 1, c[1] + 1e-3f, c[0] + 1e-3f, 1, c[1] + 1e-3f};
     memcpy(p + 12 * (size_t)k, at, sizeof at);
     const uint32_t index[6] = {4 * k, 4 * k + 1, 4 * k + 3, 4 * k, 4 * k + 3, 4 * k + 2};
     memcpy(f + 6 * (size_t)k, index, sizeof index);
@@ -316,8 +352,8 @@ static void a_hundred_thousand_lights(void **state) {
     Image q = stage_finish(&s);
     mean[many] = image_mean(&q, 1);
     if (many)
-      printf("[  INFO    ] 100000 lights: built in %.2f s, %.2f s for %g paths\n", build, q.stats.seconds,
-             (double)q.stats.paths);
+      printf("[  INFO    ] 100000 lights: built in %.2f s, %.2f s for %g paths\n", build,
+             q.stats.seconds, (double)q.stats.paths);
     if (build > 30 || q.stats.seconds > 60)
       fail_msg("100000 lights: build %.1f s, render %.1f s", build, q.stats.seconds);
     image_free(&q);

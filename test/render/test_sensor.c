@@ -1,5 +1,6 @@
-/* Images by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over wavelengths; the exposure;
- * the limit of a sample, which applies to the sensor's values; RGB worlds. */
+/* Images by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over
+ * wavelengths; the exposure; the limit of a sample, which applies to the sensor's values; RGB
+ * worlds. */
 #include "color/sensor.h"
 #include "math/transform.h"
 #include "shots.h"
@@ -7,23 +8,29 @@
 enum { COUNT = VL_LAMBDA_COUNT };
 
 /* What a film should show of a spectrum whose luminance under the observer is 1. */
-static void expected_of(const char *name, double kelvin, const double *spectrum, double rgb[3], double values[3]) {
+static void expected_of(const char *name, double kelvin, const double *spectrum, double rgb[3],
+                        double values[3]) {
   static float observer[4 * COUNT];
   double m[9], xyz[3] = {0, 0, 0}, y = 0;
   float to[9];
   memset(values, 0, 3 * sizeof *values);
   vl_sensor_make(vl_sensor_find(name), kelvin, VL_SPACE_SRGB, observer, m);
   vl_rgb_from_xyz(VL_SPACE_SRGB, to);
-  for (int i = 0; i < COUNT; i++) y += spectrum[i] * (double)vl_cie_y()[i];
   for (int i = 0; i < COUNT; i++)
-    for (int k = 0; k < 3; k++) values[k] += spectrum[i] / y * (double)observer[4 * i + k];
-  for (int k = 0; k < 3; k++) xyz[k] = m[3 * k] * values[0] + m[3 * k + 1] * values[1] + m[3 * k + 2] * values[2];
+    y += spectrum[i] * (double)vl_cie_y()[i];
+  for (int i = 0; i < COUNT; i++)
+    for (int k = 0; k < 3; k++)
+      values[k] += spectrum[i] / y * (double)observer[4 * i + k];
   for (int k = 0; k < 3; k++)
-    rgb[k] = (double)to[3 * k] * xyz[0] + (double)to[3 * k + 1] * xyz[1] + (double)to[3 * k + 2] * xyz[2];
+    xyz[k] = m[3 * k] * values[0] + m[3 * k + 1] * values[1] + m[3 * k + 2] * values[2];
+  for (int k = 0; k < 3; k++)
+    rgb[k] = (double)to[3 * k] * xyz[0] + (double)to[3 * k + 1] * xyz[1] +
+             (double)to[3 * k + 2] * xyz[2];
 }
 
 /* A black body's light, of luminance 1, all over. */
-static Image see_light(const char *sensor, double white, float kelvin, vlColorMode color, float most) {
+static Image see_light(const char *sensor, double white, float kelvin, vlColorMode color,
+                       float most) {
   Stage s = stage_open(8, 8);
   s.build.color = color;
   s.render.spp = 1024;
@@ -41,7 +48,8 @@ static void body_of(float kelvin, double *spectrum) {
   vlSpectrum body = vl_spectrum_blackbody(kelvin);
   float dense[COUNT];
   assert_int_equal(vl_spectrum_dense(&body, VL_ROLE_ILLUMINANT, dense, NULL), VL_OK);
-  for (int i = 0; i < COUNT; i++) spectrum[i] = (double)dense[i];
+  for (int i = 0; i < COUNT; i++)
+    spectrum[i] = (double)dense[i];
 }
 
 static void colour_of_light(void **state) {
@@ -53,17 +61,19 @@ static void colour_of_light(void **state) {
   for (int n = 0; n < 3; n++) {
     Image p = see_light(sensors[n], whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
     expected_of(sensors[n], whites[n] > 0 ? whites[n] : 6500, spectrum, rgb, values);
-    for (int c = 0; c < 3; c++) assert_ratio(sensors[n], image_mean(&p, c), rgb[c], 5e-3);
+    for (int c = 0; c < 3; c++)
+      assert_ratio(sensors[n], image_mean(&p, c), rgb[c], 5e-3);
     Image eye = see_light(NULL, whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
     double most = 0; /* it is not the observer's colour */
-    for (int c = 0; c < 3; c++) most = fmax(most, fabs(image_mean(&p, c) / image_mean(&eye, c) - 1));
+    for (int c = 0; c < 3; c++)
+      most = fmax(most, fabs(image_mean(&p, c) / image_mean(&eye, c) - 1));
     assert_true(most > 0.01);
     image_free(&p), image_free(&eye);
   }
 }
 
-/* Samples above the limit are made darker by one factor, until the largest of the sensor's red, green and blue is
- * there: of paths that all have the same wavelengths. */
+/* Samples above the limit are made darker by one factor, until the largest of the sensor's red,
+ * green and blue is there: of paths that all have the same wavelengths. */
 static void limited(void **state) {
   (void)state;
   static float observer[4 * COUNT];
@@ -71,7 +81,8 @@ static void limited(void **state) {
   float rgb_from_xyz[9];
   vl_sensor_make(vl_sensor_find("nikon_d850"), 5000, VL_SPACE_SRGB, observer, m);
   vl_rgb_from_xyz(VL_SPACE_SRGB, rgb_from_xyz);
-  for (int i = 0; i < 9; i++) to[i] = (double)rgb_from_xyz[i];
+  for (int i = 0; i < 9; i++)
+    to[i] = (double)rgb_from_xyz[i];
   vl_mat3_multiply(to, m, whole);
   vl_mat3_inverse(whole, back);
   Image p = see_light("nikon_d850", 5000, 2200, VL_COLOR_SPECTRAL, 0.125f);
@@ -105,7 +116,8 @@ static void unknown_name(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(colour_of_light), cmocka_unit_test(limited),
-                                     cmocka_unit_test(rgb_world), cmocka_unit_test(unknown_name)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(colour_of_light),
+                                     cmocka_unit_test(limited), cmocka_unit_test(rgb_world),
+                                     cmocka_unit_test(unknown_name)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

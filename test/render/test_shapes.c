@@ -1,5 +1,5 @@
-/* Equivalent descriptions give the same image: instances and transformed geometry, patches and triangles, spheres and
- * their meshes, holes by alpha and holes by geometry. */
+/* Equivalent descriptions give the same image: instances and transformed geometry, patches and
+ * triangles, spheres and their meshes, holes by alpha and holes by geometry. */
 #include "render/shots.h"
 #include "velo/texture.h"
 
@@ -13,30 +13,41 @@ static void stage_light(Stage *s) {
 
 static void assert_same(const char *what, Image *a, Image *b, double share, double mean) {
   double differing = image_differing(a, b, 0.02);
-  if (differing > share) fail_msg("%s: %.1f %% of the pixels differ", what, 100 * differing);
-  for (int c = 0; c < 4; c++) assert_ratio(what, image_mean(b, c), image_mean(a, c), mean);
+  if (differing > share)
+    fail_msg("%s: %.1f %% of the pixels differ", what, 100 * differing);
+  for (int c = 0; c < 4; c++)
+    assert_ratio(what, image_mean(b, c), image_mean(a, c), mean);
   assert_int_equal(a->stats.not_finite, 0);
   assert_int_equal(b->stats.not_finite, 0);
   image_free(a);
   image_free(b);
 }
 
-/* ---- instances --------------------------------------------------------------------------------------------------- */
+/* ---- instances
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 enum { MESH, SMOOTH_MESH, SPHERE, PART_SPHERE, DISK, CYLINDER, PATCH, KINDS };
-static const char *const kind_name[KINDS] = {"mesh", "smooth mesh", "sphere", "part of a sphere",
-                                             "disk", "cylinder",    "patch"};
+static const char *const kind_name[KINDS] = {
+    "mesh", "smooth mesh", "sphere", "part of a sphere", "disk", "cylinder", "patch"};
 
 static const float patch_corners[12] = {-1, -1, 0.3f, 1, -1, -0.4f, -1, 1, -0.3f, 1, 1, 0.5f};
 static const uint32_t patch_index[4] = {0, 1, 2, 3};
 
-static void add_kind(Stage *s, int kind, vlGroupId group, const double m[16], vlMaterialId material, bool reverse) {
+static void add_kind(Stage *s, int kind, vlGroupId group, const double m[16],
+                     vlMaterialId material, bool reverse) {
   float *block = NULL;
   vlShapeDef def;
   switch (kind) {
-    case MESH: def = mesh_sphere(10, 1, false, &block); break;
-    case SMOOTH_MESH: def = mesh_sphere(10, 1, true, &block); break;
-    case SPHERE: def = vl_default_shape_def(VL_SHAPE_SPHERE); break;
+    case MESH:
+      def = mesh_sphere(10, 1, false, &block);
+      break;
+    case SMOOTH_MESH:
+      def = mesh_sphere(10, 1, true, &block);
+      break;
+    case SPHERE:
+      def = vl_default_shape_def(VL_SHAPE_SPHERE);
+      break;
     case PART_SPHERE:
       def = vl_default_shape_def(VL_SHAPE_SPHERE);
       def.z_min = -0.5f, def.z_max = 0.8f, def.phi_max = 4;
@@ -67,7 +78,8 @@ static void multiply(const double a[16], const double b[16], double r[16]) {
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) {
       double sum = 0;
-      for (int k = 0; k < 4; k++) sum += a[4 * i + k] * b[4 * k + j];
+      for (int k = 0; k < 4; k++)
+        sum += a[4 * i + k] * b[4 * k + j];
       r[4 * i + j] = sum;
     }
 }
@@ -78,9 +90,11 @@ static void instances_are_baked_geometry(void **state) {
   set_matrix(identity, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
   set_matrix(inner, 0.9, 0.2, 0, 0.1, -0.2, 0.9, 0.1, 0, 0, -0.1, 0.9, 0.2);
   set_matrix(outer[0], 1, 0, 0, 0.2, 0, 1, 0, -0.1, 0, 0, 1, -4);
-  set_matrix(outer[1], 0.6, -0.5, 0, 0, 0.5, 0.6, 0.3, 0.2, 0, -0.3, 1.4, -4); /* turned, stretched */
-  set_matrix(outer[2], -1, 0, 0, 0, 0, 0.8, 0.4, 0, 0, -0.4, 0.8, -4);         /* mirrored */
-  set_matrix(outer[3], 0.7, 0.1, 0.3, 0, 0.2, -1.2, 0, 0, 0.1, 0.3, 0.9, -5);  /* mirrored, sheared */
+  set_matrix(outer[1], 0.6, -0.5, 0, 0, 0.5, 0.6, 0.3, 0.2, 0, -0.3, 1.4,
+             -4);                                                      /* turned, stretched */
+  set_matrix(outer[2], -1, 0, 0, 0, 0, 0.8, 0.4, 0, 0, -0.4, 0.8, -4); /* mirrored */
+  set_matrix(outer[3], 0.7, 0.1, 0.3, 0, 0.2, -1.2, 0, 0, 0.1, 0.3, 0.9,
+             -5); /* mirrored, sheared */
   for (int kind = 0; kind < KINDS; kind++)
     for (int m = 0; m < 4; m++) {
       /* Glass shows which side is which; only closed shapes have an inside. */
@@ -89,12 +103,15 @@ static void instances_are_baked_geometry(void **state) {
       for (int way = 0; way < 2; way++) {
         Stage s = stage_open(48, 36);
         stage_light(&s);
-        vlMaterialDef def = vl_default_material_def(glass ? VL_MATERIAL_DIELECTRIC : VL_MATERIAL_DIFFUSE);
+        vlMaterialDef def =
+            vl_default_material_def(glass ? VL_MATERIAL_DIELECTRIC : VL_MATERIAL_DIFFUSE);
         vlMaterialId material = vl_scene_add_material(s.scene, &def);
         double baked[16];
         multiply(outer[m], inner, baked);
-        if (way == 0) { /* a shape's own mirror turns the normals of quadrics, an instance's does not */
-          bool quadric = kind == SPHERE || kind == PART_SPHERE || kind == DISK || kind == CYLINDER;
+        if (way == 0) { /* a shape's own mirror turns the normals of quadrics, an instance's
+                           does not */
+          bool quadric =
+              kind == SPHERE || kind == PART_SPHERE || kind == DISK || kind == CYLINDER;
           add_kind(&s, kind, (vlGroupId){0}, baked, material, reverse != (quadric && m > 1));
         } else {
           vlGroupId group = vl_scene_add_group(s.scene, "group");
@@ -105,7 +122,8 @@ static void instances_are_baked_geometry(void **state) {
       }
       char what[64];
       snprintf(what, sizeof what, "%s, transform %d", kind_name[kind], m);
-      /* Glass and the sphere's silhouette multiply rounding: a few pixels may take other paths. */
+      /* Glass and the sphere's silhouette multiply rounding: a few pixels may take other paths.
+       */
       assert_same(what, &p[0], &p[1], glass ? 0.04 : 0.02, 2e-3);
     }
 }
@@ -116,7 +134,8 @@ static void one_group_many_places(void **state) {
   for (int way = 0; way < 2; way++) {
     Stage s = stage_open(48, 36);
     stage_light(&s);
-    vlMaterialId red = add_diffuse(&s, 0.8f, 0.2f, 0.1f), grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+    vlMaterialId red = add_diffuse(&s, 0.8f, 0.2f, 0.1f),
+                 grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
     vlGroupId group = way ? vl_scene_add_group(s.scene, "pair") : (vlGroupId){0};
     for (int k = 0; k < 3; k++) {
       double place[16], a[16], b[16], first[16], second[16];
@@ -124,11 +143,14 @@ static void one_group_many_places(void **state) {
       set_matrix(a, 1, 0, 0, -0.6, 0, 1, 0, 0, 0, 0, 1, 0);
       set_matrix(b, 0.5, 0, 0, 0.8, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.4);
       if (way) {
-        if (k == 0) add_kind(&s, SPHERE, group, a, red, false), add_kind(&s, CYLINDER, group, b, grey, false);
+        if (k == 0)
+          add_kind(&s, SPHERE, group, a, red, false),
+              add_kind(&s, CYLINDER, group, b, grey, false);
         vl_scene_add_instance(s.scene, group, place, (vlSource){0});
       } else {
         multiply(place, a, first), multiply(place, b, second);
-        add_kind(&s, SPHERE, group, first, red, false), add_kind(&s, CYLINDER, group, second, grey, false);
+        add_kind(&s, SPHERE, group, first, red, false),
+            add_kind(&s, CYLINDER, group, second, grey, false);
       }
     }
     p[way] = stage_finish(&s);
@@ -136,7 +158,8 @@ static void one_group_many_places(void **state) {
   assert_same("three places", &p[0], &p[1], 0.02, 2e-3);
 }
 
-/* ---- shapes that are other shapes -------------------------------------------------------------------------------- */
+/* ---- shapes that are other shapes
+ * -------------------------------------------------------------------------------- */
 
 static void fine_mesh_is_the_sphere(void **state) {
   (void)state;
@@ -144,13 +167,16 @@ static void fine_mesh_is_the_sphere(void **state) {
     Image p[2];
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(48, 36);
-      if (!emissive) stage_light(&s);
+      if (!emissive)
+        stage_light(&s);
       s.camera.fov = 0.8;
       s.render.spp = 64;
       float *block = NULL;
-      vlShapeDef def = way ? mesh_sphere(64, 1, true, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
+      vlShapeDef def =
+          way ? mesh_sphere(64, 1, true, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
       set_matrix(def.group_from_shape, 0.6, 0, 0, 0.3, 0, 0.6, 0, 0.3, 0, 0, 0.6, -4);
-      if (emissive) def.emission = add_emission(&s, 2, false);
+      if (emissive)
+        def.emission = add_emission(&s, 2, false);
       vl_scene_add_shape(s.scene, &def);
       free(block);
       Quad floor = quad_at(0, -0.6f, -4, 3, 0, 0, 0, 0, -3);
@@ -160,12 +186,14 @@ static void fine_mesh_is_the_sphere(void **state) {
     }
     assert_ratio("mesh of a sphere", image_mean(&p[1], 1), image_mean(&p[0], 1), 0.004);
     double differing = image_differing(&p[0], &p[1], 0.1);
-    if (differing > 0.06) fail_msg("mesh of a sphere: %.1f %% of the pixels differ", 100 * differing);
+    if (differing > 0.06)
+      fail_msg("mesh of a sphere: %.1f %% of the pixels differ", 100 * differing);
     image_free(&p[0]), image_free(&p[1]);
   }
 }
 
-/* The near plane cuts off the front of a sphere, so the inside of its back is visible, as through a partial sphere. */
+/* The near plane cuts off the front of a sphere, so the inside of its back is visible, as
+ * through a partial sphere. */
 static void near_plane_opens_a_sphere(void **state) {
   (void)state;
   Image p[2];
@@ -177,7 +205,8 @@ static void near_plane_opens_a_sphere(void **state) {
     s.camera.near_plane = way ? 0 : 4;
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
     set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4);
-    if (way) def.z_max = 0;
+    if (way)
+      def.z_max = 0;
     vl_scene_add_shape(s.scene, &def);
     p[way] = stage_finish(&s);
   }
@@ -192,7 +221,8 @@ static void flat_patch_is_two_triangles(void **state) {
     Image p[2];
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(48, 36);
-      if (!emissive) stage_light(&s);
+      if (!emissive)
+        stage_light(&s);
       s.render.spp = emissive ? 64 : 16;
       s.camera.fov = 0.8;
       vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
@@ -201,7 +231,8 @@ static void flat_patch_is_two_triangles(void **state) {
       Quad q = quad_at(0.2f, 0.3f, -4, 1, 0.2f, 0.3f, -0.1f, 0.8f, 0.2f);
       q.patch = way;
       q.material = add_textured(&s, vl_scene_add_texture(s.scene, &checks));
-      if (emissive) q.emission = add_emission(&s, 1, false);
+      if (emissive)
+        q.emission = add_emission(&s, 1, false);
       add_quad(&s, &q);
       Quad floor = quad_at(0, -1, -3.5f, 3, 0, 0, 0, 0, -3);
       floor.material = add_diffuse(&s, 0.6f, 0.6f, 0.6f);
@@ -214,14 +245,17 @@ static void flat_patch_is_two_triangles(void **state) {
     }
     for (uint32_t y = 0; y < 36; y += 12) /* by blocks: the two are sampled in different ways */
       for (uint32_t x = 0; x < 48; x += 12) {
-        double a = image_region(&p[0], x, y, x + 12, y + 12, 1), b = image_region(&p[1], x, y, x + 12, y + 12, 1);
+        double a = image_region(&p[0], x, y, x + 12, y + 12, 1),
+               b = image_region(&p[1], x, y, x + 12, y + 12, 1);
         assert_near("light of a flat patch", b, a, 0.01 * a + 2e-3);
       }
     image_free(&p[0]), image_free(&p[1]);
   }
 }
 
-/* ---- alpha ------------------------------------------------------------------------------------------------------- */
+/* ---- alpha
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static vlTextureId checks(Stage *s, float su, float sv, float a, float b) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
@@ -257,7 +291,8 @@ static void half_a_card_lets_half_through(void **state) {
   }
 }
 
-/* A ray crosses a sphere twice, and a mesh's two instances: each crossing is decided for itself. */
+/* A ray crosses a sphere twice, and a mesh's two instances: each crossing is decided for
+ * itself. */
 static void coverage_multiplies(void **state) {
   (void)state;
   for (int kind = 0; kind < 2; kind++) {
@@ -274,7 +309,8 @@ static void coverage_multiplies(void **state) {
       vl_scene_add_shape(s.scene, &def);
     } else {
       Quad card = quad_at(0, 0, -4, 2, 0, 0, 0, 2, 0);
-      card.material = black, card.alpha = vl_float_input(0.5f), card.group = vl_scene_add_group(s.scene, "card");
+      card.material = black, card.alpha = vl_float_input(0.5f),
+      card.group = vl_scene_add_group(s.scene, "card");
       add_quad(&s, &card);
       double a[16], b[16];
       set_matrix(a, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
@@ -283,7 +319,8 @@ static void coverage_multiplies(void **state) {
       vl_scene_add_instance(s.scene, card.group, b, (vlSource){0});
     }
     Image p = stage_finish(&s);
-    assert_near(kind ? "two cards of coverage 1/2" : "sphere of coverage 1/2", image_mean(&p, 1), 0.25, 0.006);
+    assert_near(kind ? "two cards of coverage 1/2" : "sphere of coverage 1/2",
+                image_mean(&p, 1), 0.25, 0.006);
     image_free(&p);
   }
 }
@@ -297,7 +334,8 @@ static void half_a_card_casts_half_a_shadow(void **state) {
     vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
     sun.from[1] = 1, sun.to[2] = 0;
     vl_scene_add_light(s.scene, &sun);
-    Quad floor = quad_at(0, -1, 0, 50, 0, 0, 0, 0, -50), card = quad_at(0, 5, 0, 90, 0, 0, 0, 0, -90);
+    Quad floor = quad_at(0, -1, 0, 50, 0, 0, 0, 0, -50),
+         card = quad_at(0, 5, 0, 90, 0, 0, 0, 0, -90);
     floor.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
     card.material = add_diffuse(&s, 0, 0, 0);
     card.alpha = vl_float_input(0.5f * (float)coverage);
@@ -313,7 +351,8 @@ static void half_a_card_casts_half_a_shadow(void **state) {
   assert_near("a whole card", value[2], 0, 0);
 }
 
-/* Coverage by a chequered texture, and the checks as geometry; on the card stands shaded surface, behind it another. */
+/* Coverage by a chequered texture, and the checks as geometry; on the card stands shaded
+ * surface, behind it another. */
 static void alpha_holes_are_holes(void **state) {
   (void)state;
   for (int kind = 0; kind < 3; kind++) { /* triangles, patch, instanced triangles */
@@ -321,7 +360,8 @@ static void alpha_holes_are_holes(void **state) {
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(64, 48);
       stage_light(&s);
-      vlMaterialId red = add_diffuse(&s, 0.7f, 0.2f, 0.2f), grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+      vlMaterialId red = add_diffuse(&s, 0.7f, 0.2f, 0.2f),
+                   grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
       Quad wall = quad_at(0, 0, -5, 4, 0, 0, 0, 4, 0);
       wall.material = grey;
       add_quad(&s, &wall);
@@ -334,22 +374,23 @@ static void alpha_holes_are_holes(void **state) {
       }
       for (int i = 0; i < 16 && way == 1; i++)
         if (((i & 3) + (i >> 2)) % 2 == 0) {
-          Quad cell =
-              quad_at(-0.75f + 0.5f * (float)(i & 3), -0.75f + 0.5f * (float)(i >> 2), -3, 0.25f, 0, 0, 0, 0.25f, 0);
+          Quad cell = quad_at(-0.75f + 0.5f * (float)(i & 3), -0.75f + 0.5f * (float)(i >> 2),
+                              -3, 0.25f, 0, 0, 0, 0.25f, 0);
           cell.material = red, cell.patch = kind == 1, cell.group = group;
           add_quad(&s, &cell);
         }
       double place[16];
       set_matrix(place, 0.9, -0.3, 0, 0.1, 0.3, 0.9, 0, 0, 0, 0, 1, 0.2);
-      if (group.index) vl_scene_add_instance(s.scene, group, place, (vlSource){0});
+      if (group.index)
+        vl_scene_add_instance(s.scene, group, place, (vlSource){0});
       p[way] = stage_finish(&s);
     }
     assert_same("chequered card", &p[0], &p[1], 0.03, 2e-3);
   }
 }
 
-/* Half a sphere made by alpha equals the half sphere: the inside of the far half is visible through the hole, not
- * the near half. */
+/* Half a sphere made by alpha equals the half sphere: the inside of the far half is visible
+ * through the hole, not the near half. */
 static void half_a_sphere_by_alpha(void **state) {
   (void)state;
   for (int instanced = 0; instanced < 2; instanced++) {
@@ -361,14 +402,18 @@ static void half_a_sphere_by_alpha(void **state) {
       vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
       def.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
       def.phi_max = way ? (float)M_PI : 2 * (float)M_PI;
-      if (!way) def.alpha.texture = checks(&s, 2, 1, 1, 0);
+      if (!way)
+        def.alpha.texture = checks(&s, 2, 1, 1, 0);
       double place[16], identity[16];
       set_matrix(identity, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
-      set_matrix(place, 1, 0, 0, 0, 0, 0, 1, 0.1, 0, -1, 0, -3); /* the half y > 0 of the shape is turned to -z */
+      set_matrix(place, 1, 0, 0, 0, 0, 0, 1, 0.1, 0, -1, 0,
+                 -3); /* the half y > 0 of the shape is turned to -z */
       def.group = instanced ? vl_scene_add_group(s.scene, "ball") : (vlGroupId){0};
-      if (!instanced) memcpy(def.group_from_shape, place, sizeof place);
+      if (!instanced)
+        memcpy(def.group_from_shape, place, sizeof place);
       vl_scene_add_shape(s.scene, &def);
-      if (instanced) vl_scene_add_instance(s.scene, def.group, place, (vlSource){0});
+      if (instanced)
+        vl_scene_add_instance(s.scene, def.group, place, (vlSource){0});
       p[way] = stage_finish(&s);
     }
     assert_same("half a sphere", &p[0], &p[1], 0.03, 3e-3);
@@ -377,11 +422,16 @@ static void half_a_sphere_by_alpha(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(instances_are_baked_geometry),    cmocka_unit_test(one_group_many_places),
-      cmocka_unit_test(near_plane_opens_a_sphere),       cmocka_unit_test(fine_mesh_is_the_sphere),
-      cmocka_unit_test(flat_patch_is_two_triangles),     cmocka_unit_test(half_a_card_lets_half_through),
-      cmocka_unit_test(half_a_card_casts_half_a_shadow), cmocka_unit_test(coverage_multiplies),
-      cmocka_unit_test(alpha_holes_are_holes),           cmocka_unit_test(half_a_sphere_by_alpha),
+      cmocka_unit_test(instances_are_baked_geometry),
+      cmocka_unit_test(one_group_many_places),
+      cmocka_unit_test(near_plane_opens_a_sphere),
+      cmocka_unit_test(fine_mesh_is_the_sphere),
+      cmocka_unit_test(flat_patch_is_two_triangles),
+      cmocka_unit_test(half_a_card_lets_half_through),
+      cmocka_unit_test(half_a_card_casts_half_a_shadow),
+      cmocka_unit_test(coverage_multiplies),
+      cmocka_unit_test(alpha_holes_are_holes),
+      cmocka_unit_test(half_a_sphere_by_alpha),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Lamps that are smaller than a pixel, seen by the camera itself, against closed forms: radiance times solid angle. By
- * camera rays alone they are a firefly in one image of many. */
+/* Lamps that are smaller than a pixel, seen by the camera itself, against closed forms:
+ * radiance times solid angle. By camera rays alone they are a firefly in one image of many. */
 #include "fog.h"
 #include "velo/medium.h"
 
@@ -24,8 +24,8 @@ static void add_square(Stage *s, float x, float y, float half, float tilt, bool 
   add_quad(s, &q);
 }
 
-/* Sum over the image of a lamp of the given area that faces the camera from p, tilted about y: the cosines at the lamp
- * and at the film, which is at distance 1. */
+/* Sum over the image of a lamp of the given area that faces the camera from p, tilted about y:
+ * the cosines at the lamp and at the film, which is at distance 1. */
 static double shine(const Stage *s, double x, double y, double area, double tilt) {
   double d2 = x * x + y * y + 9;
   double d = sqrt(d2);
@@ -46,7 +46,8 @@ static void check(const Case *c) {
   s.render.tracer = c->tracer;
   s.render.spp = c->spp;
   s.render.max_depth = 2;
-  if (c->paths) s.render.light_paths = c->paths;
+  if (c->paths)
+    s.render.light_paths = c->paths;
   const double tilt = 0.9;
   add_square(&s, -0.8f, 0, c->half, 0.9f, true);
   add_square(&s, 0, 0, c->half, 0, true);
@@ -83,10 +84,12 @@ static void small_lamps(void **state) {
       {"through a lens", VL_TRACER_BIDIRECTIONAL, 0.02, 0.001f, 0, 8, false, 0.04},
       {"in fog", VL_TRACER_BIDIRECTIONAL, 0, 0.001f, 0, 8, true, 0.04},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) check(&cases[i]);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    check(&cases[i]);
 }
 
-/* Both ways of seeing a lamp have a part in the image, or only rays have: few light paths; a lamp of about a pixel. */
+/* Both ways of seeing a lamp have a part in the image, or only rays have: few light paths; a
+ * lamp of about a pixel. */
 static void both_ways(void **state) {
   (void)state;
   const Case cases[] = {
@@ -96,10 +99,12 @@ static void both_ways(void **state) {
       {"a pixel", VL_TRACER_BIDIRECTIONAL, 0, 0.041f, 0, 64, false, 0.04},
       {"some pixels", VL_TRACER_BIDIRECTIONAL, 0, 0.06f, 0, 64, false, 0.04},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) check(&cases[i]);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    check(&cases[i]);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(small_lamps), cmocka_unit_test(both_ways)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(small_lamps),
+                                     cmocka_unit_test(both_ways)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Colour spaces of images: an EXR file's chromaticities define its values in textures, skies, area lights and
- * projection lights; without them the def's space counts. A film of the same space gives back the values. */
+/* Colour spaces of images: an EXR file's chromaticities define its values in textures, skies,
+ * area lights and projection lights; without them the def's space counts. A film of the same
+ * space gives back the values. */
 #include "render/shots.h"
 #include "velo/texture.h"
 
@@ -9,11 +10,13 @@ enum { TEXTURE, SKY, LAMP, KINDS };
 
 static vlImage *gradient_image(Stage *s, bool tells) {
   float rgb[4 * 4 * 3];
-  for (int i = 0; i < 48; i++) rgb[i] = color[i % 3];
+  for (int i = 0; i < 48; i++)
+    rgb[i] = color[i % 3];
   vlImage *image = make_image(s, 4, 4, rgb);
   vlAttribute a = {.name = "chromaticities", .type = VL_ATTRIBUTE_CHROMATICITIES};
   memcpy(a.numbers, rec2020, sizeof rec2020);
-  if (tells) assert_int_equal(vl_image_set_attribute(image, &a), VL_OK);
+  if (tells)
+    assert_int_equal(vl_image_set_attribute(image, &a), VL_OK);
   return image;
 }
 
@@ -33,7 +36,8 @@ static void look(int kind, bool tells, vlColorSpace said, vlColorSpace film, dou
     def.image = image, def.space = said;
     q.material = add_textured(&s, vl_scene_add_texture(s.scene, &def));
     add_quad(&s, &q);
-    vlLightDef light = vl_default_light_def(VL_LIGHT_DISTANT); /* white: comes back as it goes in */
+    vlLightDef light =
+        vl_default_light_def(VL_LIGHT_DISTANT); /* white: comes back as it goes in */
     light.from[2] = 1, light.to[2] = 0, light.scale = (float)M_PI;
     vl_scene_add_light(s.scene, &light);
   } else if (kind == SKY) {
@@ -49,7 +53,8 @@ static void look(int kind, bool tells, vlColorSpace said, vlColorSpace film, dou
   }
   vl_image_destroy(image);
   Image p = stage_finish(&s);
-  for (int c = 0; c < 3; c++) seen[c] = image_mean(&p, c);
+  for (int c = 0; c < 3; c++)
+    seen[c] = image_mean(&p, c);
   image_free(&p);
   remove(path);
 }
@@ -68,9 +73,11 @@ static void spaces(void **state) {
       assert_near(what, b[i], color[i], 0.01);
     }
     assert_true(c[0] < color[0] - 0.05); /* a green that sRGB has not: its red is below */
-    if (kind == LAMP) continue;
+    if (kind == LAMP)
+      continue;
     look(kind, false, VL_SPACE_REC2020, VL_SPACE_REC2020, a); /* the def's */
-    for (int i = 0; i < 3; i++) assert_near(what, a[i], color[i], 0.01);
+    for (int i = 0; i < 3; i++)
+      assert_near(what, a[i], color[i], 0.01);
   }
 }
 

@@ -1,6 +1,6 @@
-/* Spectra of known light: a bucket's mean is that of the spectrum over its wavelengths, also after reflection; glass
- * without dispersion loses nothing; the colours beside the buckets are those of the same light; any number of threads
- * and any crop give the same bytes. */
+/* Spectra of known light: a bucket's mean is that of the spectrum over its wavelengths, also
+ * after reflection; glass without dispersion loses nothing; the colours beside the buckets are
+ * those of the same light; any number of threads and any crop give the same bytes. */
 #include "render/shots.h"
 
 enum { SIZE = 8, BUCKETS = 12 };
@@ -19,7 +19,8 @@ static Spectrum take(Stage *s) {
   vlCamera camera;
   vlFilm *film;
   vlImage *image, *colors;
-  if (vl_world_build(s->scene, &s->build, &world, &error) != VL_OK) fail_msg("build: %s", error.message);
+  if (vl_world_build(s->scene, &s->build, &world, &error) != VL_OK)
+    fail_msg("build: %s", error.message);
   assert_int_equal(vl_camera_make(&s->camera, &camera, NULL, &error), VL_OK);
   assert_int_equal(vl_film_create(s->context, &s->film, &film), VL_OK);
   if (vl_render(world, &camera, film, &s->render, &r.image.stats, &error) != VL_OK)
@@ -34,9 +35,11 @@ static Spectrum take(Stage *s) {
   memcpy(r.image.rgba, vl_image_const_pixels(colors), (size_t)w * h * 4 * sizeof(float));
   for (int k = 0; k < BUCKETS; k++) {
     double sum = 0, squares = 0, n = (double)w * h;
-    for (size_t i = 0; i < (size_t)w * h; i++) sum += r.pixels[i * BUCKETS + k];
+    for (size_t i = 0; i < (size_t)w * h; i++)
+      sum += r.pixels[i * BUCKETS + k];
     r.mean[k] = sum / n;
-    for (size_t i = 0; i < (size_t)w * h; i++) squares += pow(r.pixels[i * BUCKETS + k] - r.mean[k], 2);
+    for (size_t i = 0; i < (size_t)w * h; i++)
+      squares += pow(r.pixels[i * BUCKETS + k] - r.mean[k], 2);
     r.error[k] = sqrt(squares / n / (n - 1));
   }
   vl_image_destroy(image), vl_image_destroy(colors);
@@ -81,16 +84,20 @@ static vlSpectrum sampled(const float values[4]) {
   s.kind = VL_SPECTRUM_SAMPLED, s.count = 4, s.wavelengths = nm, s.values = values;
   return s;
 }
-/* Lights are divided by their luminance, so that the scale is known: 106.86 over the integral of Y times the light. */
+/* Lights are divided by their luminance, so that the scale is known: 106.86 over the integral
+ * of Y times the light. */
 static double light_scale(void) {
   double y = 0;
   static const struct {
     double nm, y;
-  } eye[] = {{420, 0.0040}, {430, 0.0116}, {440, 0.0230}, {450, 0.0380}, {460, 0.0600}, {470, 0.0910}, {480, 0.1390},
-             {490, 0.2080}, {500, 0.3230}, {510, 0.5030}, {520, 0.7100}, {530, 0.8620}, {540, 0.9540}, {550, 0.9950},
-             {560, 0.9950}, {570, 0.9520}, {580, 0.8700}, {590, 0.7570}, {600, 0.6310}, {610, 0.5030}, {620, 0.3810},
-             {630, 0.2650}, {640, 0.1750}, {650, 0.1070}, {660, 0.0610}, {670, 0.0320}, {680, 0.0170}};
-  for (size_t i = 0; i < sizeof eye / sizeof *eye; i++) y += 10 * eye[i].y * value_at(light, eye[i].nm);
+  } eye[] = {{420, 0.0040}, {430, 0.0116}, {440, 0.0230}, {450, 0.0380}, {460, 0.0600},
+             {470, 0.0910}, {480, 0.1390}, {490, 0.2080}, {500, 0.3230}, {510, 0.5030},
+             {520, 0.7100}, {530, 0.8620}, {540, 0.9540}, {550, 0.9950}, {560, 0.9950},
+             {570, 0.9520}, {580, 0.8700}, {590, 0.7570}, {600, 0.6310}, {610, 0.5030},
+             {620, 0.3810}, {630, 0.2650}, {640, 0.1750}, {650, 0.1070}, {660, 0.0610},
+             {670, 0.0320}, {680, 0.0170}};
+  for (size_t i = 0; i < sizeof eye / sizeof *eye; i++)
+    y += 10 * eye[i].y * value_at(light, eye[i].nm);
   return 106.857 / y;
 }
 
@@ -106,7 +113,8 @@ static void emitter(void **state) {
     Spectrum r = take(&s);
     for (int k = 0; k < BUCKETS; k++) {
       double e = scale * expected(ranges[i][0], ranges[i][1], k, NULL);
-      if (!(fabs(r.mean[k] - e) <= 4.5 * r.error[k] + 4e-3 * e)) /* the table of Y has three digits */
+      if (!(fabs(r.mean[k] - e) <=
+            4.5 * r.error[k] + 4e-3 * e)) /* the table of Y has three digits */
         fail_msg("bucket %d: %g, expected %g, standard error %g", k, r.mean[k], e, r.error[k]);
     }
     release(&r);
@@ -137,8 +145,8 @@ static void reflected(void **state) {
   release(&r);
 }
 
-/* Inside light of a constant spectrum from everywhere a ball of glass that disperses cannot be seen: each bucket is 1
- * (paths that end after many bounces lack a little). */
+/* Inside light of a constant spectrum from everywhere a ball of glass that disperses cannot be
+ * seen: each bucket is 1 (paths that end after many bounces lack a little). */
 static void dispersing_furnace(void **state) {
   (void)state;
   Stage s = stage(400, 700);
@@ -161,7 +169,8 @@ static void dispersing_furnace(void **state) {
   release(&r);
 }
 
-/* Where all samples of a bucket are alike it holds just that; the colours agree with those of an ordinary film. */
+/* Where all samples of a bucket are alike it holds just that; the colours agree with those of
+ * an ordinary film. */
 static void constant_and_colors(void **state) {
   (void)state;
   double mean[2][3];
@@ -175,16 +184,20 @@ static void constant_and_colors(void **state) {
     if (!with) {
       s.film.buckets = 0;
       Image p = stage_finish(&s);
-      for (int c = 0; c < 3; c++) mean[0][c] = image_mean(&p, c);
+      for (int c = 0; c < 3; c++)
+        mean[0][c] = image_mean(&p, c);
       image_free(&p);
       continue;
     }
     Spectrum r = take(&s);
-    for (int i = 0; i < SIZE * SIZE * BUCKETS; i++) assert_near("constant light", r.pixels[i], 2, 2e-5);
-    for (int c = 0; c < 3; c++) mean[1][c] = image_mean(&r.image, c);
+    for (int i = 0; i < SIZE * SIZE * BUCKETS; i++)
+      assert_near("constant light", r.pixels[i], 2, 2e-5);
+    for (int c = 0; c < 3; c++)
+      mean[1][c] = image_mean(&r.image, c);
     release(&r);
   }
-  for (int c = 0; c < 3; c++) assert_ratio("colours beside the spectrum", mean[1][c], mean[0][c], 0.01);
+  for (int c = 0; c < 3; c++)
+    assert_ratio("colours beside the spectrum", mean[1][c], mean[0][c], 0.01);
 }
 
 static void same_bytes(void **state) {
@@ -194,7 +207,8 @@ static void same_bytes(void **state) {
     Stage s = stage_open(40, 24);
     s.film.buckets = BUCKETS;
     s.render.spp = 5;
-    if (i) s.film.crop[0] = 9, s.film.crop[1] = 5, s.film.crop[2] = 31, s.film.crop[3] = 20;
+    if (i)
+      s.film.crop[0] = 9, s.film.crop[1] = 5, s.film.crop[2] = 31, s.film.crop[3] = 20;
     vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
     def.color = sampled(light);
     vl_scene_add_light(s.scene, &def);
@@ -204,8 +218,8 @@ static void same_bytes(void **state) {
     r[i] = take(&s);
   }
   for (uint32_t y = 5; y < 20; y++)
-    assert_memory_equal(r[0].pixels + (y * 40 + 9) * BUCKETS, r[1].pixels + (y - 5) * 22 * BUCKETS,
-                        22 * BUCKETS * sizeof(float));
+    assert_memory_equal(r[0].pixels + (y * 40 + 9) * BUCKETS,
+                        r[1].pixels + (y - 5) * 22 * BUCKETS, 22 * BUCKETS * sizeof(float));
   release(&r[0]), release(&r[1]);
 }
 

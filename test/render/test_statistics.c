@@ -1,6 +1,7 @@
-/* All samplers, seeds and sample orders estimate the same image: z-tests per pixel and over the whole image, on a scene
- * with soft shadow, gloss, glass and depth of field. Standard deviations come from repeated renders with other seeds,
- * which is valid for correlated samples, too. */
+/* All samplers, seeds and sample orders estimate the same image: z-tests per pixel and over the
+ * whole image, on a scene with soft shadow, gloss, glass and depth of field. Standard
+ * deviations come from repeated renders with other seeds, which is valid for correlated
+ * samples, too. */
 #include "render/shots.h"
 
 enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SEEDS = 12, BLOCK = 8 };
@@ -13,11 +14,13 @@ typedef struct Estimate {
 
 static Stage scene(void) {
   Stage s = stage_open(WIDTH, HEIGHT);
-  s.camera.eye[1] = 0.6, s.camera.eye[2] = 2.2, s.camera.lookat[1] = -0.2, s.camera.lookat[2] = -1;
+  s.camera.eye[1] = 0.6, s.camera.eye[2] = 2.2, s.camera.lookat[1] = -0.2,
+  s.camera.lookat[2] = -1;
   s.camera.lens_radius = 0.05, s.camera.focus_distance = 2.5;
   s.camera.fov = 0.9;
   s.render.max_depth = 4;
-  Quad floor = quad_at(0, -0.5f, 0, 3, 0, 0, 0, 0, -3), light = quad_at(0.4f, 1.2f, 0, 0.4f, 0, 0, 0, 0, 0.4f);
+  Quad floor = quad_at(0, -0.5f, 0, 3, 0, 0, 0, 0, -3),
+       light = quad_at(0.4f, 1.2f, 0, 0.4f, 0, 0, 0, 0, 0.4f);
   floor.material = add_diffuse(&s, 0.6f, 0.5f, 0.4f);
   add_quad(&s, &floor);
   light.emission = add_emission(&s, 5, false);
@@ -69,15 +72,21 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
   e->image_variance = fmax(0, image2 / SEEDS - e->image * e->image) / (SEEDS - 1);
 }
 
-/* Differences in units of their standard deviation. With few seeds t has heavy tails: for an image or a block 6 is
- * beyond chance. Over pixels the mean of z^2 must be near its expectation, (n-1)/(n-3) = 1.22 for n = 12 seeds. */
+/* Differences in units of their standard deviation. With few seeds t has heavy tails: for an
+ * image or a block 6 is beyond chance. Over pixels the mean of z^2 must be near its
+ * expectation, (n-1)/(n-3) = 1.22 for n = 12 seeds. */
 static void compare(const char *what, const Estimate *a, const Estimate *b) {
   double floor2 = 1e-12;
   double z = (a->image - b->image) / sqrt(a->image_variance + b->image_variance + floor2);
-  if (fabs(z) > 5.5) fail_msg("%s: the image's mean is %.6f instead of %.6f: z = %.1f", what, b->image, a->image, z);
+  if (fabs(z) > 5.5)
+    fail_msg("%s: the image's mean is %.6f instead of %.6f: z = %.1f", what, b->image, a->image,
+             z);
   for (uint32_t i = 0; i < PIXELS / (BLOCK * BLOCK); i++) {
-    z = (a->block[i] - b->block[i]) / sqrt(a->block_variance[i] + b->block_variance[i] + floor2);
-    if (fabs(z) > 7) fail_msg("%s: block %u is %.6f instead of %.6f: z = %.1f", what, i, b->block[i], a->block[i], z);
+    z = (a->block[i] - b->block[i]) /
+        sqrt(a->block_variance[i] + b->block_variance[i] + floor2);
+    if (fabs(z) > 7)
+      fail_msg("%s: block %u is %.6f instead of %.6f: z = %.1f", what, i, b->block[i],
+               a->block[i], z);
   }
   double sum = 0;
   int wild = 0;
@@ -87,19 +96,23 @@ static void compare(const char *what, const Estimate *a, const Estimate *b) {
     wild += fabs(z) > 8;
   }
   sum /= PIXELS;
-  if (sum < 0.6 || sum > 1.7) fail_msg("%s: mean of z^2 over pixels is %.2f", what, sum);
-  if (wild > 2) fail_msg("%s: %d pixels are past 8 deviations", what, wild);
+  if (sum < 0.6 || sum > 1.7)
+    fail_msg("%s: mean of z^2 over pixels is %.2f", what, sum);
+  if (wild > 2)
+    fail_msg("%s: %d pixels are past 8 deviations", what, wild);
 }
 
-static const char *const name[9] = {"independent", "regular", "stratified", "n-rooks", "multi-jittered",
-                                    "hammersley",  "halton",  "sobol",      "zsobol"};
+static const char *const name[9] = {"independent", "regular",        "stratified",
+                                    "n-rooks",     "multi-jittered", "hammersley",
+                                    "halton",      "sobol",          "zsobol"};
 
 static void samplers_agree(void **state) {
   (void)state;
   static Estimate reference, other;
   estimate(VL_SAMPLER_INDEPENDENT, 64, 1000, &reference);
   for (int k = 0; k < 9; k++) {
-    if (k == VL_SAMPLER_REGULAR) continue; /* a fixed grid: not an unbiased estimate */
+    if (k == VL_SAMPLER_REGULAR)
+      continue; /* a fixed grid: not an unbiased estimate */
     estimate((vlSamplerKind)k, 36, 1, &other);
     compare(name[k], &reference, &other);
   }
@@ -112,10 +125,13 @@ static void the_test_has_eyes(void **state) {
   estimate(VL_SAMPLER_ZSOBOL, 36, 1, &a);
   estimate(VL_SAMPLER_ZSOBOL, 36, 100, &b);
   double z = (a.image - 1.01 * b.image) / sqrt(a.image_variance + b.image_variance);
-  if (fabs(z) < 5.5) fail_msg("one percent makes z = %.1f only", z);
+  if (fabs(z) < 5.5)
+    fail_msg("one percent makes z = %.1f only", z);
 }
 
-/* The regular sampler has the error of its fixed grid only: it must be near the mean of the others. */
+/* The regular sampler has the error of its fixed grid only: it must be near the mean of the
+ * others.
+ */
 static void regular_is_near(void **state) {
   (void)state;
   static Estimate a;
@@ -129,7 +145,8 @@ static void regular_is_near(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(samplers_agree), cmocka_unit_test(the_test_has_eyes),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(samplers_agree),
+                                     cmocka_unit_test(the_test_has_eyes),
                                      cmocka_unit_test(regular_is_near)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

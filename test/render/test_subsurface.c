@@ -1,5 +1,6 @@
-/* The subsurface material: thick solids under a white sky have the given reflectance; light that enters around a
- * block's edge, against an integral over the lit side; white solids; and changes that must not affect the image. */
+/* The subsurface material: thick solids under a white sky have the given reflectance; light
+ * that enters around a block's edge, against an integral over the lit side; white solids; and
+ * changes that must not affect the image. */
 #include "shots.h"
 #include "velo/medium.h"
 #include "velo/texture.h"
@@ -23,7 +24,8 @@ static vlMaterialDef reflecting(vlSpectrum color, float mfp) {
 static vlMaterialId add(Stage *s, const vlMaterialDef *def) {
   vlMaterialId id = vl_scene_add_material(s->scene, def);
   vlError error;
-  if (vl_scene_result(s->scene, &error) != VL_OK) fail_msg("material: %s", error.message);
+  if (vl_scene_result(s->scene, &error) != VL_OK)
+    fail_msg("material: %s", error.message);
   return id;
 }
 
@@ -63,7 +65,8 @@ static double effective(float eta, float g, float albedo) {
   vl_context_destroy(context);
   return e;
 }
-/* The share of all light that is let out again is 1, but that pbrt's polynomial for it is a little off. */
+/* The share of all light that is let out again is 1, but that pbrt's polynomial for it is a
+ * little off. */
 static double let_out(double eta) {
   double sum = 0;
   for (int i = 0; i < 10000; i++) {
@@ -85,9 +88,12 @@ static double straight(double eta) {
   return (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1));
 }
 
-/* ---- thick and wide ---------------------------------------------------------------------------------------------- */
+/* ---- thick and wide
+ * ----------------------------------------------------------------------------------------------
+ */
 
-/* A wall under a white sky: what its surface reflects, and of the rest the body's share. Probes reach 0.999 of it. */
+/* A wall under a white sky: what its surface reflects, and of the rest the body's share. Probes
+ * reach 0.999 of it. */
 static void walls(void **state) {
   (void)state;
   const float etas[] = {1.0f, 1.33f, 1.5f};
@@ -97,7 +103,8 @@ static void walls(void **state) {
         Stage s = open_stage(16, 512, rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
         s.render.max_depth = 1;
         vlMaterialDef def = way ? body(3, 17) : reflecting(vl_spectrum_constant(0.6f), 0.2f);
-        if (way) def.scale = 0.5f, def.g = vl_float_input(0.3f);
+        if (way)
+          def.scale = 0.5f, def.g = vl_float_input(0.3f);
         def.eta = vl_spectrum_input(vl_spectrum_constant(etas[k]));
         add_sky(&s, 1);
         Quad q = wall(-3, 3000, add(&s, &def));
@@ -105,7 +112,8 @@ static void walls(void **state) {
         Image p = stage_finish(&s);
         double r0 = straight((double)etas[k]), out = let_out((double)etas[k]),
                share = way ? effective(etas[k], 0.3f, 0.85f) : 0.6;
-        for (int c = 0; c < 3; c++) assert_ratio("wall", image_mean(&p, c), r0 + (1 - r0) * 0.999 * share * out, 3e-3);
+        for (int c = 0; c < 3; c++)
+          assert_ratio("wall", image_mean(&p, c), r0 + (1 - r0) * 0.999 * share * out, 3e-3);
         assert_int_equal(p.stats.not_finite, 0);
         image_free(&p);
       }
@@ -125,12 +133,14 @@ static void colours(void **state) {
     Image p = stage_finish(&s);
     const double color[3] = {0.8, 0.5, 0.3}, r0 = straight(1.33);
     for (int c = 0; c < 3; c++)
-      assert_near("coloured wall", image_mean(&p, c), r0 + (1 - r0) * 0.999 * color[c], rgb ? 5e-3 : 1e-2);
+      assert_near("coloured wall", image_mean(&p, c), r0 + (1 - r0) * 0.999 * color[c],
+                  rgb ? 5e-3 : 1e-2);
     image_free(&p);
   }
 }
 
-/* A rough surface: the share of light that it reflects apart, lights and samples find the same. */
+/* A rough surface: the share of light that it reflects apart, lights and samples find the same.
+ */
 static void rough(void **state) {
   (void)state;
   double mean[2];
@@ -148,12 +158,16 @@ static void rough(void **state) {
     image_free(&p);
   }
   assert_near("rough, black", mean[0], straight(1.33), 0.01);
-  assert_near("rough, white", mean[1] - mean[0], 0.8 * 0.999 * (1 - mean[0]), 0.012); /* microfacets lose some */
+  assert_near("rough, white", mean[1] - mean[0], 0.8 * 0.999 * (1 - mean[0]),
+              0.012); /* microfacets lose some */
 }
 
-/* ---- white bodies ------------------------------------------------------------------------------------------------ */
+/* ---- white bodies
+ * ------------------------------------------------------------------------------------------------
+ */
 
-/* Balls that give back all, some larger than their mean free path, some not: never brighter than the sky. */
+/* Balls that give back all, some larger than their mean free path, some not: never brighter
+ * than the sky. */
 static void white(void **state) {
   (void)state;
   const float lengths[] = {0.003f, 0.03f, 0.3f, 3.0f};
@@ -170,19 +184,25 @@ static void white(void **state) {
     vl_scene_add_shape(s.scene, &ball);
     Image p = stage_finish(&s);
     double mean = image_region(&p, 8, 8, 16, 16, 1);
-    assert_true(mean < 1.005 && mean < before + 0.005); /* the smaller, the more passes by the profile's reach */
-    if (k == 0) assert_near("white ball", mean, 1, 0.01);
+    assert_true(mean < 1.005 &&
+                mean <
+                    before + 0.005); /* the smaller, the more passes by the profile's reach */
+    if (k == 0)
+      assert_near("white ball", mean, 1, 0.01);
     before = mean;
     assert_int_equal(p.stats.not_finite, 0);
     image_free(&p);
   }
 }
 
-/* ---- round a corner ---------------------------------------------------------------------------------------------- */
+/* ---- round a corner
+ * ----------------------------------------------------------------------------------------------
+ */
 
-/* A block's front at z = -3 ends at x = 0; its side there is lit by a sun that grazes the front. What is seen of the
- * front at x = -a has come in by the side: an integral over it. Half of its probes go along the normal of the front,
- * which never meet the side: the tangents' find it. */
+/* A block's front at z = -3 ends at x = 0; its side there is lit by a sun that grazes the
+ * front. What is seen of the front at x = -a has come in by the side: an integral over it. Half
+ * of its probes go along the normal of the front, which never meet the side: the tangents' find
+ * it. */
 static void corner(void **state) {
   (void)state;
   const double a = 0.3, sigma = 5;
@@ -212,9 +232,11 @@ static void corner(void **state) {
     for (double y = step / 2; y < reach; y += step)
       for (double z = step / 2; z < reach; z += step) {
         double r = sqrt(a * a + y * y + z * z);
-        sum += 2 * step * step * sigma * sigma * (double)vl_bssrdf_at(table, &row, (float)(r * sigma));
+        sum += 2 * step * step * sigma * sigma *
+               (double)vl_bssrdf_at(table, &row, (float)(r * sigma));
       }
-    double r0 = straight(1.33), expected = (1 - r0) * sum * (1 - r0) / (M_PI * (double)table->leaves);
+    double r0 = straight(1.33),
+           expected = (1 - r0) * sum * (1 - r0) / (M_PI * (double)table->leaves);
     free(table);
     Image p = stage_finish(&s);
     assert_ratio("round a corner", image_mean(&p, 1), expected, 0.02);
@@ -222,9 +244,12 @@ static void corner(void **state) {
   }
 }
 
-/* ---- small triangles --------------------------------------------------------------------------------------------- */
+/* ---- small triangles
+ * ---------------------------------------------------------------------------------------------
+ */
 
-/* A ball in which light goes far; probes start far outside of it, because another object makes the world wide. */
+/* A ball in which light goes far; probes start far outside of it, because another object makes
+ * the world wide. */
 static Image far_probes(bool mesh) {
   Stage s = open_stage(16, 256, VL_COLOR_RGB);
   s.camera.fov = 0.2;
@@ -232,7 +257,8 @@ static Image far_probes(bool mesh) {
   add_sky(&s, 1);
   float *block = NULL;
   vlMaterialDef def = reflecting(vl_spectrum_constant(0.6f), 3);
-  vlShapeDef ball = mesh ? mesh_sphere(100, 1, true, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
+  vlShapeDef ball =
+      mesh ? mesh_sphere(100, 1, true, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -5);
   ball.material = add(&s, &def);
   vl_scene_add_shape(s.scene, &ball);
@@ -252,7 +278,9 @@ static void fine_mesh(void **state) {
   image_free(&mesh);
 }
 
-/* ---- others ------------------------------------------------------------------------------------------------------ */
+/* ---- others
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* A body in a medium: light goes through it on both sides of its way through the body. */
 static void in_fog(void **state) {
@@ -277,13 +305,15 @@ static void in_fog(void **state) {
   assert_ratio("in fog", mean[1] / mean[0], exp(-0.3 * 4), 0.01);
 }
 
-/* Half a body, half diffuse: light enters where chance says body, and leaves where it says so again. */
+/* Half a body, half diffuse: light enters where chance says body, and leaves where it says so
+ * again. */
 static void mixed(void **state) {
   (void)state;
   double r0 = straight(1.33);
   Stage s = open_stage(16, 1024, VL_COLOR_RGB);
   s.render.max_depth = 1;
-  vlMaterialDef def = reflecting(vl_spectrum_constant(0.6f), 0.1f), mix = vl_default_material_def(VL_MATERIAL_MIX);
+  vlMaterialDef def = reflecting(vl_spectrum_constant(0.6f), 0.1f),
+                mix = vl_default_material_def(VL_MATERIAL_MIX);
   mix.materials[0] = add(&s, &def);
   mix.materials[1] = add_diffuse(&s, 0.2f, 0.2f, 0.2f);
   mix.amount = vl_float_input(0.25f);
@@ -291,7 +321,8 @@ static void mixed(void **state) {
   Quad q = wall(-3, 3000, add(&s, &mix));
   add_quad(&s, &q);
   Image p = stage_finish(&s);
-  assert_near("mixed", image_mean(&p, 1), 0.75 * (r0 + (1 - r0) * 0.999 * 0.6 * 0.75) + 0.25 * 0.2, 6e-3);
+  assert_near("mixed", image_mean(&p, 1),
+              0.75 * (r0 + (1 - r0) * 0.999 * 0.6 * 0.75) + 0.25 * 0.2, 6e-3);
   image_free(&p);
 }
 
@@ -319,7 +350,8 @@ static void textured(void **state) {
 
 static void note(void *user, vlLogLevel level, const vlError *where, const char *message) {
   (void)where;
-  if (level == VL_LOG_WARNING && strstr(message, "subsurface")) ++*(int *)user;
+  if (level == VL_LOG_WARNING && strstr(message, "subsurface"))
+    ++*(int *)user;
 }
 
 /* The path tracer renders glass, bit for bit, and warns once. */
@@ -337,7 +369,8 @@ static void as_glass(void **state) {
     assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
     s.camera.fov = 0.8;
     s.render.tracer = VL_TRACER_PATH;
-    vlMaterialDef glass = vl_default_material_def(k ? VL_MATERIAL_SUBSURFACE : VL_MATERIAL_DIELECTRIC);
+    vlMaterialDef glass =
+        vl_default_material_def(k ? VL_MATERIAL_SUBSURFACE : VL_MATERIAL_DIELECTRIC);
     glass.eta = vl_spectrum_input(vl_spectrum_constant(1.4f));
     add_sky(&s, 0.3f);
     add_point(&s, 1, 1, 1, 1);
@@ -368,7 +401,8 @@ static Image rich(vlContext *context, const void *color) {
   vlMediumDef dust = fog(0.02f);
   dust.sigma_s = vl_spectrum_rgb(0.03f, 0.05f, 0.08f);
   vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &dust);
-  vlMaterialDef skin = reflecting(vl_spectrum_rgb(0.8f, 0.5f, 0.4f), 1), marble = body(0.02f, 8);
+  vlMaterialDef skin = reflecting(vl_spectrum_rgb(0.8f, 0.5f, 0.4f), 1),
+                marble = body(0.02f, 8);
   skin.subsurface.mfp = vl_spectrum_input(vl_spectrum_rgb(0.3f, 0.1f, 0.05f));
   skin.u_roughness = skin.v_roughness = vl_float_input(0.3f);
   float *block;
@@ -397,7 +431,8 @@ static void same_bits(void **state) {
   }
 }
 
-/* Extremes: bodies so dense that rays cannot tell the way through them, and so thin that nothing happens. */
+/* Extremes: bodies so dense that rays cannot tell the way through them, and so thin that
+ * nothing happens. */
 static void extremes(void **state) {
   (void)state;
   const float lengths[] = {0, 1e-30f, 1e-9f, 1e9f, 1e30f};
@@ -410,7 +445,8 @@ static void extremes(void **state) {
     add_quad(&s, &q);
     Image p = stage_finish(&s);
     assert_int_equal(p.stats.not_finite, 0);
-    for (int c = 0; c < 3; c++) assert_true(image_mean(&p, c) < 1.3);
+    for (int c = 0; c < 3; c++)
+      assert_true(image_mean(&p, c) < 1.3);
     image_free(&p);
   }
 }
@@ -420,18 +456,25 @@ static void refused(void **state) {
   for (int k = 0; k < 5; k++) {
     Stage s = stage_open(8, 8);
     vlMaterialDef def = body(1, 1);
-    if (k == 0) def.eta = vl_spectrum_input(vl_spectrum_constant(3));
-    if (k == 1) def.eta = vl_spectrum_input(vl_spectrum_named("glass-BK7"));
-    if (k == 2) def.g = vl_float_input(1);
-    if (k == 3) def.g = vl_float_input(NAN);
-    if (k == 4) def.scale = -1;
+    if (k == 0)
+      def.eta = vl_spectrum_input(vl_spectrum_constant(3));
+    if (k == 1)
+      def.eta = vl_spectrum_input(vl_spectrum_named("glass-BK7"));
+    if (k == 2)
+      def.g = vl_float_input(1);
+    if (k == 3)
+      def.g = vl_float_input(NAN);
+    if (k == 4)
+      def.scale = -1;
     vl_scene_add_material(s.scene, &def);
     assert_int_equal(vl_scene_result(s.scene, NULL), VL_ERROR_SCENE);
     stage_close(&s);
   }
 }
 
-/* ---- memory ------------------------------------------------------------------------------------------------------ */
+/* ---- memory
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Purse {
   long left; /* allocations that still succeed */
@@ -465,7 +508,8 @@ static void memory(void **state) {
     purse.left = n;
     vlWorld *world = NULL;
     r = vl_world_build(s.scene, &s.build, &world, NULL);
-    if (r != VL_OK) assert_int_equal(r, VL_ERROR_MEMORY);
+    if (r != VL_OK)
+      assert_int_equal(r, VL_ERROR_MEMORY);
     vl_world_destroy(world);
     purse.left = 1000000;
     stage_close(&s);
@@ -475,9 +519,10 @@ static void memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(walls),    cmocka_unit_test(colours),   cmocka_unit_test(rough),     cmocka_unit_test(white),
-      cmocka_unit_test(corner),   cmocka_unit_test(fine_mesh), cmocka_unit_test(in_fog),    cmocka_unit_test(mixed),
-      cmocka_unit_test(textured), cmocka_unit_test(as_glass),  cmocka_unit_test(same_bits), cmocka_unit_test(extremes),
+      cmocka_unit_test(walls),    cmocka_unit_test(colours),   cmocka_unit_test(rough),
+      cmocka_unit_test(white),    cmocka_unit_test(corner),    cmocka_unit_test(fine_mesh),
+      cmocka_unit_test(in_fog),   cmocka_unit_test(mixed),     cmocka_unit_test(textured),
+      cmocka_unit_test(as_glass), cmocka_unit_test(same_bits), cmocka_unit_test(extremes),
       cmocka_unit_test(refused),  cmocka_unit_test(memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

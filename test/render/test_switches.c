@@ -1,5 +1,6 @@
-/* Switches for comparisons (pbrt's disablepixeljitter, disablewavelengthjitter, disabletexturefiltering): samples at
- * the pixel's centre, the same wavelengths for all samples, textures without a footprint. */
+/* Switches for comparisons (pbrt's disablepixeljitter, disablewavelengthjitter,
+ * disabletexturefiltering): samples at the pixel's centre, the same wavelengths for all
+ * samples, textures without a footprint. */
 #include "render/shots.h"
 #include "velo/texture.h"
 
@@ -7,7 +8,8 @@ enum { SIZE = 16 };
 
 static Stage stage(bool rgb) {
   Stage s = stage_open(SIZE, SIZE);
-  if (rgb) s.build.color = VL_COLOR_RGB;
+  if (rgb)
+    s.build.color = VL_COLOR_RGB;
   s.render.sampler = VL_SAMPLER_INDEPENDENT;
   s.render.spp = 32;
   return s;
@@ -44,7 +46,8 @@ static void same_wavelengths(void **state) {
     add_sky(&s, 1);
     Image p = stage_finish(&s);
     alike[on] = true;
-    for (int i = 0; i < 4 * SIZE * SIZE; i++) alike[on] = alike[on] && p.rgba[i] == p.rgba[i % 4];
+    for (int i = 0; i < 4 * SIZE * SIZE; i++)
+      alike[on] = alike[on] && p.rgba[i] == p.rgba[i % 4];
     image_free(&p);
   }
   assert_false(alike[0]);
@@ -63,7 +66,8 @@ static void sharp_textures(void **state) {
     s.render.tracer = VL_TRACER_RAYCAST;
     float *rgb = malloc(FINE * FINE * 3 * sizeof *rgb);
     for (int i = 0; i < FINE * FINE; i++)
-      for (int c = 0; c < 3; c++) rgb[3 * i + c] = (i * 7919 / 13) % 2 ? 1.0f : 0.0f;
+      for (int c = 0; c < 3; c++)
+        rgb[3 * i + c] = (i * 7919 / 13) % 2 ? 1.0f : 0.0f;
     vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     vlImage *image = make_image(&s, FINE, FINE, rgb);
     texture.image = image;
@@ -86,7 +90,8 @@ static void sharp_textures(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(centred), cmocka_unit_test(same_wavelengths),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(centred),
+                                     cmocka_unit_test(same_wavelengths),
                                      cmocka_unit_test(sharp_textures)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Textures read from images: a square seen by an orthographic camera and the raycast tracer shows its reflectance.
- * Column x of 32 is u = (x + 1/2)/32, row y is v = 1 - (y + 1/2)/32. */
+/* Textures read from images: a square seen by an orthographic camera and the raycast tracer
+ * shows its reflectance. Column x of 32 is u = (x + 1/2)/32, row y is v = 1 - (y + 1/2)/32. */
 #include "render/shots.h"
 #include "velo/texture.h"
 
@@ -37,13 +37,15 @@ static double at_v(uint32_t y) {
 
 typedef double Expected(void *user, double u, double v, int channel);
 
-static void assert_shows(const char *what, Image *p, Expected *f, void *user, double tolerance) {
+static void assert_shows(const char *what, Image *p, Expected *f, void *user,
+                         double tolerance) {
   for (uint32_t y = 0; y < SIZE; y++)
     for (uint32_t x = 0; x < SIZE; x++)
       for (int c = 0; c < 3; c++) {
         double e = f(user, at_u(x), at_v(y), c), value = image_at(p, x, y, c);
         if (!(fabs(value - e) <= tolerance))
-          fail_msg("%s: pixel (%u, %u) channel %d is %.6f, expected %.6f", what, x, y, c, value, e);
+          fail_msg("%s: pixel (%u, %u) channel %d is %.6f, expected %.6f", what, x, y, c, value,
+                   e);
       }
   image_free(p);
 }
@@ -63,7 +65,9 @@ static vlTextureDef grey(vlTextureKind kind, double a, double b) {
   return def;
 }
 
-/* ---- nodes ------------------------------------------------------------------------------------------------------- */
+/* ---- nodes
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static void constants_scale_and_mix(void **state) {
   (void)state;
@@ -82,8 +86,10 @@ static void constants_scale_and_mix(void **state) {
     assert_constant("mix", show(&s, add(&s, &def)), 0.2 * (1 - amounts[i]) + 0.8 * amounts[i]);
   }
   s = stage();
-  vlTextureDef f = vl_default_texture_def(VL_TEXTURE_MIX, false); /* a float texture as the amount */
-  f.float_a = vl_float_input(0.1f), f.float_b = vl_float_input(0.9f), f.amount = vl_float_input(0.5f);
+  vlTextureDef f =
+      vl_default_texture_def(VL_TEXTURE_MIX, false); /* a float texture as the amount */
+  f.float_a = vl_float_input(0.1f), f.float_b = vl_float_input(0.9f),
+  f.amount = vl_float_input(0.5f);
   def = grey(VL_TEXTURE_MIX, 0, 1);
   def.amount.texture = add(&s, &f);
   assert_constant("mix by a mixed amount", show(&s, add(&s, &def)), 0.5);
@@ -102,14 +108,16 @@ static void checkerboard(void **state) {
   def.su = 4, def.sv = 2, def.du = -8, def.dv = 0.5f;
   Image p = show(&s, add(&s, &def));
   assert_shows("checkerboard", &p, checks, &def, 1e-5);
-  /* Three dimensions: cells of the world, moved by the texture's matrix; the plane z = -1 is put in cell -1. */
+  /* Three dimensions: cells of the world, moved by the texture's matrix; the plane z = -1 is
+   * put in cell -1. */
   s = stage();
   vlTextureDef solid = grey(VL_TEXTURE_CHECKERBOARD, 0.7, 0.2);
   solid.dimension = 3;
   set_matrix(solid.texture_from_world, 2, 0, 0, 2, 0, 1, 0, 1.5, 0, 0, 1, 0.5);
   p = show(&s, add(&s, &solid));
   def.du = 1; /* u = (x + 1)/2: floor(2x + 2) = floor(4u); the odd layer of z adds one */
-  assert_shows("solid checkerboard", &p, checks, &(vlTextureDef){.su = 4, .sv = 2, .du = 1, .dv = 0.5f}, 1e-5);
+  assert_shows("solid checkerboard", &p, checks,
+               &(vlTextureDef){.su = 4, .sv = 2, .du = 1, .dv = 0.5f}, 1e-5);
 }
 
 static double bilerp(void *user, double s, double t, int c) {
@@ -148,8 +156,10 @@ static void nesting(void **state) {
         vlTextureDef def = grey(kinds[k], 0.3, 0.3);
         def.spectrum_c = def.spectrum_d = def.spectrum_a;
         def.amount = vl_float_input(kinds[k] == VL_TEXTURE_SCALE ? 1 : 0.5f);
-        vlSpectrumInput *slot = kinds[k] == VL_TEXTURE_SCALE ? &def.spectrum_a : &def.spectrum_b;
-        if (kinds[k] == VL_TEXTURE_BILERP) slot = &def.spectrum_d;
+        vlSpectrumInput *slot =
+            kinds[k] == VL_TEXTURE_SCALE ? &def.spectrum_a : &def.spectrum_b;
+        if (kinds[k] == VL_TEXTURE_BILERP)
+          slot = &def.spectrum_d;
         slot->texture = id;
         id = add(&s, &def);
       }
@@ -175,7 +185,8 @@ static void nesting(void **state) {
     }
 }
 
-/* A texture that names the one before twice, many times over, would be evaluated 2^n times: refused, at once. */
+/* A texture that names the one before twice, many times over, would be evaluated 2^n times:
+ * refused, at once. */
 static void doubling_is_refused(void **state) {
   (void)state;
   Stage s = stage();
@@ -198,11 +209,14 @@ static void doubling_is_refused(void **state) {
   stage_close(&s);
 }
 
-/* ---- images ---------------------------------------------------------------------------------------------------- */
+/* ---- images
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* 4 x 2 texels, told apart by their red and green; rows from the top. */
-static const float texels[24] = {0.1f, 0.1f, 0.5f, 0.3f, 0.1f, 0.5f, 0.5f, 0.1f, 0.5f, 0.7f, 0.1f, 0.5f,
-                                 0.1f, 0.9f, 0.5f, 0.3f, 0.9f, 0.5f, 0.5f, 0.9f, 0.5f, 0.7f, 0.9f, 0.5f};
+static const float texels[24] = {0.1f, 0.1f, 0.5f, 0.3f, 0.1f, 0.5f, 0.5f, 0.1f,
+                                 0.5f, 0.7f, 0.1f, 0.5f, 0.1f, 0.9f, 0.5f, 0.3f,
+                                 0.9f, 0.5f, 0.5f, 0.9f, 0.5f, 0.7f, 0.9f, 0.5f};
 
 typedef struct Lookup {
   vlTextureDef def;
@@ -210,8 +224,10 @@ typedef struct Lookup {
 } Lookup;
 
 static double texel(int x, int y, vlWrap wrap, int c) {
-  if (wrap == VL_WRAP_BLACK && (x < 0 || y < 0 || x > 3 || y > 1)) return 0;
-  if (wrap == VL_WRAP_REPEAT) x = x & 3, y = y & 1;
+  if (wrap == VL_WRAP_BLACK && (x < 0 || y < 0 || x > 3 || y > 1))
+    return 0;
+  if (wrap == VL_WRAP_REPEAT)
+    x = x & 3, y = y & 1;
   x = x < 0 ? 0 : x > 3 ? 3 : x;
   y = y < 0 ? 0 : y > 1 ? 1 : y;
   return texels[3 * (4 * y + x) + c];
@@ -226,11 +242,14 @@ static double image_texture(void *user, double u, double v, int c) {
   } else {
     int xi = (int)floor(x - 0.5), yi = (int)floor(y - 0.5);
     double fx = x - 0.5 - xi, fy = y - 0.5 - yi;
-    value = (1 - fx) * (1 - fy) * texel(xi, yi, d->wrap, c) + fx * (1 - fy) * texel(xi + 1, yi, d->wrap, c) +
-            (1 - fx) * fy * texel(xi, yi + 1, d->wrap, c) + fx * fy * texel(xi + 1, yi + 1, d->wrap, c);
+    value = (1 - fx) * (1 - fy) * texel(xi, yi, d->wrap, c) +
+            fx * (1 - fy) * texel(xi + 1, yi, d->wrap, c) +
+            (1 - fx) * fy * texel(xi, yi + 1, d->wrap, c) +
+            fx * fy * texel(xi + 1, yi + 1, d->wrap, c);
   }
   value *= d->scale;
-  if (d->invert) value = 1 - value;
+  if (d->invert)
+    value = 1 - value;
   return value < 0 ? 0 : value > 1 ? 1 : value;
 }
 
@@ -246,9 +265,12 @@ static void image_orientation_wrap_filter(void **state) {
       l.def.wrap = (vlWrap[3]){VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP}[i - 2];
       l.def.su = 2, l.def.sv = 3, l.def.du = -0.6f, l.def.dv = -1.1f;
     }
-    if (i == 5) l.def.invert = true;
-    if (i == 6) l.def.scale = 0.5f;
-    if (i == 7) l.def.invert = true, l.def.scale = 1.3f;
+    if (i == 5)
+      l.def.invert = true;
+    if (i == 6)
+      l.def.scale = 0.5f;
+    if (i == 7)
+      l.def.invert = true, l.def.scale = 1.3f;
     vlTextureId id = add(&s, &l.def);
     vl_image_destroy(image);
     Image p = show(&s, id);
@@ -258,8 +280,8 @@ static void image_orientation_wrap_filter(void **state) {
   }
 }
 
-/* 8-bit images from files are sRGB unless an encoding is given; float images are linear. Grey, colour and coverage
- * are read as floats. */
+/* 8-bit images from files are sRGB unless an encoding is given; float images are linear. Grey,
+ * colour and coverage are read as floats. */
 static void encodings_and_floats(void **state) {
   (void)state;
   char path[600];
@@ -277,7 +299,8 @@ static void encodings_and_floats(void **state) {
         assert_int_equal(vl_image_create(s.context, &image_def, &image), VL_OK);
         for (int i = 0; i < 4; i++)
           for (int c = 0; c < channels; c++)
-            ((uint8_t *)vl_image_pixels(image))[i * channels + c] = channels == 4 && c == 3 ? 51 : 128;
+            ((uint8_t *)vl_image_pixels(image))[i * channels + c] =
+                channels == 4 && c == 3 ? 51 : 128;
         if (channels == 2) {
           vl_image_destroy(image);
           stage_close(&s);
@@ -288,25 +311,30 @@ static void encodings_and_floats(void **state) {
         vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, !as_float);
         def.path = path;
         def.encoding_given = e > 0;
-        def.encoding = (vlEncoding[4]){VL_ENCODING_LINEAR, VL_ENCODING_LINEAR, VL_ENCODING_GAMMA, VL_ENCODING_SRGB}[e];
+        def.encoding = (vlEncoding[4]){VL_ENCODING_LINEAR, VL_ENCODING_LINEAR,
+                                       VL_ENCODING_GAMMA, VL_ENCODING_SRGB}[e];
         def.gamma = 2.2f;
         vlTextureId id = add(&s, &def);
         double value = decoded[e];
-        if (as_float) { /* as the factor of white: four channels give their coverage, which no curve touches */
+        if (as_float) { /* as the factor of white: four channels give their coverage, which no
+                           curve touches */
           vlTextureDef scale = grey(VL_TEXTURE_SCALE, 1, 0);
           scale.amount.texture = id;
           id = add(&s, &scale);
-          if (channels == 4) value = 0.2;
+          if (channels == 4)
+            value = 0.2;
         }
         Image p = show(&s, id);
         char what[64];
-        snprintf(what, sizeof what, "%d channels, encoding %d, %s", channels, e, as_float ? "float" : "colour");
+        snprintf(what, sizeof what, "%d channels, encoding %d, %s", channels, e,
+                 as_float ? "float" : "colour");
         assert_shows(what, &p, constant, &value, 1e-4);
       }
   remove(path);
 }
 
-/* ---- mappings: an image whose red is s and whose green is t ----------------------------------------------------- */
+/* ---- mappings: an image whose red is s and whose green is t
+ * ----------------------------------------------------- */
 
 static void mappings(void **state) {
   (void)state;
@@ -322,10 +350,12 @@ static void mappings(void **state) {
     vlImage *image = make_image(&s, N, N, ramp);
     vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     def.image = image;
-    def.mapping = (vlMapping[3]){VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR}[kind];
+    def.mapping =
+        (vlMapping[3]){VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR}[kind];
     /* the square's points are (x, y, -1): put them round (0.05, 0.02, 0.4) of the texture */
     set_matrix(def.texture_from_world, 1, 0, 0, 0.05, 0, 1, 0, 0.02, 0, 0, 1, 1.4);
-    def.planar_v1[0] = 0.3f, def.planar_v1[1] = 0.1f, def.planar_v2[0] = 0, def.planar_v2[1] = 0.4f;
+    def.planar_v1[0] = 0.3f, def.planar_v1[1] = 0.1f, def.planar_v2[0] = 0,
+    def.planar_v2[1] = 0.4f;
     def.du = 0.5f, def.dv = 0.45f;
     vlTextureId id = add(&s, &def);
     vl_image_destroy(image);
@@ -335,10 +365,14 @@ static void mappings(void **state) {
       for (uint32_t x = 0; x < SIZE; x++) {
         double q[3] = {2 * at_u(x) - 1 + 0.05, 2 * at_v(y) - 1 + 0.02, 0.4}, st[2];
         double r = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), phi = atan2(q[1], q[0]);
-        if (kind == 0) st[0] = acos(q[2] / r) / M_PI, st[1] = (phi < 0 ? phi + 2 * M_PI : phi) / (2 * M_PI);
-        if (kind == 1) st[0] = (M_PI + phi) / (2 * M_PI), st[1] = q[2];
-        if (kind == 2) st[0] = 0.5 + 0.3 * q[0] + 0.1 * q[1], st[1] = 0.45 + 0.4 * q[1];
-        if (st[0] < 0.02 || st[0] > 0.98 || st[1] < 0.02 || st[1] > 0.98) continue; /* the ramp's seam */
+        if (kind == 0)
+          st[0] = acos(q[2] / r) / M_PI, st[1] = (phi < 0 ? phi + 2 * M_PI : phi) / (2 * M_PI);
+        if (kind == 1)
+          st[0] = (M_PI + phi) / (2 * M_PI), st[1] = q[2];
+        if (kind == 2)
+          st[0] = 0.5 + 0.3 * q[0] + 0.1 * q[1], st[1] = 0.45 + 0.4 * q[1];
+        if (st[0] < 0.02 || st[0] > 0.98 || st[1] < 0.02 || st[1] > 0.98)
+          continue; /* the ramp's seam */
         compared++;
         assert_near("mapping, s", image_at(&p, x, y, 0), st[0], 5e-3);
         assert_near("mapping, t", image_at(&p, x, y, 1), st[1], 5e-3);
@@ -350,10 +384,12 @@ static void mappings(void **state) {
   Stage s = stage();
   vlTextureDef def = grey(VL_TEXTURE_CHECKERBOARD, 0.7, 0.2);
   def.mapping = VL_MAPPING_CYLINDRICAL;
-  assert_constant("checks on a cylinder", show(&s, add(&s, &def)), 0.2); /* z = -1: an odd row */
+  assert_constant("checks on a cylinder", show(&s, add(&s, &def)),
+                  0.2); /* z = -1: an odd row */
 }
 
-/* Colours: reflectances of the two modes agree, and a texture in spectral mode shows the colour that was meant. */
+/* Colours: reflectances of the two modes agree, and a texture in spectral mode shows the colour
+ * that was meant. */
 static void spectral_mode_shows_the_same_colours(void **state) {
   (void)state;
   double mean[2][3];
@@ -368,10 +404,12 @@ static void spectral_mode_shows_the_same_colours(void **state) {
     vlTextureId id = add(&s, &def);
     vl_image_destroy(image);
     Image p = show(&s, id);
-    for (int c = 0; c < 3; c++) mean[mode][c] = image_mean(&p, c);
+    for (int c = 0; c < 3; c++)
+      mean[mode][c] = image_mean(&p, c);
     image_free(&p);
   }
-  for (int c = 0; c < 3; c++) assert_ratio("mean of a coloured texture", mean[0][c], mean[1][c], 5e-3);
+  for (int c = 0; c < 3; c++)
+    assert_ratio("mean of a coloured texture", mean[0][c], mean[1][c], 5e-3);
 }
 
 int main(void) {

@@ -1,11 +1,13 @@
-/* test_tracers_agree.c: a table of features by tracers. Every tracer with light paths renders a room with the feature
- * and must have volpath's mean, in the whole image and in each of its quarters; or vl_tracer_lacks names the feature,
- * and then the image has volpath's bits and the race of the tracers leaves it out.
+/* test_tracers_agree.c: a table of features by tracers. Every tracer with light paths renders a
+ * room with the feature and must have volpath's mean, in the whole image and in each of its
+ * quarters; or vl_tracer_lacks names the feature, and then the image has volpath's bits and the
+ * race of the tracers leaves it out.
  *
- * Each tracer has SEEDS images. The standard error of a mean of the whole image is below POWER of it, which is checked,
- * except in rows that are `weak`. A difference of 11 POWER (9 %) is then at least 7.8 standard errors, of which 5 are
- * allowed, and is found with a probability of 0.99. In most rows the standard error is a third of that, and 3 % are
- * found. Seeds are fixed. */
+ * Each tracer has SEEDS images. The standard error of a mean of the whole image is below POWER
+ * of it, which is checked, except in rows that are `weak`. A difference of 11 POWER (9 %) is
+ * then at least 7.8 standard errors, of which 5 are allowed, and is found with a probability of
+ * 0.99. In most rows the standard error is a third of that, and 3 % are found. Seeds are fixed.
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +30,8 @@ typedef struct Row {
   const char *head;    /* statements before WorldBegin; null: CAMERA */
   const char *world;
   bool smooth; /* a smooth surface, which lightpath does not see */
-  bool unseen; /* a camera or light that light paths do not find: vl_tracer_lacks names it for lightpath */
+  bool unseen; /* a camera or light that light paths do not find: vl_tracer_lacks names it for
+                  lightpath */
   bool weak;   /* so much noise that POWER is not reached */
 } Row;
 
@@ -37,21 +40,26 @@ typedef struct Row {
 #define FLOOR QUAD("-1 -1 0 1 -1 0 -1 1 0 1 1 0")
 #define GREY "Material \"diffuse\" \"rgb reflectance\" [.6 .5 .4] "
 /* The panel of light hangs below the ceiling. Its back is dark. */
-#define PANEL                                                        \
-  "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0] " \
-  "AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] "                   \
-  "Shape \"bilinearmesh\" \"point3 P\" [-.4 0 1.8 -.4 .6 1.8 .4 0 1.8 .4 .6 1.8] AttributeEnd "
+#define PANEL                                                                      \
+  "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0] "               \
+  "AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] "                                 \
+  "Shape \"bilinearmesh\" \"point3 P\" [-.4 0 1.8 -.4 .6 1.8 .4 0 1.8 .4 .6 1.8] " \
+  "AttributeEnd "
 #define WALLS                                                                      \
   GREY FLOOR QUAD("-1 -1 2 1 -1 2 -1 1 2 1 1 2") QUAD("-1 1 0 1 1 0 -1 1 2 1 1 2") \
-      QUAD("-1 -1 0 -1 1 0 -1 -1 2 -1 1 2") QUAD("1 -1 0 1 1 0 1 -1 2 1 1 2") QUAD("-1 -1 0 1 -1 0 -1 -1 2 1 -1 2")
+      QUAD("-1 -1 0 -1 1 0 -1 -1 2 -1 1 2") QUAD("1 -1 0 1 1 0 1 -1 2 1 1 2")      \
+          QUAD("-1 -1 0 1 -1 0 -1 -1 2 1 -1 2")
 #define ROOM WALLS PANEL
-#define BALL "AttributeBegin Translate 0 .3 .45 Shape \"sphere\" \"float radius\" .4 AttributeEnd "
+#define BALL \
+  "AttributeBegin Translate 0 .3 .45 Shape \"sphere\" \"float radius\" .4 AttributeEnd "
 
 static const Row rows[] = {
 #include "render/agreeing.h"
 };
 
-/* ---- rendering --------------------------------------------------------------------------------------------------- */
+/* ---- rendering
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Scene {
   vlContext *context;
@@ -68,17 +76,20 @@ static Scene open_scene(const Row *row) {
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(s.context, &scene), VL_OK);
   static char text[20000];
-  int n = snprintf(text, sizeof text,
-                   "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d PixelFilter \"box\" "
-                   "Integrator \"volpath\" \"integer maxdepth\" 4\n%s\nWorldBegin\n%s\n",
-                   SIZE, SIZE, row->head ? row->head : CAMERA, row->world);
+  int n = snprintf(
+      text, sizeof text,
+      "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d PixelFilter \"box\" "
+      "Integrator \"volpath\" \"integer maxdepth\" 4\n%s\nWorldBegin\n%s\n",
+      SIZE, SIZE, row->head ? row->head : CAMERA, row->world);
   assert_true(n > 0 && (size_t)n < sizeof text);
   vlError error = {0};
   if (vl_scene_load_memory(scene, row->name, text, (size_t)n, NULL, &error) != VL_OK)
     fail_msg("%s: %s", row->name, error.message);
   s.defs = *vl_scene_defs(scene);
-  if (vl_world_build(scene, &s.defs.build, &s.world, &error) != VL_OK) fail_msg("%s: %s", row->name, error.message);
-  if (vl_camera_make(&s.defs.camera, &s.camera, NULL, &error) != VL_OK) fail_msg("%s: %s", row->name, error.message);
+  if (vl_world_build(scene, &s.defs.build, &s.world, &error) != VL_OK)
+    fail_msg("%s: %s", row->name, error.message);
+  if (vl_camera_make(&s.defs.camera, &s.camera, NULL, &error) != VL_OK)
+    fail_msg("%s: %s", row->name, error.message);
   vl_scene_destroy(scene);
   return s;
 }
@@ -96,16 +107,20 @@ static vlImage *render(const Scene *s, vlTracer tracer, uint32_t spp, uint32_t s
   def.tracer = tracer, def.spp = spp, def.seed = seed;
   def.merge_radius = 0.04;
   assert_int_equal(vl_film_create(s->context, &s->defs.film, &film), VL_OK);
-  if (vl_render(s->world, &s->camera, film, &def, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_render(s->world, &s->camera, film, &def, NULL, &error) != VL_OK)
+    fail_msg("%s", error.message);
   assert_int_equal(vl_film_develop(film, NULL, &image), VL_OK);
   vl_film_destroy(film);
   return image;
 }
 
-/* ---- comparing --------------------------------------------------------------------------------------------------- */
+/* ---- comparing
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Means {
-  double mean[PARTS][CHANNELS], error[PARTS][CHANNELS]; /* the image's quarters, then the whole of it */
+  double mean[PARTS][CHANNELS],
+      error[PARTS][CHANNELS]; /* the image's quarters, then the whole of it */
 } Means;
 
 static void add_means(const vlImage *image, Means *m) {
@@ -138,21 +153,29 @@ static Means means_of(const Scene *s, vlTracer tracer) {
 }
 
 /* Prints what differs. Returns the number of differences. */
-static int differences(const char *what, const char *how, const Means *a, const Means *b, double blur, bool power) {
+static int differences(const char *what, const char *how, const Means *a, const Means *b,
+                       double blur, bool power) {
   int found = 0;
   for (int k = 0; k < PARTS; k++)
     for (int c = 0; c < CHANNELS; c++) {
-      double x = a->mean[k][c], y = b->mean[k][c], error = hypot(a->error[k][c], b->error[k][c]);
-      bool weak = power && k == PARTS - 1 && !(fmax(a->error[k][c], b->error[k][c]) < POWER * y);
-      if (fabs(x - y) <= 5 * error + blur * y && !weak) continue;
+      double x = a->mean[k][c], y = b->mean[k][c],
+             error = hypot(a->error[k][c], b->error[k][c]);
+      bool weak =
+          power && k == PARTS - 1 && !(fmax(a->error[k][c], b->error[k][c]) < POWER * y);
+      if (fabs(x - y) <= 5 * error + blur * y && !weak)
+        continue;
       found++;
-      print_error("%s, %s, part %d, channel %d: %.5f (%.5f), volpath %.5f (%.5f): %.4f, %.1f standard errors%s\n", what,
-                  how, k, c, x, a->error[k][c], y, b->error[k][c], x / y, (x - y) / error, weak ? ": no power" : "");
+      print_error(
+          "%s, %s, part %d, channel %d: %.5f (%.5f), volpath %.5f (%.5f): %.4f, %.1f standard "
+          "errors%s\n",
+          what, how, k, c, x, a->error[k][c], y, b->error[k][c], x / y, (x - y) / error,
+          weak ? ": no power" : "");
     }
   return found;
 }
 
-static const vlTracer tracers[] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_LIGHT_PATH, VL_TRACER_MERGING};
+static const vlTracer tracers[] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_LIGHT_PATH,
+                                   VL_TRACER_MERGING};
 static const char *const names[] = {"bidirectional", "lightpath", "merging"};
 
 static void all_features(void **state) {
@@ -161,7 +184,8 @@ static void all_features(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     Scene s = open_scene(&rows[i]);
     Means path = {{{0}}, {{0}}};
-    if (!rows[i].lacking) path = means_of(&s, VL_TRACER_VOLPATH);
+    if (!rows[i].lacking)
+      path = means_of(&s, VL_TRACER_VOLPATH);
     for (size_t k = 0; k < sizeof tracers / sizeof *tracers; k++) {
       const char *lack = vl_tracer_lacks(s.world, &s.camera, &s.defs.film, tracers[k]);
       if (rows[i].lacking) {
@@ -172,28 +196,32 @@ static void all_features(void **state) {
       bool light_only = tracers[k] == VL_TRACER_LIGHT_PATH;
       if ((lack != NULL) != (rows[i].unseen && light_only))
         fail_msg("%s, %s: lacks %s", rows[i].name, names[k], lack ? lack : "nothing");
-      if ((rows[i].smooth || rows[i].unseen) && light_only) continue;
+      if ((rows[i].smooth || rows[i].unseen) && light_only)
+        continue;
       Means m = means_of(&s, tracers[k]);
-      found +=
-          differences(rows[i].name, names[k], &m, &path, tracers[k] == VL_TRACER_MERGING ? BLUR : 0, !rows[i].weak);
+      found += differences(rows[i].name, names[k], &m, &path,
+                           tracers[k] == VL_TRACER_MERGING ? BLUR : 0, !rows[i].weak);
     }
     close_scene(&s);
   }
-  if (found) fail_msg("%d differences", found);
+  if (found)
+    fail_msg("%d differences", found);
 }
 
 /* Where a tracer lacks something, the image has volpath's bits, and there is no race. */
 static void replaced(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    if (!rows[i].lacking) continue;
+    if (!rows[i].lacking)
+      continue;
     Scene s = open_scene(&rows[i]);
     vlImage *path = render(&s, VL_TRACER_VOLPATH, 2, 1);
     for (size_t k = 0; k < sizeof tracers / sizeof *tracers; k++) {
       vlImage *image = render(&s, tracers[k], 2, 1);
       for (uint32_t c = 0; c < CHANNELS; c++)
         for (uint32_t p = 0; p < SIZE * SIZE; p++)
-          if (vl_image_get(image, p % SIZE, p / SIZE, c) != vl_image_get(path, p % SIZE, p / SIZE, c))
+          if (vl_image_get(image, p % SIZE, p / SIZE, c) !=
+              vl_image_get(path, p % SIZE, p / SIZE, c))
             fail_msg("%s, %s: not volpath's bits", rows[i].name, names[k]);
       vl_image_destroy(image);
     }
@@ -202,13 +230,16 @@ static void replaced(void **state) {
     vlFilmDef film = s.defs.film;
     vlRenderDef def = s.defs.render;
     def.spp = 1 << 16;
-    assert_int_equal(vl_choose_tracer(s.world, &s.camera, &film, &def, true, &choice, NULL), VL_OK);
-    if (choice.count || choice.tracer != VL_TRACER_VOLPATH) fail_msg("%s: has a race", rows[i].name);
+    assert_int_equal(vl_choose_tracer(s.world, &s.camera, &film, &def, true, &choice, NULL),
+                     VL_OK);
+    if (choice.count || choice.tracer != VL_TRACER_VOLPATH)
+      fail_msg("%s: has a race", rows[i].name);
     close_scene(&s);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(all_features), cmocka_unit_test(replaced)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(all_features),
+                                     cmocka_unit_test(replaced)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

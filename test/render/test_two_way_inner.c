@@ -1,5 +1,6 @@
-/* Connections of inner vertices (bidirectional): exact radiance in a white furnace; the mean of the path tracer in
- * rooms whose lamps stand in shades, for each greatest number of bounces; less noise than the path tracer there. */
+/* Connections of inner vertices (bidirectional): exact radiance in a white furnace; the mean of
+ * the path tracer in rooms whose lamps stand in shades, for each greatest number of bounces;
+ * less noise than the path tracer there. */
 #include "render/agreement.h"
 #include "render/lamp_room.h"
 
@@ -20,8 +21,8 @@ typedef struct Room {
   bool spectral, plastic;
 } Room;
 
-/* A closed room, with a ceiling of plastic if that is wanted, with a bulb in a tube that is open above. In it are
- * balls, one of plastic, one of glass, and one of few facets. */
+/* A closed room, with a ceiling of plastic if that is wanted, with a bulb in a tube that is
+ * open above. In it are balls, one of plastic, one of glass, and one of few facets. */
 static Stage room(const void *user, vlTracer tracer) {
   const Room *what = user;
   Stage s = stage_open_in(NULL, SIZE, SIZE);
@@ -30,8 +31,10 @@ static Stage room(const void *user, vlTracer tracer) {
   s.render.max_depth = what->depth;
   s.render.spp = tracer == VL_TRACER_PATH ? 96 : 20;
   s.render.light_paths = 2048; /* several groups of wavelengths */
-  vlMaterialId red = add_diffuse(&s, 0.8f, 0.4f, 0.3f), blue = add_diffuse(&s, 0.3f, 0.5f, 0.8f);
-  vlMaterialId white = add_diffuse(&s, 0.7f, 0.7f, 0.7f), dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f);
+  vlMaterialId red = add_diffuse(&s, 0.8f, 0.4f, 0.3f),
+               blue = add_diffuse(&s, 0.3f, 0.5f, 0.8f);
+  vlMaterialId white = add_diffuse(&s, 0.7f, 0.7f, 0.7f),
+               dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f);
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
   def.u_roughness = def.v_roughness = vl_float_input(0.3f);
   vlMaterialId plastic = vl_scene_add_material(s.scene, &def);
@@ -49,11 +52,14 @@ static Stage room(const void *user, vlTracer tracer) {
 
 static void rooms(void **state) {
   (void)state;
-  static const Room all[4] = {{2, false, true}, {3, false, false}, {6, false, true}, {4, true, true}};
+  static const Room all[4] = {
+      {2, false, true}, {3, false, false}, {6, false, true}, {4, true, true}};
   for (int k = 0; k < 4; k++) {
-    Measure path = measure(room, &all[k], VL_TRACER_PATH), both = measure(room, &all[k], VL_TRACER_BIDIRECTIONAL);
+    Measure path = measure(room, &all[k], VL_TRACER_PATH),
+            both = measure(room, &all[k], VL_TRACER_BIDIRECTIONAL);
     char what[64];
-    snprintf(what, sizeof what, "depth %u%s", all[k].depth, all[k].spectral ? ", spectral" : "");
+    snprintf(what, sizeof what, "depth %u%s", all[k].depth,
+             all[k].spectral ? ", spectral" : "");
     assert_agree(what, "bidirectional", &both, &path, 0.002);
   }
 }
@@ -61,11 +67,14 @@ static void rooms(void **state) {
 static void less_noise(void **state) {
   (void)state;
   const Room what = {6, false, false};
-  double path = pair_noise(room, &what, VL_TRACER_PATH), both = pair_noise(room, &what, VL_TRACER_BIDIRECTIONAL);
-  if (!(both < path / 5)) fail_msg("noise of the path tracer %g, bidirectional %g", path, both);
+  double path = pair_noise(room, &what, VL_TRACER_PATH),
+         both = pair_noise(room, &what, VL_TRACER_BIDIRECTIONAL);
+  if (!(both < path / 5))
+    fail_msg("noise of the path tracer %g, bidirectional %g", path, both);
 }
 
-/* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ... everywhere. */
+/* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ...
+ * everywhere. */
 static Stage furnace(const void *user, vlTracer tracer) {
   (void)tracer;
   Stage s = stage_open_in(NULL, FURNACE, FURNACE);

@@ -1,6 +1,6 @@
-/* Connections of inner vertices in media (bidirectional): the mean of volpath in rooms full of fog whose lamps stand in
- * shades; attenuation by channel in both colour modes; less noise than volpath there; exact radiance in a white furnace
- * full of fog; the same bits for any threads.
+/* Connections of inner vertices in media (bidirectional): the mean of volpath in rooms full of
+ * fog whose lamps stand in shades; attenuation by channel in both colour modes; less noise than
+ * volpath there; exact radiance in a white furnace full of fog; the same bits for any threads.
  */
 #include "render/agreement.h"
 #include "render/fog.h"
@@ -24,8 +24,10 @@ typedef struct Case {
 /* Fog of other colours in each channel. The grids fill the room. */
 static vlMediumId air_of(Stage *s, Air air) {
   static const float densities[8] = {0.5f, 2, 0, 1, 3, 1, 0.2f, 2};
-  static const float colors[24] = {1, 2, 3, .5f, 1, 0, 0, 0, 2, 1, 1, 1, 3, 2, 1, 0, 1, 2, 1, 2, 1, .3f, .2f, .1f};
-  static const vlMediumKind kinds[AIRS] = {[GRID] = VL_MEDIUM_GRID, [RGB_GRID] = VL_MEDIUM_RGB_GRID};
+  static const float colors[24] = {1, 2, 3, .5f, 1, 0, 0, 0, 2, 1,   1,   1,
+                                   3, 2, 1, 0,   1, 2, 1, 2, 1, .3f, .2f, .1f};
+  static const vlMediumKind kinds[AIRS] = {
+      [GRID] = VL_MEDIUM_GRID, [RGB_GRID] = VL_MEDIUM_RGB_GRID};
   vlMediumDef def = vl_default_medium_def(kinds[air]);
   float thick = air >= IN_GLASS ? 2.0f : 0.3f;
   def.sigma_a = vl_spectrum_rgb(0.05f * thick, 0.1f * thick, 0.3f * thick);
@@ -36,13 +38,15 @@ static vlMediumId air_of(Stage *s, Air air) {
     def.sigma_s = vl_spectrum_constant(0.5f);
   }
   def.g = 0.4f, def.scale = air == RGB_GRID ? 0.2f : 1;
-  for (int i = 0; i < 3; i++) def.low[i] = -2.6f, def.high[i] = 2.6f;
+  for (int i = 0; i < 3; i++)
+    def.low[i] = -2.6f, def.high[i] = 2.6f;
   set_matrix(def.world_from_medium, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
   def.nx = def.ny = def.nz = 2, def.density = densities, def.rgb_s = colors, def.rgb_a = colors;
   return vl_scene_add_medium(s->scene, &def);
 }
 
-static void add_filled_ball(Stage *s, vlMaterialId skin, vlMediumId inside, vlMediumId outside) {
+static void add_filled_ball(Stage *s, vlMaterialId skin, vlMediumId inside,
+                            vlMediumId outside) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(def.group_from_shape, 1, 0, 0, -0.6, 0, 1, 0, -0.4, 0, 0, 1, -2.6);
   def.radius = 0.7f, def.z_min = -0.7f, def.z_max = 0.7f;
@@ -59,13 +63,17 @@ static Stage room(const void *user, vlTracer tracer) {
   s.render.max_depth = what->depth;
   s.render.spp = tracer == VL_TRACER_VOLPATH ? 256 : 24;
   s.render.light_paths = 2048; /* several groups of wavelengths */
-  vlMaterialId dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f), white = add_diffuse(&s, 0.7f, 0.7f, 0.7f);
-  const vlMaterialId colored[3] = {add_diffuse(&s, 0.8f, 0.4f, 0.3f), add_diffuse(&s, 0.3f, 0.5f, 0.8f), white};
-  const vlMaterialId grey[3] = {white, white, white}, *walls = what->air == BY_CHANNEL ? grey : colored;
+  vlMaterialId dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f),
+               white = add_diffuse(&s, 0.7f, 0.7f, 0.7f);
+  const vlMaterialId colored[3] = {add_diffuse(&s, 0.8f, 0.4f, 0.3f),
+                                   add_diffuse(&s, 0.3f, 0.5f, 0.8f), white};
+  const vlMaterialId grey[3] = {white, white, white},
+                     *walls = what->air == BY_CHANNEL ? grey : colored;
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
   def.u_roughness = def.v_roughness = vl_float_input(0.3f);
   add_walls(&s, walls, vl_scene_add_material(s.scene, &def));
-  if (what->air == BY_CHANNEL) dark = white;
+  if (what->air == BY_CHANNEL)
+    dark = white;
   add_tube(&s, 0.2f, 0.5f, 0.35f, dark);
   add_ball_of(&s, 0.4f, 0.5f, 0.15f, dark, add_emission(&s, 40, false));
   add_ball_of(&s, 0.9f, -1, 0.5f, white, (vlEmissionId){0});
@@ -90,8 +98,10 @@ static Stage room(const void *user, vlTracer tracer) {
 static void rooms(void **state) {
   (void)state;
   for (int k = 0; k < AIRS; k++) {
-    Case what = {(Air)k, k == FOG ? 6 : 3, k != GRID && k != IN_GLASS, NULL}; /* volpath misses rare light in glass */
-    Measure path = measure(room, &what, VL_TRACER_VOLPATH), both = measure(room, &what, VL_TRACER_BIDIRECTIONAL);
+    Case what = {(Air)k, k == FOG ? 6 : 3, k != GRID && k != IN_GLASS,
+                 NULL}; /* volpath misses rare light in glass */
+    Measure path = measure(room, &what, VL_TRACER_VOLPATH),
+            both = measure(room, &what, VL_TRACER_BIDIRECTIONAL);
     assert_agree(air_name[k], "bidirectional", &both, &path, k < IN_GLASS ? 0.002 : 0.015);
   }
 }
@@ -114,12 +124,14 @@ static void less_noise(void **state) {
     const Case what = {airs[k], 6, airs[k] == BY_CHANNEL, NULL};
     double path = pair_noise(room, &what, VL_TRACER_VOLPATH);
     double both = pair_noise(room, &what, VL_TRACER_BIDIRECTIONAL);
-    if (!(both < path / 3)) fail_msg("%s: noise of volpath %g, bidirectional %g", air_name[airs[k]], path, both);
+    if (!(both < path / 3))
+      fail_msg("%s: noise of volpath %g, bidirectional %g", air_name[airs[k]], path, both);
   }
 }
 
-/* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ... = 2 everywhere. A medium that
- * absorbs nothing changes nothing, if the weights of all strategies sum to one. */
+/* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ... = 2
+ * everywhere. A medium that absorbs nothing changes nothing, if the weights of all strategies
+ * sum to one. */
 static Stage furnace(const void *user, vlTracer tracer) {
   (void)tracer;
   static const float densities[8] = {1, 2, 0.2f, 1, 3, 1, 0, 2};
@@ -127,10 +139,12 @@ static Stage furnace(const void *user, vlTracer tracer) {
   Stage s = stage_open_in(NULL, FURNACE, FURNACE);
   s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   s.render.max_depth = what->depth, s.render.spp = 24;
-  vlMediumDef medium = vl_default_medium_def(what->air == GRID ? VL_MEDIUM_GRID : VL_MEDIUM_HOMOGENEOUS);
+  vlMediumDef medium =
+      vl_default_medium_def(what->air == GRID ? VL_MEDIUM_GRID : VL_MEDIUM_HOMOGENEOUS);
   medium.sigma_a = vl_spectrum_constant(0), medium.g = 0.3f;
   medium.sigma_s = vl_spectrum_rgb(0.3f, 0.4f, 0.6f);
-  for (int i = 0; i < 3; i++) medium.low[i] = -2, medium.high[i] = 2;
+  for (int i = 0; i < 3; i++)
+    medium.low[i] = -2, medium.high[i] = 2;
   medium.nx = medium.ny = medium.nz = 2, medium.density = densities;
   vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &medium);
   add_furnace(&s);
@@ -164,8 +178,8 @@ static void same_bits(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rooms), cmocka_unit_test(law_of_channels),
-                                     cmocka_unit_test(less_noise), cmocka_unit_test(white_furnace),
-                                     cmocka_unit_test(same_bits)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rooms), cmocka_unit_test(law_of_channels), cmocka_unit_test(less_noise),
+      cmocka_unit_test(white_furnace), cmocka_unit_test(same_bits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* The tracers with light paths when memory runs out: each failing allocation gives an error and leaks nothing. */
+/* The tracers with light paths when memory runs out: each failing allocation gives an error and
+ * leaks nothing. */
 #include "render/shots.h"
 
 #include "failing_allocator.h"
@@ -10,7 +11,8 @@ static vlResult fill(vlScene *scene) {
   static const uint32_t face[4] = {0, 1, 2, 3};
   vlMaterialDef diffuse = vl_default_material_def(VL_MATERIAL_DIFFUSE),
                 skin = vl_default_material_def(VL_MATERIAL_INTERFACE);
-  vlShapeDef floor = vl_default_shape_def(VL_SHAPE_BILINEAR), ball = vl_default_shape_def(VL_SHAPE_SPHERE);
+  vlShapeDef floor = vl_default_shape_def(VL_SHAPE_BILINEAR),
+             ball = vl_default_shape_def(VL_SHAPE_SPHERE);
   floor.vertices = 4, floor.faces = 1, floor.positions = p, floor.indices = face;
   floor.material = vl_scene_add_material(scene, &diffuse);
   vl_scene_add_shape(scene, &floor);
@@ -40,11 +42,16 @@ static vlResult render(vlContext *context, void *user) {
   def.tracer = *tracer, def.spp = 2;
   def.light_paths = 1 << 17; /* photons that the first room cannot hold */
   vlResult r = vl_scene_create(context, &scene);
-  if (r == VL_OK) r = fill(scene);
-  if (r == VL_OK) r = vl_world_build(scene, &build, &world, NULL);
-  if (r == VL_OK) r = vl_camera_make(&camera_def, &camera, NULL, NULL);
-  if (r == VL_OK) r = vl_film_create(context, &film_def, &film);
-  if (r == VL_OK) r = vl_render(world, &camera, film, &def, NULL, NULL);
+  if (r == VL_OK)
+    r = fill(scene);
+  if (r == VL_OK)
+    r = vl_world_build(scene, &build, &world, NULL);
+  if (r == VL_OK)
+    r = vl_camera_make(&camera_def, &camera, NULL, NULL);
+  if (r == VL_OK)
+    r = vl_film_create(context, &film_def, &film);
+  if (r == VL_OK)
+    r = vl_render(world, &camera, film, &def, NULL, NULL);
   vl_film_destroy(film);
   vl_world_destroy(world);
   vl_scene_destroy(scene);

@@ -1,6 +1,6 @@
-/* The tracers with light paths against the path tracer, with moving objects and cameras: the same mean within both
- * standard errors; connections of inner vertices in a room whose lamp stands in a shade, with less noise; the same
- * bits for any threads. */
+/* The tracers with light paths against the path tracer, with moving objects and cameras: the
+ * same mean within both standard errors; connections of inner vertices in a room whose lamp
+ * stands in a shade, with less noise; the same bits for any threads. */
 #include "render/lamp_room.h"
 #include "velo/medium.h"
 
@@ -44,8 +44,10 @@ static Stage room(const void *user, vlTracer tracer) {
   Stage s = stage_open_in(c->context, size, size);
   s.camera.fov = 1;
   s.camera.shutter_open = 0.25, s.camera.shutter_close = 0.85;
-  if (c->camera) move_camera(&s.camera);
-  if (c->lens) s.camera.lens_radius = 0.05, s.camera.focus_distance = 3;
+  if (c->camera)
+    move_camera(&s.camera);
+  if (c->lens)
+    s.camera.lens_radius = 0.05, s.camera.focus_distance = 3;
   if (c->curve) {
     s.camera.shutter_points = 3;
     s.camera.shutter_at[1] = 0.3, s.camera.shutter_at[2] = 1;
@@ -55,15 +57,18 @@ static Stage room(const void *user, vlTracer tracer) {
   s.render.spp = size == FINE ? 24 : 96, s.render.max_depth = 4;
   Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
   q.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f), q.emission = add_emission(&s, 10, false);
-  if (c->sky) add_sky(&s, 0.8f);
-  if (!c->sky) add_quad(&s, &q);
+  if (c->sky)
+    add_sky(&s, 0.8f);
+  if (!c->sky)
+    add_quad(&s, &q);
   q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
   q.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
   add_quad(&s, &q);
   q = quad_at(0, 0, -4.5f, 3, 0, 0, 0, 3, 0);
   q.material = add_diffuse(&s, 0.3f, 0.6f, 0.8f);
   add_quad(&s, &q);
-  if (c->things) add_mover(&s);
+  if (c->things)
+    add_mover(&s);
   if (c->fog) {
     vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
     def.sigma_a = vl_spectrum_constant(0.02f), def.sigma_s = vl_spectrum_constant(0.15f);
@@ -72,7 +77,8 @@ static Stage room(const void *user, vlTracer tracer) {
   return s;
 }
 
-static void agrees(const char *how, const Case *what, vlTracer tracer, const Measure *eye, double bias) {
+static void agrees(const char *how, const Case *what, vlTracer tracer, const Measure *eye,
+                   double bias) {
   Measure m = measure(room, what, tracer);
   assert_agree(what->name, how, &m, eye, bias);
 }
@@ -87,7 +93,8 @@ static void moving(void **state) {
     Measure eye = measure(room, &cases[i], VL_TRACER_VOLPATH);
     agrees("bidirectional", &cases[i], VL_TRACER_BIDIRECTIONAL, &eye, 0.005);
     agrees("light paths", &cases[i], VL_TRACER_LIGHT_PATH, &eye, 0.005);
-    if (i < 3) agrees("merging", &cases[i], VL_TRACER_MERGING, &eye, 0.02);
+    if (i < 3)
+      agrees("merging", &cases[i], VL_TRACER_MERGING, &eye, 0.02);
   }
 }
 
@@ -103,7 +110,8 @@ static void blurred_alike(void **state) {
   for (int k = 0; k < 2; k++) {
     s = room(&what, tracers[k]);
     s.render.tracer = tracers[k], s.render.spp = 512, s.render.merge_radius = 0.02;
-    s.build.color = VL_COLOR_SPECTRAL; /* times and wavelengths of merging's passes are spread apart from each other */
+    s.build.color = VL_COLOR_SPECTRAL; /* times and wavelengths of merging's passes are spread
+                                          apart from each other */
     Image p = stage_finish(&s);
     assert_true(image_differing(&path, &p, 0.25) < 0.025); /* edges of the lamp are noisy */
     image_free(&p);
@@ -111,16 +119,19 @@ static void blurred_alike(void **state) {
   image_free(&path);
 }
 
-/* ---- connections of inner vertices ------------------------------------------------------------------------------- */
+/* ---- connections of inner vertices
+ * ------------------------------------------------------------------------------- */
 
-/* A red and a blue board that move one after the other over the lamp's tube and reflect most of its light. */
+/* A red and a blue board that move one after the other over the lamp's tube and reflect most of
+ * its light. */
 static void add_boards(Stage *s) {
   static const double times[2] = {0, 1};
   double poses[32];
   vlGroupId group = vl_scene_add_group(s->scene, "boards");
   for (int k = 0; k < 2; k++) {
     Quad board = quad_at(k ? 0.9f : -0.9f, 0, 0, 0.7f, 0.2f, 0, 0, 0, 0.8f);
-    board.material = k ? add_diffuse(s, 0.1f, 0.2f, 0.9f) : add_diffuse(s, 0.9f, 0.2f, 0.1f), board.group = group;
+    board.material = k ? add_diffuse(s, 0.1f, 0.2f, 0.9f) : add_diffuse(s, 0.9f, 0.2f, 0.1f),
+    board.group = group;
     add_quad(s, &board);
   }
   set_matrix(poses, 1, 0, 0, -1.2, 0, 1, 0, 1.3, 0, 0, 1, -3);
@@ -137,13 +148,15 @@ static Stage lamp_room(const void *user, vlTracer tracer) {
   Stage s = stage_open_in(NULL, SIZE, SIZE);
   s.camera.fov = 1.2;
   s.camera.shutter_open = 0.1, s.camera.shutter_close = 0.9;
-  if (what->camera) move_camera(&s.camera);
+  if (what->camera)
+    move_camera(&s.camera);
   s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   s.render.max_depth = 5;
   s.render.spp = tracer == VL_TRACER_VOLPATH ? 128 : 24;
   s.render.light_paths = 2048; /* several groups */
   vlMaterialId white = add_diffuse(&s, 0.7f, 0.7f, 0.7f);
-  const vlMaterialId walls[3] = {add_diffuse(&s, 0.8f, 0.4f, 0.3f), add_diffuse(&s, 0.3f, 0.5f, 0.8f), white};
+  const vlMaterialId walls[3] = {add_diffuse(&s, 0.8f, 0.4f, 0.3f),
+                                 add_diffuse(&s, 0.3f, 0.5f, 0.8f), white};
   add_walls(&s, walls, white);
   vlMaterialId dark = add_diffuse(&s, 0.3f, 0.3f, 0.3f);
   add_tube(&s, 0.2f, 0.5f, 0.35f, dark);
@@ -169,8 +182,8 @@ static void moving_boards(void **state) {
   }
 }
 
-/* A grey board that moves to the right is grey wherever the blur has its place: the times of the groups do not depend
- * on their wavelengths. */
+/* A grey board that moves to the right is grey wherever the blur has its place: the times of
+ * the groups do not depend on their wavelengths. */
 static void grey_blur(void **state) {
   (void)state;
   static const double times[2] = {0, 1};
@@ -191,7 +204,8 @@ static void grey_blur(void **state) {
   Image p = stage_finish(&s);
   for (uint32_t band = 0; band < 3; band++) {
     double seen[3];
-    for (int c = 0; c < 3; c++) seen[c] = image_region(&p, band * SIZE / 3, 0, (band + 1) * SIZE / 3, SIZE, c);
+    for (int c = 0; c < 3; c++)
+      seen[c] = image_region(&p, band * SIZE / 3, 0, (band + 1) * SIZE / 3, SIZE, c);
     for (int c = 0; c < 3; c++)
       if (!(fabs(seen[c] - seen[1]) < 0.01 * seen[1]))
         fail_msg("band %u: channel %d %.5f, green %.5f", band, c, seen[c], seen[1]);
@@ -204,7 +218,8 @@ static void less_noise(void **state) {
   const Lamp what = {false, false, false};
   double path = pair_noise(lamp_room, &what, VL_TRACER_VOLPATH);
   double both = pair_noise(lamp_room, &what, VL_TRACER_BIDIRECTIONAL);
-  if (!(both < path / 3)) fail_msg("noise of volpath %g, bidirectional %g", path, both);
+  if (!(both < path / 3))
+    fail_msg("noise of volpath %g, bidirectional %g", path, both);
 }
 
 static Image pixels(vlContext *context, const void *with) {
@@ -225,8 +240,9 @@ static void same_bits(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(moving),        cmocka_unit_test(blurred_alike),
-                                     cmocka_unit_test(moving_boards), cmocka_unit_test(grey_blur),
-                                     cmocka_unit_test(less_noise),    cmocka_unit_test(same_bits)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(moving),        cmocka_unit_test(blurred_alike),
+      cmocka_unit_test(moving_boards), cmocka_unit_test(grey_blur),
+      cmocka_unit_test(less_noise),    cmocka_unit_test(same_bits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

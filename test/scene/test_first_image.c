@@ -1,5 +1,5 @@
-/* test/scene/test_first_image.c: the first image of a model: from where it is seen, how the studio is scaled to its
- * lamps, the walls that are hidden, the ground. */
+/* test/scene/test_first_image.c: the first image of a model: from where it is seen, how the
+ * studio is scaled to its lamps, the walls that are hidden, the ground. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,23 +33,28 @@ static void end(Model *m) {
 }
 
 /* A box whose faces look outwards, or inwards. */
-static void add_box(Model *m, const float low[3], const float high[3], bool inward, bool one_sided) {
+static void add_box(Model *m, const float low[3], const float high[3], bool inward,
+                    bool one_sided) {
   static const uint32_t faces[36] = {4, 5, 7, 4, 7, 6, 1, 0, 2, 1, 2, 3, 5, 1, 3, 5, 3, 7,
                                      0, 4, 6, 0, 6, 2, 6, 7, 3, 6, 3, 2, 0, 1, 5, 0, 5, 4};
   float p[24];
   uint32_t indices[36];
   for (int i = 0; i < 8; i++)
-    for (int k = 0; k < 3; k++) p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
-  for (int i = 0; i < 36; i++) indices[i] = faces[inward ? i / 3 * 3 + 2 - i % 3 : i];
+    for (int k = 0; k < 3; k++)
+      p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
+  for (int i = 0; i < 36; i++)
+    indices[i] = faces[inward ? i / 3 * 3 + 2 - i % 3 : i];
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 8, def.faces = 12, def.positions = p, def.indices = indices, def.one_sided = one_sided;
+  def.vertices = 8, def.faces = 12, def.positions = p, def.indices = indices,
+  def.one_sided = one_sided;
   assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
 }
 
 static void complete(Model *m, vlCompleteDef *def) {
   def->width = 300, def->height = 200;
   vlError error;
-  if (vl_scene_complete(m->scene, def, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_scene_complete(m->scene, def, &error) != VL_OK)
+    fail_msg("%s", error.message);
 }
 
 static vlCompleteDef first_image(void) {
@@ -62,8 +67,10 @@ static vlCompleteDef first_image(void) {
 static void toward_eye(const Model *m, double d[3]) {
   const vlCameraDef *c = &m->scene->defs.camera;
   double length = 0;
-  for (int i = 0; i < 3; i++) d[i] = c->eye[i] - c->lookat[i], length += d[i] * d[i];
-  for (int i = 0; i < 3; i++) d[i] /= sqrt(length);
+  for (int i = 0; i < 3; i++)
+    d[i] = c->eye[i] - c->lookat[i], length += d[i] * d[i];
+  for (int i = 0; i < 3; i++)
+    d[i] /= sqrt(length);
 }
 
 static void flat_models(void **state) {
@@ -75,7 +82,8 @@ static void flat_models(void **state) {
       low[axis] = -0.01f, high[axis] = 0.01f;
       add_box(&m, low, high, false, false);
       vlCompleteDef def = first_image();
-      if (up == 2) def.up[1] = 0, def.up[2] = 1, def.front[1] = -1, def.front[2] = 0;
+      if (up == 2)
+        def.up[1] = 0, def.up[2] = 1, def.front[1] = -1, def.front[2] = 0;
       complete(&m, &def);
       double d[3];
       toward_eye(&m, d);
@@ -100,7 +108,8 @@ static void sheet_from_behind(void **state) {
     const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint32_t front[3] = {0, 1, 2}, behind[3] = {0, 2, 1};
     vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = 3, shape.faces = 1, shape.positions = p, shape.indices = back ? behind : front;
+    shape.vertices = 3, shape.faces = 1, shape.positions = p,
+    shape.indices = back ? behind : front;
     assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
     vlCompleteDef def = first_image();
     complete(&m, &def);
@@ -114,7 +123,8 @@ static void sheet_from_behind(void **state) {
 static const float wall_low[3] = {-2, 0, -2}, wall_high[3] = {2, 2.5f, 2};
 static const float table_low[3] = {-0.5f, 0, -0.5f}, table_high[3] = {0.5f, 0.8f, 0.5f};
 
-/* The walls, floor and ceiling on the camera's side are hidden, two triangles each; kept where the caller wants it. */
+/* The walls, floor and ceiling on the camera's side are hidden, two triangles each; kept where
+ * the caller wants it. */
 static void rooms(void **state) {
   (void)state;
   for (int inward = 0; inward < 2; inward++)
@@ -128,11 +138,13 @@ static void rooms(void **state) {
       assert_int_equal(m.scene->shapes.items[0].faces, hidden ? 6 : 12);
       assert_int_equal(m.scene->shapes.items[1].faces, 12);
       const vlShapeDef *d = &m.scene->shapes.items[0];
-      for (uint32_t i = 0; hidden && i < d->faces; i++) { /* none lies in the planes x = 2, y = 2.5, z = 2 */
+      for (uint32_t i = 0; hidden && i < d->faces;
+           i++) { /* none lies in the planes x = 2, y = 2.5, z = 2 */
         for (int k = 0; k < 3; k++) {
           bool all = true;
           for (int c = 0; c < 3; c++)
-            all = all && d->positions[3 * d->indices[3 * i + (uint32_t)c] + (uint32_t)k] == wall_high[k];
+            all = all && d->positions[3 * d->indices[3 * i + (uint32_t)c] + (uint32_t)k] ==
+                             wall_high[k];
           assert_false(all);
         }
       }
@@ -147,7 +159,8 @@ static void objects(void **state) {
     Model m = begin();
     add_box(&m, wall_low, wall_high, k == 1, false);
     const float low[3] = {1.5f, 1, -1}, high[3] = {3, 1.5f, 1};
-    if (k == 2) add_box(&m, low, high, false, false);
+    if (k == 2)
+      add_box(&m, low, high, false, false);
     vlCompleteDef def = first_image();
     complete(&m, &def);
     assert_int_equal(m.scene->shapes.items[0].faces, 12);
@@ -155,7 +168,8 @@ static void objects(void **state) {
   }
 }
 
-/* The camera is in the dome and frames what the dome contains; the half on its side is hidden. */
+/* The camera is in the dome and frames what the dome contains; the half on its side is hidden.
+ */
 static void dome(void **state) {
   (void)state;
   Model m = begin();
@@ -202,7 +216,8 @@ static void lamps(void **state) {
       vlLightDef light = vl_default_light_def(point ? VL_LIGHT_POINT : VL_LIGHT_DISTANT);
       light.color = vl_spectrum_rgb(1, 1, 1);
       light.scale = lux[i] * (point ? 1e6f : 1);
-      if (point) light.from[1] = 1000; /* as far as the distant one is to the model */
+      if (point)
+        light.from[1] = 1000; /* as far as the distant one is to the model */
       assert_int_not_equal(vl_scene_add_light(m.scene, &light).index, 0);
       vlCompleteDef def = first_image();
       complete(&m, &def);

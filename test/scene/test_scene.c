@@ -1,4 +1,5 @@
-/* test/scene/test_scene.c: the scene as filled by a program: copies, ids, defaults, rejected values, counts, memory. */
+/* test/scene/test_scene.c: the scene as filled by a program: copies, ids, defaults, rejected
+ * values, counts, memory. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,8 @@ static vlScene *scene;
 
 static int set_up(void **state) {
   (void)state;
-  return vl_context_create(NULL, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK;
+  return vl_context_create(NULL, &context) != VL_OK ||
+         vl_scene_create(context, &scene) != VL_OK;
 }
 
 static int tear_down(void **state) {
@@ -57,12 +59,15 @@ static void everything_is_copied(void **state) {
   assert_int_equal(vl_scene_add_texture(scene, &t).index, 1);
   vlMaterialDef m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
   m.name = name, m.normal_map = path, m.eta.value = vl_spectrum_named(metal);
-  m.k.value =
-      (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = wavelengths, .values = values};
+  m.k.value = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
+                           .scale = 1,
+                           .count = 2,
+                           .wavelengths = wavelengths,
+                           .values = values};
   assert_int_equal(vl_scene_add_material(scene, &m).index, 1);
   vlShapeDef s = triangle();
-  s.positions = p, s.normals = p, s.tangents = p, s.uvs = p, s.indices = v, s.source = (vlSource){file, 3, 4},
-  s.material.index = 1;
+  s.positions = p, s.normals = p, s.tangents = p, s.uvs = p, s.indices = v,
+  s.source = (vlSource){file, 3, 4}, s.material.index = 1;
   assert_int_equal(vl_scene_add_shape(scene, &s).index, 1);
   vlImage *image;
   vlImageDef id = vl_default_image_def(2, 1, 3);
@@ -77,8 +82,8 @@ static void everything_is_copied(void **state) {
   vlEmissionDef e = vl_default_emission_def();
   e.image = path;
   assert_int_equal(vl_scene_add_emission(scene, &e).index, 1);
-  memset(p, 0, sizeof p), memset(v, 0, sizeof v), memset(name, 'x', 4), memset(file, 'x', 4), memset(path, 'x', 4),
-      memset(metal, 'x', 9);
+  memset(p, 0, sizeof p), memset(v, 0, sizeof v), memset(name, 'x', 4), memset(file, 'x', 4),
+      memset(path, 'x', 4), memset(metal, 'x', 9);
   wavelengths[1] = values[1] = 0;
   assert_int_equal(vl_scene_result(scene, NULL), VL_OK);
   assert_string_equal(scene->textures.items[0].name, "wall");
@@ -90,7 +95,8 @@ static void everything_is_copied(void **state) {
   assert_true(scene->shapes.items[0].positions[3] == 1 && scene->shapes.items[0].uvs[3] == 1 &&
               scene->shapes.items[0].indices[2] == 2);
   assert_string_equal(scene->shapes.items[0].source.file, "a.pbrt");
-  assert_ptr_equal(scene->shapes.items[0].source.file, scene->textures.items[0].source.file); /* kept once */
+  assert_ptr_equal(scene->shapes.items[0].source.file,
+                   scene->textures.items[0].source.file); /* kept once */
   assert_true(vl_image_get(scene->lights.items[0].image, 1, 0, 2) == value);
   assert_string_equal(scene->emissions.items[0].image, "x.png");
 }
@@ -157,11 +163,14 @@ static void bad_shapes(void **state) {
     refuses(VL_ERROR_SCENE, message); \
   } while (0)
   BAD(v[1] = 3, "triangle 0 names vertex 3, but there are only 3 vertices (0 to 2)");
-  BAD(v[2] = UINT32_MAX, "triangle 0 names vertex 4294967295, but there are only 3 vertices (0 to 2)");
+  BAD(v[2] = UINT32_MAX,
+      "triangle 0 names vertex 4294967295, but there are only 3 vertices (0 to 2)");
   BAD(p[7] = NAN, "position of vertex 2 is not finite (y is nan)");
   BAD(p[2] = -INFINITY, "position of vertex 0 is not finite (z is -inf)");
-  BAD((d.normals = p, p[3] = INFINITY, d.positions = corners), "normal of vertex 1 is not finite (x is inf)");
-  BAD((d.uvs = p, p[3] = NAN, d.positions = corners), "uv of vertex 1 is not finite (v is nan)");
+  BAD((d.normals = p, p[3] = INFINITY, d.positions = corners),
+      "normal of vertex 1 is not finite (x is inf)");
+  BAD((d.uvs = p, p[3] = NAN, d.positions = corners),
+      "uv of vertex 1 is not finite (v is nan)");
   BAD(d.vertices = 0, "mesh has no vertices");
   BAD(d.faces = 0, "mesh has no faces");
   BAD(d.indices = NULL, "mesh has no faces");
@@ -178,16 +187,18 @@ static void bad_shapes(void **state) {
     size_t offset;
     float value;
     const char *message;
-  } quadrics[] = {{VL_SHAPE_SPHERE, offsetof(vlShapeDef, radius), 0,
-                   "sphere: parameter \"radius\" must be a number above 0; it is 0"},
-                  {VL_SHAPE_DISK, offsetof(vlShapeDef, radius), -2,
-                   "disk: parameter \"radius\" must be a number above 0; it is -2"},
-                  {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, radius), NAN,
-                   "cylinder: parameter \"radius\" must be a number above 0; it is nan"},
-                  {VL_SHAPE_DISK, offsetof(vlShapeDef, inner_radius), 1, "inner radius must be less than the radius"},
-                  {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, z_min), 1, "zmin must be below zmax"},
-                  {VL_SHAPE_SPHERE, offsetof(vlShapeDef, phi_max), 0,
-                   "sphere: parameter \"phimax\" must be a number above 0 degrees; it is 0 degrees"}};
+  } quadrics[] = {
+      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, radius), 0,
+       "sphere: parameter \"radius\" must be a number above 0; it is 0"},
+      {VL_SHAPE_DISK, offsetof(vlShapeDef, radius), -2,
+       "disk: parameter \"radius\" must be a number above 0; it is -2"},
+      {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, radius), NAN,
+       "cylinder: parameter \"radius\" must be a number above 0; it is nan"},
+      {VL_SHAPE_DISK, offsetof(vlShapeDef, inner_radius), 1,
+       "inner radius must be less than the radius"},
+      {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, z_min), 1, "zmin must be below zmax"},
+      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, phi_max), 0,
+       "sphere: parameter \"phimax\" must be a number above 0 degrees; it is 0 degrees"}};
   for (size_t i = 0; i < sizeof quadrics / sizeof *quadrics; i++) {
     d = vl_default_shape_def(quadrics[i].kind);
     memcpy((char *)&d + quadrics[i].offset, &quadrics[i].value, sizeof(float));
@@ -206,30 +217,38 @@ static void bad_materials_and_lights(void **state) {
   vlMaterialDef m = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   m.reflectance.value = vl_spectrum_rgb(1, NAN, 0);
   vl_scene_add_material(scene, &m);
-  refuses(VL_ERROR_SCENE, "diffuse material: parameter \"reflectance\": rgb value is not finite");
+  refuses(VL_ERROR_SCENE,
+          "diffuse material: parameter \"reflectance\": rgb value is not finite");
   m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
   m.eta.value = vl_spectrum_named("metal-MgO-etta");
   vl_scene_add_material(scene, &m);
-  refuses(VL_ERROR_SCENE,
-          "conductor material: parameter \"eta\": no spectrum is named \"metal-MgO-etta\" (did you mean "
-          "\"metal-MgO-eta\"?)");
+  refuses(
+      VL_ERROR_SCENE,
+      "conductor material: parameter \"eta\": no spectrum is named \"metal-MgO-etta\" (did you "
+      "mean "
+      "\"metal-MgO-eta\"?)");
   m = vl_default_material_def(VL_MATERIAL_MIX);
   vl_scene_add_material(scene, &m);
   refuses(VL_ERROR_SCENE, "mix material: needs two materials");
-  m.materials[0].index = m.materials[1].index = 1; /* itself: what is not there yet cannot be named, so no circles */
+  m.materials[0].index = m.materials[1].index =
+      1; /* itself: what is not there yet cannot be named, so no circles */
   vl_scene_add_material(scene, &m);
   refuses(VL_ERROR_SCENE, "mix material: there is no such material (add its parts first)");
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_SCALE, false);
   t.float_a.texture.index = 1;
   vl_scene_add_texture(scene, &t);
-  refuses(VL_ERROR_SCENE, "scale texture: parameter \"tex\" names a texture that does not exist (add it first)");
+  refuses(
+      VL_ERROR_SCENE,
+      "scale texture: parameter \"tex\" names a texture that does not exist (add it first)");
   t = vl_default_texture_def(VL_TEXTURE_CONSTANT, false);
   vlTextureId number = vl_scene_add_texture(scene, &t);
   m = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   m.reflectance.texture = number;
   vl_scene_add_material(scene, &m);
-  refuses(VL_ERROR_SCENE,
-          "diffuse material: parameter \"reflectance\" needs a spectrum texture, this is a float texture");
+  refuses(
+      VL_ERROR_SCENE,
+      "diffuse material: parameter \"reflectance\" needs a spectrum texture, this is a float "
+      "texture");
   t = vl_default_texture_def(VL_TEXTURE_IMAGE, false);
   vl_scene_add_texture(scene, &t);
   refuses(VL_ERROR_SCENE, "imagemap texture: needs either a file name or an image");
@@ -240,22 +259,26 @@ static void bad_materials_and_lights(void **state) {
   l = vl_default_light_def(VL_LIGHT_POINT);
   l.power = INFINITY;
   vl_scene_add_light(scene, &l);
-  refuses(VL_ERROR_SCENE, "point light: parameter \"power\" must be a finite number; it is inf");
+  refuses(VL_ERROR_SCENE,
+          "point light: parameter \"power\" must be a finite number; it is inf");
   l.cookie = 0;
   vl_scene_add_light(scene, &l);
   refuses(VL_ERROR_ARGUMENT, "light: def.cookie is not that of a default def of this version");
   float down[] = {500, 400};
   vlEmissionDef e = vl_default_emission_def();
-  e.radiance = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = down, .values = down};
+  e.radiance = (vlSpectrum){
+      .kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = down, .values = down};
   vl_scene_add_emission(scene, &e);
-  refuses(VL_ERROR_SCENE, "emission: parameter \"L\": wavelengths of the sampled spectrum are not ascending");
+  refuses(VL_ERROR_SCENE,
+          "emission: parameter \"L\": wavelengths of the sampled spectrum are not ascending");
 }
 
 static void names_of_spectra(void **state) {
   (void)state;
   uint32_t n = 0;
   bool gold = false;
-  for (const char *name; (name = vl_spectrum_name(n)); n++) gold = gold || strcmp(name, "metal-Au-eta") == 0;
+  for (const char *name; (name = vl_spectrum_name(n)); n++)
+    gold = gold || strcmp(name, "metal-Au-eta") == 0;
   assert_true(n >= 8 && gold);
   assert_null(vl_spectrum_name(n + 1000));
 }
@@ -285,13 +308,16 @@ static void large_mesh(void **state) {
   free(v);
 }
 
-/* ---- out of memory ---------------------------------------------------------------------------------------------- */
+/* ---- out of memory
+ * ----------------------------------------------------------------------------------------------
+ */
 
 static vlResult fill(vlContext *from, void *user) {
   (void)user;
   vlScene *s;
   vlResult result = vl_scene_create(from, &s);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_CONSTANT, true);
   t.name = "t", t.source.file = "a.pbrt";
   vlMaterialDef m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
@@ -324,8 +350,9 @@ static void out_of_memory(void **state) {
 
 int main(void) {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
-  const struct CMUnitTest tests[] = {
-      TEST(everything_is_copied), TEST(counts),     TEST(bad_shapes),   TEST(bad_materials_and_lights),
-      TEST(names_of_spectra),     TEST(large_mesh), TEST(out_of_memory)};
+  const struct CMUnitTest tests[] = {TEST(everything_is_copied), TEST(counts),
+                                     TEST(bad_shapes),           TEST(bad_materials_and_lights),
+                                     TEST(names_of_spectra),     TEST(large_mesh),
+                                     TEST(out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

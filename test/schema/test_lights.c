@@ -1,5 +1,6 @@
-/* Rows of lights, shapes and media: each parameter's default is in its range and agrees with vl_parameter_is_default; a
- * number out of range is rejected with a message that names it; members that a kind does not use are not kept. */
+/* Rows of lights, shapes and media: each parameter's default is in its range and agrees with
+ * vl_parameter_is_default; a number out of range is rejected with a message that names it;
+ * members that a kind does not use are not kept. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +29,8 @@ static int end(void **state) {
   return left != 0;
 }
 
-/* ---- defs of any family ------------------------------------------------------------------------------------------ */
+/* ---- defs of any family
+ * ------------------------------------------------------------------------------------------ */
 
 typedef union Def {
   vlLightDef light;
@@ -44,7 +46,8 @@ typedef struct Family {
 
 static void make_light(int kind, Def *def) {
   def->light = vl_default_light_def((vlLightKind)kind);
-  if (vl_light_family.rows[kind]->traits & VL_LIGHT_TRAIT_IMAGE) def->light.path = "a.exr";
+  if (vl_light_family.rows[kind]->traits & VL_LIGHT_TRAIT_IMAGE)
+    def->light.path = "a.exr";
 }
 static uint32_t add_light(vlScene *scene, const Def *def) {
   return vl_scene_add_light(scene, &def->light).index;
@@ -66,7 +69,8 @@ static void make_medium(int kind, Def *def) {
   static const float cell[3] = {1, 1, 1};
   def->medium = vl_default_medium_def((vlMediumKind)kind);
   def->medium.density = def->medium.rgb_a = cell;
-  if (kind == VL_MEDIUM_NANOVDB) def->medium.path = "a.nvdb";
+  if (kind == VL_MEDIUM_NANOVDB)
+    def->medium.path = "a.nvdb";
 }
 static uint32_t add_medium(vlScene *scene, const Def *def) {
   return vl_scene_add_medium(scene, &def->medium).index;
@@ -78,10 +82,13 @@ static const Family families[] = {{&vl_light_family, make_light, add_light},
 
 static void each(void (*visit)(const Family *, int kind)) {
   for (size_t f = 0; f < sizeof families / sizeof *families; f++)
-    for (uint32_t k = 0; k < families[f].family->kind_count; k++) visit(&families[f], (int)k);
+    for (uint32_t k = 0; k < families[f].family->kind_count; k++)
+      visit(&families[f], (int)k);
 }
 
-/* ---- defaults ---------------------------------------------------------------------------------------------------- */
+/* ---- defaults
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void is_accepted(const Family *family, int kind) {
   Def def;
@@ -93,8 +100,10 @@ static void is_accepted(const Family *family, int kind) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     bool comparable = p->type != VL_PARAMETER_BLOCK && p->type != VL_PARAMETER_FILE;
-    if (!comparable || (p->flags & VL_PARAMETER_SHORTHAND)) continue;
-    if (!vl_parameter_is_default(p, &def, true)) fail_msg("%s: %s is not its default", row->name, p->member);
+    if (!comparable || (p->flags & VL_PARAMETER_SHORTHAND))
+      continue;
+    if (!vl_parameter_is_default(p, &def, true))
+      fail_msg("%s: %s is not its default", row->name, p->member);
   }
   if (!family->add(scene, &def)) {
     vl_scene_result(scene, &error);
@@ -107,11 +116,14 @@ static void defaults(void **state) {
   each(is_accepted);
 }
 
-/* ---- ranges ------------------------------------------------------------------------------------------------------ */
+/* ---- ranges
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* A number just outside of an end of the range; false: that end has none. */
 static bool beyond(const vlParameter *p, bool high, double *x) {
-  if ((p->low == 0 && p->high == 0) || (high && isinf(p->high))) return false;
+  if ((p->low == 0 && p->high == 0) || (high && isinf(p->high)))
+    return false;
   *x = high ? p->high : p->low;
   bool excluded = p->flags & (high ? VL_PARAMETER_BELOW_HIGH : VL_PARAMETER_ABOVE_LOW);
   double step = excluded ? 1e-6 * fabs(*x) : 1e-3 + fabs(*x); /* ends are no floats */
@@ -121,8 +133,10 @@ static bool beyond(const vlParameter *p, bool high, double *x) {
 
 static bool set_number(const vlParameter *p, Def *def, double x) {
   void *at = (char *)def + p->offset;
-  if (p->type == VL_PARAMETER_FLOAT) return *(float *)at = (float)x, true;
-  if (p->type == VL_PARAMETER_COUNT && x >= 0) return *(uint32_t *)at = (uint32_t)x, true;
+  if (p->type == VL_PARAMETER_FLOAT)
+    return *(float *)at = (float)x, true;
+  if (p->type == VL_PARAMETER_COUNT && x >= 0)
+    return *(uint32_t *)at = (uint32_t)x, true;
   return false;
 }
 
@@ -138,7 +152,8 @@ static void refuses(const Family *family, int kind, const vlParameter *p, double
     vl_scene_result(scene, &error);
     snprintf(name, sizeof name, "parameter \"%s\"", p->name ? p->name : p->member);
     if (id || error.code != VL_ERROR_SCENE || !strstr(error.message, name))
-      fail_msg("%s: %s = %g is not refused: %s", family->family->rows[kind]->name, p->member, x, error.message);
+      fail_msg("%s: %s = %g is not refused: %s", family->family->rows[kind]->name, p->member, x,
+               error.message);
   }
   vl_scene_destroy(scene);
 }
@@ -148,10 +163,13 @@ static void has_ranges(const Family *family, int kind) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     double x;
-    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED)) continue;
+    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED))
+      continue;
     for (int high = 0; high < 2; high++)
-      if (beyond(p, high, &x)) refuses(family, kind, p, x);
-    if (p->type == VL_PARAMETER_FLOAT) refuses(family, kind, p, NAN);
+      if (beyond(p, high, &x))
+        refuses(family, kind, p, x);
+    if (p->type == VL_PARAMETER_FLOAT)
+      refuses(family, kind, p, NAN);
   }
 }
 static void ranges(void **state) {
@@ -159,7 +177,8 @@ static void ranges(void **state) {
   each(has_ranges);
 }
 
-/* ---- what a kind does not read ----------------------------------------------------------------------------------- */
+/* ---- what a kind does not read
+ * ----------------------------------------------------------------------------------- */
 
 static void dropped(void **state) {
   (void)state;
@@ -179,6 +198,7 @@ static void dropped(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(defaults), cmocka_unit_test(ranges), cmocka_unit_test(dropped)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(defaults), cmocka_unit_test(ranges),
+                                     cmocka_unit_test(dropped)};
   return cmocka_run_group_tests(tests, begin, end);
 }

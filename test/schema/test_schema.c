@@ -1,5 +1,5 @@
-/* test/scene/test_schema.c: the rows of all families: well formed, with defaults in range; the functions that read
- * them. */
+/* test/scene/test_schema.c: the rows of all families: well formed, with defaults in range; the
+ * functions that read them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,17 +27,24 @@ static void well_formed(void **state) {
       const vlKindRow *row = family->rows[i];
       assert_non_null(row);
       assert_true(row->description && row->description[0] && family->constants[i]);
-      assert_true(row->parameter_count <= 64 || !family->directive); /* readers have room for so many */
-      if (row->name) assert_int_equal(vl_kind_find(family, row->name), i);
-      if (row->alias) assert_int_equal(vl_kind_find(family, row->alias), i);
+      assert_true(row->parameter_count <= 64 ||
+                  !family->directive); /* readers have room for so many */
+      if (row->name)
+        assert_int_equal(vl_kind_find(family, row->name), i);
+      if (row->alias)
+        assert_int_equal(vl_kind_find(family, row->alias), i);
       for (uint32_t k = 0; k < row->parameter_count; k++) {
         const vlParameter *p = &row->parameters[k];
         assert_true(p->member && p->description && p->description[0]);
         assert_true(p->low <= p->high);
-        if (p->name) assert_ptr_equal(vl_row_find(row, p->name), p); /* no name twice */
-        if (p->type == VL_PARAMETER_CHOICE) assert_non_null(p->choices);
-        if (p->type == VL_PARAMETER_EITHER_INPUT) assert_true(p->second);
-        if (!(p->flags & VL_PARAMETER_SHORTHAND)) assert_true(p->size);
+        if (p->name)
+          assert_ptr_equal(vl_row_find(row, p->name), p); /* no name twice */
+        if (p->type == VL_PARAMETER_CHOICE)
+          assert_non_null(p->choices);
+        if (p->type == VL_PARAMETER_EITHER_INPUT)
+          assert_true(p->second);
+        if (!(p->flags & VL_PARAMETER_SHORTHAND))
+          assert_true(p->size);
       }
     }
   }
@@ -51,10 +58,14 @@ static void check_defaults(const vlKindRow *row, const void *def) {
   char message[VL_GIVEN_MESSAGE];
   for (uint32_t k = 0; k < row->parameter_count; k++) {
     const vlParameter *p = &row->parameters[k];
-    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_REQUIRED) || p->type == VL_PARAMETER_BLOCK) continue;
-    if (!vl_parameter_check(p, def, row->description, message)) fail_msg("%s", message);
+    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_REQUIRED) ||
+        p->type == VL_PARAMETER_BLOCK)
+      continue;
+    if (!vl_parameter_check(p, def, row->description, message))
+      fail_msg("%s", message);
     for (int half = 0; half < 2; half++)
-      if (!vl_parameter_is_default(p, def, half)) fail_msg("%s: %s is not the default", row->description, p->member);
+      if (!vl_parameter_is_default(p, def, half))
+        fail_msg("%s: %s is not the default", row->description, p->member);
   }
 }
 
@@ -74,14 +85,18 @@ static void defaults(void **state) {
   }
   /* some of pbrt's, by hand */
   assert_true(vl_default_material_def(VL_MATERIAL_SUBSURFACE).eta.value.value == 1.33f);
-  assert_string_equal(vl_default_material_def(VL_MATERIAL_COATED_CONDUCTOR).eta.value.name, "metal-Cu-eta");
+  assert_string_equal(vl_default_material_def(VL_MATERIAL_COATED_CONDUCTOR).eta.value.name,
+                      "metal-Cu-eta");
   assert_true(vl_default_material_def(VL_MATERIAL_HAIR).hair.eumelanin.value == 1.3f);
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
-  assert_true(checks.dimension == 2 && checks.spectrum_a.value.value == 1 && checks.spectrum_b.value.value == 0);
+  assert_true(checks.dimension == 2 && checks.spectrum_a.value.value == 1 &&
+              checks.spectrum_b.value.value == 0);
 }
 
-/* A number of each parameter that has a range, just outside of it: refused, and the message names it. */
-/* What a file that is silent about camera, film, sampler and tracer has: the rows and the vl_default_*_def agree. */
+/* A number of each parameter that has a range, just outside of it: refused, and the message
+ * names it. */
+/* What a file that is silent about camera, film, sampler and tracer has: the rows and the
+ * vl_default_*_def agree. */
 static void silent_file(void **state) {
   (void)state;
   vlContext *context;
@@ -91,7 +106,8 @@ static void silent_file(void **state) {
   const vlSceneDefs *defs = vl_scene_defs(scene);
   check_defaults(vl_film_family.rows[VL_FILM_RGB], defs);
   check_defaults(vl_sampler_family.rows[defs->render.sampler], defs);
-  for (uint32_t i = 0; i < vl_tracer_family.kind_count; i++) check_defaults(vl_tracer_family.rows[i], defs);
+  for (uint32_t i = 0; i < vl_tracer_family.kind_count; i++)
+    check_defaults(vl_tracer_family.rows[i], defs);
   vlCameraDef camera = vl_default_camera_def(1280, 720);
   for (uint32_t i = VL_CAMERA_PBRT_PERSPECTIVE + 1; i < vl_camera_family.kind_count; i++)
     check_defaults(vl_camera_family.rows[i], &camera);
@@ -110,8 +126,11 @@ static void out_of_range(void **state) {
       const vlParameter *p = &row->parameters[k];
       vlMaterialDef def = vl_default_material_def((vlMaterialKind)i);
       float *number = (float *)((char *)&def + p->offset);
-      if ((p->low == 0 && p->high == 0) || p->flags & (VL_PARAMETER_CLAMPED | VL_PARAMETER_SHORTHAND)) continue;
-      if (p->type == VL_PARAMETER_FLOAT_INPUT) number = &((vlFloatInput *)(void *)number)->value;
+      if ((p->low == 0 && p->high == 0) ||
+          p->flags & (VL_PARAMETER_CLAMPED | VL_PARAMETER_SHORTHAND))
+        continue;
+      if (p->type == VL_PARAMETER_FLOAT_INPUT)
+        number = &((vlFloatInput *)(void *)number)->value;
       if (p->type == VL_PARAMETER_SPECTRUM_INPUT) {
         ((vlSpectrumInput *)(void *)number)->value = vl_spectrum_constant(0);
         number = &((vlSpectrumInput *)(void *)number)->value.value;
@@ -123,10 +142,12 @@ static void out_of_range(void **state) {
       vlScene *scene;
       vlError error = {0};
       assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-      if (i == VL_MATERIAL_MEASURED) def.measured = "x.bsdf";
+      if (i == VL_MATERIAL_MEASURED)
+        def.measured = "x.bsdf";
       assert_int_equal(vl_scene_add_material(scene, &def).index, 0);
       assert_int_equal(vl_scene_result(scene, &error), VL_ERROR_SCENE);
-      if (!strstr(error.message, p->name ? p->name : p->member)) fail_msg("%s: %s", p->member, error.message);
+      if (!strstr(error.message, p->name ? p->name : p->member))
+        fail_msg("%s: %s", p->member, error.message);
       vl_scene_destroy(scene);
       tried++;
     }
@@ -148,14 +169,15 @@ static void other_members_are_left_out(void **state) {
   def.measured = "nothing.bsdf";
   assert_int_equal(vl_scene_add_material(scene, &def).index, 1);
   const vlMaterialDef *kept = &scene->materials.items[0];
-  assert_true(kept->reflectance.value.value == 0.25f && kept->thickness.value == 0 && !kept->measured);
+  assert_true(kept->reflectance.value.value == 0.25f && kept->thickness.value == 0 &&
+              !kept->measured);
   vl_scene_destroy(scene);
   vl_context_destroy(context);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(well_formed), cmocka_unit_test(defaults),
-                                     cmocka_unit_test(silent_file), cmocka_unit_test(out_of_range),
-                                     cmocka_unit_test(other_members_are_left_out)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(well_formed), cmocka_unit_test(defaults), cmocka_unit_test(silent_file),
+      cmocka_unit_test(out_of_range), cmocka_unit_test(other_members_are_left_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* bsdf_state.h: the setup of tests of one BSDF: a context, its kernels, room for three batches. */
+/* bsdf_state.h: the setup of tests of one BSDF: a context, its kernels, room for three batches.
+ */
 #ifndef TEST_TRACE_BSDF_STATE_H
 #define TEST_TRACE_BSDF_STATE_H
 
@@ -16,7 +17,8 @@ typedef struct State {
 static int setup(void **state) {
   State *s = calloc(1, sizeof *s);
   vlContextDef def = vl_default_context_def();
-  if (vl_context_create(&def, &s->context)) return 1;
+  if (vl_context_create(&def, &s->context))
+    return 1;
   s->kernels = vl_bsdf_kernels(vl_context_isa(s->context));
   s->batch = calloc(1, sizeof *s->batch);
   s->other = calloc(1, sizeof *s->other);
@@ -26,7 +28,8 @@ static int setup(void **state) {
 }
 static int teardown(void **state) {
   State *s = *state;
-  for (int i = 0; i < 4; i++) vl_coat_free(s->context, s->coats[i]);
+  for (int i = 0; i < 4; i++)
+    vl_coat_free(s->context, s->coats[i]);
   vl_context_destroy(s->context);
   free(s->batch);
   free(s->other);

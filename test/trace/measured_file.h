@@ -1,6 +1,7 @@
-/* measured_file.h: files in the format of the RGL material database for a surface of known reflection: metal with GGX
- * microfacets, measured as Dupuy and Jakob (2018) describe it. Everything is in double precision and the warp is
- * implemented independently, so that a wrong convention in the library does not cancel out. */
+/* measured_file.h: files in the format of the RGL material database for a surface of known
+ * reflection: metal with GGX microfacets, measured as Dupuy and Jakob (2018) describe it.
+ * Everything is in double precision and the warp is implemented independently, so that a wrong
+ * convention in the library does not cancel out. */
 #ifndef TEST_TRACE_MEASURED_FILE_H
 #define TEST_TRACE_MEASURED_FILE_H
 
@@ -16,8 +17,8 @@
 typedef struct mfSurface {
   double alpha_x, alpha_y, eta, k; /* k < 0: reflects everything */
   double color;                    /* relative growth of eta and k from 400 to 700 nm */
-  uint32_t phis;                   /* azimuths of the full circle without the repeated last one; 1: isotropic */
-  uint32_t parts;                  /* 2, 4: only a half or a quarter of the circle is stored */
+  uint32_t phis;  /* azimuths of the full circle without the repeated last one; 1: isotropic */
+  uint32_t parts; /* 2, 4: only a half or a quarter of the circle is stored */
   uint32_t thetas, nodes, samples, lambdas;
   double theta_max;
   bool plain; /* spectra hold f cos directly */
@@ -42,7 +43,8 @@ static inline mfSurface mf_surface(double alpha_x, double alpha_y) {
 /* ---- the surface ---- */
 
 static inline double mf_length(const mfSurface *s, const double w[3]) {
-  return sqrt(s->alpha_x * w[0] * s->alpha_x * w[0] + s->alpha_y * w[1] * s->alpha_y * w[1] + w[2] * w[2]);
+  return sqrt(s->alpha_x * w[0] * s->alpha_x * w[0] + s->alpha_y * w[1] * s->alpha_y * w[1] +
+              w[2] * w[2]);
 }
 static inline double mf_ndf(const mfSurface *s, const double m[3]) {
   double x = m[0] / s->alpha_x, y = m[1] / s->alpha_y, e = x * x + y * y + m[2] * m[2];
@@ -52,10 +54,14 @@ static inline double mf_sigma(const mfSurface *s, const double o[3]) { /* cos / 
   return 0.5 * (mf_length(s, o) + o[2]);
 }
 static inline double mf_fresnel(double c, double eta, double k) {
-  if (k < 0) return 1;
-  double s2 = 1 - c * c, t0 = eta * eta - k * k - s2, ab = sqrt(t0 * t0 + 4 * eta * eta * k * k);
-  double a = sqrt(fmax(0, 0.5 * (ab + t0))), rs = (ab + c * c - 2 * a * c) / (ab + c * c + 2 * a * c);
-  double rp = rs * (c * c * ab + s2 * s2 - 2 * a * c * s2) / (c * c * ab + s2 * s2 + 2 * a * c * s2);
+  if (k < 0)
+    return 1;
+  double s2 = 1 - c * c, t0 = eta * eta - k * k - s2,
+         ab = sqrt(t0 * t0 + 4 * eta * eta * k * k);
+  double a = sqrt(fmax(0, 0.5 * (ab + t0))),
+         rs = (ab + c * c - 2 * a * c) / (ab + c * c + 2 * a * c);
+  double rp =
+      rs * (c * c * ab + s2 * s2 - 2 * a * c * s2) / (c * c * ab + s2 * s2 + 2 * a * c * s2);
   return 0.5 * (rs + rp);
 }
 static inline double mf_reflected(const mfSurface *s, double c, double lambda) {
@@ -63,15 +69,20 @@ static inline double mf_reflected(const mfSurface *s, double c, double lambda) {
   return mf_fresnel(c, s->eta * grow, s->k * grow);
 }
 /* F G / G1(o): f cos w times 4 sigma / D. */
-static inline double mf_share(const mfSurface *s, const double o[3], const double w[3], double oh, double lambda) {
-  if (w[2] <= 0 || oh <= 0) return 0;
+static inline double mf_share(const mfSurface *s, const double o[3], const double w[3],
+                              double oh, double lambda) {
+  if (w[2] <= 0 || oh <= 0)
+    return 0;
   double lo = mf_length(s, o), li = mf_length(s, w);
   return mf_reflected(s, oh, lambda) * w[2] * (lo + o[2]) / (lo * w[2] + li * o[2]);
 }
 /* f cos w. */
-static inline double mf_value(const mfSurface *s, const double o[3], const double w[3], double lambda) {
-  double h[3] = {o[0] + w[0], o[1] + w[1], o[2] + w[2]}, l = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-  for (int i = 0; i < 3; i++) h[i] /= l;
+static inline double mf_value(const mfSurface *s, const double o[3], const double w[3],
+                              double lambda) {
+  double h[3] = {o[0] + w[0], o[1] + w[1], o[2] + w[2]},
+         l = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+  for (int i = 0; i < 3; i++)
+    h[i] /= l;
   double oh = o[0] * h[0] + o[1] * h[1] + o[2] * h[2];
   return mf_share(s, o, w, oh, lambda) * mf_ndf(s, h) / (4 * mf_sigma(s, o));
 }
@@ -88,7 +99,8 @@ static inline void mf_unwarp(double x, double y, double w[3]) {
 static inline double mf_between(double a, double b, double t) {
   return a + (b - a) * t;
 }
-/* The point in [0, 1] up to which the integral of a + (b - a) t is `part` of the whole, by bisection. */
+/* The point in [0, 1] up to which the integral of a + (b - a) t is `part` of the whole, by
+ * bisection. */
 static inline double mf_solve(double a, double b, double part) {
   double low = 0, high = 1, whole = 0.5 * (a + b);
   for (int i = 0; i < 40; i++) {
@@ -104,16 +116,20 @@ static inline double mf_solve(double a, double b, double part) {
 static inline void mf_rows(const double *f, uint32_t n, double *rows) {
   for (uint32_t j = 0; j < n; j++) {
     rows[j] = 0;
-    for (uint32_t i = 0; i + 1 < n; i++) rows[j] += 0.5 * (f[j * n + i] + f[j * n + i + 1]);
+    for (uint32_t i = 0; i + 1 < n; i++)
+      rows[j] += 0.5 * (f[j * n + i] + f[j * n + i + 1]);
   }
 }
-/* Samples that function as a density: (u, v) to (x, y); v selects the row, u the position in it. */
-static inline void mf_sample(const double *f, const double *rows, uint32_t n, double u, double v, double *x,
-                             double *y) {
+/* Samples that function as a density: (u, v) to (x, y); v selects the row, u the position in
+ * it. */
+static inline void mf_sample(const double *f, const double *rows, uint32_t n, double u,
+                             double v, double *x, double *y) {
   double all = 0, sum = 0;
-  for (uint32_t j = 0; j + 1 < n; j++) all += 0.5 * (rows[j] + rows[j + 1]);
+  for (uint32_t j = 0; j + 1 < n; j++)
+    all += 0.5 * (rows[j] + rows[j + 1]);
   uint32_t j = 0;
-  for (; j + 2 < n && sum + 0.5 * (rows[j] + rows[j + 1]) < v * all; j++) sum += 0.5 * (rows[j] + rows[j + 1]);
+  for (; j + 2 < n && sum + 0.5 * (rows[j] + rows[j + 1]) < v * all; j++)
+    sum += 0.5 * (rows[j] + rows[j + 1]);
   double t = mf_solve(rows[j], rows[j + 1], (v * all - sum) / (0.5 * (rows[j] + rows[j + 1])));
   *y = (j + t) / (n - 1);
   const double *a = f + (size_t)j * n, *b = a + n;
@@ -121,7 +137,8 @@ static inline void mf_sample(const double *f, const double *rows, uint32_t n, do
   uint32_t i = 0;
   for (;; i++) {
     double part = 0.5 * (mf_between(a[i], b[i], t) + mf_between(a[i + 1], b[i + 1], t));
-    if (i + 2 >= n || sum + part >= u * all) break;
+    if (i + 2 >= n || sum + part >= u * all)
+      break;
     sum += part;
   }
   double low = mf_between(a[i], b[i], t), high = mf_between(a[i + 1], b[i + 1], t);
@@ -135,11 +152,13 @@ typedef struct mfFile {
   size_t size, room;
 } mfFile;
 static inline void mf_put(mfFile *f, const void *data, size_t size) {
-  if (f->size + size > f->room) f->bytes = realloc(f->bytes, f->room = 2 * (f->size + size));
+  if (f->size + size > f->room)
+    f->bytes = realloc(f->bytes, f->room = 2 * (f->size + size));
   memcpy(f->bytes + f->size, data, size);
   f->size += size;
 }
-static inline void mf_put_number(mfFile *f, uint64_t value, size_t bytes) { /* little-endian, like the machine */
+static inline void mf_put_number(mfFile *f, uint64_t value,
+                                 size_t bytes) { /* little-endian, like the machine */
   mf_put(f, &value, bytes);
 }
 
@@ -151,10 +170,11 @@ typedef struct mfField {
   size_t size;
 } mfField;
 
-static inline mfField mf_floats(const char *name, uint32_t rank, uint64_t a, uint64_t b, uint64_t c, uint64_t d,
-                                uint64_t e) {
+static inline mfField mf_floats(const char *name, uint32_t rank, uint64_t a, uint64_t b,
+                                uint64_t c, uint64_t d, uint64_t e) {
   mfField f = {name, 10, rank, {a, b, c, d, e}, NULL, 4};
-  for (uint32_t i = 0; i < rank; i++) f.size *= f.shape[i];
+  for (uint32_t i = 0; i < rank; i++)
+    f.size *= f.shape[i];
   f.values = calloc(1, f.size);
   return f;
 }
@@ -162,18 +182,23 @@ static inline mfField mf_floats(const char *name, uint32_t rank, uint64_t a, uin
 /* The whole file; the caller frees its bytes. */
 static inline mfFile mf_measure(const mfSurface *s) {
   uint32_t n = s->nodes, q = s->samples, phis = s->phis == 1 ? 1 : s->phis / s->parts + 1;
-  mfField phi = mf_floats("phi_i", 1, phis, 0, 0, 0, 0), theta = mf_floats("theta_i", 1, s->thetas, 0, 0, 0, 0);
-  mfField ndf = mf_floats("ndf", 2, n, n, 0, 0, 0), sigma = mf_floats("sigma", 2, n, n, 0, 0, 0);
+  mfField phi = mf_floats("phi_i", 1, phis, 0, 0, 0, 0),
+          theta = mf_floats("theta_i", 1, s->thetas, 0, 0, 0, 0);
+  mfField ndf = mf_floats("ndf", 2, n, n, 0, 0, 0),
+          sigma = mf_floats("sigma", 2, n, n, 0, 0, 0);
   mfField vndf = mf_floats("vndf", 4, phis, s->thetas, n, n, 0);
   mfField luminance = mf_floats("luminance", 4, phis, s->thetas, q, q, 0);
   mfField spectra = mf_floats("spectra", 5, phis, s->thetas, s->lambdas, q, q);
   mfField lambda = mf_floats("wavelengths", 1, s->lambdas, 0, 0, 0, 0);
   unsigned char scaled = !s->plain;
   char text[] = "metal of GGX microfacets";
-  mfField jacobian = {"jacobian", 1, 1, {1}, &scaled, 1}, description = {"description", 1, 1, {24}, text, 24};
-  double *density = calloc((size_t)n * (n + 1), sizeof *density), *rows = density + (size_t)n * n;
+  mfField jacobian = {"jacobian", 1, 1, {1}, &scaled, 1},
+          description = {"description", 1, 1, {24}, text, 24};
+  double *density = calloc((size_t)n * (n + 1), sizeof *density),
+         *rows = density + (size_t)n * n;
   float *nm = lambda.values;
-  for (uint32_t k = 0; k < s->lambdas; k++) nm[k] = 360.0f + (float)k * 470.0f / (float)(s->lambdas - 1);
+  for (uint32_t k = 0; k < s->lambdas; k++)
+    nm[k] = 360.0f + (float)k * 470.0f / (float)(s->lambdas - 1);
   for (uint32_t j = 0; j < n; j++)
     for (uint32_t i = 0; i < n; i++) {
       double m[3];
@@ -206,24 +231,29 @@ static inline mfFile mf_measure(const mfSurface *s) {
           mf_sample(density, rows, n, (double)i / (q - 1), (double)j / (q - 1), &x, &y);
           mf_unwarp(x, y, m);
           double oh = o[0] * m[0] + o[1] * m[1] + o[2] * m[2];
-          for (int d = 0; d < 3; d++) w[d] = 2 * oh * m[d] - o[d];
+          for (int d = 0; d < 3; d++)
+            w[d] = 2 * oh * m[d] - o[d];
           for (uint32_t k = 0; k < s->lambdas; k++) {
             double share = mf_share(s, o, w, oh, (double)nm[k]);
-            if (s->plain) share *= mf_ndf(s, m) / (4 * mf_sigma(s, o));
-            ((float *)spectra.values)[((slice * s->lambdas + k) * q + j) * q + i] = (float)share;
+            if (s->plain)
+              share *= mf_ndf(s, m) / (4 * mf_sigma(s, o));
+            ((float *)spectra.values)[((slice * s->lambdas + k) * q + j) * q + i] =
+                (float)share;
             sum += mf_share(s, o, w, oh, (double)nm[k]);
           }
           ((float *)luminance.values)[(slice * q + j) * q + i] = (float)(sum / s->lambdas);
         }
     }
   free(density);
-  mfField *fields[10] = {&description, &phi, &theta, &ndf, &sigma, &vndf, &luminance, &spectra, &lambda, &jacobian};
+  mfField *fields[10] = {&description, &phi,       &theta,   &ndf,    &sigma,
+                         &vndf,        &luminance, &spectra, &lambda, &jacobian};
   mfFile file = {0};
   mf_put(&file, "tensor_file", 12);
   mf_put(&file, "\1", 2);
   mf_put_number(&file, 10, 4);
   size_t at = 18;
-  for (int i = 0; i < 10; i++) at += 2 + strlen(fields[i]->name) + 2 + 1 + 8 + 8 * fields[i]->rank;
+  for (int i = 0; i < 10; i++)
+    at += 2 + strlen(fields[i]->name) + 2 + 1 + 8 + 8 * fields[i]->rank;
   for (int i = 0; i < 10; i++) {
     const mfField *f = fields[i];
     mf_put_number(&file, strlen(f->name), 2);
@@ -231,12 +261,14 @@ static inline mfFile mf_measure(const mfSurface *s) {
     mf_put_number(&file, f->rank, 2);
     mf_put_number(&file, f->type, 1);
     mf_put_number(&file, at, 8);
-    for (uint32_t k = 0; k < f->rank; k++) mf_put_number(&file, f->shape[k], 8);
+    for (uint32_t k = 0; k < f->rank; k++)
+      mf_put_number(&file, f->shape[k], 8);
     at += f->size;
   }
   for (int i = 0; i < 10; i++) {
     mf_put(&file, fields[i]->values, fields[i]->size);
-    if (fields[i]->type == 10) free(fields[i]->values);
+    if (fields[i]->type == 10)
+      free(fields[i]->values);
   }
   return file;
 }
@@ -244,7 +276,8 @@ static inline mfFile mf_measure(const mfSurface *s) {
 static inline bool mf_write(const char *path, const mfFile *file) {
   FILE *f = fopen(path, "wb");
   bool done = f && fwrite(file->bytes, 1, file->size, f) == file->size;
-  if (f && fclose(f) != 0) done = false;
+  if (f && fclose(f) != 0)
+    done = false;
   return done;
 }
 

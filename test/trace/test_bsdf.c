@@ -1,5 +1,7 @@
-/* test_bsdf.c: sampling and evaluation of every BSDF agree: chi-square of directions against the density, the sampled
- * weight is value / density, the sampled albedo is the integral of the value. */
+/* test_bsdf.c: sampling and evaluation of every BSDF agree: chi-square of directions against
+ * the density, the sampled weight is value / density, the sampled albedo is the integral of the
+ * value.
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,18 +13,21 @@
 
 /* Tables of the state's coats: smooth, fine, rough, textured. */
 static int build_coats(void **state) {
-  if (setup(state)) return 1;
+  if (setup(state))
+    return 1;
   State *s = *state;
   vl_coat_build(s->context, 1.5f, 0.01f, 10, 0, 0, &s->coats[0]);
   vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.1f, 0.1f, &s->coats[1]);
   vl_coat_build(s->context, 1.8f, 0.2f, 100, 0.4f, 0.4f, &s->coats[2]);
   vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.0f, 0.5f, &s->coats[3]);
-  if (s->coats[2] && vl_coat_conserve(s->context, s->coats[2])) return 1; /* the third conserves energy */
+  if (s->coats[2] && vl_coat_conserve(s->context, s->coats[2]))
+    return 1; /* the third conserves energy */
   return !s->coats[0] || !s->coats[1] || !s->coats[2] || !s->coats[3];
 }
 
-static const float through[VL_BSDF_ROWS] = {
-    [VL_T_TRANSMITTANCE] = 0.5f, [VL_T_TRANSMITTANCE + 1] = 0.2f, [VL_T_TRANSMITTANCE + 2] = 0.4f};
+static const float through[VL_BSDF_ROWS] = {[VL_T_TRANSMITTANCE] = 0.5f,
+                                            [VL_T_TRANSMITTANCE + 1] = 0.2f,
+                                            [VL_T_TRANSMITTANCE + 2] = 0.4f};
 
 enum { SURFACES = 16 };
 static Surface surface(const State *s, int i) {
@@ -144,7 +149,8 @@ static void chi_square(void **state) {
     }
 }
 
-/* For each sample eval returns the same: pdf, and value = weight pdf. Transmission is flagged. */
+/* For each sample eval returns the same: pdf, and value = weight pdf. Transmission is flagged.
+ */
 static void consistent(void **state) {
   State *s = *state;
   Batch *b = s->batch, *c = calloc(1, sizeof *c);
@@ -168,24 +174,30 @@ static void consistent(void **state) {
         assert_true(b->weight[0][j] == 0 && b->pdf[j] == 0);
         continue;
       }
-      double length = sqrt((double)(b->ix[j] * b->ix[j] + b->iy[j] * b->iy[j] + b->iz[j] * b->iz[j]));
+      double length =
+          sqrt((double)(b->ix[j] * b->ix[j] + b->iy[j] * b->iy[j] + b->iz[j] * b->iz[j]));
       assert_true(fabs(length - 1) < 1e-5);
       assert_true(((b->flags[j] & VL_SAMPLED_TRANSMISSION) != 0) == (b->oz[j] * b->iz[j] < 0));
-      if (!(b->flags[j] & VL_SAMPLED_TRANSMISSION)) assert_true(b->scale[j] == 1.0f);
+      if (!(b->flags[j] & VL_SAMPLED_TRANSMISSION))
+        assert_true(b->scale[j] == 1.0f);
       if (b->flags[j] & VL_SAMPLED_SPECULAR) {
         assert_true(b->pdf[j] <= 1.0f);
         continue;
       }
       landed++;
-      /* microfacets that wi meets at grazing angles are ill-conditioned: the half vector's rounding over alpha */
-      if (fabsf(b->iz[j]) < 0.01f || fabsf(b->oz[j]) < 0.01f) continue;
+      /* microfacets that wi meets at grazing angles are ill-conditioned: the half vector's
+       * rounding over alpha */
+      if (fabsf(b->iz[j]) < 0.01f || fabsf(b->oz[j]) < 0.01f)
+        continue;
       for (int k = 0; k < 4; k++) {
         double v = (double)c->value[k][j], w = (double)b->weight[k][j] * (double)b->pdf[j];
         worst = larger(worst, fabs(v - w) / (fabs(v) + 1e-6));
       }
-      worst = larger(worst, fabs((double)(b->pdf[j] - c->pdf[j])) / (double)(b->pdf[j] + 1e-6f));
+      worst =
+          larger(worst, fabs((double)(b->pdf[j] - c->pdf[j])) / (double)(b->pdf[j] + 1e-6f));
     }
-    if (!(worst < (i < INTEGRABLE ? 2e-4 : 5e-3))) fail_msg("surface %d: sample and eval differ by %g", i, worst);
+    if (!(worst < (i < INTEGRABLE ? 2e-4 : 5e-3)))
+      fail_msg("surface %d: sample and eval differ by %g", i, worst);
     assert_true(landed > BATCH / 2);
   }
   free(c);
@@ -205,13 +217,15 @@ static void albedo(void **state) {
       uint32_t n = 0;
       for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
-          float u = ((float)x + stat_float(&rng)) / SIDE, v = ((float)y + stat_float(&rng)) / SIDE;
+          float u = ((float)x + stat_float(&rng)) / SIDE,
+                v = ((float)y + stat_float(&rng)) / SIDE;
           for (int l = 0; l < 16; l++) {
             batch_surface(b, n, &surf);
             batch_wo(b, n, thetas[t], wo_phi);
             b->lobe[n] = ((float)l + stat_float(&rng)) / 16;
             b->u[n] = u, b->v[n] = v;
-            if (++n < BATCH) continue;
+            if (++n < BATCH)
+              continue;
             batch_sample(s->kernels, surf.kind, n, b);
             for (uint32_t j = 0; j < n; j++) {
               double w = (double)(b->weight[1][j] * b->scale[j]); /* scale: back to energy */
@@ -231,7 +245,8 @@ static void albedo(void **state) {
         for (int q = 0; q < 8; q++) {
           double y0 = h * PI / 2, x0 = q * PI / 4;
           double first = stat_gauss_cell(direction_value, &d, x0, x0 + PI / 4, y0, y0 + PI / 2);
-          whole += stat_integrate(direction_value, &d, x0, x0 + PI / 4, y0, y0 + PI / 2, first, 4e-6, 9);
+          whole += stat_integrate(direction_value, &d, x0, x0 + PI / 4, y0, y0 + PI / 2, first,
+                                  4e-6, 9);
         }
       if (!(fabs(sum / whole - 1) < 1e-3))
         fail_msg("surface %d theta %g: sampled %g, integral %g", i, thetas[t], sum, whole);

@@ -1,5 +1,5 @@
-/* test_bsdf_limits.c: invariants of BSDFs: equal bits on all instruction sets, no NaN for degenerate input,
- * reciprocity, pbrt's special cases. */
+/* test_bsdf_limits.c: invariants of BSDFs: equal bits on all instruction sets, no NaN for
+ * degenerate input, reciprocity, pbrt's special cases. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,19 +14,24 @@
 static vlMeasured *measured[2];
 
 static int build_all(void **state) {
-  if (setup(state)) return 1;
+  if (setup(state))
+    return 1;
   State *s = *state;
   const float alphas[4][2] = {{0, 0}, {0.1f, 0.1f}, {0.0f, 0.6f}, {0.4f, 0.4f}};
   for (int i = 0; i < 4; i++)
-    if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1], &s->coats[i])) return 1;
-  if (vl_coat_conserve(s->context, s->coats[3])) return 1;
+    if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1],
+                      &s->coats[i]))
+      return 1;
+  if (vl_coat_conserve(s->context, s->coats[3]))
+    return 1;
   const char *path = VELO_BINARY_DIR "/limits.bsdf";
   for (int i = 0; i < 2; i++) {
     mfSurface metal = mf_surface(0.3, i ? 0.1 : 0.3);
     metal.nodes = metal.samples = 16;
     metal.parts = i ? 4 : 1;
     mfFile file = mf_measure(&metal);
-    if (!mf_write(path, &file) || vl_measured_read(s->context, path, false, &measured[i], NULL)) return 1;
+    if (!mf_write(path, &file) || vl_measured_read(s->context, path, false, &measured[i], NULL))
+      return 1;
     free(file.bytes);
   }
   remove(path);
@@ -34,7 +39,8 @@ static int build_all(void **state) {
 }
 static int free_all(void **state) {
   State *s = *state;
-  for (int i = 0; i < 2; i++) vl_measured_free(s->context, measured[i]);
+  for (int i = 0; i < 2; i++)
+    vl_measured_free(s->context, measured[i]);
   return teardown(state);
 }
 
@@ -45,17 +51,18 @@ static void reciprocity(void **state) {
   Batch *b = s->batch, *c = s->other;
   float through[VL_BSDF_ROWS] = {0};
   through[VL_T_TRANSMITTANCE + 2] = 0.7f;
-  const Surface all[] = {{.kind = VL_BSDF_DIFFUSE, .reflectance = 0.7f},
-                         {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.2f, .own = through},
-                         {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.2f, .alpha_y = 0.5f},
-                         {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.4f, .alpha_y = 0.3f},
-                         {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->coats[0]},
-                         {.kind = VL_BSDF_COATED_DIFFUSE,
-                          .reflectance = 0.6f,
-                          .eta_s = 1.5f,
-                          .alpha_x = 0.3f,
-                          .alpha_y = 0.1f,
-                          .coat = s->coats[2]}};
+  const Surface all[] = {
+      {.kind = VL_BSDF_DIFFUSE, .reflectance = 0.7f},
+      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.2f, .own = through},
+      {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.2f, .alpha_y = 0.5f},
+      {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.4f, .alpha_y = 0.3f},
+      {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->coats[0]},
+      {.kind = VL_BSDF_COATED_DIFFUSE,
+       .reflectance = 0.6f,
+       .eta_s = 1.5f,
+       .alpha_x = 0.3f,
+       .alpha_y = 0.1f,
+       .coat = s->coats[2]}};
   statRng rng = stat_rng(9);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     double worst = 0;
@@ -69,21 +76,30 @@ static void reciprocity(void **state) {
       b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
     }
     *c = *b;
-    memcpy(c->ox, b->ix, sizeof b->ix), memcpy(c->oy, b->iy, sizeof b->iy), memcpy(c->oz, b->iz, sizeof b->iz);
-    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->oy), memcpy(c->iz, b->oz, sizeof b->oz);
+    memcpy(c->ox, b->ix, sizeof b->ix), memcpy(c->oy, b->iy, sizeof b->iy),
+        memcpy(c->oz, b->iz, sizeof b->iz);
+    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->oy),
+        memcpy(c->iz, b->oz, sizeof b->oz);
     batch_eval(s->kernels, all[i].kind, BATCH, b);
     batch_eval(s->kernels, all[i].kind, BATCH, c);
     for (uint32_t j = 0; j < BATCH; j++) {
-      if (fabsf(b->oz[j]) < 0.02f || fabsf(b->iz[j]) < 0.02f) continue;
-      double f = (double)(b->value[2][j] / fabsf(b->iz[j])), g = (double)(c->value[2][j] / fabsf(b->oz[j]));
-      /* radiance divided by the squared index of its medium is conserved: f(wo, wi) n_i^2 = f(wi, wo) n_o^2 */
+      if (fabsf(b->oz[j]) < 0.02f || fabsf(b->iz[j]) < 0.02f)
+        continue;
+      double f = (double)(b->value[2][j] / fabsf(b->iz[j])),
+             g = (double)(c->value[2][j] / fabsf(b->oz[j]));
+      /* radiance divided by the squared index of its medium is conserved: f(wo, wi) n_i^2 =
+       * f(wi, wo) n_o^2 */
       double n = all[i].kind == VL_BSDF_DIELECTRIC ? (double)all[i].eta_s : 1;
       f *= b->iz[j] < 0 ? n * n : 1, g *= b->oz[j] < 0 ? n * n : 1;
-      double off = fabs(f - g) / (fabs(f) + 1e-2); /* near the critical angle 1 - F is mostly rounding error */
-      if (!(off < worst)) worst = off;
+      double off =
+          fabs(f - g) /
+          (fabs(f) + 1e-2); /* near the critical angle 1 - F is mostly rounding error */
+      if (!(off < worst))
+        worst = off;
       seen += f > 0;
     }
-    if (!(worst < 3e-4)) fail_msg("surface %zu: not reciprocal by %g", i, worst);
+    if (!(worst < 3e-4))
+      fail_msg("surface %zu: not reciprocal by %g", i, worst);
     assert_true(seen > 300);
   }
 }
@@ -93,15 +109,18 @@ static void reciprocity(void **state) {
 static float pick(statRng *rng, const float *values, size_t count) {
   return values[stat_bits(rng) % count];
 }
-/* Random lanes, one in eight of them degenerate somehow. Directions are finite and at most unit length. */
+/* Random lanes, one in eight of them degenerate somehow. Directions are finite and at most unit
+ * length. */
 static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
   const float alphas[] = {0, 1e-5f, 9.99e-4f, 1e-3f, 0.01f, 0.1f, 0.5f, 1};
-  const float etas[] = {1.5f, 1 / 1.5f, 1, 1.0001f, 2.4f, 4, 0.3f}, ks[] = {0, 0.1f, 3.9f, 9, 1e7f, 1e20f};
+  const float etas[] = {1.5f, 1 / 1.5f, 1, 1.0001f, 2.4f, 4, 0.3f},
+              ks[] = {0, 0.1f, 3.9f, 9, 1e7f, 1e20f};
   const float small[] = {0, -0.0f, 1e-42f, -1e-42f, 1e-30f, 1e-7f, -1e-7f, 1, -1, 0.7f},
               edges[] = {0, 0.5f, 0x1.fffffep-1f};
   for (uint32_t j = 0; j < BATCH; j++) {
     for (int c = 0; c < 4; c++) {
-      b->reflectance[c][j] = stat_bits(rng) & 7 ? stat_float(rng) : pick(rng, (float[]){0, 1}, 2);
+      b->reflectance[c][j] =
+          stat_bits(rng) & 7 ? stat_float(rng) : pick(rng, (float[]){0, 1}, 2);
       b->eta[c][j] = stat_bits(rng) & 7 ? 0.1f + 3 * stat_float(rng) : pick(rng, ks, 6);
       b->k[c][j] = stat_bits(rng) & 7 ? 5 * stat_float(rng) : pick(rng, ks, 6);
     }
@@ -110,7 +129,8 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     b->eta_s[j] = pick(rng, etas, 7);
     for (int k = 0; k < VL_BSDF_ROWS; k++)
       b->own[k][j] = stat_bits(rng) & 3 ? stat_float(rng) : (float)(stat_bits(rng) & 1);
-    for (int c = 0; c < 4; c++) b->lambda[c][j] = 360 + 470 * stat_float(rng);
+    for (int c = 0; c < 4; c++)
+      b->lambda[c][j] = 360 + 470 * stat_float(rng);
     b->own[VL_P_THIN][j] = (float)(stat_bits(rng) & 1);
     b->own[VL_P_FILM_INDEX][j] = 1 + stat_float(rng);
     b->own[VL_P_FILM_NM][j] = stat_bits(rng) & 3 ? 1000 * stat_float(rng) : 0;
@@ -119,7 +139,8 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     b->own[VL_P_COAT_X][j] = (float)n[0], b->own[VL_P_COAT_Y][j] = (float)n[1];
     b->own[VL_P_COAT_Z][j] = (float)fabs(n[2]);
     if (kind == VL_BSDF_LAYERED) {
-      b->own[VL_L_BASE_X][j] = pick(rng, alphas, 8), b->own[VL_L_BASE_Y][j] = pick(rng, alphas, 8);
+      b->own[VL_L_BASE_X][j] = pick(rng, alphas, 8),
+      b->own[VL_L_BASE_Y][j] = pick(rng, alphas, 8);
       b->own[VL_L_DEPTH][j] = 10, b->own[VL_L_WALKS][j] = 1;
     }
     b->seed[j] = (uint32_t)stat_bits(rng);
@@ -131,15 +152,20 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     b->ox[j] = (float)o[0], b->oy[j] = (float)o[1], b->oz[j] = (float)o[2];
     b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
     if (!(stat_bits(rng) & 7))
-      b->ox[j] = pick(rng, small, 10), b->oy[j] = pick(rng, small, 7), b->oz[j] = pick(rng, small, 9);
+      b->ox[j] = pick(rng, small, 10), b->oy[j] = pick(rng, small, 7),
+      b->oz[j] = pick(rng, small, 9);
     if (!(stat_bits(rng) & 7))
-      b->ix[j] = pick(rng, small, 10), b->iy[j] = pick(rng, small, 7), b->iz[j] = pick(rng, small, 9);
-    if (!(stat_bits(rng) & 7)) b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = -b->oz[j]; /* no half vector */
-    if (!(stat_bits(rng) & 15)) b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = b->oz[j]; /* mirror */
+      b->ix[j] = pick(rng, small, 10), b->iy[j] = pick(rng, small, 7),
+      b->iz[j] = pick(rng, small, 9);
+    if (!(stat_bits(rng) & 7))
+      b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = -b->oz[j]; /* no half vector */
+    if (!(stat_bits(rng) & 15))
+      b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = b->oz[j]; /* mirror */
   }
   batch_numbers(b, BATCH, rng);
   for (uint32_t j = 0; j < BATCH; j += 9)
-    b->lobe[j] = pick(rng, edges, 3), b->u[j] = pick(rng, edges, 3), b->v[j] = pick(rng, edges, 3);
+    b->lobe[j] = pick(rng, edges, 3), b->u[j] = pick(rng, edges, 3),
+    b->v[j] = pick(rng, edges, 3);
 }
 
 static void never_nan(void **state) {
@@ -154,9 +180,10 @@ static void never_nan(void **state) {
       for (int c = 0; c < 5; c++) {
         float x = c < 4 ? b->value[c][j] : b->pdf[j];
         if (!(x >= 0 && x < INFINITY))
-          fail_msg("kind %d eval %g: wo %g %g %g wi %g %g %g alpha %g %g eta %g", kind, (double)x, (double)b->ox[j],
-                   (double)b->oy[j], (double)b->oz[j], (double)b->ix[j], (double)b->iy[j], (double)b->iz[j],
-                   (double)b->alpha_x[j], (double)b->alpha_y[j], (double)b->eta_s[j]);
+          fail_msg("kind %d eval %g: wo %g %g %g wi %g %g %g alpha %g %g eta %g", kind,
+                   (double)x, (double)b->ox[j], (double)b->oy[j], (double)b->oz[j],
+                   (double)b->ix[j], (double)b->iy[j], (double)b->iz[j], (double)b->alpha_x[j],
+                   (double)b->alpha_y[j], (double)b->eta_s[j]);
       }
     batch_sample(s->kernels, kind, BATCH, b);
     for (uint32_t j = 0; j < BATCH; j++) {
@@ -164,9 +191,10 @@ static void never_nan(void **state) {
       for (int c = 0; c < 6; c++) {
         float x = c < 4 ? b->weight[c][j] : c == 4 ? b->pdf[j] : b->scale[j];
         if (!(x >= 0 && x < INFINITY) || (none && c < 5 && x != 0))
-          fail_msg("kind %d sample %d: %g: wo %g %g %g u %g %g %g alpha %g %g eta %g", kind, c, (double)x,
-                   (double)b->ox[j], (double)b->oy[j], (double)b->oz[j], (double)b->lobe[j], (double)b->u[j],
-                   (double)b->v[j], (double)b->alpha_x[j], (double)b->alpha_y[j], (double)b->eta_s[j]);
+          fail_msg("kind %d sample %d: %g: wo %g %g %g u %g %g %g alpha %g %g eta %g", kind, c,
+                   (double)x, (double)b->ox[j], (double)b->oy[j], (double)b->oz[j],
+                   (double)b->lobe[j], (double)b->u[j], (double)b->v[j], (double)b->alpha_x[j],
+                   (double)b->alpha_y[j], (double)b->eta_s[j]);
       }
       assert_true(none || (b->pdf[j] > 0 && isfinite(b->ix[j] + b->iy[j] + b->iz[j])));
       assert_true(b->flags[j] < 8 && (b->oz[j] != 0 || none));
@@ -182,7 +210,8 @@ static void same_bits(void **state) {
   const vlBsdfKernels *base = vl_bsdf_kernels(VL_ISA_BASE);
   int compared = 0;
   for (int isa = VL_ISA_V3; isa <= VL_ISA_V4; isa++) {
-    if ((int)vl_isa_best() < isa) continue;
+    if ((int)vl_isa_best() < isa)
+      continue;
     const vlBsdfKernels *wide = vl_bsdf_kernels((vlIsa)isa);
     assert_ptr_not_equal(base, wide);
     statRng rng = stat_rng(31);
@@ -208,10 +237,12 @@ static void same_bits(void **state) {
     }
     compared++;
   }
-  if (!compared) print_message("only one instruction set here: nothing to compare\n");
+  if (!compared)
+    print_message("only one instruction set here: nothing to compare\n");
 }
 
-/* The bits of a lane depend only on that lane, not on its position, its neighbours or the length of the batch. */
+/* The bits of a lane depend only on that lane, not on its position, its neighbours or the
+ * length of the batch. */
 static void lanes_alone(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
@@ -223,21 +254,27 @@ static void lanes_alone(void **state) {
     for (uint32_t j = 0; j < 600; j++) { /* reversed, and a shorter batch */
       uint32_t i = 599 - j;
       for (int d = 0; d < 4; d++)
-        c->reflectance[d][j] = b->reflectance[d][i], c->eta[d][j] = b->eta[d][i], c->k[d][j] = b->k[d][i];
-      for (int d = 0; d < 4; d++) c->lambda[d][j] = b->lambda[d][i];
-      for (int r = 0; r < VL_BSDF_ROWS; r++) c->own[r][j] = b->own[r][i];
-      c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i], c->coat[j] = b->coat[i];
+        c->reflectance[d][j] = b->reflectance[d][i], c->eta[d][j] = b->eta[d][i],
+        c->k[d][j] = b->k[d][i];
+      for (int d = 0; d < 4; d++)
+        c->lambda[d][j] = b->lambda[d][i];
+      for (int r = 0; r < VL_BSDF_ROWS; r++)
+        c->own[r][j] = b->own[r][i];
+      c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i],
+      c->coat[j] = b->coat[i];
       c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
       c->measured[j] = b->measured[i];
       c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i], c->seed[j] = b->seed[i];
     }
     for (uint32_t j = 600; j < BATCH; j++)
-      c->coat[j] = NULL, c->measured[j] = NULL, c->ox[j] = NAN, c->alpha_x[j] = NAN; /* padding is garbage */
+      c->coat[j] = NULL, c->measured[j] = NULL, c->ox[j] = NAN,
+      c->alpha_x[j] = NAN; /* padding is garbage */
     batch_sample(s->kernels, kind, BATCH, b);
     batch_sample(s->kernels, kind, 600, c);
     for (uint32_t j = 0; j < 600; j++) {
       assert_true(memcmp(&b->weight[1][599 - j], &c->weight[1][j], 4) == 0);
-      assert_true(memcmp(&b->iy[599 - j], &c->iy[j], 4) == 0 && b->flags[599 - j] == c->flags[j]);
+      assert_true(memcmp(&b->iy[599 - j], &c->iy[j], 4) == 0 &&
+                  b->flags[599 - j] == c->flags[j]);
     }
   }
 }
@@ -257,14 +294,19 @@ static void special(void **state) {
     b->u[j] = b->v[j] = 0.4f;
   }
   batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
-  assert_true(fabsf(b->pdf[2] - 0.04f) < 1e-6f && b->flags[2] == VL_SAMPLED_SPECULAR && b->weight[0][2] == 1 &&
-              b->iz[2] == 1);
-  assert_true(fabsf(b->pdf[0] - 0.96f) < 1e-6f && b->iz[0] == -1 && fabsf(b->weight[0][0] * 2.25f - 1) < 1e-6f);
-  assert_true(b->flags[0] == (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION) && fabsf(b->scale[0] - 2.25f) < 1e-6f);
-  assert_true(b->iz[1] == 1 && fabsf(b->weight[0][1] - 2.25f) < 1e-5f && fabsf(b->scale[1] * 2.25f - 1) < 1e-6f);
-  for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &pane);
+  assert_true(fabsf(b->pdf[2] - 0.04f) < 1e-6f && b->flags[2] == VL_SAMPLED_SPECULAR &&
+              b->weight[0][2] == 1 && b->iz[2] == 1);
+  assert_true(fabsf(b->pdf[0] - 0.96f) < 1e-6f && b->iz[0] == -1 &&
+              fabsf(b->weight[0][0] * 2.25f - 1) < 1e-6f);
+  assert_true(b->flags[0] == (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION) &&
+              fabsf(b->scale[0] - 2.25f) < 1e-6f);
+  assert_true(b->iz[1] == 1 && fabsf(b->weight[0][1] - 2.25f) < 1e-5f &&
+              fabsf(b->scale[1] * 2.25f - 1) < 1e-6f);
+  for (uint32_t j = 0; j < 16; j++)
+    batch_surface(b, j, &pane);
   batch_sample(s->kernels, VL_BSDF_THIN_DIELECTRIC, 16, b);
-  assert_true(fabsf(b->pdf[2] - 0.08f / 1.04f) < 1e-6f && b->weight[0][2] == 1 && b->scale[0] == 1);
+  assert_true(fabsf(b->pdf[2] - 0.08f / 1.04f) < 1e-6f && b->weight[0][2] == 1 &&
+              b->scale[0] == 1);
   /* total internal reflection: nothing is transmitted */
   for (uint32_t j = 0; j < 16; j++) {
     batch_surface(b, j, &glass);
@@ -273,8 +315,13 @@ static void special(void **state) {
   }
   batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
   assert_true(b->flags[0] == VL_SAMPLED_SPECULAR && b->pdf[0] == 1 && b->iz[0] < 0);
-  /* gold at normal incidence by the textbook's formula, and just rough enough to be no mirror */
-  Surface gold = {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 9.9e-4f, .alpha_y = 9.9e-4f};
+  /* gold at normal incidence by the textbook's formula, and just rough enough to be no mirror
+   */
+  Surface gold = {.kind = VL_BSDF_CONDUCTOR,
+                  .eta = 0.2f,
+                  .k = 3.9f,
+                  .alpha_x = 9.9e-4f,
+                  .alpha_y = 9.9e-4f};
   for (int rough = 0; rough < 2; rough++) {
     for (uint32_t j = 0; j < 16; j++) {
       batch_surface(b, j, &gold);
@@ -298,11 +345,14 @@ static void special(void **state) {
     batch_surface(b, j, &coat);
     batch_wo(b, j, 0.5, 0);
     b->ix[j] = 0.6f, b->iy[j] = 0, b->iz[j] = 0.8f;
-    if (j & 1) b->oz[j] = -b->oz[j], b->iz[j] = -b->iz[j];
-    if (j & 2) b->iz[j] = -b->iz[j];
+    if (j & 1)
+      b->oz[j] = -b->oz[j], b->iz[j] = -b->iz[j];
+    if (j & 2)
+      b->iz[j] = -b->iz[j];
   }
   batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
-  assert_true(b->value[0][0] > 0 && b->value[0][0] == b->value[0][1] && b->value[0][2] == 0 && b->pdf[3] == 0);
+  assert_true(b->value[0][0] > 0 && b->value[0][0] == b->value[0][1] && b->value[0][2] == 0 &&
+              b->pdf[3] == 0);
   /* the closed form itself */
   const vlCoatTable *t = s->coats[1];
   vlCoatPlace p = vl_coat_place(0.8f);
@@ -312,7 +362,11 @@ static void special(void **state) {
   q = t->transmittance[0] + p.first;
   double to = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t), x = 0.5 * (double)t->back[0],
          series = 1 + x + x * x + x * x * x + x * x * x * x;
-  const Surface black = {.kind = VL_BSDF_COATED_DIFFUSE, .eta_s = 1.5f, .alpha_x = 0.1f, .alpha_y = 0.1f, .coat = t};
+  const Surface black = {.kind = VL_BSDF_COATED_DIFFUSE,
+                         .eta_s = 1.5f,
+                         .alpha_x = 0.1f,
+                         .alpha_y = 0.1f,
+                         .coat = t};
   double with = (double)b->value[0][0];
   vlCoatTable as_pbrt = *t; /* imitate_pbrt: values are larger, samples are unchanged */
   as_pbrt.imitate = true;
@@ -320,17 +374,22 @@ static void special(void **state) {
   imitator.coat = &as_pbrt;
   Batch *c = s->other;
   *c = *b;
-  for (uint32_t j = 0; j < 16; j++) batch_surface(c, j, &imitator);
+  for (uint32_t j = 0; j < 16; j++)
+    batch_surface(c, j, &imitator);
   batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, c);
-  assert_true((double)c->value[0][0] > with * 1.005 && (double)c->value[0][0] < with * 1.05 && c->pdf[0] == b->pdf[0]);
-  for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &coat);
+  assert_true((double)c->value[0][0] > with * 1.005 && (double)c->value[0][0] < with * 1.05 &&
+              c->pdf[0] == b->pdf[0]);
+  for (uint32_t j = 0; j < 16; j++)
+    batch_surface(b, j, &coat);
   batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
   batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, c);
   assert_true(b->weight[0][0] > 0 && b->weight[0][0] == c->weight[0][0]);
-  for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &black);
+  for (uint32_t j = 0; j < 16; j++)
+    batch_surface(b, j, &black);
   b->ix[0] = 0.6f, b->iy[0] = 0, b->iz[0] = 0.8f;
   batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
-  double base = with - (double)b->value[0][0], want = to * ti * 0.5 / 3.14159265358979 / 2.25 * series * 0.8;
+  double base = with - (double)b->value[0][0],
+         want = to * ti * 0.5 / 3.14159265358979 / 2.25 * series * 0.8;
   assert_true(fabs(base / want - 1) < 1e-5);
 }
 

@@ -1,6 +1,7 @@
-/* test_curve_turned.c: curves do not depend on how the scene is turned. The same rays, turned with the curves, hit the
- * same pieces at the same distance, u and v (from which the hair material takes the offset h from the axis), with
- * turned points and normals; and the rays that leave there meet the same neighbours. */
+/* test_curve_turned.c: curves do not depend on how the scene is turned. The same rays, turned
+ * with the curves, hit the same pieces at the same distance, u and v (from which the hair
+ * material takes the offset h from the axis), with turned points and normals; and the rays that
+ * leave there meet the same neighbours. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,24 +23,28 @@ typedef struct Hairs {
   float positions[HAIRS][12], widths[HAIRS][2], normals[HAIRS][6];
 } Hairs;
 
-/* Hairs side by side, half of them bent. The gap between neighbours is smaller than their width. */
+/* Hairs side by side, half of them bent. The gap between neighbours is smaller than their
+ * width. */
 static void make_hairs(Hairs *h, statRng *rng) {
   for (int k = 0; k < HAIRS; k++) {
     bool bent = k >= HAIRS / 2;
     for (int i = 0; i < 4; i++) {
       float *p = h->positions[k] + 3 * i;
-      p[0] = 0.5f * (float)i - 0.75f, p[1] = bent ? 0.3f * stat_float(rng) : 0, p[2] = 0.07f * (float)k;
+      p[0] = 0.5f * (float)i - 0.75f, p[1] = bent ? 0.3f * stat_float(rng) : 0,
+      p[2] = 0.07f * (float)k;
     }
     for (int i = 0; i < 2; i++) {
       h->widths[k][i] = bent ? 0.03f + 0.02f * stat_float(rng) : 0.05f;
       double n[3];
       stat_direction(rng, n);
-      for (int j = 0; j < 3; j++) h->normals[k][3 * i + j] = (float)n[j];
+      for (int j = 0; j < 3; j++)
+        h->normals[k][3 * i + j] = (float)n[j];
     }
   }
 }
 
-static vlWorld *build(vlContext *context, const Hairs *h, vlCurveKind kind, const double turn[16], bool instance) {
+static vlWorld *build(vlContext *context, const Hairs *h, vlCurveKind kind,
+                      const double turn[16], bool instance) {
   vlScene *scene;
   vlWorld *world;
   vlError error = {0};
@@ -55,7 +60,8 @@ static vlWorld *build(vlContext *context, const Hairs *h, vlCurveKind kind, cons
     memcpy(def.group_from_shape, turn, sizeof def.group_from_shape);
   }
   assert_int_not_equal(vl_scene_add_shape(scene, &def).index, 0);
-  if (vl_world_build(scene, NULL, &world, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_world_build(scene, NULL, &world, &error) != VL_OK)
+    fail_msg("%s", error.message);
   vl_scene_destroy(scene);
   return world;
 }
@@ -74,7 +80,8 @@ static Hit trace(const vlWorld *world, vlVec3 o, vlVec3 d) {
 
 static vlVec3 rotate(const double m[16], vlVec3 v) {
   double x = (double)v.x, y = (double)v.y, z = (double)v.z;
-  return vl_vec3((float)(m[0] * x + m[1] * y + m[2] * z), (float)(m[4] * x + m[5] * y + m[6] * z),
+  return vl_vec3((float)(m[0] * x + m[1] * y + m[2] * z),
+                 (float)(m[4] * x + m[5] * y + m[6] * z),
                  (float)(m[8] * x + m[9] * y + m[10] * z));
 }
 
@@ -82,9 +89,11 @@ static bool near(vlVec3 a, vlVec3 b, float tolerance) {
   return vl_length(vl_sub(a, b)) <= tolerance;
 }
 
-/* Whether both hits are the same. Rounding decides which of two hairs a ray meets at an edge. */
+/* Whether both hits are the same. Rounding decides which of two hairs a ray meets at an edge.
+ */
 static bool same_hit(const Hit *a, const Hit *b) {
-  if (a->shape == VL_NONE || b->shape == VL_NONE) return a->shape == b->shape;
+  if (a->shape == VL_NONE || b->shape == VL_NONE)
+    return a->shape == b->shape;
   return a->prim == b->prim && vl_abs(a->t - b->t) < 1e-3f;
 }
 
@@ -119,34 +128,44 @@ static void compare(vlCurveKind kind, bool instance, statRng *rng) {
     stat_direction(rng, from);
     stat_direction(rng, leave);
     vlVec3 o = vl_vec3((float)(3 * from[0]), (float)(3 * from[1]), (float)(3 * from[2]));
-    vlVec3 target = vl_vec3(1.4f * stat_float(rng) - 0.7f, 0.2f * stat_float(rng), 0.8f * stat_float(rng));
-    vlVec3 d = vl_normalize(vl_sub(target, o)), w = vl_vec3((float)leave[0], (float)leave[1], (float)leave[2]);
+    vlVec3 target =
+        vl_vec3(1.4f * stat_float(rng) - 0.7f, 0.2f * stat_float(rng), 0.8f * stat_float(rng));
+    vlVec3 d = vl_normalize(vl_sub(target, o)),
+           w = vl_vec3((float)leave[0], (float)leave[1], (float)leave[2]);
     vlVec3 to = rotate(turn, o), td = vl_normalize(rotate(turn, d)), tw = rotate(turn, w);
     Hit a = trace(still, o, d), b = trace(turned, to, td);
     others += !same_hit(&a, &b);
-    if (!same_hit(&a, &b) || a.shape == VL_NONE) continue;
+    if (!same_hit(&a, &b) || a.shape == VL_NONE)
+      continue;
     hits++;
     vlPoint p = vl_point_at_time(still, 0, o, d, a.shape, a.prim, a.instance, a.t);
     vlPoint q = vl_point_at_time(turned, 0, to, td, b.shape, b.prim, b.instance, b.t);
-    /* At an end of a segment, and where a ray looks along a curve, u turns quickly with the ray, and n with u. */
+    /* At an end of a segment, and where a ray looks along a curve, u turns quickly with the
+     * ray, and n with u. */
     bool steady = vl_abs(p.v - 0.5f) < 0.49f && vl_abs(p.u - q.u) < 1e-3f;
     others += !steady;
-    if (!steady) continue;
+    if (!steady)
+      continue;
     assert_true(near(rotate(turn, p.p), q.p, 1e-3f));
     if (!near(rotate(turn, p.g), q.g, 2e-3f) || !near(rotate(turn, p.n), q.n, 2e-3f))
       fail_msg("kind %d, ray %d: the normal is not turned", kind, k);
-    if (vl_abs(p.v - q.v) > 1e-3f) fail_msg("ray %d: v %g, turned %g", k, (double)p.v, (double)q.v);
+    if (vl_abs(p.v - q.v) > 1e-3f)
+      fail_msg("ray %d: v %g, turned %g", k, (double)p.v, (double)q.v);
     if (vl_abs(p.offset - q.offset) > 1e-4f * p.offset)
-      fail_msg("kind %d, ray %d: rays start %g off, turned %g", kind, k, (double)p.offset, (double)q.offset);
-    if (vl_abs(vl_dot(w, p.g)) < 1e-3f) continue;
+      fail_msg("kind %d, ray %d: rays start %g off, turned %g", kind, k, (double)p.offset,
+               (double)q.offset);
+    if (vl_abs(vl_dot(w, p.g)) < 1e-3f)
+      continue;
     Hit next = trace(still, vl_offset_origin(p.p, p.g, p.offset, w), w);
     Hit turned_next = trace(turned, vl_offset_origin(q.p, q.g, q.offset, tw), tw);
     met += next.shape != VL_NONE;
     other_neighbours += !same_hit(&next, &turned_next);
   }
   assert_true(hits > RAYS / 5 && met > hits / 10);
-  if (others > hits / 20) fail_msg("kind %d: %d of %d hits differ", kind, others, hits);
-  if (other_neighbours > hits / 500) fail_msg("kind %d: %d of %d second hits differ", kind, other_neighbours, hits);
+  if (others > hits / 20)
+    fail_msg("kind %d: %d of %d hits differ", kind, others, hits);
+  if (other_neighbours > hits / 500)
+    fail_msg("kind %d: %d of %d second hits differ", kind, other_neighbours, hits);
   vl_world_destroy(still);
   vl_world_destroy(turned);
   assert_int_equal(vl_context_memory(context, NULL), 0);
@@ -157,7 +176,8 @@ static void turned_curves_are_met_alike(void **state) {
   (void)state;
   statRng rng = stat_rng(11);
   for (int kind = 0; kind < 3; kind++)
-    for (int instance = 0; instance < 2; instance++) compare((vlCurveKind)kind, instance, &rng);
+    for (int instance = 0; instance < 2; instance++)
+      compare((vlCurveKind)kind, instance, &rng);
 }
 
 int main(void) {

@@ -1,6 +1,7 @@
-/* Emission of light paths: the mean weight is the light's power (formulas of the book, 12), directions and positions
- * have the right distribution (chi-square against exact solid angles and areas), and the density of a sampled path
- * equals the one used by multiple importance sampling. */
+/* Emission of light paths: the mean weight is the light's power (formulas of the book, 12),
+ * directions and positions have the right distribution (chi-square against exact solid angles
+ * and areas), and the density of a sampled path equals the one used by multiple importance
+ * sampling. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,7 +37,8 @@ static void build(Fixture *f) {
   vlBuildDef def = vl_default_build_def();
   def.color = VL_COLOR_RGB;
   vlError error;
-  if (vl_world_build(f->scene, &def, &f->world, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_world_build(f->scene, &def, &f->world, &error) != VL_OK)
+    fail_msg("%s", error.message);
   assert_true(f->world->lights.count < 8);
   assert_true(vl_two_way_choice(f->world, f->choice));
   f->way.choice = f->choice;
@@ -59,12 +61,15 @@ static void add_ball(Fixture *f, float radius) {
 static vlEmission one(const Fixture *f, statRng *rng) {
   const float lambda[4] = {0, 0, 0, 0};
   float u[5];
-  for (int i = 0; i < 5; i++) u[i] = stat_float(rng);
+  for (int i = 0; i < 5; i++)
+    u[i] = stat_float(rng);
   return vl_emission_sample(f->world, &f->way, lambda, u[0], u[1], u[2], u[3], u[4]);
 }
 
-/* Mean of the flux, in standard errors from its expectation. `slack`: share by which the expectation may be off. */
-static void power_is(Fixture *f, const char *what, double expected, double slack, unsigned seed) {
+/* Mean of the flux, in standard errors from its expectation. `slack`: share by which the
+ * expectation may be off. */
+static void power_is(Fixture *f, const char *what, double expected, double slack,
+                     unsigned seed) {
   statRng rng = stat_rng(seed);
   double sum = 0, squares = 0;
   for (int i = 0; i < TRIES; i++) {
@@ -82,7 +87,8 @@ static void density_is_told(Fixture *f, const char *what, unsigned seed) {
   statRng rng = stat_rng(seed);
   for (int i = 0; i < 2000; i++) {
     vlEmission e = one(f, &rng);
-    if (!e.valid) continue;
+    if (!e.valid)
+      continue;
     const vlWorldLight *light = &f->world->lights.items[e.light];
     vlPoint at;
     memset(&at, 0, sizeof at);
@@ -94,22 +100,28 @@ static void density_is_told(Fixture *f, const char *what, unsigned seed) {
   }
 }
 
-/* Directions weighed by 1 / density (times area: of the disk or window that all pass through; 1 for points) measure the
- * solid angle of each cell of the cone z >= low. */
-static void directions(Fixture *f, const char *what, double low, double (*area)(const Fixture *, const vlEmission *),
-                       unsigned seed) {
+/* Directions weighed by 1 / density (times area: of the disk or window that all pass through; 1
+ * for points) measure the solid angle of each cell of the cone z >= low. */
+static void directions(Fixture *f, const char *what, double low,
+                       double (*area)(const Fixture *, const vlEmission *), unsigned seed) {
   enum { CELLS = ROWS * COLUMNS };
   double sum[CELLS] = {0}, squares[CELLS] = {0}, statistic = 0;
   statRng rng = stat_rng(seed);
   for (int i = 0; i < TRIES; i++) {
     vlEmission e = one(f, &rng);
-    if (!e.valid) continue;
+    if (!e.valid)
+      continue;
     double z = (double)e.d.z;
-    if (area) z = -z; /* infinite lights: cells of the direction towards the light */
+    if (area)
+      z = -z; /* infinite lights: cells of the direction towards the light */
     assert_true(z >= low - 1e-4);
     double phi = atan2((double)e.d.y, (double)e.d.x);
-    int row = (int)((z - low) / (1 - low) * ROWS), column = (int)((phi + M_PI) / (2 * M_PI) * COLUMNS);
-    row = row < 0 ? 0 : row < ROWS ? row : ROWS - 1, column = column < COLUMNS ? column : COLUMNS - 1;
+    int row = (int)((z - low) / (1 - low) * ROWS),
+        column = (int)((phi + M_PI) / (2 * M_PI) * COLUMNS);
+    row = row < 0      ? 0
+          : row < ROWS ? row
+                       : ROWS - 1,
+    column = column < COLUMNS ? column : COLUMNS - 1;
     double weight = 1 / ((double)e.density * (area ? area(f, &e) : 1));
     sum[row * COLUMNS + column] += weight, squares[row * COLUMNS + column] += weight * weight;
   }
@@ -119,14 +131,16 @@ static void directions(Fixture *f, const char *what, double low, double (*area)(
     statistic += (mean - expected) * (mean - expected) / variance;
   }
   double p = stat_chi2_q(statistic, CELLS);
-  if (!(p > 0.01 / TESTS)) fail_msg("%s: chi-square %g, p = %g", what, statistic, p);
+  if (!(p > 0.01 / TESTS))
+    fail_msg("%s: chi-square %g, p = %g", what, statistic, p);
 }
 static double world_disk(const Fixture *f, const vlEmission *e) {
   (void)e;
   return M_PI * (double)f->world->radius * (double)f->world->radius;
 }
 
-/* ---- points and what is far away --------------------------------------------------------------------------------- */
+/* ---- points and what is far away
+ * --------------------------------------------------------------------------------- */
 
 static void points(void **state) {
   (void)state;
@@ -180,9 +194,11 @@ static void check_disk(Fixture *f, vlVec3 w, unsigned seed) {
     counts[(ring < RINGS ? ring : RINGS - 1) * PARTS + (part < PARTS ? part : PARTS - 1)]++;
   }
   double statistic = 0, expected = (double)TRIES / (RINGS * PARTS);
-  for (int k = 0; k < RINGS * PARTS; k++) statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
+  for (int k = 0; k < RINGS * PARTS; k++)
+    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
   double p = stat_chi2_q(statistic, RINGS * PARTS - 1);
-  if (!(p > 0.01 / TESTS)) fail_msg("disk: chi-square %g, p = %g", statistic, p);
+  if (!(p > 0.01 / TESTS))
+    fail_msg("disk: chi-square %g, p = %g", statistic, p);
 }
 
 static void distant(void **state) {
@@ -226,7 +242,8 @@ static void skies(void **state) {
     vl_scene_add_light(f->scene, &def);
     vl_image_destroy(image);
     build(f);
-    power_is(f, imaged ? "imaged sky" : "sky", 3 * mean * 4 * M_PI * world_disk(f, NULL), 0, 21);
+    power_is(f, imaged ? "imaged sky" : "sky", 3 * mean * 4 * M_PI * world_disk(f, NULL), 0,
+             21);
     density_is_told(f, "sky", 22);
     directions(f, imaged ? "imaged sky" : "sky", -1, world_disk, 23);
     end(f);
@@ -248,10 +265,12 @@ static void portal(void **state) {
   vlImage *image;
   image_def.type = VL_PIXEL_F32;
   assert_int_equal(vl_image_create(f->context, &image_def, &image), VL_OK);
-  for (int i = 0; i < 48; i++) ((float *)vl_image_pixels(image))[i] = 2;
+  for (int i = 0; i < 48; i++)
+    ((float *)vl_image_pixels(image))[i] = 2;
   def.image = image;
   def.has_portal = true;
-  const float corners[4][3] = {{0, 0, 2}, {0, 0.8f, 2}, {0.5f, 0.8f, 2}, {0.5f, 0, 2}}; /* (last - first) x ... = +z */
+  const float corners[4][3] = {
+      {0, 0, 2}, {0, 0.8f, 2}, {0.5f, 0.8f, 2}, {0.5f, 0, 2}}; /* (last - first) x ... = +z */
   memcpy(def.portal, corners, sizeof corners);
   assert_int_not_equal(vl_scene_add_light(f->scene, &def).index, 0);
   vl_image_destroy(image);
@@ -260,9 +279,11 @@ static void portal(void **state) {
   density_is_told(f, "portal", 32);
   directions(f, "portal", 0, window_across, 33);
   statRng rng = stat_rng(34);
-  for (int i = 0; i < 5000; i++) { /* each ray passes through the portal and starts outside the world */
+  for (int i = 0; i < 5000;
+       i++) { /* each ray passes through the portal and starts outside the world */
     vlEmission e = one(f, &rng);
-    if (!e.valid) continue;
+    if (!e.valid)
+      continue;
     float t = (2 - e.o.z) / e.d.z, x = e.o.x + t * e.d.x, y = e.o.y + t * e.d.y;
     assert_true(t > 0 && x > -1e-4f && x < 0.5001f && y > -1e-4f && y < 0.8001f);
     assert_true(vl_length(e.o) > 2);
@@ -270,7 +291,9 @@ static void portal(void **state) {
   end(f);
 }
 
-/* ---- surfaces ---------------------------------------------------------------------------------------------------- */
+/* ---- surfaces
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static vlEmissionId emission(Fixture *f, bool two_sided) {
   vlEmissionDef def = vl_default_emission_def();
@@ -280,16 +303,19 @@ static vlEmissionId emission(Fixture *f, bool two_sided) {
   return vl_scene_add_emission(f->scene, &def);
 }
 
-/* Cosine-weighted about the normal: the squared cosine and the azimuth are uniform; so is the choice of side. */
+/* Cosine-weighted about the normal: the squared cosine and the azimuth are uniform; so is the
+ * choice of side. */
 static void leave_by_cosine(Fixture *f, const char *what, bool two_sided, unsigned seed) {
   enum { CELLS = 2 * ROWS * COLUMNS };
   uint32_t counts[CELLS] = {0}, n = 0;
   statRng rng = stat_rng(seed);
   for (int i = 0; i < TRIES; i++) {
     vlEmission e = one(f, &rng);
-    if (!e.valid) continue;
+    if (!e.valid)
+      continue;
     vlFrame frame = vl_frame_from_z(e.n);
-    double c = (double)vl_dot(e.d, e.n), x = (double)vl_dot(e.d, frame.x), y = (double)vl_dot(e.d, frame.y);
+    double c = (double)vl_dot(e.d, e.n), x = (double)vl_dot(e.d, frame.x),
+           y = (double)vl_dot(e.d, frame.y);
     int row = (int)(c * c * ROWS), column = (int)((atan2(y, x) + M_PI) / (2 * M_PI) * COLUMNS);
     row = row < ROWS ? row : ROWS - 1, column = column < COLUMNS ? column : COLUMNS - 1;
     counts[((c < 0) * ROWS + row) * COLUMNS + column]++;
@@ -298,32 +324,40 @@ static void leave_by_cosine(Fixture *f, const char *what, bool two_sided, unsign
   assert_true(n > TRIES * 0.999);
   uint32_t cells = two_sided ? CELLS : CELLS / 2;
   double statistic = 0, expected = (double)n / cells;
-  for (uint32_t k = 0; k < cells; k++) statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
-  for (uint32_t k = cells; k < CELLS; k++) assert_int_equal(counts[k], 0);
+  for (uint32_t k = 0; k < cells; k++)
+    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
+  for (uint32_t k = cells; k < CELLS; k++)
+    assert_int_equal(counts[k], 0);
   double p = stat_chi2_q(statistic, cells - 1);
-  if (!(p > 0.01 / TESTS)) fail_msg("%s: chi-square %g, p = %g", what, statistic, p);
+  if (!(p > 0.01 / TESTS))
+    fail_msg("%s: chi-square %g, p = %g", what, statistic, p);
 }
 
 static void surfaces(void **state) {
   (void)state;
-  static const float triangle[9] = {0, 0, 0, 2, 0, 0.5f, 0.3f, 1, 0}, patch[12] = {0, 0, 0, 2, 0, 0, 0, 1, 0, 2, 1, 0};
+  static const float triangle[9] = {0, 0, 0, 2, 0, 0.5f, 0.3f, 1, 0},
+                     patch[12] = {0, 0, 0, 2, 0, 0, 0, 1, 0, 2, 1, 0};
   static const uint32_t index[4] = {0, 1, 2, 3};
-  const vlShapeKind kinds[4] = {VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_DISK, VL_SHAPE_SPHERE};
+  const vlShapeKind kinds[4] = {VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_DISK,
+                                VL_SHAPE_SPHERE};
   const char *const names[4] = {"triangle", "patch", "disk", "sphere"};
   double cross[3] = {0 * 0 - 0.5 * 1, 0.5 * 0.3 - 2 * 0, 2 * 1 - 0 * 0.3};
-  const double areas[4] = {0.5 * sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]), 2,
-                           M_PI * 1.5 * 1.5, 4 * M_PI * 1.5 * 1.5};
+  const double areas[4] = {
+      0.5 * sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]), 2,
+      M_PI * 1.5 * 1.5, 4 * M_PI * 1.5 * 1.5};
   for (int kind = 0; kind < 4; kind++)
     for (int sides = 1; sides <= 2; sides++) {
       Fixture *f = begin();
       vlShapeDef def = vl_default_shape_def(kinds[kind]);
       def.radius = 1.5f, def.z_min = -1.5f, def.z_max = 1.5f;
       if (kind < 2)
-        def.vertices = kind ? 4 : 3, def.faces = 1, def.positions = kind ? patch : triangle, def.indices = index;
+        def.vertices = kind ? 4 : 3, def.faces = 1, def.positions = kind ? patch : triangle,
+        def.indices = index;
       def.emission = emission(f, sides == 2);
       assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
       build(f);
-      power_is(f, names[kind], 5 * M_PI * areas[kind] * sides, 0, 40 + (unsigned)(2 * kind + sides));
+      power_is(f, names[kind], 5 * M_PI * areas[kind] * sides, 0,
+               40 + (unsigned)(2 * kind + sides));
       density_is_told(f, names[kind], 50);
       leave_by_cosine(f, names[kind], sides == 2, 60 + (unsigned)(2 * kind + sides));
       end(f);
@@ -347,7 +381,8 @@ static void places(void **state) {
     vlEmission e = one(f, &rng);
     double b2 = (double)e.at.y / 2, b1 = ((double)e.at.x - b2) / 3, b0 = 1 - b1 - b2;
     int part = 0;
-    for (int level = 0; level < 2; level++) { /* the midpoints of the sides make four triangles */
+    for (int level = 0; level < 2;
+         level++) { /* the midpoints of the sides make four triangles */
       int corner = b0 > 0.5 ? 0 : b1 > 0.5 ? 1 : b2 > 0.5 ? 2 : 3;
       part = 4 * part + corner;
       b0 = corner == 3 ? 1 - 2 * b0 : 2 * b0 - (corner == 0);
@@ -357,9 +392,11 @@ static void places(void **state) {
     counts[part]++;
   }
   double statistic = 0, expected = TRIES / 16.0;
-  for (int k = 0; k < 16; k++) statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
+  for (int k = 0; k < 16; k++)
+    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
   double q = stat_chi2_q(statistic, 15);
-  if (!(q > 0.01 / TESTS)) fail_msg("places: chi-square %g, p = %g", statistic, q);
+  if (!(q > 0.01 / TESTS))
+    fail_msg("places: chi-square %g, p = %g", statistic, q);
   end(f);
 }
 
@@ -379,15 +416,17 @@ static void together(void **state) {
   disk.emission = emission(f, false);
   vl_scene_add_shape(f->scene, &disk);
   build(f);
-  power_is(f, "three lights", 2 * 4 * M_PI + 7 * world_disk(f, NULL) + 5 * M_PI * M_PI * 0.25, 0, 81);
+  power_is(f, "three lights", 2 * 4 * M_PI + 7 * world_disk(f, NULL) + 5 * M_PI * M_PI * 0.25,
+           0, 81);
   density_is_told(f, "three lights", 82);
   end(f);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points), cmocka_unit_test(whole_cone), cmocka_unit_test(distant), cmocka_unit_test(skies),
-      cmocka_unit_test(portal), cmocka_unit_test(surfaces),   cmocka_unit_test(places),  cmocka_unit_test(together),
+      cmocka_unit_test(points), cmocka_unit_test(whole_cone), cmocka_unit_test(distant),
+      cmocka_unit_test(skies),  cmocka_unit_test(portal),     cmocka_unit_test(surfaces),
+      cmocka_unit_test(places), cmocka_unit_test(together),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

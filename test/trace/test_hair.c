@@ -1,5 +1,5 @@
-/* test_hair.c: a white hair in a white furnace is invisible, sampled weights are correct, samples follow their density,
- * which integrates to 1. */
+/* test_hair.c: a white hair in a white furnace is invisible, sampled weights are correct,
+ * samples follow their density, which integrates to 1. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,18 +9,23 @@
 
 #include "bsdf_state.h"
 
-static void put(Batch *b, uint32_t i, float sigma_a, float h, float beta_m, float beta_n, float alpha) {
+static void put(Batch *b, uint32_t i, float sigma_a, float h, float beta_m, float beta_n,
+                float alpha) {
   float rows[VL_BSDF_ROWS] = {0};
-  for (int c = 0; c < 4; c++) rows[VL_H_SIGMA_A + c] = sigma_a * (float)(c + 1);
-  rows[VL_H_ACROSS] = h, rows[VL_H_BETA_M] = beta_m, rows[VL_H_BETA_N] = beta_n, rows[VL_H_ALPHA] = alpha;
+  for (int c = 0; c < 4; c++)
+    rows[VL_H_SIGMA_A + c] = sigma_a * (float)(c + 1);
+  rows[VL_H_ACROSS] = h, rows[VL_H_BETA_M] = beta_m, rows[VL_H_BETA_N] = beta_n,
+  rows[VL_H_ALPHA] = alpha;
   Surface s = {.eta_s = 1.55f, .own = rows};
   batch_surface(b, i, &s);
 }
 
-static const float betas[][2] = {{0.1f, 0.1f}, {0.3f, 0.3f}, {0.9f, 0.25f}, {0.25f, 0.9f}, {1.0f, 1.0f}};
+static const float betas[][2] = {
+    {0.1f, 0.1f}, {0.3f, 0.3f}, {0.9f, 0.25f}, {0.25f, 0.9f}, {1.0f, 1.0f}};
 enum { BETAS = 5 };
 
-/* By uniform directions, as the paper's: the mean over the sphere, of one hit and of the hair's whole width. */
+/* By uniform directions, as the paper's: the mean over the sphere, of one hit and of the hair's
+ * whole width. */
 static void white_furnace(void **state) {
   const State *s = *state;
   Batch *b = s->batch;
@@ -32,11 +37,13 @@ static void white_furnace(void **state) {
         batch_numbers(b, BATCH, &rng);
         double o[3], w[3];
         stat_direction(&rng, o);
-        if (k == 0) o[0] *= 0.5; /* narrow lobes at grazing angles take too many samples */
+        if (k == 0)
+          o[0] *= 0.5; /* narrow lobes at grazing angles take too many samples */
         double scale = 1 / sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]);
         for (uint32_t j = 0; j < BATCH; j++) {
           put(b, j, 0, 2 * stat_float(&rng) - 1, betas[k][0], betas[k][1], 0);
-          b->ox[j] = (float)(o[0] * scale), b->oy[j] = (float)(o[1] * scale), b->oz[j] = (float)(o[2] * scale);
+          b->ox[j] = (float)(o[0] * scale), b->oy[j] = (float)(o[1] * scale),
+          b->oz[j] = (float)(o[2] * scale);
           stat_direction(&rng, w);
           b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
         }
@@ -46,7 +53,8 @@ static void white_furnace(void **state) {
           batch_eval(s->kernels, VL_BSDF_HAIR, BATCH, b);
         for (uint32_t j = 0; j < BATCH; j++) {
           double x = way ? (double)b->weight[0][j] : 4 * PI * (double)b->value[0][j];
-          if (way && !(fabs(x - 1) < 1e-3)) fail_msg("betas %d: a sample of white hair is worth %g", k, x);
+          if (way && !(fabs(x - 1) < 1e-3))
+            fail_msg("betas %d: a sample of white hair is worth %g", k, x);
           sum += x, square += x * x, count++;
         }
       }
@@ -85,11 +93,13 @@ static void samples_follow_their_density(void **state) {
         for (uint32_t j = 0; j < BATCH; j++) {
           assert_false(b->flags[j] & (VL_SAMPLED_NONE | VL_SAMPLED_SPECULAR));
           stat_sphere_add(hist, (double)b->ix[j], (double)b->iy[j], (double)b->iz[j]);
-          assert_true(((b->flags[j] & VL_SAMPLED_TRANSMISSION) != 0) == (b->iz[j] * b->oz[j] < 0));
+          assert_true(((b->flags[j] & VL_SAMPLED_TRANSMISSION) != 0) ==
+                      (b->iz[j] * b->oz[j] < 0));
           assert_true(fabsf(b->pdf[j] - s->other->pdf[j]) <= 1e-5f * b->pdf[j]);
           for (int c = 0; c < 4; c++) {
             double v = (double)s->other->value[c][j], w = (double)(b->weight[c][j] * b->pdf[j]);
-            if (!(fabs(v - w) <= 1e-5 * v + 1e-9)) fail_msg("betas %d: value %g, weight %g", k, v, w);
+            if (!(fabs(v - w) <= 1e-5 * v + 1e-9))
+              fail_msg("betas %d: value %g, weight %g", k, v, w);
           }
         }
       }
@@ -98,12 +108,15 @@ static void samples_follow_their_density(void **state) {
         batch_wo(s->other, j, thetas[t], 0.7);
       }
       statResult r = stat_sphere_test(hist, density, s, 2e-5);
-      if (!stat_accept(r, BETAS * 3)) fail_msg("betas %d theta %g: p %g, integral %g", k, thetas[t], r.p, r.integral);
-      if (!(fabs(r.integral - 1) < 1e-3)) fail_msg("betas %d: the density integrates to %g", k, r.integral);
+      if (!stat_accept(r, BETAS * 3))
+        fail_msg("betas %d theta %g: p %g, integral %g", k, thetas[t], r.p, r.integral);
+      if (!(fabs(r.integral - 1) < 1e-3))
+        fail_msg("betas %d: the density integrates to %g", k, r.integral);
     }
 }
 
-/* More absorption, less light, and never more than came; red passes melanin more easily than blue (channel 0 least). */
+/* More absorption, less light, and never more than came; red passes melanin more easily than
+ * blue (channel 0 least). */
 static void absorption(void **state) {
   const State *s = *state;
   Batch *b = s->batch;
@@ -114,40 +127,47 @@ static void absorption(void **state) {
     for (int turn = 0; turn < 20; turn++) {
       batch_numbers(b, BATCH, &rng);
       for (uint32_t j = 0; j < BATCH; j++)
-        put(b, j, sigma, 2 * stat_float(&rng) - 1, 0.3f, 0.3f, 0.035f), batch_wo(b, j, 0.9, 0.4);
+        put(b, j, sigma, 2 * stat_float(&rng) - 1, 0.3f, 0.3f, 0.035f),
+            batch_wo(b, j, 0.9, 0.4);
       batch_sample(s->kernels, VL_BSDF_HAIR, BATCH, b);
       for (uint32_t j = 0; j < BATCH; j++)
-        for (int c = 0; c < 4; c++) sum[c] += (double)b->weight[c][j] / (20.0 * BATCH);
+        for (int c = 0; c < 4; c++)
+          sum[c] += (double)b->weight[c][j] / (20.0 * BATCH);
     }
     assert_true(sum[0] < last && sum[0] < 1.0001);
-    for (int c = 1; c < 4; c++) assert_true(sigma > 0 ? sum[c] < sum[c - 1] : fabs(sum[c] - sum[0]) < 1e-5);
+    for (int c = 1; c < 4; c++)
+      assert_true(sigma > 0 ? sum[c] < sum[c - 1] : fabs(sum[c] - sum[0]) < 1e-5);
     last = sum[0];
   }
   assert_true(last < 0.35);
 }
 
-/* A clear hair met in its middle sends light on: most of it within its lobe about -wo, little back; at its edge the way
- * is bent as glass bends it. */
+/* A clear hair met in its middle sends light on: most of it within its lobe about -wo, little
+ * back; at its edge the way is bent as glass bends it. */
 static void light_goes_through(void **state) {
   const State *s = *state;
   Batch *b = s->batch;
   const float across[3] = {0.0f, 0.5f, -0.5f};
   for (int k = 0; k < 3; k++) {
     statRng rng = stat_rng(3);
-    double through = 0, turned = 2 * (asin((double)across[k] / 1.55) - asin((double)across[k])) + PI;
+    double through = 0,
+           turned = 2 * (asin((double)across[k] / 1.55) - asin((double)across[k])) + PI;
     batch_numbers(b, BATCH, &rng);
-    for (uint32_t j = 0; j < BATCH; j++) put(b, j, 0, across[k], 0.1f, 0.1f, 0), batch_wo(b, j, 0, 0);
+    for (uint32_t j = 0; j < BATCH; j++)
+      put(b, j, 0, across[k], 0.1f, 0.1f, 0), batch_wo(b, j, 0, 0);
     batch_sample(s->kernels, VL_BSDF_HAIR, BATCH, b);
     for (uint32_t j = 0; j < BATCH; j++) {
       double phi = atan2((double)b->iz[j], (double)b->iy[j]) - PI / 2;
       through += cos(phi - turned) > 0.9 ? 1.0 / BATCH : 0;
     }
-    if (!(through > 0.75)) fail_msg("met at %g: %g of the light goes through", (double)across[k], through);
+    if (!(through > 0.75))
+      fail_msg("met at %g: %g of the light goes through", (double)across[k], through);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(samples_follow_their_density),
-                                     cmocka_unit_test(absorption), cmocka_unit_test(light_goes_through)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(white_furnace), cmocka_unit_test(samples_follow_their_density),
+      cmocka_unit_test(absorption), cmocka_unit_test(light_goes_through)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,7 +1,7 @@
-/* Light sampling against its densities: directions of vl_stage_lights, counted over the sphere, against the density for
- * multiple importance sampling of the light that a ray in that direction hits (chi-square); the light tree's choice
- * against its probabilities; the Monte Carlo estimate of incident radiance against the same integral with uniform
- * directions. */
+/* Light sampling against its densities: directions of vl_stage_lights, counted over the sphere,
+ * against the density for multiple importance sampling of the light that a ray in that
+ * direction hits (chi-square); the light tree's choice against its probabilities; the Monte
+ * Carlo estimate of incident radiance against the same integral with uniform directions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -61,7 +61,8 @@ static vlEmissionId emission(Fixture *f, bool two_sided) {
   return vl_scene_add_emission(f->scene, &def);
 }
 
-/* Density of sampling direction d: of the light that a ray meets there first (lights must not hide each other). */
+/* Density of sampling direction d: of the light that a ray meets there first (lights must not
+ * hide each other). */
 static double density(void *user, const double d[3]) {
   Fixture *f = user;
   float o[3] = {f->p.x, f->p.y, f->p.z}, w[3] = {(float)d[0], (float)d[1], (float)d[2]};
@@ -76,18 +77,21 @@ static double density(void *user, const double d[3]) {
     pdf += (double)vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, index) *
            vl_infinite_pdf(f->world, &f->world->lights.items[index], f->p, dir);
   }
-  if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE) return pdf;
+  if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE)
+    return pdf;
   uint32_t index = f->world->shapes.items[shape].first_light + prim;
   const vlWorldLight *light = &f->world->lights.items[index];
   vlPoint at = vl_point_at(f->world, f->p, dir, shape, prim, instance, t);
-  if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided) return pdf;
+  if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided)
+    return pdf;
   return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) *
                    vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, index);
 }
 
-/* The part of the light samples that falls into a cell of the sphere is the integral of the density over it. Uniform
- * directions estimate the integral. Both are means with known variances: their difference, squared and summed over the
- * cells, is chi-square. (Edges of lights cut cells: a numerical integral would have to find them.) */
+/* The part of the light samples that falls into a cell of the sphere is the integral of the
+ * density over it. Uniform directions estimate the integral. Both are means with known
+ * variances: their difference, squared and summed over the cells, is chi-square. (Edges of
+ * lights cut cells: a numerical integral would have to find them.) */
 enum { ROWS = 16, COLUMNS = 32, CELLS = ROWS * COLUMNS };
 
 typedef struct Cell {
@@ -96,21 +100,25 @@ typedef struct Cell {
 } Cell;
 
 static uint32_t cell_of(double x, double y, double z) {
-  uint32_t row = (uint32_t)((z + 1) * 0.5 * ROWS), column = (uint32_t)((atan2(y, x) + M_PI) / (2 * M_PI) * COLUMNS);
+  uint32_t row = (uint32_t)((z + 1) * 0.5 * ROWS),
+           column = (uint32_t)((atan2(y, x) + M_PI) / (2 * M_PI) * COLUMNS);
   return (row < ROWS ? row : ROWS - 1) * COLUMNS + (column < COLUMNS ? column : COLUMNS - 1);
 }
 
-/* Whether a density is that of direction d, or of one beside it: the rounding of d may move it across an edge of the
- * density. */
+/* Whether a density is that of direction d, or of one beside it: the rounding of d may move it
+ * across an edge of the density. */
 static bool is_density(Fixture *f, const double d[3], double pdf) {
   const double step = 1e-5;
   for (int k = 0; k < 7; k++) {
     double beside[3] = {d[0], d[1], d[2]};
-    if (k) beside[(k - 1) / 2] += k % 2 ? step : -step;
+    if (k)
+      beside[(k - 1) / 2] += k % 2 ? step : -step;
     double length = sqrt(beside[0] * beside[0] + beside[1] * beside[1] + beside[2] * beside[2]);
-    for (int i = 0; i < 3; i++) beside[i] /= length;
+    for (int i = 0; i < 3; i++)
+      beside[i] /= length;
     double told = density(f, beside);
-    if (fabs(told - pdf) <= 5e-3 * told) return true;
+    if (fabs(told - pdf) <= 5e-3 * told)
+      return true;
   }
   return false;
 }
@@ -132,13 +140,15 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
       s->numbers.u1[i] = stat_float(&rng);
       s->numbers.u2[i] = stat_float(&rng);
     }
-    vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u1, s->numbers.u2, s->numbers.u0,
-                    &s->light);
+    vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u1,
+                    s->numbers.u2, s->numbers.u0, &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &s->light;
-      if (!(l->pdf[i] > 0) || l->delta[i]) continue;
+      if (!(l->pdf[i] > 0) || l->delta[i])
+        continue;
       double d[3] = {l->wx[i], l->wy[i], l->wz[i]}, told = density(f, d);
-      if (!(told > 0)) continue; /* at the very edge a ray may just miss, or another light stands before it */
+      if (!(told > 0))
+        continue; /* at the very edge a ray may just miss, or another light stands before it */
       /* The density that comes with a sample is the one that a hit is given. */
       if (!is_density(f, d, (double)l->pdf[i]))
         fail_msg("pdf %g with the sample, %g for the hit", (double)l->pdf[i], told);
@@ -158,7 +168,8 @@ static void judge(Fixture *f, unsigned seed, unsigned tests) {
     double d[3];
     stat_direction(&rng, d);
     double pdf = density(f, d);
-    if (!(pdf > 0)) continue;
+    if (!(pdf > 0))
+      continue;
     Cell *cell = &uniform[cell_of(d[0], d[1], d[2])];
     cell->count++;
     cell->sum += 4 * M_PI * pdf;
@@ -170,7 +181,8 @@ static void judge(Fixture *f, unsigned seed, unsigned tests) {
     const Cell *a = &sampled[k], *b = &uniform[k];
     if (b->count < 100 || a->count < 100) {
       double expected = b->sum / m * n;
-      if (b->count >= 100 && expected > 200) fail_msg("cell %u: %u samples, %g expected", k, a->count, expected);
+      if (b->count >= 100 && expected > 200)
+        fail_msg("cell %u: %u samples, %g expected", k, a->count, expected);
       continue;
     }
     double ma = (double)a->count / n, mb = b->sum / m;
@@ -180,14 +192,16 @@ static void judge(Fixture *f, unsigned seed, unsigned tests) {
   }
   assert_true(freedom >= 1);
   double p = stat_chi2_q(statistic, freedom);
-  if (!(p > 0.01 / tests)) fail_msg("chi-square %g with %u degrees of freedom: p = %g", statistic, freedom, p);
+  if (!(p > 0.01 / tests))
+    fail_msg("chi-square %g with %u degrees of freedom: p = %g", statistic, freedom, p);
 }
 
 enum { TESTS = 20 };
 
 static void add_triangles(Fixture *f, const float *positions, uint32_t faces, bool two_sided) {
   uint32_t indices[24];
-  for (uint32_t i = 0; i < 3 * faces; i++) indices[i] = i;
+  for (uint32_t i = 0; i < 3 * faces; i++)
+    indices[i] = i;
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.vertices = 3 * faces;
   def.faces = faces;
@@ -199,7 +213,8 @@ static void add_triangles(Fixture *f, const float *positions, uint32_t faces, bo
 
 static void triangles(void **state) {
   (void)state;
-  const float near[9] = {-1, -1, 1, 2, -1, 1, -1, 2, 1}, far[9] = {-1, -1, 6, 2, -1, 6, -1, 2, 8};
+  const float near[9] = {-1, -1, 1, 2, -1, 1, -1, 2, 1},
+              far[9] = {-1, -1, 6, 2, -1, 6, -1, 2, 8};
   for (int i = 0; i < 2; i++) {
     Fixture *f = begin();
     add_triangles(f, i ? far : near, 1, true);
@@ -216,7 +231,8 @@ static void many_triangles(void **state) {
   (void)state;
   const float p[36] = {-3, -1, 2, -2, -1, 2, -3, 1, 2.5f, 2, -1, 1,  3, -1, 1,  2, 1,  1,
                        -1, 3,  0, 1,  3,  0, 0,  3, 2,    0, -3, -1, 1, -3, -1, 0, -3, 1};
-  const vlLightSampler samplers[3] = {VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM};
+  const vlLightSampler samplers[3] = {VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER,
+                                      VL_LIGHT_SAMPLER_UNIFORM};
   for (int i = 0; i < 3; i++) {
     Fixture *f = begin();
     add_triangles(f, p, 4, true);
@@ -225,14 +241,15 @@ static void many_triangles(void **state) {
     build(f, samplers[i]);
     judge(f, 11 + (unsigned)i, TESTS);
     double sum = 0;
-    for (uint32_t k = 0; k < 4; k++) sum += vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, k);
+    for (uint32_t k = 0; k < 4; k++)
+      sum += vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, k);
     assert_true(fabs(sum - 1) < 1e-5);
     end(f);
   }
 }
 
-/* A sun and triangles on all sides of a surface that light leaves on both sides (side 0) or only on one. What cannot
- * count is not chosen, and the others have its share. */
+/* A sun and triangles on all sides of a surface that light leaves on both sides (side 0) or
+ * only on one. What cannot count is not chosen, and the others have its share. */
 static void one_side(void **state) {
   (void)state;
   const float p[27] = {-3, -1, 2, -2, -1, 2,  -3, 1, 2.5f, 2,  -1, 2,  3, -1,
@@ -248,7 +265,8 @@ static void one_side(void **state) {
       sun.to[0] = sun.to[1] = sun.to[2] = 0;
       assert_int_not_equal(vl_scene_add_light(f->scene, &sun).index, 0);
       vlLightDef even = vl_default_light_def(VL_LIGHT_INFINITE);
-      if (sky) assert_int_not_equal(vl_scene_add_light(f->scene, &even).index, 0);
+      if (sky)
+        assert_int_not_equal(vl_scene_add_light(f->scene, &even).index, 0);
       f->p = vl_vec3(0.1f, 0.2f, 0);
       f->n = vl_vec3(0, 0, 1);
       f->side = (float)side;
@@ -263,12 +281,14 @@ static void one_side(void **state) {
         if (f->world->lights.items[k].far)
           assert_true(fabs((double)pmf - (distant && side < 0 ? 0 : 1 / slots)) < 1e-6);
         else
-          assert_true((pmf > 0) == (side == 0 || (side < 0) == (f->world->lights.items[k].corners[2] < 0)));
+          assert_true((pmf > 0) ==
+                      (side == 0 || (side < 0) == (f->world->lights.items[k].corners[2] < 0)));
         sum += (double)pmf;
       }
       /* A branch may promise light that neither of its children has: such samples find none. */
       assert_true(sum < 1 + 1e-5 && sum > (side ? 0 : 1 - 1e-5));
-      if (!sky) judge(f, 51 + (unsigned)(side + 1), TESTS);
+      if (!sky)
+        judge(f, 51 + (unsigned)(side + 1), TESTS);
       end(f);
     }
 }
@@ -285,7 +305,8 @@ static void crowd(void **state) {
       p[y][x][1] = (float)y * 0.2f - 2;
       p[y][x][2] = 1;
       uint32_t k = y * (SIDE + 1) + x;
-      if (x == SIDE || y == SIDE) continue;
+      if (x == SIDE || y == SIDE)
+        continue;
       const uint32_t faces[6] = {k, k + 1, k + SIDE + 1, k + 1, k + SIDE + 2, k + SIDE + 1};
       memcpy(at, faces, sizeof faces);
       at += 6;
@@ -309,7 +330,8 @@ static void crowd(void **state) {
 static void add_round(Fixture *f, vlShapeKind kind, const double m[16]) {
   vlShapeDef def = vl_default_shape_def(kind);
   def.emission = emission(f, true);
-  if (m) memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
+  if (m)
+    memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
   assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
 }
 
@@ -320,14 +342,16 @@ static void round_lights(void **state) {
   const double bent[16] = {1.5, 0.2, 0, 0.4, 0, 0.8, 0.1, 0.2, 0, 0, 0.6, 3, 0, 0, 0, 1};
   for (int k = 0; k < 3; k++)
     for (int j = 0; j < 2; j++) {
-      if (kinds[k] == VL_SHAPE_CYLINDER) continue; /* one direction meets it twice: the nearer hides the farther */
+      if (kinds[k] == VL_SHAPE_CYLINDER)
+        continue; /* one direction meets it twice: the nearer hides the farther */
       Fixture *f = begin();
       add_round(f, kinds[k], j ? bent : plain);
       f->p = vl_vec3(0.2f, 0.1f, 0);
       f->n = vl_vec3(0, 0, 1);
-      /* A bent sphere is sampled by area: its far side is hidden, so that only one that is seen from inside fits this
-       * test. */
-      if (kinds[k] == VL_SHAPE_SPHERE && j) f->p = vl_vec3(0.4f, 0.3f, 3);
+      /* A bent sphere is sampled by area: its far side is hidden, so that only one that is seen
+       * from inside fits this test. */
+      if (kinds[k] == VL_SHAPE_SPHERE && j)
+        f->p = vl_vec3(0.4f, 0.3f, 3);
       build(f, VL_LIGHT_SAMPLER_BVH);
       judge(f, 21 + (unsigned)(2 * k + j), TESTS);
       end(f);
@@ -376,7 +400,9 @@ static void sky(void **state) {
       assert_int_equal(vl_image_create(f->context, &image_def, &image), VL_OK);
       float *pixels = vl_image_pixels(image);
       for (int k = 0; k < 32 * 32 * 3; k++)
-        pixels[k] = i == 1 ? 1.0f + 0.5f * sinf(0.05f * (float)k) : (k / 3) % 37 == 5 ? 50.0f : 0.5f;
+        pixels[k] = i == 1              ? 1.0f + 0.5f * sinf(0.05f * (float)k)
+                    : (k / 3) % 37 == 5 ? 50.0f
+                                        : 0.5f;
       def.image = image;
       const double turned[16] = {0, -1, 0, 0, 0.6, 0, -0.8, 0, 0.8, 0, 0.6, 0, 0, 0, 0, 1};
       memcpy(def.world_from_light, turned, sizeof turned);
@@ -390,12 +416,14 @@ static void sky(void **state) {
   }
 }
 
-/* A sky seen through windows: before the point, slanting, and so near that it fills half the sphere. */
+/* A sky seen through windows: before the point, slanting, and so near that it fills half the
+ * sphere. */
 static void portals(void **state) {
   (void)state;
-  const float corners[3][4][3] = {{{-0.5f, -1, 1}, {-0.5f, 1, 1}, {1, 1, 1}, {1, -1, 1}},
-                                  {{3, -0.4f, 0}, {2.2f, -0.4f, 0.6f}, {2.2f, 0.8f, 0.6f}, {3, 0.8f, 0}},
-                                  {{-2, -3, 0.02f}, {-2, 3, 0.02f}, {2, 3, 0.02f}, {2, -3, 0.02f}}};
+  const float corners[3][4][3] = {
+      {{-0.5f, -1, 1}, {-0.5f, 1, 1}, {1, 1, 1}, {1, -1, 1}},
+      {{3, -0.4f, 0}, {2.2f, -0.4f, 0.6f}, {2.2f, 0.8f, 0.6f}, {3, 0.8f, 0}},
+      {{-2, -3, 0.02f}, {-2, 3, 0.02f}, {2, 3, 0.02f}, {2, -3, 0.02f}}};
   for (int i = 0; i < 3; i++) {
     Fixture *f = begin();
     vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
@@ -405,7 +433,9 @@ static void portals(void **state) {
     assert_int_equal(vl_image_create(f->context, &image_def, &image), VL_OK);
     float *pixels = vl_image_pixels(image);
     for (int k = 0; k < 32 * 32 * 3; k++)
-      pixels[k] = (k / 3) % 37 == 5 ? 20.0f : (k / 3) % 11 == 0 ? 0.0f : 0.5f + 0.3f * sinf(0.05f * (float)k);
+      pixels[k] = (k / 3) % 37 == 5   ? 20.0f
+                  : (k / 3) % 11 == 0 ? 0.0f
+                                      : 0.5f + 0.3f * sinf(0.05f * (float)k);
     const double turned[16] = {0, -1, 0, 0, 0.6, 0, -0.8, 0, 0.8, 0, 0.6, 0, 0, 0, 0, 1};
     memcpy(def.world_from_light, turned, sizeof turned);
     def.image = image;

@@ -1,5 +1,6 @@
-/* test_measured.c: measured reflection against the surface that was measured: metal with GGX microfacets, in files made
- * by measured_file.h. Values, densities, sampling, albedo, furnace, reciprocity, symmetries, wavelengths. */
+/* test_measured.c: measured reflection against the surface that was measured: metal with GGX
+ * microfacets, in files made by measured_file.h. Values, densities, sampling, albedo, furnace,
+ * reciprocity, symmetries, wavelengths. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +20,8 @@ static vlMeasured *measure(const State *s, const mfSurface *metal, bool rgb) {
   vlMeasured *m = NULL;
   vlError error = {0};
   assert_true(mf_write(path, &file));
-  if (vl_measured_read(s->context, path, rgb, &m, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_measured_read(s->context, path, rgb, &m, &error) != VL_OK)
+    fail_msg("%s", error.message);
   free(file.bytes);
   remove(path);
   return m;
@@ -28,17 +30,22 @@ static vlMeasured *measure(const State *s, const mfSurface *metal, bool rgb) {
 static void put_surface(Batch *b, const vlMeasured *m, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     b->measured[i] = m;
-    for (int c = 0; c < 4; c++) b->lambda[c][i] = 420.0f + 80.0f * (float)c;
+    for (int c = 0; c < 4; c++)
+      b->lambda[c][i] = 420.0f + 80.0f * (float)c;
   }
 }
 
-/* Sets random directions on both sides of the surface for lane i, within the cone of cos > least. */
+/* Sets random directions on both sides of the surface for lane i, within the cone of cos >
+ * least.
+ */
 static void put_random(Batch *b, uint32_t n, statRng *rng, double least) {
   for (uint32_t i = 0; i < n; i++) {
     double o[3], w[3];
-    do stat_direction(rng, o);
+    do
+      stat_direction(rng, o);
     while (fabs(o[2]) < least);
-    do stat_direction(rng, w);
+    do
+      stat_direction(rng, w);
     while (fabs(w[2]) < least || o[2] * w[2] < 0);
     b->ox[i] = (float)o[0], b->oy[i] = (float)o[1], b->oz[i] = (float)o[2];
     b->ix[i] = (float)w[0], b->iy[i] = (float)w[1], b->iz[i] = (float)w[2];
@@ -69,25 +76,31 @@ static void maps(void **state) {
   statRng rng = stat_rng(1);
   assert_false(m->isotropic);
   for (int turn = 0; turn < 20000; turn++) {
-    float phi = (float)(PI * (2 * stat_double(&rng) - 1)), theta = (float)(1.5 * stat_double(&rng));
+    float phi = (float)(PI * (2 * stat_double(&rng) - 1)),
+          theta = (float)(1.5 * stat_double(&rng));
     vlMeasuredSlices slices = vl_measured_slices(m, phi, theta);
     const vlMeasuredTable *t = turn & 1 ? &m->vndf : &m->luminance;
     float u = stat_float(&rng), v = stat_float(&rng);
-    vlMeasuredPoint p = vl_measured_sample(t, slices, u, v), back = vl_measured_invert(t, slices, p.x, p.y);
+    vlMeasuredPoint p = vl_measured_sample(t, slices, u, v),
+                    back = vl_measured_invert(t, slices, p.x, p.y);
     assert_true(p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1);
     if (fabsf(back.x - u) > 2e-5f / (p.pdf + 0.01f) + 2e-5f || fabsf(back.y - v) > 2e-5f)
-      fail_msg("(%g %g) by (%g %g) to (%g %g)", (double)u, (double)v, (double)p.x, (double)p.y, (double)back.x,
-               (double)back.y);
+      fail_msg("(%g %g) by (%g %g) to (%g %g)", (double)u, (double)v, (double)p.x, (double)p.y,
+               (double)back.x, (double)back.y);
     float value = vl_measured_at(t, slices, p.x, p.y);
-    assert_true(fabsf(value - p.pdf) < 1e-4f * (value + 1) && fabsf(back.pdf - p.pdf) < 1e-3f * (value + 1));
+    assert_true(fabsf(value - p.pdf) < 1e-4f * (value + 1) &&
+                fabsf(back.pdf - p.pdf) < 1e-3f * (value + 1));
     /* density times the Jacobian of the map, by differences */
     float d = 1e-2f, x = 0.1f + 0.8f * u, y = 0.1f + 0.8f * v;
     if (turn % 7 == 0) {
-      vlMeasuredPoint a = vl_measured_invert(t, slices, x, y), e = vl_measured_invert(t, slices, x, y + d);
+      vlMeasuredPoint a = vl_measured_invert(t, slices, x, y),
+                      e = vl_measured_invert(t, slices, x, y + d);
       double sum = 0;
       for (int k = 0; k < 64; k++)
         for (int c = 0; c < 64; c++)
-          sum += (double)vl_measured_at(t, slices, ((float)c + 0.5f) / 64, y + d * ((float)k + 0.5f) / 64) / 4096;
+          sum += (double)vl_measured_at(t, slices, ((float)c + 0.5f) / 64,
+                                        y + d * ((float)k + 0.5f) / 64) /
+                 4096;
       assert_true(fabs((double)(e.y - a.y) - sum * (double)d) < 1e-3 * sum * (double)d + 2e-5);
     }
   }
@@ -111,16 +124,20 @@ static void values(void **state) {
       batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, b);
       for (uint32_t i = 0; i < BATCH; i++)
         for (int c = 0; c < 4; c++) {
-          double flip = b->oz[i] < 0 ? -1 : 1; /* from below: turned about a line in the surface */
-          double o[3] = {flip * (double)b->ox[i], flip * (double)b->oy[i], flip * (double)b->oz[i]};
-          double w[3] = {flip * (double)b->ix[i], flip * (double)b->iy[i], flip * (double)b->iz[i]};
+          double flip =
+              b->oz[i] < 0 ? -1 : 1; /* from below: turned about a line in the surface */
+          double o[3] = {flip * (double)b->ox[i], flip * (double)b->oy[i],
+                         flip * (double)b->oz[i]};
+          double w[3] = {flip * (double)b->ix[i], flip * (double)b->iy[i],
+                         flip * (double)b->iz[i]};
           double f = mf_value(metal, o, w, (double)b->lambda[c][i]), g = (double)b->value[c][i];
           off += fabs(f - g), all += f, ours += g;
-          if (f > 0.1) worst = fmax(worst, fabs(g / f - 1));
+          if (f > 0.1)
+            worst = fmax(worst, fabs(g / f - 1));
         }
     }
-    print_message("surface %u: off by %.4f of the light, at worst %.3f, on the whole %.4f\n", k, off / all, worst,
-                  ours / all - 1);
+    print_message("surface %u: off by %.4f of the light, at worst %.3f, on the whole %.4f\n", k,
+                  off / all, worst, ours / all - 1);
     assert_true(off / all < 0.012 && worst < 0.5 && fabs(ours / all - 1) < 0.0055);
     vl_measured_free(s->context, m);
   }
@@ -136,8 +153,8 @@ static double direction_pdf(void *user, const double w[3]) {
   return (double)b->pdf[0];
 }
 
-/* Directions as the density says, which sums up to 1 with what goes below the horizon; the samples' mean is the
- * metal's albedo. */
+/* Directions as the density says, which sums up to 1 with what goes below the horizon; the
+ * samples' mean is the metal's albedo. */
 static void sampling(void **state) {
   const State *s = *state;
   Batch *b = s->batch;
@@ -153,7 +170,8 @@ static void sampling(void **state) {
       put_surface(b, m, BATCH);
       put_surface(s->other, m, 1);
       batch_wo(s->other, 0, thetas[t], 0.6 + (double)k);
-      for (uint32_t i = 0; i < BATCH; i++) batch_wo(b, i, thetas[t], 0.6 + (double)k);
+      for (uint32_t i = 0; i < BATCH; i++)
+        batch_wo(b, i, thetas[t], 0.6 + (double)k);
       double flip = b->oz[0] < 0 ? -1 : 1;
       double o[3] = {flip * (double)b->ox[0], flip * (double)b->oy[0], flip * (double)b->oz[0]};
       for (int turn = 0; turn < 64; turn++) {
@@ -169,16 +187,19 @@ static void sampling(void **state) {
           assert_true(b->flags[i] == 0 && b->iz[i] * b->oz[i] > 0);
           stat_sphere_add(hist, (double)b->ix[i], (double)b->iy[i], (double)b->iz[i]);
           sum += (double)b->weight[1][i];
-          double w[3] = {flip * (double)b->ix[i], flip * (double)b->iy[i], flip * (double)b->iz[i]};
+          double w[3] = {flip * (double)b->ix[i], flip * (double)b->iy[i],
+                         flip * (double)b->iz[i]};
           known += mf_value(metal, o, w, 500) / (double)b->pdf[i];
         }
       }
       statResult r = stat_sphere_test(hist, direction_pdf, &d, 4e-5);
-      if (!stat_accept(r, SURFACES * 4)) fail_msg("surface %u, theta %g: integral %g", k, thetas[t], r.integral);
-      print_message("surface %u theta %.2f: pdf %.4f + %.4f lost; albedo %.4f, metal's %.4f\n", k, thetas[t],
-                    r.integral, lost / count, sum / count, known / count);
+      if (!stat_accept(r, SURFACES * 4))
+        fail_msg("surface %u, theta %g: integral %g", k, thetas[t], r.integral);
+      print_message("surface %u theta %.2f: pdf %.4f + %.4f lost; albedo %.4f, metal's %.4f\n",
+                    k, thetas[t], r.integral, lost / count, sum / count, known / count);
       double error = 4 * sqrt(lost / count * (1 - lost / count) / count);
-      assert_true(fabs(sum / known - 1) < 0.01 && fabs(r.integral + lost / count - 1) < 1e-3 + error);
+      assert_true(fabs(sum / known - 1) < 0.01 &&
+                  fabs(r.integral + lost / count - 1) < 1e-3 + error);
     }
     vl_measured_free(s->context, m);
   }
@@ -191,7 +212,8 @@ static double mean_weight(const State *s, const vlMeasured *m, double theta, uin
   statRng rng = stat_rng(3);
   double sum = 0;
   put_surface(b, m, BATCH);
-  for (uint32_t i = 0; i < BATCH; i++) batch_wo(b, i, theta, 0.3);
+  for (uint32_t i = 0; i < BATCH; i++)
+    batch_wo(b, i, theta, 0.3);
   for (uint32_t turn = 0; turn < 64; turn++) {
     for (uint32_t i = 0; i < BATCH; i++) {
       b->u[i] = ((float)(turn % 64) + stat_float(&rng)) / 64;
@@ -199,12 +221,14 @@ static double mean_weight(const State *s, const vlMeasured *m, double theta, uin
       b->v[i] = (float)(v - floor(v)) * 0.999999f;
     }
     batch_sample(s->kernels, VL_BSDF_MEASURED, BATCH, b);
-    for (uint32_t i = 0; i < BATCH; i++) sum += (double)b->weight[channel][i];
+    for (uint32_t i = 0; i < BATCH; i++)
+      sum += (double)b->weight[channel][i];
   }
   return sum / 64 / BATCH;
 }
 
-/* White metal gives back what single scattering leaves: never more than came, and nearly all where it is smooth. */
+/* White metal gives back what single scattering leaves: never more than came, and nearly all
+ * where it is smooth. */
 static void furnace(void **state) {
   const State *s = *state;
   const double alphas[4] = {0.2, 0.4, 0.7, 1.0};
@@ -219,14 +243,18 @@ static void furnace(void **state) {
       mf_direction(theta, 0.3, o);
       for (int y = 0; y < 200; y++)
         for (int x = 0; x < 200; x++) {
-          vlVec3 h = vl_ggx_sample(vl_vec3((float)o[0], (float)o[1], (float)o[2]), (float)alphas[i], (float)alphas[i],
-                                   ((float)x + 0.5f) / 200, ((float)y + 0.5f) / 200);
+          vlVec3 h =
+              vl_ggx_sample(vl_vec3((float)o[0], (float)o[1], (float)o[2]), (float)alphas[i],
+                            (float)alphas[i], ((float)x + 0.5f) / 200, ((float)y + 0.5f) / 200);
           double oh = o[0] * (double)h.x + o[1] * (double)h.y + o[2] * (double)h.z;
-          double w[3] = {2 * oh * (double)h.x - o[0], 2 * oh * (double)h.y - o[1], 2 * oh * (double)h.z - o[2]};
+          double w[3] = {2 * oh * (double)h.x - o[0], 2 * oh * (double)h.y - o[1],
+                         2 * oh * (double)h.z - o[2]};
           known += mf_share(&white, o, w, oh, 500) / 40000;
         }
-      print_message("alpha %.1f theta %.2f: %.4f back, metal %.4f\n", alphas[i], theta, back, known);
-      if (t == 0) assert_true(fabs((double)vl_measured_albedo(m, 0, 500) - known) < 0.004);
+      print_message("alpha %.1f theta %.2f: %.4f back, metal %.4f\n", alphas[i], theta, back,
+                    known);
+      if (t == 0)
+        assert_true(fabs((double)vl_measured_albedo(m, 0, 500) - known) < 0.004);
       assert_true(back < 1.001 && fabs(back - known) < 0.006);
     }
     vl_measured_free(s->context, m);
@@ -244,12 +272,15 @@ static void reciprocity(void **state) {
     put_surface(b, m, BATCH);
     put_random(b, BATCH, &rng, 0.2);
     *c = *b;
-    memcpy(c->ox, b->ix, sizeof b->ox), memcpy(c->oy, b->iy, sizeof b->ox), memcpy(c->oz, b->iz, sizeof b->ox);
-    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->ox), memcpy(c->iz, b->oz, sizeof b->ox);
+    memcpy(c->ox, b->ix, sizeof b->ox), memcpy(c->oy, b->iy, sizeof b->ox),
+        memcpy(c->oz, b->iz, sizeof b->ox);
+    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->ox),
+        memcpy(c->iz, b->oz, sizeof b->ox);
     batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, b);
     batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, c);
     for (uint32_t i = 0; i < BATCH; i++) {
-      double f = (double)(b->value[0][i] / fabsf(b->iz[i])), g = (double)(c->value[0][i] / fabsf(c->iz[i]));
+      double f = (double)(b->value[0][i] / fabsf(b->iz[i])),
+             g = (double)(c->value[0][i] / fabsf(c->iz[i]));
       off += fabs(f - g), all += f + g;
     }
     print_message("surface %u: not reciprocal %.4f\n", k, off / all);
@@ -260,7 +291,8 @@ static void reciprocity(void **state) {
 
 /* ---- what files may say ---- */
 
-/* Spectra that hold f cos itself (no "jacobian") mean the same; so does a part of a symmetric whole. */
+/* Spectra that hold f cos itself (no "jacobian") mean the same; so does a part of a symmetric
+ * whole. */
 static void forms(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
@@ -273,8 +305,10 @@ static void forms(void **state) {
     other.plain = form == 0;
     other.parts = form == 0 ? 1 : form == 1 ? 2 : 4;
     vlMeasured *m = measure(s, &other, false);
-    assert_true(fabsf(vl_measured_albedo(m, 0, 500) - vl_measured_albedo(whole, 0, 500)) < 0.01f);
-    assert_true(m->scaled == (form != 0) && m->halves == (form == 1) && m->quarters == (form == 2));
+    assert_true(fabsf(vl_measured_albedo(m, 0, 500) - vl_measured_albedo(whole, 0, 500)) <
+                0.01f);
+    assert_true(m->scaled == (form != 0) && m->halves == (form == 1) &&
+                m->quarters == (form == 2));
     statRng rng = stat_rng(80);
     double off = 0, all = 0;
     put_surface(b, whole, BATCH);
@@ -294,7 +328,8 @@ static void forms(void **state) {
   vl_measured_free(s->context, whole);
 }
 
-/* Between wavelengths straight lines, beyond them the last; colours are those of the spectra. */
+/* Between wavelengths straight lines, beyond them the last; colours are those of the spectra.
+ */
 static void wavelengths(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
@@ -316,10 +351,12 @@ static void wavelengths(void **state) {
   /* sRGB by integration */
   double sum[3] = {0}, white[3] = {0};
   float matrix[9];
-  const float *observer[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()}, *light = vl_space_illuminant(VL_SPACE_SRGB);
+  const float *observer[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()},
+              *light = vl_space_illuminant(VL_SPACE_SRGB);
   vl_rgb_from_xyz(VL_SPACE_SRGB, matrix);
   for (int l = 0; l < VL_LAMBDA_COUNT; l++) {
-    for (uint32_t i = 0; i < 16; i++) b->lambda[0][i] = 360.0f + (float)l;
+    for (uint32_t i = 0; i < 16; i++)
+      b->lambda[0][i] = 360.0f + (float)l;
     batch_eval(s->kernels, VL_BSDF_MEASURED, 1, b);
     for (int k = 0; k < 3; k++)
       for (int d = 0; d < 3; d++) {
@@ -330,17 +367,20 @@ static void wavelengths(void **state) {
   *c = *b;
   put_surface(c, rgb, 16);
   batch_eval(s->kernels, VL_BSDF_MEASURED, 16, c);
-  for (int k = 0; k < 3; k++) assert_true(vl_measured_albedo(rgb, k, 0) < 1 && vl_measured_albedo(rgb, k, 0) > 0.2f);
+  for (int k = 0; k < 3; k++)
+    assert_true(vl_measured_albedo(rgb, k, 0) < 1 && vl_measured_albedo(rgb, k, 0) > 0.2f);
   assert_true(vl_measured_albedo(rgb, 0, 0) > vl_measured_albedo(rgb, 2, 0));
   for (int k = 0; k < 3; k++)
-    assert_true(fabs(sum[k] / white[k] / (double)c->value[k][0] - 1) < 1e-4 && c->value[3][0] == 0);
+    assert_true(fabs(sum[k] / white[k] / (double)c->value[k][0] - 1) < 1e-4 &&
+                c->value[3][0] == 0);
   vl_measured_free(s->context, m);
   vl_measured_free(s->context, rgb);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(maps),        cmocka_unit_test(values), cmocka_unit_test(sampling),   cmocka_unit_test(furnace),
-      cmocka_unit_test(reciprocity), cmocka_unit_test(forms),  cmocka_unit_test(wavelengths)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(maps),        cmocka_unit_test(values),
+                                     cmocka_unit_test(sampling),    cmocka_unit_test(furnace),
+                                     cmocka_unit_test(reciprocity), cmocka_unit_test(forms),
+                                     cmocka_unit_test(wavelengths)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

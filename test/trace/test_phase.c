@@ -1,5 +1,6 @@
-/* test_phase.c: the phase function integrates to 1 over the sphere, is sampled by its density and is reciprocal; free
- * flights and transmittances through a grid do not depend on its majorants. */
+/* test_phase.c: the phase function integrates to 1 over the sphere, is sampled by its density
+ * and is reciprocal; free flights and transmittances through a grid do not depend on its
+ * majorants. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +12,8 @@
 #include "trace/medium/medium.h"
 #include "trace/medium/phase.h"
 
-static const float gs[] = {-0.99f, -0.8f, -0.3f, -0.0005f, 0.0f, 0.0005f, 0.002f, 0.3f, 0.7f, 0.95f, 0.99f};
+static const float gs[] = {-0.99f, -0.8f, -0.3f, -0.0005f, 0.0f, 0.0005f,
+                           0.002f, 0.3f,  0.7f,  0.95f,    0.99f};
 enum { GS = sizeof gs / sizeof *gs };
 
 static void normalised(void **state) {
@@ -19,12 +21,13 @@ static void normalised(void **state) {
   for (int i = 0; i < GS; i++) {
     double sum = 0, mean = 0;
     const int n = 200000;
-    for (int k = 0; k < n; k++) { /* finer where it is steep: cosine = 1 - 2 x^3 from both ends */
+    for (int k = 0; k < n;
+         k++) { /* finer where it is steep: cosine = 1 - 2 x^3 from both ends */
       double x = (k + 0.5) / n, cosine = 1 - 2 * x * x * x, width = 6 * x * x / n;
       sum += vl_phase(gs[i], (float)cosine) * 2 * M_PI * width * (gs[i] > 0);
       sum += vl_phase(gs[i], (float)-cosine) * 2 * M_PI * width * !(gs[i] > 0);
-      mean +=
-          vl_phase(gs[i], (float)(gs[i] > 0 ? cosine : -cosine)) * 2 * M_PI * width * (gs[i] > 0 ? cosine : -cosine);
+      mean += vl_phase(gs[i], (float)(gs[i] > 0 ? cosine : -cosine)) * 2 * M_PI * width *
+              (gs[i] > 0 ? cosine : -cosine);
     }
     if (!(fabs(sum - 1) < 1e-3) || !(fabs(mean - (double)gs[i]) < 2e-3))
       fail_msg("g = %g: integral %g, mean cosine %g", (double)gs[i], sum, mean);
@@ -55,7 +58,8 @@ static void sampled(void **state) {
       stat_sphere_add(hist, (double)w.x, (double)w.y, (double)w.z);
     }
     statResult r = stat_sphere_test(hist, lobe_pdf, &lobe, 0.0);
-    if (!stat_accept(r, GS)) fail_msg("g = %g: p = %g", (double)gs[i], r.p);
+    if (!stat_accept(r, GS))
+      fail_msg("g = %g: p = %g", (double)gs[i], r.p);
   }
 }
 
@@ -66,7 +70,8 @@ static void ends(void **state) {
   for (int i = 0; i < GS; i++)
     for (int a = 0; a < 4; a++)
       for (int b = 0; b < 4; b++) {
-        vlVec3 d = vl_vec3(0, 0, a & 1 ? -1.0f : 1.0f), w = vl_phase_sample(gs[i], d, u[a], u[b]);
+        vlVec3 d = vl_vec3(0, 0, a & 1 ? -1.0f : 1.0f),
+               w = vl_phase_sample(gs[i], d, u[a], u[b]);
         assert_true(fabs((double)vl_length(w) - 1) < 1e-6);
         float p = vl_phase(gs[i], vl_dot(d, w));
         assert_true(p > 0 && p < 1e6f);
@@ -83,11 +88,15 @@ typedef struct Fog {
 static Fog fog(float factor, bool scatters) {
   Fog f = {.density = {1, 2, 0.5f, 3, 0, 1, 1, 0, 2, 1, 1, 4}};
   static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  f.medium = (vlWorldMedium){.kind = VL_MEDIUM_GRID, .scatters = scatters, .high = {3, 2, 2}, .cells = {3, 2, 2}};
-  f.medium.sigma_a = (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = 1, .rgb = {0.2f, 0.4f, 0.1f}};
-  f.medium.sigma_s = (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = scatters ? 1 : 0, .rgb = {0.5f, 0.2f, 0.7f}};
+  f.medium = (vlWorldMedium){
+      .kind = VL_MEDIUM_GRID, .scatters = scatters, .high = {3, 2, 2}, .cells = {3, 2, 2}};
+  f.medium.sigma_a =
+      (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = 1, .rgb = {0.2f, 0.4f, 0.1f}};
+  f.medium.sigma_s = (vlSpectral){
+      .kind = VL_SPECTRAL_RGB, .scale = scatters ? 1 : 0, .rgb = {0.5f, 0.2f, 0.7f}};
   memcpy(f.medium.medium_from_world, identity, sizeof identity);
-  for (int i = 0; i < 12; i++) f.majorants[i] = 4.0f * factor;
+  for (int i = 0; i < 12; i++)
+    f.majorants[i] = 4.0f * factor;
   return f;
 }
 static void point_in(Fog *f) {
@@ -118,11 +127,13 @@ static void majorants_do_not_show(void **state) {
     for (int k = 0; k < steps; k++) {
       float t = t0 + (t1 - t0) * ((float)k + 0.5f) / (float)steps;
       vlVec3 p = vl_add(o, vl_mul(d, t));
-      if (p.x < 0 || p.x > 3 || p.y < 0 || p.y > 2 || p.z < 0 || p.z > 2) continue;
+      if (p.x < 0 || p.x > 3 || p.y < 0 || p.y > 2 || p.z < 0 || p.z > 2)
+        continue;
       float lambda[4] = {0};
       vlMediumLight whole = vl_medium_coefficients(&exact.medium, lambda);
       vlMediumLight at = vl_medium_at(&exact.medium, &whole, lambda, p, false);
-      for (int c = 0; c < 3; c++) depth[c] += (double)(at.a[c] + at.s[c]) * (double)(t1 - t0) / steps;
+      for (int c = 0; c < 3; c++)
+        depth[c] += (double)(at.a[c] + at.s[c]) * (double)(t1 - t0) / steps;
     }
     for (int m = 0; m < 3; m++) {
       Fog f = fog((const float[]){1.0f, 1.7f, 6.0f}[m], scatters);
@@ -135,25 +146,31 @@ static void majorants_do_not_show(void **state) {
         a.hero = b.hero = (int)(k % 3);
         if (vl_track(&f.medium, o, d, t0, t1, false, &a, radiance, &t) == VL_FLIGHT_PASSED) {
           double inv = 1 / (double)vl_flight_mean(a.u, 3);
-          for (int c = 0; c < 3; c++) flown[c] += (double)a.beta[c] * inv, square[c] += pow((double)a.beta[c] * inv, 2);
+          for (int c = 0; c < 3; c++)
+            flown[c] += (double)a.beta[c] * inv, square[c] += pow((double)a.beta[c] * inv, 2);
         }
         vl_track_through(&f.medium, o, d, t0, t1, &b);
         double inv = 1 / (double)vl_flight_mean(b.l, 3);
         for (int c = 0; c < 3; c++)
-          passed[c] += (double)b.beta[c] * inv, ratio_square[c] += pow((double)b.beta[c] * inv, 2);
+          passed[c] += (double)b.beta[c] * inv,
+              ratio_square[c] += pow((double)b.beta[c] * inv, 2);
       }
       for (int c = 0; c < 3; c++) {
-        double expected = exp(-depth[c]), e1 = sqrt(square[c]) / n, e2 = sqrt(ratio_square[c]) / n;
-        if (fabs(flown[c] / n - expected) > 4.5 * e1 + 1e-4 || fabs(passed[c] / n - expected) > 4.5 * e2 + 1e-4)
-          fail_msg("scatters %d, majorants %d, channel %d: %g (+- %g) and %g (+- %g), expected %g", scatters, m, c,
-                   flown[c] / n, e1, passed[c] / n, e2, expected);
+        double expected = exp(-depth[c]), e1 = sqrt(square[c]) / n,
+               e2 = sqrt(ratio_square[c]) / n;
+        if (fabs(flown[c] / n - expected) > 4.5 * e1 + 1e-4 ||
+            fabs(passed[c] / n - expected) > 4.5 * e2 + 1e-4)
+          fail_msg(
+              "scatters %d, majorants %d, channel %d: %g (+- %g) and %g (+- %g), expected %g",
+              scatters, m, c, flown[c] / n, e1, passed[c] / n, e2, expected);
       }
     }
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(normalised), cmocka_unit_test(sampled), cmocka_unit_test(ends),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(normalised), cmocka_unit_test(sampled),
+                                     cmocka_unit_test(ends),
                                      cmocka_unit_test(majorants_do_not_show)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

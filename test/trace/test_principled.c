@@ -1,6 +1,6 @@
-/* test_principled.c: the principled BSDF: white surfaces in a white furnace, reciprocity, densities by chi-square,
- * agreement of sampling and evaluation, the thin film against Fresnel and against interference computed here; disabled
- * layers change nothing. */
+/* test_principled.c: the principled BSDF: white surfaces in a white furnace, reciprocity,
+ * densities by chi-square, agreement of sampling and evaluation, the thin film against Fresnel
+ * and against interference computed here; disabled layers change nothing. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,8 +13,8 @@
 /* What a material says; least and most: bounds of what a white one sends back of a furnace. */
 typedef struct Look {
   const char *name;
-  float metallic, roughness, transmission, solid, beyond, coat, coat_roughness, sheen, sheen_roughness, film, film_nm,
-      anisotropy, base, index;
+  float metallic, roughness, transmission, solid, beyond, coat, coat_roughness, sheen,
+      sheen_roughness, film, film_nm, anisotropy, base, index;
   double least, most;
 } Look;
 static const Look looks[] = {
@@ -22,11 +22,31 @@ static const Look looks[] = {
     {.name = "dielectric", .base = 1, .roughness = 0.5f, .least = 0.998, .most = 1.001},
     {.name = "rough dielectric", .base = 1, .roughness = 1, .least = 0.999, .most = 1.001},
     {.name = "mirror", .base = 1, .metallic = 1, .least = 0.999, .most = 1.001},
-    {.name = "metal", .base = 1, .metallic = 1, .roughness = 0.5f, .least = 0.997, .most = 1.003},
-    {.name = "rough metal", .base = 1, .metallic = 1, .roughness = 1, .least = 0.996, .most = 1.004},
-    {.name = "half metal", .base = 1, .metallic = 0.5f, .roughness = 0.4f, .least = 0.996, .most = 1.003},
+    {.name = "metal",
+     .base = 1,
+     .metallic = 1,
+     .roughness = 0.5f,
+     .least = 0.997,
+     .most = 1.003},
+    {.name = "rough metal",
+     .base = 1,
+     .metallic = 1,
+     .roughness = 1,
+     .least = 0.996,
+     .most = 1.004},
+    {.name = "half metal",
+     .base = 1,
+     .metallic = 0.5f,
+     .roughness = 0.4f,
+     .least = 0.996,
+     .most = 1.003},
     {.name = "sheet", .base = 1, .transmission = 1, .least = 0.999, .most = 1.001},
-    {.name = "rough sheet", .base = 1, .roughness = 0.6f, .transmission = 1, .least = 0.997, .most = 1.003},
+    {.name = "rough sheet",
+     .base = 1,
+     .roughness = 0.6f,
+     .transmission = 1,
+     .least = 0.997,
+     .most = 1.003},
     {.name = "solid", .base = 1, .transmission = 1, .solid = 1, .least = 0.999, .most = 1.001},
     {.name = "frosted glass",
      .base = 1,
@@ -35,7 +55,13 @@ static const Look looks[] = {
      .solid = 1,
      .least = 0.997,
      .most = 1.003},
-    {.name = "rough glass", .base = 1, .roughness = 0.6f, .transmission = 1, .solid = 1, .least = 0.997, .most = 1.003},
+    {.name = "rough glass",
+     .base = 1,
+     .roughness = 0.6f,
+     .transmission = 1,
+     .solid = 1,
+     .least = 0.997,
+     .most = 1.003},
     {.name = "rough diamond",
      .base = 1,
      .roughness = 0.7f,
@@ -60,7 +86,13 @@ static const Look looks[] = {
      .index = 1.05f,
      .least = 0.997,
      .most = 1.003},
-    {.name = "roughest glass", .base = 1, .roughness = 1, .transmission = 1, .solid = 1, .least = 0.997, .most = 1.003},
+    {.name = "roughest glass",
+     .base = 1,
+     .roughness = 1,
+     .transmission = 1,
+     .solid = 1,
+     .least = 0.997,
+     .most = 1.003},
     {.name = "half frosted",
      .base = 1,
      .metallic = 0.3f,
@@ -69,10 +101,25 @@ static const Look looks[] = {
      .solid = 1,
      .least = 0.99,
      .most = 1.01},
-    {.name = "half passing", .base = 1, .roughness = 0.3f, .transmission = 0.5f, .least = 0.997, .most = 1.003},
-    {.name = "leaf", .base = 1, .roughness = 0.5f, .beyond = 0.5f, .least = 0.998, .most = 1.001},
+    {.name = "half passing",
+     .base = 1,
+     .roughness = 0.3f,
+     .transmission = 0.5f,
+     .least = 0.997,
+     .most = 1.003},
+    {.name = "leaf",
+     .base = 1,
+     .roughness = 0.5f,
+     .beyond = 0.5f,
+     .least = 0.998,
+     .most = 1.001},
     {.name = "coat", .base = 1, .roughness = 0.5f, .coat = 1, .least = 0.993, .most = 1.004},
-    {.name = "coated mirror", .base = 1, .metallic = 1, .coat = 1, .least = 0.996, .most = 1.001},
+    {.name = "coated mirror",
+     .base = 1,
+     .metallic = 1,
+     .coat = 1,
+     .least = 0.996,
+     .most = 1.001},
     {.name = "coated metal",
      .base = 1,
      .metallic = 1,
@@ -88,8 +135,20 @@ static const Look looks[] = {
      .sheen_roughness = 0.3f,
      .least = 0.996,
      .most = 1.003},
-    {.name = "cloth", .base = 1, .roughness = 0.5f, .sheen = 1, .sheen_roughness = 0.7f, .least = 0.996, .most = 1.003},
-    {.name = "film", .base = 1, .roughness = 0.2f, .film = 1, .film_nm = 400, .least = 0.955, .most = 1.001},
+    {.name = "cloth",
+     .base = 1,
+     .roughness = 0.5f,
+     .sheen = 1,
+     .sheen_roughness = 0.7f,
+     .least = 0.996,
+     .most = 1.003},
+    {.name = "film",
+     .base = 1,
+     .roughness = 0.2f,
+     .film = 1,
+     .film_nm = 400,
+     .least = 0.955,
+     .most = 1.001},
     {.name = "film on metal",
      .base = 1,
      .metallic = 1,
@@ -147,7 +206,8 @@ static Surface surface_of(const Look *l, float rows[VL_BSDF_ROWS]) {
   rows[VL_P_FILM] = l->film, rows[VL_P_FILM_INDEX] = 1.3f, rows[VL_P_FILM_NM] = l->film_nm;
   float index = l->index > 0 ? l->index : 1.5f, root = (index - 1) / (index + 1);
   for (int c = 0; c < 4; c++)
-    rows[VL_P_F0 + c] = root * root, rows[VL_P_THROUGH + c] = 1, rows[VL_P_SHEEN + c] = l->sheen;
+    rows[VL_P_F0 + c] = root * root, rows[VL_P_THROUGH + c] = 1,
+                   rows[VL_P_SHEEN + c] = l->sheen;
   float alpha = fmaxf(l->roughness * l->roughness, 1e-3f);
   return (Surface){.kind = VL_BSDF_PRINCIPLED,
                    .reflectance = l->base,
@@ -161,9 +221,10 @@ typedef struct Kept {
   double mean, error;
 } Kept;
 
-/* What a surface sends back of a furnace. Channel 0 of the base is white where base is 1 (batch_surface darkens the
- * others). */
-static Kept kept_by(const State *s, const Surface *surface, double cosine, int turns, statRng *rng) {
+/* What a surface sends back of a furnace. Channel 0 of the base is white where base is 1
+ * (batch_surface darkens the others). */
+static Kept kept_by(const State *s, const Surface *surface, double cosine, int turns,
+                    statRng *rng) {
   Batch *b = s->batch;
   double sum = 0, square = 0;
   for (uint32_t j = 0; j < BATCH; j++) {
@@ -199,8 +260,8 @@ static void furnace(void **state) {
   }
 }
 
-/* Mixtures of a white base with what lies over it, at random: `lobes` says which take part. Together they span what the
- * table of docs/principled.md gives for such mixtures. */
+/* Mixtures of a white base with what lies over it, at random: `lobes` says which take part.
+ * Together they span what the table of docs/principled.md gives for such mixtures. */
 enum { SHEEN = 1, COAT = 2, METAL = 4, FILM = 8, CLEAR = 16, BEYOND = 32 };
 typedef struct Mixture {
   const char *name;
@@ -246,10 +307,13 @@ static void mixtures_keep_what_is_told(void **state) {
       Look look = random_look(mixtures[m].lobes, &rng);
       float rows[VL_BSDF_ROWS];
       Surface surface = surface_of(&look, rows);
-      Kept kept = kept_by(s, &surface, pow(stat_double(&rng), 2) * 0.97 + 0.03, SOME_TURNS, &rng);
-      low = fmin(low, kept.mean + 4 * kept.error), high = fmax(high, kept.mean - 4 * kept.error);
+      Kept kept =
+          kept_by(s, &surface, pow(stat_double(&rng), 2) * 0.97 + 0.03, SOME_TURNS, &rng);
+      low = fmin(low, kept.mean + 4 * kept.error),
+      high = fmax(high, kept.mean - 4 * kept.error);
     }
-    if (!(low > mixtures[m].least && high < mixtures[m].most)) fail_msg("%s: %g to %g", mixtures[m].name, low, high);
+    if (!(low > mixtures[m].least && high < mixtures[m].most))
+      fail_msg("%s: %g to %g", mixtures[m].name, low, high);
   }
 }
 
@@ -260,18 +324,23 @@ static void reciprocity(void **state) {
   for (int k = 0; k < LOOKS; k++) {
     float rows[VL_BSDF_ROWS];
     Surface surface = surface_of(&looks[k], rows);
-    if (looks[k].roughness == 0) continue; /* values of sharp peaks are rounded more */
+    if (looks[k].roughness == 0)
+      continue; /* values of sharp peaks are rounded more */
     statRng rng = stat_rng((uint64_t)(1000 + k));
     for (uint32_t j = 0; j < BATCH; j++) {
       double o[3], w[3];
-      do stat_direction(&rng, o);
+      do
+        stat_direction(&rng, o);
       while (fabs(o[2]) < 0.05);
-      do stat_direction(&rng, w);
+      do
+        stat_direction(&rng, w);
       while (fabs(w[2]) < 0.05);
       batch_surface(a, j, &surface);
       batch_surface(b, j, &surface);
-      a->ox[j] = b->ix[j] = (float)o[0], a->oy[j] = b->iy[j] = (float)o[1], a->oz[j] = b->iz[j] = (float)o[2];
-      a->ix[j] = b->ox[j] = (float)w[0], a->iy[j] = b->oy[j] = (float)w[1], a->iz[j] = b->oz[j] = (float)w[2];
+      a->ox[j] = b->ix[j] = (float)o[0], a->oy[j] = b->iy[j] = (float)o[1],
+      a->oz[j] = b->iz[j] = (float)o[2];
+      a->ix[j] = b->ox[j] = (float)w[0], a->iy[j] = b->oy[j] = (float)w[1],
+      a->iz[j] = b->oz[j] = (float)w[2];
     }
     batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
     batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
@@ -280,15 +349,16 @@ static void reciprocity(void **state) {
       for (int c = 0; c < 4; c++) {
         double forth = (double)a->value[c][j] / fabs((double)a->iz[j]),
                back = (double)b->value[c][j] / fabs((double)b->iz[j]);
-        if (looks[k].solid > 0 && a->oz[j] * a->iz[j] < 0) { /* radiance over the squared index of where it travels */
+        if (looks[k].solid > 0 &&
+            a->oz[j] * a->iz[j] < 0) { /* radiance over the squared index of where it travels */
           double index = (double)surface.eta_s;
           forth /= a->oz[j] > 0 ? 1 : index * index;
           back /= b->oz[j] > 0 ? 1 : index * index;
         }
         lit += forth > 0;
         if (!(fabs(forth - back) <= 1e-4 * (fabs(forth) + 1e-4)))
-          fail_msg("%s: %g one way, %g the other (o.z %g, i.z %g)", looks[k].name, forth, back, (double)a->oz[j],
-                   (double)a->iz[j]);
+          fail_msg("%s: %g one way, %g the other (o.z %g, i.z %g)", looks[k].name, forth, back,
+                   (double)a->oz[j], (double)a->iz[j]);
       }
     assert_true(lit > BATCH / 2);
   }
@@ -310,12 +380,14 @@ static void chi_square(void **state) {
   State *s = *state;
   Batch *b = s->batch;
   static const double thetas[] = {0.3, 1.3, PI - 0.7};
-  const char *names[] = {"dielectric", "rough metal",   "rough sheet", "leaf",          "coated metal",  "velvet",
-                         "film",       "brushed metal", "everything",  "frosted solid", "roughest glass"};
+  const char *names[] = {"dielectric",   "rough metal",   "rough sheet",   "leaf",
+                         "coated metal", "velvet",        "film",          "brushed metal",
+                         "everything",   "frosted solid", "roughest glass"};
   for (int q = 0; q < 11; q++)
     for (int t = 0; t < 3; t++) {
       int k = 0;
-      while (strcmp(looks[k].name, names[q]) != 0) k++;
+      while (strcmp(looks[k].name, names[q]) != 0)
+        k++;
       float rows[VL_BSDF_ROWS];
       Surface surface = surface_of(&looks[k], rows);
       statRng rng = stat_rng((uint64_t)(q * 3 + t + 31));
@@ -339,7 +411,8 @@ static void chi_square(void **state) {
       }
       Direction d = {s};
       statResult r = stat_sphere_test(hist, density, &d, 2e-5);
-      if (!stat_accept(r, 30)) fail_msg("%s, theta %g: p %g, integral %g", names[q], thetas[t], r.p, r.integral);
+      if (!stat_accept(r, 30))
+        fail_msg("%s, theta %g: p %g, integral %g", names[q], thetas[t], r.p, r.integral);
       assert_true(r.integral < 1.0005);
     }
 }
@@ -348,7 +421,8 @@ static void sampled_is_evaluated(void **state) {
   State *s = *state;
   Batch *a = s->batch, *b = s->other;
   for (int k = 0; k < LOOKS; k++) {
-    if (looks[k].roughness == 0) continue;
+    if (looks[k].roughness == 0)
+      continue;
     float rows[VL_BSDF_ROWS];
     Surface surface = surface_of(&looks[k], rows);
     statRng rng = stat_rng((uint64_t)(500 + k));
@@ -363,19 +437,22 @@ static void sampled_is_evaluated(void **state) {
     *b = *a;
     batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
     for (uint32_t j = 0; j < BATCH; j++) {
-      if (a->flags[j] & VL_SAMPLED_NONE) continue;
+      if (a->flags[j] & VL_SAMPLED_NONE)
+        continue;
       bool crosses = a->oz[j] * a->iz[j] < 0;
       assert_true(((a->flags[j] & VL_SAMPLED_TRANSMISSION) != 0) == crosses);
       for (int c = 0; c < 4; c++) {
         double v = (double)b->value[c][j], w = (double)a->weight[c][j] * (double)a->pdf[j];
-        if (!(fabs(v - w) <= 1e-4 * (v + 1e-5))) fail_msg("%s: eval %g, sample %g", looks[k].name, v, w);
+        if (!(fabs(v - w) <= 1e-4 * (v + 1e-5)))
+          fail_msg("%s: eval %g, sample %g", looks[k].name, v, w);
       }
     }
   }
 }
 
 /* Reflection of a smooth film on black, by what the specular lobe sends back at one angle. */
-static double film_reflection(State *s, float nm, float index, double cosine, uint32_t channel) {
+static double film_reflection(State *s, float nm, float index, double cosine,
+                              uint32_t channel) {
   Look look = {.metallic = 1, .roughness = 0, .film = 1, .film_nm = nm, .base = 0.04f};
   float rows[VL_BSDF_ROWS];
   Surface surface = surface_of(&look, rows);
@@ -385,12 +462,14 @@ static double film_reflection(State *s, float nm, float index, double cosine, ui
   double sum = 0;
   for (uint32_t j = 0; j < BATCH; j++) {
     batch_surface(b, j, &surface);
-    for (int c = 0; c < 4; c++) b->reflectance[c][j] = 0.04f; /* an index of 1.5 */
+    for (int c = 0; c < 4; c++)
+      b->reflectance[c][j] = 0.04f; /* an index of 1.5 */
     batch_wo(b, j, acos(cosine), 0);
   }
   batch_numbers(b, BATCH, &rng);
   batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
-  for (uint32_t j = 0; j < BATCH; j++) sum += b->flags[j] & VL_SAMPLED_NONE ? 0 : (double)b->weight[channel][j];
+  for (uint32_t j = 0; j < BATCH; j++)
+    sum += b->flags[j] & VL_SAMPLED_NONE ? 0 : (double)b->weight[channel][j];
   return sum / BATCH;
 }
 
@@ -398,13 +477,15 @@ static void thin_film(void **state) {
   State *s = *state;
   /* No thickness: the bare base, (1.5 - 1)^2 / (1.5 + 1)^2 at normal incidence. */
   assert_true(fabs(film_reflection(s, 0, 1.3f, 0.99999, 0) - 0.04) < 2e-4);
-  /* A quarter wave of index sqrt(1.5) makes it vanish; half a wave does nothing. Channel 1 is 500 nm. */
+  /* A quarter wave of index sqrt(1.5) makes it vanish; half a wave does nothing. Channel 1 is
+   * 500 nm. */
   float root = sqrtf(1.5f);
   assert_true(film_reflection(s, 500 / (4 * root), root, 0.99999, 1) < 2e-4);
   assert_true(fabs(film_reflection(s, 500 / (2 * root), root, 0.99999, 1) - 0.04) < 3e-4);
   /* A quarter wave of a denser film: ((n0 ns - n^2) / (n0 ns + n^2))^2. */
   double n = 2.2, expected = pow((1.5 - n * n) / (1.5 + n * n), 2);
-  assert_true(fabs(film_reflection(s, (float)(500 / (4 * n)), (float)n, 0.99999, 1) - expected) < 2e-3);
+  assert_true(
+      fabs(film_reflection(s, (float)(500 / (4 * n)), (float)n, 0.99999, 1) - expected) < 2e-3);
 }
 
 /* A layer of weight 0 gives the same bits, whatever its other parameters. */
@@ -414,7 +495,8 @@ static void off_is_off(void **state) {
   Look look = {.roughness = 0.4f, .metallic = 0.2f, .base = 0.8f};
   float plain[VL_BSDF_ROWS], other[VL_BSDF_ROWS];
   Surface surface = surface_of(&look, plain), same = surface_of(&look, other);
-  other[VL_P_COAT_ALPHA] = 0.3f, other[VL_P_COAT_X] = 0.6f, other[VL_P_COAT_Z] = 0.8f, other[VL_P_SHEEN_ALPHA] = 0.2f;
+  other[VL_P_COAT_ALPHA] = 0.3f, other[VL_P_COAT_X] = 0.6f, other[VL_P_COAT_Z] = 0.8f,
+  other[VL_P_SHEEN_ALPHA] = 0.2f;
   other[VL_P_FILM_NM] = 700, other[VL_P_FILM_INDEX] = 2;
   statRng rng = stat_rng(9);
   for (uint32_t j = 0; j < BATCH; j++) {
@@ -422,10 +504,12 @@ static void off_is_off(void **state) {
     stat_direction(&rng, d);
     batch_surface(a, j, &surface);
     batch_surface(b, j, &same);
-    a->ox[j] = b->ox[j] = (float)d[0], a->oy[j] = b->oy[j] = (float)d[1], a->oz[j] = b->oz[j] = (float)d[2];
+    a->ox[j] = b->ox[j] = (float)d[0], a->oy[j] = b->oy[j] = (float)d[1],
+    a->oz[j] = b->oz[j] = (float)d[2];
   }
   batch_numbers(a, BATCH, &rng);
-  memcpy(b->lobe, a->lobe, sizeof a->lobe), memcpy(b->u, a->u, sizeof a->u), memcpy(b->v, a->v, sizeof a->v);
+  memcpy(b->lobe, a->lobe, sizeof a->lobe), memcpy(b->u, a->u, sizeof a->u),
+      memcpy(b->v, a->v, sizeof a->v);
   batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
   batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
   assert_memory_equal(a->weight, b->weight, sizeof a->weight);
@@ -434,9 +518,12 @@ static void off_is_off(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(furnace),    cmocka_unit_test(mixtures_keep_what_is_told), cmocka_unit_test(reciprocity),
-      cmocka_unit_test(chi_square), cmocka_unit_test(sampled_is_evaluated),       cmocka_unit_test(thin_film),
-      cmocka_unit_test(off_is_off)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(furnace),
+                                     cmocka_unit_test(mixtures_keep_what_is_told),
+                                     cmocka_unit_test(reciprocity),
+                                     cmocka_unit_test(chi_square),
+                                     cmocka_unit_test(sampled_is_evaluated),
+                                     cmocka_unit_test(thin_film),
+                                     cmocka_unit_test(off_is_off)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,5 +1,5 @@
-/* Samplers: exact stratification, uniform projections, independent dimensions, the same bits on every instruction set
- * and in every grouping, any spp. */
+/* Samplers: exact stratification, uniform projections, independent dimensions, the same bits on
+ * every instruction set and in every grouping, any spp. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,16 +11,17 @@
 #include "velo/sampler.h"
 
 enum { KINDS = VL_SAMPLER_ZSOBOL + 1, BATCH = 4096 };
-static const char *const NAMES[KINDS] = {"independent", "regular", "stratified", "nrooks", "multi-jittered",
-                                         "hammersley",  "halton",  "sobol",      "zsobol"};
+static const char *const NAMES[KINDS] = {"independent", "regular",        "stratified",
+                                         "nrooks",      "multi-jittered", "hammersley",
+                                         "halton",      "sobol",          "zsobol"};
 
 static const vlSamplerKernels *kernels(void) {
   return vl_sampler_kernels(vl_isa_best());
 }
 
 /* The first n indices of one pixel. */
-static void pixel_set(const vlSampler *s, int x, int y, uint32_t first, uint32_t n, uint32_t dimension, float *u,
-                      float *v) {
+static void pixel_set(const vlSampler *s, int x, int y, uint32_t first, uint32_t n,
+                      uint32_t dimension, float *u, float *v) {
   static int32_t px[BATCH], py[BATCH];
   static uint32_t index[BATCH];
   assert_true(VL_PAD(n) <= BATCH);
@@ -44,7 +45,8 @@ static bool one_each(const float *u, uint32_t count) {
   memset(seen, 0, count);
   for (uint32_t i = 0; i < count; i++) {
     uint32_t c = cell_of(u[i], count);
-    if (c >= count || seen[c]++) return false;
+    if (c >= count || seen[c]++)
+      return false;
   }
   return true;
 }
@@ -55,7 +57,8 @@ static bool is_net(const float *u, const float *v, uint32_t k) {
     memset(seen, 0, 1u << k);
     for (uint32_t i = 0; i < 1u << k; i++) {
       uint32_t c = cell_of(u[i], 1u << a) << (k - a) | cell_of(v[i], 1u << (k - a));
-      if (seen[c]++) return false;
+      if (seen[c]++)
+        return false;
     }
   }
   return true;
@@ -65,7 +68,8 @@ static float u_[BATCH], v_[BATCH], w_[BATCH];
 
 static void test_range(void **state) {
   (void)state;
-  static const uint32_t SPP[] = {0, 1, 2, 3, 5, 7, 13, 64, 100, 1000, 1u << 20, 3000000000u, 0xffffffffu};
+  static const uint32_t SPP[] = {0,  1,   2,    3,        5,           7,          13,
+                                 64, 100, 1000, 1u << 20, 3000000000u, 0xffffffffu};
   for (int kind = 0; kind < KINDS; kind++)
     for (size_t k = 0; k < sizeof SPP / sizeof SPP[0]; k++) {
       vlSampler s;
@@ -73,16 +77,19 @@ static void test_range(void **state) {
       for (uint32_t first = 0; first < 3; first++) {
         uint32_t start = first == 0 ? 0 : first == 1 ? s.spp - 50 : 0xffffff00u;
         pixel_set(&s, 65535, 65535 - (int)first, start, 128, first * 97, u_, v_);
-        for (int i = 0; i < 128; i++) assert_true(u_[i] >= 0 && u_[i] < 1 && v_[i] >= 0 && v_[i] < 1);
+        for (int i = 0; i < 128; i++)
+          assert_true(u_[i] >= 0 && u_[i] < 1 && v_[i] >= 0 && v_[i] < 1);
         pixel_set(&s, 65535, 65535, start, 128, first * 97 + 1, u_, NULL);
-        for (int i = 0; i < 128; i++) assert_true(u_[i] >= 0 && u_[i] < 1);
+        for (int i = 0; i < 128; i++)
+          assert_true(u_[i] >= 0 && u_[i] < 1);
       }
     }
 }
 
 static void test_strata(void **state) {
   (void)state;
-  static const uint32_t SPP[] = {1, 2, 3, 4, 5, 7, 12, 16, 17, 25, 36, 64, 97, 100, 128, 500, 1024};
+  static const uint32_t SPP[] = {1,  2,  3,  4,  5,   7,   12,  16,  17,
+                                 25, 36, 64, 97, 100, 128, 500, 1024};
   for (size_t k = 0; k < sizeof SPP / sizeof SPP[0]; k++) {
     uint32_t spp = SPP[k];
     for (uint32_t dimension = 0; dimension < 40; dimension += 7) {
@@ -94,23 +101,29 @@ static void test_strata(void **state) {
         assert_true(one_each(u_, spp));
         pixel_set(&s, x, y, spp, spp, dimension, w_, NULL); /* the next set */
         assert_true(one_each(w_, spp));
-        if (kind != VL_SAMPLER_REGULAR && spp > 16) assert_true(memcmp(u_, w_, spp * 4) != 0);
+        if (kind != VL_SAMPLER_REGULAR && spp > 16)
+          assert_true(memcmp(u_, w_, spp * 4) != 0);
         pixel_set(&s, x, y, 0, spp, dimension, u_, v_);
         if (kind == VL_SAMPLER_NROOKS || kind == VL_SAMPLER_MULTI_JITTERED) {
-          assert_true(one_each(u_, spp) || (kind == VL_SAMPLER_MULTI_JITTERED && s.wide != s.grid_y));
+          assert_true(one_each(u_, spp) ||
+                      (kind == VL_SAMPLER_MULTI_JITTERED && s.wide != s.grid_y));
           assert_true(one_each(v_, spp));
         }
-        if (kind == VL_SAMPLER_HAMMERSLEY) assert_true(one_each(u_, spp));
-        if (kind == VL_SAMPLER_REGULAR || kind == VL_SAMPLER_STRATIFIED || kind == VL_SAMPLER_MULTI_JITTERED) {
+        if (kind == VL_SAMPLER_HAMMERSLEY)
+          assert_true(one_each(u_, spp));
+        if (kind == VL_SAMPLER_REGULAR || kind == VL_SAMPLER_STRATIFIED ||
+            kind == VL_SAMPLER_MULTI_JITTERED) {
           /* rows first, then columns within the row: each cell of equal area holds one */
           static uint8_t seen[BATCH];
           memset(seen, 0, spp);
           uint32_t edge = s.wide * s.grid_x;
-          if (kind == VL_SAMPLER_MULTI_JITTERED && s.wide != s.grid_y) continue;
+          if (kind == VL_SAMPLER_MULTI_JITTERED && s.wide != s.grid_y)
+            continue;
           for (uint32_t i = 0; i < spp; i++) {
             uint32_t q = cell_of(v_[i], spp);
             uint32_t across = q < edge ? s.grid_x : s.grid_x - 1;
-            uint32_t start = q < edge ? q / across * across : edge + (q - edge) / across * across;
+            uint32_t start =
+                q < edge ? q / across * across : edge + (q - edge) / across * across;
             uint32_t cell = start + cell_of(u_[i], across);
             assert_true(cell < spp);
             assert_int_equal(seen[cell]++, 0);
@@ -168,10 +181,11 @@ static void test_nets(void **state) {
     vlSampler s;
     vl_sampler_init(&s, VL_SAMPLER_HALTON, 5, 640, 480, POWERS[i][1]);
     pixel_set(&s, 9, 8, 0, POWERS[i][1], POWERS[i][0], u_, NULL);
-    static uint8_t
-        seen[BATCH]; /* rounding of sums may move a number across a cell's border: look at cells shrunk by it */
+    static uint8_t seen[BATCH]; /* rounding of sums may move a number across a cell's border:
+                                   look at cells shrunk by it */
     memset(seen, 0, sizeof seen);
-    for (uint32_t k = 0; k < POWERS[i][1]; k++) assert_int_equal(seen[cell_of(u_[k] + 1e-7f, POWERS[i][1])]++, 0);
+    for (uint32_t k = 0; k < POWERS[i][1]; k++)
+      assert_int_equal(seen[cell_of(u_[k] + 1e-7f, POWERS[i][1])]++, 0);
   }
 }
 
@@ -187,22 +201,24 @@ static void test_columns(void **state) {
     for (uint32_t k = 0; k < 32; k++) {
       m[k] = k < s ? ROWS[d].first[k] : m[k - s] ^ m[k - s] << s;
       for (uint32_t q = 1; q < s && k >= s; q++)
-        if (ROWS[d].middle >> (s - 1 - q) & 1) m[k] ^= m[k - q] << q;
+        if (ROWS[d].middle >> (s - 1 - q) & 1)
+          m[k] ^= m[k - q] << q;
       assert_int_equal(ROWS[d].columns[k], vl_reverse_bits(m[k] << (31 - k)));
     }
   }
 }
 
-/* Two pairs that are drawn together: each elementary interval of 4 dimensions and volume 8 / 2^k holds 8 of 2^k points
- * (Sobol's quality parameter t is 3), each number alone is stratified; the same bits for all
- * sets and groupings. */
+/* Two pairs that are drawn together: each elementary interval of 4 dimensions and volume 8 /
+ * 2^k holds 8 of 2^k points (Sobol's quality parameter t is 3), each number alone is
+ * stratified; the same bits for all sets and groupings. */
 static void test_with(void **state) {
   (void)state;
   enum { LOG = 9, COUNT = 1 << LOG, T = 3, WITH = 2, PAIR = 11 };
   static float p[4][COUNT];
   int32_t px[COUNT], py[COUNT];
   uint32_t index[COUNT];
-  for (uint32_t i = 0; i < COUNT; i++) px[i] = 31, py[i] = 7, index[i] = i;
+  for (uint32_t i = 0; i < COUNT; i++)
+    px[i] = 31, py[i] = 7, index[i] = i;
   for (int kind = 0; kind < KINDS; kind++) {
     vlSampler s;
     vl_sampler_init(&s, (vlSamplerKind)kind, 5, 640, 480, COUNT);
@@ -212,7 +228,8 @@ static void test_with(void **state) {
       vl_sampler_kernels(isa)->get_2d_with(&s, COUNT, px, py, index, PAIR, WITH, u_, v_);
       assert_memory_equal(u_, p[2], sizeof p[2]);
       assert_memory_equal(v_, p[3], sizeof p[3]);
-      vl_sampler_kernels(isa)->get_2d_with(&s, 48, px + 160, py + 160, index + 160, PAIR, WITH, u_, v_);
+      vl_sampler_kernels(isa)->get_2d_with(&s, 48, px + 160, py + 160, index + 160, PAIR, WITH,
+                                           u_, v_);
       assert_memory_equal(u_, p[2] + 160, 48 * sizeof *u_);
       assert_memory_equal(v_, p[3] + 160, 48 * sizeof *v_);
     }
@@ -228,21 +245,26 @@ static void test_with(void **state) {
           int d = bits - a - b - c;
           uint32_t seen[1 << (LOG - T)] = {0};
           for (uint32_t i = 0; i < COUNT; i++)
-            seen[((cell_of(p[0][i], 1u << a) << b | cell_of(p[1][i], 1u << b)) << c | cell_of(p[2][i], 1u << c)) << d |
+            seen[((cell_of(p[0][i], 1u << a) << b | cell_of(p[1][i], 1u << b)) << c |
+                  cell_of(p[2][i], 1u << c))
+                     << d |
                  cell_of(p[3][i], 1u << d)]++;
-          for (int k = 0; k < 1 << bits; k++) assert_int_equal(seen[k], 1 << T);
+          for (int k = 0; k < 1 << bits; k++)
+            assert_int_equal(seen[k], 1 << T);
         }
     assert_true(one_each(p[2], COUNT) && one_each(p[3], COUNT));
   }
 }
 
-/* Many pixels, few samples each: every 1-D and 2-D projection is uniform; also pairs from different calls. */
+/* Many pixels, few samples each: every 1-D and 2-D projection is uniform; also pairs from
+ * different calls. */
 static void test_uniform(void **state) {
   (void)state;
   enum { PIXELS = 4096, TESTS = KINDS * 12 };
   static const uint32_t SPP[2] = {16, 13}, DIMENSIONS[] = {0, 5, 190};
   for (int kind = 0; kind < KINDS; kind++) {
-    if (kind == VL_SAMPLER_REGULAR) continue; /* is not random: has its own test below */
+    if (kind == VL_SAMPLER_REGULAR)
+      continue; /* is not random: has its own test below */
     for (int k = 0; k < 2; k++)
       for (int d = 0; d < 3; d++) {
         vlSampler s;
@@ -250,7 +272,8 @@ static void test_uniform(void **state) {
         uint32_t grid[16 * 16] = {0}, joint[16 * 16] = {0}, line[64] = {0};
         double sum = 0, sum2 = 0;
         for (int p = 0; p < PIXELS; p++) {
-          /* Pixels far apart, one sample of each: independent of each other, whatever the kind */
+          /* Pixels far apart, one sample of each: independent of each other, whatever the kind
+           */
           int x = (p % 64) * 16 + p % 7, y = (p / 64) * 16 + p % 5;
           pixel_set(&s, x, y, (uint32_t)p % SPP[k], 1, DIMENSIONS[d], u_, v_);
           pixel_set(&s, x, y, (uint32_t)p % SPP[k], 1, DIMENSIONS[d] + 2, w_, NULL);
@@ -260,15 +283,20 @@ static void test_uniform(void **state) {
           sum += u_[0];
           sum2 += u_[0] * u_[0];
         }
-        statResult r = stat_chi2_uniform(grid, 256), q = stat_chi2_uniform(joint, 256), t = stat_chi2_uniform(line, 64);
+        statResult r = stat_chi2_uniform(grid, 256), q = stat_chi2_uniform(joint, 256),
+                   t = stat_chi2_uniform(line, 64);
         bool ok = stat_accept(r, TESTS) && stat_accept(q, TESTS) && stat_accept(t, TESTS);
-        if (!ok) fail_msg("%s, spp %u, dimension %u is not uniform", NAMES[kind], SPP[k], DIMENSIONS[d]);
-        assert_true(fabs(sum / PIXELS - 0.5) < 0.025 && fabs(sum2 / PIXELS - 1.0 / 3.0) < 0.025);
+        if (!ok)
+          fail_msg("%s, spp %u, dimension %u is not uniform", NAMES[kind], SPP[k],
+                   DIMENSIONS[d]);
+        assert_true(fabs(sum / PIXELS - 0.5) < 0.025 &&
+                    fabs(sum2 / PIXELS - 1.0 / 3.0) < 0.025);
       }
   }
 }
 
-/* Dimensions are not correlated: 64 whole pixels side by side. (Finer tests need independent points, test_uniform.) */
+/* Dimensions are not correlated: 64 whole pixels side by side. (Finer tests need independent
+ * points, test_uniform.) */
 static void test_independence(void **state) {
   (void)state;
   enum { PIXELS = 64, SPP = 64 };
@@ -284,10 +312,12 @@ static void test_independence(void **state) {
       }
       double limit = 5.0 / sqrt(PIXELS * SPP);
       double r[4] = {stat_correlation(a, c, PIXELS * SPP), stat_correlation(a, d, PIXELS * SPP),
-                     stat_correlation(b, c, PIXELS * SPP), stat_correlation(b, d, PIXELS * SPP)};
+                     stat_correlation(b, c, PIXELS * SPP),
+                     stat_correlation(b, d, PIXELS * SPP)};
       for (int i = 0; i < 4; i++)
         if (fabs(r[i]) > limit)
-          fail_msg("%s: dimensions %u and %u correlate: %g", NAMES[kind], PAIRS[k][0], PAIRS[k][1], r[i]);
+          fail_msg("%s: dimensions %u and %u correlate: %g", NAMES[kind], PAIRS[k][0],
+                   PAIRS[k][1], r[i]);
     }
   }
 }
@@ -352,9 +382,11 @@ static void test_bits(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_range),        cmocka_unit_test(test_strata),  cmocka_unit_test(test_nets),
-      cmocka_unit_test(test_columns),      cmocka_unit_test(test_with),    cmocka_unit_test(test_uniform),
-      cmocka_unit_test(test_independence), cmocka_unit_test(test_regular), cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_range),        cmocka_unit_test(test_strata),
+      cmocka_unit_test(test_nets),         cmocka_unit_test(test_columns),
+      cmocka_unit_test(test_with),         cmocka_unit_test(test_uniform),
+      cmocka_unit_test(test_independence), cmocka_unit_test(test_regular),
+      cmocka_unit_test(test_bits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* A worker's memory by what the world has: at most 1 MB without media and subsurface materials, and more only with
- * them. */
+/* A worker's memory by what the world has: at most 1 MB without media and subsurface materials,
+ * and more only with them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +18,8 @@ static vlWorld *make_world(vlContext *context, Has has) {
   vlWorld *world;
   vlError error;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-  vlMaterialDef material = vl_default_material_def(has == SUBSURFACE ? VL_MATERIAL_SUBSURFACE : VL_MATERIAL_DIFFUSE);
+  vlMaterialDef material =
+      vl_default_material_def(has == SUBSURFACE ? VL_MATERIAL_SUBSURFACE : VL_MATERIAL_DIFFUSE);
   vlShapeDef shape = vl_default_shape_def(VL_SHAPE_SPHERE);
   shape.material = vl_scene_add_material(scene, &material);
   if (has == MEDIUM) {
@@ -27,7 +28,8 @@ static vlWorld *make_world(vlContext *context, Has has) {
   }
   assert_int_not_equal(vl_scene_add_shape(scene, &shape).index, 0);
   vlBuildDef build = vl_default_build_def();
-  if (vl_world_build(scene, &build, &world, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_world_build(scene, &build, &world, &error) != VL_OK)
+    fail_msg("%s", error.message);
   vl_scene_destroy(scene);
   return world;
 }

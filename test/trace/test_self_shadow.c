@@ -1,7 +1,8 @@
-/* test_self_shadow.c: a shape neither hides a point of itself from what is in front of that point, nor catches a ray
- * that leaves it. Checked without statistics: no ray of many may be blocked. The shapes are convex, or plane, so that
- * no blocked ray is right. They touch the origin of the world with points far from their own centre, corners and
- * transforms, where numbers are large and their sums small. */
+/* test_self_shadow.c: a shape neither hides a point of itself from what is in front of that
+ * point, nor catches a ray that leaves it. Checked without statistics: no ray of many may be
+ * blocked. The shapes are convex, or plane, so that no blocked ray is right. They touch the
+ * origin of the world with points far from their own centre, corners and transforms, where
+ * numbers are large and their sums small. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +21,9 @@
 
 enum { RAYS = 4000, LIGHTS = 4 * VL_BATCH };
 
-/* ---- shapes ------------------------------------------------------------------------------------------------------ */
+/* ---- shapes
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Kind {
   const char *name;
@@ -42,18 +45,28 @@ static const float straight[12] = {-1, 0, 0, -0.3f, 0, 0, 0.3f, 0, 0, 1, 0, 0};
 
 static const Kind kinds[] = {
     {"sphere", VL_SHAPE_SPHERE, 1, 0, -1, 1, 0, TURN, NULL, 0, 0, false, true, VL_CURVE_FLAT},
-    {"zone of a sphere", VL_SHAPE_SPHERE, 1.5f, 0, -0.4f, 1.1f, 0, 4, NULL, 0, 0, false, true, VL_CURVE_FLAT},
-    {"cylinder", VL_SHAPE_CYLINDER, 0.7f, 0, -1, 2, 0, TURN, NULL, 0, 0, false, true, VL_CURVE_FLAT},
-    {"slice of a cylinder", VL_SHAPE_CYLINDER, 0.7f, 0, -1, 2, 0, 2.5f, NULL, 0, 0, false, true, VL_CURVE_FLAT},
+    {"zone of a sphere", VL_SHAPE_SPHERE, 1.5f, 0, -0.4f, 1.1f, 0, 4, NULL, 0, 0, false, true,
+     VL_CURVE_FLAT},
+    {"cylinder", VL_SHAPE_CYLINDER, 0.7f, 0, -1, 2, 0, TURN, NULL, 0, 0, false, true,
+     VL_CURVE_FLAT},
+    {"slice of a cylinder", VL_SHAPE_CYLINDER, 0.7f, 0, -1, 2, 0, 2.5f, NULL, 0, 0, false, true,
+     VL_CURVE_FLAT},
     {"disk", VL_SHAPE_DISK, 1, 0, 0, 0, 0.3f, TURN, NULL, 0, 0, true, true, VL_CURVE_FLAT},
-    {"slice of a ring", VL_SHAPE_DISK, 2, 0.8f, 0, 0, 0, 5, NULL, 0, 0, true, true, VL_CURVE_FLAT},
-    {"triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, triangle, 3, 1, true, true, VL_CURVE_FLAT},
-    {"thin triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, thin, 3, 1, true, true, VL_CURVE_FLAT},
-    {"blunt triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, blunt, 3, 1, true, true, VL_CURVE_FLAT},
+    {"slice of a ring", VL_SHAPE_DISK, 2, 0.8f, 0, 0, 0, 5, NULL, 0, 0, true, true,
+     VL_CURVE_FLAT},
+    {"triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, triangle, 3, 1, true, true,
+     VL_CURVE_FLAT},
+    {"thin triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, thin, 3, 1, true, true,
+     VL_CURVE_FLAT},
+    {"blunt triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, blunt, 3, 1, true, true,
+     VL_CURVE_FLAT},
     {"square", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, square, 4, 2, true, true, VL_CURVE_FLAT},
-    {"bilinear patch", VL_SHAPE_BILINEAR, 0, 0, 0, 0, 0, 0, patch, 4, 1, true, true, VL_CURVE_FLAT},
-    {"flat curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_FLAT},
-    {"cylindrical curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_CYLINDER},
+    {"bilinear patch", VL_SHAPE_BILINEAR, 0, 0, 0, 0, 0, 0, patch, 4, 1, true, true,
+     VL_CURVE_FLAT},
+    {"flat curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false,
+     VL_CURVE_FLAT},
+    {"cylindrical curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false,
+     VL_CURVE_CYLINDER},
     {"ribbon", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_RIBBON},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
@@ -62,22 +75,27 @@ static vlShapeDef shape_of(const Kind *k) {
   static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3}, patch_corners[4] = {0, 1, 2, 3};
   static const float widths[2] = {0.02f, 0.02f}, normals[6] = {0, 0, 1, 0, 0, 1};
   vlShapeDef def = vl_default_shape_def(k->kind);
-  def.radius = k->radius, def.inner_radius = k->inner, def.z_min = k->z_min, def.z_max = k->z_max;
+  def.radius = k->radius, def.inner_radius = k->inner, def.z_min = k->z_min,
+  def.z_max = k->z_max;
   def.height = k->height, def.phi_max = k->phi_max;
   def.positions = k->positions, def.vertices = k->vertices, def.faces = k->faces;
   def.indices = k->kind == VL_SHAPE_BILINEAR ? patch_corners : corners;
-  if (k->kind == VL_SHAPE_CURVES) def.widths = widths, def.curve = k->curve, def.normals = normals;
+  if (k->kind == VL_SHAPE_CURVES)
+    def.widths = widths, def.curve = k->curve, def.normals = normals;
   return def;
 }
 
-/* ---- transforms -------------------------------------------------------------------------------------------------- */
+/* ---- transforms
+ * --------------------------------------------------------------------------------------------------
+ */
 
 /* m = a b */
 static void multiply(const double a[16], const double b[16], double m[16]) {
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) {
       m[4 * i + j] = 0;
-      for (int k = 0; k < 4; k++) m[4 * i + j] += a[4 * i + k] * b[4 * k + j];
+      for (int k = 0; k < 4; k++)
+        m[4 * i + j] += a[4 * i + k] * b[4 * k + j];
     }
 }
 
@@ -104,23 +122,39 @@ static void rotation(statRng *rng, double m[16]) {
   memcpy(m, r, sizeof r);
 }
 
-typedef enum Map { SHIFT, TURNED, SMALL, LARGE, STRETCHED, SHEARED, MIRRORED, ALMOST_ROUND, MAPS } Map;
+typedef enum Map {
+  SHIFT,
+  TURNED,
+  SMALL,
+  LARGE,
+  STRETCHED,
+  SHEARED,
+  MIRRORED,
+  ALMOST_ROUND,
+  MAPS
+} Map;
 static const char *const map_names[] = {"shifted",   "turned",  "small",    "large",
                                         "stretched", "sheared", "mirrored", "almost round"};
 
 static void linear_map(Map map, statRng *rng, double m[16]) {
   double a[16], b[16], scale[16] = {0};
-  for (int i = 0; i < 4; i++) scale[5 * i] = 1;
+  for (int i = 0; i < 4; i++)
+    scale[5 * i] = 1;
   if (map == SHIFT) {
     memcpy(m, scale, sizeof scale);
     return;
   }
   if (map == SMALL || map == LARGE)
-    for (int i = 0; i < 3; i++) scale[5 * i] = map == SMALL ? 1e-3 : 1e3;
-  if (map == STRETCHED) scale[0] = 0.1, scale[5] = 3, scale[10] = 0.7;
-  if (map == MIRRORED) scale[0] = -1;
-  if (map == SHEARED) scale[1] = 2, scale[6] = -1;
-  if (map == ALMOST_ROUND) scale[0] = 1.00003, scale[1] = 1e-5;
+    for (int i = 0; i < 3; i++)
+      scale[5 * i] = map == SMALL ? 1e-3 : 1e3;
+  if (map == STRETCHED)
+    scale[0] = 0.1, scale[5] = 3, scale[10] = 0.7;
+  if (map == MIRRORED)
+    scale[0] = -1;
+  if (map == SHEARED)
+    scale[1] = 2, scale[6] = -1;
+  if (map == ALMOST_ROUND)
+    scale[0] = 1.00003, scale[1] = 1e-5;
   rotation(rng, a), rotation(rng, b);
   multiply(a, scale, m);
   if (map == STRETCHED || map == SHEARED) {
@@ -130,7 +164,9 @@ static void linear_map(Map map, statRng *rng, double m[16]) {
   }
 }
 
-/* ---- worlds ------------------------------------------------------------------------------------------------------ */
+/* ---- worlds
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef enum Place { PLACED, INSTANCED, MOVING, PLACES } Place;
 static const char *const place_names[] = {"", "instance of a ", "moving "};
@@ -145,16 +181,18 @@ typedef struct Scene {
   struct vlBruteForce *brute_force;
 } Scene;
 
-static vlWorld *build(vlContext *context, const Kind *kind, Place place, bool shines, const double shape[16],
-                      const double poses[32]) {
+static vlWorld *build(vlContext *context, const Kind *kind, Place place, bool shines,
+                      const double shape[16], const double poses[32]) {
   vlScene *scene;
   vlWorld *world;
   vlError error = {0};
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlShapeDef def = shape_of(kind);
   memcpy(def.group_from_shape, shape, sizeof def.group_from_shape);
-  def.reverse_orientation = vl_mat4_determinant3(vl_mat4_load(shape)) < 0; /* normals point outside */
-  if (place != PLACED) def.group = vl_scene_add_group(scene, NULL);
+  def.reverse_orientation =
+      vl_mat4_determinant3(vl_mat4_load(shape)) < 0; /* normals point outside */
+  if (place != PLACED)
+    def.group = vl_scene_add_group(scene, NULL);
   if (shines) {
     vlEmissionDef emission = vl_default_emission_def();
     emission.radiance = vl_spectrum_rgb(1, 1, 1);
@@ -162,11 +200,14 @@ static vlWorld *build(vlContext *context, const Kind *kind, Place place, bool sh
   }
   assert_int_not_equal(vl_scene_add_shape(scene, &def).index, 0);
   const double times[2] = {0, 1};
-  if (place == INSTANCED) vl_scene_add_instance(scene, def.group, poses, (vlSource){0});
-  if (place == MOVING) vl_scene_add_moving_instance(scene, def.group, 2, times, poses, (vlSource){0});
+  if (place == INSTANCED)
+    vl_scene_add_instance(scene, def.group, poses, (vlSource){0});
+  if (place == MOVING)
+    vl_scene_add_moving_instance(scene, def.group, 2, times, poses, (vlSource){0});
   vlBuildDef build_def = vl_default_build_def();
   build_def.color = VL_COLOR_RGB;
-  if (vl_world_build(scene, &build_def, &world, &error) != VL_OK) fail_msg("%s: %s", kind->name, error.message);
+  if (vl_world_build(scene, &build_def, &world, &error) != VL_OK)
+    fail_msg("%s: %s", kind->name, error.message);
   vl_scene_destroy(scene);
   return world;
 }
@@ -177,13 +218,17 @@ static void point_of_shape(const vlWorld *world, statRng *rng, double p[3]) {
   if (s->kind == VL_SHAPE_TRIANGLES) {
     float u = stat_float(rng), v = stat_float(rng) * (1 - u);
     for (int i = 0; i < 3; i++)
-      p[i] = (double)((1 - u - v) * s->positions[i] + u * s->positions[3 + i] + v * s->positions[6 + i]);
+      p[i] = (double)((1 - u - v) * s->positions[i] + u * s->positions[3 + i] +
+                      v * s->positions[6 + i]);
     if (stat_float(rng) < 0.3f)
-      for (int i = 0; i < 3; i++) p[i] = (double)s->positions[i];
+      for (int i = 0; i < 3; i++)
+        p[i] = (double)s->positions[i];
     return;
   }
-  if (s->kind == VL_SHAPE_CURVES) { /* in the box around the curve, so that rays meet its edges, too */
-    double q[3] = {2 * stat_double(rng) - 1, 0.02 * (stat_double(rng) - 0.5), 0.02 * (stat_double(rng) - 0.5)};
+  if (s->kind ==
+      VL_SHAPE_CURVES) { /* in the box around the curve, so that rays meet its edges, too */
+    double q[3] = {2 * stat_double(rng) - 1, 0.02 * (stat_double(rng) - 0.5),
+                   0.02 * (stat_double(rng) - 0.5)};
     vl_map_point(s->from_shape, q, p);
     return;
   }
@@ -200,49 +245,61 @@ static void use_embree(Scene *s) {
 }
 
 /* A shape that touches the origin (or, `far` from it, another point). */
-static Scene make(const Kind *kind, Place place, Map map, bool shines, bool far, bool embree, statRng *rng) {
+static Scene make(const Kind *kind, Place place, Map map, bool shines, bool far, bool embree,
+                  statRng *rng) {
   Scene s = {.kind = kind};
   static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   double m[16], p[3], poses[32], shape[16];
   linear_map(map, rng, m);
   memcpy(shape, identity, sizeof shape);
   assert_int_equal(vl_context_create(NULL, &s.context), VL_OK);
-  if (place == PLACED) memcpy(shape, m, sizeof shape);
-  if (place != PLACED) shape[3] = 3, shape[7] = -2, shape[11] = 7; /* far from the origin of the group */
+  if (place == PLACED)
+    memcpy(shape, m, sizeof shape);
+  if (place != PLACED)
+    shape[3] = 3, shape[7] = -2, shape[11] = 7; /* far from the origin of the group */
   memcpy(poses, place == PLACED ? identity : m, sizeof m);
   memcpy(poses + 16, poses, sizeof m);
   vlWorld *there = build(s.context, kind, PLACED, false, shape, poses);
-  s.size = (double)there->radius * (place == PLACED ? 1 : cbrt(fabs(vl_mat4_determinant3(vl_mat4_load(m)))));
+  s.size = (double)there->radius *
+           (place == PLACED ? 1 : cbrt(fabs(vl_mat4_determinant3(vl_mat4_load(m)))));
   point_of_shape(there, rng, p);
   vl_world_destroy(there);
   vlMat4 inverse;
   assert_true(vl_mat4_inverse(vl_mat4_load(m), &inverse));
-  double length = sqrt(inverse.m[8] * inverse.m[8] + inverse.m[9] * inverse.m[9] + inverse.m[10] * inverse.m[10]);
-  for (int i = 0; i < 3; i++) s.normal[i] = inverse.m[8 + i] / length;
+  double length = sqrt(inverse.m[8] * inverse.m[8] + inverse.m[9] * inverse.m[9] +
+                       inverse.m[10] * inverse.m[10]);
+  for (int i = 0; i < 3; i++)
+    s.normal[i] = inverse.m[8 + i] / length;
   double *moved = place == PLACED ? shape : poses;
   for (int i = 0; i < 3; i++) {
     double at = 0;
-    for (int j = 0; j < 3; j++) at += place == PLACED ? (i == j) * p[j] : m[4 * i + j] * p[j];
+    for (int j = 0; j < 3; j++)
+      at += place == PLACED ? (i == j) * p[j] : m[4 * i + j] * p[j];
     s.touch[i] = far ? s.size * (i + 1) * 100 : 0;
     moved[4 * i + 3] += s.touch[i] - at;
   }
   if (place == MOVING) {
     memcpy(poses + 16, poses, sizeof m);
-    for (int i = 0; i < 3; i++) poses[4 * i + 3] -= s.size * (i - 0.7), poses[16 + 4 * i + 3] += s.size * (i - 0.7);
+    for (int i = 0; i < 3; i++)
+      poses[4 * i + 3] -= s.size * (i - 0.7), poses[16 + 4 * i + 3] += s.size * (i - 0.7);
   }
   s.world = build(s.context, kind, place, shines, shape, poses);
-  if (embree) use_embree(&s);
+  if (embree)
+    use_embree(&s);
   return s;
 }
 
 static void destroy(Scene *s) {
-  if (s->brute_force) s->world->accel.brute_force = s->brute_force;
+  if (s->brute_force)
+    s->world->accel.brute_force = s->brute_force;
   vl_world_destroy(s->world);
   assert_int_equal(vl_context_memory(s->context, NULL), 0);
   vl_context_destroy(s->context);
 }
 
-/* ---- rays that leave --------------------------------------------------------------------------------------------- */
+/* ---- rays that leave
+ * ---------------------------------------------------------------------------------------------
+ */
 
 /* 10^-k, k uniform in [0, most). */
 static double small(statRng *rng, double most) {
@@ -269,13 +326,17 @@ static vlVec3 to_float(const double p[3]) {
 static void aim(const Scene *s, float time, statRng *rng, vlVec3 *o, vlVec3 *d) {
   double from[3], to[3], way[3], p[3];
   stat_direction(rng, from);
-  double distance = s->size * small(rng, 5) * 100, share = stat_double(rng) < 0.5 ? small(rng, 7) : 1;
+  double distance = s->size * small(rng, 5) * 100,
+         share = stat_double(rng) < 0.5 ? small(rng, 7) : 1;
   point_of_shape(s->world, rng, p);
   vlWorldInstance room;
-  const vlWorldInstance *q = s->world->instances.count ? vl_instance_at(s->world->instances.items, time, &room) : NULL;
+  const vlWorldInstance *q =
+      s->world->instances.count ? vl_instance_at(s->world->instances.items, time, &room) : NULL;
   for (int i = 0; i < 3; i++) {
     const float *m = q ? q->from_group + 4 * i : NULL;
-    double at = q ? (double)m[0] * p[0] + (double)m[1] * p[1] + (double)m[2] * p[2] + (double)m[3] : p[i];
+    double at =
+        q ? (double)m[0] * p[0] + (double)m[1] * p[1] + (double)m[2] * p[2] + (double)m[3]
+          : p[i];
     to[i] = s->touch[i] + share * (at - s->touch[i]);
     from[i] = to[i] + distance * from[i], way[i] = to[i] - from[i];
   }
@@ -285,11 +346,13 @@ static void aim(const Scene *s, float time, statRng *rng, vlVec3 *o, vlVec3 *d) 
 /* Whether a point is in the plane of a flat shape but for rounding: no side can be told. */
 static bool in_plane(const Scene *s, vlVec3 p) {
   double q[3] = {(double)p.x, (double)p.y, (double)p.z}, height = 0, size = s->size;
-  for (int i = 0; i < 3; i++) height += s->normal[i] * (q[i] - s->touch[i]), size += fabs(s->touch[i]);
+  for (int i = 0; i < 3; i++)
+    height += s->normal[i] * (q[i] - s->touch[i]), size += fabs(s->touch[i]);
   return s->kind->flat && fabs(height) < 4e-6 * size;
 }
 
-/* Rays from the touched point's neighbourhood to outside. Returns how many meet the shape again. */
+/* Rays from the touched point's neighbourhood to outside. Returns how many meet the shape
+ * again. */
 static uint32_t leaving(const Scene *s, statRng *rng, uint32_t *tried) {
   uint32_t caught = 0;
   for (int i = 0; i < RAYS; i++) {
@@ -297,37 +360,46 @@ static uint32_t leaving(const Scene *s, statRng *rng, uint32_t *tried) {
     float time = s->world->moves ? 0.5f : 0;
     aim(s, time, rng, &o, &d);
     Hit h = trace(s->world, o, d, time);
-    if (h.shape == VL_NONE) continue;
+    if (h.shape == VL_NONE)
+      continue;
     vlPoint at = vl_point_at_time(s->world, time, o, d, h.shape, h.prim, h.instance, h.t);
     double w[3];
     stat_direction(rng, w);
     vlVec3 out = to_float(w);
     float cosine = vl_dot(out, at.g);
-    if (cosine < 0 && !s->kind->flat) out = vl_neg(out);
-    if (vl_abs(cosine) < 1e-4f) continue;
+    if (cosine < 0 && !s->kind->flat)
+      out = vl_neg(out);
+    if (vl_abs(cosine) < 1e-4f)
+      continue;
     ++*tried;
-    caught += trace(s->world, vl_offset_origin(at.p, at.g, at.offset, out), out, time).shape != VL_NONE;
+    caught += trace(s->world, vl_offset_origin(at.p, at.g, at.offset, out), out, time).shape !=
+              VL_NONE;
   }
   return caught;
 }
 
-/* Rays that pass through the shape, as through an interface: the search for the next surface starts just past each. An
- * outside ray crosses a plane shape once, others at most twice. Rays that graze a surface are not counted. */
+/* Rays that pass through the shape, as through an interface: the search for the next surface
+ * starts just past each. An outside ray crosses a plane shape once, others at most twice. Rays
+ * that graze a surface are not counted. */
 static uint32_t passing(const Scene *s, statRng *rng, uint32_t *tried) {
   uint32_t twice = 0;
   for (int i = 0; i < RAYS; i++) {
     vlVec3 o, d;
     float time = s->world->moves ? 0.5f : 0, t_min = 0;
     aim(s, time, rng, &o, &d);
-    if (in_plane(s, o)) continue;
+    if (in_plane(s, o))
+      continue;
     int crossed = 0, most = s->kind->flat ? 1 : 2;
     for (; crossed <= most; crossed++) {
       Hit h;
-      vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, NULL, s->world->moves ? &time : NULL};
+      vlRays ray = {
+          &o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, NULL, s->world->moves ? &time : NULL};
       vl_accel_closest(s->world, 1, &ray, false, &h.shape, &h.prim, &h.instance, &h.t);
-      if (h.shape == VL_NONE) break;
+      if (h.shape == VL_NONE)
+        break;
       vlPoint at = vl_point_at_time(s->world, time, o, d, h.shape, h.prim, h.instance, h.t);
-      if (vl_abs(vl_dot(at.g, d)) < 0.02f) break;
+      if (vl_abs(vl_dot(at.g, d)) < 0.02f)
+        break;
       t_min = vl_past_surface(&at, d, t_min);
     }
     *tried += crossed > 0;
@@ -338,15 +410,16 @@ static uint32_t passing(const Scene *s, statRng *rng, uint32_t *tried) {
 
 static const char *describe(const Scene *s, Place place, Map map, bool far, bool embree) {
   static char text[200];
-  snprintf(text, sizeof text, "%s%s, %s, %s%s", place_names[place], s->kind->name, map_names[map],
-           far ? "far from the origin" : "at the origin", embree ? ", Embree" : "");
+  snprintf(text, sizeof text, "%s%s, %s, %s%s", place_names[place], s->kind->name,
+           map_names[map], far ? "far from the origin" : "at the origin",
+           embree ? ", Embree" : "");
   return text;
 }
 
 typedef uint32_t Check(const Scene *s, statRng *rng, uint32_t *tried);
 
-/* All shapes under all maps, at the origin and far from it, at rest, instanced and moving, by brute force and by
- * Embree. */
+/* All shapes under all maps, at the origin and far from it, at rest, instanced and moving, by
+ * brute force and by Embree. */
 static void check_all(Check *check, uint64_t seed) {
   uint32_t wrong = 0;
   for (int k = 0; k < KINDS; k++)
@@ -354,12 +427,17 @@ static void check_all(Check *check, uint64_t seed) {
       for (Map map = 0; map < MAPS; map++)
         for (int j = 0; j < 4; j++) {
           bool far = j & 1, embree = j & 2;
-          if (embree && place != PLACED) continue;
-          statRng rng = stat_rng(seed + 1000 * (uint64_t)k + 100 * place + 10 * map + (uint64_t)j);
+          if (embree && place != PLACED)
+            continue;
+          statRng rng =
+              stat_rng(seed + 1000 * (uint64_t)k + 100 * place + 10 * map + (uint64_t)j);
           Scene s = make(&kinds[k], place, map, false, far, embree, &rng);
           uint32_t tried = 0, caught = check(&s, &rng, &tried);
-          if (tried < RAYS / 100) print_error("%s: only %u rays\n", describe(&s, place, map, far, embree), tried);
-          if (caught) print_error("%s: %u of %u rays\n", describe(&s, place, map, far, embree), caught, tried);
+          if (tried < RAYS / 100)
+            print_error("%s: only %u rays\n", describe(&s, place, map, far, embree), tried);
+          if (caught)
+            print_error("%s: %u of %u rays\n", describe(&s, place, map, far, embree), caught,
+                        tried);
           wrong += caught;
           destroy(&s);
         }
@@ -376,16 +454,20 @@ static void interfaces_are_passed_once(void **state) {
   check_all(passing, 500000);
 }
 
-/* ---- rays that arrive at lights ---------------------------------------------------------------------------------- */
+/* ---- rays that arrive at lights
+ * ---------------------------------------------------------------------------------- */
 
-/* Shadow rays to light samples, from points at all distances outside. media: as tracers of media cast them. */
-static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng *rng, uint32_t *tried) {
+/* Shadow rays to light samples, from points at all distances outside. media: as tracers of
+ * media cast them. */
+static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng *rng,
+                         uint32_t *tried) {
   uint32_t blocked = 0;
   for (int n = 0; n < LIGHTS; n += VL_BATCH) {
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       double away[3], distance = s->size * small(rng, 6) * 1000;
       stat_direction(rng, away);
-      vlVec3 p = to_float((double[3]){s->touch[0] + distance * away[0], s->touch[1] + distance * away[1],
+      vlVec3 p = to_float((double[3]){s->touch[0] + distance * away[0],
+                                      s->touch[1] + distance * away[1],
                                       s->touch[2] + distance * away[2]});
       t->at.surface.px[i] = p.x;
       t->at.surface.py[i] = p.y;
@@ -398,16 +480,19 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       t->numbers.u1[i] = stat_float(rng);
       t->numbers.u2[i] = stat_float(rng);
     }
-    vl_stage_lights(s->world, VL_BATCH, &t->at.paths, &t->at.surface, t->numbers.u1, t->numbers.u2, t->numbers.u0,
-                    &t->light);
+    vl_stage_lights(s->world, VL_BATCH, &t->at.paths, &t->at.surface, t->numbers.u1,
+                    t->numbers.u2, t->numbers.u0, &t->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &t->light;
-      if (!(l->pdf[i] > 0)) continue;
+      if (!(l->pdf[i] > 0))
+        continue;
       vlVec3 o = vl_lane3(t->at.surface.px, t->at.surface.py, t->at.surface.pz, i);
-      if (in_plane(s, o)) continue;
+      if (in_plane(s, o))
+        continue;
       vlVec3 d = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
       float end = media ? vl_length(d) * VL_SHADOW_END : VL_ONE_MINUS_EPSILON;
-      if (media) d = vl_normalize(d);
+      if (media)
+        d = vl_normalize(d);
       uint8_t occluded;
       vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, NULL, &end, NULL};
       vl_accel_occluded(s->world, 1, &ray, NULL, &occluded);
@@ -431,10 +516,11 @@ static void lights_are_seen(void **state) {
         Scene s = make(&kinds[k], PLACED, map, true, far, embree, &rng);
         for (int media = 0; media < 2; media++) {
           uint32_t tried = 0, blocked = arriving(&s, t, media, &rng, &tried);
-          if (tried < LIGHTS / 10) print_error("%s: only %u rays\n", describe(&s, PLACED, map, far, embree), tried);
+          if (tried < LIGHTS / 10)
+            print_error("%s: only %u rays\n", describe(&s, PLACED, map, far, embree), tried);
           if (blocked)
-            print_error("%s%s: %u of %u rays\n", describe(&s, PLACED, map, far, embree), media ? ", in media" : "",
-                        blocked, tried);
+            print_error("%s%s: %u of %u rays\n", describe(&s, PLACED, map, far, embree),
+                        media ? ", in media" : "", blocked, tried);
           wrong += blocked;
         }
         destroy(&s);
@@ -443,7 +529,9 @@ static void lights_are_seen(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-/* ---- light paths ------------------------------------------------------------------------------------------------- */
+/* ---- light paths
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static void light_paths_leave(void **state) {
   (void)state;
@@ -460,14 +548,20 @@ static void light_paths_leave(void **state) {
         vlTwoWay way = {.choice = choice};
         uint32_t tried = 0, caught = 0;
         for (int i = 0; i < RAYS; i++) {
-          for (int c = 0; c < 5; c++) u[c] = stat_float(&rng);
-          vlEmission e = vl_emission_sample(s.world, &way, lambda, u[0], u[1], u[2], u[3], u[4]);
-          if (!e.valid || vl_abs(vl_dot(e.d, e.n)) < 1e-4f) continue;
+          for (int c = 0; c < 5; c++)
+            u[c] = stat_float(&rng);
+          vlEmission e =
+              vl_emission_sample(s.world, &way, lambda, u[0], u[1], u[2], u[3], u[4]);
+          if (!e.valid || vl_abs(vl_dot(e.d, e.n)) < 1e-4f)
+            continue;
           tried++;
           caught += trace(s.world, e.o, e.d, 0).shape != VL_NONE;
         }
-        if (tried < RAYS / 10) print_error("%s: only %u rays\n", describe(&s, PLACED, map, far, embree), tried);
-        if (caught) print_error("%s: %u of %u rays\n", describe(&s, PLACED, map, far, embree), caught, tried);
+        if (tried < RAYS / 10)
+          print_error("%s: only %u rays\n", describe(&s, PLACED, map, far, embree), tried);
+        if (caught)
+          print_error("%s: %u of %u rays\n", describe(&s, PLACED, map, far, embree), caught,
+                      tried);
         wrong += caught;
         destroy(&s);
       }

@@ -1,6 +1,7 @@
-/* test/trace/test_texture_node.c: textures at one point: the single query gives the batch evaluator's bits for every
- * kind of float texture (on the lowest instruction set; test_bits.c compares the sets); alpha, lights and mixed
- * materials use the point's normal, uv set and vertex colours. */
+/* test/trace/test_texture_node.c: textures at one point: the single query gives the batch
+ * evaluator's bits for every kind of float texture (on the lowest instruction set; test_bits.c
+ * compares the sets); alpha, lights and mixed materials use the point's normal, uv set and
+ * vertex colours. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,7 +41,8 @@ static void build(Fixture *f) {
   vlBuildDef def = vl_default_build_def();
   def.color = VL_COLOR_RGB;
   vlError error;
-  if (vl_world_build(f->scene, &def, &f->world, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_world_build(f->scene, &def, &f->world, &error) != VL_OK)
+    fail_msg("%s", error.message);
 }
 
 static void end(Fixture *f) {
@@ -60,7 +62,9 @@ static vlShapeDef triangle(void) {
   return def;
 }
 
-/* ---- both evaluators --------------------------------------------------------------------------------------------- */
+/* ---- both evaluators
+ * ---------------------------------------------------------------------------------------------
+ */
 
 /* least 1: white. */
 static vlImage *image_of(Fixture *f, statRng *rng, float least) {
@@ -69,29 +73,36 @@ static vlImage *image_of(Fixture *f, statRng *rng, float least) {
   vlImage *image;
   assert_int_equal(vl_image_create(f->context, &def, &image), VL_OK);
   float *pixels = vl_image_pixels(image);
-  for (int i = 0; i < 8 * 4 * 3; i++) pixels[i] = least + (1 - least) * stat_float(rng);
+  for (int i = 0; i < 8 * 4 * 3; i++)
+    pixels[i] = least + (1 - least) * stat_float(rng);
   return image;
 }
 
 /* A shape for each kind of float texture, as its alpha; inputs are textures themselves. */
 static void add_kinds(Fixture *f, statRng *rng) {
   static float colors[12], uvs[6];
-  for (int i = 0; i < 12; i++) colors[i] = stat_float(rng);
-  for (int i = 0; i < 6; i++) uvs[i] = stat_float(rng);
+  for (int i = 0; i < 12; i++)
+    colors[i] = stat_float(rng);
+  for (int i = 0; i < 6; i++)
+    uvs[i] = stat_float(rng);
   vlTextureDef noise = vl_default_texture_def(VL_TEXTURE_FBM, false);
   vlTextureId input = vl_scene_add_texture(f->scene, &noise);
   vlImage *image = image_of(f, rng, 0);
   for (int kind = 0; kind < KINDS; kind++) {
-    if (kind == VL_TEXTURE_MARBLE) continue; /* a colour */
+    if (kind == VL_TEXTURE_MARBLE)
+      continue; /* a colour */
     vlTextureDef def = vl_default_texture_def((vlTextureKind)kind, false);
     def.float_a.texture = def.float_d.texture = def.amount.texture = input;
     def.float_b.value = 0.3f, def.float_c.value = 0.6f;
-    if (kind == VL_TEXTURE_CONSTANT) def.float_a = vl_float_input(0.7f);
-    if (kind == VL_TEXTURE_IMAGE) def.image = image;
+    if (kind == VL_TEXTURE_CONSTANT)
+      def.float_a = vl_float_input(0.7f);
+    if (kind == VL_TEXTURE_IMAGE)
+      def.image = image;
     def.su = 7, def.sv = 5, def.du = 0.3f;
     def.uv_set = kind == VL_TEXTURE_IMAGE ? 1 : 0;
     def.channel = kind == VL_TEXTURE_VERTEX_COLOR ? 2 : -1;
-    for (int i = 0; i < 3; i++) def.direction[i] = 0.57735f;
+    for (int i = 0; i < 3; i++)
+      def.direction[i] = 0.57735f;
     vlShapeDef shape = triangle();
     shape.colors = colors, shape.more_uvs[0] = uvs;
     shape.alpha.texture = vl_scene_add_texture(f->scene, &def);
@@ -100,13 +111,14 @@ static void add_kinds(Fixture *f, statRng *rng) {
   vl_image_destroy(image);
 }
 
-static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng, vlTextureQuery *queries,
-                               vlTextureCorner *corners) {
+static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng,
+                               vlTextureQuery *queries, vlTextureCorner *corners) {
   vlTraceScratch *s = f->scratch;
   vlSurface *at = &s->at.surface;
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     float x = stat_float(rng), y = (1 - x) * stat_float(rng);
-    vlVec3 n = vl_vec3(2 * stat_float(rng) - 1, 2 * stat_float(rng) - 1, 2 * stat_float(rng) - 1);
+    vlVec3 n =
+        vl_vec3(2 * stat_float(rng) - 1, 2 * stat_float(rng) - 1, 2 * stat_float(rng) - 1);
     corners[i] = (vlTextureCorner){&f->world->shapes.items[shape], 0, {1 - x - y, x, y}};
     queries[i] = (vlTextureQuery){3 * x, y, vl_vec3(x, y, 0), n, &corners[i]};
     vlVec3 unit = vl_normalize(n);
@@ -116,7 +128,8 @@ static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng, vlTextu
     s->at.paths.dz[i] = -1;
     s->at.hits.shape[i] = shape;
     s->at.hits.prim[i] = 0;
-    for (int k = 0; k < 9; k++) s->corners.p[k][i] = k == 3 || k == 7 ? 1.0f : 0.0f;
+    for (int k = 0; k < 9; k++)
+      s->corners.p[k][i] = k == 3 || k == 7 ? 1.0f : 0.0f;
   }
   return (vlTextureRun){.world = f->world, .at = &s->at, .s = s};
 }
@@ -137,7 +150,8 @@ static void same_bits(void **state) {
     vlTextureRun run = fill_lanes(&f, k, &rng, queries, corners);
     for (run.last = 0; run.last < VL_BATCH;) {
       run.first = run.last;
-      run.last = run.first + VL_MATERIAL_LANES < VL_BATCH ? run.first + VL_MATERIAL_LANES : VL_BATCH;
+      run.last =
+          run.first + VL_MATERIAL_LANES < VL_BATCH ? run.first + VL_MATERIAL_LANES : VL_BATCH;
       vl_texture_float(&run, node, out);
       assert_int_equal(run.top, 0);
     }
@@ -145,8 +159,8 @@ static void same_bits(void **state) {
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       float one = vl_texture_float_at(f.world, node, &queries[i]);
       if (memcmp(&one, &out[i], sizeof one))
-        fail_msg("node kind %d: %.9g alone, %.9g in a batch", (int)f.world->nodes.items[node].kind, (double)one,
-                 (double)out[i]);
+        fail_msg("node kind %d: %.9g alone, %.9g in a batch",
+                 (int)f.world->nodes.items[node].kind, (double)one, (double)out[i]);
       least = fminf(least, one), most = fmaxf(most, one);
     }
     bool constant = f.world->nodes.items[node].kind == VL_NODE_FLOAT;
@@ -155,7 +169,8 @@ static void same_bits(void **state) {
   end(&f);
 }
 
-/* ---- who asks for single points ---------------------------------------------------------------------------------- */
+/* ---- who asks for single points
+ * ---------------------------------------------------------------------------------- */
 
 /* Number of shapes hit: 0 or 1. */
 static int hits(const Fixture *f, float ox, float oy, float oz, float dx, float dy, float dz) {
@@ -169,7 +184,8 @@ static int hits(const Fixture *f, float ox, float oy, float oz, float dx, float 
 static vlFloatInput direction_mix(Fixture *f, int axis, float a, float b) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_DIRECTION_MIX, false);
   def.float_a.value = a, def.float_b.value = b;
-  for (int i = 0; i < 3; i++) def.direction[i] = i == axis;
+  for (int i = 0; i < 3; i++)
+    def.direction[i] = i == axis;
   vlFloatInput input = {.texture = vl_scene_add_texture(f->scene, &def)};
   return input;
 }
@@ -214,19 +230,21 @@ static void assert_light(Fixture *f, float expected) {
     s->numbers.u1[i] = stat_float(&rng);
     s->numbers.u2[i] = stat_float(&rng);
   }
-  vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u0, s->numbers.u1, s->numbers.u2,
-                  &s->light);
+  vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u0,
+                  s->numbers.u1, s->numbers.u2, &s->light);
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     assert_true(s->light.pdf[i] > 0);
     float radiance = s->light.radiance[0][i] * s->light.pdf[i];
-    if (!(fabsf(radiance - expected) <= 1e-5f)) fail_msg("%g, not %g", (double)radiance, (double)expected);
+    if (!(fabsf(radiance - expected) <= 1e-5f))
+      fail_msg("%g, not %g", (double)radiance, (double)expected);
   }
 }
 
 static void lights_with_alpha(void **state) {
   (void)state;
   static const float colors[12] = {.25f, 1, 1, 1, .25f, 1, 1, 1, .25f, 1, 1, 1};
-  static const float uvs[6] = {.25f, 0, .25f, 0, .25f, 0}, other_uvs[6] = {.75f, 0, .75f, 0, .75f, 0};
+  static const float uvs[6] = {.25f, 0, .25f, 0, .25f, 0},
+                     other_uvs[6] = {.75f, 0, .75f, 0, .75f, 0};
   Fixture f = begin(); /* by the red of its vertices */
   vlEmissionDef emission = vl_default_emission_def();
   emission.radiance = vl_spectrum_rgb(1, 1, 1);
@@ -237,7 +255,8 @@ static void lights_with_alpha(void **state) {
   def.alpha.texture = vl_scene_add_texture(f.scene, &red);
   vl_scene_add_shape(f.scene, &def);
   build(&f);
-  float full = f.world->emitted.items[0].spectrum.rgb[0] * f.world->emitted.items[0].spectrum.scale;
+  float full =
+      f.world->emitted.items[0].spectrum.rgb[0] * f.world->emitted.items[0].spectrum.scale;
   assert_true(full > 0.5f);
   assert_light(&f, 0.25f * full);
   end(&f);
@@ -269,8 +288,10 @@ static void mix_by_vertex_color(void **state) {
   for (int second = 0; second < 2; second++) {
     Fixture f = begin();
     float colors[12];
-    for (int i = 0; i < 12; i++) colors[i] = (float)second;
-    vlMaterialDef part = vl_default_material_def(VL_MATERIAL_DIFFUSE), mix = vl_default_material_def(VL_MATERIAL_MIX);
+    for (int i = 0; i < 12; i++)
+      colors[i] = (float)second;
+    vlMaterialDef part = vl_default_material_def(VL_MATERIAL_DIFFUSE),
+                  mix = vl_default_material_def(VL_MATERIAL_MIX);
     mix.materials[0] = vl_scene_add_material(f.scene, &part);
     part = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
     mix.materials[1] = vl_scene_add_material(f.scene, &part);
@@ -289,13 +310,15 @@ static void mix_by_vertex_color(void **state) {
     s->hits.shape[0] = s->hits.prim[0] = 0;
     s->hits.instance[0] = VL_NONE;
     uint32_t m = vl_hit_material(f.world, &s->rays, &s->hits, 0);
-    assert_int_equal(f.world->materials.items[m].kind, second ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
+    assert_int_equal(f.world->materials.items[m].kind,
+                     second ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
     end(&f);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits), cmocka_unit_test(alpha_by_direction),
-                                     cmocka_unit_test(lights_with_alpha), cmocka_unit_test(mix_by_vertex_color)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(same_bits), cmocka_unit_test(alpha_by_direction),
+      cmocka_unit_test(lights_with_alpha), cmocka_unit_test(mix_by_vertex_color)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

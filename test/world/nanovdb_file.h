@@ -45,8 +45,9 @@ static inline void set_bit(unsigned char *mask, uint32_t n) {
   mask[n >> 3] |= (unsigned char)(1u << (n & 7));
 }
 
-/* Two leaves at (0,0,0) and (8,0,0) of values x + 10 y + 100 z (+ 1), a tile of 8^3 of 5 at (16,0,0), a tile of 128^3
- * of 7 at (128,0,0); voxels of half a unit, the first at (10, 0, 0). */
+/* Two leaves at (0,0,0) and (8,0,0) of values x + 10 y + 100 z (+ 1), a tile of 8^3 of 5 at
+ * (16,0,0), a tile of 128^3 of 7 at (128,0,0); voxels of half a unit, the first at (10, 0, 0).
+ */
 static inline unsigned char *make_grid(void) {
   unsigned char *g = calloc(1, SIZE);
   put(g, "NanoVDB0", 8);
@@ -59,11 +60,13 @@ static inline unsigned char *make_grid(void) {
   }
   put_d(g + 296 + 232, 10);
   const double box[6] = {10, 0, 0, 10 + 128, 64, 64};
-  for (int i = 0; i < 6; i++) put_d(g + 560 + 8 * i, box[i]);
+  for (int i = 0; i < 6; i++)
+    put_d(g + 560 + 8 * i, box[i]);
   put_u32(g + 632, 2);          /* fog volume */
   put_u32(g + 636, 1);          /* floats */
   put_u64(g + GRID + 24, TREE); /* root's offset from the tree */
-  unsigned char *root = g + ROOT_AT, *tile = root + ROOT, *upper = g + UPPER_AT, *lower = g + LOWER_AT;
+  unsigned char *root = g + ROOT_AT, *tile = root + ROOT, *upper = g + UPPER_AT,
+                *lower = g + LOWER_AT;
   put_u32(root + 24, 1);
   put_u64(tile, 0);
   put_u64(tile + 8, UPPER_AT - ROOT_AT);
@@ -73,7 +76,8 @@ static inline unsigned char *make_grid(void) {
   put_f(upper + UPPER_TABLE + 8 * (1 << 10), 7);
   for (uint32_t k = 0; k < 2; k++) {
     set_bit(lower_child, k << 8);
-    put_u64(lower + LOWER_TABLE + 8 * (size_t)(k << 8), LEAF_AT - LOWER_AT + (uint64_t)k * LEAF);
+    put_u64(lower + LOWER_TABLE + 8 * (size_t)(k << 8),
+            LEAF_AT - LOWER_AT + (uint64_t)k * LEAF);
     for (uint32_t n = 0; n < 512; n++)
       put_f(g + LEAF_AT + k * LEAF + LEAF_TABLE + 4 * (size_t)n,
             (float)(8 * k + (n >> 6) + 10 * (n >> 3 & 7) + 100 * (n & 7) + 1));
@@ -83,7 +87,8 @@ static inline unsigned char *make_grid(void) {
 }
 
 /* A file of one grid; codec 0 plain, 1 zlib. Returns its bytes. */
-static inline unsigned char *make_file(const unsigned char *grid, uint16_t codec, size_t *size) {
+static inline unsigned char *make_file(const unsigned char *grid, uint16_t codec,
+                                       size_t *size) {
   uLongf packed = compressBound(SIZE);
   unsigned char *file = calloc(1, 16 + 176 + 8 + 8 + packed), *body = file + 16 + 176 + 8;
   put(file, "NanoVDB0", 8);

@@ -1,6 +1,7 @@
-/* test_bssrdf.c: subsurface profiles against independent integrals: dipoles and single scattering along the refracted
- * ray by quadrature, with moments of the Fresnel reflectance that are integrals, too (the library uses polynomials and
- * a hundred points). Also reads from the tables: sums, samples, the inversion of a reflectance. */
+/* test_bssrdf.c: subsurface profiles against independent integrals: dipoles and single
+ * scattering along the refracted ray by quadrature, with moments of the Fresnel reflectance
+ * that are integrals, too (the library uses polynomials and a hundred points). Also reads from
+ * the tables: sums, samples, the inversion of a reflectance. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,13 +40,16 @@ static void assert_within(const char *what, double value, double expected, doubl
     fail_msg("%s: %.7g, expected %.7g within %.2g", what, value, expected, tolerance);
 }
 
-/* ---- integrals of its own ---------------------------------------------------------------------------------------- */
+/* ---- integrals of its own
+ * ---------------------------------------------------------------------------------------- */
 
 /* n: index on the side of the light over that beyond */
 static double fresnel(double cosine, double n) {
   double s2 = (1 - cosine * cosine) * n * n;
-  if (s2 >= 1) return 1;
-  double t = sqrt(1 - s2), s = (n * cosine - t) / (n * cosine + t), p = (cosine - n * t) / (cosine + n * t);
+  if (s2 >= 1)
+    return 1;
+  double t = sqrt(1 - s2), s = (n * cosine - t) / (n * cosine + t),
+         p = (cosine - n * t) / (cosine + n * t);
   return (s * s + p * p) / 2;
 }
 static double moment(double n, int power) {
@@ -62,14 +66,17 @@ static double moment(double n, int power) {
 static double profile(double albedo, double g, double eta, double r) {
   double a = 1 - albedo, s = albedo * (1 - g), t = a + s, rho = s / t;
   double m1 = moment(eta, 1), m2 = moment(eta, 2);
-  double d = (2 * a + s) / (3 * t * t), k = sqrt(a / d), ze = 2 * d * (1 + 3 * m2) / (1 - 2 * m1);
+  double d = (2 * a + s) / (3 * t * t), k = sqrt(a / d),
+         ze = 2 * d * (1 + 3 * m2) / (1 - 2 * m1);
   double cphi = (1 - 2 * m1) / 4, ce = (1 - 3 * m2) / 2, many = 0, once = 0;
   const int steps = 4000;
   for (int i = 0; i < steps; i++) {
     double u = (i + 0.5) / steps, z = -log(1 - u) / t, v = z + 2 * ze;
     double dr = hypot(r, z), dv = hypot(r, v);
     double phi = (exp(-k * dr) / dr - exp(-k * dv) / dv) / (4 * PI * d);
-    double e = (z * (1 + k * dr) * exp(-k * dr) / pow(dr, 3) + v * (1 + k * dv) * exp(-k * dv) / pow(dv, 3)) / (4 * PI);
+    double e = (z * (1 + k * dr) * exp(-k * dr) / pow(dr, 3) +
+                v * (1 + k * dv) * exp(-k * dv) / pow(dv, 3)) /
+               (4 * PI);
     many += rho * rho * (phi * cphi + e * ce) * (1 - exp(-2 * t * (dr + z))) / steps;
   }
   double zc = eta > 1 ? r * sqrt(eta * eta - 1) : 0;
@@ -94,12 +101,14 @@ static void integrals(void **state) {
         snprintf(what, sizeof what, "eta %g, albedo %g, radius %g", bodies[b].eta, rho, r);
         assert_within(what, (double)s.table->profile[i][k], expected, 0.03 * expected + 1e-7);
       }
-    assert_within("leaves", (double)s.table->leaves, 1 - 2 * moment(1 / bodies[b].eta, 1), 3e-3);
+    assert_within("leaves", (double)s.table->leaves, 1 - 2 * moment(1 / bodies[b].eta, 1),
+                  3e-3);
     teardown(&s);
   }
 }
 
-/* ---- what is read from it ---------------------------------------------------------------------------------------- */
+/* ---- what is read from it
+ * ---------------------------------------------------------------------------------------- */
 
 static void sums(void **state) {
   (void)state;
@@ -110,7 +119,8 @@ static void sums(void **state) {
     for (uint32_t i = 0; i + 1 < VL_BSSRDF_RADII; i++) {
       double x0 = (double)s.table->radius[i], width = (double)s.table->radius[i + 1] - x0;
       for (int k = 0; k < 16; k++)
-        sum += width / 16 * (double)vl_bssrdf_ring(s.table, &a, (float)(x0 + width * (k + 0.5) / 16));
+        sum += width / 16 *
+               (double)vl_bssrdf_ring(s.table, &a, (float)(x0 + width * (k + 0.5) / 16));
     }
     assert_within("sum", (double)vl_bssrdf_effective(s.table, &a), sum, 2e-3 * sum + 1e-6);
     /* R itself, also at r = 0 */
@@ -121,7 +131,8 @@ static void sums(void **state) {
     assert_true(vl_bssrdf_at(s.table, &a, 0) > vl_bssrdf_at(s.table, &a, 1));
   }
   vlSpline none = vl_bssrdf_albedo(s.table, 0);
-  assert_true(vl_bssrdf_effective(s.table, &none) == 0 && vl_bssrdf_sample(s.table, &none, 0.5f) < 0);
+  assert_true(vl_bssrdf_effective(s.table, &none) == 0 &&
+              vl_bssrdf_sample(s.table, &none, 0.5f) < 0);
   teardown(&s);
 }
 
@@ -134,11 +145,13 @@ static void samples(void **state) {
     vlSpline a = vl_bssrdf_albedo(s.table, albedos[k]);
     static statCell cells[CELLS];
     double edges[CELLS + 1], whole = (double)vl_bssrdf_effective(s.table, &a);
-    for (int i = 0; i <= CELLS; i++) edges[i] = i ? 0.01 * pow(20000.0, (double)i / CELLS) : 0; /* to 200 */
+    for (int i = 0; i <= CELLS; i++)
+      edges[i] = i ? 0.01 * pow(20000.0, (double)i / CELLS) : 0; /* to 200 */
     for (int i = 0; i < CELLS; i++) {
       double sum = 0, width = edges[i + 1] - edges[i];
       for (int j = 0; j < 64; j++)
-        sum += width / 64 * (double)vl_bssrdf_ring(s.table, &a, (float)(edges[i] + width * (j + 0.5) / 64));
+        sum += width / 64 *
+               (double)vl_bssrdf_ring(s.table, &a, (float)(edges[i] + width * (j + 0.5) / 64));
       cells[i] = (statCell){0, N * sum / whole};
     }
     statRng rng = stat_rng(17 + (uint64_t)k);
@@ -147,29 +160,37 @@ static void samples(void **state) {
       assert_true(r >= 0 && r <= (double)s.table->radius[VL_BSSRDF_RADII - 1]);
       int cell = r < edges[1] ? 0 : 1 + (int)(log(r / 0.01) / log(20000.0) * CELLS - 1 + 1e-9);
       cell = cell < CELLS ? cell : CELLS - 1;
-      while (cell > 0 && r < edges[cell]) cell--;
-      while (cell + 1 < CELLS && r >= edges[cell + 1]) cell++;
+      while (cell > 0 && r < edges[cell])
+        cell--;
+      while (cell + 1 < CELLS && r >= edges[cell + 1])
+        cell++;
       cells[cell].observed++;
     }
     statResult result = stat_chi2(cells, CELLS, 1);
-    if (!(result.p > 1e-4)) fail_msg("radii of albedo %g: p = %g", (double)albedos[k], result.p);
+    if (!(result.p > 1e-4))
+      fail_msg("radii of albedo %g: p = %g", (double)albedos[k], result.p);
   }
   teardown(&s);
 }
 
-/* The cell that the logarithm of a radius gives is the cell that a search finds, also next to nodes. */
+/* The cell that the logarithm of a radius gives is the cell that a search finds, also next to
+ * nodes. */
 static void cells(void **state) {
   (void)state;
   Setup s = setup(1.33f, 0);
   for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++)
     for (int d = -2; d <= 2; d++) {
       float r = s.table->radius[k];
-      for (int j = 0; j < abs(d); j++) r = nextafterf(r, d < 0 ? -1.0f : 1e9f);
-      if (r < 0 || r > s.table->radius[VL_BSSRDF_RADII - 1]) continue;
-      assert_int_equal(vl_bssrdf_cell(s.table, r), vl_find_interval(s.table->radius, VL_BSSRDF_RADII - 1, r));
+      for (int j = 0; j < abs(d); j++)
+        r = nextafterf(r, d < 0 ? -1.0f : 1e9f);
+      if (r < 0 || r > s.table->radius[VL_BSSRDF_RADII - 1])
+        continue;
+      assert_int_equal(vl_bssrdf_cell(s.table, r),
+                       vl_find_interval(s.table->radius, VL_BSSRDF_RADII - 1, r));
     }
   for (float r = 1e-6f; r < 203; r *= 1.0013f)
-    assert_int_equal(vl_bssrdf_cell(s.table, r), vl_find_interval(s.table->radius, VL_BSSRDF_RADII - 1, r));
+    assert_int_equal(vl_bssrdf_cell(s.table, r),
+                     vl_find_interval(s.table->radius, VL_BSSRDF_RADII - 1, r));
   teardown(&s);
 }
 
@@ -199,14 +220,15 @@ static void there_and_back(void **state) {
       float albedo = vl_bssrdf_invert(s.table, e);
       vlSpline a = vl_bssrdf_albedo(s.table, albedo);
       assert_true(albedo >= 0 && albedo <= 1);
-      assert_within("back", (double)vl_bssrdf_effective(s.table, &a), (double)fminf(e, most), 2e-4);
+      assert_within("back", (double)vl_bssrdf_effective(s.table, &a), (double)fminf(e, most),
+                    2e-4);
     }
     teardown(&s);
   }
 }
 
-/* A table does not depend on the number of threads. At albedo 1 all light comes out, within the error of diffusion,
- * some percent. */
+/* A table does not depend on the number of threads. At albedo 1 all light comes out, within the
+ * error of diffusion, some percent. */
 static void plain(void **state) {
   (void)state;
   Setup a = setup(1.33f, 0.3f), b = setup(1.33f, 0.3f);
@@ -218,7 +240,8 @@ static void plain(void **state) {
   b.table = malloc(sizeof *b.table);
   vl_bssrdf_build(b.context, 1.33f, 0.3f, b.table);
   assert_memory_equal(a.table, b.table, sizeof *a.table);
-  for (uint32_t i = 1; i < VL_BSSRDF_ALBEDOS; i++) assert_true(a.table->effective[i] > a.table->effective[i - 1]);
+  for (uint32_t i = 1; i < VL_BSSRDF_ALBEDOS; i++)
+    assert_true(a.table->effective[i] > a.table->effective[i - 1]);
   assert_true(a.table->effective[0] == 0);
   float most = a.table->effective[VL_BSSRDF_ALBEDOS - 1];
   assert_true(most > 0.97f && most < 1.03f);
@@ -227,9 +250,9 @@ static void plain(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(integrals), cmocka_unit_test(sums),
-                                     cmocka_unit_test(samples),   cmocka_unit_test(ordered),
-                                     cmocka_unit_test(cells),     cmocka_unit_test(there_and_back),
-                                     cmocka_unit_test(plain)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(integrals), cmocka_unit_test(sums),  cmocka_unit_test(samples),
+      cmocka_unit_test(ordered),   cmocka_unit_test(cells), cmocka_unit_test(there_and_back),
+      cmocka_unit_test(plain)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

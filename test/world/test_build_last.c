@@ -1,4 +1,5 @@
-/* test/world/test_build_last.c: a scene that passes its meshes to its last world: the same world with less memory. */
+/* test/world/test_build_last.c: a scene that passes its meshes to its last world: the same
+ * world with less memory. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,17 +20,21 @@ static vlScene *make(vlContext *context) {
   static float p[3 * VERTICES], uv[2 * VERTICES];
   static uint32_t f[3 * FACES];
   for (uint32_t i = 0; i < VERTICES; i++) {
-    p[3 * i] = uv[2 * i] = (float)(i % (N + 1)), p[3 * i + 1] = uv[2 * i + 1] = (float)(i / (N + 1));
+    p[3 * i] = uv[2 * i] = (float)(i % (N + 1)),
+          p[3 * i + 1] = uv[2 * i + 1] = (float)(i / (N + 1));
     p[3 * i + 2] = (float)(i % 7);
   }
   for (uint32_t k = 0, i = 0; i < N * N; i++) {
-    uint32_t v = i / N * (N + 1) + i % N, face[6] = {v, v + 1, v + N + 2, v, v + N + 2, v + N + 1};
-    for (int j = 0; j < 6; j++) f[k++] = face[j];
+    uint32_t v = i / N * (N + 1) + i % N,
+             face[6] = {v, v + 1, v + N + 2, v, v + N + 2, v + N + 1};
+    for (int j = 0; j < 6; j++)
+      f[k++] = face[j];
   }
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlShapeDef d = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  d.vertices = VERTICES, d.faces = FACES, d.positions = p, d.uvs = uv, d.normals = p, d.indices = f;
+  d.vertices = VERTICES, d.faces = FACES, d.positions = p, d.uvs = uv, d.normals = p,
+  d.indices = f;
   d.group_from_shape[3] = 5;
   vl_scene_add_shape(scene, &d);
   d.kind = VL_SHAPE_SPHERE;

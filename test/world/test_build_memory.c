@@ -1,5 +1,5 @@
-/* The n-th allocation fails while a world is built or an image rendered, for every n: the error is always
- * VL_ERROR_MEMORY and nothing leaks. (Embree has its own memory.) */
+/* The n-th allocation fails while a world is built or an image rendered, for every n: the error
+ * is always VL_ERROR_MEMORY and nothing leaks. (Embree has its own memory.) */
 #include <stdlib.h>
 
 #include "render/shots.h"
@@ -12,8 +12,10 @@ typedef struct Purse {
 
 static void *purse_allocate(void *user, size_t size) {
   Purse *p = user;
-  if (p->left == 0) return NULL;
-  if (p->left > 0) p->left--;
+  if (p->left == 0)
+    return NULL;
+  if (p->left > 0)
+    p->left--;
   return malloc(size);
 }
 static void purse_release(void *user, void *block) {
@@ -29,7 +31,8 @@ static void fill(Stage *s, const char *path) {
   vlTextureDef map = vl_default_texture_def(VL_TEXTURE_IMAGE, true), file = map;
   map.image = image;
   file.path = path;
-  vlTextureId a = vl_scene_add_texture(s->scene, &map), b = vl_scene_add_texture(s->scene, &file);
+  vlTextureId a = vl_scene_add_texture(s->scene, &map),
+              b = vl_scene_add_texture(s->scene, &file);
   vlTextureDef mix = vl_default_texture_def(VL_TEXTURE_MIX, true);
   mix.spectrum_a.texture = a, mix.spectrum_b.texture = b;
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
@@ -38,25 +41,34 @@ static void fill(Stage *s, const char *path) {
   vlMaterialId ids[6];
   for (int k = 0; k < 6; k++) {
     defs[k] = vl_default_material_def((vlMaterialKind)k);
-    if (k == VL_MATERIAL_DIFFUSE) defs[k].reflectance.texture = vl_scene_add_texture(s->scene, &mix);
-    if (k == VL_MATERIAL_DIFFUSE) defs[k].displacement.texture = height, defs[k].normal_map = path;
-    if (k == VL_MATERIAL_DIELECTRIC) defs[k].eta = vl_spectrum_input(vl_spectrum_named("glass-BK7"));
-    if (k == VL_MATERIAL_MIX) defs[k].materials[0] = ids[0], defs[k].materials[1] = ids[2];
+    if (k == VL_MATERIAL_DIFFUSE)
+      defs[k].reflectance.texture = vl_scene_add_texture(s->scene, &mix);
+    if (k == VL_MATERIAL_DIFFUSE)
+      defs[k].displacement.texture = height, defs[k].normal_map = path;
+    if (k == VL_MATERIAL_DIELECTRIC)
+      defs[k].eta = vl_spectrum_input(vl_spectrum_named("glass-BK7"));
+    if (k == VL_MATERIAL_MIX)
+      defs[k].materials[0] = ids[0], defs[k].materials[1] = ids[2];
     ids[k] = vl_scene_add_material(s->scene, &defs[k]);
     Quad q = quad_at(0, 0, -1 - (float)k, 1, 0, 0, 0, 1, 0);
     q.material = ids[k];
     q.patch = k == 1;
-    if (k == 2) q.alpha.texture = height;
-    if (k == 3) q.emission = add_emission(s, 1, true);
-    if (k == 4) q.group = vl_scene_add_group(s->scene, "group");
+    if (k == 2)
+      q.alpha.texture = height;
+    if (k == 3)
+      q.emission = add_emission(s, 1, true);
+    if (k == 4)
+      q.group = vl_scene_add_group(s->scene, "group");
     add_quad(s, &q);
     double identity[16];
     set_matrix(identity, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
-    if (k == 4) vl_scene_add_instance(s->scene, q.group, identity, (vlSource){0});
+    if (k == 4)
+      vl_scene_add_instance(s->scene, q.group, identity, (vlSource){0});
     double poses[32], times[2] = {0, 1};
     memcpy(poses, identity, sizeof identity);
     set_matrix(poses + 16, 0, -1, 0, 0, 1, 0, 0, 2, 0, 0, 1, 0);
-    if (k == 4) vl_scene_add_moving_instance(s->scene, q.group, 2, times, poses, (vlSource){0});
+    if (k == 4)
+      vl_scene_add_moving_instance(s->scene, q.group, 2, times, poses, (vlSource){0});
   }
   float *block = NULL;
   vlShapeDef mesh = mesh_sphere(3, 1, true, &block);
@@ -66,7 +78,8 @@ static void fill(Stage *s, const char *path) {
   mesh.emission = vl_scene_add_emission(s->scene, &emission);
   vl_scene_add_shape(s->scene, &mesh);
   mesh.emission.index = 0;
-  mesh.positions_close = mesh.positions, mesh.normals_close = mesh.normals; /* on its way, if only to itself */
+  mesh.positions_close = mesh.positions,
+  mesh.normals_close = mesh.normals; /* on its way, if only to itself */
   vl_scene_add_shape(s->scene, &mesh);
   free(block);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
@@ -113,8 +126,11 @@ static void build_without_memory(void **state) {
     for (int sampler = 0; sampler < 2; sampler++) {
       s.build.color = (vlColorMode)color;
       s.build.light_sampler = (vlLightSampler)sampler;
-      s.build.accelerator = sampler ? VL_ACCELERATOR_AUTO : VL_ACCELERATOR_BVH; /* Embree's memory is its own */
-      long n = 0, step = color || sampler ? 7 : 1; /* the first build at each allocation, the others at some */
+      s.build.accelerator =
+          sampler ? VL_ACCELERATOR_AUTO : VL_ACCELERATOR_BVH; /* Embree's memory is its own */
+      long n = 0, step = color || sampler
+                             ? 7
+                             : 1; /* the first build at each allocation, the others at some */
       for (;; n += step) {
         vlWorld *world = NULL;
         vlError error;
@@ -129,7 +145,8 @@ static void build_without_memory(void **state) {
           fail_msg("allocation %ld failed: result %d, \"%s\"", n, (int)r, error.message);
         assert_null(world);
         size_t held = vl_context_memory(s.context, NULL);
-        if (held != before) fail_msg("allocation %ld failed: %g bytes left", n, (double)held - (double)before);
+        if (held != before)
+          fail_msg("allocation %ld failed: %g bytes left", n, (double)held - (double)before);
         assert_true(n < 5000);
       }
       assert_true(n > 30);
@@ -149,7 +166,8 @@ static void render_without_memory(void **state) {
   fill(&s, path);
   remove(path);
   vlWorld *world = NULL;
-  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_ERROR_MISSING); /* the file is gone */
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL),
+                   VL_ERROR_MISSING); /* the file is gone */
   assert_null(world);
   stage_close(&s);
   s = purse_stage(&purse);
@@ -168,14 +186,17 @@ static void render_without_memory(void **state) {
     vlError error;
     purse.left = n;
     vlResult r = vl_film_create(s.context, &s.film, &film);
-    if (r == VL_OK) r = vl_render(world, &camera, film, &s.render, NULL, &error);
-    if (r == VL_OK) r = vl_film_develop(film, &develop, &image);
+    if (r == VL_OK)
+      r = vl_render(world, &camera, film, &s.render, NULL, &error);
+    if (r == VL_OK)
+      r = vl_film_develop(film, &develop, &image);
     purse.left = -1;
     vl_image_destroy(image);
     vl_film_destroy(film);
     size_t held = vl_context_memory(s.context, NULL);
     assert_int_equal(held, before);
-    if (r == VL_OK) break;
+    if (r == VL_OK)
+      break;
     assert_int_equal(r, VL_ERROR_MEMORY);
     assert_true(n < 1000);
   }
@@ -185,6 +206,7 @@ static void render_without_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(build_without_memory), cmocka_unit_test(render_without_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(build_without_memory),
+                                     cmocka_unit_test(render_without_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

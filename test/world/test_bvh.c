@@ -1,6 +1,7 @@
-/* test_bvh.c: velo's own tree gives the hits of Embree with portable bits: random rays, rays through corners and along
- * edges, axes and planes, with ends near hits, in worlds of every kind of shape and motion and of extreme sizes; the
- * same bits for every instruction set and number of threads; parts shared with a previous world.
+/* test_bvh.c: velo's own tree gives the hits of Embree with portable bits: random rays, rays
+ * through corners and along edges, axes and planes, with ends near hits, in worlds of every
+ * kind of shape and motion and of extreme sizes; the same bits for every instruction set and
+ * number of threads; parts shared with a previous world.
  *
  * VELO_RAYS sets the number of rays of each case. */
 #include <math.h>
@@ -37,7 +38,9 @@ static uint32_t random_below(uint32_t n) {
   return (uint32_t)(random_unit() * (float)n);
 }
 
-/* ---- worlds ------------------------------------------------------------------------------------------------------ */
+/* ---- worlds
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Case {
   const char *name;
@@ -63,23 +66,29 @@ typedef struct Kit {
 
 static void decorate(const Kit *k, vlShapeDef *def) {
   def->group = k->group;
-  if (!k->what->alpha) return;
-  if (random_unit() < 0.4f) def->alpha.texture = k->checks;
-  if (random_unit() < 0.2f) def->material = k->interface;
-  if (random_unit() < 0.3f) def->one_sided = def->kind == VL_SHAPE_TRIANGLES;
+  if (!k->what->alpha)
+    return;
+  if (random_unit() < 0.4f)
+    def->alpha.texture = k->checks;
+  if (random_unit() < 0.2f)
+    def->material = k->interface;
+  if (random_unit() < 0.3f)
+    def->one_sided = def->kind == VL_SHAPE_TRIANGLES;
 }
 
-/* A grid of triangles in a plane or a curved surface, with corners on round numbers if `even`. Some triangles have no
- * area. */
+/* A grid of triangles in a plane or a curved surface, with corners on round numbers if `even`.
+ * Some triangles have no area. */
 static void add_grid(const Kit *k, bool even, bool moving) {
-  float p[GRID * GRID][3], later[GRID * GRID][3], size = k->what->size, origin[3],
-                                                  wide = even ? 0.25f : 0.2f + 0.2f * random_unit();
+  float p[GRID * GRID][3], later[GRID * GRID][3],
+      size = k->what->size, origin[3], wide = even ? 0.25f : 0.2f + 0.2f * random_unit();
   uint32_t faces[2 * (GRID - 1) * (GRID - 1)][3], count = 0;
   uint32_t axis = random_below(3);
-  for (int i = 0; i < 3; i++) origin[i] = even ? 0.25f * (float)((int)random_below(7) - 3) : random_signed();
+  for (int i = 0; i < 3; i++)
+    origin[i] = even ? 0.25f * (float)((int)random_below(7) - 3) : random_signed();
   for (int y = 0; y < GRID; y++)
     for (int x = 0; x < GRID; x++) {
-      float at[3] = {(float)x * wide, (float)y * wide, even ? 0 : 0.1f * random_signed() * wide};
+      float at[3] = {(float)x * wide, (float)y * wide,
+                     even ? 0 : 0.1f * random_signed() * wide};
       for (uint32_t i = 0; i < 3; i++) {
         p[y * GRID + x][i] = size * (origin[i] + at[(i + axis) % 3]);
         later[y * GRID + x][i] = p[y * GRID + x][i] + size * 0.3f * random_signed();
@@ -88,7 +97,8 @@ static void add_grid(const Kit *k, bool even, bool moving) {
   for (uint32_t y = 0; y + 1 < GRID; y++)
     for (uint32_t x = 0; x + 1 < GRID; x++) {
       uint32_t a = y * GRID + x, f[6] = {a, a + 1, a + GRID, a + 1, a + GRID + 1, a + GRID};
-      if (random_unit() < 0.05f) f[1] = f[0];
+      if (random_unit() < 0.05f)
+        f[1] = f[0];
       memcpy(faces[count], f, sizeof f);
       count += 2;
     }
@@ -97,8 +107,10 @@ static void add_grid(const Kit *k, bool even, bool moving) {
   def.vertices = GRID * GRID;
   def.indices = faces[0];
   def.faces = count;
-  if (moving) def.positions_close = later[0];
-  if (moving && random_unit() < 0.5f) def.times[1] = 0.25; /* the steps of the world's time are quarters */
+  if (moving)
+    def.positions_close = later[0];
+  if (moving && random_unit() < 0.5f)
+    def.times[1] = 0.25; /* the steps of the world's time are quarters */
   decorate(k, &def);
   vl_scene_add_shape(k->scene, &def);
 }
@@ -109,8 +121,10 @@ static void add_triangles(const Kit *k, bool moving) {
   float p[3 * FACES][3], later[3 * FACES][3], size = k->what->size;
   uint32_t faces[FACES][3];
   for (uint32_t f = 0; f < FACES; f++) {
-    float at[3] = {random_signed(), random_signed(), random_signed()}, large = powf(10, -4 * random_unit());
-    if (size < 1e-8f) large = 1;
+    float at[3] = {random_signed(), random_signed(), random_signed()},
+          large = powf(10, -4 * random_unit());
+    if (size < 1e-8f)
+      large = 1;
     for (uint32_t c = 0; c < 3; c++) {
       faces[f][c] = 3 * f + c;
       for (uint32_t i = 0; i < 3; i++) {
@@ -125,7 +139,8 @@ static void add_triangles(const Kit *k, bool moving) {
   def.vertices = 3 * FACES;
   def.indices = faces[0];
   def.faces = FACES;
-  if (moving) def.positions_close = later[0];
+  if (moving)
+    def.positions_close = later[0];
   decorate(k, &def);
   vl_scene_add_shape(k->scene, &def);
 }
@@ -133,20 +148,23 @@ static void add_triangles(const Kit *k, bool moving) {
 static void set_pose(double m[16], float size, bool even) {
   memset(m, 0, 16 * sizeof *m);
   for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) m[4 * i + j] = even ? (i == j) : (double)(0.6f * random_signed()) + (i == j);
+    for (int j = 0; j < 3; j++)
+      m[4 * i + j] = even ? (i == j) : (double)(0.6f * random_signed()) + (i == j);
     m[4 * i + 3] = (double)(size * 0.7f * random_signed());
   }
   m[15] = 1;
 }
 
 static void add_other(const Kit *k, uint32_t which) {
-  static const vlShapeKind kinds[] = {VL_SHAPE_SPHERE, VL_SHAPE_DISK, VL_SHAPE_CYLINDER, VL_SHAPE_BILINEAR,
-                                      VL_SHAPE_CURVES};
+  static const vlShapeKind kinds[] = {VL_SHAPE_SPHERE, VL_SHAPE_DISK, VL_SHAPE_CYLINDER,
+                                      VL_SHAPE_BILINEAR, VL_SHAPE_CURVES};
   vlShapeDef def = vl_default_shape_def(kinds[which % 5]);
-  float p[8][3], size = k->what->size, widths[4] = {0.05f * size, 0.02f * size, 0.03f * size, 0.05f * size};
+  float p[8][3], size = k->what->size,
+                 widths[4] = {0.05f * size, 0.02f * size, 0.03f * size, 0.05f * size};
   static const uint32_t face[4] = {0, 1, 2, 3};
   for (int c = 0; c < 8; c++)
-    for (int i = 0; i < 3; i++) p[c][i] = size * 0.5f * random_signed();
+    for (int i = 0; i < 3; i++)
+      p[c][i] = size * 0.5f * random_signed();
   def.positions = p[0];
   if (def.kind == VL_SHAPE_BILINEAR) {
     def.vertices = 4;
@@ -174,7 +192,8 @@ static void fill(Kit *k) {
       add_grid(k, i % 2 || k->what->size != 1, moving);
       add_triangles(k, moving);
     }
-    if (k->what->others) add_other(k, i);
+    if (k->what->others)
+      add_other(k, i);
   }
 }
 
@@ -220,33 +239,39 @@ static void make(const Case *what, Made *m, vlIsa isa, uint32_t threads) {
   for (int a = !has_embree; a < 2; a++) {
     build.accelerator = a ? VL_ACCELERATOR_BVH : VL_ACCELERATOR_EMBREE;
     vlError error = {0};
-    if (vl_world_build(m->scene, &build, &m->worlds[a], &error) != VL_OK) fail_msg("%s: %s", what->name, error.message);
+    if (vl_world_build(m->scene, &build, &m->worlds[a], &error) != VL_OK)
+      fail_msg("%s: %s", what->name, error.message);
     assert_null(m->worlds[a]->accel.brute_force);
     assert_int_equal(m->worlds[a]->accel.kind, build.accelerator);
   }
 }
 
 static void unmake(Made *m) {
-  for (int a = 0; a < 2; a++) vl_world_destroy(m->worlds[a]);
+  for (int a = 0; a < 2; a++)
+    vl_world_destroy(m->worlds[a]);
   vl_scene_destroy(m->scene);
   vl_context_destroy(m->context);
 }
 
-/* ---- rays -------------------------------------------------------------------------------------------------------- */
+/* ---- rays
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static float o_[3][BATCH], d_[3][BATCH], start_[BATCH], end_[BATCH], time_[BATCH];
 static const vlRays all_rays = {o_[0], o_[1], o_[2], d_[0], d_[1], d_[2], start_, end_, time_};
 
 typedef enum Way { ANYWHERE, CORNERS, EDGES, ALONG, AXES, WAYS } Way;
-static const char *const way_names[WAYS] = {"anywhere", "through corners", "through edges", "along edges",
-                                            "along axes"};
+static const char *const way_names[WAYS] = {"anywhere", "through corners", "through edges",
+                                            "along edges", "along axes"};
 
-/* A point of a triangle of the world, at a time; corner: one of them; edge: on an edge. Places of instances are left
- * out, so that some rays meet nothing. */
-static void point_of(const vlWorld *w, float time, int corner, bool edge, float p[3], float along[3]) {
+/* A point of a triangle of the world, at a time; corner: one of them; edge: on an edge. Places
+ * of instances are left out, so that some rays meet nothing. */
+static void point_of(const vlWorld *w, float time, int corner, bool edge, float p[3],
+                     float along[3]) {
   static const vlWorldShape none = {.kind = VL_SHAPE_SPHERE};
   const vlWorldShape *s = w->shapes.count ? NULL : &none;
-  for (uint32_t tries = 0; w->shapes.count && tries < 100 && (!s || s->kind != VL_SHAPE_TRIANGLES); tries++)
+  for (uint32_t tries = 0;
+       w->shapes.count && tries < 100 && (!s || s->kind != VL_SHAPE_TRIANGLES); tries++)
     s = &w->shapes.items[random_below((uint32_t)w->shapes.count)];
   float u = random_unit(), v = random_unit() * (1 - u);
   if (s->kind != VL_SHAPE_TRIANGLES) {
@@ -259,14 +284,17 @@ static void point_of(const vlWorld *w, float time, int corner, bool edge, float 
   const uint32_t *f = s->indices + 3 * (size_t)random_below(s->faces);
   float room[3][3];
   const float *c[3];
-  for (int k = 0; k < 3; k++) c[k] = vl_vertex_at(s, f[k], time, room[k]);
-  if (edge) v = 0;
+  for (int k = 0; k < 3; k++)
+    c[k] = vl_vertex_at(s, f[k], time, room[k]);
+  if (edge)
+    v = 0;
   if (corner >= 0) {
     u = corner == 1;
     v = corner == 2;
   }
   for (int i = 0; i < 3; i++) {
-    p[i] = corner >= 0 ? c[corner][i] : c[0][i] + u * (c[1][i] - c[0][i]) + v * (c[2][i] - c[0][i]);
+    p[i] = corner >= 0 ? c[corner][i]
+                       : c[0][i] + u * (c[1][i] - c[0][i]) + v * (c[2][i] - c[0][i]);
     along[i] = c[1][i] - c[0][i];
   }
 }
@@ -274,14 +302,18 @@ static void point_of(const vlWorld *w, float time, int corner, bool edge, float 
 static void make_rays(const vlWorld *w, Way way) {
   for (uint32_t k = 0; k < BATCH; k++) {
     float from[3], to[3], along[3], other[3], length = powf(10, 3 * random_signed());
-    if (w->radius > 1e8f) length *= 1e-3f; /* products of larger numbers lose digits in Embree's reciprocal, */
-    if (w->radius < 1e-8f) length *= 1e3f; /* those of smaller ones have few digits */
+    if (w->radius > 1e8f)
+      length *= 1e-3f; /* products of larger numbers lose digits in Embree's reciprocal, */
+    if (w->radius < 1e-8f)
+      length *= 1e3f; /* those of smaller ones have few digits */
     time_[k] = w->moves ? (random_unit() < 0.1f ? (float)random_below(2) : random_unit()) : 0;
-    point_of(w, time_[k], way == CORNERS ? (int)random_below(3) : -1, way == EDGES || way == ALONG, to, along);
+    point_of(w, time_[k], way == CORNERS ? (int)random_below(3) : -1,
+             way == EDGES || way == ALONG, to, along);
     point_of(w, time_[k], way == AXES ? 0 : -1, false, from, other);
     uint32_t axis = random_below(3);
     for (int i = 0; i < 3; i++) {
-      if (random_unit() < 0.3f) from[i] = w->center[i] + 2 * w->radius * random_signed();
+      if (random_unit() < 0.3f)
+        from[i] = w->center[i] + 2 * w->radius * random_signed();
       o_[i][k] = from[i];
       d_[i][k] = (to[i] - from[i]) * length;
       if (way == ALONG) {
@@ -294,7 +326,8 @@ static void make_rays(const vlWorld *w, Way way) {
       }
     }
     if (way == AXES) {
-      for (int i = 0; i < 3; i++) o_[i][k] += 1e-3f * w->radius * random_signed(); /* not in the face of a box */
+      for (int i = 0; i < 3; i++)
+        o_[i][k] += 1e-3f * w->radius * random_signed(); /* not in the face of a box */
       o_[axis][k] = w->center[axis] + 2 * w->radius;
       d_[axis][k] = -length;
     }
@@ -303,7 +336,9 @@ static void make_rays(const vlWorld *w, Way way) {
   }
 }
 
-/* ---- comparison -------------------------------------------------------------------------------------------------- */
+/* ---- comparison
+ * --------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Hits {
   uint32_t shape[BATCH], prim[BATCH], instance[BATCH];
@@ -317,8 +352,11 @@ static void trace(const vlWorld *w, bool coherent, Hits *h) {
 }
 
 static bool same_hit(const vlWorld *w, const Hits *a, const Hits *b, uint32_t k) {
-  if (a->shape[k] != b->shape[k] || a->prim[k] != b->prim[k] || a->instance[k] != b->instance[k]) return false;
-  if (a->shape[k] == VL_NONE || w->shapes.items[a->shape[k]].kind == VL_SHAPE_TRIANGLES) return true;
+  if (a->shape[k] != b->shape[k] || a->prim[k] != b->prim[k] ||
+      a->instance[k] != b->instance[k])
+    return false;
+  if (a->shape[k] == VL_NONE || w->shapes.items[a->shape[k]].kind == VL_SHAPE_TRIANGLES)
+    return true;
   return a->t[k] == b->t[k];
 }
 
@@ -362,17 +400,21 @@ typedef struct Met {
 } Met;
 
 static Met met_triangle(const vlWorld *w, const Hits *h, uint32_t k) {
-  if (h->shape[k] == VL_NONE || w->shapes.items[h->shape[k]].kind != VL_SHAPE_TRIANGLES) return (Met){0};
+  if (h->shape[k] == VL_NONE || w->shapes.items[h->shape[k]].kind != VL_SHAPE_TRIANGLES)
+    return (Met){0};
   const vlWorldShape *s = &w->shapes.items[h->shape[k]];
   double o[3] = {(double)o_[0][k], (double)o_[1][k], (double)o_[2][k]};
-  double d[3] = {(double)d_[0][k], (double)d_[1][k], (double)d_[2][k]}, n[3], c[3][3], side[3], sum = 0;
+  double d[3] = {(double)d_[0][k], (double)d_[1][k], (double)d_[2][k]}, n[3], c[3][3], side[3],
+         sum = 0;
   vlWorldInstance moved;
   if (h->instance[k] != VL_NONE)
-    vl_ray_to_group(vl_instance_at(&w->instances.items[h->instance[k]], time_[k], &moved), o, d);
+    vl_ray_to_group(vl_instance_at(&w->instances.items[h->instance[k]], time_[k], &moved), o,
+                    d);
   for (size_t i = 0; i < 3; i++) {
     float room[3];
     const float *at = vl_vertex_at(s, s->indices[3 * (size_t)h->prim[k] + i], time_[k], room);
-    for (int j = 0; j < 3; j++) c[i][j] = (double)at[j] - o[j];
+    for (int j = 0; j < 3; j++)
+      c[i][j] = (double)at[j] - o[j];
   }
   for (int i = 0; i < 3; i++) {
     vl_cross3(c[(i + 1) % 3], c[(i + 2) % 3], n);
@@ -384,37 +426,48 @@ static Met met_triangle(const vlWorld *w, const Hits *h, uint32_t k) {
     c[2][j] -= c[0][j];
   }
   vl_cross3(c[1], c[2], n);
-  double twice_area = sqrt(vl_dot3(n, n)), longest = sqrt(fmax(vl_dot3(c[1], c[1]), vl_dot3(c[2], c[2])));
+  double twice_area = sqrt(vl_dot3(n, n)),
+         longest = sqrt(fmax(vl_dot3(c[1], c[1]), vl_dot3(c[2], c[2])));
   double far = sqrt(vl_dot3(d, d)) * (double)h->t[k];
   return (Met){true, fabs(vl_dot3(n, d)) / (twice_area * sqrt(vl_dot3(d, d))),
-               fmin(side[0] / sum, fmin(side[1] / sum, side[2] / sum)) - 1e-6 * (1 + far * longest / twice_area)};
+               fmin(side[0] / sum, fmin(side[1] / sum, side[2] / sum)) -
+                   1e-6 * (1 + far * longest / twice_area)};
 }
 
-/* ---- the judge ---------------------------------------------------------------------------------------------------
- * What a ray meets, without a tree and in double, with bounds of the rounding errors of the accelerators' arithmetic
- * (bvh.hot.c). A hit is certain if these errors cannot undo it, and possible if they can make it. */
+/* ---- the judge
+ * ---------------------------------------------------------------------------------------------------
+ * What a ray meets, without a tree and in double, with bounds of the rounding errors of the
+ * accelerators' arithmetic (bvh.hot.c). A hit is certain if these errors cannot undo it, and
+ * possible if they can make it. */
 
 typedef struct Verdict {
-  double certain;  /* a hit that lets no ray pass is met no later than here; infinity: none is certain */
-  double first[4]; /* for each of the results: where its hit can be at the earliest; infinity: it is none */
+  double certain;  /* a hit that lets no ray pass is met no later than here; infinity: none is
+                      certain */
+  double first[4]; /* for each of the results: where its hit can be at the earliest; infinity:
+                      it is none */
   bool possible;   /* any hit */
 } Verdict;
 
-/* The ray in a group, by the arithmetic of the accelerators. Returns a bound of the relative error of the map's scale:
- * packets of Embree sum the determinant of a moving instance in another order. */
-static double to_group(const vlWorld *w, uint32_t k, uint32_t instance, float o[3], float d[3]) {
+/* The ray in a group, by the arithmetic of the accelerators. Returns a bound of the relative
+ * error of the map's scale: packets of Embree sum the determinant of a moving instance in
+ * another order.
+ */
+static double to_group(const vlWorld *w, uint32_t k, uint32_t instance, float o[3],
+                       float d[3]) {
   float world_o[3], world_d[3], pose[12], map[12];
   for (int i = 0; i < 3; i++) {
     o[i] = world_o[i] = o_[i][k];
     d[i] = world_d[i] = d_[i][k];
   }
-  if (instance == VL_NONE) return 0;
+  if (instance == VL_NONE)
+    return 0;
   const vlWorldInstance *at = &w->instances.items[instance];
   memcpy(pose, at->from_group, sizeof pose);
   if (at->keys) {
     vlTimeStep step = vl_time_step(time_[k], at->keys);
     const float *a = at->path + 12 * (size_t)step.first;
-    for (int i = 0; i < 12; i++) pose[i] = a[i] * (1.0f - step.part) + a[i + 12] * step.part;
+    for (int i = 0; i < 12; i++)
+      pose[i] = a[i] * (1.0f - step.part) + a[i + 12] * step.part;
   }
   vl_bvh_map(pose, map);
   for (int i = 0; i < 3; i++) {
@@ -423,21 +476,26 @@ static double to_group(const vlWorld *w, uint32_t k, uint32_t instance, float o[
     d[i] = world_d[0] * m[0] + (world_d[1] * m[1] + world_d[2] * m[2]);
   }
   double terms = 0; /* of the determinant, over the determinant */
-  for (int i = 0; i < 3; i++) terms += fabs((double)pose[4 * i] * (double)map[i]);
+  for (int i = 0; i < 3; i++)
+    terms += fabs((double)pose[4 * i] * (double)map[i]);
   return at->keys ? 8 * EPSILON * terms : 0;
 }
 
-/* Distances at which a ray may meet a triangle with the corners c. Returns 0: it does not, 1: it may, 2: it does. */
-static int meets(const float *const c[3], const float o[3], const float d[3], double scale_error, double at[2]) {
+/* Distances at which a ray may meet a triangle with the corners c. Returns 0: it does not, 1:
+ * it may, 2: it does. */
+static int meets(const float *const c[3], const float o[3], const float d[3],
+                 double scale_error, double at[2]) {
   double v[3][3], edge[3][3], n[3], u[3], reach = 0, longest = 0, far = 0, speed, height;
   double ray[3] = {(double)d[0], (double)d[1], (double)d[2]}, length = sqrt(vl_dot3(ray, ray));
   for (int k = 0; k < 3; k++) {
-    for (int i = 0; i < 3; i++) v[k][i] = (double)c[k][i] - (double)o[i];
+    for (int i = 0; i < 3; i++)
+      v[k][i] = (double)c[k][i] - (double)o[i];
     reach = fmax(reach, sqrt(vl_dot3(v[k], v[k])));
     far = fmax(far, fabs((double)o[k]));
   }
   for (int k = 0; k < 3; k++) {
-    for (int i = 0; i < 3; i++) edge[k][i] = v[(k + 1) % 3][i] - v[k][i];
+    for (int i = 0; i < 3; i++)
+      edge[k][i] = v[(k + 1) % 3][i] - v[k][i];
     longest = fmax(longest, sqrt(vl_dot3(edge[k], edge[k])));
     vl_cross3(v[k], v[(k + 1) % 3], n);
     u[k] = 2 * vl_dot3(n, ray);
@@ -445,24 +503,29 @@ static int meets(const float *const c[3], const float o[3], const float d[3], do
   vl_cross3(edge[0], edge[1], n);
   speed = vl_dot3(n, ray);
   height = vl_dot3(n, v[0]);
-  /* Corners relative to the origin are off by `near`, and their differences by a little more. */
+  /* Corners relative to the origin are off by `near`, and their differences by a little more.
+   */
   double near = EPSILON * reach + 2 * scale_error * far;
   double beside = length * (8 * near * (reach + longest) + 32 * EPSILON * reach * longest);
-  double slow = length * 16 * (near + EPSILON * longest) * longest, low = reach * slow + 8 * near * longest * longest;
+  double slow = length * 16 * (near + EPSILON * longest) * longest,
+         low = reach * slow + 8 * near * longest * longest;
   double wide = beside + 2 * EPSILON * fabs(u[0] + u[1] + u[2]);
   double least = fmin(u[0], fmin(u[1], u[2])), most = fmax(u[0], fmax(u[1], u[2]));
-  if (least < -wide && most > wide) return 0;
+  if (least < -wide && most > wide)
+    return 0;
   at[0] = -INFINITY;
   at[1] = INFINITY;
-  if (fabs(speed) <= slow) return 1;
-  double t = height / speed, error = (low + fabs(t) * slow) / (fabs(speed) - slow) + 8 * EPSILON * fabs(t);
+  if (fabs(speed) <= slow)
+    return 1;
+  double t = height / speed,
+         error = (low + fabs(t) * slow) / (fabs(speed) - slow) + 8 * EPSILON * fabs(t);
   at[0] = t - error;
   at[1] = t + error;
   return least > beside || most < -beside ? 2 : 1;
 }
 
-static void judge_shape(const vlWorld *w, uint32_t k, uint32_t instance, uint32_t index, bool shadow,
-                        const Hits *const results[3], Verdict *verdict) {
+static void judge_shape(const vlWorld *w, uint32_t k, uint32_t instance, uint32_t index,
+                        bool shadow, const Hits *const results[3], Verdict *verdict) {
   const vlWorldShape *s = &w->shapes.items[index];
   float o[3], d[3];
   double scale_error = to_group(w, k, instance, o, d);
@@ -472,46 +535,60 @@ static void judge_shape(const vlWorld *w, uint32_t k, uint32_t instance, uint32_
     if (s->kind == VL_SHAPE_TRIANGLES) {
       float room[3][3];
       const float *c[3];
-      for (size_t i = 0; i < 3; i++) c[i] = vl_vertex_at(s, s->indices[3 * (size_t)prim + i], time_[k], room[i]);
+      for (size_t i = 0; i < 3; i++)
+        c[i] = vl_vertex_at(s, s->indices[3 * (size_t)prim + i], time_[k], room[i]);
       met = meets(c, o, d, scale_error, at);
-      if (met && vl_triangle_lets_pass(w, &all_rays, k, instance, s, prim, shadow)) met = 0;
+      if (met && vl_triangle_lets_pass(w, &all_rays, k, instance, s, prim, shadow))
+        met = 0;
     } else { /* both call the same function */
-      met = vl_ray_meets_shape(w, &all_rays, k, instance, s, prim, shadow, low, high, &at[0]) ? 2 : 0;
+      met = vl_ray_meets_shape(w, &all_rays, k, instance, s, prim, shadow, low, high, &at[0])
+                ? 2
+                : 0;
       at[1] = at[0] * (1 + 2 * EPSILON);
     }
-    if (!met || at[1] < low || at[0] > high) continue;
+    if (!met || at[1] < low || at[0] > high)
+      continue;
     verdict->possible = true;
-    if (met == 2 && at[0] >= low && at[1] <= high) verdict->certain = fmin(verdict->certain, at[1]);
+    if (met == 2 && at[0] >= low && at[1] <= high)
+      verdict->certain = fmin(verdict->certain, at[1]);
     for (int r = 0; r < 3; r++)
-      if (results[r]->shape[k] == index && results[r]->prim[k] == prim && results[r]->instance[k] == instance)
+      if (results[r]->shape[k] == index && results[r]->prim[k] == prim &&
+          results[r]->instance[k] == instance)
         verdict->first[r] = at[0];
   }
 }
 
-/* Whether rounding decides what a ray meets: each of the results is one that exact arithmetic allows. */
-static bool is_undecided(const vlWorld *w, uint32_t k, bool shadow, const Hits *const results[3]) {
+/* Whether rounding decides what a ray meets: each of the results is one that exact arithmetic
+ * allows. */
+static bool is_undecided(const vlWorld *w, uint32_t k, bool shadow,
+                         const Hits *const results[3]) {
   Verdict v = {.certain = INFINITY, .first = {INFINITY, INFINITY, INFINITY}};
   for (uint32_t n = 0; n <= w->instances.count; n++) {
     const vlWorldGroup *group = &w->groups.items[n ? w->instances.items[n - 1].group : 0];
     for (uint32_t i = 0; i < group->count; i++)
       judge_shape(w, k, n ? n - 1 : VL_NONE, group->shapes[i], shadow, results, &v);
   }
-  if (shadow) return v.possible && v.certain == INFINITY;
+  if (shadow)
+    return v.possible && v.certain == INFINITY;
   for (int r = 0; r < 3; r++) {
-    if (results[r]->shape[k] == VL_NONE ? v.certain < INFINITY : !(v.first[r] <= v.certain * (1 + 4 * EPSILON)))
+    if (results[r]->shape[k] == VL_NONE ? v.certain < INFINITY
+                                        : !(v.first[r] <= v.certain * (1 + 4 * EPSILON)))
       return false;
   }
   return true;
 }
 
-static void differ(const char *name, const char *way, uint32_t k, const Hits *const results[3]) {
-  print_message("%s, %s: o %a %a %a d %a %a %a, %a to %a, time %a\n", name, way, (double)o_[0][k], (double)o_[1][k],
-                (double)o_[2][k], (double)d_[0][k], (double)d_[1][k], (double)d_[2][k], (double)start_[k],
-                (double)end_[k], (double)time_[k]);
+static void differ(const char *name, const char *way, uint32_t k,
+                   const Hits *const results[3]) {
+  print_message("%s, %s: o %a %a %a d %a %a %a, %a to %a, time %a\n", name, way,
+                (double)o_[0][k], (double)o_[1][k], (double)o_[2][k], (double)d_[0][k],
+                (double)d_[1][k], (double)d_[2][k], (double)start_[k], (double)end_[k],
+                (double)time_[k]);
   static const char *const names[] = {"Embree", "packets", "BVH"};
   for (int r = 0; r < 3; r++)
-    print_message("%s: shape %d prim %d instance %d t %.9g blocked %d\n", names[r], (int)results[r]->shape[k],
-                  (int)results[r]->prim[k], (int)results[r]->instance[k], (double)results[r]->t[k],
+    print_message("%s: shape %d prim %d instance %d t %.9g blocked %d\n", names[r],
+                  (int)results[r]->shape[k], (int)results[r]->prim[k],
+                  (int)results[r]->instance[k], (double)results[r]->t[k],
                   results[r]->blocked[k]);
   fail();
 }
@@ -535,9 +612,11 @@ static void hits_are_those_of_embree(void **state) {
           met += hits[2].shape[k] != VL_NONE;
           bool same = same_hit(m.worlds[0], &hits[0], &hits[2], k);
           /* Embree's packets do not compare all hits at the ray's very start. */
-          if (hits[2].t[k] != 0) same = same && same_hit(m.worlds[0], &hits[1], &hits[2], k);
+          if (hits[2].t[k] != 0)
+            same = same && same_hit(m.worlds[0], &hits[1], &hits[2], k);
           bool same_shadow = hits[0].blocked[k] == hits[2].blocked[k];
-          if (same && same_shadow) continue;
+          if (same && same_shadow)
+            continue;
           undecided++;
           const Hits *results[3] = {&hits[0], &hits[hits[2].t[k] != 0 ? 1 : 0], &hits[2]};
           if ((!same && !is_undecided(m.worlds[0], k, false, results)) ||
@@ -549,19 +628,21 @@ static void hits_are_those_of_embree(void **state) {
       if (way != ALONG && undecided > rays / 100)
         fail_msg("%s, %s: %u differences", cases[c].name, way_names[way], undecided);
       if (getenv("VELO_RAYS"))
-        print_message("%s, %s: %u rays, %u hits, %u undecided\n", cases[c].name, way_names[way], rays, met, undecided);
+        print_message("%s, %s: %u rays, %u hits, %u undecided\n", cases[c].name, way_names[way],
+                      rays, met, undecided);
     }
     vl_accel_leave(floats);
     unmake(&m);
   }
 }
 
-/* A ray's end within a few units in the last place of a hit. The BVH finds it if its exact distance is not beyond the
- * end; Embree's distances are off by two units at most. */
+/* A ray's end within a few units in the last place of a hit. The BVH finds it if its exact
+ * distance is not beyond the end; Embree's distances are off by two units at most. */
 static void ends_near_hits(void **state) {
   (void)state;
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-    if (cases[c].others || cases[c].alpha) continue;
+    if (cases[c].others || cases[c].alpha)
+      continue;
     Made m = {0};
     make(&cases[c], &m, VL_ISA_AUTO, 2);
     unsigned floats = vl_accel_enter();
@@ -577,19 +658,26 @@ static void ends_near_hits(void **state) {
       for (int step = -4; step <= 4; step++) {
         for (uint32_t k = 0; k < BATCH; k++) {
           float t = first.t[k];
-          for (int s = 0; s != step; s += step > 0 ? 1 : -1) t = nextafterf(t, step > 0 ? INFINITY : 0);
+          for (int s = 0; s != step; s += step > 0 ? 1 : -1)
+            t = nextafterf(t, step > 0 ? INFINITY : 0);
           end_[k] = t;
         }
-        for (int a = 0; a < 2; a++) trace(m.worlds[a], false, &hits[a]);
+        for (int a = 0; a < 2; a++)
+          trace(m.worlds[a], false, &hits[a]);
         for (uint32_t k = 0; k < BATCH; k++) {
-          if (first.shape[k] == VL_NONE || !(first.t[k] > 0)) continue;
+          if (first.shape[k] == VL_NONE || !(first.t[k] > 0))
+            continue;
           Met met = met_triangle(m.worlds[0], &first, k);
-          if (met.sine < 0.05 || met.inner < 0) continue; /* its distance is less certain than some units */
+          if (met.sine < 0.05 || met.inner < 0)
+            continue; /* its distance is less certain than some units */
           bool flat = d_[0][k] == 0 || d_[1][k] == 0 || d_[2][k] == 0;
           tested++;
           assert_int_equal(hits[1].blocked[k], step >= 0);
-          assert_int_equal(hits[1].shape[k] == first.shape[k] && hits[1].prim[k] == first.prim[k], step >= 0);
-          if (flat || (step > -4 && step < 4)) continue;
+          assert_int_equal(
+              hits[1].shape[k] == first.shape[k] && hits[1].prim[k] == first.prim[k],
+              step >= 0);
+          if (flat || (step > -4 && step < 4))
+            continue;
           assert_int_equal(hits[0].blocked[k], step >= 0);
         }
       }
@@ -614,7 +702,8 @@ static void same_for_all_sets_and_threads(void **state) {
       make_rays(m.worlds[1], ANYWHERE);
       memset(&hits, 0, sizeof hits);
       trace(m.worlds[1], false, &hits);
-      if (isa == VL_ISA_BASE && threads == 1) known = hits;
+      if (isa == VL_ISA_BASE && threads == 1)
+        known = hits;
       assert_memory_equal(&known, &hits, sizeof hits);
       vl_accel_leave(floats);
       unmake(&m);
@@ -665,7 +754,8 @@ typedef struct Stopper {
 
 static void *stopping_allocate(void *user, size_t size) {
   Stopper *s = user;
-  if (s->left > 0 && --s->left == 0) vl_cancel_request(s->cancel);
+  if (s->left > 0 && --s->left == 0)
+    vl_cancel_request(s->cancel);
   return malloc(size);
 }
 static void plain_release(void *user, void *block) {
@@ -699,7 +789,8 @@ static void stopped_builds(void **state) {
     vl_world_destroy(m.worlds[1]);
     m.worlds[1] = NULL;
     assert_int_equal(vl_context_memory(m.context, NULL), before);
-    if (!reached) break;
+    if (!reached)
+      break;
   }
   assert_true(stopped > 20);
   vl_cancel_destroy(stopper.cancel);
@@ -714,11 +805,13 @@ static void broken_rays(void **state) {
   static Hits hits;
   static const float broken[] = {NAN, INFINITY, -INFINITY, 3e38f, 0x1p121f};
   make_rays(m.worlds[1], ANYWHERE);
-  for (uint32_t k = 0; k < BATCH; k++) (k % 2 ? o_ : d_)[k % 3][k] = broken[k % 5];
+  for (uint32_t k = 0; k < BATCH; k++)
+    (k % 2 ? o_ : d_)[k % 3][k] = broken[k % 5];
   unsigned floats = vl_accel_enter();
   trace(m.worlds[1], false, &hits);
   vl_accel_leave(floats);
-  for (uint32_t k = 0; k < BATCH; k++) assert_true(hits.shape[k] == VL_NONE && !hits.blocked[k]);
+  for (uint32_t k = 0; k < BATCH; k++)
+    assert_true(hits.shape[k] == VL_NONE && !hits.blocked[k]);
   unmake(&m);
 }
 
@@ -738,14 +831,18 @@ static void nothing_at_all(void **state) {
   static Hits hits;
   make_rays(m.worlds[1], AXES);
   trace(m.worlds[1], false, &hits);
-  for (uint32_t k = 0; k < BATCH; k++) assert_true(hits.shape[k] == VL_NONE && !hits.blocked[k]);
+  for (uint32_t k = 0; k < BATCH; k++)
+    assert_true(hits.shape[k] == VL_NONE && !hits.blocked[k]);
   unmake(&m);
 }
 
-/* Embree reports a hit at an infinite distance where the arithmetic of a huge triangle overflows. */
+/* Embree reports a hit at an infinite distance where the arithmetic of a huge triangle
+ * overflows.
+ */
 static void a_distance_that_overflows_is_no_hit(void **state) {
   (void)state;
-  vlNearest known = {.t = INFINITY, .instance = VL_NONE, .geometry = VL_NONE, .primitive = VL_NONE};
+  vlNearest known = {
+      .t = INFINITY, .instance = VL_NONE, .geometry = VL_NONE, .primitive = VL_NONE};
   vlNearest hit = {.t = INFINITY, .instance = VL_NONE};
   assert_false(vl_nearest_offer(&known, &hit));
   hit.t = NAN;

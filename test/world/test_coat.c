@@ -1,6 +1,6 @@
-/* test_coat.c: the coat's tables against an independent random walk in double through interface, layer and base, with
- * microfacets drawn from D(h) cos h (the library draws visible ones). Also the properties that vl_coat_build
- * guarantees. */
+/* test_coat.c: the coat's tables against an independent random walk in double through
+ * interface, layer and base, with microfacets drawn from D(h) cos h (the library draws visible
+ * ones). Also the properties that vl_coat_build guarantees. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,41 +29,49 @@ static double lambda(Vec w, double alpha) {
 /* Reflectance for a cosine > 0 on the side of the light; index eta beyond over before. */
 static double fresnel(double c, double eta, double *cos_t) {
   double sin2 = (1.0 - c * c) / (eta * eta);
-  if (sin2 >= 1.0) return 1.0;
+  if (sin2 >= 1.0)
+    return 1.0;
   *cos_t = sqrt(1.0 - sin2);
-  double s = (c - eta * *cos_t) / (c + eta * *cos_t), p = (eta * c - *cos_t) / (eta * c + *cos_t);
+  double s = (c - eta * *cos_t) / (c + eta * *cos_t),
+         p = (eta * c - *cos_t) / (eta * c + *cos_t);
   return 0.5 * (s * s + p * p);
 }
-/* o.z > 0 towards where light comes from. Returns false when it is lost; else mirrored (w.z > 0) or not (w.z < 0) and
- * weight is multiplied by f cos / density, energy (no 1/eta^2). */
+/* o.z > 0 towards where light comes from. Returns false when it is lost; else mirrored (w.z >
+ * 0) or not (w.z < 0) and weight is multiplied by f cos / density, energy (no 1/eta^2). */
 static bool interface(statRng *rng, Vec o, double eta, double alpha, Vec *w, double *weight) {
   Vec h = {0, 0, 1};
   bool rough = alpha >= 1e-3;
   if (rough) {
-    double u = stat_double(rng), phi = 2 * PI * stat_double(rng), tan2 = alpha * alpha * u / (1 - u);
+    double u = stat_double(rng), phi = 2 * PI * stat_double(rng),
+           tan2 = alpha * alpha * u / (1 - u);
     h.z = 1 / sqrt(1 + tan2);
     double s = sqrt(fmax(0, 1 - h.z * h.z));
     h.x = s * cos(phi), h.y = s * sin(phi);
   }
   double oh = o.x * h.x + o.y * h.y + o.z * h.z, cos_t = 0;
-  if (oh <= 0) return false;
+  if (oh <= 0)
+    return false;
   double f = fresnel(oh, eta, &cos_t);
   bool mirror = stat_double(rng) < f;
   double a = mirror ? 2 * oh : oh / eta - cos_t, b = mirror ? 1 : 1 / eta;
   *w = (Vec){a * h.x - b * o.x, a * h.y - b * o.y, a * h.z - b * o.z};
-  if (mirror ? w->z <= 0 : w->z >= 0) return false;
+  if (mirror ? w->z <= 0 : w->z >= 0)
+    return false;
   /* f cos_i / (D cos h dh/dwi) = (F or T) G |o.h| / (cos o cos h) */
-  if (rough) *weight *= oh / (o.z * h.z) / (1 + lambda(o, alpha) + lambda(*w, alpha));
+  if (rough)
+    *weight *= oh / (o.z * h.z) / (1 + lambda(o, alpha) + lambda(*w, alpha));
   return true;
 }
 
 typedef struct {
-  /* light that left after k + 1 meetings with a white base, by bins of cos^2; sums of values and squares */
+  /* light that left after k + 1 meetings with a white base, by bins of cos^2; sums of values
+   * and squares */
   double sum[KEPT][BINS], square[KEPT][BINS];
   double paths;
 } Walk;
 
-static void walk(Walk *tally, statRng *rng, double cos_o, double eta, double tau, double alpha, int paths) {
+static void walk(Walk *tally, statRng *rng, double cos_o, double eta, double tau, double alpha,
+                 int paths) {
   for (int i = 0; i < paths; i++) {
     double weight = 1, found[KEPT][BINS] = {{0}};
     Vec w, o = {sqrt(1 - cos_o * cos_o), 0, cos_o};
@@ -99,7 +107,8 @@ static double through(const float *row, double c) {
 /* int over the bin of T(c) 2c dc */
 static double bin_escape(const vlCoatTable *t, int bin) {
   double sum = 0;
-  for (int i = 0; i < 200; i++) sum += through(t->transmittance[0], sqrt((bin + (i + 0.5) / 200) / BINS)) / 200 / BINS;
+  for (int i = 0; i < 200; i++)
+    sum += through(t->transmittance[0], sqrt((bin + (i + 0.5) / 200) / BINS)) / 200 / BINS;
   return sum;
 }
 
@@ -119,7 +128,8 @@ static void against_walk(void **state) {
       walk(&tally, &rng, cosines[c], (double)eta, (double)tau, (double)alphas[a], 600000);
       for (size_t r = 0; r < 3; r++) {
         double rho = rhos[r], series = 0, all_seen = 0, all_closed = 0, all_variance = 0;
-        for (int k = 0; k < 5; k++) series += pow(rho * (double)t->back[0], k);
+        for (int k = 0; k < 5; k++)
+          series += pow(rho * (double)t->back[0], k);
         for (int b = 0; b < BINS; b++) {
           double seen = 0, variance = 0;
           for (int k = 0; k < 5; k++) { /* pbrt's depth: five meetings */
@@ -127,18 +137,19 @@ static void against_walk(void **state) {
             seen += f * mean;
             variance += f * f * (tally.square[k][b] / tally.paths - mean * mean) / tally.paths;
           }
-          double closed =
-              through(t->transmittance[0], cosines[c]) * rho / (double)(eta * eta) * series * bin_escape(t, b);
+          double closed = through(t->transmittance[0], cosines[c]) * rho / (double)(eta * eta) *
+                          series * bin_escape(t, b);
           double off = fabs(seen - closed) / sqrt(variance);
           worst = fmax(worst, off);
           if (off > 4.5)
-            fail_msg("alpha %g cos %g rho %g bin %d: walk %g, closed %g (%.1f sigma)", (double)alphas[a], cosines[c],
-                     rho, b, seen, closed, off);
+            fail_msg("alpha %g cos %g rho %g bin %d: walk %g, closed %g (%.1f sigma)",
+                     (double)alphas[a], cosines[c], rho, b, seen, closed, off);
           all_seen += seen, all_closed += closed, all_variance += variance;
         }
         double ratio = all_seen / all_closed, error = sqrt(all_variance) / all_closed;
         if (fabs(ratio - 1) > 4 * error + 5e-4 || error > 6e-3)
-          fail_msg("alpha %g cos %g rho %g: ratio %.4f +- %.4f", (double)alphas[a], cosines[c], rho, ratio, error);
+          fail_msg("alpha %g cos %g rho %g: ratio %.4f +- %.4f", (double)alphas[a], cosines[c],
+                   rho, ratio, error);
       }
     }
     vl_coat_free(*state, t);
@@ -146,9 +157,10 @@ static void against_walk(void **state) {
   print_message("worst bin: %.2f sigma\n", worst);
 }
 
-/* The table that imitates pbrt-v4: its walk leaves through the coat by two samplers, visible normals from wi (density
- * p) and the base's cosine (density d), weighed p^2/(p^2 + d^2) and d^2/(d^2 + q^2): q should be p and is the density
- * of wi by visible normals from inside. Integrated here over cosine-distributed directions. */
+/* The table that imitates pbrt-v4: its walk leaves through the coat by two samplers, visible
+ * normals from wi (density p) and the base's cosine (density d), weighed p^2/(p^2 + d^2) and
+ * d^2/(d^2 + q^2): q should be p and is the density of wi by visible normals from inside.
+ * Integrated here over cosine-distributed directions. */
 static void imitation(void **state) {
   const float alphas[] = {0.2f, 0.4f}, eta_f = 1.5f, tau = 0.01f;
   const double eta = 1.5, cosines[] = {0.9, 0.3};
@@ -166,28 +178,37 @@ static void imitation(void **state) {
         Vec h = {-(o.x + eta * w.x), -(o.y + eta * w.y), -(o.z + eta * w.z)}; /* eta > 1: up */
         double n = sqrt(h.x * h.x + h.y * h.y + h.z * h.z), cos_t = 0;
         h = (Vec){h.x / n, h.y / n, h.z / n};
-        double oh = o.x * h.x + o.y * h.y + o.z * h.z, wh = w.x * h.x + w.y * h.y + w.z * h.z, c = -w.z;
-        if (oh <= 0 || wh >= 0 || h.z <= 0) continue;
-        double e = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z, density = 1 / (PI * alpha * alpha * e * e);
-        double lo = lambda(o, alpha), lw = lambda(w, alpha), out = wh + oh / eta, in = oh + wh * eta;
-        double p = density * oh / (1 + lo) / o.z * -wh / (out * out), q = density * -wh / (1 + lw) / c * oh / (in * in);
-        double ft = (1 - fresnel(oh, eta, &cos_t)) * density * oh * -wh / (o.z * c * out * out) / (1 + lo + lw);
+        double oh = o.x * h.x + o.y * h.y + o.z * h.z, wh = w.x * h.x + w.y * h.y + w.z * h.z,
+               c = -w.z;
+        if (oh <= 0 || wh >= 0 || h.z <= 0)
+          continue;
+        double e = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z,
+               density = 1 / (PI * alpha * alpha * e * e);
+        double lo = lambda(o, alpha), lw = lambda(w, alpha), out = wh + oh / eta,
+               in = oh + wh * eta;
+        double p = density * oh / (1 + lo) / o.z * -wh / (out * out),
+               q = density * -wh / (1 + lw) / c * oh / (in * in);
+        double ft = (1 - fresnel(oh, eta, &cos_t)) * density * oh * -wh /
+                    (o.z * c * out * out) / (1 + lo + lw);
         double x = ft * PI * exp(-(double)tau / c), d = c / PI;
         double y = x * (p * p / (p * p + d * d) + d * d / (d * d + q * q) - 1);
         excess += y, square += y * y;
       }
       excess /= TRIES;
       double error = sqrt((square / TRIES - excess * excess) / TRIES);
-      double plain = through(t->transmittance[0], cosines[k]), got = through(t->imitation[0], cosines[k]) - plain;
+      double plain = through(t->transmittance[0], cosines[k]),
+             got = through(t->imitation[0], cosines[k]) - plain;
       if (fabs(got - excess) > 4 * error || error > 1e-3)
-        fail_msg("alpha %g cos %g: excess %g, should be %g +- %g", alpha, cosines[k], got, excess, error);
+        fail_msg("alpha %g cos %g: excess %g, should be %g +- %g", alpha, cosines[k], got,
+                 excess, error);
       assert_true(excess > 0.03 * plain); /* it is worth a table */
     }
     vl_coat_free(*state, t);
   }
 }
 
-/* A clear coat over white: nothing is lost at a smooth one, and never more leaves or comes back than was there. */
+/* A clear coat over white: nothing is lost at a smooth one, and never more leaves or comes back
+ * than was there. */
 static void energy(void **state) {
   for (int i = 0; i < 24; i++) {
     float eta = (float[]){1.2f, 1.5f, 2.4f}[i % 3], tau = (float[]){0.0f, 0.1f}[i / 3 % 2];
@@ -196,9 +217,12 @@ static void energy(void **state) {
     assert_int_equal(vl_coat_build(*state, eta, tau, 10, alpha, alpha, &t), VL_OK);
     float sum = t->back[0] + t->escape[0];
     assert_true(sum < 1.0002f && t->back[0] >= 0 && t->escape[0] > 0);
-    if (alpha == 0 && tau == 0) assert_true(fabsf(sum - 1) < 1e-4f);
-    for (int k = 0; k < VL_COAT_COS; k++) assert_true(t->transmittance[0][k] >= 0 && t->transmittance[0][k] <= 1);
-    for (int k = 0; k < VL_COAT_COS; k++) assert_true(t->imitation[0][k] >= t->transmittance[0][k] * 0.99f);
+    if (alpha == 0 && tau == 0)
+      assert_true(fabsf(sum - 1) < 1e-4f);
+    for (int k = 0; k < VL_COAT_COS; k++)
+      assert_true(t->transmittance[0][k] >= 0 && t->transmittance[0][k] <= 1);
+    for (int k = 0; k < VL_COAT_COS; k++)
+      assert_true(t->imitation[0][k] >= t->transmittance[0][k] * 0.99f);
     assert_false(t->imitate);
     vl_coat_free(*state, t);
   }
@@ -209,14 +233,15 @@ static void energy(void **state) {
   vl_coat_free(*state, t);
 }
 
-/* The albedo over white: of a rough coat pbrt's loss, of one that conserves energy none, or what the layer absorbs,
- * which a smooth coat loses, too. */
+/* The albedo over white: of a rough coat pbrt's loss, of one that conserves energy none, or
+ * what the layer absorbs, which a smooth coat loses, too. */
 static void conserving(void **state) {
   vlCoatTable *t, *smooth;
   double albedo, other;
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, 0.4f, 0.4f, &t), VL_OK);
   assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
-  if (!(fabs(albedo - 0.572) < 0.002)) fail_msg("a rough coat keeps %g", albedo);
+  if (!(fabs(albedo - 0.572) < 0.002))
+    fail_msg("a rough coat keeps %g", albedo);
   assert_int_equal(vl_coat_conserve(*state, t), VL_OK);
   float once = t->back[0];
   assert_int_equal(vl_coat_conserve(*state, t), VL_OK); /* once is enough */
@@ -224,10 +249,12 @@ static void conserving(void **state) {
   assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 1000, 0, 0, &smooth), VL_OK);
   assert_int_equal(vl_coat_white_albedo(*state, smooth, &other), VL_OK);
-  if (!(fabs(albedo - other) < 0.02 && albedo < 1)) fail_msg("conserving %g, smooth %g", albedo, other);
+  if (!(fabs(albedo - other) < 0.02 && albedo < 1))
+    fail_msg("conserving %g, smooth %g", albedo, other);
   vl_coat_free(*state, t), vl_coat_free(*state, smooth);
   for (int i = 0; i < 16; i++) {
-    float eta = (float[]){0.7f, 1.2f, 1.5f, 2.4f}[i % 4], alpha = (float[]){0.01f, 0.1f, 0.4f, 1.0f}[i / 4];
+    float eta = (float[]){0.7f, 1.2f, 1.5f, 2.4f}[i % 4],
+          alpha = (float[]){0.01f, 0.1f, 0.4f, 1.0f}[i / 4];
     assert_int_equal(vl_coat_build(*state, eta, 0.0f, 10, alpha, alpha, &t), VL_OK);
     assert_int_equal(vl_coat_conserve(*state, t), VL_OK);
     float sum = t->back[0] + t->escape[0];
@@ -237,18 +264,22 @@ static void conserving(void **state) {
       assert_true(t->imitation[0][k] == t->transmittance[0][k]);
     }
     assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
-    if (!(eta < 1 || (albedo > 0.999 && albedo < 1.001))) fail_msg("eta %g alpha %g: %g", eta, alpha, albedo);
+    if (!(eta < 1 || (albedo > 0.999 && albedo < 1.001)))
+      fail_msg("eta %g alpha %g: %g", eta, alpha, albedo);
     vl_coat_free(*state, t);
   }
   /* Two alphas: what leaves in other directions than it came from, too. */
   for (int i = 0; i < 3; i++) {
     const float alphas[3][2] = {{0.1f, 0.5f}, {0.6f, 0.05f}, {0, 0.3f}};
-    assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.0f, 1000, alphas[i][0], alphas[i][1], &t), VL_OK);
+    assert_int_equal(
+        vl_coat_build_anisotropic(*state, 1.5f, 0.0f, 1000, alphas[i][0], alphas[i][1], &t),
+        VL_OK);
     assert_int_equal(t->rows, VL_COAT_AZIMUTHS);
     assert_int_equal(vl_coat_white_albedo(*state, t, &other), VL_OK);
     assert_int_equal(vl_coat_conserve(*state, t), VL_OK);
     assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
-    if (!(other < 0.97 && albedo > 0.998 && albedo < 1.002)) fail_msg("anisotropic %d: %g, %g", i, other, albedo);
+    if (!(other < 0.97 && albedo > 0.998 && albedo < 1.002))
+      fail_msg("anisotropic %d: %g, %g", i, other, albedo);
     vl_coat_free(*state, t);
   }
 }
@@ -259,12 +290,14 @@ static void textured(void **state) {
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, 0.0f, 0.5f, &t), VL_OK);
   assert_int_equal(t->rows, VL_COAT_ALPHA);
   for (int i = 0; i < 12; i++) {
-    float alpha = 0.5f * powf(((float)i + 0.5f) / 12, 2), row = (sqrtf(alpha) - t->row_start) * t->row_scale;
+    float alpha = 0.5f * powf(((float)i + 0.5f) / 12, 2),
+          row = (sqrtf(alpha) - t->row_start) * t->row_scale;
     int low = (int)row;
     float f = row - (float)low;
     assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, alpha, alpha, &one), VL_OK);
     for (int k = 1; k <= 20; k++) {
-      double c = k / 20.0, a = through(t->transmittance[low], c), b = through(t->transmittance[low + 1], c);
+      double c = k / 20.0, a = through(t->transmittance[low], c),
+             b = through(t->transmittance[low + 1], c);
       double got = a + (double)f * (b - a), want = through(one->transmittance[0], c);
       if (fabs(got / want - 1) > (c > 0.1 ? 2e-3 : 1e-2))
         fail_msg("alpha %g cos %g: %g, not %g", (double)alpha, c, got, want);
@@ -285,9 +318,12 @@ static void arguments(void **state) {
   assert_int_equal(vl_coat_build(*state, 1.5f, -1.0f, 10, 0, 0, &t), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, 0.2f, 0.1f, &t), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, nan, nan, &t), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.01f, 10, 0.1f, nan, &t), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.01f, 10, -0.1f, 0.2f, &t), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_coat_build_anisotropic(*state, nan, 0.01f, 10, 0.1f, 0.2f, &t), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.01f, 10, 0.1f, nan, &t),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.01f, 10, -0.1f, 0.2f, &t),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_coat_build_anisotropic(*state, nan, 0.01f, 10, 0.1f, 0.2f, &t),
+                   VL_ERROR_ARGUMENT);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 0xffffffffu, 0, 0, &t), VL_OK);
   assert_int_equal(t->bounces, 255);
   vl_coat_free(*state, t);
@@ -297,7 +333,8 @@ static void arguments(void **state) {
 static size_t calls_left, blocks;
 static void *few(void *user, size_t size) {
   (void)user;
-  if (calls_left == 0) return NULL;
+  if (calls_left == 0)
+    return NULL;
   calls_left--;
   void *block = malloc(size);
   blocks += block != NULL;
@@ -327,11 +364,13 @@ static void out_of_memory(void **state) {
       assert_true(t->conserves == (result == VL_OK));
       vl_coat_free(context, t);
     }
-    if (result != VL_OK) assert_int_equal(result, VL_ERROR_MEMORY), failed++;
+    if (result != VL_OK)
+      assert_int_equal(result, VL_ERROR_MEMORY), failed++;
     assert_int_equal(blocks, before);
     vl_context_destroy(context);
     assert_int_equal(blocks, 0);
-    if (result == VL_OK) break;
+    if (result == VL_OK)
+      break;
   }
   assert_true(failed >= 3);
 }
@@ -346,9 +385,9 @@ static int teardown(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(against_walk), cmocka_unit_test(imitation),
-                                     cmocka_unit_test(energy),       cmocka_unit_test(conserving),
-                                     cmocka_unit_test(textured),     cmocka_unit_test(arguments),
-                                     cmocka_unit_test(out_of_memory)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(against_walk), cmocka_unit_test(imitation), cmocka_unit_test(energy),
+      cmocka_unit_test(conserving),   cmocka_unit_test(textured),  cmocka_unit_test(arguments),
+      cmocka_unit_test(out_of_memory)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,4 +1,5 @@
-/* test_displace.c: displaced meshes: subdivision, displacement, no cracks; too fine a subdivision is an error. */
+/* test_displace.c: displaced meshes: subdivision, displacement, no cracks; too fine a
+ * subdivision is an error. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,10 +20,12 @@ typedef struct Made {
   vlError error;
 } Made;
 
-/* An octahedron of radius 1 (or without its lower half), displaced by a number, twice as large in the world. */
+/* An octahedron of radius 1 (or without its lower half), displaced by a number, twice as large
+ * in the world. */
 static Made make(float amount, float edge, bool half, bool quads) {
   static const float p[18] = {1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
-  static const uint32_t f[24] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
+  static const uint32_t f[24] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4,
+                                 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
   Made m;
   memset(&m, 0, sizeof m);
   vlScene *scene;
@@ -36,7 +39,8 @@ static Made make(float amount, float edge, bool half, bool quads) {
   def.edge_length = edge;
   def.vertices = 6, def.faces = half ? 4 : 8;
   def.positions = p, def.indices = f;
-  for (int i = 0; i < 3; i++) def.group_from_shape[5 * i] = 2;
+  for (int i = 0; i < 3; i++)
+    def.group_from_shape[5 * i] = 2;
   vl_scene_add_shape(scene, &def);
   m.result = vl_world_build(scene, NULL, &m.world, &m.error);
   vl_scene_destroy(scene);
@@ -65,14 +69,17 @@ static void closed_and_fine(void **state) {
       double l = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
       assert_true(l <= 0.21 * 1.0001 && l > 0.21 / 4);
       seams += a < b ? 1 : -1;
-      if (fabsf(p[2]) < 1e-6f && fabsf(q[2]) < 1e-6f) continue; /* the rim */
+      if (fabsf(p[2]) < 1e-6f && fabsf(q[2]) < 1e-6f)
+        continue; /* the rim */
       bool other = false;
       for (uint32_t k = 0; k < 3 * s->faces && !other; k++)
         other = s->indices[k] == b && s->indices[k % 3 == 2 ? k - 2 : k + 1] == a;
       assert_true(other);
     }
-    if (!half) assert_int_equal(seams, 0);
-    if (!half) assert_int_equal(s->vertices - s->faces * 3 / 2 + s->faces, 2); /* Euler */
+    if (!half)
+      assert_int_equal(seams, 0);
+    if (!half)
+      assert_int_equal(s->vertices - s->faces * 3 / 2 + s->faces, 2); /* Euler */
     finish(&m);
   }
 }
@@ -91,7 +98,8 @@ static void moves_along_normals(void **state) {
                 *n = s->normals + 3 * i; /* at the rim the mean of two faces: 2 up, 1 out... */
     double out = sqrt((double)p[0] * p[0] + (double)p[1] * p[1]) - 2;
     assert_true(fabs(out * out + (double)p[2] * p[2] - 0.04) < 1e-5 && p[2] > 0.05f);
-    assert_true(fabs((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2] - 1) < 1e-5);
+    assert_true(fabs((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2] - 1) <
+                1e-5);
   }
   finish(&m);
 }
@@ -113,7 +121,8 @@ static void refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(closed_and_fine), cmocka_unit_test(moves_along_normals),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(closed_and_fine),
+                                     cmocka_unit_test(moves_along_normals),
                                      cmocka_unit_test(refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
-/* test_measured_files.c: damaged files of measured materials. Each damage gives one clear error that names the file,
- * with memory bounded by the file's size; failing allocations leak nothing; a file that several materials name is read
- * once; a rendered measured material looks like the metal that was measured. */
+/* test_measured_files.c: damaged files of measured materials. Each damage gives one clear error
+ * that names the file, with memory bounded by the file's size; failing allocations leak
+ * nothing; a file that several materials name is read once; a rendered measured material looks
+ * like the metal that was measured. */
 #include <stdlib.h>
 
 #include "../trace/measured_file.h"
@@ -18,20 +19,24 @@ typedef struct Purse {
   size_t largest;
 } Purse;
 static bool pay(Purse *p, size_t size) {
-  if (p->left == 0) return false;
-  if (p->left > 0) p->left--;
+  if (p->left == 0)
+    return false;
+  if (p->left > 0)
+    p->left--;
   p->largest = size > p->largest ? size : p->largest;
   return true;
 }
 static void *purse_allocate(void *user, size_t size) {
   Purse *p = user;
-  if (!pay(p, size)) return NULL;
+  if (!pay(p, size))
+    return NULL;
   p->alive++;
   return malloc(size);
 }
 static void purse_release(void *user, void *block) {
   Purse *p = user;
-  if (block) p->alive--;
+  if (block)
+    p->alive--;
   free(block);
 }
 static vlContext *open_context(Purse *purse) {
@@ -53,7 +58,8 @@ static mfFile small_file(void) {
 static size_t head_of(const mfFile *file, const char *name) {
   size_t length = strlen(name);
   for (size_t i = 18; i + length < 600; i++)
-    if (file->bytes[i - 2] == length && memcmp(file->bytes + i, name, length) == 0) return i + length;
+    if (file->bytes[i - 2] == length && memcmp(file->bytes + i, name, length) == 0)
+      return i + length;
   fail_msg("no field %s", name);
   return 0;
 }
@@ -63,7 +69,8 @@ static uint64_t offset_of(const mfFile *file, const char *name) {
   return offset;
 }
 
-/* ---- damages with a name --------------------------------------------------------------------------------------- */
+/* ---- damages with a name
+ * --------------------------------------------------------------------------------------- */
 
 static void set(mfFile *file, size_t at, uint64_t value, size_t size) {
   memcpy(file->bytes + at, &value, size);
@@ -107,21 +114,51 @@ static void damages(void **state) {
     mfFile f = small_file();
     size_t vndf = head_of(&f, "vndf"), ndf = head_of(&f, "ndf"), phi = head_of(&f, "phi_i");
     switch (kind) {
-      case 0: f.bytes[3] = 'x'; break;
-      case 1: f.size = 15; break;
-      case 2: f.bytes[12] = 2; break;
-      case 3: f.bytes[13] = 1; break;
-      case 4: set(&f, 14, 65, 4); break;
-      case 5: f.bytes[vndf - 1] = 'x'; break;
-      case 6: f.bytes[vndf + 2] = 12; break;
-      case 7: f.bytes[vndf + 2] = 0; break;
-      case 8: set(&f, vndf, 9, 2); break;
-      case 9: set(&f, vndf + 3, f.size + 1, 8); break;
-      case 10: set(&f, vndf + 11, (uint64_t)1 << 62, 8); break;
-      case 11: set(&f, vndf + 3, UINT64_MAX - 4, 8); break;
-      case 12: memcpy(f.bytes + phi - 5, "sigma", 5); break;
-      case 13: f.bytes[ndf + 2] = 5; break;
-      case 14: f.bytes[vndf + 11] = 0; break;
+      case 0:
+        f.bytes[3] = 'x';
+        break;
+      case 1:
+        f.size = 15;
+        break;
+      case 2:
+        f.bytes[12] = 2;
+        break;
+      case 3:
+        f.bytes[13] = 1;
+        break;
+      case 4:
+        set(&f, 14, 65, 4);
+        break;
+      case 5:
+        f.bytes[vndf - 1] = 'x';
+        break;
+      case 6:
+        f.bytes[vndf + 2] = 12;
+        break;
+      case 7:
+        f.bytes[vndf + 2] = 0;
+        break;
+      case 8:
+        set(&f, vndf, 9, 2);
+        break;
+      case 9:
+        set(&f, vndf + 3, f.size + 1, 8);
+        break;
+      case 10:
+        set(&f, vndf + 11, (uint64_t)1 << 62, 8);
+        break;
+      case 11:
+        set(&f, vndf + 3, UINT64_MAX - 4, 8);
+        break;
+      case 12:
+        memcpy(f.bytes + phi - 5, "sigma", 5);
+        break;
+      case 13:
+        f.bytes[ndf + 2] = 5;
+        break;
+      case 14:
+        f.bytes[vndf + 11] = 0;
+        break;
       case 15: { /* a shorter name; values stay where they are */
         size_t at = head_of(&f, "spectra"), end = offset_of(&f, "description");
         memcpy(f.bytes + at - 7, "rgb", 3);
@@ -129,17 +166,38 @@ static void damages(void **state) {
         memmove(f.bytes + at - 4, f.bytes + at, end - at);
         break;
       }
-      case 16: set_float(&f, offset_of(&f, "theta_i") + 4, 0); break;
-      case 17: set_float(&f, offset_of(&f, "theta_i") + 8, 3); break;
-      case 18: set_float(&f, offset_of(&f, "luminance") + 40, NAN); break;
-      case 19: set(&f, head_of(&f, "luminance") + 19, 2, 8); break;
-      case 20: set(&f, ndf + 11, 1, 8); break;
-      case 21: f.bytes[head_of(&f, "jacobian") + 2] = 2; break;
-      case 22: f.size -= 2; break;
-      case 23: f.bytes[head_of(&f, "wavelengths") + 2] = 5; break;
-      case 24: set_float(&f, offset_of(&f, "spectra"), INFINITY); break;
-      case 25: set_float(&f, offset_of(&f, "wavelengths") + 4, 100); break;
-      default: break;
+      case 16:
+        set_float(&f, offset_of(&f, "theta_i") + 4, 0);
+        break;
+      case 17:
+        set_float(&f, offset_of(&f, "theta_i") + 8, 3);
+        break;
+      case 18:
+        set_float(&f, offset_of(&f, "luminance") + 40, NAN);
+        break;
+      case 19:
+        set(&f, head_of(&f, "luminance") + 19, 2, 8);
+        break;
+      case 20:
+        set(&f, ndf + 11, 1, 8);
+        break;
+      case 21:
+        f.bytes[head_of(&f, "jacobian") + 2] = 2;
+        break;
+      case 22:
+        f.size -= 2;
+        break;
+      case 23:
+        f.bytes[head_of(&f, "wavelengths") + 2] = 5;
+        break;
+      case 24:
+        set_float(&f, offset_of(&f, "spectra"), INFINITY);
+        break;
+      case 25:
+        set_float(&f, offset_of(&f, "wavelengths") + 4, 100);
+        break;
+      default:
+        break;
     }
     vlMeasured *m = NULL;
     vlError error = {0};
@@ -149,23 +207,27 @@ static void damages(void **state) {
       assert_int_equal(r, VL_OK);
       vl_measured_free(context, m);
     } else {
-      if (r != VL_ERROR_SCENE || !strstr(error.message, words[kind]) || !strstr(error.message, path) || m)
+      if (r != VL_ERROR_SCENE || !strstr(error.message, words[kind]) ||
+          !strstr(error.message, path) || m)
         fail_msg("damage %d: %d \"%s\", not \"%s\"", kind, (int)r, error.message, words[kind]);
     }
     free(f.bytes);
   }
   vlMeasured *m;
   vlError error = {0};
-  assert_int_equal(vl_measured_read(context, VELO_BINARY_DIR "/absent.bsdf", false, &m, &error), VL_ERROR_MISSING);
+  assert_int_equal(vl_measured_read(context, VELO_BINARY_DIR "/absent.bsdf", false, &m, &error),
+                   VL_ERROR_MISSING);
   vl_context_destroy(context);
   assert_int_equal(purse.alive, 0);
   remove(path);
 }
 
-/* ---- damages without ------------------------------------------------------------------------------------------- */
+/* ---- damages without
+ * -------------------------------------------------------------------------------------------
+ */
 
-/* A few hundred files with flipped bits, lost and repeated pieces, extreme numbers: each gives an error with the file's
- * name, or a material with finite values. */
+/* A few hundred files with flipped bits, lost and repeated pieces, extreme numbers: each gives
+ * an error with the file's name, or a material with finite values. */
 static void mutations(void **state) {
   (void)state;
   Purse purse = {.left = -1};
@@ -207,7 +269,8 @@ static void mutations(void **state) {
         b->measured[i] = m;
         b->ox[i] = (float)o[0], b->oy[i] = (float)o[1], b->oz[i] = (float)o[2];
         b->ix[i] = (float)w[0], b->iy[i] = (float)w[1], b->iz[i] = (float)w[2];
-        for (int c = 0; c < 4; c++) b->lambda[c][i] = 300 + 600 * stat_float(&rng);
+        for (int c = 0; c < 4; c++)
+          b->lambda[c][i] = 300 + 600 * stat_float(&rng);
       }
       batch_numbers(b, 256, &rng);
       for (int way = 0; way < 2; way++) {
@@ -257,16 +320,20 @@ static void no_memory(void **state) {
   remove(path);
 }
 
-/* ---- in a scene ------------------------------------------------------------------------------------------------ */
+/* ---- in a scene
+ * ------------------------------------------------------------------------------------------------
+ */
 
 /* A ball of brushed metal under a lamp and a sky; another in the back has the same file. */
 static Image ball(const mfSurface *metal, bool measured, bool rgb) {
   Stage s = stage_open(64, 64);
   s.build.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
   s.render.spp = 64;
-  vlMaterialDef def = vl_default_material_def(measured ? VL_MATERIAL_MEASURED : VL_MATERIAL_CONDUCTOR);
+  vlMaterialDef def =
+      vl_default_material_def(measured ? VL_MATERIAL_MEASURED : VL_MATERIAL_CONDUCTOR);
   def.measured = measured ? path : NULL;
-  def.u_roughness = vl_float_input((float)metal->alpha_x), def.v_roughness = vl_float_input((float)metal->alpha_y);
+  def.u_roughness = vl_float_input((float)metal->alpha_x),
+  def.v_roughness = vl_float_input((float)metal->alpha_y);
   def.remap_roughness = false;
   def.eta = vl_spectrum_input(vl_spectrum_constant((float)metal->eta));
   def.k = vl_spectrum_input(vl_spectrum_constant((float)metal->k));
@@ -305,10 +372,12 @@ static void image(void **state) {
     for (uint32_t y = 8; y < 56; y += 4)
       for (uint32_t x = 8; x < 56; x += 4)
         for (int c = 0; c < 3; c++) {
-          double u = image_region(&a, x, y, x + 4, y + 4, c), v = image_region(&b, x, y, x + 4, y + 4, c);
+          double u = image_region(&a, x, y, x + 4, y + 4, c),
+                 v = image_region(&b, x, y, x + 4, y + 4, c);
           off += fabs(u - v), all += v;
         }
-    print_message("mean %.4f, metal's %.4f; blocks off by %.4f\n", image_mean(&a, 1), image_mean(&b, 1), off / all);
+    print_message("mean %.4f, metal's %.4f; blocks off by %.4f\n", image_mean(&a, 1),
+                  image_mean(&b, 1), off / all);
     assert_true(off / all < 0.02 && a.stats.not_finite == 0);
     assert_ratio("measured ball", image_mean(&a, 1), image_mean(&b, 1), 0.004);
     image_free(&a), image_free(&b);

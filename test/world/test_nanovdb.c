@@ -1,5 +1,5 @@
-/* test_nanovdb.c: NanoVDB files made here, byte by byte, are read back voxel by voxel; invalid ones are rejected with a
- * reason, whichever byte is wrong. */
+/* test_nanovdb.c: NanoVDB files made here, byte by byte, are read back voxel by voxel; invalid
+ * ones are rejected with a reason, whichever byte is wrong. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,8 +21,11 @@ static const char *file_name(void) {
   return name;
 }
 
-/* max_memory: of the context; 0: no limit. peak: receives the most bytes that it held; may be null. */
-static vlResult load_within(const unsigned char *file, size_t size, size_t max_memory, size_t *peak, vlError *error,
+/* max_memory: of the context; 0: no limit. peak: receives the most bytes that it held; may be
+ * null.
+ */
+static vlResult load_within(const unsigned char *file, size_t size, size_t max_memory,
+                            size_t *peak, vlError *error,
                             void (*look)(const vlWorldMedium *m)) {
   FILE *f = fopen(file_name(), "wb");
   assert_non_null(f);
@@ -40,7 +43,8 @@ static vlResult load_within(const unsigned char *file, size_t size, size_t max_m
   def.path = file_name();
   vl_scene_defs(scene)->camera_medium = vl_scene_add_medium(scene, &def);
   vlResult r = vl_world_build(scene, NULL, &world, error);
-  if (r == VL_OK && look) look(&world->media.items[0]);
+  if (r == VL_OK && look)
+    look(&world->media.items[0]);
   vl_world_destroy(world);
   vl_scene_destroy(scene);
   assert_int_equal(vl_context_memory(context, peak), 0);
@@ -49,7 +53,8 @@ static vlResult load_within(const unsigned char *file, size_t size, size_t max_m
   return r;
 }
 
-static vlResult load(const unsigned char *file, size_t size, vlError *error, void (*look)(const vlWorldMedium *m)) {
+static vlResult load(const unsigned char *file, size_t size, vlError *error,
+                     void (*look)(const vlWorldMedium *m)) {
   return load_within(file, size, 0, NULL, error, look);
 }
 
@@ -69,14 +74,16 @@ static void look(const vlWorldMedium *m) {
   /* Majorants: no lookup is above that of its cell. */
   for (int k = 0; k < 200000; k++) {
     uint32_t h = vl_float_bits((float)k) * 2654435761u;
-    vlVec3 q = {10 + 30 * (float)(h & 1023) / 1023, 8 * (float)(h >> 10 & 1023) / 1023, 8 * (float)(h >> 20) / 4095};
+    vlVec3 q = {10 + 30 * (float)(h & 1023) / 1023, 8 * (float)(h >> 10 & 1023) / 1023,
+                8 * (float)(h >> 20) / 4095};
     size_t cell[3];
     const float at[3] = {q.x, q.y, q.z};
     for (int i = 0; i < 3; i++) {
       float x = (at[i] - m->low[i]) / (m->high[i] - m->low[i]) * (float)m->cells[i];
       cell[i] = (size_t)(x < 63 ? x : 63);
     }
-    assert_true(vl_sparse_lookup(g, q) <= m->majorants[(cell[2] * 64 + cell[1]) * 64 + cell[0]] * 1.0001f);
+    assert_true(vl_sparse_lookup(g, q) <=
+                m->majorants[(cell[2] * 64 + cell[1]) * 64 + cell[0]] * 1.0001f);
   }
 }
 
@@ -87,7 +94,8 @@ static void read_back(void **state) {
     size_t size;
     vlError error = {0};
     unsigned char *file = make_file(grid, codec, &size);
-    if (load(file, size, &error, look) != VL_OK) fail_msg("%s", error.message);
+    if (load(file, size, &error, look) != VL_OK)
+      fail_msg("%s", error.message);
     free(file);
   }
   free(grid);
@@ -96,7 +104,8 @@ static void read_back(void **state) {
 static void expect(const unsigned char *file, size_t size, const char *word) {
   vlError error = {0};
   vlResult r = load(file, size, &error, NULL);
-  if (r != VL_ERROR_SCENE || !strstr(error.message, word)) fail_msg("%d: %s (expected: %s)", r, error.message, word);
+  if (r != VL_ERROR_SCENE || !strstr(error.message, word))
+    fail_msg("%d: %s (expected: %s)", r, error.message, word);
 }
 
 static void refused(void **state) {
@@ -147,7 +156,8 @@ static void refused(void **state) {
   free(grid);
 }
 
-/* Any wrong byte of what is not values: an image's worth of memory or an error, never a crash. */
+/* Any wrong byte of what is not values: an image's worth of memory or an error, never a crash.
+ */
 static void shaken(void **state) {
   (void)state;
   unsigned char *grid = make_grid();
@@ -157,7 +167,8 @@ static void shaken(void **state) {
     memcpy(copy, grid, SIZE);
     for (int k = 0; k < 4; k++) {
       h = h * 747796405u + 2891336453u;
-      const size_t starts[4] = {0, ROOT_AT, UPPER_AT, LOWER_AT}, lengths[4] = {ROOT_AT, 160, UPPER, LOWER};
+      const size_t starts[4] = {0, ROOT_AT, UPPER_AT, LOWER_AT},
+                   lengths[4] = {ROOT_AT, 160, UPPER, LOWER};
       size_t part = h >> 8 & 3;
       copy[starts[part] + (h >> 10) % (round & 1            ? lengths[part]
                                        : lengths[part] < 64 ? lengths[part]
@@ -173,19 +184,25 @@ static void shaken(void **state) {
   free(grid);
 }
 
-/* ---- memory ------------------------------------------------------------------------------------------------------ */
+/* ---- memory
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-static void share_lower_nodes(unsigned char *g) { /* all 32768 children are one node: 512 MB of bricks */
+static void share_lower_nodes(
+    unsigned char *g) { /* all 32768 children are one node: 512 MB of bricks */
   memset(g + UPPER_AT + 32 + 4096, 0xff, 4096);
-  for (size_t n = 0; n < 32768; n++) put_u64(g + UPPER_AT + UPPER_TABLE + 8 * n, LOWER_AT - UPPER_AT);
+  for (size_t n = 0; n < 32768; n++)
+    put_u64(g + UPPER_AT + UPPER_TABLE + 8 * n, LOWER_AT - UPPER_AT);
 }
 
 static void share_leaves(unsigned char *g) { /* 4096 children are one leaf, 8 MB of values */
   memset(g + LOWER_AT + 32 + 512, 0xff, 512);
-  for (size_t n = 0; n < 4096; n++) put_u64(g + LOWER_AT + LOWER_TABLE + 8 * n, LEAF_AT - LOWER_AT);
+  for (size_t n = 0; n < 4096; n++)
+    put_u64(g + LOWER_AT + LOWER_TABLE + 8 * n, LEAF_AT - LOWER_AT);
 }
 
-static void set_root_tiles(unsigned char *g, uint32_t count, const uint64_t *keys, int64_t child, float value) {
+static void set_root_tiles(unsigned char *g, uint32_t count, const uint64_t *keys,
+                           int64_t child, float value) {
   unsigned char *tiles = g + ROOT_AT + ROOT;
   put_u32(g + ROOT_AT + 24, count);
   for (uint32_t i = 0; i < count; i++) {
@@ -195,10 +212,12 @@ static void set_root_tiles(unsigned char *g, uint32_t count, const uint64_t *key
   }
 }
 
-/* A tile whose value is not the background is 32768 blocks; the tiles lie over the rest of the file. */
+/* A tile whose value is not the background is 32768 blocks; the tiles lie over the rest of the
+ * file. */
 static void fill_root(unsigned char *g) {
   uint64_t keys[5000];
-  for (uint64_t i = 0; i < 5000; i++) keys[i] = i << 42;
+  for (uint64_t i = 0; i < 5000; i++)
+    keys[i] = i << 42;
   set_root_tiles(g, 5000, keys, 0, 3);
 }
 
@@ -208,7 +227,8 @@ static void spread_root(unsigned char *g) {
   set_root_tiles(g, 2, keys, UPPER_AT - ROOT_AT, 0);
 }
 
-/* Nodes that are shared and parts that lie apart take no more memory than a whole file of this size could. */
+/* Nodes that are shared and parts that lie apart take no more memory than a whole file of this
+ * size could. */
 static void takes_no_more_than_its_size(void **state) {
   (void)state;
   static const struct {
@@ -226,14 +246,17 @@ static void takes_no_more_than_its_size(void **state) {
     cases[i].damage(grid);
     unsigned char *file = make_file(grid, 0, &size);
     const vlResult r = load_within(file, size, 0, &peak, &error, NULL);
-    if (r != VL_ERROR_SCENE || !strstr(error.message, cases[i].word)) fail_msg("%zu: %d, %s", i, r, error.message);
-    if (peak > cases[i].most) fail_msg("%zu: %zu bytes", i, peak);
+    if (r != VL_ERROR_SCENE || !strstr(error.message, cases[i].word))
+      fail_msg("%zu: %d, %s", i, r, error.message);
+    if (peak > cases[i].most)
+      fail_msg("%zu: %zu bytes", i, peak);
     free(file);
     free(grid);
   }
 }
 
-/* A packed grid unpacks to what its file says: 260 MB of 256 KB, which the context's limit refuses before it is there.
+/* A packed grid unpacks to what its file says: 260 MB of 256 KB, which the context's limit
+ * refuses before it is there.
  */
 static void unpacks_within_the_limit(void **state) {
   (void)state;
@@ -241,7 +264,8 @@ static void unpacks_within_the_limit(void **state) {
   const size_t limit = 32 << 20;
   size_t size, peak;
   vlError error = {0};
-  unsigned char *grid = make_grid(), *file = make_file(grid, 1, &size), *zeros = calloc(1, UNPACKED);
+  unsigned char *grid = make_grid(), *file = make_file(grid, 1, &size),
+                *zeros = calloc(1, UNPACKED);
   uLongf packed = compressBound(UNPACKED);
   unsigned char *bomb = malloc(208 + packed);
   assert_int_equal(compress(bomb + 208, &packed, zeros, UNPACKED), Z_OK);
@@ -250,7 +274,8 @@ static void unpacks_within_the_limit(void **state) {
   put_u64(bomb + 24, packed + 8);
   put_u64(bomb + 200, packed);
   assert_true(packed < 512 << 10);
-  assert_int_equal(load_within(bomb, 208 + packed, limit, &peak, &error, NULL), VL_ERROR_MEMORY);
+  assert_int_equal(load_within(bomb, 208 + packed, limit, &peak, &error, NULL),
+                   VL_ERROR_MEMORY);
   assert_true(peak <= limit);
   free(bomb);
   free(zeros);
@@ -268,7 +293,8 @@ static void keeps_the_limit(void **state) {
   for (size_t limit = 100000; limit < whole + whole / 2; limit += whole / 40) {
     size_t peak;
     const vlResult r = load_within(file, size, limit, &peak, &error, NULL);
-    if (r != VL_OK && r != VL_ERROR_MEMORY) fail_msg("%zu: %d, %s", limit, r, error.message);
+    if (r != VL_OK && r != VL_ERROR_MEMORY)
+      fail_msg("%zu: %d, %s", limit, r, error.message);
     assert_true(peak <= limit);
     assert_true(r == VL_ERROR_MEMORY || limit > SIZE);
     refusals += r == VL_ERROR_MEMORY;

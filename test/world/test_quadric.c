@@ -1,5 +1,6 @@
-/* Partial spheres, disks and cylinders under transforms that are not similarities: sampled points lie on the part, rays
- * hit them there with the same uv and normal, densities are per area, which a grid over the parameters gives. */
+/* Partial spheres, disks and cylinders under transforms that are not similarities: sampled
+ * points lie on the part, rays hit them there with the same uv and normal, densities are per
+ * area, which a grid over the parameters gives. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,11 +40,13 @@ static vlWorld *build(const Part *p, const double m[16], vlContext **context) {
   assert_int_equal(vl_context_create(NULL, context), VL_OK);
   assert_int_equal(vl_scene_create(*context, &scene), VL_OK);
   vlShapeDef def = vl_default_shape_def(p->kind);
-  def.radius = p->radius, def.inner_radius = p->inner, def.z_min = p->z_min, def.z_max = p->z_max;
+  def.radius = p->radius, def.inner_radius = p->inner, def.z_min = p->z_min,
+  def.z_max = p->z_max;
   def.height = p->height, def.phi_max = p->phi_max;
   memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
   assert_int_not_equal(vl_scene_add_shape(scene, &def).index, 0);
-  if (vl_world_build(scene, NULL, &world, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_world_build(scene, NULL, &world, &error) != VL_OK)
+    fail_msg("%s", error.message);
   vl_scene_destroy(scene);
   return world;
 }
@@ -52,9 +55,11 @@ static vlWorld *build(const Part *p, const double m[16], vlContext **context) {
 static void formula(const Part *q, double u, double v, const double m[16], double r[3]) {
   double phi = u * (double)q->phi_max, p[3];
   if (q->kind == VL_SHAPE_SPHERE) {
-    double low = acos(fmax(-1, (double)(q->z_min / q->radius))), high = acos(fmin(1, (double)(q->z_max / q->radius)));
+    double low = acos(fmax(-1, (double)(q->z_min / q->radius))),
+           high = acos(fmin(1, (double)(q->z_max / q->radius)));
     double theta = low + v * (high - low);
-    p[0] = (double)q->radius * sin(theta) * cos(phi), p[1] = (double)q->radius * sin(theta) * sin(phi);
+    p[0] = (double)q->radius * sin(theta) * cos(phi),
+    p[1] = (double)q->radius * sin(theta) * sin(phi);
     p[2] = (double)q->radius * cos(theta);
   } else if (q->kind == VL_SHAPE_CYLINDER) {
     p[0] = (double)q->radius * cos(phi), p[1] = (double)q->radius * sin(phi);
@@ -63,20 +68,26 @@ static void formula(const Part *q, double u, double v, const double m[16], doubl
     double radius = (double)q->radius + v * (double)(q->inner - q->radius);
     p[0] = radius * cos(phi), p[1] = radius * sin(phi), p[2] = (double)q->height;
   }
-  for (int i = 0; i < 3; i++) r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+  for (int i = 0; i < 3; i++)
+    r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
 }
 
 /* Area of the cell [u0, u1] x [v0, v1] of the parameters. */
-static double cell_area(const Part *q, const double m[16], double u0, double u1, double v0, double v1) {
+static double cell_area(const Part *q, const double m[16], double u0, double u1, double v0,
+                        double v1) {
   const int n = 24;
   const double e = 1e-5;
   double sum = 0;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      double u = u0 + (i + 0.5) / n * (u1 - u0), v = v0 + (j + 0.5) / n * (v1 - v0), a[3], b[3], c[3], d[3];
-      formula(q, u - e, v, m, a), formula(q, u + e, v, m, b), formula(q, u, v - e, m, c), formula(q, u, v + e, m, d);
-      for (int k = 0; k < 3; k++) a[k] = (b[k] - a[k]) / (2 * e), c[k] = (d[k] - c[k]) / (2 * e);
-      double x = a[1] * c[2] - a[2] * c[1], y = a[2] * c[0] - a[0] * c[2], z = a[0] * c[1] - a[1] * c[0];
+      double u = u0 + (i + 0.5) / n * (u1 - u0), v = v0 + (j + 0.5) / n * (v1 - v0), a[3], b[3],
+             c[3], d[3];
+      formula(q, u - e, v, m, a), formula(q, u + e, v, m, b), formula(q, u, v - e, m, c),
+          formula(q, u, v + e, m, d);
+      for (int k = 0; k < 3; k++)
+        a[k] = (b[k] - a[k]) / (2 * e), c[k] = (d[k] - c[k]) / (2 * e);
+      double x = a[1] * c[2] - a[2] * c[1], y = a[2] * c[0] - a[0] * c[2],
+             z = a[0] * c[1] - a[1] * c[0];
       sum += sqrt(x * x + y * y + z * z);
     }
   return sum / (n * n) * (u1 - u0) * (v1 - v0);
@@ -95,45 +106,60 @@ static void samples_fit_the_area(void **state) {
       memset(weight, 0, sizeof weight);
       for (int i = 0; i < CELLS; i++)
         for (int j = 0; j < CELLS; j++)
-          total += area[i][j] = cell_area(q, matrices[t], i / (double)CELLS, (i + 1) / (double)CELLS, j / (double)CELLS,
-                                          (j + 1) / (double)CELLS);
-      for (int i = 0; i < N; i++) { /* a lattice of two dimensions, by the golden ratio's sequence */
+          total += area[i][j] =
+              cell_area(q, matrices[t], i / (double)CELLS, (i + 1) / (double)CELLS,
+                        j / (double)CELLS, (j + 1) / (double)CELLS);
+      for (int i = 0; i < N;
+           i++) { /* a lattice of two dimensions, by the golden ratio's sequence */
         vlSurfacePoint at, again;
         double pdf;
         float u = (float)((i + 0.5) / N), v = (float)fmod(i * 0.6180339887498949, 1.0);
         vl_shape_sample(s, 0, u, v, &at, &pdf);
         assert_true(pdf > 0);
         double found = vl_shape_pdf(s, 0, &at);
-        if (!(fabs(found - pdf) < 1e-4 * pdf)) fail_msg("%s: density %g, found again %g", q->name, pdf, found);
+        if (!(fabs(found - pdf) < 1e-4 * pdf))
+          fail_msg("%s: density %g, found again %g", q->name, pdf, found);
         double p[3];
         formula(q, (double)at.uv[0], (double)at.uv[1], matrices[t], p);
         for (int c = 0; c < 3; c++)
-          if (!(fabs(p[c] - at.p[c]) < 2e-4)) fail_msg("%s: uv (%g, %g) is elsewhere", q->name, at.uv[0], at.uv[1]);
+          if (!(fabs(p[c] - at.p[c]) < 2e-4))
+            fail_msg("%s: uv (%g, %g) is elsewhere", q->name, at.uv[0], at.uv[1]);
         int x = (int)((double)at.uv[0] * CELLS), y = (int)((double)at.uv[1] * CELLS);
         weight[x < CELLS ? x : CELLS - 1][y < CELLS ? y : CELLS - 1] += 1 / pdf / N;
         sum += 1 / pdf / N;
-        if (i % 16 || v < 0.002f || v > 0.998f || u < 0.002f || u > 0.998f) continue;
-        double o[3], d[3], side = i % 32 ? 1 : -1; /* a ray from either side, aslant, must find the same point */
-        for (int c = 0; c < 3; c++) o[c] = at.p[c] + side * 1e-2 * (at.n[c] + 0.3 * (c == 0)), d[c] = at.p[c] - o[c];
+        if (i % 16 || v < 0.002f || v > 0.998f || u < 0.002f || u > 0.998f)
+          continue;
+        double o[3], d[3],
+            side =
+                i % 32 ? 1 : -1; /* a ray from either side, aslant, must find the same point */
+        for (int c = 0; c < 3; c++)
+          o[c] = at.p[c] + side * 1e-2 * (at.n[c] + 0.3 * (c == 0)), d[c] = at.p[c] - o[c];
         vlShapeHit hit;
-        if (!vl_shape_intersect(s, 0, o, d, 0, 1.5, &hit)) fail_msg("%s: a ray misses a sampled point", q->name);
+        if (!vl_shape_intersect(s, 0, o, d, 0, 1.5, &hit))
+          fail_msg("%s: a ray misses a sampled point", q->name);
         vl_shape_point(s, 0, &hit, &again);
         double dot = again.n[0] * at.n[0] + again.n[1] * at.n[1] + again.n[2] * at.n[2];
         if (!(fabs(hit.t - 1) < 1e-4 && dot > 0.9999 && fabsf(again.uv[0] - at.uv[0]) < 1e-3f &&
               fabsf(again.uv[1] - at.uv[1]) < 1e-3f))
-          fail_msg("%s: met at t %g, uv (%g, %g) for (%g, %g)", q->name, hit.t, again.uv[0], again.uv[1], at.uv[0],
-                   at.uv[1]);
-        double slope = again.dpdu[0] * again.n[0] + again.dpdu[1] * again.n[1] + again.dpdu[2] * again.n[2];
-        double slope_v = again.dpdv[0] * again.n[0] + again.dpdv[1] * again.n[1] + again.dpdv[2] * again.n[2];
+          fail_msg("%s: met at t %g, uv (%g, %g) for (%g, %g)", q->name, hit.t, again.uv[0],
+                   again.uv[1], at.uv[0], at.uv[1]);
+        double slope = again.dpdu[0] * again.n[0] + again.dpdu[1] * again.n[1] +
+                       again.dpdu[2] * again.n[2];
+        double slope_v = again.dpdv[0] * again.n[0] + again.dpdv[1] * again.n[1] +
+                         again.dpdv[2] * again.n[2];
         assert_true(fabs(slope) < 1e-4 && fabs(slope_v) < 1e-4);
       }
-      if (!(fabs(sum - total) < 2e-3 * total)) fail_msg("%s: area %g, expected %g", q->name, sum, total);
+      if (!(fabs(sum - total) < 2e-3 * total))
+        fail_msg("%s: area %g, expected %g", q->name, sum, total);
       double told = (double)vl_world_prim_area(s, 0);
-      if (!(fabs(told - total) < 5e-3 * total)) fail_msg("%s: area told %g, expected %g", q->name, told, total);
+      if (!(fabs(told - total) < 5e-3 * total))
+        fail_msg("%s: area told %g, expected %g", q->name, told, total);
       for (int i = 0; i < CELLS; i++)
         for (int j = 0; j < CELLS; j++)
-          if (!(fabs(weight[i][j] - area[i][j]) < 0.03 * area[i][j] + 2e-3 * total / (CELLS * CELLS)))
-            fail_msg("%s, matrix %d: cell (%d, %d) has %g, expected %g", q->name, t, i, j, weight[i][j], area[i][j]);
+          if (!(fabs(weight[i][j] - area[i][j]) <
+                0.03 * area[i][j] + 2e-3 * total / (CELLS * CELLS)))
+            fail_msg("%s, matrix %d: cell (%d, %d) has %g, expected %g", q->name, t, i, j,
+                     weight[i][j], area[i][j]);
       vl_world_destroy(world);
       vl_context_destroy(context);
     }

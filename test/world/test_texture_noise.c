@@ -1,5 +1,5 @@
-/* test_texture_noise.c: noise against a plain implementation in double, and its properties; dots by their geometry,
- * marble by its colours, sums by their octaves. */
+/* test_texture_noise.c: noise against a plain implementation in double, and its properties;
+ * dots by their geometry, marble by its colours, sums by their octaves. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,12 +18,13 @@ static double random_unit(void) {
   return (seed >> 8) * 0x1p-24;
 }
 
-/* Each corner of the cell has a direction to an edge of a cube; its dot products with the way to the point are blended
- * by 6t^5 - 15t^4 + 10t^3. */
+/* Each corner of the cell has a direction to an edge of a cube; its dot products with the way
+ * to the point are blended by 6t^5 - 15t^4 + 10t^3. */
 static double plain_noise(double x, double y, double z) {
   double p[3] = {x, y, z}, sum = 0;
   long cell[3];
-  for (int i = 0; i < 3; i++) cell[i] = (long)floor(p[i]);
+  for (int i = 0; i < 3; i++)
+    cell[i] = (long)floor(p[i]);
   for (int c = 0; c < 8; c++) {
     int hash = 0;
     double weight = 1, d[3];
@@ -35,10 +36,12 @@ static double plain_noise(double x, double y, double z) {
       hash = vl_noise_permutation[(hash + (cell[i] & 255) + far) & 255];
     }
     /* the twelve edges, and four of them again; of each a pair of axes */
-    static const int axes[16][2] = {{0, 1}, {0, 1}, {0, 1}, {0, 1}, {0, 2}, {0, 2}, {0, 2}, {0, 2},
-                                    {1, 2}, {1, 2}, {1, 2}, {1, 2}, {0, 1}, {0, 1}, {1, 2}, {1, 2}};
+    static const int axes[16][2] = {{0, 1}, {0, 1}, {0, 1}, {0, 1}, {0, 2}, {0, 2},
+                                    {0, 2}, {0, 2}, {1, 2}, {1, 2}, {1, 2}, {1, 2},
+                                    {0, 1}, {0, 1}, {1, 2}, {1, 2}};
     int h = hash & 15;
-    sum += weight * ((h & 1 ? -d[axes[h][0]] : d[axes[h][0]]) + (h & 2 ? -d[axes[h][1]] : d[axes[h][1]]));
+    sum += weight * ((h & 1 ? -d[axes[h][0]] : d[axes[h][0]]) +
+                     (h & 2 ? -d[axes[h][1]] : d[axes[h][1]]));
   }
   return sum;
 }
@@ -48,9 +51,11 @@ static void noise(void **state) {
   double largest = 0, mean = 0;
   for (int i = 0; i < 20000; i++) {
     float p[3];
-    for (int k = 0; k < 3; k++) p[k] = (float)(40 * random_unit() - 20);
+    for (int k = 0; k < 3; k++)
+      p[k] = (float)(40 * random_unit() - 20);
     float n = vl_noise(p[0], p[1], p[2]);
-    if (!(fabs(n - plain_noise(p[0], p[1], p[2])) < 1e-5)) fail_msg("at %g %g %g: %g", p[0], p[1], p[2], n);
+    if (!(fabs(n - plain_noise(p[0], p[1], p[2])) < 1e-5))
+      fail_msg("at %g %g %g: %g", p[0], p[1], p[2], n);
     largest = fmax(largest, fabs(n));
     mean += n / 20000.0;
   }
@@ -60,15 +65,18 @@ static void noise(void **state) {
     assert_true(vl_noise((float)i, (float)(3 * i), (float)(i / 2)) == 0);
     float x = 0.25f * (float)i + 0.125f; /* repeats, and goes on over the edge of a cell */
     assert_true(vl_noise(x, 0.5f, 2.25f) == vl_noise(x + 256, 0.5f, 2.25f - 256));
-    assert_true(fabsf(vl_noise((float)i - 1e-5f, 0.4f, 0.3f) - vl_noise((float)i + 1e-5f, 0.4f, 0.3f)) < 1e-3f);
+    assert_true(fabsf(vl_noise((float)i - 1e-5f, 0.4f, 0.3f) -
+                      vl_noise((float)i + 1e-5f, 0.4f, 0.3f)) < 1e-3f);
   }
-  assert_true(vl_noise(NAN, 1, 2) == 0 && vl_noise(INFINITY, 0.5f, 0.5f) == 0 && vl_noise(1e30f, 0.5f, 0.5f) == 0);
+  assert_true(vl_noise(NAN, 1, 2) == 0 && vl_noise(INFINITY, 0.5f, 0.5f) == 0 &&
+              vl_noise(1e30f, 0.5f, 0.5f) == 0);
 }
 
 static void sums(void **state) {
   (void)state;
   for (int i = 0; i < 200; i++) {
-    vlVec3 p = vl_vec3((float)(9 * random_unit()), (float)(9 * random_unit()), (float)(9 * random_unit()));
+    vlVec3 p = vl_vec3((float)(9 * random_unit()), (float)(9 * random_unit()),
+                       (float)(9 * random_unit()));
     double want = 0, absolute = 0, size = 1, strength = 1;
     for (int k = 0; k < 4; k++) {
       double n = plain_noise(size * p.x, size * p.y, size * p.z);
@@ -78,7 +86,8 @@ static void sums(void **state) {
     assert_true(fabs(vl_fractal_noise(p, 0, 0.6f, 4) - want) < 1e-4);
     /* of turbulence the next octave counts with its mean */
     assert_true(fabs(vl_turbulence(p, 0, 0.6f, 4) - absolute - 0.2 * strength) < 1e-4);
-    assert_true(vl_fractal_noise(p, 100, 0.6f, 4) == 0); /* a footprint of many periods sees none */
+    assert_true(vl_fractal_noise(p, 100, 0.6f, 4) ==
+                0); /* a footprint of many periods sees none */
     /* ever fewer octaves, without a jump */
     float last = vl_fractal_noise(p, 0.01f, 0.6f, 8);
     for (float w = 0.01f; w < 1; w *= 1.01f) {
@@ -95,7 +104,8 @@ static vlTextureNode node_of(vlNodeKind kind) {
   node.kind = kind;
   node.su = node.sv = node.scale = 1;
   node.omega = 0.5f, node.octaves = 8;
-  for (int i = 0; i < 3; i++) node.texture_from_world[5 * i] = 1;
+  for (int i = 0; i < 3; i++)
+    node.texture_from_world[5 * i] = 1;
   return node;
 }
 
@@ -110,18 +120,23 @@ static void dots(void **state) {
     for (int pass = 0; pass < 2; pass++)
       for (int i = 0; i < N * N; i++) {
         double u = u0 + (i % N + 0.5) / N - 0.5, v = v0 + (i / N + 0.5) / N - 0.5;
-        vlTexturePoint at = {.u = (float)u, .v = (float)v, .n = vl_vec3(0, 0, 1), .color = {1, 1, 1, 1}};
+        vlTexturePoint at = {
+            .u = (float)u, .v = (float)v, .n = vl_vec3(0, 0, 1), .color = {1, 1, 1, 1}};
         bool in = vl_node_dots(&node, at) > 0;
         if (pass == 0) {
           count += in, x += in ? u : 0, y += in ? v : 0;
-        } else if (fabs(hypot(u - x, v - y) - 0.35) > 0.012) { /* one disk, about the middle of what is in */
+        } else if (fabs(hypot(u - x, v - y) - 0.35) >
+                   0.012) { /* one disk, about the middle of what is in */
           assert_true(in == (count && hypot(u - x, v - y) < 0.35));
         }
-        if (pass == 0 && i == N * N - 1 && count) x /= count, y /= count;
+        if (pass == 0 && i == N * N - 1 && count)
+          x /= count, y /= count;
       }
     with += count > 0;
-    if (count) assert_true(fabs(count / (double)(N * N) - 3.14159265 * 0.35 * 0.35) < 0.02);
-    if (count) assert_true(fabs(x - u0) < 0.152 && fabs(y - v0) < 0.152); /* within its cell */
+    if (count)
+      assert_true(fabs(count / (double)(N * N) - 3.14159265 * 0.35 * 0.35) < 0.02);
+    if (count)
+      assert_true(fabs(x - u0) < 0.152 && fabs(y - v0) < 0.152); /* within its cell */
   }
   assert_true(with > 120 && with < 280);
 }
@@ -130,18 +145,21 @@ static void marble(void **state) {
   (void)state;
   vlTextureNode node = node_of(VL_NODE_MARBLE);
   for (int k = 0; k < 2; k++) { /* a vein's both ends, where the sine is -1 and 1 */
-    vlTexturePoint at = {
-        .p = vl_vec3(7, (float)(3.14159265 * (k - 0.5)), 5), .n = vl_vec3(0, 0, 1), .color = {1, 1, 1, 1}};
+    vlTexturePoint at = {.p = vl_vec3(7, (float)(3.14159265 * (k - 0.5)), 5),
+                         .n = vl_vec3(0, 0, 1),
+                         .color = {1, 1, 1, 1}};
     vlVec3 c = vl_node_marble(&node, at);
     double want[2] = {1.5 * 0.58, 1.5 * 0.6};
-    assert_true(fabs(c.x - want[0]) < 2e-3 && fabs(c.y - want[0]) < 2e-3 && fabs(c.z - want[1]) < 2e-3);
+    assert_true(fabs(c.x - want[0]) < 2e-3 && fabs(c.y - want[0]) < 2e-3 &&
+                fabs(c.z - want[1]) < 2e-3);
   }
   node.variation = 0.2f;
   double low = 2, high = 0;
   for (int i = 0; i < 5000; i++) {
-    vlTexturePoint at = {.p = vl_vec3((float)(20 * random_unit()), (float)(20 * random_unit()), 1),
-                         .n = vl_vec3(0, 0, 1),
-                         .color = {1, 1, 1, 1}};
+    vlTexturePoint at = {
+        .p = vl_vec3((float)(20 * random_unit()), (float)(20 * random_unit()), 1),
+        .n = vl_vec3(0, 0, 1),
+        .color = {1, 1, 1, 1}};
     vlVec3 c = vl_node_marble(&node, at);
     low = fmin(low, c.x), high = fmax(high, c.x);
     assert_true(c.z >= c.x - 0.05f); /* never warmer than the warmest of the nine */
@@ -150,7 +168,7 @@ static void marble(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(noise), cmocka_unit_test(sums), cmocka_unit_test(dots),
-                                     cmocka_unit_test(marble)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(noise), cmocka_unit_test(sums),
+                                     cmocka_unit_test(dots), cmocka_unit_test(marble)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

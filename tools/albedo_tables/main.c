@@ -1,5 +1,6 @@
-/* tools/albedo_tables: computes the principled material's tables (src/world/material/principled.h) by quadrature and
- * writes them as C. Called by the build: albedo_tables FILE.c */
+/* tools/albedo_tables: computes the principled material's tables
+ * (src/world/material/principled.h) by quadrature and writes them as C. Called by the build:
+ * albedo_tables FILE.c */
 #include <stdio.h>
 
 #include "world/material/principled.h"
@@ -14,8 +15,8 @@ static float table_cos(uint32_t column) {
   return c > 1e-5f ? c : 1e-5f;
 }
 
-/* Directional albedo for F0 (a) and F90 (b). With visible-normal sampling the weight of a sample is the smooth
- * function G/G1 F, so the midpoint rule is accurate. */
+/* Directional albedo for F0 (a) and F90 (b). With visible-normal sampling the weight of a
+ * sample is the smooth function G/G1 F, so the midpoint rule is accurate. */
 static void specular_at(float cosine, float alpha, float *a, float *b) {
   vlVec3 o = vl_vec3(__builtin_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
   float lo = vl_ggx_length(o, alpha, alpha);
@@ -24,9 +25,11 @@ static void specular_at(float cosine, float alpha, float *a, float *b) {
     float u = ((float)(k % TURNS) + 0.5f) / TURNS, v = ((float)(k / TURNS) + 0.5f) / CAPS;
     vlVec3 h = vl_ggx_sample(o, alpha, alpha, u, v);
     float c = vl_dot(o, h), z = 2.0f * c * h.z - o.z;
-    if (!(z > 0.0f)) continue;
+    if (!(z > 0.0f))
+      continue;
     vlVec3 w = vl_vec3(2.0f * c * h.x - o.x, 2.0f * c * h.y - o.y, z);
-    float g = vl_ggx_shadowing(o.z, lo, z, vl_ggx_length(w, alpha, alpha)), s = vl_schlick_weight(c);
+    float g = vl_ggx_shadowing(o.z, lo, z, vl_ggx_length(w, alpha, alpha)),
+          s = vl_schlick_weight(c);
     sum_a += (double)(g * (1.0f - s));
     sum_b += (double)(g * s);
   }
@@ -34,31 +37,36 @@ static void specular_at(float cosine, float alpha, float *a, float *b) {
   *b = (float)(sum_b / (TURNS * CAPS));
 }
 
-/* Fraction of the light from o that single scattering loses at a rough glass boundary. forth: index on the other
- * side over that on this side; eta: index inside over that outside. */
+/* Fraction of the light from o that single scattering loses at a rough glass boundary. forth:
+ * index on the other side over that on this side; eta: index inside over that outside. */
 static float loss_at(float cosine, float alpha, float eta, int inside) {
   vlVec3 o = vl_vec3(__builtin_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
-  float lo = vl_ggx_length(o, alpha, alpha), forth = inside ? 1.0f / eta : eta, back = 1.0f / forth;
+  float lo = vl_ggx_length(o, alpha, alpha), forth = inside ? 1.0f / eta : eta,
+        back = 1.0f / forth;
   float root = (eta - 1.0f) / (eta + 1.0f), f0 = root * root;
   double sum = 0;
   for (uint32_t k = 0; k < LOSS_TURNS * LOSS_CAPS; k++) {
-    float u = 0.5f * ((float)(k % LOSS_TURNS) + 0.5f) / LOSS_TURNS, v = ((float)(k / LOSS_TURNS) + 0.5f) / LOSS_CAPS;
+    float u = 0.5f * ((float)(k % LOSS_TURNS) + 0.5f) / LOSS_TURNS,
+          v = ((float)(k / LOSS_TURNS) + 0.5f) / LOSS_CAPS;
     vlVec3 h = vl_ggx_sample(o, alpha, alpha, u, v);
     float c = vl_dot(o, h), cos2 = 1.0f - (1.0f - c * c) * back * back,
           beyond = cos2 > 0.0f ? __builtin_sqrtf(cos2) : 0.0f;
     float f = cos2 > 0.0f ? f0 + (1.0f - f0) * vl_schlick_weight(inside ? beyond : c) : 1.0f;
     vlVec3 w = vl_vec3(2.0f * c * h.x - o.x, 2.0f * c * h.y - o.y, 2.0f * c * h.z - o.z);
-    if (w.z > 0.0f) sum += (double)(f * vl_ggx_shadowing(o.z, lo, w.z, vl_ggx_length(w, alpha, alpha)));
+    if (w.z > 0.0f)
+      sum += (double)(f * vl_ggx_shadowing(o.z, lo, w.z, vl_ggx_length(w, alpha, alpha)));
     float a = c * back - beyond;
     w = vl_vec3(a * h.x - back * o.x, a * h.y - back * o.y, back * o.z - a * h.z);
-    if (w.z > 0.0f) sum += (double)((1.0f - f) * vl_ggx_shadowing(o.z, lo, w.z, vl_ggx_length(w, alpha, alpha)));
+    if (w.z > 0.0f)
+      sum +=
+          (double)((1.0f - f) * vl_ggx_shadowing(o.z, lo, w.z, vl_ggx_length(w, alpha, alpha)));
   }
   double loss = 1.0 - sum / (LOSS_TURNS * LOSS_CAPS);
   return loss > 0.0 ? (float)loss : 0.0f;
 }
 
-/* Albedo of the sheen, integrated over polar angle and azimuth. Points are denser towards the horizon, where sheen
- * is strong. */
+/* Albedo of the sheen, integrated over polar angle and azimuth. Points are denser towards the
+ * horizon, where sheen is strong. */
 static float sheen_at(float cosine, float alpha) {
   float sine = __builtin_sqrtf(1.0f - cosine * cosine);
   double sum = 0;
@@ -86,7 +94,8 @@ static float mean_of(const float *row, uint32_t count) {
 
 static void fill_row(vlPrincipledTables *t, uint32_t row) {
   float r = (float)row / (float)(VL_ALBEDO_ALPHA - 1), alpha = r * r;
-  float rough = alpha > VL_GGX_SMOOTH ? alpha : VL_GGX_SMOOTH, fuzz = alpha > VL_SHEEN_ALPHA ? alpha : VL_SHEEN_ALPHA;
+  float rough = alpha > VL_GGX_SMOOTH ? alpha : VL_GGX_SMOOTH,
+        fuzz = alpha > VL_SHEEN_ALPHA ? alpha : VL_SHEEN_ALPHA;
   for (uint32_t j = 0; j < VL_ALBEDO_COS; j++) {
     float c = table_cos(j);
     specular_at(c, rough, &t->a[row][j], &t->b[row][j]);
@@ -95,14 +104,17 @@ static void fill_row(vlPrincipledTables *t, uint32_t row) {
   t->a_mean[row] = mean_of(t->a[row], VL_ALBEDO_COS);
   t->b_mean[row] = mean_of(t->b[row], VL_ALBEDO_COS);
   float capped[VL_ALBEDO_COS];
-  for (uint32_t j = 0; j < VL_ALBEDO_COS; j++) capped[j] = t->sheen[row][j] < 1.0f ? t->sheen[row][j] : 1.0f;
+  for (uint32_t j = 0; j < VL_ALBEDO_COS; j++)
+    capped[j] = t->sheen[row][j] < 1.0f ? t->sheen[row][j] : 1.0f;
   t->sheen_mean[row] = mean_of(capped, VL_ALBEDO_COS);
 }
 
 static void fill_losses(vlPrincipledTables *t, int side, uint32_t index) {
-  float root = VL_LOSS_MOST_ROOT * (float)index / (float)(VL_LOSS_ETA - 1), eta = (1.0f + root) / (1.0f - root);
+  float root = VL_LOSS_MOST_ROOT * (float)index / (float)(VL_LOSS_ETA - 1),
+        eta = (1.0f + root) / (1.0f - root);
   for (uint32_t i = 0; i < VL_LOSS_ALPHA; i++) {
-    float r = (float)i / (float)(VL_LOSS_ALPHA - 1), alpha = r * r > VL_GGX_SMOOTH ? r * r : VL_GGX_SMOOTH;
+    float r = (float)i / (float)(VL_LOSS_ALPHA - 1),
+          alpha = r * r > VL_GGX_SMOOTH ? r * r : VL_GGX_SMOOTH;
     float *row = t->loss[side][index][i];
     for (uint32_t j = 0; j < VL_LOSS_COS; j++) {
       float x = (float)j / (float)(VL_LOSS_COS - 1), c = x * x;
@@ -113,7 +125,8 @@ static void fill_losses(vlPrincipledTables *t, int side, uint32_t index) {
 }
 
 static void write_row(FILE *file, const float *row, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++) fprintf(file, "%s%a%s", i % 6 ? " " : "\n", (double)row[i], "f,");
+  for (uint32_t i = 0; i < count; i++)
+    fprintf(file, "%s%a%s", i % 6 ? " " : "\n", (double)row[i], "f,");
 }
 
 static void write_table(FILE *file, const char *name, const float table[][VL_ALBEDO_COS]) {
@@ -154,10 +167,14 @@ int main(int argc, char **argv) {
     fprintf(stderr, "usage: albedo_tables FILE.c\n");
     return 2;
   }
-  for (uint32_t i = 0; i < VL_ALBEDO_ALPHA; i++) fill_row(&t, i);
+  for (uint32_t i = 0; i < VL_ALBEDO_ALPHA; i++)
+    fill_row(&t, i);
   for (int side = 0; side < 2; side++)
-    for (uint32_t i = 0; i < VL_LOSS_ETA; i++) fill_losses(&t, side, i);
-  fprintf(file, "/* Written by tools/albedo_tables. */\n#include \"world/material/principled.h\"\n\n");
+    for (uint32_t i = 0; i < VL_LOSS_ETA; i++)
+      fill_losses(&t, side, i);
+  fprintf(
+      file,
+      "/* Written by tools/albedo_tables. */\n#include \"world/material/principled.h\"\n\n");
   fprintf(file, "const vlPrincipledTables vl_principled_tables = {");
   write_table(file, "a", t.a);
   write_table(file, "b", t.b);

@@ -1,6 +1,6 @@
-/* dense.c: spectra at every nanometre from 360 to 830 nm (standard observer, illuminants, metals, glasses), and the
- * matrices of the colour spaces. All sums are over whole nanometres and use values rounded to float, as velo itself
- * does. */
+/* dense.c: spectra at every nanometre from 360 to 830 nm (standard observer, illuminants,
+ * metals, glasses), and the matrices of the colour spaces. All sums are over whole nanometres
+ * and use values rounded to float, as velo itself does. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +21,8 @@ typedef struct state {
   int count;
 } state;
 
-/* Sprague's fifth-degree interpolation of values 5 nm apart, as the CIE recommends (CIE 167). The values at the ends
- * are repeated. */
+/* Sprague's fifth-degree interpolation of values 5 nm apart, as the CIE recommends (CIE 167).
+ * The values at the ends are repeated. */
 static double sprague(const double *v, int count, int lambda) {
   int i = (lambda - LAMBDA_MIN) / 5;
   double x = (lambda - LAMBDA_MIN) % 5 / 5.0, p[6];
@@ -41,34 +41,41 @@ static double sprague(const double *v, int count, int lambda) {
 
 static double sum_y(const state *s, const float *spectrum) {
   double sum = 0;
-  for (int i = 0; i < LAMBDA_COUNT; i++) sum += (double)s->cie[1][i] * (double)spectrum[i];
+  for (int i = 0; i < LAMBDA_COUNT; i++)
+    sum += (double)s->cie[1][i] * (double)spectrum[i];
   return sum;
 }
 static double y_integral(const state *s) {
   double sum = 0;
-  for (int i = 0; i < LAMBDA_COUNT; i++) sum += (double)s->cie[1][i];
+  for (int i = 0; i < LAMBDA_COUNT; i++)
+    sum += (double)s->cie[1][i];
   return sum;
 }
 
 static named *add(state *s, const char *prefix, const char *name, const char *suffix) {
-  if (s->count == MAX_NAMED) abort();
+  if (s->count == MAX_NAMED)
+    abort();
   named *n = &s->list[s->count++];
   snprintf(n->name, sizeof n->name, "%s%s%s", prefix, name, suffix);
   return n;
 }
 
-/* Adds a spectrum that is linear between the points, and constant before the first and after the last one. */
-static void add_points(state *s, const char *name, const char *suffix, const double (*points)[2], int count) {
+/* Adds a spectrum that is linear between the points, and constant before the first and after
+ * the last one. */
+static void add_points(state *s, const char *name, const char *suffix,
+                       const double (*points)[2], int count) {
   named *n = add(s, "metal-", name, suffix);
   for (int i = 0, j = 0; i < LAMBDA_COUNT; i++) {
     double l = LAMBDA_MIN + i;
-    while (j < count - 2 && points[j + 1][0] <= l) j++;
+    while (j < count - 2 && points[j + 1][0] <= l)
+      j++;
     double t = (l - points[j][0]) / (points[j + 1][0] - points[j][0]);
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     n->values[i] = (float)(points[j][1] + t * (points[j + 1][1] - points[j][1]));
   }
 }
-static void add_metal(state *s, const char *name, const char *suffix, const double values[METAL_COUNT]) {
+static void add_metal(state *s, const char *name, const char *suffix,
+                      const double values[METAL_COUNT]) {
   double points[METAL_COUNT][2];
   for (int i = 0; i < METAL_COUNT; i++) {
     points[i][0] = 1239.84176 / (3.45 - 0.05 * i);
@@ -88,24 +95,30 @@ static void add_glass(state *s, const char *name, const sellmeier *g) {
   named *n = add(s, "glass-", name, "");
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     double l = (LAMBDA_MIN + i) * 1e-3, l2 = l * l, n2 = 1;
-    for (int k = 0; k < 3; k++) n2 += g->b[k] * l2 / (l2 - g->c[k]);
+    for (int k = 0; k < 3; k++)
+      n2 += g->b[k] * l2 / (l2 - g->c[k]);
     n->values[i] = (float)sqrt(n2);
   }
 }
 
-/* Illuminants are scaled so that their Y, the sum over all nanometres, is equal to that of the constant spectrum 1. */
-static void add_illuminant(state *s, const char *prefix, const char *name, const double values[LAMBDA_COUNT]) {
+/* Illuminants are scaled so that their Y, the sum over all nanometres, is equal to that of the
+ * constant spectrum 1. */
+static void add_illuminant(state *s, const char *prefix, const char *name,
+                           const double values[LAMBDA_COUNT]) {
   named *n = add(s, prefix, name, "");
   double y = 0;
-  for (int i = 0; i < LAMBDA_COUNT; i++) y += (double)s->cie[1][i] * values[i];
-  for (int i = 0; i < LAMBDA_COUNT; i++) n->values[i] = (float)(values[i] * (y_integral(s) / y));
+  for (int i = 0; i < LAMBDA_COUNT; i++)
+    y += (double)s->cie[1][i] * values[i];
+  for (int i = 0; i < LAMBDA_COUNT; i++)
+    n->values[i] = (float)(values[i] * (y_integral(s) / y));
 }
 static void add_daylight(state *s, const char *prefix, const char *name, const double m[2]) {
   double v[LAMBDA_COUNT];
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     int j = i / 10 < DAYLIGHT_COUNT - 2 ? i / 10 : DAYLIGHT_COUNT - 2;
     double t = (i - 10 * j) / 10.0, e[2];
-    for (int k = 0; k < 2; k++) e[k] = daylight[0][j + k] + m[0] * daylight[1][j + k] + m[1] * daylight[2][j + k];
+    for (int k = 0; k < 2; k++)
+      e[k] = daylight[0][j + k] + m[0] * daylight[1][j + k] + m[1] * daylight[2][j + k];
     v[i] = e[0] + t * (e[1] - e[0]);
   }
   add_illuminant(s, prefix, name, v);
@@ -134,9 +147,12 @@ static void add_all(state *s) {
   for (size_t i = 0; i < sizeof glasses / sizeof *glasses; i++) {
     add_glass(s, glasses[i].name, &glasses[i]);
     /* pbrt's names omit the S: F5 is SF5 */
-    if (glasses[i].name[0] == 'S') add_glass(s, glasses[i].name + 1, &glasses[i]);
+    if (glasses[i].name[0] == 'S')
+      add_glass(s, glasses[i].name + 1, &glasses[i]);
   }
-  /* Illuminant A: Planck's law at 2848 K with the second radiation constant of that time (CIE 15) */
+  /* Illuminant A: Planck's law at 2848 K with the second radiation constant of that time (CIE
+   * 15)
+   */
   double a[LAMBDA_COUNT];
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     double l = LAMBDA_MIN + i;
@@ -148,9 +164,10 @@ static void add_all(state *s) {
   add_daylight(s, "stdillum-", "D60", daylight_D60);
   add_daylight(s, "illum-", "acesD60", daylight_D60);
   add_daylight(s, "stdillum-", "D65", daylight_D65);
-  const double *f[12] = {illuminant_F1_5nm, illuminant_F2_5nm,  illuminant_F3_5nm,  illuminant_F4_5nm,
-                         illuminant_F5_5nm, illuminant_F6_5nm,  illuminant_F7_5nm,  illuminant_F8_5nm,
-                         illuminant_F9_5nm, illuminant_F10_5nm, illuminant_F11_5nm, illuminant_F12_5nm};
+  const double *f[12] = {illuminant_F1_5nm,  illuminant_F2_5nm,  illuminant_F3_5nm,
+                         illuminant_F4_5nm,  illuminant_F5_5nm,  illuminant_F6_5nm,
+                         illuminant_F7_5nm,  illuminant_F8_5nm,  illuminant_F9_5nm,
+                         illuminant_F10_5nm, illuminant_F11_5nm, illuminant_F12_5nm};
   for (int i = 0; i < 12; i++) {
     char name[8];
     snprintf(name, sizeof name, "F%d", i + 1);
@@ -158,7 +175,9 @@ static void add_all(state *s) {
   }
 }
 
-/* ---- colour spaces ----------------------------------------------------------------------------------------------- */
+/* ---- colour spaces
+ * -----------------------------------------------------------------------------------------------
+ */
 
 static void invert(const double m[9], double r[9]) {
   double c[9];
@@ -168,22 +187,27 @@ static void invert(const double m[9], double r[9]) {
       c[3 * j + i] = m[3 * a + p] * m[3 * b + q] - m[3 * a + q] * m[3 * b + p];
     }
   double det = m[0] * c[0] + m[1] * c[3] + m[2] * c[6];
-  for (int i = 0; i < 9; i++) r[i] = c[i] / det;
+  for (int i = 0; i < 9; i++)
+    r[i] = c[i] / det;
 }
 
 static int find(const state *s, const char *name) {
   for (int i = 0; i < s->count; i++)
-    if (strcmp(s->list[i].name, name) == 0) return i;
+    if (strcmp(s->list[i].name, name) == 0)
+      return i;
   abort();
 }
 
-/* The primaries are the published ones. The white is the illuminant's own colour, so it is exactly (1, 1, 1). */
-static void make_space(const state *s, space *p, const double primaries[6], const char *illuminant_name) {
+/* The primaries are the published ones. The white is the illuminant's own colour, so it is
+ * exactly (1, 1, 1). */
+static void make_space(const state *s, space *p, const double primaries[6],
+                       const char *illuminant_name) {
   p->illuminant = find(s, illuminant_name);
   const float *illuminant = s->list[p->illuminant].values;
   double white[3] = {0}, m[9], inverse[9];
   for (int k = 0; k < 3; k++) {
-    for (int i = 0; i < LAMBDA_COUNT; i++) white[k] += (double)s->cie[k][i] * (double)illuminant[i];
+    for (int i = 0; i < LAMBDA_COUNT; i++)
+      white[k] += (double)s->cie[k][i] * (double)illuminant[i];
     white[k] /= y_integral(s);
   }
   memcpy(p->xy, primaries, 6 * sizeof(double));
@@ -195,29 +219,36 @@ static void make_space(const state *s, space *p, const double primaries[6], cons
   }
   invert(m, inverse);
   for (int j = 0; j < 3; j++) {
-    double scale = inverse[3 * j] * white[0] + inverse[3 * j + 1] * white[1] + inverse[3 * j + 2] * white[2];
-    for (int i = 0; i < 3; i++) p->xyz_from_rgb[3 * i + j] = m[3 * i + j] * scale;
+    double scale = inverse[3 * j] * white[0] + inverse[3 * j + 1] * white[1] +
+                   inverse[3 * j + 2] * white[2];
+    for (int i = 0; i < 3; i++)
+      p->xyz_from_rgb[3 * i + j] = m[3 * i + j] * scale;
   }
   invert(p->xyz_from_rgb, p->rgb_from_xyz);
   for (int j = 0; j < 3; j++)
     for (int i = 0; i < LAMBDA_COUNT; i++) {
       double w = 0;
-      for (int k = 0; k < 3; k++) w += p->rgb_from_xyz[3 * j + k] * (double)s->cie[k][i];
+      for (int k = 0; k < 3; k++)
+        w += p->rgb_from_xyz[3 * j + k] * (double)s->cie[k][i];
       p->weight[j][i] = w * (double)illuminant[i] / y_integral(s);
     }
 }
 static void make_spaces(const state *s, space spaces[SPACE_COUNT]) {
-  static const double srgb[6] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06};         /* ITU-R BT.709 */
-  static const double p3[6] = {0.68, 0.32, 0.265, 0.69, 0.15, 0.06};          /* SMPTE EG 432-1, D65 */
-  static const double rec2020[6] = {0.708, 0.292, 0.17, 0.797, 0.131, 0.046}; /* ITU-R BT.2020 */
-  static const double aces[6] = {0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077};   /* SMPTE ST 2065-1 */
+  static const double srgb[6] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06}; /* ITU-R BT.709 */
+  static const double p3[6] = {0.68, 0.32, 0.265, 0.69, 0.15, 0.06};  /* SMPTE EG 432-1, D65 */
+  static const double rec2020[6] = {0.708, 0.292, 0.17,
+                                    0.797, 0.131, 0.046}; /* ITU-R BT.2020 */
+  static const double aces[6] = {0.7347, 0.2653, 0.0,
+                                 1.0,    0.0001, -0.077}; /* SMPTE ST 2065-1 */
   make_space(s, &spaces[0], srgb, "stdillum-D65");
   make_space(s, &spaces[1], p3, "stdillum-D65");
   make_space(s, &spaces[2], rec2020, "stdillum-D65");
   make_space(s, &spaces[3], aces, "illum-acesD60");
 }
 
-/* ---- writing ----------------------------------------------------------------------------------------------------- */
+/* ---- writing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void write_floats(FILE *file, const float *v, int count, int stride) {
   for (int i = 0; i < count; i++) {
@@ -227,7 +258,8 @@ static void write_floats(FILE *file, const float *v, int count, int stride) {
 }
 static void write_doubles(FILE *file, const double *v, int count) {
   fprintf(file, "{");
-  for (int i = 0; i < count; i++) fprintf(file, "%s%.17g", i ? ", " : "", v[i]);
+  for (int i = 0; i < count; i++)
+    fprintf(file, "%s%.17g", i ? ", " : "", v[i]);
   fprintf(file, "}, ");
 }
 
@@ -240,7 +272,8 @@ static state all;
 void make_spectra(space spaces[SPACE_COUNT]) {
   const double *cmf[3] = {cie_x_5nm, cie_y_5nm, cie_z_5nm};
   for (int k = 0; k < 3; k++)
-    for (int i = 0; i < LAMBDA_COUNT; i++) all.cie[k][i] = (float)sprague(cmf[k], 95, LAMBDA_MIN + i);
+    for (int i = 0; i < LAMBDA_COUNT; i++)
+      all.cie[k][i] = (float)sprague(cmf[k], 95, LAMBDA_MIN + i);
   add_all(&all);
   qsort(all.list, (size_t)all.count, sizeof *all.list, by_name);
   make_spaces(&all, spaces);
@@ -248,11 +281,13 @@ void make_spectra(space spaces[SPACE_COUNT]) {
 
 bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
   static float shares[LAMBDA_COUNT][3];
-  if (!make_channels(&spaces[0], shares)) return false;
+  if (!make_channels(&spaces[0], shares))
+    return false;
   fprintf(file, "/* Written by tools/color_tables. */\n#include \"color/tables.h\"\n\n");
   fprintf(file, "const double vl_table_y_integral = %.17g;\n", y_integral(&all));
   fprintf(file, "const double vl_table_daylight[3][VL_DAYLIGHT_COUNT] = {");
-  for (int k = 0; k < 3; k++) write_doubles(file, daylight[k], DAYLIGHT_COUNT);
+  for (int k = 0; k < 3; k++)
+    write_doubles(file, daylight[k], DAYLIGHT_COUNT);
   fprintf(file, "};\n");
   fprintf(file, "const float vl_table_cie[3][VL_LAMBDA_COUNT] = {");
   for (int k = 0; k < 3; k++) {
@@ -260,17 +295,24 @@ bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
     write_floats(file, all.cie[k], LAMBDA_COUNT, 1);
     fprintf(file, "},");
   }
-  fprintf(file, "\n};\n__attribute__((aligned(64))) const float vl_cie_xyz0[VL_LAMBDA_COUNT * 4] = {");
+  fprintf(
+      file,
+      "\n};\n__attribute__((aligned(64))) const float vl_cie_xyz0[VL_LAMBDA_COUNT * 4] = {");
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     float v[4] = {all.cie[0][i], all.cie[1][i], all.cie[2][i], 0};
     write_floats(file, v, 4, 1);
   }
-  fprintf(file, "\n};\n__attribute__((aligned(64))) const float vl_channel_shares[VL_LAMBDA_COUNT * 4] = {");
+  fprintf(file,
+          "\n};\n__attribute__((aligned(64))) const float vl_channel_shares[VL_LAMBDA_COUNT * "
+          "4] = {");
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     float v[4] = {shares[i][0], shares[i][1], shares[i][2], 0};
     write_floats(file, v, 4, 1);
   }
-  fprintf(file, "\n};\nconst uint32_t vl_table_named_count = %d;\nconst vlNamedTable vl_table_named[] = {", all.count);
+  fprintf(file,
+          "\n};\nconst uint32_t vl_table_named_count = %d;\nconst vlNamedTable "
+          "vl_table_named[] = {",
+          all.count);
   for (int i = 0; i < all.count; i++) {
     fprintf(file, "\n  {\"%s\", %.9g, {", all.list[i].name, sum_y(&all, all.list[i].values));
     write_floats(file, all.list[i].values, LAMBDA_COUNT, 1);

@@ -1,5 +1,6 @@
-/* measured.h: measured properties of materials: refractive indices of metals and oxides, dispersion formulas of
- * glasses, and the components of daylight. Each table names its source. */
+/* measured.h: measured properties of materials: refractive indices of metals and oxides,
+ * dispersion formulas of glasses, and the components of daylight. Each table names its source.
+ */
 #ifndef COLOR_TABLES_MEASURED_H
 #define COLOR_TABLES_MEASURED_H
 /* clang-format off */

@@ -1,10 +1,11 @@
-/* tools/faults/interpose.c: makes one call of the C library fail. tools/check_faults preloads it:
- *   VELO_FAULT=CALL:K:ERRNO       the K-th call of that kind (from 1) fails
+/* tools/faults/interpose.c: makes one call of the C library fail. tools/check_faults preloads
+ * it: VELO_FAULT=CALL:K:ERRNO       the K-th call of that kind (from 1) fails
  *   VELO_FAULT=CALL:K+:ERRNO      that and all later ones
- *   VELO_FAULT=CALL:K:-SIGNAL     the K-th call succeeds, and its thread gets that signal right after it (open and
- * name) VELO_FAULT_COUNT=FILE         how many calls of that kind there were, at exit CALL: memory (malloc, calloc,
- * realloc, aligned), read (read, pread), write (write, pwrite, ftruncate), sync, rename, link, open, name (open, fcntl,
- * rename, link, unlink), thread. Calls on standard input, output and error do not count. */
+ *   VELO_FAULT=CALL:K:-SIGNAL     the K-th call succeeds, and its thread gets that signal right
+ * after it (open and name) VELO_FAULT_COUNT=FILE         how many calls of that kind there
+ * were, at exit CALL: memory (malloc, calloc, realloc, aligned), read (read, pread), write
+ * (write, pwrite, ftruncate), sync, rename, link, open, name (open, fcntl, rename, link,
+ * unlink), thread. Calls on standard input, output and error do not count. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -33,7 +34,8 @@ static atomic_int ready;
 static __attribute__((constructor)) void start(void) {
   const char *text = getenv("VELO_FAULT");
   char plus = 0;
-  if (!text) return;
+  if (!text)
+    return;
   if (sscanf(text, "%15[a-z]:%ld:%d", fault_call, &fault_at, &fault_errno) != 3 &&
       sscanf(text, "%15[a-z]:%ld%c:%d", fault_call, &fault_at, &plus, &fault_errno) != 4)
     return;
@@ -45,7 +47,8 @@ static __attribute__((destructor)) void finish(void) {
   const char *path = getenv("VELO_FAULT_COUNT");
   atomic_store(&ready, 0);
   FILE *file = path ? fopen(path, "w") : NULL;
-  if (!file) return;
+  if (!file)
+    return;
   fprintf(file, "%ld\n", atomic_load(&calls));
   fclose(file);
 }
@@ -53,9 +56,11 @@ static __attribute__((destructor)) void finish(void) {
 static __thread int signal_due;
 
 static int fails(const char *call) {
-  if (!atomic_load(&ready) || strcmp(call, fault_call) != 0) return 0;
+  if (!atomic_load(&ready) || strcmp(call, fault_call) != 0)
+    return 0;
   long n = atomic_fetch_add(&calls, 1) + 1;
-  if (n != fault_at && !(fault_stays && fault_at && n > fault_at)) return 0;
+  if (n != fault_at && !(fault_stays && fault_at && n > fault_at))
+    return 0;
   if (fault_errno < 0) {
     signal_due = -fault_errno;
     return 0;
@@ -68,7 +73,8 @@ static int fails(const char *call) {
 static int after(int result) {
   int number = signal_due, code = errno;
   signal_due = 0;
-  if (number) raise(number);
+  if (number)
+    raise(number);
   errno = code;
   return result;
 }
@@ -97,7 +103,8 @@ void *aligned_alloc(size_t alignment, size_t size) {
 }
 int posix_memalign(void **block, size_t alignment, size_t size) {
   void *p = memalign(alignment, size);
-  if (!p) return ENOMEM;
+  if (!p)
+    return ENOMEM;
   *block = p;
   return 0;
 }
@@ -168,6 +175,7 @@ FILE *fopen(const char *path, const char *mode) {
 FILE *fopen64(const char *path, const char *mode) {
   return fails("open") ? NULL : NEXT(fopen64, path, mode);
 }
-int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*body)(void *), void *argument) {
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*body)(void *),
+                   void *argument) {
   return fails("thread") ? EAGAIN : NEXT(pthread_create, thread, attributes, body, argument);
 }

@@ -78,15 +78,18 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
   vlResult result = vl_scene_create(context, &scene);
-  if (result == VL_OK) result = vl_scene_load(scene, path, &load, &error);
+  if (result == VL_OK)
+    result = vl_scene_load(scene, path, &load, &error);
   if (result == VL_OK) {
     const vlSceneDefs *from = vl_scene_defs(scene);
-    *record = (vlCameraRecord){.camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
+    *record = (vlCameraRecord){
+        .camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
   /* the camera points to objects of its scene, which are freed with the scene */
   if (status < 0 && record->camera.lens.optics)
-    status = report_failure(STATUS_SCENE, "%s: a lens of many elements is a camera of its scene alone", path);
+    status = report_failure(STATUS_SCENE,
+                            "%s: a lens of many elements is a camera of its scene alone", path);
   if (status < 0 && record->camera.lens.aperture) {
     report_note("%s: the image of the lens's opening is left out", path);
     record->camera.lens.aperture = NULL;
@@ -100,17 +103,19 @@ static int load_image_camera(vlContext *context, const char *path, vlCameraRecor
   vlImage *image = NULL;
   *record = (vlCameraRecord){.dialect = VL_CAMERA_DIALECT_EXR, .frames = 1};
   int status = image_load(context, path, &image);
-  if (status < 0) status = header_camera_def(image, path, &record->camera);
+  if (status < 0)
+    status = header_camera_def(image, path, &record->camera);
   vl_image_destroy(image);
   return status;
 }
 
 static int has_size(const char *path) {
-  return report_usage("%s has an image size of its own; --size is for files that have none", path);
+  return report_usage("%s has an image size of its own; --size is for files that have none",
+                      path);
 }
 
-int camera_load(vlContext *context, const char *path, int dialect, const char *frame, const OptionValue *size,
-                const OptionValue *fallback, vlCameraRecord *record) {
+int camera_load(vlContext *context, const char *path, int dialect, const char *frame,
+                const OptionValue *size, const OptionValue *fallback, vlCameraRecord *record) {
   bool sized = size && size->given;
   const OptionValue *taken = sized ? size : fallback && fallback->given ? fallback : NULL;
   if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && text_ends_with(path, ".exr")))
@@ -126,28 +131,34 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
     def.height = (uint32_t)taken->integers[1];
   }
   vlResult result = vl_camera_read(context, path, &def, record, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
   if (sized && (record->camera.width != def.width || record->camera.height != def.height))
-    return report_usage("%s says %u x %u pixels, --size %u x %u; --size is for files that have none", path,
-                        record->camera.width, record->camera.height, def.width, def.height);
+    return report_usage(
+        "%s says %u x %u pixels, --size %u x %u; --size is for files that have none", path,
+        record->camera.width, record->camera.height, def.width, def.height);
   if (record->size_assumed)
-    report_note("%s: names no image size; %u x %u is taken", path, record->camera.width, record->camera.height);
+    report_note("%s: names no image size; %u x %u is taken", path, record->camera.width,
+                record->camera.height);
   if (record->frames > 1 && !frame)
     report_note("%s: the first of %u cameras is taken (%s)", path, record->frames,
                 record->name[0] ? record->name : "no name");
   return -1;
 }
 
-int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option,
-                     int size_option, vlCameraRecord *record, vlCamera *camera) {
+int camera_load_made(vlContext *context, const char *path, const Arguments *arguments,
+                     int frame_option, int size_option, vlCameraRecord *record,
+                     vlCamera *camera) {
   const OptionValue *frame = &arguments->values[frame_option];
-  int status =
-      camera_load(context, path, 0, frame->given ? frame->text : NULL, &arguments->values[size_option], NULL, record);
-  if (status >= 0) return status;
+  int status = camera_load(context, path, 0, frame->given ? frame->text : NULL,
+                           &arguments->values[size_option], NULL, record);
+  if (status >= 0)
+    return status;
   const char *warning = NULL;
   vlError error = {0};
   vlResult result = vl_camera_make(&record->camera, camera, &warning, &error);
-  if (result != VL_OK) return report_failure(STATUS_SCENE, "%s: %s", path, error.message);
+  if (result != VL_OK)
+    return report_failure(STATUS_SCENE, "%s: %s", path, error.message);
   if (warning && camera->outside > 0.0)
     report_warning("%s: %s (%.3g%% of the image)", path, warning, 100.0 * camera->outside);
   else if (warning)
@@ -166,11 +177,14 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   int status = image_context(&context);
   if (status < 0)
     status = camera_load(context, in, v[CONVERT_FROM].given ? (int)v[CONVERT_FROM].integer : 0,
-                         v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL, &v[CONVERT_SIZE], NULL, &record);
+                         v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL,
+                         &v[CONVERT_SIZE], NULL, &record);
   vlCameraFileDef def = vl_default_camera_file_def();
-  def.dialect = v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
+  def.dialect =
+      v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
   /* each file of a folder is checked when it is written */
-  if (status < 0 && !vl_camera_writes_folder(out, def.dialect)) status = output_check(context, out, VL_OUTPUT_PLAIN);
+  if (status < 0 && !vl_camera_writes_folder(out, def.dialect))
+    status = output_check(context, out, VL_OUTPUT_PLAIN);
   if (status < 0) {
     def.drop = arguments->texts;
     def.drop_count = (uint32_t)arguments->text_count;
@@ -190,10 +204,11 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 }
 
 static const Option convert_options[] = {
-    {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT", "dialect of IN; default: recognised by its content:", 0, 0,
-     dialect_choices},
+    {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT",
+     "dialect of IN; default: recognised by its content:", 0, 0, dialect_choices},
     {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",
-     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, .pbrt pbrt, "
+     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, "
+     ".pbrt pbrt, "
      "transforms.json nerf, cameras.txt colmap:",
      0, 0, dialect_choices},
     {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME",
@@ -208,7 +223,9 @@ const Command camera_convert_command = {
     .usage = "IN OUT [options]",
     .summary = "convert a camera file to another tool's format",
     .text =
-        "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted. A field that OUT's\n"
+        "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted. A "
+        "field "
+        "that OUT's\n"
         "dialect cannot hold is an error that names it (--drop leaves it out).",
     .examples =
         "velo camera convert camera.yaml camera.json\n"

@@ -1,4 +1,5 @@
-/* camera/draw.c: `velo camera draw`: a camera seen from outside, as drawings of perspective show it. */
+/* camera/draw.c: `velo camera draw`: a camera seen from outside, as drawings of perspective
+ * show it. */
 #include "camera/draw.h"
 
 #include <math.h>
@@ -32,7 +33,8 @@ enum {
   DRAW_BLANK,
   DRAW_OPTIONS
 };
-_Static_assert((int)DRAW_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+_Static_assert((int)DRAW_OPTIONS <= (int)MAX_OPTIONS,
+               "Arguments.values has no room for an option");
 
 enum { DEFAULT_POINTS = 2 };
 
@@ -58,11 +60,13 @@ static int parse_parts(const char *text, uint32_t *parts) {
     size_t length = strcspn(text, ",");
     int found = -1;
     for (int i = 0; i < PARTS; i++)
-      if (strlen(names[i]) == length && strncmp(text, names[i], length) == 0) found = i;
+      if (strlen(names[i]) == length && strncmp(text, names[i], length) == 0)
+        found = i;
     if (found < 0) {
       char word[32] = "";
       memcpy(word, text, length < sizeof word - 1 ? length : sizeof word - 1);
-      return report_usage("--parts: \"%s\" is no part of the drawing%s", word, did_you_mean("", word, names, PARTS));
+      return report_usage("--parts: \"%s\" is no part of the drawing%s", word,
+                          did_you_mean("", word, names, PARTS));
     }
     *parts |= 1u << found;
     text += length + (text[length] == ',');
@@ -70,15 +74,20 @@ static int parse_parts(const char *text, uint32_t *parts) {
   return -1;
 }
 
-/* ---- options ----------------------------------------------------------------------------------------------------- */
+/* ---- options
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static int read_options(State *s, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   bool eight_bit = false;
-  if (!v[DRAW_OUT].given) return report_usage("-o FILE is needed");
+  if (!v[DRAW_OUT].given)
+    return report_usage("-o FILE is needed");
   if (!output_suffix(v[DRAW_OUT].text, &eight_bit) || !eight_bit)
-    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[DRAW_OUT].text);
-  s->view = (OutsideDef){.azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 32};
+    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga",
+                        v[DRAW_OUT].text);
+  s->view = (OutsideDef){
+      .azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 32};
   s->view.exposure = VL_UNSET;
   s->view.scene = !v[DRAW_EMPTY].given;
   s->view.own_image = s->view.scene && !v[DRAW_BLANK].given && !v[RENDER_TRAJECTORY].given;
@@ -89,20 +98,25 @@ static int read_options(State *s, const Arguments *arguments) {
   double from[2];
   if (v[DRAW_FROM].given) {
     if (!parse_numbers(v[DRAW_FROM].text, 2, from) || fabs(from[0]) > 360 || fabs(from[1]) > 89)
-      return report_usage("--from \"%s\": azimuth and elevation in degrees, the elevation within 89",
-                          v[DRAW_FROM].text);
+      return report_usage(
+          "--from \"%s\": azimuth and elevation in degrees, the elevation within 89",
+          v[DRAW_FROM].text);
     s->view.azimuth = from[0];
     s->view.elevation = from[1];
   }
-  if (v[DRAW_ZOOM].given) s->view.zoom = v[DRAW_ZOOM].number;
-  if (v[RENDER_SPP].given) s->view.spp = (uint32_t)v[RENDER_SPP].integer;
+  if (v[DRAW_ZOOM].given)
+    s->view.zoom = v[DRAW_ZOOM].number;
+  if (v[RENDER_SPP].given)
+    s->view.spp = (uint32_t)v[RENDER_SPP].integer;
   if (v[RENDER_EXPOSURE].given && !parse_numbers(v[RENDER_EXPOSURE].text, 1, &s->view.exposure))
     return report_usage("--exposure \"%s\": must be a number", v[RENDER_EXPOSURE].text);
   s->def = vl_default_drawing_def();
-  if (v[DRAW_GRID].given) s->def.grid = (uint32_t)v[DRAW_GRID].integer;
+  if (v[DRAW_GRID].given)
+    s->def.grid = (uint32_t)v[DRAW_GRID].integer;
   if (v[DRAW_PARTS].given) {
     int status = parse_parts(v[DRAW_PARTS].text, &s->def.parts);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   for (int i = 0; i < arguments->text_count; i++)
     if (!parse_numbers(arguments->texts[i], 3, s->points + 3 * i))
@@ -110,34 +124,45 @@ static int read_options(State *s, const Arguments *arguments) {
   s->def.points = s->points;
   s->def.point_count = (uint32_t)arguments->text_count;
   if (v[DRAW_NEAR].given && v[DRAW_FAR].given && !(v[DRAW_NEAR].number < v[DRAW_FAR].number))
-    return report_usage("--near %g is not before --far %g", v[DRAW_NEAR].number, v[DRAW_FAR].number);
+    return report_usage("--near %g is not before --far %g", v[DRAW_NEAR].number,
+                        v[DRAW_FAR].number);
   return -1;
 }
 
-/* ---- the cameras ------------------------------------------------------------------------------------------------- */
+/* ---- the cameras
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static int load(State *s, const Command *command, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   const OptionValue *v = arguments->values;
   vlError error = {0};
   int status = scene_world_open(&s->in, command, arguments);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   if (v[RENDER_TRAJECTORY].given) {
-    vlResult result =
-        poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera, &s->cameras, &s->count, &error);
+    vlResult result = poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera,
+                                 &s->cameras, &s->count, &error);
     return result == VL_OK ? -1 : report_error(&error, result, v[RENDER_TRAJECTORY].text);
   }
-  if (v[DRAW_NEAR].given) s->in.job.camera.near_plane = v[DRAW_NEAR].number;
-  if (v[DRAW_FAR].given) s->in.job.camera.far_plane = v[DRAW_FAR].number;
+  if (v[DRAW_NEAR].given)
+    s->in.job.camera.near_plane = v[DRAW_NEAR].number;
+  if (v[DRAW_FAR].given)
+    s->in.job.camera.far_plane = v[DRAW_FAR].number;
   s->cameras = malloc(sizeof *s->cameras);
-  if (!s->cameras) return report_reason(VL_ERROR_MEMORY, path, "cameras");
+  if (!s->cameras)
+    return report_reason(VL_ERROR_MEMORY, path, "cameras");
   s->cameras[s->count++] = s->in.job.camera;
   return -1;
 }
 
-/* ---- what is drawn ----------------------------------------------------------------------------------------------- */
+/* ---- what is drawn
+ * -----------------------------------------------------------------------------------------------
+ */
 
-/* Two of the seen points, above and below the middle of the image, and none far behind the others. */
+/* Two of the seen points, above and below the middle of the image, and none far behind the
+ * others.
+ */
 static void choose_points(State *s) {
   static const double targets[DEFAULT_POINTS][2] = {{0.4, 0.36}, {0.62, 0.6}};
   const Seen *seen = &s->seen;
@@ -145,47 +170,60 @@ static void choose_points(State *s) {
     uint32_t best = 0;
     double least = INFINITY;
     for (uint32_t i = 0; i < seen->count; i++) {
-      double d = hypot(seen->pixels[2 * i] - targets[k][0], seen->pixels[2 * i + 1] - targets[k][1]);
+      double d =
+          hypot(seen->pixels[2 * i] - targets[k][0], seen->pixels[2 * i + 1] - targets[k][1]);
       d += 2 * fmax(0, seen->depths[i] / seen->middle - 1);
       if (d < least) {
         least = d;
         best = i;
       }
     }
-    if (!(least < INFINITY)) return;
+    if (!(least < INFINITY))
+      return;
     memcpy(s->points + 3 * k, seen->points + 3 * (size_t)best, 3 * sizeof(double));
     s->def.point_count = (uint32_t)k + 1;
   }
 }
 
-/* Distances in the drawing: the lecture's d where the view plane then stands before what the camera sees; else less
- * than half of the way. */
+/* Distances in the drawing: the lecture's d where the view plane then stands before what the
+ * camera sees; else less than half of the way. */
 static void choose_distances(State *s, const OptionValue *v) {
   const Seen *seen = &s->seen;
   const vlCamera *c = &s->cameras[0];
   double nearest = seen->count ? seen->near : 1, d = s->in.job.defs->camera.view_distance;
   double far = c->far_plane < 1e30 ? c->far_plane : INFINITY;
-  bool flat = c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  s->def.plane = d > 0 && d < 0.8 * nearest ? d : 0.45 * fmin(flat || !seen->count ? nearest : seen->middle, far);
+  bool flat =
+      c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  s->def.plane = d > 0 && d < 0.8 * nearest
+                     ? d
+                     : 0.45 * fmin(flat || !seen->count ? nearest : seen->middle, far);
   s->def.reach = seen->count ? fmin(1.02 * seen->far, 1.3 * seen->middle) : 2 * s->def.plane;
   double small = s->count > 1 ? poses_plane(s->cameras, s->count) : 0;
-  if (small > 0) s->def.plane = small;
-  if (v[DRAW_PLANE].given) s->def.plane = v[DRAW_PLANE].number;
-  if (v[DRAW_REACH].given) s->def.reach = v[DRAW_REACH].number;
+  if (small > 0)
+    s->def.plane = small;
+  if (v[DRAW_PLANE].given)
+    s->def.plane = v[DRAW_PLANE].number;
+  if (v[DRAW_REACH].given)
+    s->def.reach = v[DRAW_REACH].number;
 }
 
 static int draw(State *s, const OptionValue *v) {
   vlError error = {0};
   vlResult result = draw_look(s->in.world, &s->cameras[0], &s->seen, &error);
-  if (result != VL_OK) return report_error(&error, result, s->in.job.path);
+  if (result != VL_OK)
+    return report_error(&error, result, s->in.job.path);
   choose_distances(s, v);
-  if (s->def.point_count == 0 && s->count == 1) choose_points(s);
+  if (s->def.point_count == 0 && s->count == 1)
+    choose_points(s);
   result = vl_camera_outline(s->in.context, s->cameras, s->count, &s->def, &s->drawing, &error);
-  if (result == VL_OK) result = draw_choose_view(&s->cameras[0], s->drawing, &s->seen, &s->view, &s->outside, &error);
   if (result == VL_OK)
-    result = draw_render(s->in.context, s->in.world, s->in.job.defs, &s->view, &s->cameras[0], s->drawing, &s->outside,
-                         &error);
-  if (result != VL_OK) return report_error(&error, result, s->in.job.path);
+    result =
+        draw_choose_view(&s->cameras[0], s->drawing, &s->seen, &s->view, &s->outside, &error);
+  if (result == VL_OK)
+    result = draw_render(s->in.context, s->in.world, s->in.job.defs, &s->view, &s->cameras[0],
+                         s->drawing, &s->outside, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, s->in.job.path);
   Overlay overlay = {0};
   result = VL_ERROR_MEMORY;
   if (overlay_begin(&overlay, s->outside.image)) {
@@ -200,9 +238,12 @@ static int run_draw(const Command *command, const Arguments *arguments) {
   State s;
   memset(&s, 0, sizeof s);
   int status = read_options(&s, arguments);
-  if (status < 0) status = load(&s, command, arguments);
-  if (status < 0) status = output_check(s.in.context, arguments->values[DRAW_OUT].text, VL_OUTPUT_PLAIN);
-  if (status < 0) status = draw(&s, arguments->values);
+  if (status < 0)
+    status = load(&s, command, arguments);
+  if (status < 0)
+    status = output_check(s.in.context, arguments->values[DRAW_OUT].text, VL_OUTPUT_PLAIN);
+  if (status < 0)
+    status = draw(&s, arguments->values);
   draw_close(&s.outside);
   draw_forget(&s.seen);
   vl_drawing_destroy(s.drawing);
@@ -213,55 +254,76 @@ static int run_draw(const Command *command, const Arguments *arguments) {
 
 static const Option draw_options[] = {
     {DRAW_OUT, 'o', "output", OPTION_TEXT, "FILE", "image file to write: .png .jpg .tga"},
-    {DRAW_SIZE, 0, "size", OPTION_SIZE, "WxH", "size of the drawing in pixels; default 960x640", 16, 16384, NULL},
+    {DRAW_SIZE, 0, "size", OPTION_SIZE, "WxH", "size of the drawing in pixels; default 960x640",
+     16, 16384, NULL},
     {DRAW_FROM, 0, "from", OPTION_TEXT, "AZIMUTH,ELEVATION",
-     "where the drawing is seen from, in degrees: to the right of the camera's view direction, above the horizon; "
+     "where the drawing is seen from, in degrees: to the right of the camera's view direction, "
+     "above the horizon; "
      "default 130,20"},
-    {DRAW_ZOOM, 0, "zoom", OPTION_NUMBER, "X", "factor on the size of what is drawn; 1: it fills the image", 1e-3, 1e3,
-     NULL},
+    {DRAW_ZOOM, 0, "zoom", OPTION_NUMBER, "X",
+     "factor on the size of what is drawn; 1: it fills the image", 1e-3, 1e3, NULL},
     {DRAW_PARTS, 0, "parts", OPTION_TEXT, "LIST",
-     "parts that are drawn, separated by commas: eye, window, grid, volume, near, far, axes, distance, focus, "
+     "parts that are drawn, separated by commas: eye, window, grid, volume, near, far, axes, "
+     "distance, focus, "
      "projector, film (behind the eye), path; default: all but film"},
     {DRAW_POINT, 0, "point", OPTION_TEXTS, "x,y,z",
      "point whose projector is drawn; may be given several times. Default: two visible points"},
     {DRAW_PLANE, 0, "plane", OPTION_NUMBER, "D",
-     "distance of the view plane (of fisheyes and panoramas: of a sphere) from the eye; default: the camera's d, if "
+     "distance of the view plane (of fisheyes and panoramas: of a sphere) from the eye; "
+     "default: "
+     "the camera's d, if "
      "the "
      "plane is then before what the camera sees",
      1e-30, 1e30, NULL},
-    {DRAW_REACH, 0, "reach", OPTION_NUMBER, "D", "distance at which the view volume ends; default: behind what is seen",
-     1e-30, 1e30, NULL},
+    {DRAW_REACH, 0, "reach", OPTION_NUMBER, "D",
+     "distance at which the view volume ends; default: behind what is seen", 1e-30, 1e30, NULL},
     {DRAW_GRID, 0, "grid", OPTION_INTEGER, "N",
-     "largest number of lines between pixels in each direction; 0: none; default 16", 0, 65536, NULL},
-    {DRAW_NEAR, 0, "near", OPTION_NUMBER, "D", "near clipping plane; default: the camera's", 1e-30, 1e30, NULL},
-    {DRAW_FAR, 0, "far", OPTION_NUMBER, "D", "far clipping plane; default: the camera's", 1e-30, 1e30, NULL},
+     "largest number of lines between pixels in each direction; 0: none; default 16", 0, 65536,
+     NULL},
+    {DRAW_NEAR, 0, "near", OPTION_NUMBER, "D", "near clipping plane; default: the camera's",
+     1e-30, 1e30, NULL},
+    {DRAW_FAR, 0, "far", OPTION_NUMBER, "D", "far clipping plane; default: the camera's", 1e-30,
+     1e30, NULL},
     {DRAW_EMPTY, 0, "no-scene", OPTION_FLAG, NULL, "draw on a white sheet, without the scene"},
-    {DRAW_BLANK, 0, "no-image", OPTION_FLAG, NULL, "leave view plane and film empty, without the camera's image"},
-    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the scene, which is then denoised; default 32", 2,
-     1 << 24, NULL},
-    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the scene in stops; default: metered"},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera"},
+    {DRAW_BLANK, 0, "no-image", OPTION_FLAG, NULL,
+     "leave view plane and film empty, without the camera's image"},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N",
+     "samples per pixel of the scene, which is then denoised; default 32", 2, 1 << 24, NULL},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
+     "exposure of the scene in stops; default: metered"},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "scene or camera file that gives the camera"},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file of --camera has several"},
-    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size of the camera in pixels", 1, 65536, NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
+     "image size of the camera in pixels", 1, 65536, NULL},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
-     "draw the cameras of this trajectory or rig instead, with the line through their eyes; at most 200 of them"},
+     "draw the cameras of this trajectory or rig instead, with the line through their eyes; at "
+     "most 200 of them"},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several times"},
+     "folder in which files that the scene names are also looked for; may be given several "
+     "times"},
     STRICT_OPTIONS_OPTION,
     {0}};
 
-static const Section draw_sections[] = {
-    {DRAW_OUT, "the drawing"}, {DRAW_PARTS, "what is drawn"}, {RENDER_SPP, "scene and camera"}, {0, NULL}};
+static const Section draw_sections[] = {{DRAW_OUT, "the drawing"},
+                                        {DRAW_PARTS, "what is drawn"},
+                                        {RENDER_SPP, "scene and camera"},
+                                        {0, NULL}};
 
 const Command camera_draw_command = {
     .name = "camera draw",
     .usage = "SCENE -o FILE [options]",
     .summary = "draw a camera from outside: eye, view plane, pyramid",
     .text =
-        "Renders the scene small, from outside, and draws the scene's camera over it: the eye, the view plane\n"
-        "with its grid of pixels, the view volume with near and far planes, the axes u v w, projectors from\n"
-        "points to their images, the plane in focus. Fisheyes and distorted lenses show their true rays. Lines\n"
+        "Renders the scene small, from outside, and draws the scene's camera over it: the eye, "
+        "the "
+        "view plane\n"
+        "with its grid of pixels, the view volume with near and far planes, the axes u v w, "
+        "projectors from\n"
+        "points to their images, the plane in focus. Fisheyes and distorted lenses show their "
+        "true "
+        "rays. Lines\n"
         "behind the scene are faint and dashed (docs/draw.md).",
     .examples =
         "velo camera draw room.pbrt -o outside.png\n"

@@ -11,7 +11,8 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- what the camera sees ---------------------------------------------------------------------------------------- */
+/* ---- what the camera sees
+ * ---------------------------------------------------------------------------------------- */
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -23,18 +24,22 @@ static vlResult collect(const vlImage *image, bool flat, Seen *seen) {
   seen->points = malloc(3 * (size_t)w * h * sizeof *seen->points);
   seen->depths = malloc(2 * (size_t)w * h * sizeof *seen->depths);
   seen->pixels = malloc(2 * (size_t)w * h * sizeof *seen->pixels);
-  if (!seen->points || !seen->depths || !seen->pixels) return VL_ERROR_MEMORY;
+  if (!seen->points || !seen->depths || !seen->pixels)
+    return VL_ERROR_MEMORY;
   for (uint32_t y = 0; y < h; y++)
     for (uint32_t x = 0; x < w; x++) { /* the channels are Z, distance, P */
       double depth = (double)vl_image_get(image, x, y, flat ? 0 : 1);
-      if (!(depth < 1e30) || !(depth > 0)) continue;
+      if (!(depth < 1e30) || !(depth > 0))
+        continue;
       uint32_t i = seen->count++;
-      for (uint32_t k = 0; k < 3; k++) seen->points[3 * i + k] = (double)vl_image_get(image, x, y, 2 + k);
+      for (uint32_t k = 0; k < 3; k++)
+        seen->points[3 * i + k] = (double)vl_image_get(image, x, y, 2 + k);
       seen->depths[i] = depth;
       seen->pixels[2 * i] = (x + 0.5) / w;
       seen->pixels[2 * i + 1] = (y + 0.5) / h;
     }
-  if (!seen->count) return VL_OK;
+  if (!seen->count)
+    return VL_OK;
   double *sorted = seen->depths + seen->count;
   memcpy(sorted, seen->depths, seen->count * sizeof *sorted);
   qsort(sorted, seen->count, sizeof *sorted, ascending);
@@ -52,13 +57,16 @@ vlResult draw_look(const vlWorld *world, const vlCamera *camera, Seen *seen, vlE
   w = w * SIDE / most ? w * SIDE / most : 1;
   h = h * SIDE / most ? h * SIDE / most : 1;
   vlResult result = vl_camera_resize(camera, w, h, &small);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   vlChannelsDef def = vl_default_channels_def(w, h);
   def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P;
   vlImage *floats = NULL;
   result = vl_render_channels(world, &small, &def, &floats, NULL, error);
-  bool flat = camera->projection == VL_PROJECTION_PERSPECTIVE || camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  if (result == VL_OK) result = collect(floats, flat, seen);
+  bool flat = camera->projection == VL_PROJECTION_PERSPECTIVE ||
+              camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  if (result == VL_OK)
+    result = collect(floats, flat, seen);
   vl_image_destroy(floats);
   return result;
 }
@@ -70,32 +78,42 @@ void draw_forget(Seen *seen) {
   memset(seen, 0, sizeof *seen);
 }
 
-/* ---- the outside camera ------------------------------------------------------------------------------------------ */
+/* ---- the outside camera
+ * ------------------------------------------------------------------------------------------ */
 
 /* The axis of the world that is nearest to the camera's up, as a level horizon needs it. */
 static void choose_up(const vlCamera *of, double up[3]) {
   int best = 0;
   double v[3];
-  for (int i = 0; i < 3; i++) v[i] = -of->world_from_camera[4 * i + 1];
+  for (int i = 0; i < 3; i++)
+    v[i] = -of->world_from_camera[4 * i + 1];
   for (int i = 1; i < 3; i++)
-    if (fabs(v[i]) > fabs(v[best])) best = i;
-  for (int i = 0; i < 3; i++) up[i] = i == best ? (v[best] < 0 ? -1 : 1) : 0;
+    if (fabs(v[i]) > fabs(v[best]))
+      best = i;
+  for (int i = 0; i < 3; i++)
+    up[i] = i == best ? (v[best] < 0 ? -1 : 1) : 0;
 }
 
 /* The unit direction from the middle towards the outside eye. */
-static void choose_direction(const vlCamera *of, const double up[3], const OutsideDef *def, double d[3]) {
+static void choose_direction(const vlCamera *of, const double up[3], const OutsideDef *def,
+                             double d[3]) {
   double level[3], right[3];
   const double *m = of->world_from_camera;
-  for (int k = 0; k < 2; k++) { /* a camera that looks straight up or down: its image's up is the level direction */
-    for (int i = 0; i < 3; i++) level[i] = k ? -m[4 * i + 1] : m[4 * i + 2];
+  for (int k = 0; k < 2; k++) { /* a camera that looks straight up or down: its image's up is
+                                   the level direction */
+    for (int i = 0; i < 3; i++)
+      level[i] = k ? -m[4 * i + 1] : m[4 * i + 2];
     double along = vector_dot(level, up);
-    for (int i = 0; i < 3; i++) level[i] -= along * up[i];
-    if (vector_dot(level, level) > 1e-4 * (m[2] * m[2] + m[6] * m[6] + m[10] * m[10])) break;
+    for (int i = 0; i < 3; i++)
+      level[i] -= along * up[i];
+    if (vector_dot(level, level) > 1e-4 * (m[2] * m[2] + m[6] * m[6] + m[10] * m[10]))
+      break;
   }
   vector_normalize(level);
   vector_cross(level, up, right);
   double a = def->azimuth * degree, e = def->elevation * degree;
-  for (int i = 0; i < 3; i++) d[i] = cos(e) * (cos(a) * level[i] + sin(a) * right[i]) + sin(e) * up[i];
+  for (int i = 0; i < 3; i++)
+    d[i] = cos(e) * (cos(a) * level[i] + sin(a) * right[i]) + sin(e) * up[i];
 }
 
 /* The bounds of all projected points on the image, as factors of the half field of view. */
@@ -106,8 +124,10 @@ typedef struct Bounds {
 static void bound(const vlCamera *c, const double point[3], Bounds *b) {
   const double *m = c->camera_from_world;
   double q[3];
-  for (int i = 0; i < 3; i++) q[i] = vector_dot(m + 4 * i, point) + m[4 * i + 3];
-  if (!(q[2] > 0)) return;
+  for (int i = 0; i < 3; i++)
+    q[i] = vector_dot(m + 4 * i, point) + m[4 * i + 3];
+  if (!(q[2] > 0))
+    return;
   for (int k = 0; k < 2; k++) {
     double f = k ? c->fy : c->fx, t = f * q[k] / q[2];
     b->low[k] = fmin(b->low[k], t);
@@ -122,12 +142,13 @@ static Bounds bounds_of(const vlCamera *c, const vlDrawing *drawing, const Seen 
     bound(c, drawing->lines[i].to, &b);
   }
   for (uint32_t i = 0; i < seen->count; i++)
-    if (seen->depths[i] <= seen->middle) bound(c, seen->points + 3 * (size_t)i, &b);
+    if (seen->depths[i] <= seen->middle)
+      bound(c, seen->points + 3 * (size_t)i, &b);
   return b;
 }
 
-vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Seen *seen, const OutsideDef *def,
-                          Outside *outside, vlError *error) {
+vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Seen *seen,
+                          const OutsideDef *def, Outside *outside, vlError *error) {
   const double margin = 0.9;
   double up[3], d[3], middle[3], distance = 0;
   choose_up(of, up);
@@ -143,33 +164,41 @@ vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Se
   for (int step = 0; step < 8; step++) { /* moves and scales until the bounds fill the image */
     memcpy(camera.lookat, middle, sizeof middle);
     memcpy(camera.up, up, sizeof up);
-    for (int i = 0; i < 3; i++) camera.eye[i] = middle[i] + distance * d[i];
+    for (int i = 0; i < 3; i++)
+      camera.eye[i] = middle[i] + distance * d[i];
     vlResult result = vl_camera_make(&camera, &outside->camera, NULL, error);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
     const vlCamera *c = &outside->camera;
     Bounds b = bounds_of(c, drawing, seen);
-    double share = fmax((b.high[0] - b.low[0]) / def->width, (b.high[1] - b.low[1]) / def->height) / margin;
+    double share =
+        fmax((b.high[0] - b.low[0]) / def->width, (b.high[1] - b.low[1]) / def->height) /
+        margin;
     for (int i = 0; i < 3; i++) {
       const double *m = c->world_from_camera + 4 * i;
-      middle[i] +=
-          distance * (m[0] * 0.5 * (b.low[0] + b.high[0]) / c->fx + m[1] * 0.5 * (b.low[1] + b.high[1]) / c->fy);
+      middle[i] += distance * (m[0] * 0.5 * (b.low[0] + b.high[0]) / c->fx +
+                               m[1] * 0.5 * (b.low[1] + b.high[1]) / c->fy);
     }
-    if (share > 0 && isfinite(share)) distance *= share;
+    if (share > 0 && isfinite(share))
+      distance *= share;
   }
   distance /= def->zoom;
   memcpy(camera.lookat, middle, sizeof middle);
-  for (int i = 0; i < 3; i++) camera.eye[i] = middle[i] + distance * d[i];
+  for (int i = 0; i < 3; i++)
+    camera.eye[i] = middle[i] + distance * d[i];
   return vl_camera_make(&camera, &outside->camera, NULL, error);
 }
 
-/* ---- the rendered scene ------------------------------------------------------------------------------------------ */
+/* ---- the rendered scene
+ * ------------------------------------------------------------------------------------------ */
 
 /* Exposes the image and puts it over white. pale: its opacity. */
 static void put_on_paper(vlImage *image, double ev, double pale) {
   double scale = exp2(ev);
   float *p = vl_image_pixels(image);
   uint32_t channels = vl_image_channels(image);
-  for (size_t i = 0; i < (size_t)vl_image_width(image) * vl_image_height(image); i++, p += channels) {
+  for (size_t i = 0; i < (size_t)vl_image_width(image) * vl_image_height(image);
+       i++, p += channels) {
     double alpha = channels > 3 ? fmin(1.0, fmax(0.0, (double)p[3])) : 1.0;
     for (int k = 0; k < 3; k++) {
       double v = fmin(1.0, fmax(0.0, scale * (double)p[k]));
@@ -179,8 +208,9 @@ static void put_on_paper(vlImage *image, double ev, double pale) {
 }
 
 /* The film's image without noise. */
-static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlFilm *film,
-                            const vlRenderDef *render, vlImage **image, vlError *error) {
+static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCamera *camera,
+                            const vlFilm *film, const vlRenderDef *render, vlImage **image,
+                            vlError *error) {
   vlDevelopDef develop = vl_default_develop_def();
   vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
   channels.channels = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
@@ -188,9 +218,12 @@ static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCa
   channels.render = render;
   vlImage *color = NULL, *floats = NULL, *joined = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
-  if (result == VL_OK) result = vl_render_channels(world, camera, &channels, &floats, NULL, error);
-  if (result == VL_OK) result = denoised_join(context, color, floats, &joined);
-  if (result == VL_OK) result = vl_denoise(joined, NULL, image, NULL, error);
+  if (result == VL_OK)
+    result = vl_render_channels(world, camera, &channels, &floats, NULL, error);
+  if (result == VL_OK)
+    result = denoised_join(context, color, floats, &joined);
+  if (result == VL_OK)
+    result = vl_denoise(joined, NULL, image, NULL, error);
   vl_image_destroy(color);
   vl_image_destroy(floats);
   vl_image_destroy(joined);
@@ -198,8 +231,9 @@ static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCa
 }
 
 /* Renders what a camera sees; alpha 0 where it sees no surface. */
-static vlResult render_view(vlContext *context, const vlWorld *world, const vlSceneDefs *defs, const OutsideDef *def,
-                            const vlCamera *camera, vlImage **image, vlError *error) {
+static vlResult render_view(vlContext *context, const vlWorld *world, const vlSceneDefs *defs,
+                            const OutsideDef *def, const vlCamera *camera, vlImage **image,
+                            vlError *error) {
   vlFilm *film = NULL;
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
@@ -208,75 +242,99 @@ static vlResult render_view(vlContext *context, const vlWorld *world, const vlSc
   render.transparent = true;
   render.max_depth = defs->render.max_depth;
   vlResult result = vl_film_create(context, &film_def, &film);
-  if (result == VL_OK) result = vl_render(world, camera, film, &render, NULL, error);
-  if (result == VL_OK) result = clean_image(context, world, camera, film, &render, image, error);
+  if (result == VL_OK)
+    result = vl_render(world, camera, film, &render, NULL, error);
+  if (result == VL_OK)
+    result = clean_image(context, world, camera, film, &render, image, error);
   vl_film_destroy(film);
   return result;
 }
 
 /* The scene from outside, and the camera's own image. */
-static vlResult render_images(vlContext *context, const vlWorld *world, const vlSceneDefs *defs, const OutsideDef *def,
-                              const vlCamera *of, Outside *outside, vlError *error) {
+static vlResult render_images(vlContext *context, const vlWorld *world, const vlSceneDefs *defs,
+                              const OutsideDef *def, const vlCamera *of, Outside *outside,
+                              vlError *error) {
   enum { SIDE = 320 };
-  vlResult result = render_view(context, world, defs, def, &outside->camera, &outside->image, error);
-  if (result != VL_OK) return result;
-  double ev = isnan(def->exposure) ? 0.8 + (double)exposure_meter(outside->image) : def->exposure;
-  if (!isfinite(ev)) ev = 0;
+  vlResult result =
+      render_view(context, world, defs, def, &outside->camera, &outside->image, error);
+  if (result != VL_OK)
+    return result;
+  double ev =
+      isnan(def->exposure) ? 0.8 + (double)exposure_meter(outside->image) : def->exposure;
+  if (!isfinite(ev))
+    ev = 0;
   put_on_paper(outside->image, ev, 0.82); /* pale: lines must stand out */
-  if (!def->own_image) return VL_OK;
+  if (!def->own_image)
+    return VL_OK;
   double scale = fmin(1.0, (double)SIDE / fmax(of->width, of->height));
-  result = vl_camera_resize(of, (uint32_t)fmax(1, scale * of->width), (uint32_t)fmax(1, scale * of->height),
-                            &outside->inside);
-  if (result == VL_OK) result = render_view(context, world, defs, def, &outside->inside, &outside->inside_image, error);
-  if (result == VL_OK) put_on_paper(outside->inside_image, ev, 1.0);
+  result = vl_camera_resize(of, (uint32_t)fmax(1, scale * of->width),
+                            (uint32_t)fmax(1, scale * of->height), &outside->inside);
+  if (result == VL_OK)
+    result =
+        render_view(context, world, defs, def, &outside->inside, &outside->inside_image, error);
+  if (result == VL_OK)
+    put_on_paper(outside->inside_image, ev, 1.0);
   return result;
 }
 
-static vlResult render_depth(const vlWorld *world, const OutsideDef *def, Outside *outside, vlError *error) {
+static vlResult render_depth(const vlWorld *world, const OutsideDef *def, Outside *outside,
+                             vlError *error) {
   vlChannelsDef channels = vl_default_channels_def(def->width, def->height);
   channels.channels = VL_CHANNEL_Z;
   vlImage *floats = NULL;
-  vlResult result = vl_render_channels(world, &outside->camera, &channels, &floats, NULL, error);
+  vlResult result =
+      vl_render_channels(world, &outside->camera, &channels, &floats, NULL, error);
   for (size_t i = 0; result == VL_OK && i < (size_t)def->width * def->height; i++)
     outside->depth[i] = ((const float *)vl_image_const_pixels(floats))[i];
   vl_image_destroy(floats);
   return result;
 }
 
-/* Cuts away what stands before the drawing, such as the wall of a room, if it hides most of the camera. */
-static vlResult cut(const vlWorld *world, const OutsideDef *def, const vlDrawing *drawing, Outside *outside,
-                    vlError *error) {
+/* Cuts away what stands before the drawing, such as the wall of a room, if it hides most of the
+ * camera. */
+static vlResult cut(const vlWorld *world, const OutsideDef *def, const vlDrawing *drawing,
+                    Outside *outside, vlError *error) {
   uint32_t count = 0, hidden = 0;
   double near = INFINITY;
   for (uint32_t i = 0; i < drawing->line_count; i++) {
     const vlDrawingLine *l = &drawing->lines[i];
     double p[2], z;
-    if (!vl_camera_project(&outside->camera, l->from, p, &z)) continue;
+    if (!vl_camera_project(&outside->camera, l->from, p, &z))
+      continue;
     near = fmin(near, z);
-    if (l->part != VL_DRAWING_WINDOW && l->part != VL_DRAWING_EYE && l->part != VL_DRAWING_GRID) continue;
-    if (!(p[0] >= 0 && p[1] >= 0 && p[0] < def->width && p[1] < def->height)) continue;
+    if (l->part != VL_DRAWING_WINDOW && l->part != VL_DRAWING_EYE && l->part != VL_DRAWING_GRID)
+      continue;
+    if (!(p[0] >= 0 && p[1] >= 0 && p[0] < def->width && p[1] < def->height))
+      continue;
     count++;
     hidden += z > (double)outside->depth[(size_t)p[1] * def->width + (size_t)p[0]];
   }
-  if (2 * hidden <= count || !(near < INFINITY)) return VL_OK;
+  if (2 * hidden <= count || !(near < INFINITY))
+    return VL_OK;
   outside->camera.near_plane = 0.97 * near;
   return render_depth(world, def, outside, error);
 }
 
-vlResult draw_render(vlContext *context, const vlWorld *world, const vlSceneDefs *defs, const OutsideDef *def,
-                     const vlCamera *of, const vlDrawing *drawing, Outside *outside, vlError *error) {
+vlResult draw_render(vlContext *context, const vlWorld *world, const vlSceneDefs *defs,
+                     const OutsideDef *def, const vlCamera *of, const vlDrawing *drawing,
+                     Outside *outside, vlError *error) {
   size_t pixels = (size_t)def->width * def->height;
   outside->depth = malloc(pixels * sizeof *outside->depth);
-  if (!outside->depth) return VL_ERROR_MEMORY;
-  for (size_t i = 0; i < pixels; i++) outside->depth[i] = INFINITY;
+  if (!outside->depth)
+    return VL_ERROR_MEMORY;
+  for (size_t i = 0; i < pixels; i++)
+    outside->depth[i] = INFINITY;
   if (def->scene) {
     vlResult result = render_depth(world, def, outside, error);
-    if (result == VL_OK) result = cut(world, def, drawing, outside, error);
-    return result == VL_OK ? render_images(context, world, defs, def, of, outside, error) : result;
+    if (result == VL_OK)
+      result = cut(world, def, drawing, outside, error);
+    return result == VL_OK ? render_images(context, world, defs, def, of, outside, error)
+                           : result;
   }
   vlImageDef sheet = vl_default_image_def(def->width, def->height, 3);
   vlResult result = vl_image_create(context, &sheet, &outside->image);
-  for (size_t i = 0; result == VL_OK && i < 3 * pixels; i++) ((float *)vl_image_pixels(outside->image))[i] = 1.0F;
+  for (size_t i = 0; result == VL_OK && i < 3 * pixels; i++)
+    ((float *)vl_image_pixels(outside->image))[i] = 1.0F;
   return result;
 }
 

@@ -16,12 +16,13 @@ static const double degrees = 180.0 / 3.14159265358979323846;
 /* Angle between the rays of two film points, radians; NaN when one has no ray. */
 static double angle_between(const vlCamera *c, double x0, double y0, double x1, double y1) {
   double o[3], a[3], b[3];
-  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
+  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b))
+    return NAN;
   return vector_angle(a, b);
 }
 
-/* Angle between two opposite edges of the image. It is the sum of the angles between each edge and the principal
- * point, so it can exceed 180 degrees. NaN: an edge has no ray. */
+/* Angle between two opposite edges of the image. It is the sum of the angles between each edge
+ * and the principal point, so it can exceed 180 degrees. NaN: an edge has no ray. */
 static double field(const vlCamera *c, double x0, double y0, double x1, double y1) {
   return angle_between(c, x0, y0, c->cx, c->cy) + angle_between(c, c->cx, c->cy, x1, y1);
 }
@@ -37,23 +38,28 @@ static Info measure(const vlCamera *c) {
   Info info = {.horizontal = field(c, 0, c->cy, w, c->cy),
                .vertical = field(c, c->cx, 0, c->cx, h),
                .diagonal = angle_between(c, 0, 0, w, h)};
-  if (c->projection != VL_PROJECTION_PERSPECTIVE) info.diagonal = field(c, 0, 0, w, h);
+  if (c->projection != VL_PROJECTION_PERSPECTIVE)
+    info.diagonal = field(c, 0, 0, w, h);
   for (int j = 0; j < GRID; j++)
-    for (int i = 0; i < GRID; i++) sum += vl_camera_solid_angle(c, (i + 0.5) * w / GRID, (j + 0.5) * h / GRID);
+    for (int i = 0; i < GRID; i++)
+      sum += vl_camera_solid_angle(c, (i + 0.5) * w / GRID, (j + 0.5) * h / GRID);
   info.solid_angle = sum * (w / GRID) * (h / GRID);
   info.footprint = sqrt(vl_camera_solid_angle(c, c->cx, c->cy));
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) info.footprint = 1.0 / sqrt(c->fx * c->fy);
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
+    info.footprint = 1.0 / sqrt(c->fx * c->fy);
   return info;
 }
 
-static void print_json(const char *path, const vlCameraRecord *record, const vlCamera *c, const Info *info) {
+static void print_json(const char *path, const vlCameraRecord *record, const vlCamera *c,
+                       const Info *info) {
   Json json = {.out = stdout};
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double sensor = record->camera.sensor_width_mm > 0 ? record->camera.sensor_width_mm : 36.0;
   json_begin(&json, NULL, '{');
   json_text(&json, "file", path);
   json_text(&json, "dialect", vl_camera_dialect_name(record->dialect));
-  if (record->name[0]) json_text(&json, "name", record->name);
+  if (record->name[0])
+    json_text(&json, "name", record->name);
   json_text(&json, "projection", vl_projection_name(c->projection));
   json_text(&json, "pixel_origin", "corner");
   json_text(&json, "axes", "x right, y down, z forward");
@@ -78,7 +84,8 @@ static void print_json(const char *path, const vlCameraRecord *record, const vlC
   json_number(&json, "pixel_footprint", info->footprint);
   json_number(&json, "outside", c->outside);
   json_begin(&json, "world_from_camera", '[');
-  for (int i = 0; i < 16; i++) json_number(&json, NULL, c->world_from_camera[i]);
+  for (int i = 0; i < 16; i++)
+    json_number(&json, NULL, c->world_from_camera[i]);
   json_end(&json, ']');
   json_end(&json, '}');
   putchar('\n');
@@ -91,15 +98,19 @@ static void print_fov(const char *name, double radians) {
     printf("  %-12s its edges see nothing\n", name);
 }
 
-static void print_text(const char *path, const vlCameraRecord *record, const vlCamera *c, const Info *info) {
+static void print_text(const char *path, const vlCameraRecord *record, const vlCamera *c,
+                       const Info *info) {
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double sensor = record->camera.sensor_width_mm > 0 ? record->camera.sensor_width_mm : 36.0;
   const double *m = c->world_from_camera;
   printf("file          %s (%s)\nprojection    %s\nsize          %u x %u\n", path,
-         vl_camera_dialect_name(record->dialect), vl_projection_name(c->projection), c->width, c->height);
+         vl_camera_dialect_name(record->dialect), vl_projection_name(c->projection), c->width,
+         c->height);
   printf("f in pixels   %.10g, %.10g; skew %.10g\n", c->fx, c->fy, c->skew);
-  printf("axis at       %.10g, %.10g from the image's corner; %.10g, %.10g from the first pixel's centre\n", c->cx,
-         c->cy, c->cx - 0.5, c->cy - 0.5);
+  printf(
+      "axis at       %.10g, %.10g from the image's corner; %.10g, %.10g from the first pixel's "
+      "centre\n",
+      c->cx, c->cy, c->cx - 0.5, c->cy - 0.5);
   if (!flat) {
     printf("field of view\n");
     print_fov("horizontal", info->horizontal);
@@ -112,10 +123,11 @@ static void print_text(const char *path, const vlCameraRecord *record, const vlC
   } else {
     printf("pixel         %.10g scene units\n", info->footprint);
   }
-  if (c->outside > 0.0) printf("outside       %.4g%% of the image sees nothing\n", 100.0 * c->outside);
+  if (c->outside > 0.0)
+    printf("outside       %.4g%% of the image sees nothing\n", 100.0 * c->outside);
   printf("eye           %.10g %.10g %.10g\n", m[3], m[7], m[11]);
-  printf("looks along   %.10g %.10g %.10g\nup            %.10g %.10g %.10g\n", m[2], m[6], m[10], 0.0 - m[1],
-         0.0 - m[5], 0.0 - m[9]);
+  printf("looks along   %.10g %.10g %.10g\nup            %.10g %.10g %.10g\n", m[2], m[6],
+         m[10], 0.0 - m[1], 0.0 - m[5], 0.0 - m[9]);
 }
 
 static int run_info(const Command *command, const Arguments *arguments) {
@@ -125,7 +137,9 @@ static int run_info(const Command *command, const Arguments *arguments) {
   vlCamera camera;
   const char *path = arguments->operands[0];
   int status = image_context(&context);
-  if (status < 0) status = camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera);
+  if (status < 0)
+    status =
+        camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera);
   if (status < 0) {
     Info info = measure(&camera);
     if (arguments->values[INFO_JSON].given)
@@ -140,7 +154,8 @@ static int run_info(const Command *command, const Arguments *arguments) {
 
 static const Option info_options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
+    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file has several"},
     {INFO_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {0}};
 
@@ -149,7 +164,9 @@ const Command camera_info_command = {
     .usage = "FILE [options]",
     .summary = "print all equivalent parameters of a camera",
     .text =
-        "FILE is a camera file in any dialect of `velo camera convert`, or a scene. If it gives no sensor width,\n"
+        "FILE is a camera file in any dialect of `velo camera convert`, or a scene. If it "
+        "gives no "
+        "sensor width,\n"
         "a width of 36 mm is assumed.",
     .examples =
         "velo camera info camera.yaml\n"

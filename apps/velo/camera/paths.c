@@ -1,4 +1,5 @@
-/* camera/paths.c: `velo camera paths`: the samples of one pixel, traced again and printed vertex by vertex. */
+/* camera/paths.c: `velo camera paths`: the samples of one pixel, traced again and printed
+ * vertex by vertex. */
 #include "camera/paths.h"
 
 #include <stdlib.h>
@@ -12,8 +13,17 @@
 #include "render/needs.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
-enum { PATHS_PIXEL = RENDER_OPTIONS, PATHS_SAMPLES, PATHS_FIRST, PATHS_SHOW, PATHS_SORT, PATHS_JSON, PATHS_OPTIONS };
-_Static_assert((int)PATHS_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+enum {
+  PATHS_PIXEL = RENDER_OPTIONS,
+  PATHS_SAMPLES,
+  PATHS_FIRST,
+  PATHS_SHOW,
+  PATHS_SORT,
+  PATHS_JSON,
+  PATHS_OPTIONS
+};
+_Static_assert((int)PATHS_OPTIONS <= (int)MAX_OPTIONS,
+               "Arguments.values has no room for an option");
 
 typedef struct State {
   SceneWorld in;
@@ -25,7 +35,8 @@ static bool parse_pixel(const char *text, uint32_t pixel[2]) {
   for (int i = 0; i < 2; i++) {
     char *end;
     unsigned long n = strtoul(text, &end, 10);
-    if (end == text || *text < '0' || *text > '9' || n > 65535 || *end != (i ? 0 : ',')) return false;
+    if (end == text || *text < '0' || *text > '9' || n > 65535 || *end != (i ? 0 : ','))
+      return false;
     pixel[i] = (uint32_t)n;
     text = end + 1;
   }
@@ -39,10 +50,11 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
   uint32_t count = v[PATHS_SAMPLES].given ? (uint32_t)v[PATHS_SAMPLES].integer : 16;
   vlTracer tracer = defs->render.tracer;
   if (tracer != VL_TRACER_PATH && tracer != VL_TRACER_VOLPATH)
-    return report_usage("the scene's tracer is not recorded; give --tracer path or --tracer volpath");
+    return report_usage(
+        "the scene's tracer is not recorded; give --tracer path or --tracer volpath");
   if (pixel[0] >= defs->film.width || pixel[1] >= defs->film.height)
-    return report_usage("--pixel %u,%u: the image has only %u x %u pixels", pixel[0], pixel[1], defs->film.width,
-                        defs->film.height);
+    return report_usage("--pixel %u,%u: the image has only %u x %u pixels", pixel[0], pixel[1],
+                        defs->film.width, defs->film.height);
   const PathsRequest request = {.world = s->in.world,
                                 .camera = &s->in.job.camera,
                                 .film = &defs->film,
@@ -56,9 +68,12 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
 }
 
 static int print(State *s, const OptionValue *v) {
-  uint32_t count = s->traced.paths->count, most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
-  const PathsReport report = {
-      .file = s->in.job.path, .world = s->in.world, .traced = &s->traced, .shown = count < most ? count : most};
+  uint32_t count = s->traced.paths->count,
+           most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
+  const PathsReport report = {.file = s->in.job.path,
+                              .world = s->in.world,
+                              .traced = &s->traced,
+                              .shown = count < most ? count : most};
   if (v[PATHS_JSON].given) {
     Json json = {.out = stdout};
     json_begin(&json, NULL, '{');
@@ -74,28 +89,36 @@ static int print(State *s, const OptionValue *v) {
 static int run_paths(const Command *command, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   uint32_t pixel[2];
-  if (!v[PATHS_PIXEL].given) return report_usage("--pixel x,y is needed");
+  if (!v[PATHS_PIXEL].given)
+    return report_usage("--pixel x,y is needed");
   if (!parse_pixel(v[PATHS_PIXEL].text, pixel))
-    return report_usage("--pixel \"%s\": a pixel is x,y, counted from 0,0 at the top left", v[PATHS_PIXEL].text);
+    return report_usage("--pixel \"%s\": a pixel is x,y, counted from 0,0 at the top left",
+                        v[PATHS_PIXEL].text);
   State s;
   memset(&s, 0, sizeof s);
   int status = scene_world_open(&s.in, command, arguments);
-  if (status < 0) status = trace(&s, pixel, v);
-  if (status < 0) status = print(&s, v);
+  if (status < 0)
+    status = trace(&s, pixel, v);
+  if (status < 0)
+    status = print(&s, v);
   paths_free(&s.traced);
   scene_world_close(&s.in);
   return status;
 }
 
-static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}}, samplers[] = {{"samplers", 0}, {NULL, 0}},
+static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}},
+                    samplers[] = {{"samplers", 0}, {NULL, 0}},
                     filters[] = {{"filters", 0}, {NULL, 0}};
 static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL, 0}};
 
 static const Option paths_options[] = {
     {PATHS_PIXEL, 0, "pixel", OPTION_TEXT, "x,y", "the pixel; 0,0 is at the top left"},
-    {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N", "number of samples per pixel; default 16", 1, 1 << 20, NULL},
-    {PATHS_FIRST, 0, "first", OPTION_INTEGER, "I", "index of the first sample; default 0", 0, 1 << 24, NULL},
-    {PATHS_SHOW, 0, "show", OPTION_INTEGER, "N", "number of paths that are printed; default 16", 0, 1 << 20, NULL},
+    {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N",
+     "number of samples per pixel; default 16", 1, 1 << 20, NULL},
+    {PATHS_FIRST, 0, "first", OPTION_INTEGER, "I", "index of the first sample; default 0", 0,
+     1 << 24, NULL},
+    {PATHS_SHOW, 0, "show", OPTION_INTEGER, "N", "number of paths that are printed; default 16",
+     0, 1 << 20, NULL},
     {PATHS_SORT, 0, "sort", OPTION_CHOICE, "NAME",
      "order of the paths: the largest share of the pixel first, or by "
      "sample:",
@@ -103,40 +126,53 @@ static const Option paths_options[] = {
     {PATHS_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the image"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels"},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera"},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "scene or camera file that gives the camera"},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file of --camera has several"},
-    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "tracer; path and volpath are recorded:", 0, 0, tracers},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path"},
-    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
+    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
+     "tracer; path and volpath are recorded:", 0, 0, tracers},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
+     "largest number of bounces of a path"},
+    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0,
+     samplers},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers"},
-    {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N", "length of the sample sequence", 1, 1 << 24, NULL},
+    {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N", "length of the sample sequence", 1,
+     1 << 24, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
     {RENDER_FILTER_SAMPLES, 0, "filter-samples", OPTION_CHOICE, "NAME",
-     "samples that count in a pixel, its own or all that its filter covers:", 0, 0, filter_samples_choices},
+     "samples that count in a pixel, its own or all that its filter covers:", 0, 0,
+     filter_samples_choices},
     {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME",
      "method that chooses one light for a shading point:", 0, 0, light_sampler_choices},
-    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME", "regularization of the materials:", 0, 0,
-     regularize_choices},
-    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
-     color_choices},
+    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME",
+     "regularization of the materials:", 0, 0, regularize_choices},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME",
+     "representation of colours during light transport:", 0, 0, color_choices},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several times"},
+     "folder in which files that the scene names are also looked for; may be given several "
+     "times"},
     STRICT_OPTIONS_OPTION,
     {0}};
 
-static const Section paths_sections[] = {
-    {PATHS_PIXEL, "what is printed"}, {RENDER_SPP, "the image, as in `velo render`"}, {0, NULL}};
+static const Section paths_sections[] = {{PATHS_PIXEL, "what is printed"},
+                                         {RENDER_SPP, "the image, as in `velo render`"},
+                                         {0, NULL}};
 
 const Command camera_paths_command = {
     .name = "camera paths",
     .usage = "SCENE --pixel x,y [options]",
     .summary = "print the paths of a pixel, vertex by vertex",
     .text =
-        "Traces the samples that count in one pixel again (those of the pixels around, too, if pixels share\n"
-        "samples), with the random numbers of `velo render`, and prints each path: what it met, the sampled\n"
+        "Traces the samples that count in one pixel again (those of the pixels around, too, if "
+        "pixels share\n"
+        "samples), with the random numbers of `velo render`, and prints each path: what it "
+        "met, "
+        "the sampled\n"
         "lobes with their densities, the lights with their weights, and what each\n"
-        "adds. The path with the largest share of the pixel comes first: so a firefly shows where it is from.\n"
+        "adds. The path with the largest share of the pixel comes first: so a firefly shows "
+        "where "
+        "it is from.\n"
         "The options of the image must be those of the render (docs/tracers.md).",
     .examples =
         "velo camera paths room.pbrt --pixel 320,200\n"

@@ -1,5 +1,5 @@
-/* camera/paths.h: the paths of one pixel, with what its centre sees: traced, ordered, written as text or JSON. Shared
- * by `velo camera paths` and `velo view`. */
+/* camera/paths.h: the paths of one pixel, with what its centre sees: traced, ordered, written
+ * as text or JSON. Shared by `velo camera paths` and `velo view`. */
 #ifndef APP_CAMERA_PATHS_H
 #define APP_CAMERA_PATHS_H
 

@@ -22,7 +22,8 @@ static double all_shares(const vlPixelPaths *paths) {
   double sum = 0;
   for (uint32_t i = 0; i < paths->count; i++) {
     double share = fabs(paths_share(&paths->paths[i]));
-    if (isfinite(share)) sum += share;
+    if (isfinite(share))
+      sum += share;
   }
   return sum;
 }
@@ -33,7 +34,8 @@ static vlIdInfo info_of(const vlWorld *world, vlIdKind kind, uint32_t id) {
   return info;
 }
 
-/* Ground truth: floats are Z, distance, P, N, Ng, uv, albedo; ids: object, material, instance, primitive. */
+/* Ground truth: floats are Z, distance, P, N, Ng, uv, albedo; ids: object, material, instance,
+ * primitive. */
 enum { C_Z, C_DISTANCE, C_P, C_N = 5, C_NG = 8, C_UV = 11, C_ALBEDO = 13, C_COUNT = 16 };
 
 static double channel_at(const PathsReport *r, uint32_t channel) {
@@ -44,19 +46,26 @@ static uint32_t id_of(const PathsReport *r, uint32_t channel) {
   return ((const uint32_t *)vl_image_const_pixels(r->traced->ids))[channel];
 }
 
-/* ---- text -------------------------------------------------------------------------------------------------------- */
+/* ---- text
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static void print_what(const PathsReport *r, vlIdKind kind, const char *word, uint32_t id) {
   vlIdInfo info = info_of(r->world, kind, id);
-  if (id == 0) return;
+  if (id == 0)
+    return;
   printf("%s %u", word, id);
-  if (info.name && info.name[0]) printf(" \"%s\"", info.name);
-  if (info.type) printf(" (%s)", info.type);
+  if (info.name && info.name[0])
+    printf(" \"%s\"", info.name);
+  if (info.type)
+    printf(" (%s)", info.type);
 }
 
-static void print_numbers(const char *word, const PathsReport *r, uint32_t first, uint32_t count) {
+static void print_numbers(const char *word, const PathsReport *r, uint32_t first,
+                          uint32_t count) {
   printf("  %-9s", word);
-  for (uint32_t i = 0; i < count; i++) printf(" %.6g", channel_at(r, first + i));
+  for (uint32_t i = 0; i < count; i++)
+    printf(" %.6g", channel_at(r, first + i));
   putchar('\n');
 }
 
@@ -70,11 +79,13 @@ static void print_seen(const PathsReport *r) {
   print_what(r, VL_ID_OBJECT, "object", object);
   printf(", ");
   print_what(r, VL_ID_MATERIAL, "material", id_of(r, 1));
-  if (id_of(r, 2)) printf(", ");
+  if (id_of(r, 2))
+    printf(", ");
   print_what(r, VL_ID_INSTANCE, "instance", id_of(r, 2));
   printf(", face %u\n", id_of(r, 3));
   vlIdInfo info = info_of(r->world, VL_ID_OBJECT, object);
-  if (info.source.file) printf("  in        %s:%u\n", info.source.file, info.source.line);
+  if (info.source.file)
+    printf("  in        %s:%u\n", info.source.file, info.source.line);
   print_numbers("depth", r, C_Z, 1);
   print_numbers("distance", r, C_DISTANCE, 1);
   print_numbers("position", r, C_P, 3);
@@ -90,13 +101,15 @@ static void print_rgb(const float rgb[3]) {
 
 static void print_contribution(const PathsReport *r, const vlPathContribution *c) {
   printf("       light %s", light_events[c->event]);
-  if (c->event != VL_PATH_LIGHT_MEDIUM) printf(": %s %u", c->type, c->light);
+  if (c->event != VL_PATH_LIGHT_MEDIUM)
+    printf(": %s %u", c->type, c->light);
   if (c->object) {
     printf(", ");
     print_what(r, VL_ID_OBJECT, "object", c->object);
   }
   if (c->event != VL_PATH_LIGHT_MEDIUM)
-    printf("; pdf light %.4g, bsdf %.4g, weight %.4g", (double)c->light_pdf, (double)c->bsdf_pdf, (double)c->weight);
+    printf("; pdf light %.4g, bsdf %.4g, weight %.4g", (double)c->light_pdf,
+           (double)c->bsdf_pdf, (double)c->weight);
   if (c->occluded) {
     printf("; occluded\n");
     return;
@@ -108,14 +121,17 @@ static void print_contribution(const PathsReport *r, const vlPathContribution *c
 
 static void print_lobe(const vlPathVertex *v) {
   bool phase = v->event == VL_PATH_MEDIUM;
-  printf("       %s by %s%s%s: pdf %.4g, factor", v->fate == VL_PATH_ON ? "scattered" : "sampled", v->bsdf,
+  printf("       %s by %s%s%s: pdf %.4g, factor",
+         v->fate == VL_PATH_ON ? "scattered" : "sampled", v->bsdf,
          v->lobe & VL_PATH_SPECULAR ? ", specular" : "",
          phase                            ? ""
          : v->lobe & VL_PATH_TRANSMISSION ? ", transmitted"
                                           : ", reflected",
          (double)v->pdf);
-  for (int k = 0; k < 4; k++) printf(" %.4g", (double)v->factor[k]);
-  if (v->survival < 1.0f) printf(", survives with %.4g", (double)v->survival);
+  for (int k = 0; k < 4; k++)
+    printf(" %.4g", (double)v->factor[k]);
+  if (v->survival < 1.0f)
+    printf(", survives with %.4g", (double)v->survival);
   putchar('\n');
 }
 
@@ -127,20 +143,26 @@ static void print_vertex(const PathsReport *r, const vlPath *p, uint32_t index) 
   else if (v->event == VL_PATH_MEDIUM)
     printf("medium %u", v->medium);
   else
-    print_what(r, VL_ID_OBJECT, v->event == VL_PATH_EXIT ? "leaves object" : "object", v->object);
+    print_what(r, VL_ID_OBJECT, v->event == VL_PATH_EXIT ? "leaves object" : "object",
+               v->object);
   if (v->material) {
     printf(", ");
     print_what(r, VL_ID_MATERIAL, "material", v->material);
   }
-  if (v->texture) printf(", texture %s%s%s", v->texture, v->image ? " " : "", v->image ? v->image : "");
+  if (v->texture)
+    printf(", texture %s%s%s", v->texture, v->image ? " " : "", v->image ? v->image : "");
   if (v->event != VL_PATH_NOTHING)
-    printf("; at %.4g %.4g %.4g", (double)v->position[0], (double)v->position[1], (double)v->position[2]);
+    printf("; at %.4g %.4g %.4g", (double)v->position[0], (double)v->position[1],
+           (double)v->position[2]);
   printf("; throughput");
-  for (int k = 0; k < 4; k++) printf(" %.4g", (double)v->throughput[k]);
+  for (int k = 0; k < 4; k++)
+    printf(" %.4g", (double)v->throughput[k]);
   putchar('\n');
   for (uint32_t i = 0; i < p->contribution_count; i++)
-    if (p->contributions[i].vertex == index) print_contribution(r, &p->contributions[i]);
-  if (v->bsdf && v->fate != VL_PATH_DEPTH) print_lobe(v);
+    if (p->contributions[i].vertex == index)
+      print_contribution(r, &p->contributions[i]);
+  if (v->bsdf && v->fate != VL_PATH_DEPTH)
+    print_lobe(v);
   if (v->fate == VL_PATH_ABSORBED || v->fate == VL_PATH_ROULETTE || v->fate == VL_PATH_DEPTH)
     printf("       ends: %s\n", v->fate == VL_PATH_DEPTH      ? "the largest number of bounces"
                                 : v->fate == VL_PATH_ROULETTE ? "Russian roulette"
@@ -150,46 +172,61 @@ static void print_vertex(const PathsReport *r, const vlPath *p, uint32_t index) 
 void paths_print_text(const PathsReport *r) {
   const vlPixelPaths *all = r->traced->paths;
   printf("%s: pixel %u,%u, %u samples", r->file, all->x, all->y, all->samples);
-  if (all->count != all->samples) printf(" (%u with those of the pixels around that count)", all->count);
-  printf(" by %s: mean %.6g %.6g %.6g\n", all->tracer == VL_TRACER_PATH ? "path" : "volpath", all->mean[0],
-         all->mean[1], all->mean[2]);
-  if (all->dropped) printf("%u samples are not finite\n", all->dropped);
+  if (all->count != all->samples)
+    printf(" (%u with those of the pixels around that count)", all->count);
+  printf(" by %s: mean %.6g %.6g %.6g\n", all->tracer == VL_TRACER_PATH ? "path" : "volpath",
+         all->mean[0], all->mean[1], all->mean[2]);
+  if (all->dropped)
+    printf("%u samples are not finite\n", all->dropped);
   print_seen(r);
   double sum = all_shares(all);
   for (uint32_t k = 0; k < r->shown; k++) {
     const vlPath *p = &all->paths[r->traced->order[k]];
     printf("\nsample %u", p->sample);
-    if (p->x != (int32_t)all->x || p->y != (int32_t)all->y) printf(" of pixel %d,%d", p->x, p->y);
+    if (p->x != (int32_t)all->x || p->y != (int32_t)all->y)
+      printf(" of pixel %d,%d", p->x, p->y);
     printf(": ");
     print_rgb(p->rgb);
-    printf(", %.3g %% of the pixel; film point %.6g,%.6g", sum > 0 ? 100 * fabs(paths_share(p)) / sum : 0.0,
-           (double)p->film[0], (double)p->film[1]);
+    printf(", %.3g %% of the pixel; film point %.6g,%.6g",
+           sum > 0 ? 100 * fabs(paths_share(p)) / sum : 0.0, (double)p->film[0],
+           (double)p->film[1]);
     if (p->lambda[0] > 0.0f) {
       printf("; nm");
-      for (int c = 0; c < 4; c++) printf(" %.5g", (double)p->lambda[c]);
+      for (int c = 0; c < 4; c++)
+        printf(" %.5g", (double)p->lambda[c]);
     }
-    if (p->camera_weight != 1.0f) printf("; lens %.4g", (double)p->camera_weight);
+    if (p->camera_weight != 1.0f)
+      printf("; lens %.4g", (double)p->camera_weight);
     putchar('\n');
-    if (!p->vertex_count) printf("       the camera has no ray here\n");
-    for (uint32_t i = 0; i < p->vertex_count; i++) print_vertex(r, p, i);
+    if (!p->vertex_count)
+      printf("       the camera has no ray here\n");
+    for (uint32_t i = 0; i < p->vertex_count; i++)
+      print_vertex(r, p, i);
   }
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------------------- */
+/* ---- JSON
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static void json_floats(Json *json, const char *key, const float *values, int count) {
   json_begin(json, key, '[');
-  for (int i = 0; i < count; i++) json_number(json, NULL, (double)values[i]);
+  for (int i = 0; i < count; i++)
+    json_number(json, NULL, (double)values[i]);
   json_end(json, ']');
 }
 
-static void json_what(Json *json, const PathsReport *r, const char *key, vlIdKind kind, uint32_t id) {
-  if (!id) return;
+static void json_what(Json *json, const PathsReport *r, const char *key, vlIdKind kind,
+                      uint32_t id) {
+  if (!id)
+    return;
   vlIdInfo info = info_of(r->world, kind, id);
   json_begin(json, key, '{');
   json_integer(json, "id", id);
-  if (info.name && info.name[0]) json_text(json, "name", info.name);
-  if (info.type) json_text(json, "type", info.type);
+  if (info.name && info.name[0])
+    json_text(json, "name", info.name);
+  if (info.type)
+    json_text(json, "type", info.type);
   if (info.source.file) {
     json_text(json, "file", info.source.file);
     json_integer(json, "line", info.source.line);
@@ -197,14 +234,19 @@ static void json_what(Json *json, const PathsReport *r, const char *key, vlIdKin
   json_end(json, '}');
 }
 
-static void json_channel(Json *json, const PathsReport *r, const char *key, uint32_t first, uint32_t count) {
-  if (count > 1) json_begin(json, key, '[');
-  for (uint32_t i = 0; i < count; i++) json_number(json, count > 1 ? NULL : key, channel_at(r, first + i));
-  if (count > 1) json_end(json, ']');
+static void json_channel(Json *json, const PathsReport *r, const char *key, uint32_t first,
+                         uint32_t count) {
+  if (count > 1)
+    json_begin(json, key, '[');
+  for (uint32_t i = 0; i < count; i++)
+    json_number(json, count > 1 ? NULL : key, channel_at(r, first + i));
+  if (count > 1)
+    json_end(json, ']');
 }
 
 static void json_seen(Json *json, const PathsReport *r) {
-  if (!id_of(r, 0)) return;
+  if (!id_of(r, 0))
+    return;
   json_begin(json, "sees", '{');
   json_what(json, r, "object", VL_ID_OBJECT, id_of(r, 0));
   json_what(json, r, "material", VL_ID_MATERIAL, id_of(r, 1));
@@ -240,7 +282,8 @@ static void json_contribution(Json *json, const PathsReport *r, const vlPathCont
 }
 
 static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v) {
-  bool placed = v->event != VL_PATH_NOTHING, on_surface = v->event == VL_PATH_SURFACE || v->event == VL_PATH_EXIT;
+  bool placed = v->event != VL_PATH_NOTHING,
+       on_surface = v->event == VL_PATH_SURFACE || v->event == VL_PATH_EXIT;
   json_begin(json, NULL, '{');
   json_text(json, "event", events[v->event]);
   json_text(json, "fate", fates[v->fate]);
@@ -251,7 +294,8 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
     json_floats(json, "position", v->position, 3);
     json_number(json, "distance", (double)v->distance);
   }
-  if (v->medium) json_integer(json, "medium", v->medium);
+  if (v->medium)
+    json_integer(json, "medium", v->medium);
   if (on_surface) {
     json_what(json, r, "object", VL_ID_OBJECT, v->object);
     json_what(json, r, "material", VL_ID_MATERIAL, v->material);
@@ -264,8 +308,10 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
     json_floats(json, "shading", v->shading, 3);
     json_floats(json, "reflectance", v->reflectance, 4);
   }
-  if (v->texture) json_text(json, "texture", v->texture);
-  if (v->image) json_text(json, "image", v->image);
+  if (v->texture)
+    json_text(json, "texture", v->texture);
+  if (v->image)
+    json_text(json, "image", v->image);
   if (v->bsdf) {
     json_text(json, "bsdf", v->bsdf);
     if (v->fate != VL_PATH_DEPTH) {
@@ -276,7 +322,8 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
       json_number(json, "survival", (double)v->survival);
     }
   }
-  if (v->fate == VL_PATH_ON) json_floats(json, "direction", v->direction, 3);
+  if (v->fate == VL_PATH_ON)
+    json_floats(json, "direction", v->direction, 3);
   json_end(json, '}');
 }
 
@@ -301,10 +348,12 @@ static void json_path(Json *json, const PathsReport *r, const vlPath *p, double 
   json_floats(json, "rgb", p->rgb, 3);
   json_number(json, "share", sum > 0 ? fabs(paths_share(p)) / sum : 0.0);
   json_begin(json, "vertices", '[');
-  for (uint32_t i = 0; i < p->vertex_count; i++) json_vertex(json, r, &p->vertices[i]);
+  for (uint32_t i = 0; i < p->vertex_count; i++)
+    json_vertex(json, r, &p->vertices[i]);
   json_end(json, ']');
   json_begin(json, "contributions", '[');
-  for (uint32_t i = 0; i < p->contribution_count; i++) json_contribution(json, r, &p->contributions[i]);
+  for (uint32_t i = 0; i < p->contribution_count; i++)
+    json_contribution(json, r, &p->contributions[i]);
   json_end(json, ']');
   json_end(json, '}');
 }
@@ -322,10 +371,12 @@ void paths_put_json(Json *json, const PathsReport *r) {
   json_integer(json, "counted", all->count);
   json_integer(json, "dropped", all->dropped);
   json_begin(json, "mean", '[');
-  for (int i = 0; i < 3; i++) json_number(json, NULL, all->mean[i]);
+  for (int i = 0; i < 3; i++)
+    json_number(json, NULL, all->mean[i]);
   json_end(json, ']');
   json_seen(json, r);
   json_begin(json, "paths", '[');
-  for (uint32_t k = 0; k < r->shown; k++) json_path(json, r, &all->paths[r->traced->order[k]], sum);
+  for (uint32_t k = 0; k < r->shown; k++)
+    json_path(json, r, &all->paths[r->traced->order[k]], sum);
   json_end(json, ']');
 }

@@ -14,7 +14,8 @@ typedef struct Place {
 
 static int larger_first(const void *a, const void *b) {
   const Place *i = a, *j = b;
-  if (!(i->share == j->share)) return !isfinite(i->share) || i->share > j->share ? -1 : 1;
+  if (!(i->share == j->share))
+    return !isfinite(i->share) || i->share > j->share ? -1 : 1;
   return i->index < j->index ? -1 : i->index > j->index;
 }
 
@@ -23,8 +24,10 @@ static uint32_t *make_order(const vlPixelPaths *paths, bool by_sample) {
   Place *places = malloc(count * sizeof *places);
   for (uint32_t i = 0; places && i < count; i++)
     places[i] = (Place){.share = fabs(paths_share(&paths->paths[i])), .index = i};
-  if (places && !by_sample) qsort(places, count, sizeof *places, larger_first);
-  for (uint32_t i = 0; places && order && i < count; i++) order[i] = places[i].index;
+  if (places && !by_sample)
+    qsort(places, count, sizeof *places, larger_first);
+  for (uint32_t i = 0; places && order && i < count; i++)
+    order[i] = places[i].index;
   if (!places) {
     free(order);
     order = NULL;
@@ -36,9 +39,9 @@ static uint32_t *make_order(const vlPixelPaths *paths, bool by_sample) {
 static vlResult see(const PathsRequest *r, TracedPaths *traced, vlError *error) {
   const uint32_t *p = r->pixel, one[4] = {p[0], p[1], p[0] + 1, p[1] + 1};
   vlChannelsDef def = vl_default_channels_def(r->film->width, r->film->height);
-  def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
-                 VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_MATERIAL | VL_CHANNEL_ID_INSTANCE |
-                 VL_CHANNEL_ID_PRIMITIVE;
+  def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_N |
+                 VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_OBJECT |
+                 VL_CHANNEL_ID_MATERIAL | VL_CHANNEL_ID_INSTANCE | VL_CHANNEL_ID_PRIMITIVE;
   def.cancel = r->render->cancel;
   def.priority = r->render->priority;
   memcpy(def.crop, one, sizeof one);
@@ -50,10 +53,12 @@ vlResult paths_trace(const PathsRequest *r, TracedPaths *traced, vlError *error)
   vlFilmDef film = *r->film;
   const uint32_t whole[4] = {0, 0, film.width, film.height};
   memcpy(film.crop, whole, sizeof whole);
-  vlResult result = vl_trace_paths(r->world, r->camera, &film, r->render, r->pixel[0], r->pixel[1], r->first, r->count,
-                                   &traced->paths, error);
-  if (result == VL_OK) result = see(r, traced, error);
-  if (result != VL_OK) return result;
+  vlResult result = vl_trace_paths(r->world, r->camera, &film, r->render, r->pixel[0],
+                                   r->pixel[1], r->first, r->count, &traced->paths, error);
+  if (result == VL_OK)
+    result = see(r, traced, error);
+  if (result != VL_OK)
+    return result;
   traced->order = make_order(traced->paths, r->by_sample);
   return traced->order ? VL_OK : VL_ERROR_MEMORY;
 }

@@ -1,5 +1,5 @@
-/* camera/points.c: `velo camera project` and `velo camera unproject`: lines of points become pixels, or pixels become
- * rays, in batches. */
+/* camera/points.c: `velo camera project` and `velo camera unproject`: lines of points become
+ * pixels, or pixels become rays, in batches. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,56 +28,63 @@ typedef struct Lines {
   unsigned long bad; /* lines that were reported */
 } Lines;
 
-/* Reads exactly count numbers separated by commas or blanks. *at is set to the start of the first word that is not a
- * number. */
+/* Reads exactly count numbers separated by commas or blanks. *at is set to the start of the
+ * first word that is not a number. */
 static bool read_numbers(const char *text, double *values, int count, const char **at) {
   for (int i = 0; i < count; i++) {
     char *end;
     *at = text + strspn(text, " \t");
     values[i] = strtod(text, &end);
-    if (end == text || !isfinite(values[i])) return false;
+    if (end == text || !isfinite(values[i]))
+      return false;
     text = end + strspn(end, " \t");
-    if (i + 1 < count && *text == ',') text++;
+    if (i + 1 < count && *text == ',')
+      text++;
   }
   *at = text + strspn(text, " \t\r\n");
   return **at == 0;
 }
 
-/* Reports a bad line; only the first ten are reported separately. Returns -1, or the exit code if it ends the command.
+/* Reports a bad line; only the first ten are reported separately. Returns -1, or the exit code
+ * if it ends the command.
  */
 static int bad_line(Lines *lines, const char *at, int columns) {
   enum { REPORTED = 10 };
   long column = at - lines->line + 1;
   if (lines->strict)
-    return report_failure(STATUS_SCENE, "%s:%lu:%ld: a line must hold %d finite numbers", lines->path, lines->number,
-                          column, columns);
+    return report_failure(STATUS_SCENE, "%s:%lu:%ld: a line must hold %d finite numbers",
+                          lines->path, lines->number, column, columns);
   if (lines->bad++ < REPORTED)
-    report_warning("%s:%lu:%ld: a line must hold %d finite numbers; its result is not valid", lines->path,
-                   lines->number, column, columns);
+    report_warning("%s:%lu:%ld: a line must hold %d finite numbers; its result is not valid",
+                   lines->path, lines->number, column, columns);
   return -1;
 }
 
-/* Reads up to BATCH rows; good[i] is 0 for a bad line. A first line of words is a header and is skipped. Returns -1 or
- * the exit code. */
+/* Reads up to BATCH rows; good[i] is 0 for a bad line. A first line of words is a header and is
+ * skipped. Returns -1 or the exit code. */
 static int read_batch(Lines *lines, int columns, double *values, uint8_t *good, size_t *count) {
   *count = 0;
   while (*count < BATCH && getline(&lines->line, &lines->room, lines->file) >= 0) {
     const char *text = lines->line + strspn(lines->line, " \t\r\n"), *at = text;
     double *row = values + (size_t)columns * *count;
     lines->number++;
-    if (*text == 0 || *text == '#') continue;
+    if (*text == 0 || *text == '#')
+      continue;
     good[*count] = read_numbers(text, row, columns, &at);
     if (!good[*count]) {
-      if (lines->number == 1 && ((*text >= 'a' && *text <= 'z') || *text == '"' || (*text >= 'A' && *text <= 'Z')) &&
+      if (lines->number == 1 &&
+          ((*text >= 'a' && *text <= 'z') || *text == '"' || (*text >= 'A' && *text <= 'Z')) &&
           strncasecmp(text, "nan", 3) != 0 && strncasecmp(text, "inf", 3) != 0)
         continue;
       int status = bad_line(lines, at, columns);
-      if (status >= 0) return status;
+      if (status >= 0)
+        return status;
       memset(row, 0, (size_t)columns * sizeof *row);
     }
     ++*count;
   }
-  return ferror(lines->file) ? report_failure(STATUS_IO, "%s: %s", lines->path, strerror(errno)) : -1;
+  return ferror(lines->file) ? report_failure(STATUS_IO, "%s: %s", lines->path, strerror(errno))
+                             : -1;
 }
 
 static int project_all(const vlCamera *camera, double shift, Lines *lines) {
@@ -87,14 +94,15 @@ static int project_all(const vlCamera *camera, double shift, Lines *lines) {
   printf("u,v,z,valid,inside\n");
   do {
     int status = read_batch(lines, 3, points, good, &count);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
     vl_camera_project_batch(camera, count, points, pixels, z, valid);
     for (size_t i = 0; i < count; i++) {
       double u = pixels[2 * i], v = pixels[2 * i + 1];
       bool seen = valid[i] && good[i];
       bool inside = seen && u >= 0.0 && u < camera->width && v >= 0.0 && v < camera->height;
-      printf("%.17g,%.17g,%.17g,%d,%d\n", seen ? u - shift : 0.0, seen ? v - shift : 0.0, seen ? z[i] : 0.0, seen,
-             inside);
+      printf("%.17g,%.17g,%.17g,%d,%d\n", seen ? u - shift : 0.0, seen ? v - shift : 0.0,
+             seen ? z[i] : 0.0, seen, inside);
     }
   } while (count == BATCH && !ferror(stdout));
   return STATUS_OK;
@@ -107,41 +115,53 @@ static int unproject_all(const vlCamera *camera, double shift, Lines *lines) {
   printf("ox,oy,oz,dx,dy,dz,valid\n");
   do {
     int status = read_batch(lines, 2, pixels, good, &count);
-    if (status >= 0) return status;
-    for (size_t i = 0; i < 2 * count; i++) pixels[i] += shift;
+    if (status >= 0)
+      return status;
+    for (size_t i = 0; i < 2 * count; i++)
+      pixels[i] += shift;
     vl_camera_unproject_batch(camera, count, pixels, origins, directions, valid);
     for (size_t i = 0; i < count; i++)
       if (valid[i] && good[i])
-        printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,1\n", origins[3 * i], origins[3 * i + 1], origins[3 * i + 2],
-               directions[3 * i], directions[3 * i + 1], directions[3 * i + 2]);
+        printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,1\n", origins[3 * i], origins[3 * i + 1],
+               origins[3 * i + 2], directions[3 * i], directions[3 * i + 1],
+               directions[3 * i + 2]);
       else
         printf("0,0,0,0,0,0,0\n");
   } while (count == BATCH && !ferror(stdout));
   return STATUS_OK;
 }
 
-static int run_points(const Arguments *arguments, int (*all)(const vlCamera *, double, Lines *)) {
+static int run_points(const Arguments *arguments,
+                      int (*all)(const vlCamera *, double, Lines *)) {
   const OptionValue *v = arguments->values;
-  if (!v[POINTS_CAMERA].given) return report_usage("--camera FILE is needed");
+  if (!v[POINTS_CAMERA].given)
+    return report_usage("--camera FILE is needed");
   double shift = v[POINTS_ORIGIN].given && v[POINTS_ORIGIN].integer ? 0.5 : 0.0;
   vlContext *context = NULL;
   vlCameraRecord record;
   vlCamera camera;
   int status = image_context(&context);
   if (status < 0)
-    status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME, POINTS_SIZE, &record, &camera);
+    status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME,
+                              POINTS_SIZE, &record, &camera);
   Lines lines = {.path = arguments->operands[0], .strict = v[POINTS_STRICT].given};
   bool from_stdin = strcmp(lines.path, "-") == 0;
   if (status < 0) {
     lines.file = from_stdin ? stdin : fopen(lines.path, "r");
-    if (from_stdin) lines.path = "stdin";
+    if (from_stdin)
+      lines.path = "stdin";
     if (!lines.file)
-      status = report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", lines.path, strerror(errno));
+      status = report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s",
+                              lines.path, strerror(errno));
   }
-  if (status < 0) status = image_finish_output(all(&camera, shift, &lines));
-  if (lines.bad > 1) report_warning("%s: %lu lines are not numbers", lines.path, lines.bad);
-  if (lines.bad && status == STATUS_OK) status = STATUS_SCENE;
-  if (lines.file && !from_stdin) fclose(lines.file);
+  if (status < 0)
+    status = image_finish_output(all(&camera, shift, &lines));
+  if (lines.bad > 1)
+    report_warning("%s: %lu lines are not numbers", lines.path, lines.bad);
+  if (lines.bad && status == STATUS_OK)
+    status = STATUS_SCENE;
+  if (lines.file && !from_stdin)
+    fclose(lines.file);
   free(lines.line);
   context_close(context);
   return status;
@@ -161,13 +181,18 @@ static const Option points_options[] = {
     {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
      "camera file in any dialect of `velo camera convert`, or a scene file"},
     {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",
-     "position of (0, 0) in the image: its top left corner (default; the centre of the first pixel is (0.5, 0.5)), or "
+     "position of (0, 0) in the image: its top left corner (default; the centre of the first "
+     "pixel "
+     "is (0.5, 0.5)), or "
      "the centre of the first pixel, as in OpenCV:",
      0, 0, origin_choices},
-    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
+    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file has several"},
     {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
-     "end at a line that is not numbers. Default: the line is reported and its result marked as not valid, the other "
+     "end at a line that is not numbers. Default: the line is reported and its result marked "
+     "as "
+     "not valid, the other "
      "lines are read, and the exit code is 3"},
     {0}};
 
@@ -176,8 +201,12 @@ const Command camera_project_command = {
     .usage = "--camera FILE POINTS.csv [options]",
     .summary = "map world points to pixels",
     .text =
-        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints u,v,z,valid,inside for each: column\n"
-        "and row in the image plane; depth along the view axis; valid, 1 if the camera's equations map the point\n"
+        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints u,v,z,valid,inside "
+        "for "
+        "each: column\n"
+        "and row in the image plane; depth along the view axis; valid, 1 if the camera's "
+        "equations "
+        "map the point\n"
         "(then unproject returns its ray); inside, 1 if u,v is in the image.",
     .examples =
         "velo camera project --camera camera.yaml points.csv\n"
@@ -193,7 +222,8 @@ const Command camera_unproject_command = {
     .usage = "--camera FILE PIXELS.csv [options]",
     .summary = "map pixels to rays in world space",
     .text =
-        "PIXELS.csv (- is stdin) has one line u,v per point of the image. Prints ox,oy,oz,dx,dy,dz,valid for each:\n"
+        "PIXELS.csv (- is stdin) has one line u,v per point of the image. Prints "
+        "ox,oy,oz,dx,dy,dz,valid for each:\n"
         "the ray's origin; its direction, of length 1; valid, 1 if the camera has a ray there.",
     .examples =
         "velo camera unproject --camera camera.yaml pixels.csv\n"

@@ -12,20 +12,26 @@ int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arg
   vlError error = {0};
   def.log = report_log;
   int status = context_open(&def, &s->context);
-  if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
-  if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
+  if (status < 0)
+    status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
+  if (status < 0)
+    status = job_make(&s->job, s->context, s->scene, path, arguments);
   const Needs needs = {.options = command->options,
                        .values = arguments->values,
                        .arguments = arguments,
                        .scene = s->scene,
                        .opening = &s->opening,
                        .job = &s->job};
-  if (status < 0) status = needs_check_scene(&needs);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = needs_check_scene(&needs);
+  if (status >= 0)
+    return status;
   vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
   status = needs_check_tracer(&needs, s->world);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   return lens_autofocus(&s->job, s->scene, s->world);
 }
 

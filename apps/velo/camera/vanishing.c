@@ -1,5 +1,6 @@
-/* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon of a camera, optionally
- * drawn over an image; and the inverse: a camera from vanishing points. */
+/* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon
+ * of a camera, optionally drawn over an image; and the inverse: a camera from vanishing points.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,18 +17,35 @@
 #include "render/output_names.h"
 #include "velo/vanishing.h"
 
-enum { V_JSON, V_FRAME, V_UP, V_OVERLAY, V_OUT, V_LINES, V_GRID, V_FROM, V_PRINCIPAL, V_SIZE, V_AXES, V_TO };
+enum {
+  V_JSON,
+  V_FRAME,
+  V_UP,
+  V_OVERLAY,
+  V_OUT,
+  V_LINES,
+  V_GRID,
+  V_FROM,
+  V_PRINCIPAL,
+  V_SIZE,
+  V_AXES,
+  V_TO
+};
 
 static const double pi = 3.14159265358979323846;
 static const char *const axis_names[3] = {"x", "y", "z"};
 
-/* ---- output ------------------------------------------------------------------------------------------------------ */
+/* ---- output
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
-  static const char *const kinds[] = {"parallel projection", "one-point perspective", "two-point perspective",
-                                      "three-point perspective"};
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) return kinds[0];
-  return c->projection == VL_PROJECTION_PERSPECTIVE ? kinds[v->finite] : "curvilinear perspective";
+  static const char *const kinds[] = {"parallel projection", "one-point perspective",
+                                      "two-point perspective", "three-point perspective"};
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
+    return kinds[0];
+  return c->projection == VL_PROJECTION_PERSPECTIVE ? kinds[v->finite]
+                                                    : "curvilinear perspective";
 }
 
 static void say_json(const char *path, const vlCamera *c, const vlVanishingPoints *v) {
@@ -55,14 +73,16 @@ static void say_json(const char *path, const vlCamera *c, const vlVanishingPoint
       json_number(&json, NULL, xy[0]);
       json_number(&json, NULL, xy[1]);
       json_end(&json, ']');
-      if (finite) json_text(&json, "end", p->behind ? "negative" : "positive");
+      if (finite)
+        json_text(&json, "end", p->behind ? "negative" : "positive");
     }
     json_end(&json, '}');
   }
   json_end(&json, '}');
   if (v->has_horizon) {
     json_begin(&json, "horizon", '[');
-    for (int i = 0; i < 3; i++) json_number(&json, NULL, v->horizon[i]);
+    for (int i = 0; i < 3; i++)
+      json_number(&json, NULL, v->horizon[i]);
     json_end(&json, ']');
   }
   json_end(&json, '}');
@@ -75,19 +95,24 @@ static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
     const vlVanishingPoint *p = &v->axes[i];
     printf("%s             ", axis_names[i]);
     if (p->kind == VL_VANISHING_FINITE)
-      printf("%.17g %.17g%s\n", p->pixel[0], p->pixel[1], p->behind ? " (of its negative end)" : "");
+      printf("%.17g %.17g%s\n", p->pixel[0], p->pixel[1],
+             p->behind ? " (of its negative end)" : "");
     else if (p->kind == VL_VANISHING_INFINITE)
       printf("infinite, along %.17g %.17g\n", p->direction[0], p->direction[1]);
     else
       printf("none\n");
   }
   if (v->has_horizon)
-    printf("horizon       %.17g x + %.17g y + %.17g = 0\n", v->horizon[0], v->horizon[1], v->horizon[2]);
+    printf("horizon       %.17g x + %.17g y + %.17g = 0\n", v->horizon[0], v->horizon[1],
+           v->horizon[2]);
   else
-    printf("horizon       %s\n", c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "none" : "no line in the image");
+    printf("horizon       %s\n",
+           c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "none" : "no line in the image");
 }
 
-/* ---- what is drawn ----------------------------------------------------------------------------------------------- */
+/* ---- what is drawn
+ * -----------------------------------------------------------------------------------------------
+ */
 
 /* Two unit vectors orthogonal to d and to each other. */
 static void basis_of(const double d[3], double a[3], double b[3]) {
@@ -98,24 +123,29 @@ static void basis_of(const double d[3], double a[3], double b[3]) {
   vector_normalize(b);
 }
 
-/* Draws lines parallel to d. Each lies in a plane through the camera centre that contains d; `count` such planes are
- * evenly spaced. */
-static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int count, double width) {
+/* Draws lines parallel to d. Each lies in a plane through the camera centre that contains d;
+ * `count` such planes are evenly spaced. */
+static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int count,
+                        double width) {
   double a[3], b[3], n[3];
   basis_of(d, a, b);
   for (int i = 0; i < 2 * count; i++) {
     double t = pi * i / count;
-    for (int k = 0; k < 3; k++) n[k] = cos(t) * a[k] + sin(t) * b[k];
+    for (int k = 0; k < 3; k++)
+      n[k] = cos(t) * a[k] + sin(t) * b[k];
     overlay_arc(o, c, d, n, -0.5 * pi, 0.5 * pi, width);
   }
 }
 
-/* Draws the line point + s d of the world, s from s0 to s1, as an arc of directions from the camera centre. */
-static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3], const double d[3], double s0,
-                            double s1, double width) {
+/* Draws the line point + s d of the world, s from s0 to s1, as an arc of directions from the
+ * camera centre. */
+static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3],
+                            const double d[3], double s0, double s1, double width) {
   double n[3], p[2], q[2], ends[2][3];
-  const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7], c->world_from_camera[11]};
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) { /* projects to a straight line, whatever its depth */
+  const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7],
+                         c->world_from_camera[11]};
+  if (c->projection ==
+      VL_PROJECTION_ORTHOGRAPHIC) { /* projects to a straight line, whatever its depth */
     for (int i = 0; i < 3; i++) {
       ends[0][i] = point[i] + s0 * d[i];
       ends[1][i] = point[i] + s1 * d[i];
@@ -124,20 +154,26 @@ static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3]
       overlay_line(o, p[0], p[1], q[0], q[1], width);
     return;
   }
-  for (int i = 0; i < 3; i++) n[i] = point[i] - eye[i];
+  for (int i = 0; i < 3; i++)
+    n[i] = point[i] - eye[i];
   double along = vector_dot(n, d);
-  for (int i = 0; i < 3; i++) n[i] -= along * d[i];
+  for (int i = 0; i < 3; i++)
+    n[i] -= along * d[i];
   double height = vector_length(n);
-  if (!(height > 0.0)) return; /* the line passes through the camera centre and projects to a point */
-  for (int i = 0; i < 3; i++) n[i] /= height;
+  if (!(height > 0.0))
+    return; /* the line passes through the camera centre and projects to a point */
+  for (int i = 0; i < 3; i++)
+    n[i] /= height;
   overlay_arc(o, c, d, n, atan2(s0 + along, height), atan2(s1 + along, height), width);
 }
 
 /* Draws a ground grid around the camera: 41 lines each way, `spacing` apart. */
-static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double spacing, double level, double width) {
+static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double spacing,
+                      double level, double width) {
   enum { REACH = 20 };
   double a[3], b[3], p[3];
-  const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7], c->world_from_camera[11]};
+  const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7],
+                         c->world_from_camera[11]};
   basis_of(up, a, b);
   const double *const sides[2][2] = {{a, b}, {b, a}};
   for (int k = 0; k < 2; k++) {
@@ -145,8 +181,10 @@ static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double 
     double middle_d = floor(vector_dot(eye, d) / spacing + 0.5) * spacing;
     double middle_e = floor(vector_dot(eye, e) / spacing + 0.5) * spacing;
     for (int i = -REACH; i <= REACH; i++) {
-      for (int j = 0; j < 3; j++) p[j] = (middle_e + i * spacing) * e[j] + level * up[j];
-      draw_world_line(o, c, p, d, middle_d - REACH * spacing, middle_d + REACH * spacing, width);
+      for (int j = 0; j < 3; j++)
+        p[j] = (middle_e + i * spacing) * e[j] + level * up[j];
+      draw_world_line(o, c, p, d, middle_d - REACH * spacing, middle_d + REACH * spacing,
+                      width);
     }
   }
 }
@@ -158,8 +196,8 @@ typedef struct Drawing {
 } Drawing;
 
 static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
-  static const uint8_t colors[3][3] = {{235, 60, 50}, {40, 170, 70}, {50, 110, 245}}, white[3] = {255, 255, 255},
-                       yellow[3] = {255, 205, 40};
+  static const uint8_t colors[3][3] = {{235, 60, 50}, {40, 170, 70}, {50, 110, 245}},
+                       white[3] = {255, 255, 255}, yellow[3] = {255, 205, 40};
   double a[3], b[3], width = fmax(1.0, 0.0022 * (o->width + o->height));
   if (drawing->spacing > 0.0) {
     draw_grid(o, c, drawing->up, drawing->spacing, drawing->level, 0.8 * width);
@@ -168,7 +206,8 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   for (int i = 0; i < 3; i++) {
     const double d[3] = {i == 0, i == 1, i == 2};
-    if (!flat && drawing->lines) draw_family(o, c, d, drawing->lines, 0.8 * width);
+    if (!flat && drawing->lines)
+      draw_family(o, c, d, drawing->lines, 0.8 * width);
     overlay_paint(o, colors[i], 0.55);
     for (int end = 0; end < 2; end++) { /* curved projections may show both ends */
       const double e[3] = {end ? -d[0] : d[0], end ? -d[1] : d[1], end ? -d[2] : d[2]};
@@ -178,7 +217,8 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
     }
     overlay_paint(o, colors[i], 1.0);
   }
-  if (flat) return;
+  if (flat)
+    return;
   basis_of(drawing->up, a, b);
   overlay_arc(o, c, b, a, 0.0, 2.0 * pi, 1.5 * width);
   overlay_paint(o, yellow, 0.9);
@@ -187,27 +227,34 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
 /* Resizes the camera to the image's size when both have the same aspect ratio. */
 static int fit_camera(const vlImage *image, const char *path, vlCamera *camera) {
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
-  if (w == camera->width && h == camera->height) return -1;
+  if (w == camera->width && h == camera->height)
+    return -1;
   if (fabs((double)w * camera->height - (double)h * camera->width) > fmax(w, h))
-    return report_failure(STATUS_SCENE, "%s: the image has %u x %u pixels, the camera %u x %u: another shape", path, w,
-                          h, camera->width, camera->height);
+    return report_failure(STATUS_SCENE,
+                          "%s: the image has %u x %u pixels, the camera %u x %u: another shape",
+                          path, w, h, camera->width, camera->height);
   vlCamera resized;
-  if (vl_camera_resize(camera, w, h, &resized) != VL_OK) return STATUS_OTHER;
+  if (vl_camera_resize(camera, w, h, &resized) != VL_OK)
+    return STATUS_OTHER;
   *camera = resized;
   return -1;
 }
 
-static int draw_overlay(vlContext *context, const Arguments *arguments, const vlCamera *of, const Drawing *drawing) {
+static int draw_overlay(vlContext *context, const Arguments *arguments, const vlCamera *of,
+                        const Drawing *drawing) {
   const OptionValue *v = arguments->values;
   vlImage *image = NULL;
   vlCamera camera = *of;
   vlError error = {0};
   bool eight_bit = false;
   if (!output_suffix(v[V_OUT].text, &eight_bit) || !eight_bit)
-    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[V_OUT].text);
+    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga",
+                        v[V_OUT].text);
   int status = image_load(context, v[V_OVERLAY].text, &image);
-  if (status < 0) status = output_check(context, v[V_OUT].text, VL_OUTPUT_PLAIN);
-  if (status < 0) status = fit_camera(image, v[V_OVERLAY].text, &camera);
+  if (status < 0)
+    status = output_check(context, v[V_OUT].text, VL_OUTPUT_PLAIN);
+  if (status < 0)
+    status = fit_camera(image, v[V_OVERLAY].text, &camera);
   if (status < 0) {
     Overlay overlay = {0};
     vlResult result = VL_ERROR_MEMORY;
@@ -222,14 +269,18 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
   return status;
 }
 
-/* ---- the inverse ------------------------------------------------------------------------------------------------- */
+/* ---- the inverse
+ * -------------------------------------------------------------------------------------------------
+ */
 
 /* Parses "xz" or "-xyz": the axis of each point; a minus means the negative direction. */
 static bool parse_axes(const char *text, vlVanishingDef *def) {
   for (uint32_t i = 0; i < def->count; i++) {
     def->away[i] = *text != '-';
-    if (*text == '-' || *text == '+') text++;
-    if (*text < 'x' || *text > 'z') return false;
+    if (*text == '-' || *text == '+')
+      text++;
+    if (*text < 'x' || *text > 'z')
+      return false;
     def->axes[i] = (uint32_t)(*text++ - 'x');
   }
   return *text == 0;
@@ -247,7 +298,8 @@ static void say_camera(const vlCameraDef *d, bool as_json) {
     json_number(&json, "cx", d->cx);
     json_number(&json, "cy", d->cy);
     json_begin(&json, "world_from_camera", '[');
-    for (int i = 0; i < 16; i++) json_number(&json, NULL, d->world_from_camera[i]);
+    for (int i = 0; i < 16; i++)
+      json_number(&json, NULL, d->world_from_camera[i]);
     json_end(&json, ']');
     json_end(&json, '}');
     putchar('\n');
@@ -262,27 +314,34 @@ static void say_camera(const vlCameraDef *d, bool as_json) {
 
 static int run_inverse(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (!v[V_SIZE].given) return report_usage("--from needs --size WxH, the image's");
-  vlVanishingDef def = vl_default_vanishing_def((uint32_t)v[V_SIZE].integers[0], (uint32_t)v[V_SIZE].integers[1]);
+  if (!v[V_SIZE].given)
+    return report_usage("--from needs --size WxH, the image's");
+  vlVanishingDef def = vl_default_vanishing_def((uint32_t)v[V_SIZE].integers[0],
+                                                (uint32_t)v[V_SIZE].integers[1]);
   def.count = 1 + (uint32_t)arguments->operand_count;
-  if (def.count < 2 || def.count > 3) return report_usage("--from takes 2 or 3 points: --from x1,y1 x2,y2 [x3,y3]");
+  if (def.count < 2 || def.count > 3)
+    return report_usage("--from takes 2 or 3 points: --from x1,y1 x2,y2 [x3,y3]");
   for (uint32_t i = 0; i < def.count; i++) {
     const char *text = i ? arguments->operands[i - 1] : v[V_FROM].text;
-    if (!parse_numbers(text, 2, def.points[i])) return report_usage("\"%s\": a point is x,y in pixels", text);
+    if (!parse_numbers(text, 2, def.points[i]))
+      return report_usage("\"%s\": a point is x,y in pixels", text);
   }
   if (!parse_axes(v[V_AXES].given ? v[V_AXES].text : def.count == 2 ? "xz" : "xyz", &def))
-    return report_usage("--axes \"%s\": %u of x, y, z, each with - before it where its negative end is meant",
-                        v[V_AXES].text, def.count);
+    return report_usage(
+        "--axes \"%s\": %u of x, y, z, each with - before it where its negative end is meant",
+        v[V_AXES].text, def.count);
   if (v[V_PRINCIPAL].given) {
     double p[2];
-    if (!parse_numbers(v[V_PRINCIPAL].text, 2, p)) return report_usage("--principal takes cx,cy in pixels");
+    if (!parse_numbers(v[V_PRINCIPAL].text, 2, p))
+      return report_usage("--principal takes cx,cy in pixels");
     def.cx = p[0];
     def.cy = p[1];
   }
   vlError error = {0};
   vlCameraRecord record = {.frames = 1};
   vlResult result = vl_camera_from_vanishing_points(&def, &record.camera, &error);
-  if (result != VL_OK) return report_failure(STATUS_SCENE, "%s", error.message);
+  if (result != VL_OK)
+    return report_failure(STATUS_SCENE, "%s", error.message);
   if (v[V_OUT].given) {
     vlContext *context = NULL;
     int status = image_context(&context);
@@ -290,36 +349,45 @@ static int run_inverse(const Arguments *arguments) {
       vlCameraFileDef file = vl_default_camera_file_def();
       file.dialect = v[V_TO].given ? (vlCameraDialect)v[V_TO].integer : VL_CAMERA_DIALECT_AUTO;
       result = vl_camera_write(context, v[V_OUT].text, &file, &record, &error);
-      if (result != VL_OK) status = report_error(&error, result, v[V_OUT].text);
+      if (result != VL_OK)
+        status = report_error(&error, result, v[V_OUT].text);
     }
     context_close(context);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   say_camera(&record.camera, v[V_JSON].given);
   return image_finish_output(STATUS_OK);
 }
 
-/* ------------------------------------------------------------------------------------------------------------------ */
+/* ------------------------------------------------------------------------------------------------------------------
+ */
 
 static int run_vanishing(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *v = arguments->values;
   double up[3] = {0, 1, 0}, grid[2] = {0, 0};
-  if (v[V_FROM].given) return run_inverse(arguments);
-  if (arguments->operand_count != 1) return report_usage("camera vanishing takes one FILE, or --from and points");
+  if (v[V_FROM].given)
+    return run_inverse(arguments);
+  if (arguments->operand_count != 1)
+    return report_usage("camera vanishing takes one FILE, or --from and points");
   if (v[V_UP].given && (!parse_numbers(v[V_UP].text, 3, up) || !(vector_dot(up, up) > 0.0)))
     return report_usage("--up \"%s\": a direction is x,y,z", v[V_UP].text);
-  if (v[V_OVERLAY].given != v[V_OUT].given) return report_usage("--overlay IMAGE and -o RESULT go together");
-  if (v[V_GRID].given && !parse_numbers(v[V_GRID].text, 2, grid) && !parse_numbers(v[V_GRID].text, 1, grid))
+  if (v[V_OVERLAY].given != v[V_OUT].given)
+    return report_usage("--overlay IMAGE and -o RESULT go together");
+  if (v[V_GRID].given && !parse_numbers(v[V_GRID].text, 2, grid) &&
+      !parse_numbers(v[V_GRID].text, 1, grid))
     return report_usage("--grid takes SPACING or SPACING,HEIGHT");
-  if (v[V_GRID].given && !(grid[0] > 0.0)) return report_usage("--grid: the spacing must be above zero");
+  if (v[V_GRID].given && !(grid[0] > 0.0))
+    return report_usage("--grid: the spacing must be above zero");
   vector_normalize(up);
   vlContext *context = NULL;
   vlCameraRecord record;
   vlCamera camera;
   const char *path = arguments->operands[0];
   int status = image_context(&context);
-  if (status < 0) status = camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera);
+  if (status < 0)
+    status = camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera);
   if (status < 0 && v[V_OVERLAY].given) {
     Drawing drawing = {up, v[V_LINES].given ? (int)v[V_LINES].integer : 24, grid[0], grid[1]};
     status = draw_overlay(context, arguments, &camera, &drawing);
@@ -339,7 +407,8 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
 
 static const Option vanishing_options[] = {
     {V_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
+    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file has several"},
     {V_UP, 0, "up", OPTION_TEXT, "x,y,z",
      "up direction: the horizon is that of the planes perpendicular to it; default 0,1,0"},
     {V_OVERLAY, 0, "overlay", OPTION_TEXT, "IMAGE",
@@ -349,17 +418,21 @@ static const Option vanishing_options[] = {
     {V_LINES, 0, "lines", OPTION_INTEGER, "N",
      "number of planes with lines to each vanishing point, 0 to 360; default 24", 0, 360, NULL},
     {V_GRID, 0, "grid", OPTION_TEXT, "SPACING[,HEIGHT]",
-     "also draw a grid on the ground plane, with this spacing, at this height along the up direction"},
+     "also draw a grid on the ground plane, with this spacing, at this height along the up "
+     "direction"},
     {V_FROM, 0, "from", OPTION_TEXT, "x1,y1 x2,y2 [x3,y3]",
      "compute the camera that has these vanishing points, in pixels"},
     {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy",
-     "with --from: the camera's principal point; default with two points: the centre of the image"},
-    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for --from, or for a FILE without one", 1, 1 << 24, NULL},
+     "with --from: the camera's principal point; default with two points: the centre of the "
+     "image"},
+    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for --from, or for a FILE without one",
+     1, 1 << 24, NULL},
     {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
-     "with --from: the axes to which the points belong, with - before an axis for its negative end: xz (default of two "
+     "with --from: the axes to which the points belong, with - before an axis for its negative "
+     "end: xz (default of two "
      "points), xyz (of three), -zx, ..."},
-    {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "with --from: dialect of RESULT; default: by its name:", 0, 0,
-     dialect_choices},
+    {V_TO, 0, "to", OPTION_CHOICE, "DIALECT",
+     "with --from: dialect of RESULT; default: by its name:", 0, 0, dialect_choices},
     {0}};
 
 const Command camera_vanishing_command = {
@@ -367,10 +440,16 @@ const Command camera_vanishing_command = {
     .usage = "FILE | --from x1,y1 x2,y2 [x3,y3] --size WxH [options]",
     .summary = "compute vanishing points, or a camera from them",
     .text =
-        "Prints the vanishing points of the world's axes in the image of FILE's camera (a camera file of any\n"
-        "dialect, or a scene), in pixels from the image's corner, and the horizon. --overlay draws them: lines\n"
-        "along x red, y green, z blue, the horizon yellow. With --from, computes focal length, principal point\n"
-        "and rotation from two vanishing points and a known principal point, or from three vanishing points.",
+        "Prints the vanishing points of the world's axes in the image of FILE's camera (a "
+        "camera "
+        "file of any\n"
+        "dialect, or a scene), in pixels from the image's corner, and the horizon. --overlay "
+        "draws "
+        "them: lines\n"
+        "along x red, y green, z blue, the horizon yellow. With --from, computes focal length, "
+        "principal point\n"
+        "and rotation from two vanishing points and a known principal point, or from three "
+        "vanishing points.",
     .examples =
         "velo camera vanishing room.pbrt\n"
         "velo camera vanishing --from 10,200 900,210 --size 640x480",

@@ -1,5 +1,5 @@
-/* camera/verify.c: `velo camera verify`: checks that rendered images agree with the camera's equations, or that two
- * camera files describe the same camera. */
+/* camera/verify.c: `velo camera verify`: checks that rendered images agree with the camera's
+ * equations, or that two camera files describe the same camera. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -50,12 +50,15 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   if (v->placed == 0)
     snprintf(text, size, "the camera sees nothing, or too little for a board anywhere");
   else if (m->found < 12 || m->found < 0.9 * m->expected)
-    snprintf(text, size, "only %u of %u corners are in the images where the camera should show them", m->found,
-             m->expected);
+    snprintf(text, size,
+             "only %u of %u corners are in the images where the camera should show them",
+             m->found, m->expected);
   else if (m->misread)
-    snprintf(text, size, "%u of %u markers are not the ones that should be there", m->misread, m->markers);
+    snprintf(text, size, "%u of %u markers are not the ones that should be there", m->misread,
+             m->markers);
   else if (m->unseen)
-    snprintf(text, size, "%u of %u corners in the images cannot be seen by the other camera", m->unseen, m->found);
+    snprintf(text, size, "%u of %u corners in the images cannot be seen by the other camera",
+             m->unseen, m->found);
   else if (!(m->most <= threshold))
     snprintf(text, size, "%.4g pixels are more than %g", m->most, threshold);
   else
@@ -63,7 +66,8 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   return text;
 }
 
-/* Counts the cells of the image's 8 x 8 grid with a ray at their centre, and those in which corners were found. */
+/* Counts the cells of the image's 8 x 8 grid with a ray at their centre, and those in which
+ * corners were found. */
 static uint32_t parts(const Verification *v, uint32_t *covered) {
   uint32_t seeing = 0;
   double o[3], d[3];
@@ -71,8 +75,9 @@ static uint32_t parts(const Verification *v, uint32_t *covered) {
   for (int j = 0; j < COVERAGE; j++)
     for (int i = 0; i < COVERAGE; i++) {
       *covered += v->covered[j][i];
-      seeing += v->covered[j][i] || vl_camera_unproject(&v->camera, (i + 0.5) * v->camera.width / COVERAGE,
-                                                        (j + 0.5) * v->camera.height / COVERAGE, o, d);
+      seeing += v->covered[j][i] ||
+                vl_camera_unproject(&v->camera, (i + 0.5) * v->camera.width / COVERAGE,
+                                    (j + 0.5) * v->camera.height / COVERAGE, o, d);
     }
   return seeing;
 }
@@ -84,29 +89,38 @@ static bool half_pixel(const Measure *m) {
   return (half_x && half_y) || (half_x && y < 0.05) || (half_y && x < 0.05);
 }
 
-static void print_text(const Verification *v, const char *path, const char *against, double threshold,
-                       const char *failure) {
+static void print_text(const Verification *v, const char *path, const char *against,
+                       double threshold, const char *failure) {
   const Measure *m = &v->all;
-  printf("camera    %s: %s, %u x %u\n", path, vl_projection_name(v->camera.projection), v->camera.width,
-         v->camera.height);
-  if (against) printf("against   %s: %s\n", against, vl_projection_name(v->model.camera.projection));
+  printf("camera    %s: %s, %u x %u\n", path, vl_projection_name(v->camera.projection),
+         v->camera.width, v->camera.height);
+  if (against)
+    printf("against   %s: %s\n", against, vl_projection_name(v->model.camera.projection));
   printf("target    %s, %d x %d corners, squares of %.0f pixels, %u poses, %u spp, seed %llu\n",
-         v->target.charuco ? "charuco" : "chessboard", v->target.corners, v->target.corners, v->side, v->placed, v->spp,
-         (unsigned long long)v->seed);
-  if (v->placed) printf("\npose  corners    mean px     max px  at\n");
+         v->target.charuco ? "charuco" : "chessboard", v->target.corners, v->target.corners,
+         v->side, v->placed, v->spp, (unsigned long long)v->seed);
+  if (v->placed)
+    printf("\npose  corners    mean px     max px  at\n");
   for (uint32_t i = 0; i < v->placed; i++) {
     const Measure *p = &v->each[i];
-    printf("%4u  %3u/%-3u  %10.5f %10.5f  %.1f, %.1f\n", i, p->found, p->expected, mean_of(p->sum, p), p->most, p->at_x,
-           p->at_y);
+    printf("%4u  %3u/%-3u  %10.5f %10.5f  %.1f, %.1f\n", i, p->found, p->expected,
+           mean_of(p->sum, p), p->most, p->at_x, p->at_y);
   }
   if (m->found) {
     uint32_t covered, seeing = parts(v, &covered);
-    printf("\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels (pose %u, at %.1f, %.1f)\n",
-           m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->most, m->pose, m->at_x, m->at_y);
-    printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m), mean_of(m->sum_y, m),
+    printf(
+        "\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels (pose "
+        "%u, "
+        "at %.1f, %.1f)\n",
+        m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->most, m->pose,
+        m->at_x, m->at_y);
+    printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m),
+           mean_of(m->sum_y, m),
            half_pixel(m) ? "; half a pixel: are the pixel origins confused?" : "");
-    if (v->target.charuco) printf("read  %u markers, %u wrong\n", m->markers, m->misread);
-    printf("cover %u of the %u parts (of 8 x 8) of the image that see anything\n", covered, seeing);
+    if (v->target.charuco)
+      printf("read  %u markers, %u wrong\n", m->markers, m->misread);
+    printf("cover %u of the %u parts (of 8 x 8) of the image that see anything\n", covered,
+           seeing);
   }
   if (failure)
     printf("FAILED: %s\n", failure);
@@ -127,20 +141,22 @@ static void print_measure(Json *json, const Measure *m) {
   json_number(json, "shift_y", mean_of(m->sum_y, m));
 }
 
-static void print_json(const Verification *v, const char *path, const char *against, double threshold,
-                       const char *failure) {
+static void print_json(const Verification *v, const char *path, const char *against,
+                       double threshold, const char *failure) {
   Json json = {.out = stdout};
   uint32_t covered, seeing = parts(v, &covered);
   json_begin(&json, NULL, '{');
   json_text(&json, "camera", path);
-  if (against) json_text(&json, "against", against);
+  if (against)
+    json_text(&json, "against", against);
   json_text(&json, "projection", vl_projection_name(v->camera.projection));
   json_text(&json, "target", v->target.charuco ? "charuco" : "chessboard");
   json_integer(&json, "spp", v->spp);
   json_integer(&json, "seed", (int64_t)v->seed);
   json_number(&json, "threshold", threshold);
   json_bool(&json, "passed", !failure);
-  if (failure) json_text(&json, "failure", failure);
+  if (failure)
+    json_text(&json, "failure", failure);
   print_measure(&json, &v->all);
   json_integer(&json, "markers", v->all.markers);
   json_integer(&json, "markers_wrong", v->all.misread);
@@ -157,28 +173,33 @@ static void print_json(const Verification *v, const char *path, const char *agai
   putchar('\n');
 }
 
-/* Makes the camera with which the images are compared. It is the same camera, or that of another file. */
-static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own, Verification *v) {
+/* Makes the camera with which the images are compared. It is the same camera, or that of
+ * another file. */
+static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own,
+                      Verification *v) {
   const OptionValue *o = arguments->values;
   v->model = (VerifyModel){own->camera, v->camera};
   const char *path = o[VERIFY_CAMERA].text;
   if (o[VERIFY_AGAINST].given) {
     vlCameraRecord record;
     path = o[VERIFY_AGAINST].text;
-    int status =
-        camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, VERIFY_SIZE, &record, &v->model.camera);
-    if (status >= 0) return status;
+    int status = camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, VERIFY_SIZE,
+                                  &record, &v->model.camera);
+    if (status >= 0)
+      return status;
     v->model.def = record.camera;
     make_pinhole(&v->model.camera);
     if (o[VERIFY_IGNORE_POSE].given)
-      memcpy(v->model.camera.world_from_camera, v->camera.world_from_camera, sizeof v->camera.world_from_camera);
+      memcpy(v->model.camera.world_from_camera, v->camera.world_from_camera,
+             sizeof v->camera.world_from_camera);
     if (v->model.camera.width != v->camera.width || v->model.camera.height != v->camera.height)
-      report_warning("%s is %u x %u pixels, %s %u x %u", o[VERIFY_CAMERA].text, v->camera.width, v->camera.height, path,
-                     v->model.camera.width, v->model.camera.height);
+      report_warning("%s is %u x %u pixels, %s %u x %u", o[VERIFY_CAMERA].text, v->camera.width,
+                     v->camera.height, path, v->model.camera.width, v->model.camera.height);
   }
   if (!verify_knows(&v->model))
-    return report_failure(STATUS_SCENE, "%s: there is no second formula for a %s camera to compare with", path,
-                          vl_projection_name(v->model.camera.projection));
+    return report_failure(STATUS_SCENE,
+                          "%s: there is no second formula for a %s camera to compare with",
+                          path, vl_projection_name(v->model.camera.projection));
   return -1;
 }
 
@@ -186,15 +207,19 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   (void)command;
   static Verification v;
   const OptionValue *o = arguments->values;
-  const char *path = o[VERIFY_CAMERA].text, *against = o[VERIFY_AGAINST].given ? o[VERIFY_AGAINST].text : NULL;
-  if (!o[VERIFY_CAMERA].given) return report_usage("which camera? --camera FILE");
+  const char *path = o[VERIFY_CAMERA].text,
+             *against = o[VERIFY_AGAINST].given ? o[VERIFY_AGAINST].text : NULL;
+  if (!o[VERIFY_CAMERA].given)
+    return report_usage("which camera? --camera FILE");
   if (!against && (o[VERIFY_AGAINST_FRAME].given || o[VERIFY_IGNORE_POSE].given))
-    return report_usage("--%s goes with --against FILE", o[VERIFY_IGNORE_POSE].given ? "ignore-pose" : "against-frame");
+    return report_usage("--%s goes with --against FILE",
+                        o[VERIFY_IGNORE_POSE].given ? "ignore-pose" : "against-frame");
   vlContext *context = NULL;
   vlContextDef context_def = vl_default_context_def();
   context_def.log = report_log;
   int opened = context_open(&context_def, &context);
-  if (opened >= 0) return opened;
+  if (opened >= 0)
+    return opened;
   vlCameraRecord record;
   double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : 0.05;
   v.target.charuco = o[VERIFY_TARGET].given && o[VERIFY_TARGET].integer == 1;
@@ -202,12 +227,16 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   v.spp = o[VERIFY_SPP].given ? (uint32_t)o[VERIFY_SPP].integer : 144;
   v.seed = o[VERIFY_SEED].given ? (uint64_t)o[VERIFY_SEED].integer : 1;
   v.keep = o[VERIFY_KEEP].given ? o[VERIFY_KEEP].text : NULL;
-  int status = camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record, &v.camera);
-  if (status < 0) make_pinhole(&v.camera);
-  if (status < 0) status = load_model(context, arguments, &record, &v);
+  int status =
+      camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record, &v.camera);
+  if (status < 0)
+    make_pinhole(&v.camera);
+  if (status < 0)
+    status = load_model(context, arguments, &record, &v);
   if (status < 0 && v.keep && mkdir(v.keep, 0777) != 0 && errno != EEXIST)
     status = report_failure(STATUS_IO, "%s: %s", v.keep, strerror(errno));
-  if (status < 0) status = verify_run(&v, context);
+  if (status < 0)
+    status = verify_run(&v, context);
   if (status < 0) {
     char text[200];
     const char *failure = verdict(&v, threshold, text, sizeof text);
@@ -221,26 +250,33 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 static const Option verify_options[] = {
     {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
      "camera file in any dialect of `velo camera convert`, or a scene file"},
-    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
+    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file has several"},
     {VERIFY_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
-     "compare the images with the equations of the camera in this file, to find out whether both files describe the "
+     "compare the images with the equations of the camera in this file, to find out whether "
+     "both "
+     "files describe the "
      "same camera"},
     {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME",
      "camera of OTHER to use, by name or number from 0, if it has several"},
     {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL,
      "give OTHER's camera the pose of FILE's camera (for files without a pose)"},
     {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND",
-     "pattern on the board; charuco: a chessboard with markers, which are decoded; default chessboard:", 0, 0,
-     target_choices},
+     "pattern on the board; charuco: a chessboard with markers, which are decoded; default "
+     "chessboard:",
+     0, 0, target_choices},
     {VERIFY_POSE_COUNT, 0, "poses", OPTION_INTEGER, "N",
      "number of poses of the board, spread over the image; default 16", 1, VERIFY_POSES, NULL},
-    {VERIFY_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel; default 144", 1, 65536, NULL},
+    {VERIFY_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel; default 144", 1, 65536,
+     NULL},
     {VERIFY_SEED, 0, "seed", OPTION_INTEGER, "N",
-     "seed of the random numbers; another seed gives other poses and samples; default 1", 0, 4294967295.0, NULL},
-    {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX", "largest error that is accepted, in pixels; default 0.05",
-     0, 1e9, NULL},
-    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the images and corners.csv to this folder"},
+     "seed of the random numbers; another seed gives other poses and samples; default 1", 0,
+     4294967295.0, NULL},
+    {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX",
+     "largest error that is accepted, in pixels; default 0.05", 0, 1e9, NULL},
+    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER",
+     "write the images and corners.csv to this folder"},
     {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {0}};
 
@@ -249,8 +285,12 @@ const Command camera_verify_command = {
     .usage = "--camera FILE [options]",
     .summary = "render a chessboard through a camera and measure its corners",
     .text =
-        "Renders a board in many poses through the camera, finds the corners in the images to a hundredth of a\n"
-        "pixel, and compares them with an independent implementation of the camera's equations. Exit code 1 if\n"
+        "Renders a board in many poses through the camera, finds the corners in the images to "
+        "a "
+        "hundredth of a\n"
+        "pixel, and compares them with an independent implementation of the camera's "
+        "equations. "
+        "Exit code 1 if\n"
         "the error of a corner is above the threshold, or corners are missing.",
     .examples =
         "velo camera verify --camera camera.yaml\n"

@@ -1,12 +1,13 @@
-/* camera/verify.h: the parts of `velo camera verify`: a target, its rendered images, the corners found in them, and an
- * independent projection to compare with. */
+/* camera/verify.h: the parts of `velo camera verify`: a target, its rendered images, the
+ * corners found in them, and an independent projection to compare with. */
 #ifndef APP_CAMERA_VERIFY_H
 #define APP_CAMERA_VERIFY_H
 
 #include "velo/camera.h"
 #include "velo/world.h"
 
-/* ---- verify_model.c: the independent projection ------------------------------------------------------------------ */
+/* ---- verify_model.c: the independent projection
+ * ------------------------------------------------------------------ */
 
 typedef struct VerifyModel {
   vlCameraDef def; /* coefficients as in the file */
@@ -15,11 +16,12 @@ typedef struct VerifyModel {
 
 /* Whether the independent implementation covers this camera model. */
 bool verify_knows(const VerifyModel *model);
-/* Projects a world point to a film point; the image's corner is (0, 0). False: behind the camera, or no finite result.
- * Folds of the distortion are not detected. */
+/* Projects a world point to a film point; the image's corner is (0, 0). False: behind the
+ * camera, or no finite result. Folds of the distortion are not detected. */
 bool verify_project(const VerifyModel *model, const double point[3], double pixel[2]);
 
-/* ---- verify_corners.c: corners of a chessboard in an image, without knowing where they are ----------------------- */
+/* ---- verify_corners.c: corners of a chessboard in an image, without knowing where they are
+ * ----------------------- */
 
 typedef struct Image {
   int width, height; /* rows from the top; the first pixel's centre is (0.5, 0.5) */
@@ -31,13 +33,15 @@ typedef struct Corner {
   double strength; /* of the saddle point */
 } Corner;
 
-/* Finds all saddle points of the image to about a pixel. At most `room` are stored, by rows from the top. -1: out of
- * memory. */
+/* Finds all saddle points of the image to about a pixel. At most `room` are stored, by rows
+ * from the top. -1: out of memory. */
 int corners_find(const Image *image, Corner *corners, int room);
-/* Refines a corner to about a hundredth of a pixel from the pixels within `reach`. False: not a chessboard corner. */
+/* Refines a corner to about a hundredth of a pixel from the pixels within `reach`. False: not a
+ * chessboard corner. */
 bool corner_refine(const Image *image, double reach, Corner *corner);
 
-/* ---- verify_target.c: the board and where it stands -------------------------------------------------------------- */
+/* ---- verify_target.c: the board and where it stands
+ * -------------------------------------------------------------- */
 
 enum { TARGET_MAX = 9, MARKER_BITS = 16 };
 
@@ -47,7 +51,8 @@ typedef struct Target {
 } Target;
 
 typedef struct Placement {
-  double center[3], x[3], y[3]; /* centre of the board; its axes with the length of a square's side; world space */
+  double center[3], x[3],
+      y[3]; /* centre of the board; its axes with the length of a square's side; world space */
 } Placement;
 
 typedef struct Random {
@@ -58,26 +63,31 @@ double random_unit(Random *random);
 
 /* The side of a square in pixels and the number of corners for the image's size. */
 double target_choose(Target *target, const vlCamera *camera);
-/* Places the board, with squares about `side` pixels wide, around film point (x, y) with a random tilt and rotation.
- * False: the film point has no ray, or the board does not fit. */
-bool target_place(const Target *target, const vlCamera *camera, double x, double y, double side, Random *random,
-                  Placement *placement);
-/* The world point (float coordinates, as rendered) at (i, j) squares from the board's corner. */
-void target_point(const Target *target, const Placement *placement, double i, double j, double point[3]);
-vlResult target_build(vlContext *context, const Target *target, const Placement *placement, vlWorld **world,
-                      vlError *error);
-/* Reads the marker of the white square (i, j) between its four corners in the image (by rows). 1: as drawn, 0: another
- * marker, -1: the square has none or is too small. */
-int target_read_marker(const Target *target, int i, int j, const Image *image, double corners[4][2]);
+/* Places the board, with squares about `side` pixels wide, around film point (x, y) with a
+ * random tilt and rotation. False: the film point has no ray, or the board does not fit. */
+bool target_place(const Target *target, const vlCamera *camera, double x, double y, double side,
+                  Random *random, Placement *placement);
+/* The world point (float coordinates, as rendered) at (i, j) squares from the board's corner.
+ */
+void target_point(const Target *target, const Placement *placement, double i, double j,
+                  double point[3]);
+vlResult target_build(vlContext *context, const Target *target, const Placement *placement,
+                      vlWorld **world, vlError *error);
+/* Reads the marker of the white square (i, j) between its four corners in the image (by rows).
+ * 1: as drawn, 0: another marker, -1: the square has none or is too small. */
+int target_read_marker(const Target *target, int i, int j, const Image *image,
+                       double corners[4][2]);
 
-/* ---- verify_run.c: pose after pose ------------------------------------------------------------------------------- */
+/* ---- verify_run.c: pose after pose
+ * ------------------------------------------------------------------------------- */
 
 enum { VERIFY_POSES = 1000, COVERAGE = 8 };
 
 /* Measurements of one pose or of all. Differences are measured minus projected, in pixels. */
 typedef struct Measure {
-  uint32_t expected, found; /* corners that should be visible, and those of them that were found */
-  uint32_t unseen;          /* found corners that the independent projection cannot project */
+  uint32_t expected,
+      found;       /* corners that should be visible, and those of them that were found */
+  uint32_t unseen; /* found corners that the independent projection cannot project */
   uint32_t markers, misread;
   double sum, sum2, sum_x, sum_y, most;
   double at_x, at_y; /* where the largest difference was */

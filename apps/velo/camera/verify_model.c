@@ -1,21 +1,31 @@
-/* camera/verify_model.c: projects world points, independently of the library. It follows the equations of the sources
- * named in docs/cameras.md, with functions of the C library, one point at a time. `velo camera verify` checks the
- * library's projections against it, so it calls none of them. */
+/* camera/verify_model.c: projects world points, independently of the library. It follows the
+ * equations of the sources named in docs/cameras.md, with functions of the C library, one point
+ * at a time. `velo camera verify` checks the library's projections against it, so it calls none
+ * of them. */
 #include <math.h>
 #include <string.h>
 
 #include "camera/verify.h"
 #include "cli/vector.h"
 
-/* Computes *r, the distance from the principal point in focal lengths, for a direction at `angle` radians from the
- * axis. Returns false outside the projection's domain. */
+/* Computes *r, the distance from the principal point in focal lengths, for a direction at
+ * `angle` radians from the axis. Returns false outside the projection's domain. */
 static bool fisheye(vlProjection projection, double angle, double *r) {
   switch (projection) {
-    case VL_PROJECTION_EQUIDISTANT: *r = angle; return true;
-    case VL_PROJECTION_EQUISOLID: *r = 2.0 * sin(0.5 * angle); return true;
-    case VL_PROJECTION_STEREOGRAPHIC: *r = 2.0 * tan(0.5 * angle); return true;
-    case VL_PROJECTION_SINE: *r = sin(angle); return angle <= 0.5 * M_PI;
-    default: return false;
+    case VL_PROJECTION_EQUIDISTANT:
+      *r = angle;
+      return true;
+    case VL_PROJECTION_EQUISOLID:
+      *r = 2.0 * sin(0.5 * angle);
+      return true;
+    case VL_PROJECTION_STEREOGRAPHIC:
+      *r = 2.0 * tan(0.5 * angle);
+      return true;
+    case VL_PROJECTION_SINE:
+      *r = sin(angle);
+      return angle <= 0.5 * M_PI;
+    default:
+      return false;
   }
 }
 
@@ -34,28 +44,34 @@ static void equal_area(const double p[3], double plane[2]) {
   plane[1] = copysign(v, p[1]);
 }
 
-/* Cube faces: right, left, up, down, front, back, either in a row, or as a cross four faces wide and three high. */
+/* Cube faces: right, left, up, down, front, back, either in a row, or as a cross four faces
+ * wide and three high. */
 static void cube(bool as_cross, const double p[3], double plane[2]) {
   static const double at[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
-  static const double ahead[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
-  static const double right[6][3] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {-1, 0, 0}};
-  static const double down[6][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
+  static const double ahead[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0},
+                                     {0, 1, 0}, {0, 0, 1},  {0, 0, -1}};
+  static const double right[6][3] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0},
+                                     {1, 0, 0},  {1, 0, 0}, {-1, 0, 0}};
+  static const double down[6][3] = {{0, 1, 0},  {0, 1, 0}, {0, 0, 1},
+                                    {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
   double most = -1.0;
   for (int face = 0; face < 6; face++) {
     double z = vector_dot(ahead[face], p);
     double x = vector_dot(right[face], p);
     double y = vector_dot(down[face], p);
-    if (z <= most) continue;
+    if (z <= most)
+      continue;
     most = z;
     plane[0] = (as_cross ? at[face][0] : face) + 0.5 * (x / z + 1.0);
     plane[1] = (as_cross ? at[face][1] : 0.0) + 0.5 * (y / z + 1.0);
   }
 }
 
-/* Projects a point in camera space to the image plane before distortion, in focal lengths from the principal point.
- * False: outside of the projection's domain. */
+/* Projects a point in camera space to the image plane before distortion, in focal lengths from
+ * the principal point. False: outside of the projection's domain. */
 static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
-  double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y), length = sqrt(across * across + z * z);
+  double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y),
+         length = sqrt(across * across + z * z);
   double a = c->shape[0], b = c->shape[1], k, r;
   switch (c->projection) {
     case VL_PROJECTION_PERSPECTIVE:
@@ -70,19 +86,24 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
     case VL_PROJECTION_EQUISOLID:
     case VL_PROJECTION_STEREOGRAPHIC:
     case VL_PROJECTION_SINE:
-      if (!fisheye(c->projection, atan2(across, z), &r)) return false;
+      if (!fisheye(c->projection, atan2(across, z), &r))
+        return false;
       k = across > 0.0 ? r / across : 1.0 / z;
       break;
     case VL_PROJECTION_EQUIRECTANGULAR:
       plane[0] = atan2(x, z);
       plane[1] = asin(y / length);
       return length > 0.0;
-    case VL_PROJECTION_EQUAL_AREA: equal_area(p, plane); return length > 0.0;
+    case VL_PROJECTION_EQUAL_AREA:
+      equal_area(p, plane);
+      return length > 0.0;
     case VL_PROJECTION_CYLINDRICAL:
       plane[0] = atan2(x, z);
       plane[1] = y / sqrt(x * x + z * z);
       return x * x + z * z > 0.0;
-    case VL_PROJECTION_CUBE: cube(a > 0.0, p, plane); return length > 0.0;
+    case VL_PROJECTION_CUBE:
+      cube(a > 0.0, p, plane);
+      return length > 0.0;
     case VL_PROJECTION_PANINI: {
       double longitude = atan2(x, z), latitude = atan2(y, sqrt(x * x + z * z));
       double s = (a + 1.0) / (a + cos(longitude));
@@ -96,39 +117,49 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
       plane[0] = k * x;
       plane[1] = k * y;
       return z > 0.0;
-    case VL_PROJECTION_DIVISION: { /* the solution r of r Z = R (1 + lambda r^2) that is 0 at R = 0 */
+    case VL_PROJECTION_DIVISION: { /* the solution r of r Z = R (1 + lambda r^2) that is 0 at R
+                                    * = 0
+                                    */
       double root = z * z - 4.0 * a * across * across;
-      if (root < 0.0) return false;
+      if (root < 0.0)
+        return false;
       k = 2.0 / (z + sqrt(root));
       plane[0] = k * x;
       plane[1] = k * y;
       return k > 0.0 && isfinite(k) && (z > 0.0 || a < 0.0);
     }
-    case VL_PROJECTION_UNIFIED: k = 1.0 / (z + a * length); break;
-    case VL_PROJECTION_EUCM: k = 1.0 / (a * sqrt(b * across * across + z * z) + (1.0 - a) * z); break;
+    case VL_PROJECTION_UNIFIED:
+      k = 1.0 / (z + a * length);
+      break;
+    case VL_PROJECTION_EUCM:
+      k = 1.0 / (a * sqrt(b * across * across + z * z) + (1.0 - a) * z);
+      break;
     case VL_PROJECTION_DOUBLE_SPHERE: { /* shape: xi, alpha */
       double second = a * length + z;
       k = 1.0 / (b * sqrt(across * across + second * second) + (1.0 - b) * second);
       break;
     }
-    default: return false;
+    default:
+      return false;
   }
   plane[0] = k * x;
   plane[1] = k * y;
   return k > 0.0 && isfinite(k);
 }
 
-/* OpenCV, "Camera Calibration and 3D Reconstruction"; the 14 coefficients are k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tx
- * ty. */
+/* OpenCV, "Camera Calibration and 3D Reconstruction"; the 14 coefficients are k1 k2 p1 p2 k3 k4
+ * k5 k6 s1 s2 s3 s4 tx ty. */
 static void opencv(const double *k, double plane[2]) {
   double x = plane[0], y = plane[1], r2 = x * x + y * y, r4 = r2 * r2, r6 = r4 * r2;
-  double q = (1.0 + k[0] * r2 + k[1] * r4 + k[4] * r6) / (1.0 + k[5] * r2 + k[6] * r4 + k[7] * r6);
+  double q =
+      (1.0 + k[0] * r2 + k[1] * r4 + k[4] * r6) / (1.0 + k[5] * r2 + k[6] * r4 + k[7] * r6);
   double u = x * q + 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x) + k[8] * r2 + k[9] * r4;
   double v = y * q + k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y + k[10] * r2 + k[11] * r4;
   if (k[12] != 0.0 || k[13] != 0.0) {
     /* R = Ry(ty) Rx(tx); s (u', v', 1) = [R33 0 -R13; 0 R33 -R23; 0 0 1] R (u, v, 1) */
     double cx = cos(k[12]), sx = sin(k[12]), cy = cos(k[13]), sy = sin(k[13]);
-    double rx = cy * u + sy * sx * v - sy * cx, ry = cx * v + sx, rz = sy * u - cy * sx * v + cy * cx;
+    double rx = cy * u + sy * sx * v - sy * cx, ry = cx * v + sx,
+           rz = sy * u - cy * sx * v + cy * cx;
     double r13 = -sy * cx, r23 = sx, r33 = cy * cx;
     u = (r33 * rx - r13 * rz) / rz;
     v = (r33 * ry - r23 * rz) / rz;
@@ -140,13 +171,18 @@ static void opencv(const double *k, double plane[2]) {
 /* Applies the lens distortion to a point of the image plane. False: unknown distortion. */
 static bool bend(const vlCameraDef *def, double plane[2]) {
   double k[14] = {0}, x = plane[0], y = plane[1], r2 = x * x + y * y;
-  if (def->distortion_count > 14) return false;
+  if (def->distortion_count > 14)
+    return false;
   memcpy(k, def->distortion_coefficients, def->distortion_count * sizeof *k);
   switch (def->distortion) {
-    case VL_DISTORTION_NONE: return true;
-    case VL_DISTORTION_OPENCV: opencv(k, plane); return true;
+    case VL_DISTORTION_NONE:
+      return true;
+    case VL_DISTORTION_OPENCV:
+      opencv(k, plane);
+      return true;
     case VL_DISTORTION_RADIAL: {
-      double q = 1.0 + k[0] * r2 + k[1] * pow(r2, 2.0) + k[2] * pow(r2, 3.0) + k[3] * pow(r2, 4.0);
+      double q =
+          1.0 + k[0] * r2 + k[1] * pow(r2, 2.0) + k[2] * pow(r2, 3.0) + k[3] * pow(r2, 4.0);
       plane[0] = q * x;
       plane[1] = q * y;
       return true;
@@ -157,7 +193,8 @@ static bool bend(const vlCameraDef *def, double plane[2]) {
       plane[1] = y + y * q + 2.0 * k[3] * x * y + k[2] * (r2 + 2.0 * y * y) + k[7] * r2;
       return true;
     }
-    default: return false;
+    default:
+      return false;
   }
 }
 
@@ -165,8 +202,9 @@ static bool bend(const vlCameraDef *def, double plane[2]) {
 static void to_camera(const double m[16], const double point[3], double p[3]) {
   double a[3] = {m[0], m[4], m[8]}, b[3] = {m[1], m[5], m[9]}, c[3] = {m[2], m[6], m[10]};
   double d[3] = {point[0] - m[3], point[1] - m[7], point[2] - m[11]};
-#define CROSS_DOT(a, b, c)                                                                       \
-  ((a)[0] * ((b)[1] * (c)[2] - (b)[2] * (c)[1]) + (a)[1] * ((b)[2] * (c)[0] - (b)[0] * (c)[2]) + \
+#define CROSS_DOT(a, b, c)                        \
+  ((a)[0] * ((b)[1] * (c)[2] - (b)[2] * (c)[1]) + \
+   (a)[1] * ((b)[2] * (c)[0] - (b)[0] * (c)[2]) + \
    (a)[2] * ((b)[0] * (c)[1] - (b)[1] * (c)[0]))
   double det = CROSS_DOT(a, b, c);
   p[0] = CROSS_DOT(d, b, c) / det;
@@ -176,7 +214,8 @@ static void to_camera(const double m[16], const double point[3], double p[3]) {
 }
 
 bool verify_knows(const VerifyModel *m) {
-  return m->camera.eye_circle == 0.0 && (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
+  return m->camera.eye_circle == 0.0 &&
+         (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
          (unsigned)m->def.distortion <= VL_DISTORTION_THIN_PRISM;
 }
 
@@ -184,7 +223,8 @@ bool verify_project(const VerifyModel *m, const double point[3], double pixel[2]
   const vlCamera *c = &m->camera;
   double p[3], plane[2] = {0, 0};
   to_camera(c->world_from_camera, point, p);
-  if (!to_plane(c, p, plane) || !bend(&m->def, plane)) return false;
+  if (!to_plane(c, p, plane) || !bend(&m->def, plane))
+    return false;
   pixel[0] = c->cx + c->fx * plane[0] + c->skew * plane[1];
   pixel[1] = c->cy + c->fy * plane[1];
   return isfinite(pixel[0]) && isfinite(pixel[1]);

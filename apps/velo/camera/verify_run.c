@@ -1,4 +1,5 @@
-/* camera/verify_run.c: poses of the board that cover the image. Each is rendered; its corners are found and compared.
+/* camera/verify_run.c: poses of the board that cover the image. Each is rendered; its corners
+ * are found and compared.
  */
 #include <math.h>
 #include <stdio.h>
@@ -29,20 +30,26 @@ typedef struct Pose {
   uint32_t crop[4];
 } Pose;
 
-/* Whether the window around (x, y) lies in the image, has rays everywhere and shows straight lines as nearly straight.
- * It does not at seams of maps of the sphere and at poles. */
+/* Whether the window around (x, y) lies in the image, has rays everywhere and shows straight
+ * lines as nearly straight. It does not at seams of maps of the sphere and at poles. */
 static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
   for (int k = 0; k < 8; k++) {
     double middle[3] = {0, 0, 0}, o[3], d[3], pixel[2], z;
     for (int side = 0; side < 2; side++) {
-      double r = side ? -radius : radius, px = x + r * cos(M_PI * k / 8.0), py = y + r * sin(M_PI * k / 8.0);
-      if (!(px >= 0.0 && py >= 0.0 && px <= c->width && py <= c->height)) return false;
-      if (!vl_camera_unproject(c, px, py, o, d)) return false;
-      for (int a = 0; a < 3; a++) middle[a] += 0.5 * (o[a] + d[a]);
+      double r = side ? -radius : radius, px = x + r * cos(M_PI * k / 8.0),
+             py = y + r * sin(M_PI * k / 8.0);
+      if (!(px >= 0.0 && py >= 0.0 && px <= c->width && py <= c->height))
+        return false;
+      if (!vl_camera_unproject(c, px, py, o, d))
+        return false;
+      for (int a = 0; a < 3; a++)
+        middle[a] += 0.5 * (o[a] + d[a]);
     }
-    if (!vl_camera_project(c, middle, pixel, &z)) return false;
+    if (!vl_camera_project(c, middle, pixel, &z))
+      return false;
     double off = (pixel[1] - y) * cos(M_PI * k / 8.0) - (pixel[0] - x) * sin(M_PI * k / 8.0);
-    if (!(fabs(off) < 0.04 * radius)) return false;
+    if (!(fabs(off) < 0.04 * radius))
+      return false;
   }
   return true;
 }
@@ -85,7 +92,8 @@ static void expect_corners(Pose *pose) {
       Expected e = {.i = i, .j = j};
       double at[2], side[4][2], other[3], apart = INFINITY;
       if (!place_of(pose, i, j, e.point, at) || !place_of(pose, i + 1, j, other, side[0]) ||
-          !place_of(pose, i, j + 1, other, side[1]) || !place_of(pose, i - 1, j, other, side[2]) ||
+          !place_of(pose, i, j + 1, other, side[1]) ||
+          !place_of(pose, i - 1, j, other, side[2]) ||
           !place_of(pose, i, j - 1, other, side[3]))
         continue;
       for (int k = 0; k < 4; k++) {
@@ -98,22 +106,26 @@ static void expect_corners(Pose *pose) {
       e.y = at[1];
       e.apart = apart;
       e.reach = fmin(8.0, (v->target.charuco ? 0.27 : 0.8) * apart - 1.5);
-      if (e.reach < 4.5 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN)) continue;
+      if (e.reach < 4.5 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN))
+        continue;
       pose->expected[pose->count++] = e;
     }
   crop_around(pose);
 }
 
-/* Chooses a pose that shows at least four corners. The film points cover the image evenly (the R2 sequence). */
+/* Chooses a pose that shows at least four corners. The film points cover the image evenly (the
+ * R2 sequence). */
 static bool choose_pose(Pose *pose, uint32_t *sequence, Random *random) {
   const Verification *v = pose->v;
   for (int attempt = 0; attempt < TRIES; attempt++) {
     uint32_t n = ++*sequence;
     double x = fmod(0.5 + n * 0.75487766624669276, 1.0) * v->camera.width;
     double y = fmod(0.5 + n * 0.56984029099805327, 1.0) * v->camera.height;
-    if (!target_place(&v->target, &v->camera, x, y, v->side, random, &pose->placement)) continue;
+    if (!target_place(&v->target, &v->camera, x, y, v->side, random, &pose->placement))
+      continue;
     expect_corners(pose);
-    if (pose->count >= 4) return true;
+    if (pose->count >= 4)
+      return true;
   }
   return false;
 }
@@ -131,15 +143,19 @@ static vlResult render(const Pose *pose, vlContext *context, vlImage **image, vl
   def.max_depth = 0; /* only emission is visible */
   def.sampler = VL_SAMPLER_MULTI_JITTERED;
   vlResult result = target_build(context, &v->target, &pose->placement, &world, error);
-  if (result == VL_OK) result = vl_film_create(context, &film_def, &film);
-  if (result == VL_OK) result = vl_render(world, &v->camera, film, &def, NULL, error);
-  if (result == VL_OK) result = vl_film_develop(film, NULL, image);
+  if (result == VL_OK)
+    result = vl_film_create(context, &film_def, &film);
+  if (result == VL_OK)
+    result = vl_render(world, &v->camera, film, &def, NULL, error);
+  if (result == VL_OK)
+    result = vl_film_develop(film, NULL, image);
   vl_film_destroy(film);
   vl_world_destroy(world);
   return result;
 }
 
-/* Assigns detections to expected corners: each takes the strongest saddle point near it, then its refined position. */
+/* Assigns detections to expected corners: each takes the strongest saddle point near it, then
+ * its refined position. */
 static void match(Pose *pose, const Image *rendered, const Corner *corners, int count) {
   for (int k = 0; k < pose->count; k++) {
     Expected *e = &pose->expected[k];
@@ -149,7 +165,8 @@ static void match(Pose *pose, const Image *rendered, const Corner *corners, int 
       if (hypot(corners[c].x - x, corners[c].y - y) < near &&
           (best < 0 || corners[c].strength > corners[best].strength))
         best = c;
-    if (best < 0) continue;
+    if (best < 0)
+      continue;
     e->corner = corners[best];
     e->found = corner_refine(rendered, e->reach, &e->corner);
   }
@@ -157,7 +174,8 @@ static void match(Pose *pose, const Image *rendered, const Corner *corners, int 
 
 static const Expected *corner_at(const Pose *pose, int i, int j) {
   for (int k = 0; k < pose->count; k++)
-    if (pose->expected[k].i == i && pose->expected[k].j == j && pose->expected[k].found) return &pose->expected[k];
+    if (pose->expected[k].i == i && pose->expected[k].j == j && pose->expected[k].found)
+      return &pose->expected[k];
   return NULL;
 }
 
@@ -168,7 +186,8 @@ static void read_markers(const Pose *pose, const Image *rendered, Measure *m) {
       int there = 0;
       for (int k = 0; k < 4; k++) {
         const Expected *e = corner_at(pose, i + k % 2, j + k / 2);
-        if (!e) break;
+        if (!e)
+          break;
         at[k][0] = e->corner.x;
         at[k][1] = e->corner.y;
         there++;
@@ -185,14 +204,16 @@ static void compare(const Pose *pose, uint32_t index, Verification *v, FILE *csv
   for (int k = 0; k < pose->count; k++) {
     const Expected *e = &pose->expected[k];
     m->expected++;
-    if (!e->found) continue;
+    if (!e->found)
+      continue;
     m->found++;
     double x = e->corner.x + pose->crop[0], y = e->corner.y + pose->crop[1], at[2] = {0, 0};
-    v->covered[(int)(COVERAGE * y / v->camera.height)][(int)(COVERAGE * x / v->camera.width)] = true;
+    v->covered[(int)(COVERAGE * y / v->camera.height)][(int)(COVERAGE * x / v->camera.width)] =
+        true;
     bool seen = verify_project(&v->model, e->point, at);
     if (csv)
-      fprintf(csv, "%u,%d,%d,%.9g,%.9g,%.9g,%.17g,%.17g,%.17g,%.17g,%d\n", index, e->i, e->j, e->point[0], e->point[1],
-              e->point[2], x, y, at[0], at[1], seen);
+      fprintf(csv, "%u,%d,%d,%.9g,%.9g,%.9g,%.17g,%.17g,%.17g,%.17g,%d\n", index, e->i, e->j,
+              e->point[0], e->point[1], e->point[2], x, y, at[0], at[1], seen);
     if (!seen) {
       m->unseen++;
       continue;
@@ -229,11 +250,12 @@ static void add_up(Measure *all, const Measure *m) {
 }
 
 /* Writes one channel without alpha, for corner finders of other programs. */
-static vlResult keep_image(vlContext *context, const char *folder, uint32_t index, const Image *rendered,
-                           vlError *error) {
+static vlResult keep_image(vlContext *context, const char *folder, uint32_t index,
+                           const Image *rendered, vlError *error) {
   char path[4096];
   vlImage *image = NULL;
-  vlImageDef def = vl_default_image_def((uint32_t)rendered->width, (uint32_t)rendered->height, 1);
+  vlImageDef def =
+      vl_default_image_def((uint32_t)rendered->width, (uint32_t)rendered->height, 1);
   def.type = VL_PIXEL_F32;
   vlResult result = vl_image_create(context, &def, &image);
   snprintf(path, sizeof path, "%s/pose_%03u.png", folder, index);
@@ -246,22 +268,28 @@ static vlResult keep_image(vlContext *context, const char *folder, uint32_t inde
   return result;
 }
 
-static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *context, FILE *csv) {
+static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *context,
+                        FILE *csv) {
   static Corner corners[ROOM];
   vlImage *image = NULL;
   vlError error = {0};
   vlResult result = render(pose, context, &image, &error);
-  int width = (int)(pose->crop[2] - pose->crop[0]), height = (int)(pose->crop[3] - pose->crop[1]);
+  int width = (int)(pose->crop[2] - pose->crop[0]),
+      height = (int)(pose->crop[3] - pose->crop[1]);
   float *red = result == VL_OK ? malloc((size_t)width * (size_t)height * sizeof *red) : NULL;
-  if (result == VL_OK && !red) result = VL_ERROR_MEMORY;
+  if (result == VL_OK && !red)
+    result = VL_ERROR_MEMORY;
   if (result == VL_OK) {
     const float *pixels = vl_image_const_pixels(image);
     uint32_t channels = vl_image_channels(image);
-    for (size_t k = 0; k < (size_t)width * (size_t)height; k++) red[k] = pixels[channels * k];
+    for (size_t k = 0; k < (size_t)width * (size_t)height; k++)
+      red[k] = pixels[channels * k];
     Image rendered = {width, height, red};
     int count = corners_find(&rendered, corners, ROOM);
-    if (count < 0) result = VL_ERROR_MEMORY;
-    if (count >= 0 && v->keep) result = keep_image(context, v->keep, index, &rendered, &error);
+    if (count < 0)
+      result = VL_ERROR_MEMORY;
+    if (count >= 0 && v->keep)
+      result = keep_image(context, v->keep, index, &rendered, &error);
     match(pose, &rendered, corners, count);
     compare(pose, index, v, csv);
     read_markers(pose, &rendered, &v->each[index]);
@@ -302,16 +330,20 @@ int verify_run(Verification *v, vlContext *context) {
   char *table = NULL;
   size_t size = 0;
   int status = v->keep ? check_kept(v, context) : -1;
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   FILE *csv = v->keep ? open_memstream(&table, &size) : NULL;
-  if (csv) fprintf(csv, "pose,i,j,x,y,z,found_u,found_v,u,v,valid\n");
+  if (csv)
+    fprintf(csv, "pose,i,j,x,y,z,found_u,found_v,u,v,valid\n");
   v->side = target_choose(&v->target, &v->camera);
-  for (uint32_t i = 0; i < v->poses && status < 0 && choose_pose(&pose, &sequence, &random); i++) {
+  for (uint32_t i = 0; i < v->poses && status < 0 && choose_pose(&pose, &sequence, &random);
+       i++) {
     v->placed++;
     status = measure_pose(&pose, i, v, context, csv);
   }
   bool whole = csv && fclose(csv) == 0;
-  if (v->keep && status < 0) status = keep_table(context, v->keep, whole ? table : NULL, size);
+  if (v->keep && status < 0)
+    status = keep_table(context, v->keep, whole ? table : NULL, size);
   free(table);
   return status;
 }

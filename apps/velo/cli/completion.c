@@ -6,9 +6,11 @@
 
 #include "cli/kinds.h"
 
-const Choice shell_choices[] = {{"bash", SHELL_BASH}, {"zsh", SHELL_ZSH}, {"fish", SHELL_FISH}, {NULL, 0}};
+const Choice shell_choices[] = {
+    {"bash", SHELL_BASH}, {"zsh", SHELL_ZSH}, {"fish", SHELL_FISH}, {NULL, 0}};
 
-/* ---- what completes a value -------------------------------------------------------------------------------------- */
+/* ---- what completes a value
+ * -------------------------------------------------------------------------------------- */
 
 typedef enum Values { VALUES_UNKNOWN, VALUES_NAMES, VALUES_FILES, VALUES_FOLDERS } Values;
 
@@ -17,14 +19,18 @@ static Values option_values(const Option *o) {
   static const char *const files[] = {"FILE", "IMAGE", "IMAGE.exr", "FILM", "RESULT", "OTHER"};
   switch (o->kind) {
     case OPTION_CHOICE:
-    case OPTION_KIND: return VALUES_NAMES;
+    case OPTION_KIND:
+      return VALUES_NAMES;
     case OPTION_FOLDERS:
-    case OPTION_SEARCH: return VALUES_FOLDERS;
+    case OPTION_SEARCH:
+      return VALUES_FOLDERS;
     case OPTION_TEXT:
     case OPTION_TEXTS:
       for (size_t i = 0; i < sizeof files / sizeof *files; i++)
-        if (strcmp(o->value, files[i]) == 0) return VALUES_FILES;
-      return strcmp(o->value, "DIR") == 0 || strcmp(o->value, "FOLDER") == 0 ? VALUES_FOLDERS : VALUES_UNKNOWN;
+        if (strcmp(o->value, files[i]) == 0)
+          return VALUES_FILES;
+      return strcmp(o->value, "DIR") == 0 || strcmp(o->value, "FOLDER") == 0 ? VALUES_FOLDERS
+                                                                             : VALUES_UNKNOWN;
     case OPTION_FLAG:
     case OPTION_INTEGER:
     case OPTION_NUMBER:
@@ -32,13 +38,15 @@ static Values option_values(const Option *o) {
     case OPTION_BYTES:
     case OPTION_SIZE:
     case OPTION_CROP:
-    case OPTION_FRACTIONS: break;
+    case OPTION_FRACTIONS:
+      break;
   }
   return VALUES_UNKNOWN;
 }
 
 static void put_names(const Option *o) {
-  for (const Choice *c = option_choices(o); c->name; c++) printf("%s%s", c == option_choices(o) ? "" : " ", c->name);
+  for (const Choice *c = option_choices(o); c->name; c++)
+    printf("%s%s", c == option_choices(o) ? "" : " ", c->name);
 }
 
 /* Whether the operand of a command is a family of velo/schema.h. */
@@ -48,10 +56,12 @@ static bool takes_family(const Command *command) {
 
 static void put_families(void) {
   const vlKindFamily *family;
-  for (uint32_t i = 0; (family = vl_kind_family(i)); i++) printf("%s%s", i ? " " : "", family->name);
+  for (uint32_t i = 0; (family = vl_kind_family(i)); i++)
+    printf("%s%s", i ? " " : "", family->name);
 }
 
-/* ---- words of the commands --------------------------------------------------------------------------------------- */
+/* ---- words of the commands
+ * --------------------------------------------------------------------------------------- */
 
 /* Length of a command's first word. */
 static int first_length(const Command *command) {
@@ -66,25 +76,31 @@ static bool has_two_words(const Command *command) {
 static bool is_first(const Command *const *commands, int i) {
   int n = first_length(commands[i]);
   for (int j = 0; j < i; j++)
-    if (first_length(commands[j]) == n && strncmp(commands[j]->name, commands[i]->name, (size_t)n) == 0) return false;
+    if (first_length(commands[j]) == n &&
+        strncmp(commands[j]->name, commands[i]->name, (size_t)n) == 0)
+      return false;
   return true;
 }
 
 static bool same_first(const Command *a, const Command *b) {
-  return first_length(a) == first_length(b) && strncmp(a->name, b->name, (size_t)first_length(a)) == 0;
+  return first_length(a) == first_length(b) &&
+         strncmp(a->name, b->name, (size_t)first_length(a)) == 0;
 }
 
 /* Prints the first words of all commands. */
 static void put_first_words(const Command *const *commands, int count) {
   for (int i = 0; i < count; i++)
-    if (is_first(commands, i)) printf("%s%.*s", i ? " " : "", first_length(commands[i]), commands[i]->name);
+    if (is_first(commands, i))
+      printf("%s%.*s", i ? " " : "", first_length(commands[i]), commands[i]->name);
 }
 
 /* Prints the second words of the commands that begin as `command`. */
-static void put_second_words(const Command *const *commands, int count, const Command *command) {
+static void put_second_words(const Command *const *commands, int count,
+                             const Command *command) {
   const char *gap = "";
   for (int i = 0; i < count; i++) {
-    if (!same_first(commands[i], command)) continue;
+    if (!same_first(commands[i], command))
+      continue;
     printf("%s%s", gap, commands[i]->name + first_length(command) + 1);
     gap = " ";
   }
@@ -94,27 +110,33 @@ static void put_second_words(const Command *const *commands, int count, const Co
 static size_t clause_length(const char *text) {
   size_t n = 0, open = 0;
   while (text[n] && !(strchr(".;:", text[n]) && (text[n + 1] == ' ' || !text[n + 1]))) {
-    if (text[n] == '(') open = n;
-    if (text[n] == ')') open = 0;
+    if (text[n] == '(')
+      open = n;
+    if (text[n] == ')')
+      open = 0;
     n++;
   }
   return open ? open - 1 : n;
 }
 
-/* Prints the first clause of a text inside single quotes; `escaped` characters get a backslash. */
+/* Prints the first clause of a text inside single quotes; `escaped` characters get a backslash.
+ */
 static void put_clause(const char *text, const char *escaped, bool fish) {
   size_t n = clause_length(text);
   for (size_t i = 0; i < n; i++) {
     if (text[i] == '\'') {
       fputs(fish ? "\\'" : "'\\''", stdout);
     } else {
-      if (strchr(escaped, text[i])) putchar('\\');
+      if (strchr(escaped, text[i]))
+        putchar('\\');
       putchar(text[i]);
     }
   }
 }
 
-/* ---- bash -------------------------------------------------------------------------------------------------------- */
+/* ---- bash
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static const char bash_head[] =
     "# bash completion of velo; written by `velo help --completion bash`\n"
@@ -151,14 +173,22 @@ static const char bash_tail[] =
     "complete -F _velo velo\n";
 
 static void bash_option(const Option *o) {
-  if (o->kind == OPTION_FLAG) return;
+  if (o->kind == OPTION_FLAG)
+    return;
   printf("        ");
-  if (o->letter) printf("-%c | ", o->letter);
+  if (o->letter)
+    printf("-%c | ", o->letter);
   printf("--%s) kind=", o->name);
   switch (option_values(o)) {
-    case VALUES_UNKNOWN: printf("value"); break;
-    case VALUES_FILES: printf("valuefiles"); break;
-    case VALUES_FOLDERS: printf("valuefolders"); break;
+    case VALUES_UNKNOWN:
+      printf("value");
+      break;
+    case VALUES_FILES:
+      printf("valuefiles");
+      break;
+    case VALUES_FOLDERS:
+      printf("valuefolders");
+      break;
     case VALUES_NAMES:
       printf("names names='");
       put_names(o);
@@ -168,11 +198,13 @@ static void bash_option(const Option *o) {
   printf(" ;;\n");
 }
 
-static void bash_command(const Command *const *commands, int count, const Command *command, const Command *help) {
+static void bash_command(const Command *const *commands, int count, const Command *command,
+                         const Command *help) {
   printf("    '%s')\n      options='", command->name);
   for (const Option *o = command->options; o->name; o++) {
     printf("--%s ", o->name);
-    if (o->letter) printf("-%c ", o->letter);
+    if (o->letter)
+      printf("-%c ", o->letter);
   }
   printf("--help -h'\n");
   if (takes_family(command)) {
@@ -181,11 +213,14 @@ static void bash_command(const Command *const *commands, int count, const Comman
     printf("'\n");
   }
   if (command == help) {
-    printf("      kind=operand\n      case ${COMP_WORDS[COMP_CWORD - 1]} in\n        help) names='");
+    printf(
+        "      kind=operand\n      case ${COMP_WORDS[COMP_CWORD - 1]} in\n        help) "
+        "names='");
     put_first_words(commands, count);
     printf("' ;;\n");
     for (int i = 0; i < count; i++) {
-      if (!is_first(commands, i) || !has_two_words(commands[i])) continue;
+      if (!is_first(commands, i) || !has_two_words(commands[i]))
+        continue;
       printf("        %.*s) names='", first_length(commands[i]), commands[i]->name);
       put_second_words(commands, count, commands[i]);
       printf("' ;;\n");
@@ -194,7 +229,8 @@ static void bash_command(const Command *const *commands, int count, const Comman
   }
   if (command->options->name) {
     printf("      case $option in\n");
-    for (const Option *o = command->options; o->name; o++) bash_option(o);
+    for (const Option *o = command->options; o->name; o++)
+      bash_option(o);
     printf("      esac\n");
   }
   printf("      ;;\n");
@@ -203,28 +239,37 @@ static void bash_command(const Command *const *commands, int count, const Comman
 static void print_bash(const Command *const *commands, int count, const Command *help) {
   fputs(bash_head, stdout);
   for (int i = 0; i < count; i++) {
-    if (!is_first(commands, i) || !has_two_words(commands[i])) continue;
-    printf("    %.*s)\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='", first_length(commands[i]),
-           commands[i]->name);
+    if (!is_first(commands, i) || !has_two_words(commands[i]))
+      continue;
+    printf("    %.*s)\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='",
+           first_length(commands[i]), commands[i]->name);
     put_second_words(commands, count, commands[i]);
     printf("'\n      ;;\n");
   }
   printf("  esac\n  if ((COMP_CWORD == 1)); then\n    names='");
   put_first_words(commands, count);
-  printf(" --version --help'\n  fi\n  ((COMP_CWORD < at)) && command= kind=names\n  case $command in\n");
-  for (int i = 0; i < count; i++) bash_command(commands, count, commands[i], help);
+  printf(
+      " --version --help'\n  fi\n  ((COMP_CWORD < at)) && command= kind=names\n  case $command "
+      "in\n");
+  for (int i = 0; i < count; i++)
+    bash_command(commands, count, commands[i], help);
   fputs(bash_tail, stdout);
 }
 
-/* ---- zsh --------------------------------------------------------------------------------------------------------- */
+/* ---- zsh
+ * ---------------------------------------------------------------------------------------------------------
+ */
 
 static void zsh_option(const Option *o) {
-  bool repeated = o->kind == OPTION_TEXTS || o->kind == OPTION_FOLDERS || o->kind == OPTION_SEARCH;
+  bool repeated =
+      o->kind == OPTION_TEXTS || o->kind == OPTION_FOLDERS || o->kind == OPTION_SEARCH;
   const char *end = o->kind == OPTION_FLAG ? "" : "=";
   printf("        ");
   if (o->letter) {
-    if (repeated) printf("'*'");
-    if (!repeated) printf("'(-%c --%s)'", o->letter, o->name);
+    if (repeated)
+      printf("'*'");
+    if (!repeated)
+      printf("'(-%c --%s)'", o->letter, o->name);
     printf("{-%c%s,--%s%s}'", o->letter, *end ? "+" : "", o->name, end);
   } else {
     printf("'%s--%s%s", repeated ? "*" : "", o->name, end);
@@ -234,12 +279,19 @@ static void zsh_option(const Option *o) {
   putchar(']');
   if (o->kind != OPTION_FLAG) {
     putchar(':');
-    for (const char *c = o->value; *c; c++) printf("%s%c", *c == ':' ? "\\" : "", *c);
+    for (const char *c = o->value; *c; c++)
+      printf("%s%c", *c == ':' ? "\\" : "", *c);
     putchar(':');
     switch (option_values(o)) {
-      case VALUES_UNKNOWN: putchar(' '); break;
-      case VALUES_FILES: printf("_files"); break;
-      case VALUES_FOLDERS: printf("_files -/"); break;
+      case VALUES_UNKNOWN:
+        putchar(' ');
+        break;
+      case VALUES_FILES:
+        printf("_files");
+        break;
+      case VALUES_FOLDERS:
+        printf("_files -/");
+        break;
       case VALUES_NAMES:
         putchar('(');
         put_names(o);
@@ -250,14 +302,17 @@ static void zsh_option(const Option *o) {
   printf("' \\\n");
 }
 
-/* Prints a call of _describe: commands with their summaries. family: null for the first words. */
+/* Prints a call of _describe: commands with their summaries. family: null for the first words.
+ */
 static void zsh_describe(const Command *const *commands, int count, const Command *family) {
   printf("    names=(\n");
   for (int i = 0; i < count; i++) {
-    if (family ? !same_first(commands[i], family) : !is_first(commands, i)) continue;
+    if (family ? !same_first(commands[i], family) : !is_first(commands, i))
+      continue;
     bool group = !family && has_two_words(commands[i]);
     int n = first_length(commands[i]);
-    printf("      '%.*s:", family ? 100 : n, family ? commands[i]->name + n + 1 : commands[i]->name);
+    printf("      '%.*s:", family ? 100 : n,
+           family ? commands[i]->name + n + 1 : commands[i]->name);
     if (group) {
       printf("commands about %.*ss", n, commands[i]->name);
     } else {
@@ -268,9 +323,11 @@ static void zsh_describe(const Command *const *commands, int count, const Comman
   printf("    )\n    _describe -t commands 'velo command' names\n    return\n");
 }
 
-static void zsh_command(const Command *const *commands, int count, const Command *command, const Command *help) {
+static void zsh_command(const Command *const *commands, int count, const Command *command,
+                        const Command *help) {
   printf("    '%s')\n      _arguments -s -S \\\n", command->name);
-  for (const Option *o = command->options; o->name; o++) zsh_option(o);
+  for (const Option *o = command->options; o->name; o++)
+    zsh_option(o);
   printf("        '(-h --help)'{-h,--help}'[print the options]' \\\n        ");
   if (takes_family(command)) {
     printf("'1:family:(");
@@ -288,41 +345,52 @@ static void zsh_command(const Command *const *commands, int count, const Command
 
 static void print_zsh(const Command *const *commands, int count, const Command *help) {
   printf(
-      "#compdef velo\n# written by `velo help --completion zsh`\n_velo() {\n  local command=$words[2]\n  local -a "
+      "#compdef velo\n# written by `velo help --completion zsh`\n_velo() {\n  local "
+      "command=$words[2]\n  local -a "
       "names\n");
   printf("  if ((CURRENT == 2)); then\n");
   zsh_describe(commands, count, NULL);
   printf("  fi\n");
   for (int i = 0; i < count; i++) {
-    if (!is_first(commands, i) || !has_two_words(commands[i])) continue;
-    printf("  if [[ $command == %.*s ]] && ((CURRENT == 3)); then\n", first_length(commands[i]), commands[i]->name);
+    if (!is_first(commands, i) || !has_two_words(commands[i]))
+      continue;
+    printf("  if [[ $command == %.*s ]] && ((CURRENT == 3)); then\n", first_length(commands[i]),
+           commands[i]->name);
     zsh_describe(commands, count, commands[i]);
     printf("  fi\n");
   }
   printf("  case $command in\n    ");
   const char *gap = "";
   for (int i = 0; i < count; i++) {
-    if (!is_first(commands, i) || !has_two_words(commands[i])) continue;
+    if (!is_first(commands, i) || !has_two_words(commands[i]))
+      continue;
     printf("%s%.*s", gap, first_length(commands[i]), commands[i]->name);
     gap = " | ";
   }
   printf(
-      ")\n      command+=\" $words[3]\"\n      shift 2 words\n      ((CURRENT -= 2))\n      ;;\n"
-      "    *)\n      shift words\n      ((CURRENT -= 1))\n      ;;\n  esac\n  case $command in\n");
-  for (int i = 0; i < count; i++) zsh_command(commands, count, commands[i], help);
+      ")\n      command+=\" $words[3]\"\n      shift 2 words\n      ((CURRENT -= 2))\n      "
+      ";;\n"
+      "    *)\n      shift words\n      ((CURRENT -= 1))\n      ;;\n  esac\n  case $command "
+      "in\n");
+  for (int i = 0; i < count; i++)
+    zsh_command(commands, count, commands[i], help);
   printf("  esac\n}\n_velo \"$@\"\n");
 }
 
-/* ---- fish -------------------------------------------------------------------------------------------------------- */
+/* ---- fish
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static const char fish_head[] =
     "# fish completion of velo; written by `velo help --completion fish`\n"
-    "function __velo_words_are --description 'whether the words before the cursor are exactly these'\n"
+    "function __velo_words_are --description 'whether the words before the cursor are exactly "
+    "these'\n"
     "  set -l words (commandline -opc)\n"
     "  set -e words[1]\n"
     "  test \"$words\" = \"$argv\"\n"
     "end\n"
-    "function __velo_command_is --description 'whether the words before the cursor begin with these'\n"
+    "function __velo_command_is --description 'whether the words before the cursor begin with "
+    "these'\n"
     "  set -l words (commandline -opc)\n"
     "  set -e words[1]\n"
     "  set -l n (count $argv)\n"
@@ -331,12 +399,19 @@ static const char fish_head[] =
 
 static void fish_option(const Command *command, const Option *o) {
   printf("complete -c velo -n '__velo_command_is %s' -l %s", command->name, o->name);
-  if (o->letter) printf(" -s %c", o->letter);
+  if (o->letter)
+    printf(" -s %c", o->letter);
   if (o->kind != OPTION_FLAG) {
     switch (option_values(o)) {
-      case VALUES_UNKNOWN: printf(" -x"); break;
-      case VALUES_FILES: printf(" -r -F"); break;
-      case VALUES_FOLDERS: printf(" -x -a '(__fish_complete_directories)'"); break;
+      case VALUES_UNKNOWN:
+        printf(" -x");
+        break;
+      case VALUES_FILES:
+        printf(" -r -F");
+        break;
+      case VALUES_FOLDERS:
+        printf(" -x -a '(__fish_complete_directories)'");
+        break;
       case VALUES_NAMES:
         printf(" -x -a '");
         put_names(o);
@@ -369,28 +444,39 @@ static void print_fish(const Command *const *commands, int count, const Command 
       fish_word("__velo_words_are", n, c->name, has_two_words(c) ? NULL : c->summary);
       fish_word("__velo_words_are help", n, c->name, NULL);
     }
-    if (!has_two_words(c)) continue;
+    if (!has_two_words(c))
+      continue;
     snprintf(condition, sizeof condition, "__velo_words_are %.*s", n, c->name);
     fish_word(condition, 100, c->name + n + 1, c->summary);
     snprintf(condition, sizeof condition, "__velo_words_are help %.*s", n, c->name);
     fish_word(condition, 100, c->name + n + 1, NULL);
   }
   for (int i = 0; i < count; i++) {
-    for (const Option *o = commands[i]->options; o->name; o++) fish_option(commands[i], o);
-    printf("complete -c velo -n '__velo_command_is %s' -l help -s h -d 'print the options'\n", commands[i]->name);
+    for (const Option *o = commands[i]->options; o->name; o++)
+      fish_option(commands[i], o);
+    printf("complete -c velo -n '__velo_command_is %s' -l help -s h -d 'print the options'\n",
+           commands[i]->name);
     if (takes_family(commands[i])) {
       printf("complete -c velo -f -n '__velo_command_is %s' -a '", commands[i]->name);
       put_families();
       printf("'\n");
     }
-    if (commands[i] == help) printf("complete -c velo -f -n '__velo_command_is %s'\n", help->name);
+    if (commands[i] == help)
+      printf("complete -c velo -f -n '__velo_command_is %s'\n", help->name);
   }
 }
 
-void completion_print(Shell shell, const Command *const *commands, int count, const Command *help) {
+void completion_print(Shell shell, const Command *const *commands, int count,
+                      const Command *help) {
   switch (shell) {
-    case SHELL_BASH: print_bash(commands, count, help); break;
-    case SHELL_ZSH: print_zsh(commands, count, help); break;
-    case SHELL_FISH: print_fish(commands, count, help); break;
+    case SHELL_BASH:
+      print_bash(commands, count, help);
+      break;
+    case SHELL_ZSH:
+      print_zsh(commands, count, help);
+      break;
+    case SHELL_FISH:
+      print_fish(commands, count, help);
+      break;
   }
 }

@@ -1,4 +1,6 @@
-/* cli/completion.h: completion scripts of shells, made from the tables of the commands: `velo help --completion`. */
+/* cli/completion.h: completion scripts of shells, made from the tables of the commands: `velo
+ * help
+ * --completion`. */
 #ifndef APP_CLI_COMPLETION_H
 #define APP_CLI_COMPLETION_H
 
@@ -7,8 +9,10 @@
 typedef enum Shell { SHELL_BASH, SHELL_ZSH, SHELL_FISH } Shell;
 extern const Choice shell_choices[];
 
-/* Prints the completion script of velo for this shell to stdout: commands, options, the names that options take, files
- * and folders. help: the command `velo help`, whose operands are the names of commands; one of `commands`. */
-void completion_print(Shell shell, const Command *const *commands, int count, const Command *help);
+/* Prints the completion script of velo for this shell to stdout: commands, options, the names
+ * that options take, files and folders. help: the command `velo help`, whose operands are the
+ * names of commands; one of `commands`. */
+void completion_print(Shell shell, const Command *const *commands, int count,
+                      const Command *help);
 
 #endif

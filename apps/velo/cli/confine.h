@@ -20,7 +20,8 @@ void confine_read(Confine *confine, const char *path);
 /* Files beside this one are read, too. */
 void confine_read_folder(Confine *confine, const char *path);
 void confine_write(Confine *confine, const char *path);
-/* Confines the program if --sandbox is given, and notes what was possible. To be called before threads start. */
+/* Confines the program if --sandbox is given, and notes what was possible. To be called before
+ * threads start. */
 void confine_apply(Confine *confine, const Arguments *arguments);
 
 #endif

@@ -3,7 +3,9 @@
 
 #include "cli/signals.h"
 
-enum { MOST_PER_PROCESSOR = 4 }; /* more threads wait for each other: 1000 on two processors take seconds */
+enum {
+  MOST_PER_PROCESSOR = 4
+}; /* more threads wait for each other: 1000 on two processors take seconds */
 
 static bool interrupted(void *user) {
   (void)user;
@@ -17,22 +19,31 @@ int context_open(const vlContextDef *def, vlContext **context) {
   ours.interrupted = interrupted;
   if (ours.threads > most) {
     ours.threads = most;
-    report_note("--threads %u: %u are used, %d for each processor (the image is the same)", def->threads, most,
-                MOST_PER_PROCESSOR);
+    report_note("--threads %u: %u are used, %d for each processor (the image is the same)",
+                def->threads, most, MOST_PER_PROCESSOR);
   }
   switch (vl_context_create(&ours, context)) {
     case VL_OK:
-    case VL_CANCELLED: signals_watch(*context); return -1;
-    case VL_ERROR_MISSING: return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
+    case VL_CANCELLED:
+      signals_watch(*context);
+      return -1;
+    case VL_ERROR_MISSING:
+      return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
     case VL_ERROR_ARGUMENT:
     case VL_ERROR_UNSUPPORTED:
-      if (def->isa != vl_default_context_def().isa) return report_usage("--isa: this machine does not have it");
-      return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
+      if (def->isa != vl_default_context_def().isa)
+        return report_usage("--isa: this machine does not have it");
+      return report_usage(
+          "the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must "
+          "have "
+          "it");
     case VL_ERROR_SCENE:
     case VL_ERROR_IO:
-    case VL_ERROR_MEMORY: break;
+    case VL_ERROR_MEMORY:
+      break;
   }
-  return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
+  return report_failure(STATUS_OTHER,
+                        "no memory, or the system refuses to start %u threads: --threads N",
                         ours.threads);
 }
 
@@ -43,11 +54,15 @@ void context_close(vlContext *context) {
 
 const char *context_isa_name(const vlContext *context) {
   switch (vl_context_isa(context)) {
-    case VL_ISA_V2: return "x86-64-v2";
-    case VL_ISA_V3: return "x86-64-v3";
-    case VL_ISA_V4: return "x86-64-v4";
+    case VL_ISA_V2:
+      return "x86-64-v2";
+    case VL_ISA_V3:
+      return "x86-64-v3";
+    case VL_ISA_V4:
+      return "x86-64-v4";
     case VL_ISA_BASE:
-    case VL_ISA_AUTO: break;
+    case VL_ISA_AUTO:
+      break;
   }
   return "base";
 }

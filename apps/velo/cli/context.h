@@ -5,12 +5,15 @@
 #include "cli/report.h"
 #include "velo/base.h"
 
-/* Creates a context whose messages are reported by `def->log`. Returns -1 on success. Otherwise it reports the
- * reason (a folder of --sandbox, the environment variable VELO_ISA, memory or threads) and returns the exit code. */
+/* Creates a context whose messages are reported by `def->log`. Returns -1 on success. Otherwise
+ * it reports the reason (a folder of --sandbox, the environment variable VELO_ISA, memory or
+ * threads) and returns the exit code. */
 int context_open(const vlContextDef *def, vlContext **context);
 /* Destroys a context that context_open created. Null is allowed. */
 void context_close(vlContext *context);
-/* The instruction set that the context's kernels use: "x86-64-v3", or "base" on other processors. */
+/* The instruction set that the context's kernels use: "x86-64-v3", or "base" on other
+ * processors.
+ */
 const char *context_isa_name(const vlContext *context);
 
 #endif

@@ -1,5 +1,5 @@
-/* cli/help.c: the help page of a command, made from its table: usage, description, options in sections, examples. See
- * options.h. */
+/* cli/help.c: the help page of a command, made from its table: usage, description, options in
+ * sections, examples. See options.h. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,8 +7,9 @@
 
 enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
 
-/* Prints a text, wrapped. Lines are indented by `indent`; the first starts at *column. One line break in the text
- * counts as a blank, two end a paragraph. A line that begins with a blank is printed unchanged. */
+/* Prints a text, wrapped. Lines are indented by `indent`; the first starts at *column. One line
+ * break in the text counts as a blank, two end a paragraph. A line that begins with a blank is
+ * printed unchanged. */
 static void print_wrapped(const char *text, int indent, int column) {
   while (*text) {
     if (*text == '\n') {
@@ -22,7 +23,8 @@ static void print_wrapped(const char *text, int indent, int column) {
     }
     if (*text == ' ') {
       size_t skipped = column == 0 ? strcspn(text, "\n") : strspn(text, " ");
-      if (column == 0) column = printf("%.*s", (int)skipped, text);
+      if (column == 0)
+        column = printf("%.*s", (int)skipped, text);
       text += skipped;
       continue;
     }
@@ -46,12 +48,15 @@ const ExitStatus exit_statuses[] = {
     {"3", "wrong scene or image"},
     {"4", "missing file"},
     {"5", "reading or writing failed"},
-    {"128 + signal", "stopped by it: 129 SIGHUP, 130 Ctrl-C, 138 SIGUSR1, 140 SIGUSR2, 143 SIGTERM, 152 SIGXCPU"},
+    {"128 + signal",
+     "stopped by it: 129 SIGHUP, 130 Ctrl-C, 138 SIGUSR1, 140 SIGUSR2, 143 SIGTERM, 152 "
+     "SIGXCPU"},
     {NULL, NULL}};
 
 void options_print_exit_statuses(void) {
   printf("exit codes:\n");
-  for (const ExitStatus *s = exit_statuses; s->code; s++) print_wrapped(s->meaning, 16, printf("  %-12s", s->code));
+  for (const ExitStatus *s = exit_statuses; s->code; s++)
+    print_wrapped(s->meaning, 16, printf("  %-12s", s->code));
 }
 
 /* Prints "a, b (or c), d": the accepted names with aliases in parentheses. */
@@ -62,8 +67,10 @@ static void print_choices(const Choice *choices) {
     const Choice *alias = c + 1;
     n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? " " : "", c->name);
     for (; alias->name && alias->value == c->value; alias++)
-      n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", alias == c + 1 ? " (or " : ", ", alias->name);
-    snprintf(list + n, sizeof list - n, "%s%s", alias > c + 1 ? ")" : "", alias->name ? "," : "");
+      n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", alias == c + 1 ? " (or " : ", ",
+                            alias->name);
+    snprintf(list + n, sizeof list - n, "%s%s", alias > c + 1 ? ")" : "",
+             alias->name ? "," : "");
     c = alias;
   }
   print_wrapped(list, HELP_COLUMN, 0);
@@ -73,14 +80,16 @@ static void print_option(const Option *o) {
   char head[80];
   int n = o->letter ? snprintf(head, sizeof head, "  -%c, --%s", o->letter, o->name)
                     : snprintf(head, sizeof head, "      --%s", o->name);
-  if (o->value) n += snprintf(head + n, sizeof head - (size_t)n, " %s", o->value);
+  if (o->value)
+    n += snprintf(head + n, sizeof head - (size_t)n, " %s", o->value);
   printf("%s", head);
   if (n + 2 > HELP_COLUMN) {
     printf("\n");
     n = 0;
   }
   print_wrapped(o->help, HELP_COLUMN, n);
-  if (option_choices(o)) print_choices(option_choices(o));
+  if (option_choices(o))
+    print_choices(option_choices(o));
 }
 
 static void print_examples(const char *text) {
@@ -98,15 +107,18 @@ void options_print_help(const Command *command, bool all) {
   printf("\n");
   if (command->brief && !all) {
     int count = 1; /* --help */
-    for (const Option *o = command->options; o->name; o++) count++;
+    for (const Option *o = command->options; o->name; o++)
+      count++;
     printf("%s\nAll %d options: velo help %s --all\n", command->brief, count, command->name);
     return;
   }
   print_wrapped(command->text, 0, 0);
-  if (!command->sections) printf("\noptions:\n");
+  if (!command->sections)
+    printf("\noptions:\n");
   for (const Option *o = command->options; o->name; o++) {
     for (const Section *s = command->sections; s && s->title; s++)
-      if (s->first == o->id) printf("\n%s:\n", s->title);
+      if (s->first == o->id)
+        printf("\n%s:\n", s->title);
     print_option(o);
   }
   printf("%s  -h, --help%*sthis page\n", command->sections ? "\n" : "", HELP_COLUMN - 12, "");

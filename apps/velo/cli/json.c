@@ -5,14 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates included). */
+/* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates included).
+ */
 static size_t utf8_length(const unsigned char *s) {
-  if (s[0] < 0x80) return 1;
-  size_t n = s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : (s[0] & 0xf0) == 0xe0 ? 3 : s[0] >= 0xf0 && s[0] < 0xf5 ? 4 : 0;
+  if (s[0] < 0x80)
+    return 1;
+  size_t n = s[0] >= 0xc2 && s[0] < 0xe0   ? 2
+             : (s[0] & 0xf0) == 0xe0       ? 3
+             : s[0] >= 0xf0 && s[0] < 0xf5 ? 4
+                                           : 0;
   for (size_t i = 1; i < n; i++)
-    if ((s[i] & 0xc0) != 0x80) return 0;
-  if (n == 3 && ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] >= 0xa0))) return 0;
-  if (n == 4 && ((s[0] == 0xf0 && s[1] < 0x90) || (s[0] == 0xf4 && s[1] >= 0x90))) return 0;
+    if ((s[i] & 0xc0) != 0x80)
+      return 0;
+  if (n == 3 && ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] >= 0xa0)))
+    return 0;
+  if (n == 4 && ((s[0] == 0xf0 && s[1] < 0x90) || (s[0] == 0xf4 && s[1] >= 0x90)))
+    return 0;
   return n;
 }
 
@@ -39,7 +47,8 @@ static void put_string(FILE *out, const char *text) {
 }
 
 static void put_key(Json *json, const char *key) {
-  if (json->comma) fputs(", ", json->out);
+  if (json->comma)
+    fputs(", ", json->out);
   json->comma = true;
   if (key) {
     put_string(json->out, key);
@@ -68,14 +77,16 @@ void format_number(char *text, size_t size, double number) {
   for (size_t i = 0; i < sizeof digits / sizeof *digits; i++) {
     snprintf(text, size, "%.*g", digits[i], number);
     double back = strtod(text, NULL);
-    if (back == number || number != number) return;
+    if (back == number || number != number)
+      return;
   }
 }
 
 void json_number(Json *json, const char *key, double number) {
   put_key(json, key);
   char text[40];
-  if (isfinite(number)) format_number(text, sizeof text, number);
+  if (isfinite(number))
+    format_number(text, sizeof text, number);
   fputs(isfinite(number) ? text : "null", json->out);
 }
 

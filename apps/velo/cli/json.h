@@ -1,5 +1,5 @@
-/* cli/json.h: writes JSON to a stream, one value after the other; the writer inserts commas. Invalid UTF-8 is replaced
- * by replacement characters, numbers that are not finite by null. */
+/* cli/json.h: writes JSON to a stream, one value after the other; the writer inserts commas.
+ * Invalid UTF-8 is replaced by replacement characters, numbers that are not finite by null. */
 #ifndef APP_CLI_JSON_H
 #define APP_CLI_JSON_H
 
@@ -12,7 +12,8 @@ typedef struct Json {
   bool comma; /* a value precedes the next one */
 } Json;
 
-/* key is null inside arrays and for the outermost value. bracket: '{' or '[' to begin, '}' or ']' to end. */
+/* key is null inside arrays and for the outermost value. bracket: '{' or '[' to begin, '}' or
+ * ']' to end. */
 void json_begin(Json *json, const char *key, char bracket);
 void json_end(Json *json, char bracket);
 void json_text(Json *json, const char *key, const char *text);

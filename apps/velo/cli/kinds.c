@@ -8,20 +8,26 @@ enum { MAX_FAMILIES = 16, MAX_CHOICES = 64 };
 static void fill(const vlKindFamily *family, const Choice *more, Choice *choices) {
   int n = 0;
   for (uint32_t i = 0; i < family->kind_count && n + 2 < MAX_CHOICES; i++) {
-    if (family->rows[i]->name) choices[n++] = (Choice){family->rows[i]->name, (int)i};
-    if (family->rows[i]->alias) choices[n++] = (Choice){family->rows[i]->alias, (int)i};
+    if (family->rows[i]->name)
+      choices[n++] = (Choice){family->rows[i]->name, (int)i};
+    if (family->rows[i]->alias)
+      choices[n++] = (Choice){family->rows[i]->alias, (int)i};
   }
-  for (; more->name && n + 1 < MAX_CHOICES; more++) choices[n++] = *more;
+  for (; more->name && n + 1 < MAX_CHOICES; more++)
+    choices[n++] = *more;
 }
 
 const Choice *kind_choices(const Choice *list) {
-  /* zero-initialised, so each list ends with zeros; the second list of a family has the further names */
+  /* zero-initialised, so each list ends with zeros; the second list of a family has the further
+   * names */
   static Choice choices[2 * MAX_FAMILIES + 1][MAX_CHOICES];
   const vlKindFamily *family;
   for (uint32_t i = 0; i < MAX_FAMILIES && (family = vl_kind_family(i)); i++) {
-    if (strcmp(family->name, list->name) != 0) continue;
+    if (strcmp(family->name, list->name) != 0)
+      continue;
     Choice *own = choices[list[1].name ? MAX_FAMILIES + i : i];
-    if (!own[0].name) fill(family, list + 1, own);
+    if (!own[0].name)
+      fill(family, list + 1, own);
     return own;
   }
   return choices[2 * MAX_FAMILIES];
@@ -29,6 +35,8 @@ const Choice *kind_choices(const Choice *list) {
 
 const char *kind_name(const char *name, int kind) {
   const vlKindFamily *family = vl_kind_family_find(name);
-  const char *found = family && kind >= 0 && (uint32_t)kind < family->kind_count ? family->rows[kind]->name : NULL;
+  const char *found = family && kind >= 0 && (uint32_t)kind < family->kind_count
+                          ? family->rows[kind]->name
+                          : NULL;
   return found ? found : "?";
 }

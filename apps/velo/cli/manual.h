@@ -4,8 +4,9 @@
 
 #include "cli/options.h"
 
-/* Prints the page velo(1), which lists the commands, or the page of one command, such as velo-render(1), in man's
- * format to stdout. SOURCE_DATE_EPOCH in the environment gives the page's date. */
+/* Prints the page velo(1), which lists the commands, or the page of one command, such as
+ * velo-render(1), in man's format to stdout. SOURCE_DATE_EPOCH in the environment gives the
+ * page's date. */
 void manual_print_program(const Command *const *commands, int count);
 void manual_print_command(const Command *command);
 

@@ -1,4 +1,5 @@
-/* cli/options.c: parses the command line by the command's table. See options.h; the help page is in help.c. */
+/* cli/options.c: parses the command line by the command's table. See options.h; the help page
+ * is in help.c. */
 #include "cli/options.h"
 
 #include <ctype.h>
@@ -11,50 +12,60 @@
 #include "cli/kinds.h"
 #include "cli/report.h"
 
-/* ---- the nearest name -------------------------------------------------------------------------------------------- */
+/* ---- the nearest name
+ * --------------------------------------------------------------------------------------------
+ */
 
 enum { LONGEST_NAME = 40 };
 
-const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count) {
+const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names,
+                         int count) {
   static char text[160];
   const char *near = vl_near_name(wrong, names, (size_t)count);
   text[0] = 0;
-  if (near) snprintf(text, sizeof text, "; did you mean \"%s%s\"?", prefix, near);
+  if (near)
+    snprintf(text, sizeof text, "; did you mean \"%s%s\"?", prefix, near);
   return text;
 }
 
 /* Names of other programs' options, and velo's. The first that the command has is suggested. */
-static const char *const synonyms[][3] = {{"width", "resolution", "size"}, {"height", "resolution", "size"},
-                                          {"size", "resolution", NULL},    {"dimensions", "resolution", NULL},
-                                          {"samples", "spp", NULL},        {"pixelsamples", "spp", NULL},
-                                          {"integrator", "tracer", NULL},  {"nthreads", "threads", NULL},
-                                          {"jobs", "threads", NULL},       {"cores", "threads", NULL},
-                                          {"outfile", "output", NULL},     {"out", "output", NULL},
-                                          {"bounces", "max-depth", NULL},  {"depth", "max-depth", NULL},
-                                          {"force", "overwrite", NULL},    {"silent", "quiet", NULL},
-                                          {"timeout", "time", NULL},       {"envmap", "environment", NULL},
-                                          {"hdri", "environment", NULL},   {"background", "environment", NULL},
-                                          {"tonemap", "view", NULL}};
+static const char *const synonyms[][3] = {
+    {"width", "resolution", "size"}, {"height", "resolution", "size"},
+    {"size", "resolution", NULL},    {"dimensions", "resolution", NULL},
+    {"samples", "spp", NULL},        {"pixelsamples", "spp", NULL},
+    {"integrator", "tracer", NULL},  {"nthreads", "threads", NULL},
+    {"jobs", "threads", NULL},       {"cores", "threads", NULL},
+    {"outfile", "output", NULL},     {"out", "output", NULL},
+    {"bounces", "max-depth", NULL},  {"depth", "max-depth", NULL},
+    {"force", "overwrite", NULL},    {"silent", "quiet", NULL},
+    {"timeout", "time", NULL},       {"envmap", "environment", NULL},
+    {"hdri", "environment", NULL},   {"background", "environment", NULL},
+    {"tonemap", "view", NULL}};
 
 static const Option *find_synonym(const Command *command, const char *name) {
   for (size_t i = 0; i < sizeof synonyms / sizeof *synonyms; i++)
     for (int k = 1; k < 3 && strcmp(synonyms[i][0], name) == 0; k++)
       for (const Option *o = command->options; o->name; o++)
-        if (synonyms[i][k] && strcmp(o->name, synonyms[i][k]) == 0) return o;
+        if (synonyms[i][k] && strcmp(o->name, synonyms[i][k]) == 0)
+          return o;
   return NULL;
 }
 
 static int unknown_option(const Command *command, const char *name, const char *prefix) {
   const Option *synonym = strcmp(prefix, "--") == 0 ? find_synonym(command, name) : NULL;
   if (synonym)
-    return report_usage("unknown option \"--%s\"; did you mean \"--%s%s%s\"?", name, synonym->name,
-                        synonym->value ? " " : "", synonym->value ? synonym->value : "");
+    return report_usage("unknown option \"--%s\"; did you mean \"--%s%s%s\"?", name,
+                        synonym->name, synonym->value ? " " : "",
+                        synonym->value ? synonym->value : "");
   const char *names[MAX_OPTIONS + 1] = {"help"};
   int count = 1;
-  for (const Option *o = command->options; o->name; o++) names[count++] = o->name;
+  for (const Option *o = command->options; o->name; o++)
+    names[count++] = o->name;
   const char *near = did_you_mean("--", name, names, count);
-  if (*near) return report_usage("unknown option \"%s%s\"%s", prefix, name, near);
-  return report_usage("unknown option \"%s%s\"; \"velo help %s\" lists them", prefix, name, command->name);
+  if (*near)
+    return report_usage("unknown option \"%s%s\"%s", prefix, name, near);
+  return report_usage("unknown option \"%s%s\"; \"velo help %s\" lists them", prefix, name,
+                      command->name);
 }
 
 const Choice *option_choices(const Option *option) {
@@ -63,29 +74,39 @@ const Choice *option_choices(const Option *option) {
 
 const char *choice_name(const Choice *choices, int value) {
   for (; choices->name; choices++)
-    if (choices->value == value) return choices->name;
+    if (choices->value == value)
+      return choices->name;
   return "?";
 }
 
-/* ---- values ------------------------------------------------------------------------------------------------------ */
+/* ---- values
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-/* Reads a decimal number that extends to `end` (null: the end of the text). Hexadecimal, inf and nan are rejected. */
+/* Reads a decimal number that extends to `end` (null: the end of the text). Hexadecimal, inf
+ * and nan are rejected. */
 static bool read_number(const char *text, const char *end, double *number) {
-  if (!end) end = text + strlen(text);
-  if (text == end || !(isdigit((unsigned char)*text) || strchr("+-.", *text))) return false;
+  if (!end)
+    end = text + strlen(text);
+  if (text == end || !(isdigit((unsigned char)*text) || strchr("+-.", *text)))
+    return false;
   for (const char *s = text; s < end; s++)
-    if (!(isdigit((unsigned char)*s) || strchr("+-.eE", *s))) return false;
+    if (!(isdigit((unsigned char)*s) || strchr("+-.eE", *s)))
+      return false;
   char *stop;
   *number = strtod(text, &stop);
   return stop == end && isfinite(*number);
 }
 
 static bool read_integer(const char *text, const char *end, int64_t *number) {
-  if (!end) end = text + strlen(text);
+  if (!end)
+    end = text + strlen(text);
   const char *s = text + (*text == '-' || *text == '+');
-  if (s >= end) return false;
+  if (s >= end)
+    return false;
   for (const char *t = s; t < end; t++)
-    if (!isdigit((unsigned char)*t)) return false;
+    if (!isdigit((unsigned char)*t))
+      return false;
   errno = 0;
   *number = strtoll(text, NULL, 10);
   return errno == 0;
@@ -94,12 +115,14 @@ static bool read_integer(const char *text, const char *end, int64_t *number) {
 /* Reads a time: 90, 1.5m, 1h30m, 20s; the parts are added. */
 static bool read_time(const char *text, double *seconds) {
   *seconds = 0;
-  if (read_number(text, NULL, seconds)) return *seconds > 0;
+  if (read_number(text, NULL, seconds))
+    return *seconds > 0;
   const char *s = text;
   while (*s) {
     const char *unit = s + strspn(s, "0123456789.");
     double part, factor = *unit == 'h' ? 3600 : *unit == 'm' ? 60 : *unit == 's' ? 1 : 0;
-    if (factor == 0 || !read_number(s, unit, &part)) return false;
+    if (factor == 0 || !read_number(s, unit, &part))
+      return false;
     *seconds += part * factor;
     s = unit + 1;
   }
@@ -111,14 +134,17 @@ static bool read_bytes(const char *text, int64_t *bytes) {
   static const char units[] = "kMGT";
   const char *unit = text + strspn(text, "0123456789.");
   double number, factor = 1;
-  if (!read_number(text, unit, &number)) return false;
+  if (!read_number(text, unit, &number))
+    return false;
   const char *found = *unit ? strchr(units, *unit == 'K' ? 'k' : *unit) : NULL;
   if (found) {
     bool binary = unit[1] == 'i';
-    for (const char *u = units; u <= found; u++) factor *= binary ? 1024 : 1000;
+    for (const char *u = units; u <= found; u++)
+      factor *= binary ? 1024 : 1000;
     unit += 1 + binary;
   }
-  if (*unit == 'B') unit++;
+  if (*unit == 'B')
+    unit++;
   *bytes = number * factor < 9e18 ? (int64_t)(number * factor) : INT64_MAX;
   return !*unit && *bytes > 0;
 }
@@ -127,8 +153,11 @@ static bool read_bytes(const char *text, int64_t *bytes) {
 static bool read_four(const char *text, int64_t *integers, double *numbers) {
   for (int i = 0; i < 4; i++) {
     const char *end = i < 3 ? strchr(text, ',') : text + strlen(text);
-    if (!end) return false;
-    if (integers ? !read_integer(text, end, &integers[i]) : !read_number(text, end, &numbers[i])) return false;
+    if (!end)
+      return false;
+    if (integers ? !read_integer(text, end, &integers[i])
+                 : !read_number(text, end, &numbers[i]))
+      return false;
     text = end + 1;
   }
   return true;
@@ -138,24 +167,31 @@ static int bad_value(const Option *option, const char *text, const char *wanted)
   return report_usage("--%s %s; it is \"%s\"", option->name, wanted, text);
 }
 
-/* ---- values of rows ---------------------------------------------------------------------------------------------- */
+/* ---- values of rows
+ * ----------------------------------------------------------------------------------------------
+ */
 
 /* The setting whose name or alias is the option's. */
 static const vlParameter *setting_of(const char *name) {
-  static const vlSettingGroup groups[] = {VL_SETTING_PROGRAM,  VL_SETTING_RENDER,   VL_SETTING_CAMERA,
-                                          VL_SETTING_COMPLETE, VL_SETTING_CHANNELS, VL_SETTING_CONTEXT};
+  static const vlSettingGroup groups[] = {VL_SETTING_PROGRAM,  VL_SETTING_RENDER,
+                                          VL_SETTING_CAMERA,   VL_SETTING_COMPLETE,
+                                          VL_SETTING_CHANNELS, VL_SETTING_CONTEXT};
   const vlParameter *row = NULL;
-  for (size_t i = 0; i < sizeof groups / sizeof *groups && !row; i++) row = vl_setting(groups[i], name);
+  for (size_t i = 0; i < sizeof groups / sizeof *groups && !row; i++)
+    row = vl_setting(groups[i], name);
   return row;
 }
 
 vlParameter option_row(const Option *option) {
   const bool own = option->min != 0 || option->max != 0;
-  const vlParameter *row = own ? NULL : setting_of(option->kind == OPTION_SIZE ? "width" : option->name);
-  if (row) return *row;
+  const vlParameter *row =
+      own ? NULL : setting_of(option->kind == OPTION_SIZE ? "width" : option->name);
+  if (row)
+    return *row;
   const bool whole = option->kind == OPTION_INTEGER || option->kind == OPTION_SIZE;
-  return (vlParameter){
-      .type = whole ? VL_PARAMETER_COUNT : VL_PARAMETER_DOUBLE, .low = option->min, .high = option->max};
+  return (vlParameter){.type = whole ? VL_PARAMETER_COUNT : VL_PARAMETER_DOUBLE,
+                       .low = option->min,
+                       .high = option->max};
 }
 
 int option_number(const char *name, const char *text, const vlParameter *row, double *number) {
@@ -168,8 +204,10 @@ int option_number(const char *name, const char *text, const vlParameter *row, do
                          .number = counts ? (double)whole : value,
                          .text = text,
                          .factor = row->factor};
-  if (!vl_given_check(row, name, &given, NULL, message)) return report_usage("%s", message);
-  if (number) *number = given.number;
+  if (!vl_given_check(row, name, &given, NULL, message))
+    return report_usage("%s", message);
+  if (number)
+    *number = given.number;
   return -1;
 }
 
@@ -185,9 +223,11 @@ static int read_size(const Option *option, const char *text, int64_t size[2]) {
   for (int i = 0; i < 2; i++) {
     char name[80];
     double number;
-    snprintf(name, sizeof name, "--%s WIDTHxHEIGHT: the %s", option->name, i ? "height" : "width");
+    snprintf(name, sizeof name, "--%s WIDTHxHEIGHT: the %s", option->name,
+             i ? "height" : "width");
     int status = option_number(name, side[i], &row, &number);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
     size[i] = (int64_t)number;
   }
   return -1;
@@ -200,11 +240,13 @@ static int read_choice(const Option *option, const char *text, OptionValue *valu
   char what[80];
   char message[VL_GIVEN_MESSAGE];
   double index;
-  for (int i = 0; i < MAX_NAMES && choices[i].name; i++) names[i] = choices[i].name;
+  for (int i = 0; i < MAX_NAMES && choices[i].name; i++)
+    names[i] = choices[i].name;
   const vlParameter row = {.type = VL_PARAMETER_CHOICE, .choices = names};
   const vlGiven given = {.kind = VL_GIVEN_TEXT, .text = text};
   snprintf(what, sizeof what, "--%s", option->name);
-  if (!vl_given_check(&row, what, &given, &index, message)) return report_usage("%s", message);
+  if (!vl_given_check(&row, what, &given, &index, message))
+    return report_usage("%s", message);
   value->integer = choices[(int)index].value;
   return -1;
 }
@@ -215,7 +257,8 @@ static int read_row(const Option *option, const char *text, OptionValue *value) 
   char name[80];
   snprintf(name, sizeof name, "--%s", option->name);
   int status = option_number(name, text, &row, &value->number);
-  if (option->kind == OPTION_INTEGER) value->integer = (int64_t)value->number;
+  if (option->kind == OPTION_INTEGER)
+    value->integer = (int64_t)value->number;
   return status;
 }
 
@@ -223,58 +266,74 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
   OptionValue *value = &arguments->values[option->id];
   value->text = text;
   switch (option->kind) {
-    case OPTION_FLAG: break;
+    case OPTION_FLAG:
+      break;
     case OPTION_INTEGER:
     case OPTION_NUMBER: {
       int status = read_row(option, text, value);
-      if (status >= 0) return status;
+      if (status >= 0)
+        return status;
       break;
     }
     case OPTION_TIME:
-      if (read_time(text, &value->number)) break;
+      if (read_time(text, &value->number))
+        break;
       return bad_value(option, text, "must be a time above 0 such as 30, 30s, 5m or 1h30m");
     case OPTION_BYTES:
-      if (read_bytes(text, &value->integer)) break;
+      if (read_bytes(text, &value->integer))
+        break;
       return bad_value(option, text, "must be a size such as 500M, 2G or 1.5GiB");
     case OPTION_SIZE: {
       int status = read_size(option, text, value->integers);
-      if (status >= 0) return status;
+      if (status >= 0)
+        return status;
       break;
     }
     case OPTION_CROP:
-      if (read_four(text, value->integers, NULL) && value->integers[0] >= 0 && value->integers[1] >= 0 &&
-          value->integers[0] < value->integers[2] && value->integers[1] < value->integers[3])
+      if (read_four(text, value->integers, NULL) && value->integers[0] >= 0 &&
+          value->integers[1] >= 0 && value->integers[0] < value->integers[2] &&
+          value->integers[1] < value->integers[3])
         break;
       return bad_value(option, text, "must be x0,y0,x1,y1 in pixels with x0 < x1 and y0 < y1");
     case OPTION_FRACTIONS:
-      if (read_four(text, NULL, value->numbers) && value->numbers[0] >= 0 && value->numbers[0] < value->numbers[1] &&
-          value->numbers[1] <= 1 && value->numbers[2] >= 0 && value->numbers[2] < value->numbers[3] &&
+      if (read_four(text, NULL, value->numbers) && value->numbers[0] >= 0 &&
+          value->numbers[0] < value->numbers[1] && value->numbers[1] <= 1 &&
+          value->numbers[2] >= 0 && value->numbers[2] < value->numbers[3] &&
           value->numbers[3] <= 1)
         break;
-      return bad_value(option, text, "must be x0,x1,y0,y1, fractions from 0 to 1 with x0 < x1 and y0 < y1");
+      return bad_value(option, text,
+                       "must be x0,x1,y0,y1, fractions from 0 to 1 with x0 < x1 and y0 < y1");
     case OPTION_KIND:
     case OPTION_CHOICE: {
       int status = read_choice(option, text, value);
-      if (status >= 0) return status;
+      if (status >= 0)
+        return status;
       break;
     }
     case OPTION_TEXT:
-      if (!*text) return bad_value(option, text, "must not be empty");
+      if (!*text)
+        return bad_value(option, text, "must not be empty");
       break;
     case OPTION_TEXTS:
-      if (!*text) return bad_value(option, text, "must not be empty");
-      if (arguments->text_count == MAX_TEXTS) return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
+      if (!*text)
+        return bad_value(option, text, "must not be empty");
+      if (arguments->text_count == MAX_TEXTS)
+        return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
       arguments->texts[arguments->text_count++] = text;
       break;
     case OPTION_FOLDERS:
-      if (!*text) return bad_value(option, text, "must not be empty");
-      if (arguments->folder_count == MAX_TEXTS) return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
+      if (!*text)
+        return bad_value(option, text, "must not be empty");
+      if (arguments->folder_count == MAX_TEXTS)
+        return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
       arguments->folders[arguments->folder_count++] = text;
       break;
     case OPTION_SEARCH: {
       size_t n = strlen(arguments->search);
-      if (!*text) return bad_value(option, text, "must not be empty");
-      if (n + strlen(text) + 2 > sizeof arguments->search) return report_usage("--%s: too long", option->name);
+      if (!*text)
+        return bad_value(option, text, "must not be empty");
+      if (n + strlen(text) + 2 > sizeof arguments->search)
+        return report_usage("--%s: too long", option->name);
       snprintf(arguments->search + n, sizeof arguments->search - n, "%s%s", n ? ":" : "", text);
       value->text = arguments->search;
       break;
@@ -284,16 +343,22 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
   return -1;
 }
 
-/* ---- the line ---------------------------------------------------------------------------------------------------- */
+/* ---- the line
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static const Option *find_option(const Command *command, const char *name, size_t length, char letter) {
+static const Option *find_option(const Command *command, const char *name, size_t length,
+                                 char letter) {
   for (const Option *o = command->options; o->name; o++)
-    if (letter ? o->letter == letter : strncmp(o->name, name, length) == 0 && !o->name[length]) return o;
+    if (letter ? o->letter == letter : strncmp(o->name, name, length) == 0 && !o->name[length])
+      return o;
   return NULL;
 }
 
-/* Parses one argument that begins with a dash, and the next one as its value when it needs one. */
-static int parse_option(const Command *command, char ***rest, char **end, Arguments *arguments) {
+/* Parses one argument that begins with a dash, and the next one as its value when it needs one.
+ */
+static int parse_option(const Command *command, char ***rest, char **end,
+                        Arguments *arguments) {
   const char *word = **rest;
   bool is_long = word[1] == '-';
   if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
@@ -308,14 +373,17 @@ static int parse_option(const Command *command, char ***rest, char **end, Argume
     snprintf(plain, sizeof plain, "%.*s", (int)(is_long ? length : strlen(name)), name);
     return unknown_option(command, plain, is_long ? "--" : "-");
   }
-  const char *value = is_long ? (name[length] == '=' ? name + length + 1 : NULL) : (name[1] ? name + 1 : NULL);
+  const char *value =
+      is_long ? (name[length] == '=' ? name + length + 1 : NULL) : (name[1] ? name + 1 : NULL);
   if (option->kind == OPTION_FLAG) {
-    if (value) return report_usage("%s%.*s takes no value", is_long ? "--" : "-", (int)length, name);
+    if (value)
+      return report_usage("%s%.*s takes no value", is_long ? "--" : "-", (int)length, name);
     return read_value(option, "", arguments);
   }
   if (!value) {
     if (*rest + 1 == end)
-      return report_usage("%s%.*s needs a value: %s", is_long ? "--" : "-", (int)length, name, option->value);
+      return report_usage("%s%.*s needs a value: %s", is_long ? "--" : "-", (int)length, name,
+                          option->value);
     value = *++*rest;
   }
   return read_value(option, value, arguments);
@@ -331,16 +399,19 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
     } else if (!only_operands && (*rest)[0] == '-' && (*rest)[1] &&
                !strchr(".0123456789", (*rest)[1])) { /* a negative number is not an option */
       int status = parse_option(command, &rest, end, arguments);
-      if (status >= 0) return status;
+      if (status >= 0)
+        return status;
     } else if (arguments->operand_count == command->max_operands) {
       return report_usage("%s: one argument too many: \"%s\"", command->name, *rest);
     } else {
-      if (arguments->operand_count < MAX_OPERANDS) arguments->operands[arguments->operand_count] = *rest;
+      if (arguments->operand_count < MAX_OPERANDS)
+        arguments->operands[arguments->operand_count] = *rest;
       argv[arguments->operand_count++] = *rest; /* earlier words are read already */
     }
   }
   arguments->all_operands = (const char *const *)argv;
   if (arguments->operand_count < command->min_operands)
-    return report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
+    return report_usage("%s: too few arguments; usage: velo %s %s", command->name,
+                        command->name, command->usage);
   return -1;
 }

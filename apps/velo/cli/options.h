@@ -1,5 +1,5 @@
-/* cli/options.h: the command line by table. Each command lists its options; parsing, checks, suggestions ("did you
- * mean") and the help page use that list. */
+/* cli/options.h: the command line by table. Each command lists its options; parsing, checks,
+ * suggestions ("did you mean") and the help page use that list. */
 #ifndef APP_CLI_OPTIONS_H
 #define APP_CLI_OPTIONS_H
 
@@ -56,7 +56,7 @@ typedef struct Arguments {
   int text_count;
   const char *folders[MAX_TEXTS];
   int folder_count;
-  char search[4096];                  /* text of the option of kind OPTION_SEARCH: folders joined by ':' */
+  char search[4096]; /* text of the option of kind OPTION_SEARCH: folders joined by ':' */
   const char *operands[MAX_OPERANDS]; /* the first MAX_OPERANDS operands */
   const char *const *all_operands;    /* all operands; points into argv */
   int operand_count;
@@ -77,14 +77,15 @@ typedef struct Command {
   const char *examples; /* lines after the options */
   const Option *options;
   const Section *sections; /* null: the options are one section */
-  const char *brief; /* for long pages: what `velo help` prints without --all between usage and hint, lines of at most
-                        80 columns with examples and the most used options; null: the page is printed whole */
+  const char *brief; /* for long pages: what `velo help` prints without --all between usage and
+                        hint, lines of at most 80 columns with examples and the most used
+                        options; null: the page is printed whole */
   int min_operands, max_operands;
   int (*run)(const struct Command *command, const Arguments *arguments);
 } Command;
 
-/* Parses argv without the names of program and command. Returns -1 to continue, otherwise the exit code after reporting
- * (0 after --help). */
+/* Parses argv without the names of program and command. Returns -1 to continue, otherwise the
+ * exit code after reporting (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
 /* all: also of a command with a brief page everything. */
 void options_print_help(const Command *command, bool all);
@@ -98,12 +99,14 @@ extern const ExitStatus exit_statuses[];
 /* Prints the exit codes as a list. */
 void options_print_exit_statuses(void);
 
-/* For "render": "; did you mean \"render\"?". Empty when no name is near. Valid until the next call. */
-const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count);
+/* For "render": "; did you mean \"render\"?". Empty when no name is near. Valid until the next
+ * call. */
+const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names,
+                         int count);
 /* The row of an option of one number: of the setting of its name, or with its own range. */
 vlParameter option_row(const Option *option);
-/* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a report. name: of the value in
- * the message. number may be null. */
+/* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a
+ * report. name: of the value in the message. number may be null. */
 int option_number(const char *name, const char *text, const vlParameter *row, double *number);
 /* The names that an option takes; null: any text. */
 const Choice *option_choices(const Option *option);

@@ -19,7 +19,8 @@ static struct {
   Verbosity verbosity;
   const vlContext *context; /* whose memory use is reported; may be null */
   size_t memory_limit;
-  const char *usage_file; /* the file that holds the command line; null: the command line is the user's own */
+  const char *usage_file; /* the file that holds the command line; null: the command line is the
+                             user's own */
   char *json_text;
   size_t json_size;
   ReportFn *listener;
@@ -64,18 +65,22 @@ int report_terminal_columns(void) {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/* Writes to stderr. A signal cannot end a call that blocks, so this waits with poll(): what nobody reads is dropped
- * once the program is asked to stop. */
+/* Writes to stderr. A signal cannot end a call that blocks, so this waits with poll(): what
+ * nobody reads is dropped once the program is asked to stop. */
 static void put_bytes(const char *data, size_t size) {
   enum { PIECE = 4096, WAIT_MS = 100, MOST_WAITS = 10 };
   for (int waits = 0; size && waits < MOST_WAITS;) {
     struct pollfd one = {.fd = STDERR_FILENO, .events = POLLOUT};
     int ready = poll(&one, 1, WAIT_MS);
-    if (ready <= 0) waits += signals_pending() > 0;
-    if (ready < 0 && errno != EINTR) return;
-    if (ready <= 0) continue;
+    if (ready <= 0)
+      waits += signals_pending() > 0;
+    if (ready < 0 && errno != EINTR)
+      return;
+    if (ready <= 0)
+      continue;
     ssize_t n = write(STDERR_FILENO, data, size < PIECE ? size : PIECE);
-    if (n < 0 && errno != EINTR && errno != EAGAIN) return;
+    if (n < 0 && errno != EINTR && errno != EAGAIN)
+      return;
     if (n > 0) {
       data += n;
       size -= (size_t)n;
@@ -87,16 +92,19 @@ static void put_bytes(const char *data, size_t size) {
 static void put_line(const char *text) {
   char line[4096];
   size_t n = 0;
-  if (state.line_shown) n = (size_t)snprintf(line, sizeof line, "\r\033[K");
+  if (state.line_shown)
+    n = (size_t)snprintf(line, sizeof line, "\r\033[K");
   state.line_shown = false;
   for (const char *s = text; *s && n + 2 < sizeof line; s++)
-    line[n++] = (unsigned char)*s < 0x20 || *s == 0x7f ? (*s == '\n' || *s == '\t' ? ' ' : '?') : *s;
+    line[n++] =
+        (unsigned char)*s < 0x20 || *s == 0x7f ? (*s == '\n' || *s == '\t' ? ' ' : '?') : *s;
   line[n++] = '\n';
   put_bytes(line, n);
 }
 
 void report_status_line(const char *text) {
-  if (!state.terminal || state.verbosity == REPORT_QUIET || (!text && !state.line_shown)) return;
+  if (!state.terminal || state.verbosity == REPORT_QUIET || (!text && !state.line_shown))
+    return;
   char line[700];
   int n = snprintf(line, sizeof line, "\r%s\033[K", text ? text : "");
   put_bytes(line, n < (int)sizeof line ? (size_t)n : sizeof line - 1);
@@ -105,7 +113,8 @@ void report_status_line(const char *text) {
 
 Json report_json_begin(const char *event) {
   Json json = {.out = open_memstream(&state.json_text, &state.json_size)};
-  if (!json.out) json.out = stderr;
+  if (!json.out)
+    json.out = stderr;
   json_begin(&json, NULL, '{');
   json_text(&json, "event", event);
   return json;
@@ -114,15 +123,18 @@ Json report_json_begin(const char *event) {
 void report_json_end(Json *json) {
   json_end(json, '}');
   fputc('\n', json->out);
-  if (json->out == stderr) return;
-  if (fclose(json->out) == 0) put_bytes(state.json_text, state.json_size);
+  if (json->out == stderr)
+    return;
+  if (fclose(json->out) == 0)
+    put_bytes(state.json_text, state.json_size);
   free(state.json_text);
   state.json_text = NULL;
   fflush(stderr);
 }
 
 /* kind: "warning", ...; null for errors, whose lines have no prefix word. */
-static void say(const char *kind, int status, const vlError *where, const char *fallback_file, const char *message) {
+static void say(const char *kind, int status, const vlError *where, const char *fallback_file,
+                const char *message) {
   const char *file = where && where->file[0] ? where->file : fallback_file;
   uint32_t line = where && where->file[0] ? where->line : 0, column = line ? where->column : 0;
   if (state.listener) {
@@ -133,10 +145,14 @@ static void say(const char *kind, int status, const vlError *where, const char *
   }
   if (state.json) {
     Json json = report_json_begin(kind ? kind : "error");
-    if (!kind) json_integer(&json, "status", status);
-    if (file) json_text(&json, "file", file);
-    if (line) json_integer(&json, "line", line);
-    if (column) json_integer(&json, "column", column);
+    if (!kind)
+      json_integer(&json, "status", status);
+    if (file)
+      json_text(&json, "file", file);
+    if (line)
+      json_integer(&json, "line", line);
+    if (column)
+      json_integer(&json, "column", column);
     json_text(&json, "message", message);
     report_json_end(&json);
     return;
@@ -148,7 +164,8 @@ static void say(const char *kind, int status, const vlError *where, const char *
     snprintf(place, sizeof place, "%s:%u: ", file, line);
   else if (file)
     snprintf(place, sizeof place, "%s: ", file);
-  snprintf(text, sizeof text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", place, message);
+  snprintf(text, sizeof text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", place,
+           message);
   put_line(text);
 }
 
@@ -181,21 +198,29 @@ int report_failure(int status, const char *format, ...) {
 static int status_of(vlResult result) {
   switch (result) {
     case VL_OK:
-    case VL_CANCELLED: return STATUS_OK;
-    case VL_ERROR_ARGUMENT: /* a value of a file that the library rejects; the command line was checked before */
+    case VL_CANCELLED:
+      return STATUS_OK;
+    case VL_ERROR_ARGUMENT: /* a value of a file that the library rejects; the command line was
+                               checked before */
     case VL_ERROR_SCENE:
-    case VL_ERROR_UNSUPPORTED: return STATUS_SCENE;
-    case VL_ERROR_MISSING: return STATUS_MISSING;
-    case VL_ERROR_IO: return STATUS_IO;
-    case VL_ERROR_MEMORY: return STATUS_OTHER;
+    case VL_ERROR_UNSUPPORTED:
+      return STATUS_SCENE;
+    case VL_ERROR_MISSING:
+      return STATUS_MISSING;
+    case VL_ERROR_IO:
+      return STATUS_IO;
+    case VL_ERROR_MEMORY:
+      return STATUS_OTHER;
   }
   return STATUS_OTHER;
 }
 
 int report_stdout(int status) {
-  if (fflush(stdout) == 0 && !ferror(stdout)) return status;
+  if (fflush(stdout) == 0 && !ferror(stdout))
+    return status;
   struct pollfd out = {.fd = STDOUT_FILENO};
-  if (poll(&out, 1, 0) == 1 && out.revents & POLLERR) return status; /* the pipe's reader has gone */
+  if (poll(&out, 1, 0) == 1 && out.revents & POLLERR)
+    return status; /* the pipe's reader has gone */
   return report_failure(STATUS_IO, "cannot write to stdout");
 }
 
@@ -220,14 +245,17 @@ int report_error(const vlError *error, vlResult result, const char *file) {
     vl_context_memory(state.context, &peak);
     char bytes[32];
     int n = snprintf(longer, sizeof longer, "%s", message);
-    if (peak) n = snprintf(longer, sizeof longer, "%s; at most %s were held", message, bytes_text(bytes, peak));
+    if (peak)
+      n = snprintf(longer, sizeof longer, "%s; at most %s were held", message,
+                   bytes_text(bytes, peak));
     if (state.memory_limit && n > 0 && n < (int)sizeof longer)
-      snprintf(longer + n, sizeof longer - (size_t)n, "%s --max-memory allows %s", peak ? "," : ";",
-               bytes_text(bytes, state.memory_limit));
+      snprintf(longer + n, sizeof longer - (size_t)n, "%s --max-memory allows %s",
+               peak ? "," : ";", bytes_text(bytes, state.memory_limit));
     message = longer;
   }
   /* Messages about files that cannot be opened already name them. */
-  if (file && strstr(message, file)) file = NULL;
+  if (file && strstr(message, file))
+    file = NULL;
   say(NULL, status, error, file, message);
   return status;
 }
@@ -248,7 +276,8 @@ void report_warning(const char *format, ...) {
 
 void report_note(const char *format, ...) {
   FORMATTED(text, format);
-  if (state.verbosity == REPORT_QUIET || state.json) return;
+  if (state.verbosity == REPORT_QUIET || state.json)
+    return;
   char line[2100];
   snprintf(line, sizeof line, "velo: %s", text);
   put_line(line);
@@ -256,9 +285,12 @@ void report_note(const char *format, ...) {
 
 void report_log(void *user, vlLogLevel level, const vlError *where, const char *message) {
   (void)user;
-  if (level == VL_LOG_INFO && state.verbosity == REPORT_QUIET) return;
-  if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE) return;
-  if (level > VL_LOG_ERROR && state.verbosity != REPORT_VERBOSE && state.logged++ >= MOST_LOGGED) {
+  if (level == VL_LOG_INFO && state.verbosity == REPORT_QUIET)
+    return;
+  if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE)
+    return;
+  if (level > VL_LOG_ERROR && state.verbosity != REPORT_VERBOSE &&
+      state.logged++ >= MOST_LOGGED) {
     if (state.logged == MOST_LOGGED + 1)
       report_warning("%d warnings and notes are enough: more are not shown", MOST_LOGGED);
     return;

@@ -1,14 +1,15 @@
-/* cli/report.h: all output of velo on stderr: errors, warnings, notes, the status line of a terminal, and the same as
- * JSON, one object per line. Each message is one line; control characters from files are removed. This is the only part
- * of the program with global state. Also defines the exit codes. */
+/* cli/report.h: all output of velo on stderr: errors, warnings, notes, the status line of a
+ * terminal, and the same as JSON, one object per line. Each message is one line; control
+ * characters from files are removed. This is the only part of the program with global state.
+ * Also defines the exit codes. */
 #ifndef APP_CLI_REPORT_H
 #define APP_CLI_REPORT_H
 
 #include "cli/json.h"
 #include "velo/base.h"
 
-/* Exit codes of velo. After SIGHUP, SIGINT, SIGUSR1, SIGUSR2, SIGTERM or SIGXCPU: 128 + signal (129, 130, 138, 140,
- * 143, 152). */
+/* Exit codes of velo. After SIGHUP, SIGINT, SIGUSR1, SIGUSR2, SIGTERM or SIGXCPU: 128 + signal
+ * (129, 130, 138, 140, 143, 152). */
 enum {
   STATUS_OK = 0,      /* success: every file was written completely */
   STATUS_OTHER = 1,   /* image diff: a threshold was exceeded; any command: out of memory */
@@ -21,8 +22,8 @@ enum {
 typedef enum Verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 } Verbosity;
 
 void report_setup(bool json, Verbosity verbosity);
-/* Sets the context whose memory use an out-of-memory error reports, and the memory limit in bytes (0: none). A null
- * context: no report of memory use. */
+/* Sets the context whose memory use an out-of-memory error reports, and the memory limit in
+ * bytes (0: none). A null context: no report of memory use. */
 void report_memory_of(const vlContext *context, size_t limit);
 bool report_is_json(void);
 bool report_is_quiet(void);
@@ -33,22 +34,24 @@ int report_terminal_columns(void);
 
 /* Reports "velo: message". All return the exit code, for `return report_usage(...)`. */
 int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* Sets the file that contains the command line: report_usage then names this file and returns STATUS_SCENE. Null: the
- * user's command line. */
+/* Sets the file that contains the command line: report_usage then names this file and returns
+ * STATUS_SCENE. Null: the user's command line. */
 void report_usage_of(const char *file);
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Reports "velo: file:line:column: message". `file` is used when the library's error has no place; may be null. */
+/* Reports "velo: file:line:column: message". `file` is used when the library's error has no
+ * place; may be null. */
 int report_error(const vlError *error, vlResult result, const char *file);
-/* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after reporting that it
- * cannot be written. A reader that has seen enough (velo help render | head) is no error. */
+/* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after
+ * reporting that it cannot be written. A reader that has seen enough (velo help render | head)
+ * is no error. */
 int report_stdout(int status);
 void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code. */
 int report_reason(vlResult result, const char *file, const char *what);
 /* Reports a note. Prints nothing with --quiet or in JSON mode. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* Receives each error and warning besides stderr. kind: "warning"; null: an error. what: message and place. Called on
- * the thread that reports. */
+/* Receives each error and warning besides stderr. kind: "warning"; null: an error. what:
+ * message and place. Called on the thread that reports. */
 typedef void ReportFn(void *user, const char *kind, const vlError *what);
 /* Sets who receives them; null: nobody. */
 void report_listen(ReportFn *listener, void *user);

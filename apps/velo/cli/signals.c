@@ -18,25 +18,29 @@ static atomic_bool remember, on_terminal, ending;
 static _Atomic time_t last; /* time of the last signal that counted, seconds */
 static _Atomic(vlContext *) watched[MOST_CONTEXTS];
 
-/* Nobody may read the messages: what a pipe does not take at once is dropped, so that the signal still ends velo. Calls
- * only async-signal-safe functions. */
+/* Nobody may read the messages: what a pipe does not take at once is dropped, so that the
+ * signal still ends velo. Calls only async-signal-safe functions. */
 static void say(const char *text) {
   struct pollfd ready = {.fd = STDERR_FILENO, .events = POLLOUT};
-  if (poll(&ready, 1, 0) != 1 || !(ready.revents & POLLOUT)) return;
+  if (poll(&ready, 1, 0) != 1 || !(ready.revents & POLLOUT))
+    return;
   ssize_t ignored = write(STDERR_FILENO, text, strlen(text));
   (void)ignored;
 }
 
 /* Ends the program. A further signal returns to this. */
 static void end(int code) {
-  if (atomic_exchange(&ending, true)) return;
-  for (int i = 0; i < MOST_CONTEXTS; i++) vl_remove_unfinished(atomic_exchange(&watched[i], NULL));
+  if (atomic_exchange(&ending, true))
+    return;
+  for (int i = 0; i < MOST_CONTEXTS; i++)
+    vl_remove_unfinished(atomic_exchange(&watched[i], NULL));
   _exit(code);
 }
 
 static void handle(int number) {
   if (!remember) {
-    if (on_terminal) say("\n"); /* ends the line on which the terminal shows ^C */
+    if (on_terminal)
+      say("\n"); /* ends the line on which the terminal shows ^C */
     say("velo: interrupted; nothing was rendered yet, nothing is written\n");
     end(128 + number);
     return;
@@ -49,7 +53,8 @@ static void handle(int number) {
     count = 1;
   } else if (now.tv_sec > last + 1) {
     last = now.tv_sec;
-    if (++count > MOST_SIGNALS) end(128 + pending);
+    if (++count > MOST_SIGNALS)
+      end(128 + pending);
   }
 }
 
@@ -62,7 +67,8 @@ void signals_install(void) {
     sigemptyset(&action.sa_mask);
     action.sa_flags = SA_RESTART;
     action.sa_handler = handle;
-    if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler == SIG_IGN) continue;
+    if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler == SIG_IGN)
+      continue;
     sigaction(numbers[i], &action, NULL);
   }
 }
@@ -70,16 +76,19 @@ void signals_install(void) {
 void signals_watch(vlContext *context) {
   for (int i = 0; i < MOST_CONTEXTS; i++) {
     vlContext *none = NULL;
-    if (atomic_compare_exchange_strong(&watched[i], &none, context)) return;
+    if (atomic_compare_exchange_strong(&watched[i], &none, context))
+      return;
   }
 }
 
 void signals_forget(vlContext *context) {
   for (int i = 0; i < MOST_CONTEXTS && context; i++) {
     vlContext *same = context;
-    if (atomic_compare_exchange_strong(&watched[i], &same, NULL)) return;
+    if (atomic_compare_exchange_strong(&watched[i], &same, NULL))
+      return;
   }
-  while (context && ending) pause(); /* the handler, in another thread, uses it */
+  while (context && ending)
+    pause(); /* the handler, in another thread, uses it */
 }
 
 void signals_remember(void) {

@@ -1,9 +1,10 @@
-/* cli/signals.h: handles SIGINT, SIGTERM, SIGHUP (closed connection), SIGXCPU (CPU time limit), SIGUSR1 and SIGUSR2
- * (warnings of batch systems). The first signal
- * asks the render to stop and write its image, the second one aborts the work after that, the third one ends the
- * program. Signals within two seconds count as one, since a closed connection sends several. Before the render begins,
- * the first signal ends the program. A signal that ends the program removes the lock files and the temporary files of
- * the contexts that are watched. A signal that was ignored when the program started (nohup) stays ignored. */
+/* cli/signals.h: handles SIGINT, SIGTERM, SIGHUP (closed connection), SIGXCPU (CPU time limit),
+ * SIGUSR1 and SIGUSR2 (warnings of batch systems). The first signal asks the render to stop and
+ * write its image, the second one aborts the work after that, the third one ends the program.
+ * Signals within two seconds count as one, since a closed connection sends several. Before the
+ * render begins, the first signal ends the program. A signal that ends the program removes the
+ * lock files and the temporary files of the contexts that are watched. A signal that was
+ * ignored when the program started (nohup) stays ignored. */
 #ifndef APP_CLI_SIGNALS_H
 #define APP_CLI_SIGNALS_H
 

@@ -11,5 +11,6 @@ bool text_ends_with(const char *text, const char *suffix) {
 }
 
 void text_print_plain(const char *text) {
-  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+  for (const char *s = text; *s; s++)
+    putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }

@@ -11,7 +11,8 @@ static inline double vector_dot(const double a[3], const double b[3]) {
 }
 
 static inline void vector_cross(const double a[3], const double b[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (int i = 0; i < 3; i++)
+    r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static inline double vector_length(const double v[3]) {
@@ -21,8 +22,10 @@ static inline double vector_length(const double v[3]) {
 /* False: the vector has no length, and stays. */
 static inline bool vector_normalize(double v[3]) {
   double length = vector_length(v);
-  if (!(length > 0)) return false;
-  for (int i = 0; i < 3; i++) v[i] /= length;
+  if (!(length > 0))
+    return false;
+  for (int i = 0; i < 3; i++)
+    v[i] /= length;
   return true;
 }
 
@@ -39,7 +42,8 @@ static inline void matrix_multiply(const double a[16], const double b[16], doubl
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) {
       double sum = 0;
-      for (int k = 0; k < 4; k++) sum += a[4 * i + k] * b[4 * k + j];
+      for (int k = 0; k < 4; k++)
+        sum += a[4 * i + k] * b[4 * k + j];
       product[4 * i + j] = sum;
     }
   memcpy(result, product, sizeof product);

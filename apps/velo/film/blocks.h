@@ -1,4 +1,5 @@
-/* film/blocks.h: the blocks of a film file, grouped into rectangles of pixels with the same samples. */
+/* film/blocks.h: the blocks of a film file, grouped into rectangles of pixels with the same
+ * samples. */
 #ifndef APP_FILM_BLOCKS_H
 #define APP_FILM_BLOCKS_H
 
@@ -23,9 +24,11 @@ typedef struct FilmParts {
   uint32_t list_count;
 } FilmParts;
 
-/* Reads all blocks and groups them; `check` also verifies their checksums. If planned is 0, the parts list the samples
- * that the film has. Otherwise they list the samples of [0, planned) that it lacks. Parts without samples are omitted.
- * Returns -1, or the exit code after reporting the error. */
+/* Reads all blocks and groups them; `check` also verifies their checksums. If planned is 0, the
+ * parts list the samples that the film has. Otherwise they list the samples of [0, planned)
+ * that it lacks. Parts without samples are omitted. Returns -1, or the exit code after
+ * reporting the error.
+ */
 int film_parts_read(vlFilmFile *file, bool check, uint32_t planned, FilmParts *parts);
 void film_parts_free(FilmParts *parts);
 

@@ -25,7 +25,8 @@ typedef struct Develop {
   Outputs outputs;
 } Develop;
 
-/* The attributes of the render's own image. Where the film has a part of the pixels, the data window is its own. */
+/* The attributes of the render's own image. Where the film has a part of the pixels, the data
+ * window is its own. */
 static vlResult take_attributes(Develop *d, vlError *error) {
   vlAttribute window;
   bool is_part = vl_image_find_attribute(d->image, "dataWindow", &window) == VL_OK;
@@ -35,17 +36,24 @@ static vlResult take_attributes(Develop *d, vlError *error) {
 
 static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error) {
   uint32_t spp = vl_film_spp(d->film);
-  const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
+  const vlAttribute samples = {
+      .name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
   vlResult result = take_attributes(d, error);
-  if (result == VL_OK) result = vl_image_set_attribute(d->image, &samples);
-  if (result == VL_OK) result = attributes_add_layer(d->image, d->errors);
-  if (result == VL_OK) result = attributes_add_layer(d->image, d->spectrum);
-  if (!receipt || !spp || result != VL_OK) return result;
-  if (d->uneven && !(vl_receipt_noise(receipt) > 0)) return result; /* no command makes this image */
+  if (result == VL_OK)
+    result = vl_image_set_attribute(d->image, &samples);
+  if (result == VL_OK)
+    result = attributes_add_layer(d->image, d->errors);
+  if (result == VL_OK)
+    result = attributes_add_layer(d->image, d->spectrum);
+  if (!receipt || !spp || result != VL_OK)
+    return result;
+  if (d->uneven && !(vl_receipt_noise(receipt) > 0))
+    return result; /* no command makes this image */
   vlReceipt *own = NULL;
   result = vl_receipt_of_image(receipt, spp, &own, NULL);
   if (result == VL_OK) {
-    const vlAttribute made = {.name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(own)};
+    const vlAttribute made = {
+        .name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(own)};
     result = vl_image_set_attribute(d->image, &made);
   }
   vl_receipt_destroy(own);
@@ -58,10 +66,14 @@ static vlResult compare_blocks(Develop *d, vlError *error) {
   vlSampleRange first = {0, 0};
   for (;;) {
     vlResult result = vl_film_file_next(d->file, false, &block, error);
-    if (result != VL_OK || block.x1 == 0) return result;
-    if (!block.range_count) continue;
-    if (!first.end) first = block.ranges[0];
-    d->uneven |= block.range_count > 1 || block.ranges[0].first != first.first || block.ranges[0].end != first.end;
+    if (result != VL_OK || block.x1 == 0)
+      return result;
+    if (!block.range_count)
+      continue;
+    if (!first.end)
+      first = block.ranges[0];
+    d->uneven |= block.range_count > 1 || block.ranges[0].first != first.first ||
+                 block.ranges[0].end != first.end;
   }
 }
 
@@ -69,17 +81,25 @@ static int develop(Develop *d, const char *path) {
   vlError error = {0};
   vlDevelopDef def = vl_default_develop_def();
   vlResult result = vl_film_file_open(d->context, path, &d->file, &error);
-  if (result == VL_OK) result = compare_blocks(d, &error);
-  if (result == VL_OK) result = vl_film_read(d->context, path, true, &d->film, &error);
-  if (result != VL_OK) return report_error(&error, result, NULL);
+  if (result == VL_OK)
+    result = compare_blocks(d, &error);
+  if (result == VL_OK)
+    result = vl_film_read(d->context, path, true, &d->film, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, NULL);
   const vlReceipt *receipt = vl_film_file_receipt(d->file);
   const vlFilmDef *film = vl_film_file_def(d->file);
-  if (receipt) def.exposure = vl_receipt_exposure(receipt);
+  if (receipt)
+    def.exposure = vl_receipt_exposure(receipt);
   result = vl_film_develop(d->film, &def, &d->image);
-  if (result == VL_OK && film->errors) result = vl_film_errors(d->film, &def, &d->errors);
-  if (result == VL_OK && film->buckets) result = vl_film_spectrum(d->film, &d->spectrum);
-  if (result == VL_OK) result = set_header(d, receipt, &error);
-  if (result != VL_OK && error.message[0]) return report_error(&error, result, path);
+  if (result == VL_OK && film->errors)
+    result = vl_film_errors(d->film, &def, &d->errors);
+  if (result == VL_OK && film->buckets)
+    result = vl_film_spectrum(d->film, &d->spectrum);
+  if (result == VL_OK)
+    result = set_header(d, receipt, &error);
+  if (result != VL_OK && error.message[0])
+    return report_error(&error, result, path);
   d->outputs.layers[0] = d->errors;
   d->outputs.layers[1] = d->spectrum;
   return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
@@ -91,19 +111,27 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   Develop d;
   memset(&d, 0, sizeof d);
   Outputs *outputs = &d.outputs;
-  for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
+  for (int i = 0; i < arguments->text_count; i++)
+    outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
   outputs->half = v[DEVELOP_HALF].given;
   outputs->to_stdout = true;
   outputs->view = v[DEVELOP_VIEW].given ? (vlView)v[DEVELOP_VIEW].integer : VL_VIEW_STANDARD;
-  if (!outputs->count) return report_usage("film develop: give the name of the image with -o");
+  if (!outputs->count)
+    return report_usage("film develop: give the name of the image with -o");
   int status = exposure_parse(&v[DEVELOP_EXPOSURE], &outputs->exposure, &outputs->meter);
-  if (status < 0) status = outputs_check_names(outputs);
-  if (status < 0) status = outputs_check_folders(outputs);
-  if (status < 0) status = image_context(&d.context);
-  if (status < 0) status = develop(&d, arguments->operands[0]);
-  if (status < 0) status = outputs_check_inputs(d.context, outputs);
-  if (status < 0) status = outputs_write(d.context, outputs, d.image, vl_film_spp(d.film), OUTPUT_FINISHED);
+  if (status < 0)
+    status = outputs_check_names(outputs);
+  if (status < 0)
+    status = outputs_check_folders(outputs);
+  if (status < 0)
+    status = image_context(&d.context);
+  if (status < 0)
+    status = develop(&d, arguments->operands[0]);
+  if (status < 0)
+    status = outputs_check_inputs(d.context, outputs);
+  if (status < 0)
+    status = outputs_write(d.context, outputs, d.image, vl_film_spp(d.film), OUTPUT_FINISHED);
   vl_image_destroy(d.image);
   vl_image_destroy(d.errors);
   vl_image_destroy(d.spectrum);
@@ -115,13 +143,18 @@ static int run_develop(const Command *command, const Arguments *arguments) {
 
 static const Option develop_options[] = {
     {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "image file to write; may be given several times. The suffix chooses the format, as for velo render"},
+     "image file to write; may be given several times. The suffix chooses the format, as for "
+     "velo "
+     "render"},
     {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
     {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
-     "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so that the geometric mean of "
+     "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so "
+     "that "
+     "the geometric mean of "
      "the luminance becomes 18 % grey"},
-    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats"},
+    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL,
+     "write .exr with 16-bit instead of 32-bit floats"},
     {0}};
 
 const Command film_develop_command = {
@@ -129,10 +162,15 @@ const Command film_develop_command = {
     .usage = "FILE -o IMAGE [options]",
     .summary = "write the images of a film file",
     .text =
-        "Writes the image of a film file, which may be incomplete. An .exr also has the standard errors and\n"
+        "Writes the image of a film file, which may be incomplete. An .exr also has the "
+        "standard "
+        "errors and\n"
         "the spectrum, if the film has their sums. Ground truth requires the scene:\n"
         "velo render --continue FILE -o IMAGE.exr --channels LIST.",
-    .examples = "velo film develop room.film -o room.exr\nvelo film develop room.film -o room.png --view agx",
+    .examples =
+        "velo film develop room.film -o room.exr\nvelo film develop room.film -o room.png "
+        "--view "
+        "agx",
     .options = develop_options,
     .min_operands = 1,
     .max_operands = 1,

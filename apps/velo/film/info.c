@@ -1,4 +1,5 @@
-/* film/info.c: `velo film info`: lists the content of a film file, and the commands that render its missing samples. */
+/* film/info.c: `velo film info`: lists the content of a film file, and the commands that render
+ * its missing samples. */
 #include <stdio.h>
 #include <string.h>
 
@@ -22,13 +23,15 @@ static void print_ranges(const RangeList *list) {
 static uint32_t planned_of(const vlFilmFile *file) {
   uint32_t planned = 0;
   const vlReceipt *receipt = vl_film_file_receipt(file);
-  if (receipt) vl_receipt_samples(receipt, &planned);
+  if (receipt)
+    vl_receipt_samples(receipt, &planned);
   return planned;
 }
 
 /* Prints a word, quoted for a POSIX shell. */
 static void print_word(const char *word) {
-  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
+  static const char plain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
   if (*word && strspn(word, plain) == strlen(word)) {
     printf(" %s", word);
     return;
@@ -46,7 +49,8 @@ static void print_word(const char *word) {
 static void print_command(const vlReceipt *receipt) {
   const char *word;
   printf("velo");
-  for (uint32_t i = 1; (word = vl_receipt_command(receipt, i)); i++) print_word(word);
+  for (uint32_t i = 1; (word = vl_receipt_command(receipt, i)); i++)
+    print_word(word);
 }
 
 static void print_contents(const char *path, const vlFilmFile *file, const FilmParts *parts) {
@@ -55,25 +59,33 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
   const uint32_t *c = def->crop, whole[4] = {0, 0, def->width, def->height};
   uint32_t planned = planned_of(file);
   printf("%s\n  size      %u x %u pixels", path, def->width, def->height);
-  if (!is_whole(c, whole)) printf(", crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
+  if (!is_whole(c, whole))
+    printf(", crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
   printf("\n  sums      colour%s", def->errors ? ", errors" : "");
-  if (def->buckets) printf(", spectrum of %u buckets, %g to %g nm", def->buckets, def->lambda_min, def->lambda_max);
+  if (def->buckets)
+    printf(", spectrum of %u buckets, %g to %g nm", def->buckets, def->lambda_min,
+           def->lambda_max);
   printf("\n  sequence  %u\n", vl_film_file_sequence(file));
   for (uint32_t i = 0; i < parts->count; i++) {
     const FilmPart *p = &parts->parts[i];
     printf("  samples   ");
     print_ranges(&p->samples);
-    if (planned) printf(" of %u", planned);
-    if (!is_whole(p->place, c)) printf(", pixels %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+    if (planned)
+      printf(" of %u", planned);
+    if (!is_whole(p->place, c))
+      printf(", pixels %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
     putchar('\n');
   }
-  if (!parts->count) printf("  samples   none\n");
-  if (!receipt) return;
+  if (!parts->count)
+    printf("  samples   none\n");
+  if (!receipt)
+    return;
   const char *commit, *version = vl_receipt_version(receipt, &commit), *output;
   printf("  velo      %s%s%s\n  command   ", version, *commit ? ", commit " : "", commit);
   print_command(receipt);
   putchar('\n');
-  for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++) printf("  output    %s\n", output);
+  for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++)
+    printf("  output    %s\n", output);
 }
 
 static void print_merge(const char *path, const char *stem, uint32_t count) {
@@ -89,9 +101,9 @@ static void print_merge(const char *path, const char *stem, uint32_t count) {
   putchar('\n');
 }
 
-/* Prints one command for each rectangle and range, and then the command that merges their films. With --noise, only
- * rectangles without any sample are listed: how many samples the others need is not known before. A last command
- * continues the film until they have enough. */
+/* Prints one command for each rectangle and range, and then the command that merges their
+ * films. With --noise, only rectangles without any sample are listed: how many samples the
+ * others need is not known before. A last command continues the film until they have enough. */
 static int print_missing(const char *path, const vlFilmFile *file, const FilmParts *parts) {
   const vlReceipt *receipt = vl_film_file_receipt(file);
   const uint32_t *crop = vl_film_file_def(file)->crop;
@@ -100,23 +112,29 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
   char stem[4096], name[4200];
   double noise = receipt ? vl_receipt_noise(receipt) : 0;
   if (!receipt || !planned)
-    return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
-  if (length > 5 && strcmp(path + length - 5, ".film") == 0) length -= 5;
+    return report_failure(STATUS_SCENE,
+                          "%s: the film has no receipt: what made it is not known", path);
+  if (length > 5 && strcmp(path + length - 5, ".film") == 0)
+    length -= 5;
   snprintf(stem, sizeof stem, "%.*s", (int)length, path);
   for (uint32_t i = 0; i < parts->count; i++)
     for (uint32_t k = 0; k < parts->parts[i].samples.count; k++) {
       const FilmPart *p = &parts->parts[i];
       const vlSampleRange *r = &p->samples.ranges[k];
-      if (noise > 0 && r->first) continue;
+      if (noise > 0 && r->first)
+        continue;
       print_command(receipt);
-      if (r->first || r->end != planned) printf(" --samples %u:%u", r->first, r->end);
-      if (!is_whole(p->place, crop)) printf(" --tiles %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+      if (r->first || r->end != planned)
+        printf(" --samples %u:%u", r->first, r->end);
+      if (!is_whole(p->place, crop))
+        printf(" --tiles %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
       printf(" --film");
       snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
       print_word(name);
       putchar('\n');
     }
-  if (count) print_merge(path, stem, count);
+  if (count)
+    print_merge(path, stem, count);
   if (noise > 0) {
     printf("velo render --continue");
     print_word(path);
@@ -136,10 +154,12 @@ static int run_info(const Command *command, const Arguments *arguments) {
   int status = image_context(&context);
   if (status < 0) {
     vlResult result = vl_film_file_open(context, path, &file, &error);
-    if (result != VL_OK) status = report_error(&error, result, NULL);
+    if (result != VL_OK)
+      status = report_error(&error, result, NULL);
   }
   if (status < 0)
-    status = film_parts_read(file, arguments->values[INFO_CHECK].given, missing ? planned_of(file) : 0, &parts);
+    status = film_parts_read(file, arguments->values[INFO_CHECK].given,
+                             missing ? planned_of(file) : 0, &parts);
   if (status < 0 && missing) {
     status = print_missing(path, file, &parts);
   } else if (status < 0) {
@@ -154,8 +174,10 @@ static int run_info(const Command *command, const Arguments *arguments) {
 
 static const Option info_options[] = {
     {INFO_MISSING, 0, "missing", OPTION_FLAG, NULL,
-     "print, as shell commands, the renders of the missing samples or pixels, and the merge of the results"},
-    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL, "also read all sums, which detects any damage of the file"},
+     "print, as shell commands, the renders of the missing "
+     "samples or pixels, and the merge of the results"},
+    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL,
+     "also read all sums, which detects any damage of the file"},
     {0}};
 
 const Command film_info_command = {

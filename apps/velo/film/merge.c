@@ -13,25 +13,31 @@ enum { MERGE_OUTPUT, MERGE_OVERWRITE };
 static int run_merge(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *output = &arguments->values[MERGE_OUTPUT];
-  if (!output->given) return report_usage("film merge: give the name of the result with -o");
+  if (!output->given)
+    return report_usage("film merge: give the name of the result with -o");
   vlContext *context = NULL;
   vlError error = {0};
   int status = output_check(NULL, output->text, VL_OUTPUT_FILM);
-  if (status < 0) status = image_context(&context);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = image_context(&context);
+  if (status >= 0)
+    return status;
   vl_remove_leftovers(output_opened(output->text));
   vlFilmMergeDef def = vl_default_film_merge_def();
   def.overwrite = arguments->values[MERGE_OVERWRITE].given;
-  vlResult result = vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def,
-                                  output_opened(output->text), &error);
+  vlResult result =
+      vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def,
+                    output_opened(output->text), &error);
   context_close(context);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
 }
 
 static const Option merge_options[] = {
-    {MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "film file to write; may be one of the parts"},
+    {MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
+     "film file to write; may be one of the parts"},
     {MERGE_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL,
-     "replace an earlier film even if it is of another render or has samples that the result lacks"},
+     "replace an earlier film even if it is of another render "
+     "or has samples that the result lacks"},
     {0}};
 
 const Command film_merge_command = {
@@ -39,9 +45,14 @@ const Command film_merge_command = {
     .usage = "FILE... -o FILE",
     .summary = "merge the parts of a render into one film",
     .text =
-        "Merges film files of one render that have different samples or pixels. The order of the files does\n"
-        "not matter, and a file that is given twice counts once: the result has the bytes of a single render.",
-    .examples = "velo film merge part-*.film -o room.film\nvelo film merge room.film late.film -o room.film",
+        "Merges film files of one render that have different samples or pixels. The order of "
+        "the "
+        "files does\n"
+        "not matter, and a file that is given twice counts once: the result has the bytes of a "
+        "single render.",
+    .examples =
+        "velo film merge part-*.film -o room.film\nvelo film merge room.film late.film -o "
+        "room.film",
     .options = merge_options,
     .min_operands = 1,
     .max_operands = INT_MAX,

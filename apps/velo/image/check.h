@@ -1,5 +1,5 @@
-/* image/check.h: the parts of `velo image check`: the state of the file being checked, and the rules with their worst
- * errors. */
+/* image/check.h: the parts of `velo image check`: the state of the file being checked, and the
+ * rules with their worst errors. */
 #ifndef APP_IMAGE_CHECK_H
 #define APP_IMAGE_CHECK_H
 
@@ -50,17 +50,22 @@ typedef struct Check {
   const char *path;
   const float *pixel; /* the current pixel */
   vlCamera camera;
-  uint32_t x0, y0, x, y; /* corner of the data window; position of the pixel in the whole image */
+  uint32_t x0, y0, x,
+      y; /* corner of the data window; position of the pixel in the whole image */
   /* channel indices; -1: not in the file */
-  int z, distance, p, n, ng, ray, object, material, primitive, instance, uv, albedo, film, samples, error, alpha;
+  int z, distance, p, n, ng, ray, object, material, primitive, instance, uv, albedo, film,
+      samples, error, alpha;
   int flow[2], hidden[2];
-  double point[2];     /* film point of the pixel's ray */
-  double reach[2];     /* largest offset of the film point from the pixel's centre, in pixels; 0: none */
-  double spp;          /* samples per pixel from the header, of adaptive renders the most; 0: not given */
+  double point[2]; /* film point of the pixel's ray */
+  double reach[2]; /* largest offset of the film point from the pixel's centre, in pixels; 0:
+                      none */
+  double
+      spp; /* samples per pixel from the header, of adaptive renders the most; 0: not given */
   bool adaptive;       /* the header names a noise threshold */
   bool matte_is_alpha; /* the sum of coverages equals the image's alpha */
   Matte mattes[3];
-  uint32_t *material_of; /* material id of each object id, from the first pixel that shows the object */
+  uint32_t *material_of; /* material id of each object id, from the first pixel that shows the
+                            object */
   uint64_t hits, misses;
   double pixel_error; /* largest error in pixels */
 
@@ -78,7 +83,8 @@ enum { CHECK_OBJECTS = 1 << 20 }; /* larger object ids are not recorded */
 
 void check_note(Check *c, int rule, double error);
 void check_load3(const Check *c, int channel, double v[3]);
-/* Returns whether the pixel shows a surface, according to any channel that tells. Returns true if no channel tells. */
+/* Returns whether the pixel shows a surface, according to any channel that tells. Returns true
+ * if no channel tells. */
 bool check_is_hit(const Check *c);
 /* check_pixel.c */
 void check_pixel(Check *c);

@@ -7,20 +7,28 @@
 
 static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   double wrong = 0, v[3];
-  const int zeros[] = {c->object, c->material, c->primitive, c->instance}, vectors[] = {c->p, c->n, c->ng};
+  const int zeros[] = {c->object, c->material, c->primitive, c->instance},
+            vectors[] = {c->p, c->n, c->ng};
   for (size_t i = 0; i < sizeof zeros / sizeof *zeros; i++)
-    if (zeros[i] >= 0 && c->pixel[zeros[i]] != 0) wrong = INFINITY;
+    if (zeros[i] >= 0 && c->pixel[zeros[i]] != 0)
+      wrong = INFINITY;
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-    if (vectors[i] < 0) continue;
+    if (vectors[i] < 0)
+      continue;
     check_load3(c, vectors[i], v);
-    if (vector_length(v) != 0) wrong = INFINITY;
+    if (vector_length(v) != 0)
+      wrong = INFINITY;
   }
-  if (c->z >= 0 && c->pixel[c->z] != INFINITY) wrong = INFINITY;
-  if (c->distance >= 0 && c->pixel[c->distance] != INFINITY) wrong = INFINITY;
+  if (c->z >= 0 && c->pixel[c->z] != INFINITY)
+    wrong = INFINITY;
+  if (c->distance >= 0 && c->pixel[c->distance] != INFINITY)
+    wrong = INFINITY;
   check_note(c, RULE_NOTHING, wrong);
-  if (c->ray < 0) return;
+  if (c->ray < 0)
+    return;
   check_load3(c, c->ray, v);
-  for (int k = 0; k < 3 && in_domain; k++) v[k] -= direction[k];
+  for (int k = 0; k < 3 && in_domain; k++)
+    v[k] -= direction[k];
   check_note(c, RULE_RAY, vector_length(v));
 }
 
@@ -34,13 +42,16 @@ static void check_point(Check *c, const double origin[3], const double direction
   if (c->p >= 0)
     check_load3(c, c->p, p);
   else
-    for (int k = 0; k < 3; k++) p[k] = origin[k] + t * ray[k];
-  if (c->p < 0 && c->distance < 0) return;
+    for (int k = 0; k < 3; k++)
+      p[k] = origin[k] + t * ray[k];
+  if (c->p < 0 && c->distance < 0)
+    return;
   double away[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
   double size = fmax(fmax(vector_length(p), vector_length(origin)), vector_length(away));
   if (c->p >= 0 && c->distance >= 0) {
     double off[3];
-    for (int k = 0; k < 3; k++) off[k] = p[k] - (origin[k] + t * ray[k]);
+    for (int k = 0; k < 3; k++)
+      off[k] = p[k] - (origin[k] + t * ray[k]);
     check_note(c, RULE_POINT, vector_length(off) / size);
   }
   double pixel[2], z;
@@ -52,7 +63,8 @@ static void check_point(Check *c, const double origin[3], const double direction
     check_note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
   }
   double error = seen ? hypot(pixel[0] - c->point[0], pixel[1] - c->point[1]) : INFINITY;
-  if (error > c->pixel_error) c->pixel_error = error;
+  if (error > c->pixel_error)
+    c->pixel_error = error;
   double larger = c->camera.width > c->camera.height ? c->camera.width : c->camera.height;
   check_note(c, RULE_PIXEL, error / larger * fmin(1, vector_length(away) / size));
 }
@@ -69,7 +81,8 @@ static void check_plain(Check *c) {
     double more = (double)c->pixel[c->samples] - c->spp;
     check_note(c, RULE_SAMPLES, (c->adaptive ? fmax(more, 0) : fabs(more)) / c->spp);
   }
-  if (c->film < 0) return;
+  if (c->film < 0)
+    return;
   for (int k = 0; k < 2; k++) {
     double over = fabs((double)c->pixel[c->film + k] - 0.5) - c->reach[k];
     check_note(c, RULE_FILM, over > 0 ? over : over <= 0 ? 0 : (double)INFINITY);
@@ -78,11 +91,14 @@ static void check_plain(Check *c) {
 
 /* All pixels of a shape must have the same material. */
 static void check_material_of(Check *c) {
-  if (c->object < 0 || c->material < 0 || !c->material_of) return;
+  if (c->object < 0 || c->material < 0 || !c->material_of)
+    return;
   float object = c->pixel[c->object], material = c->pixel[c->material];
-  if (!(object >= 1 && object < CHECK_OBJECTS)) return;
+  if (!(object >= 1 && object < CHECK_OBJECTS))
+    return;
   uint32_t *known = &c->material_of[(uint32_t)object];
-  if (!*known) *known = (uint32_t)material;
+  if (!*known)
+    *known = (uint32_t)material;
   check_note(c, RULE_IDS, (double)*known == (double)material ? 0 : (double)INFINITY);
 }
 
@@ -91,7 +107,8 @@ void check_pixel(Check *c) {
   c->point[1] = c->y + (c->film >= 0 ? (double)c->pixel[c->film + 1] : 0.5);
   check_plain(c);
   check_mattes(c);
-  if (c->other) check_flow(c);
+  if (c->other)
+    check_flow(c);
   double origin[3] = {0, 0, 0}, direction[3] = {0, 0, 0}, v[3];
   bool in_domain = vl_camera_unproject(&c->camera, c->point[0], c->point[1], origin, direction);
   if (!check_is_hit(c)) {
@@ -102,7 +119,8 @@ void check_pixel(Check *c) {
   c->hits++;
   if (c->ray >= 0) {
     check_load3(c, c->ray, v);
-    for (int k = 0; k < 3; k++) v[k] -= direction[k];
+    for (int k = 0; k < 3; k++)
+      v[k] -= direction[k];
     check_note(c, RULE_RAY, in_domain ? vector_length(v) : INFINITY);
   }
   check_material_of(c);
@@ -118,8 +136,13 @@ void check_pixel(Check *c) {
   const int ids[] = {c->object, c->material, c->primitive};
   for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
     if (ids[i] >= 0)
-      check_note(c, RULE_IDS, c->pixel[ids[i]] >= 1 && floorf(c->pixel[ids[i]]) == c->pixel[ids[i]] ? 0 : INFINITY);
+      check_note(
+          c, RULE_IDS,
+          c->pixel[ids[i]] >= 1 && floorf(c->pixel[ids[i]]) == c->pixel[ids[i]] ? 0 : INFINITY);
   if (c->instance >= 0)
-    check_note(c, RULE_IDS,
-               c->pixel[c->instance] >= 0 && floorf(c->pixel[c->instance]) == c->pixel[c->instance] ? 0 : INFINITY);
+    check_note(
+        c, RULE_IDS,
+        c->pixel[c->instance] >= 0 && floorf(c->pixel[c->instance]) == c->pixel[c->instance]
+            ? 0
+            : INFINITY);
 }

@@ -1,4 +1,5 @@
-/* image/convert.c: `velo image convert`: conversion between formats, with a view for display values, and cropping. */
+/* image/convert.c: `velo image convert`: conversion between formats, with a view for display
+ * values, and cropping. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,42 +12,57 @@
 #include "render/job.h"
 #include "render/output_names.h"
 
-enum { CONVERT_CROP, CONVERT_VIEW, CONVERT_EXPOSURE, CONVERT_HALF, CONVERT_CHANNEL, CONVERT_SCALE };
+enum {
+  CONVERT_CROP,
+  CONVERT_VIEW,
+  CONVERT_EXPOSURE,
+  CONVERT_HALF,
+  CONVERT_CHANNEL,
+  CONVERT_SCALE
+};
 
 static bool is_float(const vlImage *image) {
   return vl_image_type(image) == VL_PIXEL_F16 || vl_image_type(image) == VL_PIXEL_F32;
 }
 
-/* Copies the attributes. After a crop, those that place the pixels in a larger image are left out. */
+/* Copies the attributes. After a crop, those that place the pixels in a larger image are left
+ * out.
+ */
 static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
     vlAttribute a;
     result = vl_image_attribute(from, i, &a);
-    if (result != VL_OK || (cropped && (strcmp(a.name, "dataWindow") == 0 || strcmp(a.name, "displayWindow") == 0)))
+    if (result != VL_OK || (cropped && (strcmp(a.name, "dataWindow") == 0 ||
+                                        strcmp(a.name, "displayWindow") == 0)))
       continue;
     result = vl_image_set_attribute(to, &a);
   }
   return result;
 }
 
-/* A window of the image. to_float: converted to linear 32-bit floats; otherwise values are unchanged. */
-static vlResult copy_window(vlContext *context, const vlImage *from, const uint32_t window[4], bool to_float,
-                            vlImage **result) {
-  uint32_t channels = vl_image_channels(from), width = window[2] - window[0], height = window[3] - window[1];
+/* A window of the image. to_float: converted to linear 32-bit floats; otherwise values are
+ * unchanged. */
+static vlResult copy_window(vlContext *context, const vlImage *from, const uint32_t window[4],
+                            bool to_float, vlImage **result) {
+  uint32_t channels = vl_image_channels(from), width = window[2] - window[0],
+           height = window[3] - window[1];
   const char *names[1024];
-  for (uint32_t c = 0; c < channels; c++) names[c] = vl_image_channel_name(from, c);
+  for (uint32_t c = 0; c < channels; c++)
+    names[c] = vl_image_channel_name(from, c);
   vlImageDef def = vl_default_image_def(width, height, channels);
   def.names = names;
   def.type = to_float ? VL_PIXEL_F32 : vl_image_type(from);
   def.encoding = to_float ? VL_ENCODING_LINEAR : vl_image_encoding(from);
   vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK) return status;
+  if (status != VL_OK)
+    return status;
   if (to_float) {
     float *pixel = vl_image_pixels(*result);
     for (uint32_t y = window[1]; y < window[3]; y++)
       for (uint32_t x = window[0]; x < window[2]; x++)
-        for (uint32_t c = 0; c < channels; c++) *pixel++ = vl_image_get(from, x, y, c);
+        for (uint32_t c = 0; c < channels; c++)
+          *pixel++ = vl_image_get(from, x, y, c);
   } else {
     vlPixelType type = vl_image_type(from);
     size_t value = type == VL_PIXEL_U8                            ? 1
@@ -56,7 +72,8 @@ static vlResult copy_window(vlContext *context, const vlImage *from, const uint3
     const char *source = vl_image_const_pixels(from);
     char *target = vl_image_pixels(*result);
     for (uint32_t y = 0; y < height; y++)
-      memcpy(target + y * width * pixel, source + ((size_t)(window[1] + y) * vl_image_width(from) + window[0]) * pixel,
+      memcpy(target + y * width * pixel,
+             source + ((size_t)(window[1] + y) * vl_image_width(from) + window[0]) * pixel,
              width * pixel);
   }
   bool cropped = width != vl_image_width(from) || height != vl_image_height(from);
@@ -64,31 +81,37 @@ static vlResult copy_window(vlContext *context, const vlImage *from, const uint3
 }
 
 /* Replaces *image by its window, as floats when the target or the view needs linear light. */
-static int prepare_pixels(vlContext *context, const Arguments *arguments, bool want_float, vlImage **image) {
+static int prepare_pixels(vlContext *context, const Arguments *arguments, bool want_float,
+                          vlImage **image) {
   const OptionValue *crop = &arguments->values[CONVERT_CROP];
   uint32_t window[4] = {0, 0, vl_image_width(*image), vl_image_height(*image)};
   if (crop->given) {
     if (crop->integers[2] > window[2] || crop->integers[3] > window[3])
-      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text, window[2], window[3]);
-    for (int i = 0; i < 4; i++) window[i] = (uint32_t)crop->integers[i];
+      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text,
+                          window[2], window[3]);
+    for (int i = 0; i < 4; i++)
+      window[i] = (uint32_t)crop->integers[i];
   }
   bool to_float = want_float && !is_float(*image);
-  if (!crop->given && !to_float) return -1;
+  if (!crop->given && !to_float)
+    return -1;
   vlImage *copy = NULL;
   vlResult result = copy_window(context, *image, window, to_float, &copy);
   if (result != VL_OK) {
     vl_image_destroy(copy);
-    return report_reason(result, arguments->operands[0], "this part of the image cannot be copied");
+    return report_reason(result, arguments->operands[0],
+                         "this part of the image cannot be copied");
   }
   vl_image_destroy(*image);
   *image = copy;
   return -1;
 }
 
-/* One channel times a factor as 16-bit integers: the depth format of RGB-D data sets. Values that are not finite,
- * negative or above 65535 become 0 ("unknown"), since clamped depths would be wrong. */
-static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t channel, double scale, vlImage **result,
-                              uint64_t *too_large) {
+/* One channel times a factor as 16-bit integers: the depth format of RGB-D data sets. Values
+ * that are not finite, negative or above 65535 become 0 ("unknown"), since clamped depths would
+ * be wrong. */
+static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t channel,
+                              double scale, vlImage **result, uint64_t *too_large) {
   vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
   def.type = VL_PIXEL_U16;
   def.encoding = VL_ENCODING_LINEAR;
@@ -99,27 +122,33 @@ static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t 
     for (uint32_t x = 0; x < def.width; x++) {
       double value = floor(vl_image_get(from, x, y, channel) * scale + 0.5);
       bool finite = isfinite(value);
-      if (finite && value > 65535) ++*too_large;
+      if (finite && value > 65535)
+        ++*too_large;
       *pixel++ = finite && value >= 0 && value <= 65535 ? (uint16_t)value : 0;
     }
   return status;
 }
 
-/* Replaces *image by one of its channels: unchanged, or as 16-bit integers when a scale is given. */
+/* Replaces *image by one of its channels: unchanged, or as 16-bit integers when a scale is
+ * given.
+ */
 static int take_channel(vlContext *context, const Arguments *arguments, vlImage **image) {
-  const OptionValue *name = &arguments->values[CONVERT_CHANNEL], *scale = &arguments->values[CONVERT_SCALE];
+  const OptionValue *name = &arguments->values[CONVERT_CHANNEL],
+                    *scale = &arguments->values[CONVERT_SCALE];
   const char *path = arguments->operands[0];
   int channel = vl_image_find_channel(*image, name->text);
   if (channel < 0) {
     const char *names[1024];
     int count = (int)vl_image_channels(*image);
-    for (int c = 0; c < count; c++) names[c] = vl_image_channel_name(*image, (uint32_t)c);
+    for (int c = 0; c < count; c++)
+      names[c] = vl_image_channel_name(*image, (uint32_t)c);
     const char *near = did_you_mean("", name->text, names, count);
     char list[600] = "";
     size_t used = 0;
     for (int c = 0; c < count && !*near && used + 80 < sizeof list; c++)
       used += (size_t)snprintf(list + used, 80, "%s%.60s", c ? ", " : "; it has ", names[c]);
-    return report_failure(STATUS_USAGE, "%s has no channel \"%.200s\"%s%s", path, name->text, near, list);
+    return report_failure(STATUS_USAGE, "%s has no channel \"%.200s\"%s%s", path, name->text,
+                          near, list);
   }
   vlImage *one = NULL;
   uint64_t too_large = 0;
@@ -132,8 +161,10 @@ static int take_channel(vlContext *context, const Arguments *arguments, vlImage 
     result = vl_image_create(context, &def, &one);
     float *pixel = result == VL_OK ? vl_image_pixels(one) : NULL;
     for (uint32_t y = 0; y < def.height && pixel; y++)
-      for (uint32_t x = 0; x < def.width; x++) *pixel++ = vl_image_get(*image, x, y, (uint32_t)channel);
-    if (result == VL_OK) result = copy_attributes(*image, one, false);
+      for (uint32_t x = 0; x < def.width; x++)
+        *pixel++ = vl_image_get(*image, x, y, (uint32_t)channel);
+    if (result == VL_OK)
+      result = copy_attributes(*image, one, false);
   }
   if (result != VL_OK) {
     vl_image_destroy(one);
@@ -151,9 +182,12 @@ static int check_channel(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   const char *path = arguments->operands[1], *dot = strrchr(path, '.');
   bool png = dot && strcasecmp(dot, ".png") == 0;
-  if (!v[CONVERT_SCALE].given) return -1;
-  if (!v[CONVERT_CHANNEL].given) return report_usage("--scale goes with --channel");
-  if (!png) return report_usage("--scale makes 16-bit whole numbers; the result must be a .png");
+  if (!v[CONVERT_SCALE].given)
+    return -1;
+  if (!v[CONVERT_CHANNEL].given)
+    return report_usage("--scale goes with --channel");
+  if (!png)
+    return report_usage("--scale makes 16-bit whole numbers; the result must be a .png");
   if (v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given)
     return report_usage("--scale keeps numbers; it does not go with --view and --exposure");
   return -1;
@@ -162,47 +196,62 @@ static int check_channel(const Arguments *arguments) {
 static int run_convert(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *v = arguments->values;
-  Outputs outputs = {.paths = {arguments->operands[1]},
-                     .count = 1,
-                     .to_stdout = true,
-                     .half = v[CONVERT_HALF].given,
-                     .view = v[CONVERT_VIEW].given ? (vlView)v[CONVERT_VIEW].integer : VL_VIEW_STANDARD,
-                     .exposure = (float)v[CONVERT_EXPOSURE].number};
+  Outputs outputs = {
+      .paths = {arguments->operands[1]},
+      .count = 1,
+      .to_stdout = true,
+      .half = v[CONVERT_HALF].given,
+      .view = v[CONVERT_VIEW].given ? (vlView)v[CONVERT_VIEW].integer : VL_VIEW_STANDARD,
+      .exposure = (float)v[CONVERT_EXPOSURE].number};
   int status = outputs_check_names(&outputs);
-  if (status < 0) status = check_channel(arguments);
-  if (status < 0) status = outputs_check_folders(&outputs);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = check_channel(arguments);
+  if (status < 0)
+    status = outputs_check_folders(&outputs);
+  if (status >= 0)
+    return status;
 
   vlContext *context = NULL;
   vlImage *image = NULL;
   bool eight_bit = false, viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
   output_suffix(outputs.paths[0], &eight_bit);
   status = image_context(&context);
-  if (status < 0) status = image_load(context, arguments->operands[0], &image);
-  if (status < 0) status = outputs_check_inputs(context, &outputs);
-  if (status < 0) status = prepare_pixels(context, arguments, !eight_bit || viewed, &image);
-  if (status < 0 && v[CONVERT_CHANNEL].given) status = take_channel(context, arguments, &image);
-  if (status < 0 && eight_bit && !viewed && !is_float(image)) { /* display values stay unchanged */
+  if (status < 0)
+    status = image_load(context, arguments->operands[0], &image);
+  if (status < 0)
+    status = outputs_check_inputs(context, &outputs);
+  if (status < 0)
+    status = prepare_pixels(context, arguments, !eight_bit || viewed, &image);
+  if (status < 0 && v[CONVERT_CHANNEL].given)
+    status = take_channel(context, arguments, &image);
+  if (status < 0 && eight_bit && !viewed &&
+      !is_float(image)) { /* display values stay unchanged */
     vlError error = {0};
     const vlImage *one = image;
-    vlResult result = output_write_layers(&one, 1, outputs.paths[0], vl_default_write_def(), &error);
+    vlResult result =
+        output_write_layers(&one, 1, outputs.paths[0], vl_default_write_def(), &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, outputs.paths[0]);
   }
-  if (status < 0) status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);
+  if (status < 0)
+    status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);
   vl_image_destroy(image);
   context_close(context);
   return status;
 }
 
 static const Option convert_options[] = {
-    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "write only these pixels; x1 and y1 are exclusive"},
+    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1",
+     "write only these pixels; x1 and y1 are exclusive"},
     {CONVERT_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV"},
-    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats"},
+    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV",
+     "exposure of .png .jpg .tga: multiply the image by 2^EV"},
+    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL,
+     "write .exr with 16-bit instead of 32-bit floats"},
     {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "write one channel only, such as Z"},
     {CONVERT_SCALE, 0, "scale", OPTION_NUMBER, "FACTOR",
-     "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in RGB-D data sets has 5000 or "
+     "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in RGB-D "
+     "data sets has 5000 or "
      "1000 per metre",
      1e-9, 1e9, NULL},
     {0}};
@@ -212,7 +261,8 @@ const Command image_convert_command = {
     .usage = "FILE RESULT [options]",
     .summary = "write an image in another format",
     .text =
-        "Writes FILE as RESULT; the suffix of RESULT chooses the format: .exr .hdr .pfm (linear),\n"
+        "Writes FILE as RESULT; the suffix of RESULT chooses the format: .exr .hdr .pfm "
+        "(linear),\n"
         ".png .jpg .tga (display).",
     .examples =
         "velo image convert room.exr room.png --view agx --exposure 1\n"

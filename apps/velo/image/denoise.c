@@ -21,43 +21,57 @@ enum {
   DENOISE_VERBOSE
 };
 
-const Choice denoiser_choices[] = {{"velo", VL_DENOISER_VELO}, {"oidn", VL_DENOISER_OIDN}, {NULL, 0}};
+const Choice denoiser_choices[] = {
+    {"velo", VL_DENOISER_VELO}, {"oidn", VL_DENOISER_OIDN}, {NULL, 0}};
 
 static int run_denoise(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *v = arguments->values;
   const char *path = arguments->operands[0];
   report_setup(false, v[DENOISE_VERBOSE].given ? REPORT_VERBOSE : REPORT_NORMAL);
-  if (!arguments->text_count) return report_usage("where to? -o FILE");
-  Outputs outputs = {.count = arguments->text_count,
-                     .to_stdout = true,
-                     .half = v[DENOISE_HALF].given,
-                     .view = v[DENOISE_VIEW].given ? (vlView)v[DENOISE_VIEW].integer : VL_VIEW_STANDARD,
-                     .exposure = (float)v[DENOISE_EXPOSURE].number};
-  for (int i = 0; i < arguments->text_count; i++) outputs.paths[i] = arguments->texts[i];
+  if (!arguments->text_count)
+    return report_usage("where to? -o FILE");
+  Outputs outputs = {
+      .count = arguments->text_count,
+      .to_stdout = true,
+      .half = v[DENOISE_HALF].given,
+      .view = v[DENOISE_VIEW].given ? (vlView)v[DENOISE_VIEW].integer : VL_VIEW_STANDARD,
+      .exposure = (float)v[DENOISE_EXPOSURE].number};
+  for (int i = 0; i < arguments->text_count; i++)
+    outputs.paths[i] = arguments->texts[i];
   int status = outputs_check_names(&outputs);
-  if (status < 0) status = outputs_check_folders(&outputs);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = outputs_check_folders(&outputs);
+  if (status >= 0)
+    return status;
   vlContextDef def = vl_default_context_def();
   def.log = report_log;
-  if (v[DENOISE_THREADS].given) def.threads = (uint32_t)v[DENOISE_THREADS].integer;
+  if (v[DENOISE_THREADS].given)
+    def.threads = (uint32_t)v[DENOISE_THREADS].integer;
   vlContext *context = NULL;
   vlImage *image = NULL, *clean = NULL;
   vlError error = {0};
-  if ((status = context_open(&def, &context)) >= 0) return status;
+  if ((status = context_open(&def, &context)) >= 0)
+    return status;
   status = image_load(context, path, &image);
-  if (status < 0) status = outputs_check_inputs(context, &outputs);
+  if (status < 0)
+    status = outputs_check_inputs(context, &outputs);
   vlDenoiseDef how = vl_default_denoise_def();
   vlDenoiseStats stats;
-  if (v[DENOISE_DENOISER].given) how.denoiser = (vlDenoiser)v[DENOISE_DENOISER].integer;
+  if (v[DENOISE_DENOISER].given)
+    how.denoiser = (vlDenoiser)v[DENOISE_DENOISER].integer;
   how.library = v[DENOISE_LIBRARY].text;
   if (status < 0) {
     vlResult result = vl_denoise(image, &how, &clean, &stats, &error);
-    if (result == VL_OK) result = denoise_name(clean, how.denoiser);
-    if (result != VL_OK) status = report_error(&error, result, path);
+    if (result == VL_OK)
+      result = denoise_name(clean, how.denoiser);
+    if (result != VL_OK)
+      status = report_error(&error, result, path);
   }
-  if (status < 0) denoise_report(&stats);
-  if (status < 0) status = outputs_write(context, &outputs, clean, 0, OUTPUT_FINISHED);
+  if (status < 0)
+    denoise_report(&stats);
+  if (status < 0)
+    status = outputs_write(context, &outputs, clean, 0, OUTPUT_FINISHED);
   vl_image_destroy(clean);
   vl_image_destroy(image);
   context_close(context);
@@ -67,16 +81,20 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
 void denoise_report(const vlDenoiseStats *stats) {
   char time[32];
   if (stats->not_finite)
-    report_warning("%llu pixels are not finite; the denoised image has their neighbours' light there",
-                   (unsigned long long)stats->not_finite);
-  if (!stats->features) report_note("the image has no channels of features (--channels features): edges may blur");
+    report_warning(
+        "%llu pixels are not finite; the denoised image has their neighbours' light there",
+        (unsigned long long)stats->not_finite);
+  if (!stats->features)
+    report_note("the image has no channels of features (--channels features): edges may blur");
   format_seconds(time, sizeof time, stats->seconds);
-  if (report_is_verbose()) report_note("denoised in %s", time);
+  if (report_is_verbose())
+    report_note("denoised in %s", time);
 }
 
 vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
-  const vlAttribute name = {
-      .name = "velo.denoiser", .type = VL_ATTRIBUTE_STRING, .string = choice_name(denoiser_choices, (int)denoiser)};
+  const vlAttribute name = {.name = "velo.denoiser",
+                            .type = VL_ATTRIBUTE_STRING,
+                            .string = choice_name(denoiser_choices, (int)denoiser)};
   return vl_image_set_attribute(clean, &name);
 }
 
@@ -84,15 +102,19 @@ static const Option denoise_options[] = {
     {DENOISE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)"},
     {DENOISE_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
-     "velo: the built-in denoiser; oidn: Intel Open Image Denoise, if it is installed:", 0, 0, denoiser_choices},
+     "velo: the built-in denoiser; oidn: Intel Open Image Denoise, if it is installed:", 0, 0,
+     denoiser_choices},
     {DENOISE_LIBRARY, 0, "denoiser-library", OPTION_TEXT, "FILE",
      "path of the library of Open Image Denoise; default: the system's"},
     {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV"},
-    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats"},
+    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV",
+     "exposure of .png .jpg .tga: multiply the image by 2^EV"},
+    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL,
+     "write .exr with 16-bit instead of 32-bit floats"},
     {DENOISE_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "number of worker threads; default: one for each processor. The image does not depend on it"},
+     "number of worker threads; default: one for each processor. The image does not depend on "
+     "it"},
     {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "print the time that denoising took"},
     {0}};
 
@@ -101,8 +123,11 @@ const Command image_denoise_command = {
     .usage = "FILE -o RESULT [options]",
     .summary = "write a denoised copy of a rendered image",
     .text =
-        "Removes most of the noise of the image FILE and writes the result. FILE is an .exr that was rendered\n"
-        "with velo render --channels error,features. The denoised image is biased; FILE is not changed.",
+        "Removes most of the noise of the image FILE and writes the result. FILE is an .exr "
+        "that "
+        "was rendered\n"
+        "with velo render --channels error,features. The denoised image is biased; FILE is not "
+        "changed.",
     .examples =
         "velo render room.pbrt --spp 16 --channels error,features -o room.exr\n"
         "velo image denoise room.exr -o clean.png",

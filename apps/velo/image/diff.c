@@ -16,7 +16,8 @@ enum { DIFF_OUTPUT, DIFF_THRESHOLD, DIFF_JSON };
 typedef enum MetricKind { METRIC_MOST, METRIC_LEAST, METRIC_FROM_ONE } MetricKind;
 typedef struct Metric {
   const char *name;
-  MetricKind kind; /* whether the threshold is an upper bound, a lower bound, or a largest distance from 1 */
+  MetricKind kind; /* whether the threshold is an upper bound, a lower bound, or a largest
+                      distance from 1 */
   double value;
 } Metric;
 
@@ -37,22 +38,26 @@ static void list_metrics(const vlImageDiff *d, Metric metrics[METRICS]) {
 }
 
 /* Parses "flip=0.05" into index and limit. Returns -1 or the exit code. */
-static int read_threshold(const char *text, const Metric metrics[METRICS], int *index, double *limit) {
+static int read_threshold(const char *text, const Metric metrics[METRICS], int *index,
+                          double *limit) {
   const char *equals = strchr(text, '=');
   char name[40], *end = NULL;
   const char *names[METRICS];
-  for (int i = 0; i < METRICS; i++) names[i] = metrics[i].name;
+  for (int i = 0; i < METRICS; i++)
+    names[i] = metrics[i].name;
   if (!equals || equals - text >= (long)sizeof name)
     return report_usage("--threshold \"%s\": must be NAME=VALUE, such as flip=0.05", text);
   snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
   *index = -1;
   for (int i = 0; i < METRICS; i++)
-    if (strcmp(names[i], name) == 0) *index = i;
+    if (strcmp(names[i], name) == 0)
+      *index = i;
   if (*index < 0) {
     const char *near = did_you_mean("", name, names, METRICS);
-    return report_usage(
-        "--threshold: unknown measure \"%s\"%s", name,
-        *near ? near : "; accepted are mse, relmse, psnr, flip, meanratio, maxabs, differing, notfinite");
+    return report_usage("--threshold: unknown measure \"%s\"%s", name,
+                        *near ? near
+                              : "; accepted are mse, relmse, psnr, flip, meanratio, maxabs, "
+                                "differing, notfinite");
   }
   *limit = strtod(equals + 1, &end);
   if (end == equals + 1 || *end || !isfinite(*limit))
@@ -63,9 +68,12 @@ static int read_threshold(const char *text, const Metric metrics[METRICS], int *
 /* A metric that is NaN always fails. */
 static bool accepted(const Metric *metric, double limit) {
   switch (metric->kind) {
-    case METRIC_MOST: return metric->value <= limit;
-    case METRIC_LEAST: return metric->value >= limit;
-    case METRIC_FROM_ONE: return fabs(metric->value - 1) <= limit;
+    case METRIC_MOST:
+      return metric->value <= limit;
+    case METRIC_LEAST:
+      return metric->value >= limit;
+    case METRIC_FROM_ONE:
+      return fabs(metric->value - 1) <= limit;
   }
   return false;
 }
@@ -76,24 +84,28 @@ static int check_thresholds(const Arguments *arguments, const Metric metrics[MET
     int index;
     double limit;
     int status = read_threshold(arguments->texts[i], metrics, &index, &limit);
-    if (status >= 0) return status;
-    if (accepted(&metrics[index], limit)) continue;
-    result =
-        report_failure(STATUS_OTHER, "%s is %g, the threshold is %g", metrics[index].name, metrics[index].value, limit);
+    if (status >= 0)
+      return status;
+    if (accepted(&metrics[index], limit))
+      continue;
+    result = report_failure(STATUS_OTHER, "%s is %g, the threshold is %g", metrics[index].name,
+                            metrics[index].value, limit);
   }
   return result;
 }
 
 static void print_metrics(const Arguments *arguments, const Metric metrics[METRICS]) {
   if (!arguments->values[DIFF_JSON].given) {
-    for (int i = 0; i < METRICS; i++) printf("%-10s %.9g\n", metrics[i].name, metrics[i].value);
+    for (int i = 0; i < METRICS; i++)
+      printf("%-10s %.9g\n", metrics[i].name, metrics[i].value);
     return;
   }
   Json json = {.out = stdout};
   json_begin(&json, NULL, '{');
   json_text(&json, "reference", arguments->operands[0]);
   json_text(&json, "image", arguments->operands[1]);
-  for (int i = 0; i < METRICS; i++) json_number(&json, metrics[i].name, metrics[i].value);
+  for (int i = 0; i < METRICS; i++)
+    json_number(&json, metrics[i].name, metrics[i].value);
   json_end(&json, '}');
   putchar('\n');
 }
@@ -106,7 +118,8 @@ static int write_heat(const vlImage *heat, const char *path) {
 
 static int run_diff(const Command *command, const Arguments *arguments) {
   (void)command;
-  Outputs heat_file = {.paths = {arguments->values[DIFF_OUTPUT].text}, .count = arguments->values[DIFF_OUTPUT].given};
+  Outputs heat_file = {.paths = {arguments->values[DIFF_OUTPUT].text},
+                       .count = arguments->values[DIFF_OUTPUT].given};
   vlImageDiff diff = {0};
   Metric metrics[METRICS];
   list_metrics(&diff, metrics);
@@ -116,25 +129,32 @@ static int run_diff(const Command *command, const Arguments *arguments) {
     double limit;
     status = read_threshold(arguments->texts[i], metrics, &index, &limit);
   }
-  if (status < 0) status = outputs_check_folders(&heat_file);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = outputs_check_folders(&heat_file);
+  if (status >= 0)
+    return status;
 
   vlContext *context = NULL;
   vlImage *a = NULL, *b = NULL, *heat = NULL;
   status = image_context(&context);
-  if (status < 0) status = image_load(context, arguments->operands[0], &a);
-  if (status < 0) status = image_load(context, arguments->operands[1], &b);
-  if (status < 0) status = outputs_check_inputs(context, &heat_file);
+  if (status < 0)
+    status = image_load(context, arguments->operands[0], &a);
+  if (status < 0)
+    status = image_load(context, arguments->operands[1], &b);
+  if (status < 0)
+    status = outputs_check_inputs(context, &heat_file);
   if (status < 0) {
     vlError error = {0};
     vlResult result = vl_image_compare(a, b, &diff, heat_file.count ? &heat : NULL, &error);
-    if (result != VL_OK) status = report_error(&error, result, arguments->operands[1]);
+    if (result != VL_OK)
+      status = report_error(&error, result, arguments->operands[1]);
   }
   if (status < 0) {
     list_metrics(&diff, metrics);
     print_metrics(arguments, metrics);
     status = heat ? write_heat(heat, heat_file.paths[0]) : STATUS_OK;
-    if (status == STATUS_OK) status = image_finish_output(check_thresholds(arguments, metrics));
+    if (status == STATUS_OK)
+      status = image_finish_output(check_thresholds(arguments, metrics));
   }
   vl_image_destroy(heat);
   vl_image_destroy(b);
@@ -144,9 +164,12 @@ static int run_diff(const Command *command, const Arguments *arguments) {
 }
 
 static const Option diff_options[] = {
-    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "write an image of the FLIP differences in false colours"},
+    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
+     "write an image of the FLIP differences in false colours"},
     {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",
-     "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther than VALUE from 1); may "
+     "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther "
+     "than "
+     "VALUE from 1); may "
      "be given several times"},
     {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {0}};

@@ -1,5 +1,5 @@
-/* image/display.c: see display.h. The chromaticities attribute (primaries and white) gives the matrix to linear
- * Rec.709; then the view is applied. */
+/* image/display.c: see display.h. The chromaticities attribute (primaries and white) gives the
+ * matrix to linear Rec.709; then the view is applied. */
 #include "image/display.h"
 
 #include <math.h>
@@ -12,7 +12,8 @@ static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3
 
 static void multiply(const double a[9], const double b[9], double result[9]) {
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) result[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+    for (int j = 0; j < 3; j++)
+      result[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
 static bool invert(const double m[9], double result[9]) {
@@ -22,7 +23,8 @@ static bool invert(const double m[9], double result[9]) {
       result[3 * i + j] = m[3 * a + c] * m[3 * b + d] - m[3 * a + d] * m[3 * b + c];
     }
   double determinant = m[0] * result[0] + m[1] * result[3] + m[2] * result[6];
-  for (int i = 0; i < 9; i++) result[i] /= determinant;
+  for (int i = 0; i < 9; i++)
+    result[i] /= determinant;
   return fabs(determinant) > 1e-9 && isfinite(determinant);
 }
 
@@ -32,7 +34,9 @@ static void white_xyz(const double xy[8], double xyz[3]) {
   xyz[2] = (1 - xy[6] - xy[7]) / xy[7];
 }
 
-/* rgb to XYZ: the columns are the primaries, scaled so that (1, 1, 1) is the white (SMPTE RP 177). */
+/* rgb to XYZ: the columns are the primaries, scaled so that (1, 1, 1) is the white (SMPTE RP
+ * 177).
+ */
 static bool xyz_from_rgb(const double xy[8], double m[9]) {
   double inverse[9], white[3];
   for (int i = 0; i < 3; i++) {
@@ -41,16 +45,20 @@ static bool xyz_from_rgb(const double xy[8], double m[9]) {
     m[6 + i] = 1 - xy[2 * i] - xy[2 * i + 1];
   }
   white_xyz(xy, white);
-  if (!invert(m, inverse)) return false;
+  if (!invert(m, inverse))
+    return false;
   for (int i = 0; i < 3; i++) {
-    double scale = inverse[3 * i] * white[0] + inverse[3 * i + 1] * white[1] + inverse[3 * i + 2] * white[2];
-    for (int row = 0; row < 3; row++) m[3 * row + i] *= scale;
+    double scale = inverse[3 * i] * white[0] + inverse[3 * i + 1] * white[1] +
+                   inverse[3 * i + 2] * white[2];
+    for (int row = 0; row < 3; row++)
+      m[3 * row + i] *= scale;
   }
   return true;
 }
 
-/* The matrix to Rec.709 for the same XYZ, without chromatic adaptation: the displayed colours do not depend on the
- * film's colour space. False: the image is in Rec.709, or its chromaticities are invalid. */
+/* The matrix to Rec.709 for the same XYZ, without chromatic adaptation: the displayed colours
+ * do not depend on the film's colour space. False: the image is in Rec.709, or its
+ * chromaticities are invalid. */
 static bool rec709_matrix(const vlImage *image, double m[9]) {
   vlAttribute attribute;
   if (vl_image_find_attribute(image, "chromaticities", &attribute) != VL_OK ||
@@ -58,27 +66,35 @@ static bool rec709_matrix(const vlImage *image, double m[9]) {
     return false;
   const double *xy = attribute.numbers;
   double away = 0, to_xyz[9], from_rec709[9], from_xyz[9];
-  for (int i = 0; i < 8; i++) away = fmax(away, fabs(xy[i] - rec709[i]));
-  if (!(away > 1e-3) || !(xy[7] > 0) || !xyz_from_rgb(xy, to_xyz) || !xyz_from_rgb(rec709, from_rec709)) return false;
-  if (!invert(from_rec709, from_xyz)) return false;
+  for (int i = 0; i < 8; i++)
+    away = fmax(away, fabs(xy[i] - rec709[i]));
+  if (!(away > 1e-3) || !(xy[7] > 0) || !xyz_from_rgb(xy, to_xyz) ||
+      !xyz_from_rgb(rec709, from_rec709))
+    return false;
+  if (!invert(from_rec709, from_xyz))
+    return false;
   multiply(from_xyz, to_xyz, m);
   for (int i = 0; i < 9; i++)
-    if (!isfinite(m[i])) return false;
+    if (!isfinite(m[i]))
+      return false;
   return true;
 }
 
-static vlResult to_rec709(vlContext *context, const vlImage *image, const int rgb[3], const double m[9],
-                          vlImage **result) {
+static vlResult to_rec709(vlContext *context, const vlImage *image, const int rgb[3],
+                          const double m[9], vlImage **result) {
   vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
   def.type = VL_PIXEL_F32;
   vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK) return status;
+  if (status != VL_OK)
+    return status;
   float *pixel = vl_image_pixels(*result);
   for (uint32_t y = 0; y < def.height; y++)
     for (uint32_t x = 0; x < def.width; x++, pixel += 3) {
       double v[3];
-      for (int c = 0; c < 3; c++) v[c] = vl_image_get(image, x, y, (uint32_t)rgb[c]);
-      for (int c = 0; c < 3; c++) pixel[c] = (float)(m[3 * c] * v[0] + m[3 * c + 1] * v[1] + m[3 * c + 2] * v[2]);
+      for (int c = 0; c < 3; c++)
+        v[c] = vl_image_get(image, x, y, (uint32_t)rgb[c]);
+      for (int c = 0; c < 3; c++)
+        pixel[c] = (float)(m[3 * c] * v[0] + m[3 * c + 1] * v[1] + m[3 * c + 2] * v[2]);
     }
   return VL_OK;
 }
@@ -93,16 +109,18 @@ static vlShortText layer_name(const char *channel, const char *dot) {
 static void tell_shown(const vlImage *image) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   const char *first = vl_image_channel_name(image, channel[0]), *dot = strrchr(first, '.');
-  if (vl_image_channels(image) == 1 || strcmp(first, "Y") == 0 || strcmp(first, "R") == 0) return;
+  if (vl_image_channels(image) == 1 || strcmp(first, "Y") == 0 || strcmp(first, "R") == 0)
+    return;
   if (count >= 3)
-    report_note("the image has no channels R, G, B or Y: the layer \"%s\" is shown", layer_name(first, dot).text);
+    report_note("the image has no channels R, G, B or Y: the layer \"%s\" is shown",
+                layer_name(first, dot).text);
   else
     report_note("the image has no channels R, G, B or Y: the channel \"%s\" is shown as grey",
                 vl_short_text(first).text);
 }
 
-static vlResult display_colors(vlContext *context, const vlImage *image, vlView view, float exposure,
-                               vlImage **result) {
+static vlResult display_colors(vlContext *context, const vlImage *image, vlView view,
+                               float exposure, vlImage **result) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")};
   double m[9];
@@ -111,7 +129,8 @@ static vlResult display_colors(vlContext *context, const vlImage *image, vlView 
     return vl_image_view(image, view, exposure, NULL, result);
   vlImage *converted = NULL;
   vlResult status = to_rec709(context, image, rgb, m, &converted);
-  if (status == VL_OK) status = vl_image_view(converted, view, exposure, NULL, result);
+  if (status == VL_OK)
+    status = vl_image_view(converted, view, exposure, NULL, result);
   vl_image_destroy(converted);
   return status;
 }
@@ -122,14 +141,16 @@ static vlResult divide_by_alpha(vlContext *context, const vlImage *image, vlImag
   def.type = VL_PIXEL_F32;
   vlAttribute attribute;
   vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK) return status;
+  if (status != VL_OK)
+    return status;
   if (vl_image_find_attribute(image, "chromaticities", &attribute) == VL_OK)
     status = vl_image_set_attribute(*result, &attribute);
   float *pixel = vl_image_pixels(*result);
   for (uint32_t y = 0; y < def.height; y++)
     for (uint32_t x = 0; x < def.width; x++, pixel += 3) {
       float a = vl_image_get(image, x, y, 3);
-      for (uint32_t c = 0; c < 3; c++) pixel[c] = a > 0 ? vl_image_get(image, x, y, c) / a : 0;
+      for (uint32_t c = 0; c < 3; c++)
+        pixel[c] = a > 0 ? vl_image_get(image, x, y, c) / a : 0;
     }
   return status;
 }
@@ -140,7 +161,8 @@ static vlResult add_alpha(vlContext *context, const vlImage *image, vlImage **di
   def.encoding = VL_ENCODING_SRGB;
   vlImage *result = NULL;
   vlResult status = vl_image_create(context, &def, &result);
-  if (status != VL_OK) return status;
+  if (status != VL_OK)
+    return status;
   const uint8_t *from = vl_image_pixels(*display);
   uint8_t *to = vl_image_pixels(result);
   for (uint32_t y = 0; y < def.height; y++)
@@ -153,13 +175,16 @@ static vlResult add_alpha(vlContext *context, const vlImage *image, vlImage **di
   return VL_OK;
 }
 
-vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, bool alpha,
-                       vlImage **result) {
-  if (!alpha) return display_colors(context, image, view, exposure, result);
+vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure,
+                       bool alpha, vlImage **result) {
+  if (!alpha)
+    return display_colors(context, image, view, exposure, result);
   vlImage *whole = NULL;
   vlResult status = divide_by_alpha(context, image, &whole);
-  if (status == VL_OK) status = display_colors(context, whole, view, exposure, result);
-  if (status == VL_OK) status = add_alpha(context, image, result);
+  if (status == VL_OK)
+    status = display_colors(context, whole, view, exposure, result);
+  if (status == VL_OK)
+    status = add_alpha(context, image, result);
   vl_image_destroy(whole);
   return status;
 }

@@ -9,7 +9,8 @@
 
 static bool number(const vlImage *image, const char *name, double *value) {
   vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_DOUBLE) return false;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_DOUBLE)
+    return false;
   *value = a.numbers[0];
   return true;
 }
@@ -17,14 +18,17 @@ static bool number(const vlImage *image, const char *name, double *value) {
 /* Reads corner pixels, inclusive. False when the attribute is missing or impossible. */
 static bool window(const vlImage *image, const char *name, double box[4]) {
   vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_BOX2I) return false;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_BOX2I)
+    return false;
   memcpy(box, a.numbers, 4 * sizeof *box);
   return box[2] >= box[0] && box[3] >= box[1];
 }
 
 static bool text(const vlImage *image, const char *name, const char **value) {
   vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_STRING || !a.string) return false;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_STRING ||
+      !a.string)
+    return false;
   *value = a.string;
   return true;
 }
@@ -36,21 +40,28 @@ enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
 static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
   static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
   int kind = 0;
-  while (kind < PROJECTIONS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
-  if (kind == PROJECTIONS) return false;
+  while (kind < PROJECTIONS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0)
+    kind++;
+  if (kind == PROJECTIONS)
+    return false;
   def->projection = (vlProjection)kind;
   number(image, "velo.shape0", &def->shape[0]);
   number(image, "velo.shape1", &def->shape[1]);
   const char *distortion, *at;
-  if (!text(image, "velo.distortion", &distortion)) return true;
+  if (!text(image, "velo.distortion", &distortion))
+    return true;
   for (int i = 0; i < 4; i++)
-    if (strcmp(names[i], distortion) == 0) def->distortion = (vlDistortion)i;
-  if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at)) return false;
+    if (strcmp(names[i], distortion) == 0)
+      def->distortion = (vlDistortion)i;
+  if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at))
+    return false;
   while (*at) {
     char *end;
-    if (def->distortion_count == 14) return false;
+    if (def->distortion_count == 14)
+      return false;
     def->distortion_coefficients[def->distortion_count++] = strtod(at, &end);
-    if (end == at) return false;
+    if (end == at)
+      return false;
     at = end;
   }
   return true;
@@ -61,26 +72,33 @@ static int windows(const vlImage *image, const char *path, double whole[4], doub
   const double all[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0};
   memcpy(whole, all, sizeof all);
   memcpy(data, all, sizeof all);
-  if (!window(image, "originalDataWindow", whole)) window(image, "displayWindow", whole);
+  if (!window(image, "originalDataWindow", whole))
+    window(image, "displayWindow", whole);
   window(image, "dataWindow", data);
-  if (whole[0] != 0 || whole[1] != 0 || data[0] < 0 || data[1] < 0 || data[2] > whole[2] || data[3] > whole[3])
-    return report_failure(STATUS_SCENE, "%s: its windows are not those of an image that velo rendered", path);
+  if (whole[0] != 0 || whole[1] != 0 || data[0] < 0 || data[1] < 0 || data[2] > whole[2] ||
+      data[3] > whole[3])
+    return report_failure(STATUS_SCENE,
+                          "%s: its windows are not those of an image that velo rendered", path);
   return -1;
 }
 
 /* Reads projection and pose. */
-static int read_def(const vlImage *image, const char *path, const double whole[4], vlCameraDef *def) {
+static int read_def(const vlImage *image, const char *path, const double whole[4],
+                    vlCameraDef *def) {
   *def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
   vlAttribute matrix, projection;
-  bool found =
-      number(image, "velo.fx", &def->fx) && number(image, "velo.fy", &def->fy) &&
-      number(image, "velo.skew", &def->skew) && number(image, "velo.cx", &def->cx) &&
-      number(image, "velo.cy", &def->cy) && vl_image_find_attribute(image, "velo.worldFromCamera", &matrix) == VL_OK &&
-      matrix.type == VL_ATTRIBUTE_M44D && vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
-      projection.type == VL_ATTRIBUTE_STRING && projection.string;
-  if (!found) return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
+  bool found = number(image, "velo.fx", &def->fx) && number(image, "velo.fy", &def->fy) &&
+               number(image, "velo.skew", &def->skew) && number(image, "velo.cx", &def->cx) &&
+               number(image, "velo.cy", &def->cy) &&
+               vl_image_find_attribute(image, "velo.worldFromCamera", &matrix) == VL_OK &&
+               matrix.type == VL_ATTRIBUTE_M44D &&
+               vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
+               projection.type == VL_ATTRIBUTE_STRING && projection.string;
+  if (!found)
+    return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
   if (!read_model(image, projection.string, def))
-    return report_failure(STATUS_SCENE, "%s: the camera in its header is of a kind that is not known", path);
+    return report_failure(STATUS_SCENE,
+                          "%s: the camera in its header is of a kind that is not known", path);
   def->has_matrix = true; /* OpenEXR's matrices act on row vectors */
   for (int row = 0; row < 4; row++)
     for (int column = 0; column < 4; column++)
@@ -88,10 +106,10 @@ static int read_def(const vlImage *image, const char *path, const double whole[4
   return -1;
 }
 
-/* Reads a lens of many elements, which determines the focal length. An image as aperture stop is not in headers; it
- * does not change ray directions. */
-static int read_optics(vlContext *context, const vlImage *image, const char *path, vlCameraDef *def,
-                       vlOptics **optics) {
+/* Reads a lens of many elements, which determines the focal length. An image as aperture stop
+ * is not in headers; it does not change ray directions. */
+static int read_optics(vlContext *context, const vlImage *image, const char *path,
+                       vlCameraDef *def, vlOptics **optics) {
   vlOpticsDef lens = vl_default_optics_def();
   vlLensSurface surfaces[64];
   const char *at;
@@ -109,43 +127,55 @@ static int read_optics(vlContext *context, const vlImage *image, const char *pat
     vlLensSurface *s = &surfaces[count / 4];
     good = end != at && count < 256;
     if (good)
-      *(count % 4 == 0 ? &s->radius : count % 4 == 1 ? &s->thickness : count % 4 == 2 ? &s->ior : &s->aperture) = value;
+      *(count % 4 == 0   ? &s->radius
+        : count % 4 == 1 ? &s->thickness
+        : count % 4 == 2 ? &s->ior
+                         : &s->aperture) = value;
     count++;
     at = end;
   }
-  if (!good || count % 4) return report_failure(STATUS_SCENE, "%s: the lens in its header is not understood", path);
+  if (!good || count % 4)
+    return report_failure(STATUS_SCENE, "%s: the lens in its header is not understood", path);
   lens.count = count / 4;
   vlError error = {0};
   vlResult result = vl_optics_create(context, &lens, optics, &error);
-  if (result == VL_ERROR_MEMORY) return report_error(NULL, result, NULL);
+  if (result == VL_ERROR_MEMORY)
+    return report_error(NULL, result, NULL);
   if (result != VL_OK)
-    return report_failure(STATUS_SCENE, "%s: the lens in its header is wrong: %s", path, error.message);
+    return report_failure(STATUS_SCENE, "%s: the lens in its header is wrong: %s", path,
+                          error.message);
   def->lens.optics = *optics;
   def->fx = def->fy = def->skew = VL_UNSET;
   return -1;
 }
 
-int header_camera(vlContext *context, const vlImage *image, const char *path, vlCamera *camera, vlOptics **optics,
-                  uint32_t *x0, uint32_t *y0) {
+int header_camera(vlContext *context, const vlImage *image, const char *path, vlCamera *camera,
+                  vlOptics **optics, uint32_t *x0, uint32_t *y0) {
   double whole[4], data[4], limit;
   vlCameraDef def;
   int status = windows(image, path, whole, data);
   *optics = NULL;
-  if (status < 0) status = read_def(image, path, whole, &def);
-  if (status < 0 && def.projection == VL_PROJECTION_OPTICS) status = read_optics(context, image, path, &def, optics);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = read_def(image, path, whole, &def);
+  if (status < 0 && def.projection == VL_PROJECTION_OPTICS)
+    status = read_optics(context, image, path, &def, optics);
+  if (status >= 0)
+    return status;
   vlError error = {0};
   vlResult result = vl_camera_make(&def, camera, NULL, &error);
   if (result != VL_OK)
-    return report_failure(STATUS_SCENE, "%s: the camera in its header is wrong: %s", path, error.message);
-  if (number(image, "velo.limit", &limit)) camera->limit = limit;
+    return report_failure(STATUS_SCENE, "%s: the camera in its header is wrong: %s", path,
+                          error.message);
+  if (number(image, "velo.limit", &limit))
+    camera->limit = limit;
   number(image, "velo.eyeCircle", &camera->eye_circle);
   *x0 = (uint32_t)data[0];
   *y0 = (uint32_t)data[1];
   return -1;
 }
 
-static void single(const vlImage *image, const char *name, vlAttributeType type, double *values, int count) {
+static void single(const vlImage *image, const char *name, vlAttributeType type, double *values,
+                   int count) {
   vlAttribute a;
   if (vl_image_find_attribute(image, name, &a) == VL_OK && a.type == type)
     memcpy(values, a.numbers, (size_t)count * sizeof *values);
@@ -154,13 +184,17 @@ static void single(const vlImage *image, const char *name, vlAttributeType type,
 int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) {
   double whole[4], data[4], shutter[2], circle = 0.0;
   int status = windows(image, path, whole, data);
-  if (status < 0) status = read_def(image, path, whole, def);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = read_def(image, path, whole, def);
+  if (status >= 0)
+    return status;
   if (def->projection == VL_PROJECTION_OPTICS)
-    return report_failure(STATUS_SCENE, "%s: a lens of many elements is not taken from an image; its scene has it",
-                          path);
+    return report_failure(
+        STATUS_SCENE,
+        "%s: a lens of many elements is not taken from an image; its scene has it", path);
   if (number(image, "velo.eyeCircle", &circle) && circle != 0.0)
-    return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional image is no camera of its own", path);
+    return report_failure(
+        STATUS_SCENE, "%s: one eye of an omnidirectional image is no camera of its own", path);
   shutter[0] = def->shutter_open;
   shutter[1] = def->shutter_close;
   single(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);

@@ -1,4 +1,5 @@
-/* image/info.c: `velo image info`: the content of an image file. Also functions shared by the image commands. */
+/* image/info.c: `velo image info`: the content of an image file. Also functions shared by the
+ * image commands. */
 #include <stdio.h>
 #include <string.h>
 
@@ -31,27 +32,43 @@ static const char *format_of(const char *path) {
   unsigned char b[12] = {0};
   FILE *file = fopen(path, "rb");
   size_t n = file ? fread(b, 1, sizeof b, file) : 0;
-  if (file) fclose(file);
-  if (n >= 4 && memcmp(b, "\x76\x2f\x31\x01", 4) == 0) return "OpenEXR";
-  if (n >= 8 && memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0) return "PNG";
-  if (n >= 3 && memcmp(b, "\xff\xd8\xff", 3) == 0) return "JPEG";
-  if (n >= 6 && (memcmp(b, "#?RADI", 6) == 0 || memcmp(b, "#?RGBE", 6) == 0)) return "Radiance HDR";
-  if (n >= 4 && memcmp(b, "GIF8", 4) == 0) return "GIF";
-  if (n >= 4 && memcmp(b, "qoif", 4) == 0) return "QOI";
-  if (n >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0) return "WebP";
-  if (n >= 2 && memcmp(b, "BM", 2) == 0) return "BMP";
-  if (n >= 2 && b[0] == 'P' && (b[1] == 'F' || b[1] == 'f')) return "PFM";
-  if (n >= 2 && b[0] == 'P' && b[1] >= '1' && b[1] <= '6') return "PNM";
+  if (file)
+    fclose(file);
+  if (n >= 4 && memcmp(b, "\x76\x2f\x31\x01", 4) == 0)
+    return "OpenEXR";
+  if (n >= 8 && memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0)
+    return "PNG";
+  if (n >= 3 && memcmp(b, "\xff\xd8\xff", 3) == 0)
+    return "JPEG";
+  if (n >= 6 && (memcmp(b, "#?RADI", 6) == 0 || memcmp(b, "#?RGBE", 6) == 0))
+    return "Radiance HDR";
+  if (n >= 4 && memcmp(b, "GIF8", 4) == 0)
+    return "GIF";
+  if (n >= 4 && memcmp(b, "qoif", 4) == 0)
+    return "QOI";
+  if (n >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0)
+    return "WebP";
+  if (n >= 2 && memcmp(b, "BM", 2) == 0)
+    return "BMP";
+  if (n >= 2 && b[0] == 'P' && (b[1] == 'F' || b[1] == 'f'))
+    return "PFM";
+  if (n >= 2 && b[0] == 'P' && b[1] >= '1' && b[1] <= '6')
+    return "PNM";
   return "TGA";
 }
 
 static const char *type_name(vlPixelType type) {
   switch (type) {
-    case VL_PIXEL_U8: return "8-bit integer";
-    case VL_PIXEL_U16: return "16-bit integer";
-    case VL_PIXEL_F16: return "16-bit float";
-    case VL_PIXEL_F32: return "32-bit float";
-    case VL_PIXEL_U32: return "32-bit integer";
+    case VL_PIXEL_U8:
+      return "8-bit integer";
+    case VL_PIXEL_U16:
+      return "16-bit integer";
+    case VL_PIXEL_F16:
+      return "16-bit float";
+    case VL_PIXEL_F32:
+      return "32-bit float";
+    case VL_PIXEL_U32:
+      return "32-bit integer";
   }
   return "?";
 }
@@ -59,77 +76,102 @@ static const char *type_name(vlPixelType type) {
 /* Whether the file's channels have different types. */
 static bool is_mixed(const vlImage *image) {
   for (uint32_t i = 1; i < vl_image_channels(image); i++)
-    if (vl_image_stored_type(image, i) != vl_image_stored_type(image, 0)) return true;
+    if (vl_image_stored_type(image, i) != vl_image_stored_type(image, 0))
+      return true;
   return false;
 }
 
 static const char *encoding_name(vlEncoding encoding) {
-  return encoding == VL_ENCODING_SRGB ? "sRGB" : encoding == VL_ENCODING_GAMMA ? "gamma" : "linear";
+  return encoding == VL_ENCODING_SRGB    ? "sRGB"
+         : encoding == VL_ENCODING_GAMMA ? "gamma"
+                                         : "linear";
 }
 
 static int number_count(vlAttributeType type) {
   switch (type) {
     case VL_ATTRIBUTE_FLOAT:
     case VL_ATTRIBUTE_INT:
-    case VL_ATTRIBUTE_DOUBLE: return 1;
-    case VL_ATTRIBUTE_V2F: return 2;
-    case VL_ATTRIBUTE_V3F: return 3;
-    case VL_ATTRIBUTE_BOX2I: return 4;
-    case VL_ATTRIBUTE_CHROMATICITIES: return 8;
-    case VL_ATTRIBUTE_M33F: return 9;
+    case VL_ATTRIBUTE_DOUBLE:
+      return 1;
+    case VL_ATTRIBUTE_V2F:
+      return 2;
+    case VL_ATTRIBUTE_V3F:
+      return 3;
+    case VL_ATTRIBUTE_BOX2I:
+      return 4;
+    case VL_ATTRIBUTE_CHROMATICITIES:
+      return 8;
+    case VL_ATTRIBUTE_M33F:
+      return 9;
     case VL_ATTRIBUTE_M44F:
-    case VL_ATTRIBUTE_M44D: return 16;
+    case VL_ATTRIBUTE_M44D:
+      return 16;
     case VL_ATTRIBUTE_STRING:
-    case VL_ATTRIBUTE_STRINGS: return 0;
+    case VL_ATTRIBUTE_STRINGS:
+      return 0;
   }
   return 0;
 }
 
-/* Prints numbers that the file holds in single precision with as few digits as read back to the same float. */
+/* Prints numbers that the file holds in single precision with as few digits as read back to the
+ * same float. */
 static double shown(const vlAttribute *a, int i) {
-  if (a->type == VL_ATTRIBUTE_DOUBLE || a->type == VL_ATTRIBUTE_M44D || a->type == VL_ATTRIBUTE_INT)
+  if (a->type == VL_ATTRIBUTE_DOUBLE || a->type == VL_ATTRIBUTE_M44D ||
+      a->type == VL_ATTRIBUTE_INT)
     return a->numbers[i];
   char text[40];
   for (int digits = 6; digits <= 9; digits++) {
     double back;
     snprintf(text, sizeof text, "%.*g", digits, a->numbers[i]);
-    if (sscanf(text, "%lf", &back) == 1 && (float)back == (float)a->numbers[i]) return back;
+    if (sscanf(text, "%lf", &back) == 1 && (float)back == (float)a->numbers[i])
+      return back;
   }
   return a->numbers[i];
 }
 
 /* Prints a word of a command, quoted if a shell would split it. */
 static void print_word(const char *word) {
-  bool plain = *word && !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+,-./:=@_%")];
+  bool plain =
+      *word &&
+      !word[strspn(word,
+                   "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+,-./:=@_%")];
   putchar(' ');
-  if (!plain) putchar('\'');
+  if (!plain)
+    putchar('\'');
   for (const char *s = word; *s; s++)
     if (*s == '\'')
       printf("'\\''");
     else
       putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
-  if (!plain) putchar('\'');
+  if (!plain)
+    putchar('\'');
 }
 
 /* Prints what made the image. receipt may be null. */
 static void print_receipt(const vlReceipt *receipt) {
-  if (!receipt) return;
+  if (!receipt)
+    return;
   const char *commit, *version = vl_receipt_version(receipt, &commit), *word;
   uint32_t planned, samples = vl_receipt_samples(receipt, &planned), files = 0;
   vlFileRecord record;
   printf("receipt\n  velo        ");
   text_print_plain(version);
-  if (*commit) printf(", commit ");
+  if (*commit)
+    printf(", commit ");
   text_print_plain(commit);
   printf("\n  command    ");
-  for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) print_word(word);
+  for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++)
+    print_word(word);
   printf("\n  samples     %u per pixel", samples);
-  if (samples != planned) printf(", of %u planned", planned);
-  while (vl_receipt_file(receipt, files, &record)) files++;
+  if (samples != planned)
+    printf(", of %u planned", planned);
+  while (vl_receipt_file(receipt, files, &record))
+    files++;
   printf("\n  files       %u\n", files);
   for (uint32_t i = 0; vl_receipt_file(receipt, i, &record); i++) {
     printf("    ");
-    for (int k = 0; k < 16; k++) printf("%02x", record.digest[k]);
+    for (int k = 0; k < 16; k++)
+      printf("%02x", record.digest[k]);
     printf(" %12llu  ", (unsigned long long)record.size);
     text_print_plain(record.path);
     putchar('\n');
@@ -145,23 +187,29 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
     text_print_plain(vl_image_channel_name(image, i));
   }
   if (!is_mixed(image))
-    printf("\ntype        %s, %s\n", type_name(vl_image_type(image)), encoding_name(vl_image_encoding(image)));
+    printf("\ntype        %s, %s\n", type_name(vl_image_type(image)),
+           encoding_name(vl_image_encoding(image)));
   for (int type = VL_PIXEL_U8; type <= VL_PIXEL_U32 && is_mixed(image); type++) {
     bool any = false;
     for (uint32_t i = 0; i < vl_image_channels(image); i++) {
-      if ((int)vl_image_stored_type(image, i) != type) continue;
-      if (!any) printf("\ntype        %s:", type_name((vlPixelType)type));
+      if ((int)vl_image_stored_type(image, i) != type)
+        continue;
+      if (!any)
+        printf("\ntype        %s:", type_name((vlPixelType)type));
       any = true;
       putchar(' ');
       text_print_plain(vl_image_channel_name(image, i));
     }
   }
-  if (is_mixed(image)) putchar('\n');
+  if (is_mixed(image))
+    putchar('\n');
   uint32_t count = vl_image_attribute_count(image);
-  if (count) printf("attributes  %u\n", count);
+  if (count)
+    printf("attributes  %u\n", count);
   for (uint32_t i = 0; i < count; i++) {
     vlAttribute a;
-    if (vl_image_attribute(image, i, &a) != VL_OK) continue;
+    if (vl_image_attribute(image, i, &a) != VL_OK)
+      continue;
     printf("  ");
     text_print_plain(a.name);
     printf("%*s", (int)(strlen(a.name) < 26 ? 26 - strlen(a.name) : 1), "");
@@ -169,7 +217,8 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
       puts("(below)");
       continue;
     }
-    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS) text_print_plain(a.string ? a.string : "");
+    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS)
+      text_print_plain(a.string ? a.string : "");
     for (int k = 0; k < number_count(a.type); k++) {
       char text[40];
       format_number(text, sizeof text, shown(&a, k));
@@ -188,7 +237,8 @@ static void print_json(const char *path, const vlImage *image) {
   json_integer(&json, "width", vl_image_width(image));
   json_integer(&json, "height", vl_image_height(image));
   json_begin(&json, "channels", '[');
-  for (uint32_t i = 0; i < vl_image_channels(image); i++) json_text(&json, NULL, vl_image_channel_name(image, i));
+  for (uint32_t i = 0; i < vl_image_channels(image); i++)
+    json_text(&json, NULL, vl_image_channel_name(image, i));
   json_end(&json, ']');
   json_text(&json, "type", type_name(vl_image_type(image)));
   if (is_mixed(image)) {
@@ -201,13 +251,18 @@ static void print_json(const char *path, const vlImage *image) {
   json_begin(&json, "attributes", '{');
   for (uint32_t i = 0; i < vl_image_attribute_count(image); i++) {
     vlAttribute a;
-    if (vl_image_attribute(image, i, &a) != VL_OK) continue;
+    if (vl_image_attribute(image, i, &a) != VL_OK)
+      continue;
     int n = number_count(a.type);
-    if (n == 0) json_text(&json, a.name, a.string ? a.string : "");
-    if (n == 1) json_number(&json, a.name, shown(&a, 0));
-    if (n < 2) continue;
+    if (n == 0)
+      json_text(&json, a.name, a.string ? a.string : "");
+    if (n == 1)
+      json_number(&json, a.name, shown(&a, 0));
+    if (n < 2)
+      continue;
     json_begin(&json, a.name, '[');
-    for (int k = 0; k < n; k++) json_number(&json, NULL, shown(&a, k));
+    for (int k = 0; k < n; k++)
+      json_number(&json, NULL, shown(&a, k));
     json_end(&json, ']');
   }
   json_end(&json, '}');
@@ -223,11 +278,15 @@ static int run_info(const Command *command, const Arguments *arguments) {
   vlImage *image = NULL;
   int status = image_context(&context);
   vlError error = {0};
-  vlResult result = status < 0 ? vl_image_read_header(context, arguments->operands[0], &image, &error) : VL_OK;
-  if (result != VL_OK) status = report_error(&error, result, arguments->operands[0]);
+  vlResult result = status < 0
+                        ? vl_image_read_header(context, arguments->operands[0], &image, &error)
+                        : VL_OK;
+  if (result != VL_OK)
+    status = report_error(&error, result, arguments->operands[0]);
   vlReceipt *receipt = NULL;
   vlAttribute attribute;
-  if (status < 0 && vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK && attribute.string)
+  if (status < 0 && vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK &&
+      attribute.string)
     vl_receipt_parse(context, attribute.string, strlen(attribute.string), &receipt,
                      NULL); /* without a valid receipt the attribute is printed unchanged */
   if (status < 0) {
@@ -243,15 +302,16 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option info_options[] = {{INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-                                      {0}};
+static const Option info_options[] = {
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"}, {0}};
 
 const Command image_info_command = {
     .name = "image info",
     .usage = "FILE [options]",
     .summary = "print format, size, channels and attributes of an image",
     .text =
-        "Prints the format, size, channels and header attributes of FILE. Matrices are in OpenEXR's order (row "
+        "Prints the format, size, channels and header attributes of FILE. Matrices are in "
+        "OpenEXR's order (row "
         "vectors).",
     .examples =
         "velo image info room.exr\n"

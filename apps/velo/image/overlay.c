@@ -26,12 +26,15 @@ bool overlay_begin(Overlay *o, const vlImage *image) {
   size_t pixels = (size_t)o->width * o->height;
   o->rgb = malloc(3 * pixels * sizeof *o->rgb);
   o->coverage = calloc(pixels, sizeof *o->coverage);
-  if (!o->rgb || !o->coverage) return false;
+  if (!o->rgb || !o->coverage)
+    return false;
   static const char *const names[3] = {"R", "G", "B"};
   for (int k = 0; k < 3; k++) {
     int channel = vl_image_find_channel(image, names[k]);
-    if (channel < 0) channel = vl_image_find_channel(image, "Y");
-    if (channel < 0) channel = 0;
+    if (channel < 0)
+      channel = vl_image_find_channel(image, "Y");
+    if (channel < 0)
+      channel = 0;
     for (uint32_t y = 0; y < o->height; y++)
       for (uint32_t x = 0; x < o->width; x++)
         o->rgb[3 * ((size_t)y * o->width + x) + (size_t)k] = sample(image, x, y, channel);
@@ -45,28 +48,36 @@ void overlay_end(Overlay *o) {
   *o = (Overlay){0};
 }
 
-/* Returns the coverage of a pixel by a pen whose soft edge is one pixel wide. It depends on the distance between the
- * pixel's centre and the segment. */
-static void touch(Overlay *o, long x, long y, const double a[2], const double d[2], double length2, double width) {
-  if (x < 0 || y < 0 || x >= (long)o->width || y >= (long)o->height) return;
+/* Returns the coverage of a pixel by a pen whose soft edge is one pixel wide. It depends on the
+ * distance between the pixel's centre and the segment. */
+static void touch(Overlay *o, long x, long y, const double a[2], const double d[2],
+                  double length2, double width) {
+  if (x < 0 || y < 0 || x >= (long)o->width || y >= (long)o->height)
+    return;
   double px = (double)x + 0.5 - a[0], py = (double)y + 0.5 - a[1];
   double t = length2 > 0.0 ? (px * d[0] + py * d[1]) / length2 : 0.0;
   t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
   double distance = hypot(px - t * d[0], py - t * d[1]), c = 0.5 * width + 0.5 - distance;
   float *cover = &o->coverage[(size_t)y * o->width + (size_t)x];
-  if (c > *cover) *cover = (float)(c < 1.0 ? c : 1.0);
+  if (c > *cover)
+    *cover = (float)(c < 1.0 ? c : 1.0);
 }
 
 /* Clips a segment to a box (Liang and Barsky). Returns false if nothing remains. */
 static bool clip(double p[4], double x0, double y0, double x1, double y1) {
   double t0 = 0.0, t1 = 1.0, dx = p[2] - p[0], dy = p[3] - p[1];
-  const double run[4] = {-dx, dx, -dy, dy}, room[4] = {p[0] - x0, x1 - p[0], p[1] - y0, y1 - p[1]};
+  const double run[4] = {-dx, dx, -dy, dy},
+               room[4] = {p[0] - x0, x1 - p[0], p[1] - y0, y1 - p[1]};
   for (int i = 0; i < 4; i++) {
-    if (run[i] == 0.0 && room[i] < 0.0) return false;
-    if (run[i] < 0.0) t0 = fmax(t0, room[i] / run[i]);
-    if (run[i] > 0.0) t1 = fmin(t1, room[i] / run[i]);
+    if (run[i] == 0.0 && room[i] < 0.0)
+      return false;
+    if (run[i] < 0.0)
+      t0 = fmax(t0, room[i] / run[i]);
+    if (run[i] > 0.0)
+      t1 = fmin(t1, room[i] / run[i]);
   }
-  if (!(t0 <= t1)) return false;
+  if (!(t0 <= t1))
+    return false;
   const double q[4] = {p[0] + t0 * dx, p[1] + t0 * dy, p[0] + t1 * dx, p[1] + t1 * dy};
   memcpy(p, q, sizeof q);
   return true;
@@ -74,16 +85,21 @@ static bool clip(double p[4], double x0, double y0, double x1, double y1) {
 
 void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double width) {
   double p[4] = {x0, y0, x1, y1}, reach = 0.5 * width + 2.0;
-  if (!isfinite(x0 + y0 + x1 + y1) || !clip(p, -reach, -reach, o->width + reach, o->height + reach)) return;
+  if (!isfinite(x0 + y0 + x1 + y1) ||
+      !clip(p, -reach, -reach, o->width + reach, o->height + reach))
+    return;
   const double a[2] = {p[0], p[1]}, d[2] = {p[2] - p[0], p[3] - p[1]};
   double length2 = d[0] * d[0] + d[1] * d[1];
-  /* one step per pixel of the longer axis; each step paints the pen's width along the other axis */
+  /* one step per pixel of the longer axis; each step paints the pen's width along the other
+   * axis */
   bool flat = fabs(d[0]) >= fabs(d[1]);
   double slope = flat ? (d[0] != 0.0 ? d[1] / d[0] : 0.0) : d[0] / d[1];
-  double low = fmin(flat ? p[0] : p[1], flat ? p[2] : p[3]), high = fmax(flat ? p[0] : p[1], flat ? p[2] : p[3]);
+  double low = fmin(flat ? p[0] : p[1], flat ? p[2] : p[3]),
+         high = fmax(flat ? p[0] : p[1], flat ? p[2] : p[3]);
   double across = reach * sqrt(1.0 + slope * slope);
   for (long i = (long)floor(low - reach); i <= (long)ceil(high + reach); i++) {
-    double along = (double)i + 0.5 - (flat ? a[0] : a[1]), middle = (flat ? a[1] : a[0]) + slope * along;
+    double along = (double)i + 0.5 - (flat ? a[0] : a[1]),
+           middle = (flat ? a[1] : a[0]) + slope * along;
     for (long j = (long)floor(middle - across); j <= (long)ceil(middle + across); j++)
       touch(o, flat ? i : j, flat ? j : i, a, d, length2, width);
   }
@@ -92,8 +108,10 @@ void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double
 void overlay_ring(Overlay *o, double x, double y, double radius, double width) {
   enum { SIDES = 48 };
   for (int i = 0; i < SIDES; i++) {
-    double t0 = 2.0 * 3.14159265358979323846 * i / SIDES, t1 = 2.0 * 3.14159265358979323846 * (i + 1) / SIDES;
-    overlay_line(o, x + radius * cos(t0), y + radius * sin(t0), x + radius * cos(t1), y + radius * sin(t1), width);
+    double t0 = 2.0 * 3.14159265358979323846 * i / SIDES,
+           t1 = 2.0 * 3.14159265358979323846 * (i + 1) / SIDES;
+    overlay_line(o, x + radius * cos(t0), y + radius * sin(t0), x + radius * cos(t1),
+                 y + radius * sin(t1), width);
   }
 }
 
@@ -102,7 +120,8 @@ static bool inside(const double q[4][2], double x, double y) {
   bool in = false;
   for (int i = 0; i < 4; i++) {
     const double *a = q[i], *b = q[(i + 1) % 4];
-    if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])) in = !in;
+    if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+      in = !in;
   }
   return in;
 }
@@ -115,45 +134,55 @@ void overlay_quad(Overlay *o, const double q[4][2], OverlaySeen *seen, void *use
       low[k] = fmin(low[k], q[i][k]);
       high[k] = fmax(high[k], q[i][k]);
     }
-  if (!isfinite(low[0] + low[1] + high[0] + high[1])) return;
+  if (!isfinite(low[0] + low[1] + high[0] + high[1]))
+    return;
   long x0 = (long)fmax(0, floor(low[0])), x1 = (long)fmin(o->width, ceil(high[0]));
   long y0 = (long)fmax(0, floor(low[1])), y1 = (long)fmin(o->height, ceil(high[1]));
   for (long y = y0; y < y1; y++)
     for (long x = x0; x < x1; x++) {
       int count = 0;
       for (int s = 0; s < SIDE * SIDE; s++)
-        count += inside(q, (double)x + (s % SIDE + 0.5) / SIDE, (double)y + (s / SIDE + 0.5) / SIDE);
-      if (!count || (seen && !seen(user, (double)x + 0.5, (double)y + 0.5))) continue;
+        count +=
+            inside(q, (double)x + (s % SIDE + 0.5) / SIDE, (double)y + (s / SIDE + 0.5) / SIDE);
+      if (!count || (seen && !seen(user, (double)x + 0.5, (double)y + 0.5)))
+        continue;
       float *cover = &o->coverage[(size_t)y * o->width + (size_t)x];
-      *cover = fminf(1.0F, *cover + (float)count / (SIDE * SIDE)); /* neighbours share an edge */
+      *cover =
+          fminf(1.0F, *cover + (float)count / (SIDE * SIDE)); /* neighbours share an edge */
     }
 }
 
-void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const double n[3], double from, double to,
-                 double width) {
+void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const double n[3],
+                 double from, double to, double width) {
   enum { STEPS = 2048 };
   const double *m = camera->world_from_camera;
   double last[2] = {0, 0}, jump = 0.25 * (o->width + o->height);
-  bool connected = false, straight = camera->projection == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0;
+  bool connected = false, straight = camera->projection == VL_PROJECTION_PERSPECTIVE &&
+                                     camera->distortion.steps == 0;
   for (int i = 0; i <= STEPS; i++) {
     double t = from + (to - from) * i / STEPS, point[3], pixel[2];
-    for (int k = 0; k < 3; k++) point[k] = m[4 * k + 3] + cos(t) * n[k] + sin(t) * d[k];
+    for (int k = 0; k < 3; k++)
+      point[k] = m[4 * k + 3] + cos(t) * n[k] + sin(t) * d[k];
     bool seen = vl_camera_project(camera, point, pixel, NULL);
     /* panoramas that wrap around: the curve continues at the opposite edge */
     if (seen && connected && (straight || hypot(pixel[0] - last[0], pixel[1] - last[1]) < jump))
       overlay_line(o, last[0], last[1], pixel[0], pixel[1], width);
     connected = seen;
-    if (seen) memcpy(last, pixel, sizeof last);
+    if (seen)
+      memcpy(last, pixel, sizeof last);
   }
 }
 
 void overlay_paint(Overlay *o, const uint8_t color[3], double opacity) {
   size_t pixels = (size_t)o->width * o->height;
-  const float linear[3] = {(float)decoded(color[0]), (float)decoded(color[1]), (float)decoded(color[2])};
+  const float linear[3] = {(float)decoded(color[0]), (float)decoded(color[1]),
+                           (float)decoded(color[2])};
   for (size_t i = 0; i < pixels; i++) {
-    if (o->coverage[i] <= 0.0F) continue;
+    if (o->coverage[i] <= 0.0F)
+      continue;
     float c = (float)opacity * o->coverage[i];
-    for (size_t k = 0; k < 3; k++) o->rgb[3 * i + k] += c * (linear[k] - o->rgb[3 * i + k]);
+    for (size_t k = 0; k < 3; k++)
+      o->rgb[3 * i + k] += c * (linear[k] - o->rgb[3 * i + k]);
     o->coverage[i] = 0.0F;
   }
 }
@@ -166,7 +195,8 @@ vlResult overlay_write(const Overlay *o, vlContext *context, const char *path, v
   vlResult result = vl_image_create(context, &def, &image);
   if (result == VL_OK) {
     uint8_t *to = vl_image_pixels(image);
-    for (size_t i = 0; i < 3 * (size_t)o->width * o->height; i++) to[i] = encoded((double)o->rgb[i]);
+    for (size_t i = 0; i < 3 * (size_t)o->width * o->height; i++)
+      to[i] = encoded((double)o->rgb[i]);
     result = vl_image_write(image, path, NULL, error);
   }
   vl_image_destroy(image);

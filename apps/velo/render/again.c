@@ -12,9 +12,11 @@ extern const char velo_commit[];
 /* Only options that do not change the image may be given together with --again. */
 static int take_options(Again *again, const Arguments *given) {
   for (const Option *option = render_options; option->name; option++) {
-    if (!given->values[option->id].given) continue;
+    if (!given->values[option->id].given)
+      continue;
     if (receipt_option_counts(given, option->id) || option->id == RENDER_TIME)
-      return report_usage("--again %s makes the same image: --%s would make another", again->path, option->name);
+      return report_usage("--again %s makes the same image: --%s would make another",
+                          again->path, option->name);
     again->arguments.values[option->id] = given->values[option->id];
   }
   receipt_take_names(&again->arguments, given);
@@ -23,23 +25,33 @@ static int take_options(Again *again, const Arguments *given) {
 
 /* Takes the given scene, or else the scene that the receipt names. */
 static int take_scene(Again *again, const Arguments *given) {
-  const char *path = given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
-  if (!path) return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file", again->path);
+  const char *path =
+      given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
+  if (!path)
+    return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file",
+                          again->path);
   again->arguments.operands[0] = path;
-  return given->operand_count ? -1 : receipt_check_scene(path, "the receipt of", again->path, "--again");
+  return given->operand_count
+             ? -1
+             : receipt_check_scene(path, "the receipt of", again->path, "--again");
 }
 
-/* If the image's camera came from a file of its own, takes it from the receipt, so the file is not needed. If the
- * receipt does not hold the camera's lens, takes the lens from the file. */
+/* If the image's camera came from a file of its own, takes it from the receipt, so the file is
+ * not needed. If the receipt does not hold the camera's lens, takes the lens from the file. */
 static int take_camera(Again *again) {
   OptionValue *v = again->arguments.values;
-  if (!v[RENDER_CAMERA].given || v[RENDER_TRAJECTORY].given) return -1;
-  if (scene_camera_is_own(again->arguments.operands[0], &again->arguments)) return -1;
+  if (!v[RENDER_CAMERA].given || v[RENDER_TRAJECTORY].given)
+    return -1;
+  if (scene_camera_is_own(again->arguments.operands[0], &again->arguments))
+    return -1;
   vlError error = {0};
   ReceiptCamera *camera = &again->camera;
-  vlResult result = vl_receipt_camera(again->receipt, &camera->def, camera->size, camera->crop, &error);
-  if (result == VL_ERROR_UNSUPPORTED) return -1;
-  if (result != VL_OK) return report_error(&error, result, again->path);
+  vlResult result =
+      vl_receipt_camera(again->receipt, &camera->def, camera->size, camera->crop, &error);
+  if (result == VL_ERROR_UNSUPPORTED)
+    return -1;
+  if (result != VL_OK)
+    return report_error(&error, result, again->path);
   camera->given = true;
   v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given =
       false; /* the receipt's film and camera include these settings */
@@ -48,10 +60,12 @@ static int take_camera(Again *again) {
 
 static int check_samples(const Again *again) {
   uint32_t planned, samples = vl_receipt_samples(again->receipt, &planned);
-  if (samples == planned && samples > 0) return -1;
-  return report_failure(STATUS_SCENE,
-                        "%s holds %u of %u samples per pixel: an image that ended early cannot be made again",
-                        again->path, samples, planned);
+  if (samples == planned && samples > 0)
+    return -1;
+  return report_failure(
+      STATUS_SCENE,
+      "%s holds %u of %u samples per pixel: an image that ended early cannot be made again",
+      again->path, samples, planned);
 }
 
 /* An image that a program's own code has made is made again by that program. */
@@ -59,9 +73,12 @@ static int check_own(const Again *again) {
   static const char *const words[VL_OWN_KINDS] = {"camera", "sampler", "tracer"};
   for (int i = 0; i < VL_OWN_KINDS; i++) {
     const char *name = vl_receipt_own(again->receipt, (vlOwnKind)i);
-    if (!name) continue;
-    return report_failure(STATUS_SCENE, "%s was made with the own %s \"%s\" of another program: only it has that code",
-                          again->path, words[i], vl_short_text(name).text);
+    if (!name)
+      continue;
+    return report_failure(
+        STATUS_SCENE,
+        "%s was made with the own %s \"%s\" of another program: only it has that code",
+        again->path, words[i], vl_short_text(name).text);
   }
   return -1;
 }
@@ -71,14 +88,16 @@ static void tell_version(Again *again) {
   again->is_ours = strcmp(version, vl_version()->text) == 0 && strcmp(commit, velo_commit) == 0;
   if (!again->is_ours)
     report_warning(
-        "%s was made by velo %s%s%s, this is %s%s%s: the header of the new image says so, its pixels may differ",
-        again->path, version, *commit ? ", commit " : "", commit, vl_version()->text, *velo_commit ? ", commit " : "",
-        velo_commit);
+        "%s was made by velo %s%s%s, this is %s%s%s: the header of the new image says so, its "
+        "pixels may differ",
+        again->path, version, *commit ? ", commit " : "", commit, vl_version()->text,
+        *velo_commit ? ", commit " : "", velo_commit);
 }
 
 int again_open(Again *again, const Arguments **arguments) {
   const Arguments *given = *arguments;
-  if (!given->values[RENDER_AGAIN].given) return -1;
+  if (!given->values[RENDER_AGAIN].given)
+    return -1;
   if (!given->text_count && !given->values[RENDER_DRY_RUN].given)
     return report_usage("--again: give the name of the new image with -o");
   vlContextDef def = vl_default_context_def();
@@ -88,31 +107,43 @@ int again_open(Again *again, const Arguments **arguments) {
   def.log = report_log;
   again->path = given->values[RENDER_AGAIN].text;
   int status = context_open(&def, &again->context);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   vlResult result = vl_image_read_header(again->context, again->path, &image, &error);
-  status = result == VL_OK ? receipt_of_image(again->context, image, again->path, &again->receipt)
-                           : report_error(&error, result, again->path);
+  status = result == VL_OK
+               ? receipt_of_image(again->context, image, again->path, &again->receipt)
+               : report_error(&error, result, again->path);
   vl_image_destroy(image);
-  if (status < 0) status = check_own(again);
-  if (status < 0) status = receipt_parse_command(again->receipt, again->path, &again->arguments);
-  if (status < 0) status = check_samples(again);
-  if (status < 0) status = take_options(again, given);
-  if (status < 0) status = take_scene(again, given);
-  if (status < 0) status = take_camera(again);
-  if (status < 0) tell_version(again);
+  if (status < 0)
+    status = check_own(again);
+  if (status < 0)
+    status = receipt_parse_command(again->receipt, again->path, &again->arguments);
+  if (status < 0)
+    status = check_samples(again);
+  if (status < 0)
+    status = take_options(again, given);
+  if (status < 0)
+    status = take_scene(again, given);
+  if (status < 0)
+    status = take_camera(again);
+  if (status < 0)
+    tell_version(again);
   *arguments = &again->arguments;
   return status;
 }
 
 int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context, const Job *job,
                 const ReceiptImage *which, bool with_camera) {
-  if (!again->path) return -1;
+  if (!again->path)
+    return -1;
   vlReceipt *now = NULL;
   vlResult result = receipt_make(plan, context, job, which, &now);
-  if (result != VL_OK) return report_reason(result, again->path, "its receipt cannot be compared");
-  uint32_t parts =
-      VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS | VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
-  if (with_camera) parts |= VL_RECEIPT_CAMERA;
+  if (result != VL_OK)
+    return report_reason(result, again->path, "its receipt cannot be compared");
+  uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS |
+                   VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
+  if (with_camera)
+    parts |= VL_RECEIPT_CAMERA;
   int status = receipt_report_differences(again->receipt, now, parts, again->path);
   vl_receipt_destroy(now);
   return status;

@@ -37,11 +37,12 @@ static int read_animation(const Arguments *arguments, Animation *a) {
   char *end, *last;
   a->from = strtod(span->text, &end);
   const double to = *end == ':' ? strtod(end + 1, &last) : NAN;
-  if (end == span->text || *end != ':' || last == end + 1 || *last || !(fabs(a->from) <= 1e6) || !(to > a->from) ||
-      !(to <= 1e6))
+  if (end == span->text || *end != ':' || last == end + 1 || *last || !(fabs(a->from) <= 1e6) ||
+      !(to > a->from) || !(to <= 1e6))
     return report_usage("--animate \"%s\": must be T0:T1 in seconds, such as 0:4", span->text);
   const double count = ceil((to - a->from) * a->fps - 1e-6);
-  if (count > MOST_FRAMES) return report_usage("--animate \"%s\": %.0f frames are too many", span->text, count);
+  if (count > MOST_FRAMES)
+    return report_usage("--animate \"%s\": %.0f frames are too many", span->text, count);
   a->count = count >= 1 ? (uint32_t)count : 1;
   return -1;
 }
@@ -51,12 +52,16 @@ static int choose_frames(const Arguments *arguments, Animation *a) {
   a->first = 0;
   a->last = a->count - 1;
   a->step = 1;
-  if (!range->given) return -1;
+  if (!range->given)
+    return -1;
   if (!pattern_range(range->text, &a->first, &a->last, &a->step))
-    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", range->text);
+    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0",
+                        range->text);
   if (a->first >= a->count || (a->last != UINT32_MAX && a->last >= a->count))
-    return report_usage("--frames \"%s\": the animation has %u frames, numbered from 0", range->text, a->count);
-  if (a->last >= a->count) a->last = a->count - 1;
+    return report_usage("--frames \"%s\": the animation has %u frames, numbered from 0",
+                        range->text, a->count);
+  if (a->last >= a->count)
+    a->last = a->count - 1;
   return -1;
 }
 
@@ -64,37 +69,47 @@ static int check(const Arguments *arguments) {
   static const struct {
     int id;
     const char *name;
-  } others[] = {{RENDER_TRAJECTORY, "--trajectory"}, {RENDER_AGAIN, "--again"}, {RENDER_FILM, "--film"},
-                {RENDER_CONTINUE, "--continue"},     {RENDER_SHARD, "--shard"}, {RENDER_STEREO, "--stereo"},
+  } others[] = {{RENDER_TRAJECTORY, "--trajectory"},
+                {RENDER_AGAIN, "--again"},
+                {RENDER_FILM, "--film"},
+                {RENDER_CONTINUE, "--continue"},
+                {RENDER_SHARD, "--shard"},
+                {RENDER_STEREO, "--stereo"},
                 {RENDER_DENOISE, "--denoise"}};
   const OptionValue *v = arguments->values;
   const char *own = v[RENDER_ANIMATE].given ? "--animate" : "--turntable";
   if (v[RENDER_ANIMATE].given && v[RENDER_TURNTABLE].given)
     return report_usage("--animate and --turntable exclude each other");
-  if (v[RENDER_ANIMATE].given && v[RENDER_AT].given) return report_usage("--animate and --at exclude each other");
+  if (v[RENDER_ANIMATE].given && v[RENDER_AT].given)
+    return report_usage("--animate and --at exclude each other");
   if (v[RENDER_TURNTABLE].given && v[RENDER_TURN].given)
     return report_usage("--turntable and --turn exclude each other");
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (v[others[i].id].given) return report_usage("%s does not go with %s", own, others[i].name);
-  if (!arguments->text_count) return report_usage("%s: give the files' name with -o, such as -o f%%04d.png", own);
+    if (v[others[i].id].given)
+      return report_usage("%s does not go with %s", own, others[i].name);
+  if (!arguments->text_count)
+    return report_usage("%s: give the files' name with -o, such as -o f%%04d.png", own);
   for (int i = 0; i < arguments->text_count; i++) {
     int status = pattern_check(arguments->texts[i]);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
     if (!pattern_has(arguments->texts[i], 'd'))
-      return report_usage("output \"%s\": put %%04d, the frame's number, into the name", arguments->texts[i]);
+      return report_usage("output \"%s\": put %%04d, the frame's number, into the name",
+                          arguments->texts[i]);
   }
   return -1;
 }
 
 static bool all_exist(const Arguments *arguments) {
   for (int i = 0; i < arguments->text_count; i++)
-    if (access(arguments->texts[i], F_OK) != 0) return false;
+    if (access(arguments->texts[i], F_OK) != 0)
+      return false;
   return true;
 }
 
 /* The command line of one frame: the animation's options become --at or --turn. */
-static int render_frame(const Command *command, const Arguments *arguments, const Animation *a, uint32_t frame,
-                        AnimateRender *render, AnimateShared *shared) {
+static int render_frame(const Command *command, const Arguments *arguments, const Animation *a,
+                        uint32_t frame, AnimateRender *render, AnimateShared *shared) {
   char(*paths)[PATH_SIZE] = malloc(MAX_TEXTS * sizeof *paths), moment[40];
   Arguments one = *arguments;
   const PatternValues values = {.number = frame};
@@ -108,27 +123,31 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   OptionValue *set = &one.values[a->turns ? RENDER_TURN : RENDER_AT];
   snprintf(moment, sizeof moment, "%.10g", a->turns ? angle : at);
   *set = (OptionValue){.given = true, .text = moment, .number = a->turns ? angle : at};
-  one.values[RENDER_ANIMATE].given = one.values[RENDER_TURNTABLE].given = one.values[RENDER_FPS].given = false;
+  one.values[RENDER_ANIMATE].given = one.values[RENDER_TURNTABLE].given =
+      one.values[RENDER_FPS].given = false;
   one.values[RENDER_FRAMES].given = false;
   const bool skip = one.values[RENDER_SKIP_EXISTING].given;
   one.values[RENDER_SKIP_EXISTING].given = false;
-  if (status < 0 && skip && all_exist(&one)) status = STATUS_OK;
-  if (status < 0) status = render(command, &one, shared);
+  if (status < 0 && skip && all_exist(&one))
+    status = STATUS_OK;
+  if (status < 0)
+    status = render(command, &one, shared);
   free(paths);
   return status;
 }
 
-/* The first frame of all sets the exposure and the tracer of each part. Whether it does is not known before the scene
- * is loaded, unless both are given. */
+/* The first frame of all sets the exposure and the tracer of each part. Whether it does is not
+ * known before the scene is loaded, unless both are given. */
 static bool needs_first(const Arguments *arguments, const Animation *a) {
   const OptionValue *v = arguments->values;
   bool tracer = v[RENDER_TRACER].given && v[RENDER_TRACER].integer != TRACER_AUTO;
   bool exposure = v[RENDER_EXPOSURE].given && strcmp(v[RENDER_EXPOSURE].text, "auto") != 0;
-  return (a->first > 0 || v[RENDER_SKIP_EXISTING].given) && !(tracer && exposure) && !v[RENDER_DRY_RUN].given;
+  return (a->first > 0 || v[RENDER_SKIP_EXISTING].given) && !(tracer && exposure) &&
+         !v[RENDER_DRY_RUN].given;
 }
 
-static int prepare(const Command *command, const Arguments *arguments, const Animation *a, AnimateRender *render,
-                   AnimateShared *shared) {
+static int prepare(const Command *command, const Arguments *arguments, const Animation *a,
+                   AnimateRender *render, AnimateShared *shared) {
   Arguments all = *arguments;
   all.values[RENDER_SKIP_EXISTING].given = false;
   shared->preparing = true;
@@ -141,14 +160,19 @@ int animate_run(const Command *command, const Arguments *arguments, AnimateRende
   Animation a = {0};
   AnimateShared shared = {.exposure = NAN, .whole = arguments};
   int status = check(arguments);
-  if (status < 0) status = read_animation(arguments, &a);
-  if (status < 0) status = choose_frames(arguments, &a);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = read_animation(arguments, &a);
+  if (status < 0)
+    status = choose_frames(arguments, &a);
+  if (status >= 0)
+    return status;
   shared.still = a.turns;
-  status = needs_first(arguments, &a) ? prepare(command, arguments, &a, render, &shared) : STATUS_OK;
+  status =
+      needs_first(arguments, &a) ? prepare(command, arguments, &a, render, &shared) : STATUS_OK;
   for (uint64_t i = a.first; i <= a.last && status == STATUS_OK; i += a.step) {
     status = render_frame(command, arguments, &a, (uint32_t)i, render, &shared);
-    if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given) break;
+    if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given)
+      break;
   }
   if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given)
     report_note("%u frames", (a.last - a.first) / a.step + 1);

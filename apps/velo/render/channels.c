@@ -17,7 +17,9 @@ const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
                                        {"coverage", VL_CHANNEL_MODE_COVERAGE},
                                        {NULL, 0}};
 
-/* ---- which ------------------------------------------------------------------------------------------------------- */
+/* ---- which
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static int read_one(const char *name, uint32_t *channels) {
   static const struct {
@@ -25,24 +27,28 @@ static int read_one(const char *name, uint32_t *channels) {
     uint32_t bits;
   } groups[] = {
       {"all", VL_CHANNEL_ALL},
-      {"crypto", VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE},
+      {"crypto",
+       VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE},
   };
   const char *names[VL_CHANNEL_COUNT + 2];
   int count = 0;
   for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
     names[count++] = groups[i].name;
-    if (strcmp(name, groups[i].name) != 0) continue;
+    if (strcmp(name, groups[i].name) != 0)
+      continue;
     *channels |= groups[i].bits;
     return -1;
   }
   for (uint32_t i = 0; vl_channel_name(i); i++) {
     names[count++] = vl_channel_name(i);
-    if (strcmp(name, vl_channel_name(i)) != 0) continue;
+    if (strcmp(name, vl_channel_name(i)) != 0)
+      continue;
     *channels |= 1u << i;
     return -1;
   }
   const char *near = did_you_mean("", name, names, count);
-  if (*near) return report_usage("--channels: unknown name \"%s\"%s", name, near);
+  if (*near)
+    return report_usage("--channels: unknown name \"%s\"%s", name, near);
   char list[400] = "";
   for (int i = 0; i < count; i++) {
     size_t n = strlen(list);
@@ -55,27 +61,35 @@ static int read_list(const char *list, uint32_t *channels) {
   for (const char *at = list;; at++) {
     size_t length = strcspn(at, ",");
     char name[64];
-    snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1, at);
+    snprintf(name, sizeof name, "%.*s",
+             length < sizeof name ? (int)length : (int)sizeof name - 1, at);
     int status = read_one(name, channels);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
     at += length;
-    if (!*at) return -1;
+    if (!*at)
+      return -1;
   }
 }
 
 int channels_choose(Channels *c, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   memset(c, 0, sizeof *c);
-  c->mode = v[RENDER_CHANNELS_MODE].given ? (vlChannelMode)v[RENDER_CHANNELS_MODE].integer : VL_CHANNEL_MODE_CENTRE;
+  c->mode = v[RENDER_CHANNELS_MODE].given ? (vlChannelMode)v[RENDER_CHANNELS_MODE].integer
+                                          : VL_CHANNEL_MODE_CENTRE;
   c->ranks = v[RENDER_CRYPTO_RANKS].given ? (uint32_t)v[RENDER_CRYPTO_RANKS].integer : 6;
   if (c->ranks % 2)
-    return report_usage("--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
+    return report_usage(
+        "--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
   c->boxes = v[RENDER_BOXES].given;
-  if (c->boxes) c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
+  if (c->boxes)
+    c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
   int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE)
-    c->bits |= VL_CHANNEL_FILM; /* adds the film position, without which the point's sample is unknown */
+    c->bits |= VL_CHANNEL_FILM; /* adds the film position, without which the point's sample is
+                                   unknown */
   static const int options[2] = {RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE};
   for (int i = 0; i < 2; i++) {
     if (v[options[i]].given) {
@@ -86,20 +100,27 @@ int channels_choose(Channels *c, const Arguments *arguments) {
   return -1;
 }
 
-/* ---- the pass ---------------------------------------------------------------------------------------------------- */
+/* ---- the pass
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-/* A camera of another image size is resized with the same framing, as the image's own camera is. */
+/* A camera of another image size is resized with the same framing, as the image's own camera
+ * is. */
 int channels_load(Channels *c, vlContext *context, const Job *job) {
   for (int i = 0; i < 2; i++) {
-    if (!c->other_paths[i]) continue;
+    if (!c->other_paths[i])
+      continue;
     vlCameraRecord record;
     int status = camera_load(context, c->other_paths[i], 0, NULL, NULL, NULL, &record);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
     vlError error = {0};
     vlCamera camera;
     vlResult result = vl_camera_make(&record.camera, &camera, NULL, &error);
-    if (result == VL_OK) result = vl_camera_resize(&camera, job->camera.width, job->camera.height, &c->others[i]);
-    if (result != VL_OK) return report_error(&error, result, c->other_paths[i]);
+    if (result == VL_OK)
+      result = vl_camera_resize(&camera, job->camera.width, job->camera.height, &c->others[i]);
+    if (result != VL_OK)
+      return report_error(&error, result, c->other_paths[i]);
   }
   return -1;
 }
@@ -110,15 +131,18 @@ static bool stop_asked(void *user) {
 }
 
 static int fail_pass(const vlError *error, vlResult result, const Job *job) {
-  if (result == VL_OK) return STATUS_OK;
-  return result == VL_CANCELLED ? 128 + signals_pending() : report_error(error, result, job->path);
+  if (result == VL_OK)
+    return STATUS_OK;
+  return result == VL_CANCELLED ? 128 + signals_pending()
+                                : report_error(error, result, job->path);
 }
 
 static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   static const vlIdKind kinds[2] = {VL_ID_OBJECT, VL_ID_INSTANCE};
   for (int k = 0; k < 2; k++) {
     c->box_list[k] = calloc((size_t)vl_world_id_count(world, kinds[k]) + 1, sizeof(vlIdBox));
-    if (!c->box_list[k]) return report_error(NULL, VL_ERROR_MEMORY, NULL);
+    if (!c->box_list[k])
+      return report_error(NULL, VL_ERROR_MEMORY, NULL);
   }
   vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
@@ -126,18 +150,21 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   def.stop = stop_asked;
   def.stop_user = &signals;
   vlError error = {0};
-  vlResult result = vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
+  vlResult result =
+      vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
   return fail_pass(&error, result, job);
 }
 
-/* Without another camera, flow is within the shutter interval: forward from the channels' time to the end of the
- * interval, and backward to its beginning. */
+/* Without another camera, flow is within the shutter interval: forward from the channels' time
+ * to the end of the interval, and backward to its beginning. */
 static void shutter_ends(Channels *c, const Job *job) {
   const vlCamera *camera = &job->camera;
   for (int i = 0; i < 2; i++)
     if (!c->other_paths[i])
-      vl_camera_at(camera, vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, i ? 0.0 : 1.0),
-                   &c->others[i]);
+      vl_camera_at(
+          camera,
+          vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, i ? 0.0 : 1.0),
+          &c->others[i]);
 }
 
 bool channels_any(const Channels *c) {
@@ -148,35 +175,50 @@ void channels_take(Channels *c, Job *job) {
   bool wanted = job->defs->gbuffer != VL_GBUFFER_NONE;
   c->spectrum = job->defs->film.buckets > 0;
   c->gbuffer = wanted && !c->bits;
-  if (wanted && c->bits) report_note("--channels are written in place of the film's gbuffer");
+  if (wanted && c->bits)
+    report_note("--channels are written in place of the film's gbuffer");
 }
 
 uint64_t channels_values(const Channels *c, uint32_t buckets) {
-  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3, [20] = 7};
-  enum { GBUFFER = 48 }; /* the gbuffer's channels and the ground truth that they are computed from */
+  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1,
+                                                   1, 1, 1, 1, 2, 3, 3, 3, [20] = 7};
+  enum {
+    GBUFFER = 48
+  }; /* the gbuffer's channels and the ground truth that they are computed from */
   uint64_t sum = c->gbuffer ? GBUFFER : 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
-    if (c->bits & 1u << i) sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
+    if (c->bits & 1u << i)
+      sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
   const uint32_t both = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
-  if ((c->bits & both) == both) sum += 3; /* feature.error */
+  if ((c->bits & both) == both)
+    sum += 3; /* feature.error */
   return sum + (c->spectrum ? buckets : 0);
 }
 
-double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, double sample, double writing) {
-  const double ray = 0.3, compressed = 0.5; /* measured: cost of a camera ray relative to a sample, and of writing a
-                                               channel relative to its uncompressed size */
-  const uint32_t mattes = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, double sample,
+                        double writing) {
+  const double ray = 0.3,
+               compressed = 0.5; /* measured: cost of a camera ray relative to a sample, and of
+                                    writing a channel relative to its uncompressed size */
+  const uint32_t mattes =
+      VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
   uint32_t rays = c->bits || c->gbuffer ? 1 : 0;
-  if (c->bits & mattes || c->mode != VL_CHANNEL_MODE_CENTRE) rays += spp;
-  if (c->bits & VL_CHANNEL_FEATURES) rays += spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
+  if (c->bits & mattes || c->mode != VL_CHANNEL_MODE_CENTRE)
+    rays += spp;
+  if (c->bits & VL_CHANNEL_FEATURES)
+    rays += spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
   return ray * sample * rays + compressed * writing * (double)channels_values(c, buckets) / 3;
 }
 
-int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film) {
+int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job,
+                    const vlFilm *film) {
   vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
-  if (spectrum != VL_OK) return report_reason(spectrum, job->path, "the image's spectrum cannot be made");
-  if (c->gbuffer) return gbuffer_render(context, world, job, film, &c->layers[3]);
-  if (!c->bits) return STATUS_OK;
+  if (spectrum != VL_OK)
+    return report_reason(spectrum, job->path, "the image's spectrum cannot be made");
+  if (c->gbuffer)
+    return gbuffer_render(context, world, job, film, &c->layers[3]);
+  if (!c->bits)
+    return STATUS_OK;
   shutter_ends(c, job);
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = c->bits;
@@ -188,33 +230,43 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   def.render = &job->defs->render;
   def.exposure = job->defs->develop.exposure;
   def.time = job_channels_time(job);
-  if (c->bits & VL_CHANNEL_FORWARD) def.forward = &c->others[0];
-  if (c->bits & VL_CHANNEL_BACKWARD) def.backward = &c->others[1];
+  if (c->bits & VL_CHANNEL_FORWARD)
+    def.forward = &c->others[0];
+  if (c->bits & VL_CHANNEL_BACKWARD)
+    def.backward = &c->others[1];
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
   int signals = signals_count();
   def.stop = stop_asked;
   def.stop_user = &signals;
-  vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
-  if (result == VL_OK) result = channels_make_visible(context, &c->layers[1]);
-  if (result != VL_OK) return fail_pass(&error, result, job);
+  vlResult result =
+      vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
+  if (result == VL_OK)
+    result = channels_make_visible(context, &c->layers[1]);
+  if (result != VL_OK)
+    return fail_pass(&error, result, job);
   return c->boxes ? find_boxes(c, world, job) : STATUS_OK;
 }
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
   vlResult result = channels_describe_mode(c, image);
-  for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) result = attributes_add_layer(image, c->layers[k]);
+  for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++)
+    result = attributes_add_layer(image, c->layers[k]);
   return result;
 }
 
 vlResult channels_describe_mode(const Channels *c, vlImage *image) {
-  if (!c->bits) return VL_OK;
-  const vlAttribute mode = {
-      .name = "velo.channels", .type = VL_ATTRIBUTE_STRING, .string = choice_name(channel_mode_choices, (int)c->mode)};
+  if (!c->bits)
+    return VL_OK;
+  const vlAttribute mode = {.name = "velo.channels",
+                            .type = VL_ATTRIBUTE_STRING,
+                            .string = choice_name(channel_mode_choices, (int)c->mode)};
   return vl_image_set_attribute(image, &mode);
 }
 
 void channels_free(Channels *c) {
-  for (int k = 0; k < CHANNEL_LAYERS; k++) vl_image_destroy(c->layers[k]);
-  for (int k = 0; k < 2; k++) free(c->box_list[k]);
+  for (int k = 0; k < CHANNEL_LAYERS; k++)
+    vl_image_destroy(c->layers[k]);
+  for (int k = 0; k < 2; k++)
+    free(c->box_list[k]);
 }

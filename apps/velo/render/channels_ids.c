@@ -10,19 +10,23 @@
 
 static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t count) {
   int channel = vl_image_find_channel(ids, name);
-  if (channel < 0) return;
-  size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids), step = vl_image_channels(ids);
+  if (channel < 0)
+    return;
+  size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids),
+         step = vl_image_channels(ids);
   const uint32_t *whole = vl_image_const_pixels(ids);
   const float *floats = vl_image_const_pixels(ids); /* floats since channels_make_visible */
   for (size_t i = 0, at = (size_t)channel; i < pixels; i++, at += step) {
     uint32_t value = vl_image_type(ids) == VL_PIXEL_U32 ? whole[at] : (uint32_t)floats[at];
-    if (value <= count) seen[value] = true;
+    if (value <= count)
+      seen[value] = true;
   }
 }
 
 static void put_numbers(Json *json, const char *key, const double *numbers, int count) {
   json_begin(json, key, '[');
-  for (int i = 0; i < count; i++) json_number(json, NULL, numbers[i]);
+  for (int i = 0; i < count; i++)
+    json_number(json, NULL, numbers[i]);
   json_end(json, ']');
 }
 
@@ -36,37 +40,51 @@ static void put_pixels(Json *json, const char *key, const uint32_t c[4]) {
 
 static void put_box(Json *json, const vlIdBox *b, bool instance) {
   json_integer(json, "pixels", (int64_t)b->seen);
-  if (b->seen) put_pixels(json, "box", b->seen_box);
+  if (b->seen)
+    put_pixels(json, "box", b->seen_box);
   json_integer(json, "amodal_pixels", (int64_t)b->all);
-  if (b->all) put_pixels(json, "amodal_box", b->all_box);
-  if (b->all) json_number(json, "occluded", 1 - (double)b->seen / (double)b->all);
-  if (b->has_outline) put_corners(json, "outline_box", b->outline);
-  if (!b->has_space) return;
+  if (b->all)
+    put_pixels(json, "amodal_box", b->all_box);
+  if (b->all)
+    json_number(json, "occluded", 1 - (double)b->seen / (double)b->all);
+  if (b->has_outline)
+    put_corners(json, "outline_box", b->outline);
+  if (!b->has_space)
+    return;
   json_begin(json, "box3d", '{');
   json_text(json, "space", instance || b->grouped ? "group" : "world");
   put_numbers(json, "low", b->low, 3);
   put_numbers(json, "high", b->high, 3);
-  if (instance) put_numbers(json, "world_from_group", b->world_from_box, 16);
+  if (instance)
+    put_numbers(json, "world_from_group", b->world_from_box, 16);
   json_end(json, '}');
 }
 
-static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind kind, uint32_t id) {
+static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind kind,
+                   uint32_t id) {
   vlIdInfo info;
   char key[16];
-  if (vl_world_id_info(world, kind, id, &info) != VL_OK) return;
+  if (vl_world_id_info(world, kind, id, &info) != VL_OK)
+    return;
   snprintf(key, sizeof key, "%u", id);
   fputs(json->comma ? ",\n    " : "\n    ", json->out);
   json->comma = false;
   json_begin(json, key, '{');
   json_text(json, "type", info.type);
-  if (info.name) json_text(json, "name", info.name);
-  if (info.path) json_text(json, "path", info.path);
-  if (info.place) json_text(json, "place", info.place);
-  if (info.material) json_integer(json, "material", info.material);
+  if (info.name)
+    json_text(json, "name", info.name);
+  if (info.path)
+    json_text(json, "path", info.path);
+  if (info.place)
+    json_text(json, "place", info.place);
+  if (info.material)
+    json_integer(json, "material", info.material);
   if (info.source.file) {
     json_text(json, "file", info.source.file);
-    if (info.source.line) json_integer(json, "line", info.source.line);
-    if (info.source.line) json_integer(json, "column", info.source.column);
+    if (info.source.line)
+      json_integer(json, "line", info.source.line);
+    if (info.source.line)
+      json_integer(json, "column", info.source.column);
   }
   if (c->box_list[0] && kind != VL_ID_MATERIAL)
     put_box(json, &c->box_list[kind == VL_ID_INSTANCE][id - 1], kind == VL_ID_INSTANCE);
@@ -75,11 +93,14 @@ static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind
 
 /* Ids that only have a box: completely hidden objects. */
 static void mark_boxes(const Channels *c, vlIdKind kind, bool *seen, uint32_t count) {
-  if (!c->box_list[0] || kind == VL_ID_MATERIAL) return;
-  for (uint32_t id = 1; id <= count; id++) seen[id] = seen[id] || c->box_list[kind == VL_ID_INSTANCE][id - 1].all > 0;
+  if (!c->box_list[0] || kind == VL_ID_MATERIAL)
+    return;
+  for (uint32_t id = 1; id <= count; id++)
+    seen[id] = seen[id] || c->box_list[kind == VL_ID_INSTANCE][id - 1].all > 0;
 }
 
-static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const Channels *right, const char *path) {
+static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const Channels *right,
+                    const char *path) {
   const vlImage *ids = c->layers[1];
   static const struct {
     const char *channel, *key;
@@ -92,19 +113,24 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   json_begin(&json, NULL, '{');
   json_text(&json, "image", slash ? slash + 1 : path);
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-    if (vl_image_find_channel(ids, kinds[k].channel) < 0) continue;
+    if (vl_image_find_channel(ids, kinds[k].channel) < 0)
+      continue;
     uint32_t count = vl_world_id_count(world, kinds[k].kind);
     bool *seen = calloc((size_t)count + 1, 1);
-    if (!seen) return false;
+    if (!seen)
+      return false;
     mark_ids(ids, kinds[k].channel, seen, count);
-    if (right) mark_ids(right->layers[1], kinds[k].channel, seen, count);
-    if (right) mark_boxes(right, kinds[k].kind, seen, count);
+    if (right)
+      mark_ids(right->layers[1], kinds[k].channel, seen, count);
+    if (right)
+      mark_boxes(right, kinds[k].kind, seen, count);
     mark_boxes(c, kinds[k].kind, seen, count);
     fputs(",\n  ", file);
     json.comma = false;
     json_begin(&json, kinds[k].key, '{');
     for (uint32_t id = 1; id <= count; id++)
-      if (seen[id]) put_id(&json, world, c, kinds[k].kind, id);
+      if (seen[id])
+        put_id(&json, world, c, kinds[k].kind, id);
     json_end(&json, '}');
     free(seen);
   }
@@ -114,21 +140,26 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
 }
 
 /* Composes the file in memory, then writes it as a whole. */
-int channels_write_ids(const Channels *c, const Channels *right, vlContext *context, const vlWorld *world,
-                       const char *path) {
+int channels_write_ids(const Channels *c, const Channels *right, vlContext *context,
+                       const vlWorld *world, const char *path) {
   char target[4200];
   const vlImage *ids = c->layers[1];
-  if (!ids) return STATUS_OK;
-  bool any = vl_image_find_channel(ids, "id.object.Y") >= 0 || vl_image_find_channel(ids, "id.material.Y") >= 0 ||
+  if (!ids)
+    return STATUS_OK;
+  bool any = vl_image_find_channel(ids, "id.object.Y") >= 0 ||
+             vl_image_find_channel(ids, "id.material.Y") >= 0 ||
              vl_image_find_channel(ids, "id.instance.Y") >= 0;
-  if (!any || output_is_stdout(path)) return STATUS_OK;
+  if (!any || output_is_stdout(path))
+    return STATUS_OK;
   if (!output_ids_path(path, target, sizeof target))
-    return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path, strerror(ENAMETOOLONG));
+    return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path,
+                          strerror(ENAMETOOLONG));
   char *text = NULL;
   size_t size = 0;
   FILE *file = open_memstream(&text, &size);
   bool good = file && put_all(file, world, c, right, path);
-  if (file && fclose(file) != 0) good = false;
+  if (file && fclose(file) != 0)
+    good = false;
   vlError error = {0};
   vlResult result = good ? vl_write_file(context, target, text, size, &error) : VL_ERROR_MEMORY;
   free(text);

@@ -16,28 +16,35 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
   Arguments *a = &c->arguments;
   a->channels_later = given->values[RENDER_CHANNELS].given && !a->values[RENDER_CHANNELS].given;
   for (const Option *option = render_options; option->name; option++)
-    if (given->values[option->id].given) a->values[option->id] = given->values[option->id];
+    if (given->values[option->id].given)
+      a->values[option->id] = given->values[option->id];
   /* --time and --noise say when the render ends; the --spp of the film does so no longer */
   bool ends = given->values[RENDER_TIME].given || given->values[RENDER_NOISE].given;
-  if (ends && !given->values[RENDER_SPP].given) a->values[RENDER_SPP].given = false;
+  if (ends && !given->values[RENDER_SPP].given)
+    a->values[RENDER_SPP].given = false;
   receipt_take_names(a, given);
   const char *output;
-  bool part =
-      given->values[RENDER_SAMPLES].given || given->values[RENDER_SHARD].given || given->values[RENDER_TILES].given;
-  for (uint32_t i = 0; !given->text_count && !part && (output = vl_receipt_output(receipt, i)); i++)
-    if (a->text_count < MAX_TEXTS) a->texts[a->text_count++] = output;
+  bool part = given->values[RENDER_SAMPLES].given || given->values[RENDER_SHARD].given ||
+              given->values[RENDER_TILES].given;
+  for (uint32_t i = 0; !given->text_count && !part && (output = vl_receipt_output(receipt, i));
+       i++)
+    if (a->text_count < MAX_TEXTS)
+      a->texts[a->text_count++] = output;
 }
 
 static int take_scene(Continue *c, const Arguments *given) {
   const char *path = given->operand_count ? given->operands[0] : c->arguments.operands[0];
   c->arguments.operands[0] = path;
-  return given->operand_count ? -1 : receipt_check_scene(path, "the film", c->path, "--continue");
+  return given->operand_count ? -1
+                              : receipt_check_scene(path, "the film", c->path, "--continue");
 }
 
 int continue_open(Continue *c, const Arguments **arguments) {
   const Arguments *given = *arguments;
-  if (!given->values[RENDER_CONTINUE].given) return -1;
-  if (given->values[RENDER_AGAIN].given) return report_usage("--continue and --again exclude each other");
+  if (!given->values[RENDER_CONTINUE].given)
+    return -1;
+  if (given->values[RENDER_AGAIN].given)
+    return report_usage("--continue and --again exclude each other");
   vlContextDef def = vl_default_context_def();
   vlError error = {0};
   def.threads = 1;
@@ -49,15 +56,22 @@ int continue_open(Continue *c, const Arguments **arguments) {
   if (eyes && !pattern_expand(c->path, &left, first, sizeof first))
     return report_usage("--continue: the name is too long");
   int status = context_open(&def, &c->context);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   vlResult result = vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error);
-  if (result != VL_OK) return report_error(&error, result, NULL);
+  if (result != VL_OK)
+    return report_error(&error, result, NULL);
   const vlReceipt *receipt = vl_film_file_receipt(c->file);
-  if (!receipt) return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", c->path);
+  if (!receipt)
+    return report_failure(STATUS_SCENE,
+                          "%s: the film has no receipt: what made it is not known", c->path);
   status = receipt_parse_command(receipt, c->path, &c->arguments);
-  if (status < 0) take_options(c, given, receipt);
-  if (eyes && !given->values[RENDER_EYE].given) c->arguments.values[RENDER_EYE].given = false;
-  if (status < 0) status = take_scene(c, given);
+  if (status < 0)
+    take_options(c, given, receipt);
+  if (eyes && !given->values[RENDER_EYE].given)
+    c->arguments.values[RENDER_EYE].given = false;
+  if (status < 0)
+    status = take_scene(c, given);
   *arguments = &c->arguments;
   return status;
 }
@@ -69,81 +83,103 @@ typedef struct Source {
   vlFilmFile *file;
 } Source;
 
-static int refuse(const Source *source, int status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static int refuse(const Source *source, int status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 static int refuse(const Source *source, int status, const char *format, ...) {
   char text[1400];
   va_list list;
   va_start(list, format);
   vsnprintf(text, sizeof text, format, list);
   va_end(list);
-  if (source->repeats) return film_claim_refuse("%s", text);
+  if (source->repeats)
+    return film_claim_refuse("%s", text);
   return status == STATUS_USAGE ? report_usage("%s", text) : report_failure(status, "%s", text);
 }
 
 static int compare(const Source *source, const vlReceipt *now) {
-  const uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS;
+  const uint32_t parts =
+      VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS;
   const vlReceipt *then = vl_film_file_receipt(source->file);
   char text[600];
   if (!then)
-    return refuse(source, STATUS_SCENE, "%s: the film has no receipt: what made it is not known", source->path);
-  if (!receipt_differences(then, now, parts, text, sizeof text)) return -1;
-  return refuse(source, STATUS_SCENE, source->repeats ? "%s is of another render: %s" : "%s cannot be continued: %s",
+    return refuse(source, STATUS_SCENE,
+                  "%s: the film has no receipt: what made it is not known", source->path);
+  if (!receipt_differences(then, now, parts, text, sizeof text))
+    return -1;
+  return refuse(source, STATUS_SCENE,
+                source->repeats ? "%s is of another render: %s" : "%s cannot be continued: %s",
                 source->path, text);
 }
 
-/* Finds the pixels that have samples, the first sample of the first block, and the last sample of any. */
+/* Finds the pixels that have samples, the first sample of the first block, and the last sample
+ * of any. */
 static int find_extent(const Source *source, uint32_t crop[4], vlSampleRange *range) {
   vlFilmBlock block;
   vlError error = {0};
   bool any = false;
   for (;;) {
     vlResult result = vl_film_file_next(source->file, false, &block, &error);
-    if (result == VL_ERROR_SCENE) return refuse(source, STATUS_SCENE, "%s", error.message);
-    if (result != VL_OK) return report_error(&error, result, NULL);
-    if (block.x1 == 0) return any ? -1 : refuse(source, STATUS_SCENE, "%s: the film has no samples", source->path);
-    if (!block.range_count) continue;
+    if (result == VL_ERROR_SCENE)
+      return refuse(source, STATUS_SCENE, "%s", error.message);
+    if (result != VL_OK)
+      return report_error(&error, result, NULL);
+    if (block.x1 == 0)
+      return any ? -1
+                 : refuse(source, STATUS_SCENE, "%s: the film has no samples", source->path);
+    if (!block.range_count)
+      continue;
     const uint32_t place[4] = {block.x0, block.y0, block.x1, block.y1};
     for (int i = 0; i < 4; i++)
-      if (!any || (i < 2 ? place[i] < crop[i] : place[i] > crop[i])) crop[i] = place[i];
-    if (!any) *range = block.ranges[0];
-    if (block.ranges[block.range_count - 1].end > range->end) range->end = block.ranges[block.range_count - 1].end;
+      if (!any || (i < 2 ? place[i] < crop[i] : place[i] > crop[i]))
+        crop[i] = place[i];
+    if (!any)
+      *range = block.ranges[0];
+    if (block.ranges[block.range_count - 1].end > range->end)
+      range->end = block.ranges[block.range_count - 1].end;
     any = true;
   }
 }
 
-/* Whether the wanted part continues the film. --continue without a part continues whatever part the film has. */
+/* Whether the wanted part continues the film. --continue without a part continues whatever part
+ * the film has. */
 static int take_extent(const Source *source, const Arguments *arguments, vlSceneDefs *defs) {
   const OptionValue *v = arguments->values;
   uint32_t crop[4] = {0, 0, 0, 0};
   vlSampleRange range = {0, 0};
   int status = find_extent(source, crop, &range);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   bool tiles = v[RENDER_TILES].given || v[RENDER_SHARD_BY].given;
   if ((tiles || source->repeats) && memcmp(crop, defs->film.crop, sizeof crop) != 0)
-    return refuse(source, STATUS_USAGE, "%s holds the pixels %u,%u,%u,%u, not those of this part", source->path,
+    return refuse(source, STATUS_USAGE,
+                  "%s holds the pixels %u,%u,%u,%u, not those of this part", source->path,
                   crop[0], crop[1], crop[2], crop[3]);
   memcpy(defs->film.crop, crop, sizeof crop);
   bool part = v[RENDER_SAMPLES].given || (v[RENDER_SHARD].given && !tiles);
   if ((part || source->repeats) && range.first != defs->render.first_sample)
-    return refuse(source, STATUS_USAGE, "%s holds the samples %u:%u, not those of this part", source->path, range.first,
-                  range.end);
+    return refuse(source, STATUS_USAGE, "%s holds the samples %u:%u, not those of this part",
+                  source->path, range.first, range.end);
   defs->render.first_sample = range.first;
   if (range.end > defs->render.spp)
-    return refuse(source, STATUS_USAGE, "%s holds the samples %u:%u already; %s is %u", source->path, range.first,
-                  range.end, part ? "the end of this part" : "--spp", defs->render.spp);
+    return refuse(source, STATUS_USAGE, "%s holds the samples %u:%u already; %s is %u",
+                  source->path, range.first, range.end, part ? "the end of this part" : "--spp",
+                  defs->render.spp);
   return -1;
 }
 
-/* Whether a film has all samples of another one of the same render. Files that cannot be read are reported later. */
+/* Whether a film has all samples of another one of the same render. Files that cannot be read
+ * are reported later. */
 static bool has_all(const char *path, const char *other, vlContext *context) {
   vlFilmFile *a = NULL, *b = NULL;
-  bool all =
-      vl_film_file_open(context, path, &a, NULL) == VL_OK && vl_film_file_open(context, other, &b, NULL) == VL_OK;
+  bool all = vl_film_file_open(context, path, &a, NULL) == VL_OK &&
+             vl_film_file_open(context, other, &b, NULL) == VL_OK;
   vlFilmBlock mine = {.x1 = 1}, its = {.x1 = 1};
   while (all && its.x1) {
-    all = vl_film_file_next(a, false, &mine, NULL) == VL_OK && vl_film_file_next(b, false, &its, NULL) == VL_OK;
+    all = vl_film_file_next(a, false, &mine, NULL) == VL_OK &&
+          vl_film_file_next(b, false, &its, NULL) == VL_OK;
     for (uint32_t i = 0, k = 0; all && i < its.range_count; i++) {
-      while (k < mine.range_count && mine.ranges[k].end < its.ranges[i].end) k++;
+      while (k < mine.range_count && mine.ranges[k].end < its.ranges[i].end)
+        k++;
       all = k < mine.range_count && mine.ranges[k].first <= its.ranges[i].first;
     }
   }
@@ -153,31 +189,41 @@ static bool has_all(const char *path, const char *other, vlContext *context) {
 }
 
 /* Checks the film and, if film is not null, reads it. */
-static int take_film(Source *source, const Arguments *arguments, const vlReceipt *now, vlContext *context,
-                     vlSceneDefs *defs, vlFilm **film) {
+static int take_film(Source *source, const Arguments *arguments, const vlReceipt *now,
+                     vlContext *context, vlSceneDefs *defs, vlFilm **film) {
   vlError error = {0};
   vlResult result = vl_film_file_open(context, source->path, &source->file, &error);
-  if (result != VL_OK) return report_error(&error, result, NULL);
+  if (result != VL_OK)
+    return report_error(&error, result, NULL);
   int status = compare(source, now);
-  if (status < 0) status = take_extent(source, arguments, defs);
+  if (status < 0)
+    status = take_extent(source, arguments, defs);
   vl_film_file_close(source->file);
-  if (status >= 0 || !film) return status;
+  if (status >= 0 || !film)
+    return status;
   result = vl_film_read(context, source->path, false, film, &error);
-  if (result == VL_ERROR_SCENE) return refuse(source, STATUS_SCENE, "%s", error.message);
+  if (result == VL_ERROR_SCENE)
+    return refuse(source, STATUS_SCENE, "%s", error.message);
   return result == VL_OK ? -1 : report_error(&error, result, NULL);
 }
 
-int continue_film(const FilmClaim *claim, const Arguments *arguments, const vlReceipt *now, vlContext *context,
-                  vlSceneDefs *defs, vlFilm **film) {
+int continue_film(const FilmClaim *claim, const Arguments *arguments, const vlReceipt *now,
+                  vlContext *context, vlSceneDefs *defs, vlFilm **film) {
   Source own = {.path = claim->path, .repeats = true}, from = {.path = claim->from};
-  if (!claim->earlier) return from.path[0] ? take_film(&from, arguments, now, context, defs, film) : -1;
-  if (!from.path[0]) return take_film(&own, arguments, now, context, defs, film);
-  /* --continue FROM --film FILE, which is there: repeated after FILE got more samples, or FILE holds fewer */
+  if (!claim->earlier)
+    return from.path[0] ? take_film(&from, arguments, now, context, defs, film) : -1;
+  if (!from.path[0])
+    return take_film(&own, arguments, now, context, defs, film);
+  /* --continue FROM --film FILE, which is there: repeated after FILE got more samples, or FILE
+   * holds fewer */
   vlSceneDefs unused = *defs;
   int status = take_film(&own, arguments, now, context, &unused, NULL);
-  if (status >= 0) return status;
-  if (has_all(own.path, from.path, context)) return take_film(&own, arguments, now, context, defs, film);
-  if (has_all(from.path, own.path, context)) return take_film(&from, arguments, now, context, defs, film);
+  if (status >= 0)
+    return status;
+  if (has_all(own.path, from.path, context))
+    return take_film(&own, arguments, now, context, defs, film);
+  if (has_all(from.path, own.path, context))
+    return take_film(&from, arguments, now, context, defs, film);
   return film_claim_refuse("%s has samples that %s lacks", own.path, from.path);
 }
 

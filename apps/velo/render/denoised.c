@@ -18,7 +18,8 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
   const char *path = v[RENDER_DENOISE].text;
   memset(d, 0, sizeof *d);
   d->def = vl_default_denoise_def();
-  if (v[RENDER_DENOISER].given) d->def.denoiser = (vlDenoiser)v[RENDER_DENOISER].integer;
+  if (v[RENDER_DENOISER].given)
+    d->def.denoiser = (vlDenoiser)v[RENDER_DENOISER].integer;
   d->def.library = v[RENDER_DENOISER_LIBRARY].text;
   if (!v[RENDER_DENOISE].given) {
     if (v[RENDER_DENOISER].given || v[RENDER_DENOISER_LIBRARY].given)
@@ -31,7 +32,8 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
     return report_usage("--denoise goes with one image; velo image denoise does more");
   for (int i = 0; i < image->count; i++)
     if (strcmp(path, image->paths[i]) == 0)
-      return report_usage("--denoise \"%s\": the image itself is never replaced by its denoised copy", path);
+      return report_usage(
+          "--denoise \"%s\": the image itself is never replaced by its denoised copy", path);
   d->outputs = *image;
   d->outputs.paths[0] = path;
   d->outputs.count = 1;
@@ -40,12 +42,14 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
 }
 
 int denoised_check(const Denoised *d, vlContext *context) {
-  if (!d->outputs.count || d->def.denoiser == VL_DENOISER_VELO) return -1;
+  if (!d->outputs.count || d->def.denoiser == VL_DENOISER_VELO)
+    return -1;
   vlImageDef def = vl_default_image_def(1, 1, 3);
   vlImage *pixel = NULL, *clean = NULL;
   vlError error = {0};
   vlResult result = vl_image_create(context, &def, &pixel);
-  if (result == VL_OK) result = vl_denoise(pixel, &d->def, &clean, NULL, &error);
+  if (result == VL_OK)
+    result = vl_denoise(pixel, &d->def, &clean, NULL, &error);
   vl_image_destroy(pixel);
   vl_image_destroy(clean);
   return result == VL_OK ? -1 : report_error(&error, result, NULL);
@@ -56,14 +60,16 @@ uint64_t denoised_memory(uint64_t pixels) {
   return pixels * sizeof(float) * (INPUT + PLANES + RESULT + CHANNELS);
 }
 
-double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads) {
-  const double per_pixel = 2.5e-6,
-               ray = 0.3; /* measured on one thread: seconds per pixel; cost of a camera ray relative to a sample */
+double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing,
+                        uint32_t threads) {
+  const double per_pixel = 2.5e-6, ray = 0.3; /* measured on one thread: seconds per pixel; cost
+                                                 of a camera ray relative to a sample */
   uint32_t features = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
   return per_pixel * (double)pixels / threads + ray * sample * features + writing;
 }
 
-vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined) {
+vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats,
+                       vlImage **joined) {
   const vlImage *parts[2] = {color, floats};
   const char *names[MAX_CHANNELS];
   uint32_t count = 0;
@@ -73,12 +79,14 @@ vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *
   vlImageDef def = vl_default_image_def(vl_image_width(color), vl_image_height(color), count);
   def.names = names;
   vlResult result = vl_image_create(context, &def, joined);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   float *to = vl_image_pixels(*joined);
   for (size_t i = 0; i < (size_t)def.width * def.height; i++)
     for (int k = 0; k < 2; k++) {
       uint32_t channels = vl_image_channels(parts[k]);
-      memcpy(to, (const float *)vl_image_const_pixels(parts[k]) + i * channels, channels * sizeof *to);
+      memcpy(to, (const float *)vl_image_const_pixels(parts[k]) + i * channels,
+             channels * sizeof *to);
       to += channels;
     }
   return VL_OK;
@@ -89,8 +97,8 @@ static bool stop_asked(void *user) {
 }
 
 /* Makes the image with its standard errors and the denoiser's features. */
-static vlResult gather(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **joined,
-                       vlError *error) {
+static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
+                       const vlFilm *film, vlImage **joined, vlError *error) {
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = job->defs->develop.exposure;
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
@@ -105,38 +113,47 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   def.stop_user = &signals;
   vlImage *color = NULL, *floats = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
-  if (result == VL_OK) result = vl_render_channels(world, &job->camera, &def, &floats, NULL, error);
-  if (result == VL_OK) result = denoised_join(context, color, floats, joined);
-  if (result == VL_OK) result = attributes_set(*joined, job, vl_film_spp(film));
+  if (result == VL_OK)
+    result = vl_render_channels(world, &job->camera, &def, &floats, NULL, error);
+  if (result == VL_OK)
+    result = denoised_join(context, color, floats, joined);
+  if (result == VL_OK)
+    result = attributes_set(*joined, job, vl_film_spp(film));
   vl_image_destroy(color);
   vl_image_destroy(floats);
   return result;
 }
 
 void denoised_share_exposure(Denoised *d, Outputs *image) {
-  if (!d->outputs.count) return;
+  if (!d->outputs.count)
+    return;
   d->exposure = NAN;
-  if (image->meter && !image->shared) image->shared = &d->exposure;
+  if (image->meter && !image->shared)
+    image->shared = &d->exposure;
   d->outputs.meter = image->meter;
   d->outputs.exposure = image->exposure;
   d->outputs.shared = image->shared;
 }
 
-int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
-                   OutputStage stage) {
-  if (!d->outputs.count) return STATUS_OK;
+int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
+                   const vlFilm *film, OutputStage stage) {
+  if (!d->outputs.count)
+    return STATUS_OK;
   vlImage *image = NULL, *clean = NULL;
   vlError error = {0};
   vlDenoiseStats stats;
   vlResult result = gather(context, world, job, film, &image, &error);
-  if (result == VL_OK) result = vl_denoise(image, &d->def, &clean, &stats, &error);
-  if (result == VL_OK) result = denoise_name(clean, d->def.denoiser);
+  if (result == VL_OK)
+    result = vl_denoise(image, &d->def, &clean, &stats, &error);
+  if (result == VL_OK)
+    result = denoise_name(clean, d->def.denoiser);
   int status = STATUS_OK;
   if (result == VL_CANCELLED) {
     status = 128 + signals_pending();
     report_note("interrupted before %s was done", d->outputs.paths[0]);
   }
-  if (result != VL_OK && result != VL_CANCELLED) status = report_error(&error, result, d->outputs.paths[0]);
+  if (result != VL_OK && result != VL_CANCELLED)
+    status = report_error(&error, result, d->outputs.paths[0]);
   if (result == VL_OK) {
     denoise_report(&stats);
     status = outputs_write(context, &d->outputs, clean, vl_film_spp(film), stage);

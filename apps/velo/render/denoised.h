@@ -14,26 +14,28 @@ typedef struct Denoised {
   vlDenoiseDef def;
 } Denoised;
 
-/* Reads the options. `image`: the outputs of the image itself, whose view and exposure are used. Returns -1, or the
- * exit code after reporting the error. */
+/* Reads the options. `image`: the outputs of the image itself, whose view and exposure are
+ * used. Returns -1, or the exit code after reporting the error. */
 int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *image);
-/* Checks before the render that the denoiser works: if it is Open Image Denoise, denoises an image of one pixel.
- * Returns -1, or the exit code after reporting the error. */
+/* Checks before the render that the denoiser works: if it is Open Image Denoise, denoises an
+ * image of one pixel. Returns -1, or the exit code after reporting the error. */
 int denoised_check(const Denoised *d, vlContext *context);
 /* Memory in bytes for an image of so many pixels. */
 uint64_t denoised_memory(uint64_t pixels);
-/* Estimated seconds of denoised_write for an image of so many pixels with `spp` samples, from those that one sample per
- * pixel and the writing of an image took, on so many threads. */
-double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads);
-/* Makes the copy share the exposure of the image, which is known after its options are read: call before the image is
- * written. */
+/* Estimated seconds of denoised_write for an image of so many pixels with `spp` samples, from
+ * those that one sample per pixel and the writing of an image took, on so many threads. */
+double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing,
+                        uint32_t threads);
+/* Makes the copy share the exposure of the image, which is known after its options are read:
+ * call before the image is written. */
 void denoised_share_exposure(Denoised *d, Outputs *image);
-/* Renders the features, denoises the film's image and writes the result; d->written tells whether it is there. Returns
- * STATUS_OK, or the exit code after reporting the error. */
-int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
-                   OutputStage stage);
+/* Renders the features, denoises the film's image and writes the result; d->written tells
+ * whether it is there. Returns STATUS_OK, or the exit code after reporting the error. */
+int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
+                   const vlFilm *film, OutputStage stage);
 
 /* Makes one image with the channels of both float images, which have the same size. */
-vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined);
+vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats,
+                       vlImage **joined);
 
 #endif

@@ -1,4 +1,5 @@
-/* render/describe.c: describes what a job would render, as text or JSON (--dry-run). See job.h. */
+/* render/describe.c: describes what a job would render, as text or JSON (--dry-run). See job.h.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -24,7 +25,8 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
                         ? "thin lens"
                         : vl_projection_name(c->projection),
       .sampler = kind_name("samplers", (int)defs->render.sampler),
-      .tracer = job->race == RACE_TRACERS ? "auto" : kind_name("tracers", (int)defs->render.tracer),
+      .tracer =
+          job->race == RACE_TRACERS ? "auto" : kind_name("tracers", (int)defs->render.tracer),
       .filter = kind_name("filters", (int)defs->film.filter.kind),
       .light_sampler = choice_name(light_sampler_choices, (int)defs->build.light_sampler),
       .color = choice_name(color_choices, (int)defs->build.color),
@@ -37,13 +39,15 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
     f.forward[i] = c->world_from_camera[4 * i + 2];
     length += f.forward[i] * f.forward[i];
   }
-  for (int i = 0; i < 3; i++) f.forward[i] = f.forward[i] / sqrt(length) + 0.0;
+  for (int i = 0; i < 3; i++)
+    f.forward[i] = f.forward[i] / sqrt(length) + 0.0;
   vl_scene_info(scene, &f.scene);
   vl_world_info(world, &f.world);
   return f;
 }
 
-static void describe_json(const Job *job, const Facts *f, const char *const *outputs, int output_count) {
+static void describe_json(const Job *job, const Facts *f, const char *const *outputs,
+                          int output_count) {
   const vlCamera *c = &job->camera;
   const vlRenderDef *render = &job->defs->render;
   Json json = report_json_begin("plan");
@@ -51,7 +55,8 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
   json_integer(&json, "width", c->width);
   json_integer(&json, "height", c->height);
   json_begin(&json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(&json, NULL, job->defs->film.crop[i]);
+  for (int i = 0; i < 4; i++)
+    json_integer(&json, NULL, job->defs->film.crop[i]);
   json_end(&json, ']');
   json_integer(&json, "spp", render->spp);
   json_number(&json, "time_limit", render->time_limit);
@@ -72,7 +77,8 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
   json_number(&json, NULL, c->cy);
   json_end(&json, ']');
   json_begin(&json, "world_from_camera", '[');
-  for (int i = 0; i < 16; i++) json_number(&json, NULL, c->world_from_camera[i]);
+  for (int i = 0; i < 16; i++)
+    json_number(&json, NULL, c->world_from_camera[i]);
   json_end(&json, ']');
   json_integer(&json, "triangles", (int64_t)f->world.triangles);
   json_integer(&json, "primitives", (int64_t)f->world.primitives);
@@ -81,13 +87,14 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
   json_integer(&json, "bytes", (int64_t)f->world.bytes);
   json_number(&json, "build_seconds", f->world.build_seconds);
   json_begin(&json, "outputs", '[');
-  for (int i = 0; i < output_count; i++) json_text(&json, NULL, outputs[i]);
+  for (int i = 0; i < output_count; i++)
+    json_text(&json, NULL, outputs[i]);
   json_end(&json, ']');
   report_json_end(&json);
 }
 
-void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
-                  const char *const *outputs, int output_count) {
+void job_describe(const Job *job, vlContext *context, const vlScene *scene,
+                  const vlWorld *world, const char *const *outputs, int output_count) {
   Facts f = gather(job, scene, world);
   if (report_is_json()) {
     describe_json(job, &f, outputs, output_count);
@@ -100,24 +107,31 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   format_count(triangles, sizeof triangles, (double)f.world.triangles);
   format_count(bytes, sizeof bytes, (double)f.world.bytes);
   format_seconds(build, sizeof build, f.world.build_seconds);
-  printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n", job->path,
-         (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
+  printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n",
+         job->path, (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
          (unsigned long long)f.scene.textures, (unsigned long long)f.scene.instances);
-  printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n", triangles,
-         (unsigned long long)(f.world.primitives > f.world.triangles ? f.world.primitives - f.world.triangles : 0),
+  printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n",
+         triangles,
+         (unsigned long long)(f.world.primitives > f.world.triangles
+                                  ? f.world.primitives - f.world.triangles
+                                  : 0),
          (unsigned long long)f.world.lights, bytes, build);
   printf("camera    %s", f.projection);
-  if (c->projection == VL_PROJECTION_PERSPECTIVE) printf(", field of view %.4g x %.4g degrees", f.fov_x, f.fov_y);
-  printf(", eye (%g, %g, %g), looking along (%.4g, %.4g, %.4g)\n", f.eye[0], f.eye[1], f.eye[2], f.forward[0],
-         f.forward[1], f.forward[2]);
+  if (c->projection == VL_PROJECTION_PERSPECTIVE)
+    printf(", field of view %.4g x %.4g degrees", f.fov_x, f.fov_y);
+  printf(", eye (%g, %g, %g), looking along (%.4g, %.4g, %.4g)\n", f.eye[0], f.eye[1], f.eye[2],
+         f.forward[0], f.forward[1], f.forward[2]);
   printf("image     %u x %u pixels", c->width, c->height);
   if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
-  printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? "" : " of own samples", f.color);
+  printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? "" : " of own samples",
+         f.color);
   printf("sampling  %u spp, sampler %s, seed %u", render->spp, f.sampler, render->seed);
-  if (render->time_limit > 0) printf(", at most %g s", render->time_limit);
-  printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth, f.light_sampler,
-         job->defs->build.regularize ? ", regularised" : "");
+  if (render->time_limit > 0)
+    printf(", at most %g s", render->time_limit);
+  printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth,
+         f.light_sampler, job->defs->build.regularize ? ", regularised" : "");
   printf("machine   %u threads, %s\n", vl_context_threads(context), context_isa_name(context));
-  for (int i = 0; i < output_count; i++) printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
+  for (int i = 0; i < output_count; i++)
+    printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
 }

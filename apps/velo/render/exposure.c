@@ -1,5 +1,5 @@
-/* render/exposure.c: see exposure.h. The target value 0.18 is from Reinhard et al., "Photographic tone
- * reproduction", 2002. */
+/* render/exposure.c: see exposure.h. The target value 0.18 is from Reinhard et al.,
+ * "Photographic tone reproduction", 2002. */
 #include "render/exposure.h"
 
 #include <math.h>
@@ -12,21 +12,25 @@
 int exposure_parse(const OptionValue *value, float *ev, bool *meter) {
   *ev = 0;
   *meter = false;
-  if (!value->given) return -1;
+  if (!value->given)
+    return -1;
   if (strcmp(value->text, "auto") == 0) {
     *meter = true;
     return -1;
   }
   double number;
-  int status = option_number("--exposure (or auto)", value->text, vl_setting(VL_SETTING_PROGRAM, "exposure"), &number);
-  if (status < 0) *ev = (float)number;
+  int status = option_number("--exposure (or auto)", value->text,
+                             vl_setting(VL_SETTING_PROGRAM, "exposure"), &number);
+  if (status < 0)
+    *ev = (float)number;
   return status;
 }
 
 static double luminance(const vlImage *image, const int rgb[3], uint32_t x, uint32_t y) {
   static const double weights[3] = {0.2126, 0.7152, 0.0722};
   double sum = 0;
-  for (int c = 0; c < 3; c++) sum += weights[c] * (double)vl_image_get(image, x, y, (uint32_t)rgb[c]);
+  for (int c = 0; c < 3; c++)
+    sum += weights[c] * (double)vl_image_get(image, x, y, (uint32_t)rgb[c]);
   return sum > 0 && isfinite(sum) ? sum : 0;
 }
 
@@ -34,11 +38,13 @@ float exposure_meter(const vlImage *image) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")};
   int alpha = vl_image_find_channel(image, "A");
-  if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0) return 0;
+  if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0)
+    return 0;
   uint32_t width = vl_image_width(image), height = vl_image_height(image);
   double total = 0, logs = 0, weights = 0;
   for (uint32_t y = 0; y < height; y++)
-    for (uint32_t x = 0; x < width; x++) total += luminance(image, rgb, x, y);
+    for (uint32_t x = 0; x < width; x++)
+      total += luminance(image, rgb, x, y);
   double least = 1e-3 * total / ((double)width * height);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++) {
@@ -49,18 +55,22 @@ float exposure_meter(const vlImage *image) {
         weights += w;
       }
     }
-  if (!(weights > 0)) return 0;
+  if (!(weights > 0))
+    return 0;
   double ev = round(10 * (log2(0.18) - logs / weights)) / 10;
   return (float)(ev < -64 ? -64 : ev > 64 ? 64 : ev);
 }
 
-/* ---- models ------------------------------------------------------------------------------------------------------ */
+/* ---- models
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 enum { METER_SIDE = 96, METER_SPP = 8, METER_DEPTH = 6 };
 
 /* Sums of a model's pixels: luminance of radiance and albedo. */
 typedef struct ModelLight {
-  double radiance[METER_SIDE * METER_SIDE], albedo[METER_SIDE * METER_SIDE], ratio[METER_SIDE * METER_SIDE];
+  double radiance[METER_SIDE * METER_SIDE], albedo[METER_SIDE * METER_SIDE],
+      ratio[METER_SIDE * METER_SIDE];
   size_t count;
 } ModelLight;
 
@@ -69,13 +79,15 @@ static int ascending(const void *a, const void *b) {
   return (*x > *y) - (*x < *y);
 }
 
-/* Radiance per albedo of a model's pixels. What dark surfaces reflect like glass counts as albedo, too. A pixel counts
- * at most as four times the median: lamps and highlights. 0: there are no pixels. */
+/* Radiance per albedo of a model's pixels. What dark surfaces reflect like glass counts as
+ * albedo, too. A pixel counts at most as four times the median: lamps and highlights. 0: there
+ * are no pixels. */
 static double mean_light(ModelLight *light) {
   const double sheen = 0.04;
   double radiance = 0, albedo = 0;
   size_t n = light->count;
-  if (n == 0) return 0;
+  if (n == 0)
+    return 0;
   for (size_t i = 0; i < n; i++) {
     light->albedo[i] += sheen;
     light->ratio[i] = light->radiance[i] / light->albedo[i];
@@ -99,25 +111,30 @@ static double bright(ModelLight *light) {
 static void gather(ModelLight *light, const vlImage *image, const vlImage *albedos) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")},
-            own[3] = {vl_image_find_channel(albedos, "albedo.R"), vl_image_find_channel(albedos, "albedo.G"),
+            own[3] = {vl_image_find_channel(albedos, "albedo.R"),
+                      vl_image_find_channel(albedos, "albedo.G"),
                       vl_image_find_channel(albedos, "albedo.B")};
   int alpha = vl_image_find_channel(image, "A");
   for (uint32_t y = 0; y < vl_image_height(image); y++)
     for (uint32_t x = 0; x < vl_image_width(image); x++) {
-      if (!(vl_image_get(image, x, y, (uint32_t)alpha) > 0.99f)) continue;
+      if (!(vl_image_get(image, x, y, (uint32_t)alpha) > 0.99f))
+        continue;
       double albedo = luminance(albedos, own, x, y);
-      if (!(albedo > 1e-4)) continue; /* it only emits light, or is black */
+      if (!(albedo > 1e-4))
+        continue; /* it only emits light, or is black */
       light->radiance[light->count] = luminance(image, rgb, x, y);
       light->albedo[light->count++] = albedo;
     }
 }
 
-static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlSceneDefs *defs,
-                             vlImage **image, vlImage **albedos, vlError *error) {
+static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera,
+                             const vlSceneDefs *defs, vlImage **image, vlImage **albedos,
+                             vlError *error) {
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
   render.tracer = defs->render.tracer == VL_TRACER_PATH ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
-  render.max_depth = defs->render.max_depth < METER_DEPTH ? defs->render.max_depth : METER_DEPTH;
+  render.max_depth =
+      defs->render.max_depth < METER_DEPTH ? defs->render.max_depth : METER_DEPTH;
   render.spp = METER_SPP;
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = defs->develop.exposure;
@@ -125,36 +142,46 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
   channels.channels = VL_CHANNEL_ALBEDO;
   vlFilm *film = NULL;
   vlResult result = vl_film_create(context, &film_def, &film);
-  if (result == VL_OK) result = vl_render(world, camera, film, &render, NULL, error);
-  if (result == VL_OK) result = vl_film_develop(film, &develop, image);
-  if (result == VL_OK) result = vl_render_channels(world, camera, &channels, albedos, NULL, error);
+  if (result == VL_OK)
+    result = vl_render(world, camera, film, &render, NULL, error);
+  if (result == VL_OK)
+    result = vl_film_develop(film, &develop, image);
+  if (result == VL_OK)
+    result = vl_render_channels(world, camera, &channels, albedos, NULL, error);
   vl_film_destroy(film);
   return result;
 }
 
-int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlSceneDefs *defs,
-                         double leave, float *ev) {
+int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera,
+                         const vlSceneDefs *defs, double leave, float *ev) {
   const double white = 0.62; /* mean of a white model in the studio */
-  double k = METER_SIDE / (double)(camera->width > camera->height ? camera->width : camera->height);
-  uint32_t width = (uint32_t)(camera->width * k + 0.5), height = (uint32_t)(camera->height * k + 0.5);
+  double k =
+      METER_SIDE / (double)(camera->width > camera->height ? camera->width : camera->height);
+  uint32_t width = (uint32_t)(camera->width * k + 0.5),
+           height = (uint32_t)(camera->height * k + 0.5);
   vlCamera small = *camera;
   vlImage *image = NULL, *albedos = NULL;
   vlError error = {0};
   *ev = 0;
-  if (k < 1 && vl_camera_resize(camera, width ? width : 1, height ? height : 1, &small) != VL_OK) return -1;
+  if (k < 1 &&
+      vl_camera_resize(camera, width ? width : 1, height ? height : 1, &small) != VL_OK)
+    return -1;
   vlResult result = render_small(context, world, &small, defs, &image, &albedos, &error);
   ModelLight *light = result == VL_OK ? calloc(1, sizeof *light) : NULL;
-  if (result == VL_OK && !light) result = VL_ERROR_MEMORY;
+  if (result == VL_OK && !light)
+    result = VL_ERROR_MEMORY;
   if (result == VL_OK) {
     gather(light, image, albedos);
     double mean = mean_light(light), stops = mean > 0 ? log2(white / mean) : 0;
-    double most = mean > 0 ? -log2(bright(light)) : 0; /* mirrors and glass may show little of a lamp's light */
+    double most = mean > 0 ? -log2(bright(light))
+                           : 0; /* mirrors and glass may show little of a lamp's light */
     stops = stops > 0 && most < stops ? (most > 0 ? most : 0) : stops;
     stops = round(10 * (fabs(stops) <= leave ? 0 : stops)) / 10;
     *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);
     if (report_is_verbose())
-      report_note("exposure: white has %.3g on %zu of %u pixels of the model, %.2g is wanted: %+.1f EV", mean,
-                  light->count, small.width * small.height, white, (double)*ev);
+      report_note(
+          "exposure: white has %.3g on %zu of %u pixels of the model, %.2g is wanted: %+.1f EV",
+          mean, light->count, small.width * small.height, white, (double)*ev);
   }
   free(light);
   vl_image_destroy(image);
@@ -163,5 +190,6 @@ int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamer
 }
 
 void exposure_tell(float ev) {
-  report_note("exposed by %+.1f EV, as metered (--exposure 0 leaves the light as it is)", (double)ev);
+  report_note("exposed by %+.1f EV, as metered (--exposure 0 leaves the light as it is)",
+              (double)ev);
 }

@@ -5,18 +5,20 @@
 #include "cli/options.h"
 #include "velo/render.h"
 
-/* Reads --exposure: a number of stops to *ev, or "auto", which sets *meter. Returns -1, or the exit code after
- * reporting the error. */
+/* Reads --exposure: a number of stops to *ev, or "auto", which sets *meter. Returns -1, or the
+ * exit code after reporting the error. */
 int exposure_parse(const OptionValue *value, float *ev, bool *meter);
-/* The exposure in stops, rounded to a tenth, that maps the geometric mean of a linear image's luminances to 0.18.
- * Pixels below a thousandth of the mean and pixels with alpha 0 are excluded. */
+/* The exposure in stops, rounded to a tenth, that maps the geometric mean of a linear image's
+ * luminances to 0.18. Pixels below a thousandth of the mean and pixels with alpha 0 are
+ * excluded.
+ */
 float exposure_meter(const vlImage *image);
-/* Meters the light that falls on a model, not its colours: renders the whole image small and compares the radiance of
- * the model's pixels (alpha > 0) with their albedo. *ev: the exposure in stops, rounded to a tenth, that makes a white
- * surface in this light bright; within `leave` of 0 it becomes 0. Returns -1, or the exit code after reporting the
- * error. */
-int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlSceneDefs *defs,
-                         double leave, float *ev);
+/* Meters the light that falls on a model, not its colours: renders the whole image small and
+ * compares the radiance of the model's pixels (alpha > 0) with their albedo. *ev: the exposure
+ * in stops, rounded to a tenth, that makes a white surface in this light bright; within `leave`
+ * of 0 it becomes 0. Returns -1, or the exit code after reporting the error. */
+int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera,
+                         const vlSceneDefs *defs, double leave, float *ev);
 /* Prints the metered exposure. */
 void exposure_tell(float ev);
 

@@ -22,41 +22,55 @@ int film_claim_refuse(const char *format, ...) {
 
 static bool same_file(const char *a, const char *b) {
   struct stat one, two;
-  if (strcmp(a, b) == 0) return true;
-  return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_ino == two.st_ino && one.st_dev == two.st_dev;
+  if (strcmp(a, b) == 0)
+    return true;
+  return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_ino == two.st_ino &&
+         one.st_dev == two.st_dev;
 }
 
 int film_claim_check(bool overwrite, const char *film, const char *from) {
-  if (!overwrite) return -1;
-  if (!film) return report_usage("--overwrite goes with --film FILE");
-  return from && same_file(film, from) ? report_usage("--overwrite: %s is the film that --continue continues", film)
-                                       : -1;
+  if (!overwrite)
+    return -1;
+  if (!film)
+    return report_usage("--overwrite goes with --film FILE");
+  return from && same_file(film, from)
+             ? report_usage("--overwrite: %s is the film that --continue continues", film)
+             : -1;
 }
 
-/* Whether a file begins as film files do, damaged or not. One that cannot be read is reported when it is opened. */
+/* Whether a file begins as film files do, damaged or not. One that cannot be read is reported
+ * when it is opened. */
 static bool is_film(const char *path) {
   char magic[8];
   FILE *file = fopen(path, "rb");
-  bool is =
-      !file || (fread(magic, 1, sizeof magic, file) == sizeof magic && memcmp(magic, "VELOFILM", sizeof magic) == 0);
-  if (file) fclose(file);
+  bool is = !file || (fread(magic, 1, sizeof magic, file) == sizeof magic &&
+                      memcmp(magic, "VELOFILM", sizeof magic) == 0);
+  if (file)
+    fclose(file);
   return is;
 }
 
-int film_claim(FilmClaim *claim, vlContext *context, const char *path, const char *from, bool overwrite) {
+int film_claim(FilmClaim *claim, vlContext *context, const char *path, const char *from,
+               bool overwrite) {
   vlError error = {0};
   struct stat info;
   memset(claim, 0, sizeof *claim);
   snprintf(claim->path, sizeof claim->path, "%s", path);
   snprintf(claim->from, sizeof claim->from, "%s", from);
   vlResult result = vl_film_lock(context, path, &claim->lock, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
-  if (!claim->lock) return report_usage("--film: another process is rendering into %s", path);
-  if (stat(path, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0) return -1;
-  if (!is_film(path)) return report_usage("--film: %s is not a film file, and is not replaced", path);
-  if (overwrite || (*from && same_file(path, from))) return -1;
+  if (result != VL_OK)
+    return report_error(&error, result, path);
+  if (!claim->lock)
+    return report_usage("--film: another process is rendering into %s", path);
+  if (stat(path, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0)
+    return -1;
+  if (!is_film(path))
+    return report_usage("--film: %s is not a film file, and is not replaced", path);
+  if (overwrite || (*from && same_file(path, from)))
+    return -1;
   result = vl_film_file_open(context, path, &claim->earlier, &error);
-  if (result == VL_ERROR_SCENE || result == VL_ERROR_UNSUPPORTED) return film_claim_refuse("%s", error.message);
+  if (result == VL_ERROR_SCENE || result == VL_ERROR_UNSUPPORTED)
+    return film_claim_refuse("%s", error.message);
   return result == VL_OK ? -1 : report_error(&error, result, NULL);
 }
 
@@ -67,24 +81,31 @@ void film_claim_release(FilmClaim *claim) {
 }
 
 void film_claim_take(const FilmClaim *claim, vlFilmDef *film) {
-  if (claim->earlier) film->errors |= vl_film_file_def(claim->earlier)->errors;
+  if (claim->earlier)
+    film->errors |= vl_film_file_def(claim->earlier)->errors;
 }
 
 /* The word after an option in the film's command; null: it has none. */
 static const char *word_after(const vlReceipt *receipt, const char *option) {
   const char *word;
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++)
-    if (strcmp(word, option) == 0) return vl_receipt_command(receipt, i + 1);
+    if (strcmp(word, option) == 0)
+      return vl_receipt_command(receipt, i + 1);
   return NULL;
 }
 
 bool film_claim_take_tracer(const FilmClaim *claim, vlRenderDef *render) {
-  static const vlTracer raced[] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
+  static const vlTracer raced[] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL,
+                                   VL_TRACER_MERGING};
   const vlReceipt *receipt = vl_film_file_receipt(claim->earlier);
-  if (!receipt) return false;
-  const char *name = word_after(receipt, "--tracer"), *paths = word_after(receipt, "--light-paths");
+  if (!receipt)
+    return false;
+  const char *name = word_after(receipt, "--tracer"),
+             *paths = word_after(receipt, "--light-paths");
   for (size_t i = 0; i < sizeof raced / sizeof *raced && name; i++)
-    if (strcmp(name, kind_name("tracers", (int)raced[i])) == 0) render->tracer = raced[i];
-  if (paths) render->light_paths = (uint32_t)strtoul(paths, NULL, 10);
+    if (strcmp(name, kind_name("tracers", (int)raced[i])) == 0)
+      render->tracer = raced[i];
+  if (paths)
+    render->light_paths = (uint32_t)strtoul(paths, NULL, 10);
   return name || paths;
 }

@@ -1,5 +1,6 @@
-/* render/film_keeper.c: see film_keeper.h. All workers write a checkpoint between two passes. A thread then waits
- * until the file is on the disk and renames it, while the render continues. */
+/* render/film_keeper.c: see film_keeper.h. All workers write a checkpoint between two passes. A
+ * thread then waits until the file is on the disk and renames it, while the render continues.
+ */
 #include "render/film_keeper.h"
 
 #include <stdio.h>
@@ -12,8 +13,10 @@
 enum { EVERY = 30 };
 static const double SHARE = 0.005, SHARE_WITH_ERRORS = 0.015;
 
-int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context, const Job *job, const char *eye) {
-  if (!k->path[0]) return -1;
+int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context,
+                         const Job *job, const char *eye) {
+  if (!k->path[0])
+    return -1;
   Job whole = *job;
   vlSceneDefs defs = plan->whole;
   whole.defs = &defs;
@@ -26,17 +29,20 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
   k->receipt = NULL;
   k->attributes = NULL;
   vlResult result = receipt_make(plan->receipt, context, &whole, &which, &k->receipt);
-  if (result == VL_OK) result = attributes_make(context, &whole, eye, &k->attributes);
+  if (result == VL_OK)
+    result = attributes_make(context, &whole, eye, &k->attributes);
   if (result == VL_OK && !plan->receipt->arguments->channels_later)
     result = channels_describe_mode(plan->channels, k->attributes);
-  return result == VL_OK ? -1 : report_reason(result, k->path, "the film's receipt cannot be made");
+  return result == VL_OK ? -1
+                         : report_reason(result, k->path, "the film's receipt cannot be made");
 }
 
-int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *context, const Job *job,
-                      const char *eye) {
+int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *context,
+                      const Job *job, const char *eye) {
   const FilmClaim *claim = &plan->claims[view];
   memset(k, 0, sizeof *k);
-  if (!claim->path[0]) return -1;
+  if (!claim->path[0])
+    return -1;
   const OptionValue *every = &plan->receipt->arguments->values[RENDER_CHECKPOINT];
   const vlFilmDef *film = &plan->whole.film;
   snprintf(k->path, sizeof k->path, "%s", claim->path);
@@ -57,7 +63,8 @@ static void *end_write(void *user) {
 
 /* Waits until the last checkpoint is on the disk. */
 static vlResult join(FilmKeeper *k) {
-  if (!k->running) return VL_OK;
+  if (!k->running)
+    return VL_OK;
   pthread_join(k->thread, NULL);
   k->running = false;
   return k->result;
@@ -78,17 +85,21 @@ static void report_checkpoint(FilmKeeper *k, vlResult result) {
   if (failing && !k->failing)
     report_warning("checkpoint: %s; tried again later",
                    k->error.message[0] ? k->error.message : vl_result_name(result));
-  if (!failing && k->failing) report_note("the film %s is written again", k->path);
+  if (!failing && k->failing)
+    report_note("the film %s is written again", k->path);
   k->failing = failing;
 }
 
 void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
   double now = monotonic_seconds(), least = k->share > 0 ? k->cost / k->share : 0;
-  if (!k->path[0] || k->stream || vl_film_spp(film) == k->written) return;
-  if (now - k->last < (least > k->every ? least : k->every)) return;
+  if (!k->path[0] || k->stream || vl_film_spp(film) == k->written)
+    return;
+  if (now - k->last < (least > k->every ? least : k->every))
+    return;
   bool waited = k->running;
   vlResult result = join(k);
-  if (waited) report_checkpoint(k, result);
+  if (waited)
+    report_checkpoint(k, result);
   result = begin_write(k, film);
   if (result == VL_OK) {
     k->running = pthread_create(&k->thread, NULL, end_write, k) == 0;
@@ -97,22 +108,26 @@ void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
       result = k->result;
     }
   }
-  if (result != VL_OK) report_checkpoint(k, result);
+  if (result != VL_OK)
+    report_checkpoint(k, result);
   k->last = monotonic_seconds();
   k->cost = k->last - now;
 }
 
 double film_keeper_seconds(const FilmKeeper *k, uint64_t bytes) {
   const double bytes_per_second = 3e8; /* assumed until a checkpoint has been measured */
-  if (!k->path[0]) return 0;
+  if (!k->path[0])
+    return 0;
   return k->cost > 0 ? k->cost : (double)bytes / bytes_per_second;
 }
 
 int film_keeper_finish(FilmKeeper *k, const vlFilm *film) {
   join(k);
-  if (!k->path[0]) return STATUS_OK;
+  if (!k->path[0])
+    return STATUS_OK;
   vlResult result = begin_write(k, film);
-  if (result == VL_OK) result = vl_film_write_end(k->writer, &k->error);
+  if (result == VL_OK)
+    result = vl_film_write_end(k->writer, &k->error);
   return result == VL_OK ? STATUS_OK : report_error(&k->error, result, k->path);
 }
 

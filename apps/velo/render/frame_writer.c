@@ -1,6 +1,7 @@
-/* render/frame_writer.c: see frame_writer.h. Two views become one OpenEXR file by its "Multi-View" specification. The
- * attribute multiView lists the views. Channels without a dot belong to the first view ("R", "Z"); others have the view
- * before the last part of their name ("right.R", "N.left.X", "N.right.X"). */
+/* render/frame_writer.c: see frame_writer.h. Two views become one OpenEXR file by its
+ * "Multi-View" specification. The attribute multiView lists the views. Channels without a dot
+ * belong to the first view ("R", "Z"); others have the view before the last part of their name
+ * ("right.R", "N.left.X", "N.right.X"). */
 #include "render/frame_writer.h"
 
 #include <pthread.h>
@@ -41,23 +42,32 @@ void frame_image_free(FrameImage *image) {
   }
 }
 
-/* ---- one image ------------------------------------------------------------------------------------------------- */
+/* ---- one image
+ * -------------------------------------------------------------------------------------------------
+ */
 
-/* Renames "Z" to "right.Z" and "N.X" to "N.right.X". In the first view, names without a dot stay. */
+/* Renames "Z" to "right.Z" and "N.X" to "N.right.X". In the first view, names without a dot
+ * stay.
+ */
 static vlResult add_view(vlImage *image, const char *view, bool first) {
   for (uint32_t i = 0; i < vl_image_channels(image); i++) {
     const char *name = vl_image_channel_name(image, i), *dot = strrchr(name, '.');
     char full[300];
-    if (first && !dot) continue;
-    snprintf(full, sizeof full, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view, dot ? dot + 1 : name);
+    if (first && !dot)
+      continue;
+    snprintf(full, sizeof full, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view,
+             dot ? dot + 1 : name);
     vlResult result = vl_image_rename_channel(image, i, full);
-    if (result != VL_OK) return result;
+    if (result != VL_OK)
+      return result;
   }
   return VL_OK;
 }
 
-/* Joins the colours of both eyes in one image, so that --half applies to both. The header is the first eye's. */
-static vlResult join(vlContext *context, vlImage *const images[2], const char *view, vlImage **both) {
+/* Joins the colours of both eyes in one image, so that --half applies to both. The header is
+ * the first eye's. */
+static vlResult join(vlContext *context, vlImage *const images[2], const char *view,
+                     vlImage **both) {
   static const char *const plain[4] = {"R", "G", "B", "A"};
   char right[4][32];
   const char *names[8];
@@ -66,30 +76,37 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
     names[c] = plain[c];
     names[4 + c] = right[c];
   }
-  vlImageDef def = vl_default_image_def(vl_image_width(images[0]), vl_image_height(images[0]), 8);
+  vlImageDef def =
+      vl_default_image_def(vl_image_width(images[0]), vl_image_height(images[0]), 8);
   def.names = names;
   vlResult result = vl_image_create(context, &def, both);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   float *to = vl_image_pixels(*both);
   const float *from[2] = {vl_image_const_pixels(images[0]), vl_image_const_pixels(images[1])};
   size_t pixels = (size_t)def.width * def.height;
   for (size_t i = 0; i < pixels; i++)
-    for (int v = 0; v < 2; v++) memcpy(to + 8 * i + 4 * v, from[v] + 4 * i, 4 * sizeof *to);
+    for (int v = 0; v < 2; v++)
+      memcpy(to + 8 * i + 4 * v, from[v] + 4 * i, 4 * sizeof *to);
   for (uint32_t i = 0; i < vl_image_attribute_count(images[0]) && result == VL_OK; i++) {
     vlAttribute attribute;
     vl_image_attribute(images[0], i, &attribute);
-    if (strcmp(attribute.name, "view") != 0) result = vl_image_set_attribute(*both, &attribute);
+    if (strcmp(attribute.name, "view") != 0)
+      result = vl_image_set_attribute(*both, &attribute);
   }
   return result;
 }
 
 /* eye: the file holds this eye alone; null: both. */
 static ReceiptImage receipt_image(const FrameWriter *w, const FrameImage *p, const char *eye) {
-  return (ReceiptImage){
-      .eye = eye, .is_frame = w->frames->trajectory != NULL, .frame = p->frame.number, .samples = p->spp};
+  return (ReceiptImage){.eye = eye,
+                        .is_frame = w->frames->trajectory != NULL,
+                        .frame = p->frame.number,
+                        .samples = p->spp};
 }
 
-static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, const vlWriteDef *def, vlError *error) {
+static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path,
+                           const vlWriteDef *def, vlError *error) {
   vlImage *both = NULL;
   const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
   uint32_t count = 1;
@@ -97,55 +114,67 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, cons
   const char *const *names = w->frames->view_names;
   vlResult result = join(w->context, p->images, names[1], &both);
   snprintf(views, sizeof views, "%s\n%s", names[0], names[1]);
-  const vlAttribute multi = {.name = "multiView", .type = VL_ATTRIBUTE_STRINGS, .string = views};
-  if (result == VL_OK) result = vl_image_set_attribute(both, &multi);
-  if (result == VL_OK) result = attributes_set_view(both, &p->jobs[1], names[1]);
+  const vlAttribute multi = {
+      .name = "multiView", .type = VL_ATTRIBUTE_STRINGS, .string = views};
+  if (result == VL_OK)
+    result = vl_image_set_attribute(both, &multi);
+  if (result == VL_OK)
+    result = attributes_set_view(both, &p->jobs[1], names[1]);
   const ReceiptImage which = receipt_image(w, p, NULL);
-  if (result == VL_OK) result = receipt_set(w->context, &p->jobs[0], &which, both);
+  if (result == VL_OK)
+    result = receipt_set(w->context, &p->jobs[0], &which, both);
   for (int v = 0; v < 2; v++)
     for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) {
       vlImage *layer = p->channels[v].layers[k];
-      if (!layer) continue;
-      if (!p->renamed) result = add_view(layer, names[v], v == 0);
+      if (!layer)
+        continue;
+      if (!p->renamed)
+        result = add_view(layer, names[v], v == 0);
       layers[count++] = layer;
     }
   layers[0] = both;
   p->renamed = true;
-  if (result == VL_OK) result = output_write_layers(layers, count, path, *def, error);
+  if (result == VL_OK)
+    result = output_write_layers(layers, count, path, *def, error);
   vl_image_destroy(both);
   return result;
 }
 
 /* A trajectory is metered once, by its first image, so that frames do not flicker. */
 static float exposure_of(FrameWriter *w, const vlImage *image) {
-  if (!w->outputs->meter) return w->outputs->exposure;
-  if (!w->metered) exposure_tell(w->exposure = exposure_meter(image));
+  if (!w->outputs->meter)
+    return w->outputs->exposure;
+  if (!w->metered)
+    exposure_tell(w->exposure = exposure_meter(image));
   w->metered = true;
   return w->exposure;
 }
 
-static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *path, const vlWriteDef *def,
-                          vlError *error) {
+static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *path,
+                          const vlWriteDef *def, vlError *error) {
   bool eight_bit = false;
   output_suffix(path, &eight_bit);
   const vlImage *layers[1 + CHANNEL_LAYERS] = {p->images[view]};
   uint32_t count = 1;
   if (eight_bit) {
     vlImage *display = NULL;
-    vlResult result = display_image(w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]),
-                                    w->outputs->transparent && output_holds_alpha(path), &display);
+    vlResult result = display_image(
+        w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]),
+        w->outputs->transparent && output_holds_alpha(path), &display);
     const vlImage *one = display;
-    if (result == VL_OK) result = output_write_layers(&one, 1, path, *def, error);
+    if (result == VL_OK)
+      result = output_write_layers(&one, 1, path, *def, error);
     vl_image_destroy(display);
     return result;
   }
   for (int k = 0; k < CHANNEL_LAYERS && output_holds_layers(path); k++)
-    if (p->channels[view].layers[k]) layers[count++] = p->channels[view].layers[k];
+    if (p->channels[view].layers[k])
+      layers[count++] = p->channels[view].layers[k];
   return output_write_layers(layers, count, path, *def, error);
 }
 
-/* Writes both eyes' files of one pattern, or one file with both. Joined files come last, since layers are renamed for
- * them. */
+/* Writes both eyes' files of one pattern, or one file with both. Joined files come last, since
+ * layers are renamed for them. */
 static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, bool by_view) {
   vlWriteDef def = vl_default_write_def();
   def.half = w->outputs->half;
@@ -156,17 +185,22 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
     char name[4096], part[4200], *path = name;
     vlError error = {0};
     frames_path(w->frames, &p->frame, pattern, view, name, sizeof name);
-    if (p->stopped && output_part_path(name, part, sizeof part)) path = part;
+    if (p->stopped && output_part_path(name, part, sizeof part))
+      path = part;
     int code = STATUS_OK;
     if (output_holds_layers(path))
-      code =
-          channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL, w->context, w->world, path);
-    vlResult result =
-        two && !by_view ? write_both(w, p, path, &def, &error) : write_one(w, p, view, path, &def, &error);
-    if (result != VL_OK) code = report_error(&error, result, path);
-    if (code == STATUS_OK && p->stopped) report_note("the image under way is in %s", path);
-    if (code == STATUS_OK && !p->stopped) output_remove_part(name);
-    if (status == STATUS_OK) status = code;
+      code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL,
+                                w->context, w->world, path);
+    vlResult result = two && !by_view ? write_both(w, p, path, &def, &error)
+                                      : write_one(w, p, view, path, &def, &error);
+    if (result != VL_OK)
+      code = report_error(&error, result, path);
+    if (code == STATUS_OK && p->stopped)
+      report_note("the image under way is in %s", path);
+    if (code == STATUS_OK && !p->stopped)
+      output_remove_part(name);
+    if (status == STATUS_OK)
+      status = code;
   }
   return status;
 }
@@ -180,30 +214,41 @@ static int write_image(FrameWriter *w, FrameImage *p) {
       result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
     if (result == VL_OK && *w->frames->view_names[v])
       result = attributes_set_eye(p->images[v], w->frames->view_names[v]);
-    if (result == VL_OK) result = channels_describe(&p->channels[v], p->images[v]);
-    const ReceiptImage which = receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
-    if (result == VL_OK) result = receipt_set(w->context, &p->jobs[v], &which, p->images[v]);
-    if (result != VL_OK) status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
+    if (result == VL_OK)
+      result = channels_describe(&p->channels[v], p->images[v]);
+    const ReceiptImage which =
+        receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
+    if (result == VL_OK)
+      result = receipt_set(w->context, &p->jobs[v], &which, p->images[v]);
+    if (result != VL_OK)
+      status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
   }
   for (int last = 0; last < 2; last++)
     for (int i = 0; i < w->outputs->count && status != STATUS_OTHER; i++) {
       bool by_view = pattern_has(w->outputs->paths[i], 'v');
-      if ((w->frames->views == 2 && !by_view) != last) continue;
+      if ((w->frames->views == 2 && !by_view) != last)
+        continue;
       int code = write_pattern(w, p, w->outputs->paths[i], by_view);
-      if (status == STATUS_OK) status = code;
+      if (status == STATUS_OK)
+        status = code;
     }
   return status;
 }
 
-/* ---- the thread -------------------------------------------------------------------------------------------------- */
+/* ---- the thread
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static void *work(void *user) {
   FrameWriter *w = user;
   pthread_mutex_lock(&w->mutex);
   for (;;) {
-    while (w->count == 0 && !w->closed) pthread_cond_wait(&w->changed, &w->mutex);
-    if (w->count == 0) break;
-    FrameImage *image = &w->queue[w->first]; /* still counted as queued, so that its slot is not reused */
+    while (w->count == 0 && !w->closed)
+      pthread_cond_wait(&w->changed, &w->mutex);
+    if (w->count == 0)
+      break;
+    FrameImage *image =
+        &w->queue[w->first]; /* still counted as queued, so that its slot is not reused */
     pthread_mutex_unlock(&w->mutex);
     int status = write_image(w, image);
     bool stopped = image->stopped;
@@ -224,14 +269,16 @@ static void *work(void *user) {
 FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
                                 const Outputs *outputs) {
   FrameWriter *w = calloc(1, sizeof *w);
-  if (!w) return NULL;
+  if (!w)
+    return NULL;
   w->context = context;
   w->world = world;
   w->frames = frames;
   w->outputs = outputs;
   pthread_mutex_init(&w->mutex, NULL);
   pthread_cond_init(&w->changed, NULL);
-  if (pthread_create(&w->thread, NULL, work, w) == 0) return w;
+  if (pthread_create(&w->thread, NULL, work, w) == 0)
+    return w;
   pthread_mutex_destroy(&w->mutex);
   pthread_cond_destroy(&w->changed);
   free(w);
@@ -240,7 +287,8 @@ FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const 
 
 void frame_writer_put(FrameWriter *w, const FrameImage *image) {
   pthread_mutex_lock(&w->mutex);
-  while (w->count == QUEUE) pthread_cond_wait(&w->changed, &w->mutex);
+  while (w->count == QUEUE)
+    pthread_cond_wait(&w->changed, &w->mutex);
   w->queue[(w->first + w->count) % QUEUE] = *image;
   w->count++;
   pthread_cond_signal(&w->changed);

@@ -18,11 +18,12 @@ typedef struct FrameImage {
 typedef struct FrameWriter FrameWriter;
 
 /* Null: out of memory or of threads. */
-FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames, const Outputs *outputs);
+FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
+                                const Outputs *outputs);
 /* Queues an image and takes ownership of its data. Waits while the queue is full. */
 void frame_writer_put(FrameWriter *writer, const FrameImage *image);
-/* Waits until all images are written. Returns the exit code of the first failure, or STATUS_OK. *written: number of
- * finished images whose files are all complete. */
+/* Waits until all images are written. Returns the exit code of the first failure, or STATUS_OK.
+ * *written: number of finished images whose files are all complete. */
 int frame_writer_finish(FrameWriter *writer, uint32_t *written);
 void frame_image_free(FrameImage *image);
 

@@ -19,46 +19,62 @@ static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0,
 static const double y_up[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 bool frames_wanted(const Arguments *arguments, const Job *job) {
-  if (arguments->values[RENDER_TRAJECTORY].given) return true;
+  if (arguments->values[RENDER_TRAJECTORY].given)
+    return true;
   return job && job->defs->camera.stereo.mode != VL_STEREO_NONE;
 }
 
-/* ---- the command line -------------------------------------------------------------------------------------------- */
+/* ---- the command line
+ * --------------------------------------------------------------------------------------------
+ */
 
 int frames_check(const Arguments *arguments, Outputs *outputs) {
   const OptionValue *v = arguments->values;
   bool trajectory = v[RENDER_TRAJECTORY].given;
   uint32_t unused;
   outputs->patterns = trajectory || v[RENDER_STEREO].given;
-  if (v[RENDER_RIG].given && !trajectory) return report_usage("--rig FILE: the poses are missing; give --trajectory");
+  if (v[RENDER_RIG].given && !trajectory)
+    return report_usage("--rig FILE: the poses are missing; give --trajectory");
   if (v[RENDER_FRAMES].given && !trajectory)
     return report_usage("--frames goes with --trajectory, --animate or --turntable");
-  if (v[RENDER_SKIP_EXISTING].given && !trajectory) return report_usage("--skip-existing goes with --trajectory");
+  if (v[RENDER_SKIP_EXISTING].given && !trajectory)
+    return report_usage("--skip-existing goes with --trajectory");
   if (v[RENDER_FRAME].given && (trajectory || !v[RENDER_CAMERA].given))
-    return report_usage(trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
-                                   : "--frame NAME says which camera of --camera FILE");
-  if (v[RENDER_FRAMES].given && !pattern_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
-    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", v[RENDER_FRAMES].text);
+    return report_usage(
+        trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
+                   : "--frame NAME says which camera of --camera FILE");
+  if (v[RENDER_FRAMES].given &&
+      !pattern_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
+    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0",
+                        v[RENDER_FRAMES].text);
   if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
     return report_usage("--flow-camera is of one image: it does not go with --trajectory");
   if (trajectory && (v[RENDER_FILM].given || v[RENDER_CONTINUE].given))
-    return report_usage("--film is of one image; a trajectory is split and continued by its frames: --shard, --frames");
-  if (!trajectory) return -1;
+    return report_usage(
+        "--film is of one image; a trajectory is split and continued by its frames: --shard, "
+        "--frames");
+  if (!trajectory)
+    return -1;
   if (outputs->count == 0)
-    return report_usage("--trajectory: give the files' name with -o, such as -o frame_%%04d.exr");
+    return report_usage(
+        "--trajectory: give the files' name with -o, such as -o frame_%%04d.exr");
   for (int i = 0; i < outputs->count; i++) {
     int status = pattern_check(outputs->paths[i]);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   return -1;
 }
 
-/* ---- cameras ----------------------------------------------------------------------------------------------------- */
+/* ---- cameras
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* Shares the film of an earlier camera with the same film def, or makes one. */
 static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
   for (FrameCamera *other = frames->cameras; other < camera; other++)
-    if (memcmp(&other->job.defs->film, &camera->job.defs->film, sizeof camera->job.defs->film) == 0) {
+    if (memcmp(&other->job.defs->film, &camera->job.defs->film,
+               sizeof camera->job.defs->film) == 0) {
       camera->film = other->film;
       return -1;
     }
@@ -68,14 +84,16 @@ static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
 }
 
 /* Adds a camera. If record is null, adds the job's own camera. */
-static int add_camera(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments,
-                      const vlCameraRecord *record, const char *path) {
+static int add_camera(Frames *frames, vlContext *context, const Job *job,
+                      const Arguments *arguments, const vlCameraRecord *record,
+                      const char *path) {
   FrameCamera *camera = &frames->cameras[frames->camera_count++];
   camera->job = *job;
   if (record) {
     snprintf(camera->name, sizeof camera->name, "%s", record->name);
     int status = job_take_camera(&camera->job, &camera->defs, &record->camera, path, arguments);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   /* the frames' poses replace the camera's pose and motion */
   vlError error = {0};
@@ -83,8 +101,8 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
   vlResult result = VL_OK;
   memcpy(camera->mount, base.world_from_camera, sizeof camera->mount);
   if (frames->trajectory) {
-    /* a negative fy in a calibration file, however, is the direction of y for all frames (a camera of a scene has it
-     * in its pose) */
+    /* a negative fy in a calibration file, however, is the direction of y for all frames (a
+     * camera of a scene has it in its pose) */
     const OptionValue *file = &arguments->values[RENDER_CAMERA];
     bool turned = !record && file->given && !camera_is_scene(file->text) &&
                   memcmp(base.world_from_camera, y_up, sizeof y_up) == 0;
@@ -92,17 +110,22 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
   }
   camera->middle = base;
   for (int i = 0; i < frames->views && result == VL_OK; i++)
-    result = vl_camera_eye(&base, &camera->job.defs->camera.stereo, frames->eyes[i], &camera->eyes[i], &error);
-  if (result == VL_OK) return make_film(frames, context, camera);
+    result = vl_camera_eye(&base, &camera->job.defs->camera.stereo, frames->eyes[i],
+                           &camera->eyes[i], &error);
+  if (result == VL_OK)
+    return make_film(frames, context, camera);
   vlError place = camera->job.camera_place;
   snprintf(place.message, sizeof place.message, "%s", error.message);
   return report_error(&place, result, path);
 }
 
-static int load_file(vlContext *context, const char *path, const Arguments *arguments, vlTrajectory **trajectory) {
+static int load_file(vlContext *context, const char *path, const Arguments *arguments,
+                     vlTrajectory **trajectory) {
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
-  const OptionValue *size = &arguments->values[arguments->values[RENDER_SIZE].given ? RENDER_SIZE : RENDER_RESOLUTION];
+  const OptionValue *size =
+      &arguments
+           ->values[arguments->values[RENDER_SIZE].given ? RENDER_SIZE : RENDER_RESOLUTION];
   if (size->given) {
     def.width = (uint32_t)size->integers[0];
     def.height = (uint32_t)size->integers[1];
@@ -112,17 +135,22 @@ static int load_file(vlContext *context, const char *path, const Arguments *argu
 }
 
 /* Adds the rig's cameras with their poses in the rig. */
-static int add_rig(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments, const char *path) {
+static int add_rig(Frames *frames, vlContext *context, const Job *job,
+                   const Arguments *arguments, const char *path) {
   for (uint32_t i = 0; i < vl_trajectory_frames(frames->rig); i++) {
     vlTrajectoryFrame frame;
     vl_trajectory_frame(frames->rig, i, &frame);
     if (frame.camera == VL_NO_CAMERA)
-      return report_failure(STATUS_SCENE, "%s: a rig needs cameras; this file holds poses only", path);
+      return report_failure(STATUS_SCENE, "%s: a rig needs cameras; this file holds poses only",
+                            path);
     vlCameraRecord record = *vl_trajectory_camera(frames->rig, (uint32_t)frame.camera);
-    if (*frame.name) snprintf(record.name, sizeof record.name, "%s", frame.name);
-    if (!record.name[0]) snprintf(record.name, sizeof record.name, "%u", i);
+    if (*frame.name)
+      snprintf(record.name, sizeof record.name, "%s", frame.name);
+    if (!record.name[0])
+      snprintf(record.name, sizeof record.name, "%u", i);
     int status = add_camera(frames, context, job, arguments, &record, path);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
     memcpy(frames->cameras[i].mount, frame.world_from_camera, sizeof frame.world_from_camera);
   }
   return -1;
@@ -131,9 +159,11 @@ static int add_rig(Frames *frames, vlContext *context, const Job *job, const Arg
 /* --shard I/N: every N-th of these frames. */
 static int choose_shard(Frames *frames, const Arguments *arguments) {
   uint32_t index, count, all = (frames->last - frames->first) / frames->step + 1;
-  if (!arguments->values[RENDER_SHARD].given) return -1;
+  if (!arguments->values[RENDER_SHARD].given)
+    return -1;
   shard_read(arguments, &index, &count);
-  if (count > all) return report_usage("--shard %u/%u: there are %u frames", index, count, all);
+  if (count > all)
+    return report_usage("--shard %u/%u: there are %u frames", index, count, all);
   frames->first += (index - 1) * frames->step;
   frames->step *= count; /* at most last + step, no overflow since count <= all */
   return -1;
@@ -145,51 +175,69 @@ static int choose_frames(Frames *frames, const Arguments *arguments) {
   frames->first = 0;
   frames->last = count - 1;
   frames->step = 1;
-  if (range->given) pattern_range(range->text, &frames->first, &frames->last, &frames->step);
+  if (range->given)
+    pattern_range(range->text, &frames->first, &frames->last, &frames->step);
   if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
-    return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0", range->text, count);
-  if (frames->last >= count) frames->last = count - 1;
+    return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0",
+                        range->text, count);
+  if (frames->last >= count)
+    frames->last = count - 1;
   return choose_shard(frames, arguments);
 }
 
-int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments) {
+int frames_load(Frames *frames, vlContext *context, const Job *job,
+                const Arguments *arguments) {
   static const char *const names[2] = {"left", "right"};
   const OptionValue *v = arguments->values;
   const vlCameraDef *def = &job->defs->camera;
   const FilmPlan *films = frames->films;
-  bool stereo = def->stereo.mode != VL_STEREO_NONE, both = stereo && def->stereo_eye == VL_EYE_BOTH;
+  bool stereo = def->stereo.mode != VL_STEREO_NONE,
+       both = stereo && def->stereo_eye == VL_EYE_BOTH;
   memset(frames, 0, sizeof *frames);
   frames->films = films;
   frames->step = 1;
   frames->skip_existing = v[RENDER_SKIP_EXISTING].given;
   frames->views = both ? 2 : 1;
-  for (int i = 0; i < 2; i++) frames->eyes[i] = both ? (i ? VL_EYE_RIGHT : VL_EYE_LEFT) : def->stereo_eye;
-  for (int i = 0; i < 2; i++) frames->view_names[i] = stereo ? names[frames->eyes[i] == VL_EYE_RIGHT] : "";
+  for (int i = 0; i < 2; i++)
+    frames->eyes[i] = both ? (i ? VL_EYE_RIGHT : VL_EYE_LEFT) : def->stereo_eye;
+  for (int i = 0; i < 2; i++)
+    frames->view_names[i] = stereo ? names[frames->eyes[i] == VL_EYE_RIGHT] : "";
   int status = -1;
   const char *path = v[RENDER_TRAJECTORY].text, *rig = v[RENDER_RIG].text;
-  if (v[RENDER_TRAJECTORY].given) status = load_file(context, path, arguments, &frames->trajectory);
-  if (status < 0 && v[RENDER_RIG].given) status = load_file(context, rig, arguments, &frames->rig);
-  if (status < 0 && frames->trajectory) status = choose_frames(frames, arguments);
-  if (status >= 0) return status;
-  uint32_t count = frames->rig ? vl_trajectory_frames(frames->rig) : vl_trajectory_cameras(frames->trajectory);
+  if (v[RENDER_TRAJECTORY].given)
+    status = load_file(context, path, arguments, &frames->trajectory);
+  if (status < 0 && v[RENDER_RIG].given)
+    status = load_file(context, rig, arguments, &frames->rig);
+  if (status < 0 && frames->trajectory)
+    status = choose_frames(frames, arguments);
+  if (status >= 0)
+    return status;
+  uint32_t count = frames->rig ? vl_trajectory_frames(frames->rig)
+                               : vl_trajectory_cameras(frames->trajectory);
   frames->cameras = calloc(count ? count : 1, sizeof *frames->cameras);
-  if (!frames->cameras) return report_error(NULL, VL_ERROR_MEMORY, NULL);
-  if (frames->rig) return add_rig(frames, context, job, arguments, rig);
-  if (count == 0) return add_camera(frames, context, job, arguments, NULL, NULL);
+  if (!frames->cameras)
+    return report_error(NULL, VL_ERROR_MEMORY, NULL);
+  if (frames->rig)
+    return add_rig(frames, context, job, arguments, rig);
+  if (count == 0)
+    return add_camera(frames, context, job, arguments, NULL, NULL);
   for (uint32_t i = 0; i < count && status < 0; i++)
-    status = add_camera(frames, context, job, arguments, vl_trajectory_camera(frames->trajectory, i), path);
+    status = add_camera(frames, context, job, arguments,
+                        vl_trajectory_camera(frames->trajectory, i), path);
   return status;
 }
 
 void frames_free(Frames *frames) {
   for (uint32_t i = 0; i < frames->camera_count; i++)
-    if (frames->cameras[i].owns_film) vl_film_destroy(frames->cameras[i].film);
+    if (frames->cameras[i].owns_film)
+      vl_film_destroy(frames->cameras[i].film);
   free(frames->cameras);
   vl_trajectory_destroy(frames->trajectory);
   vl_trajectory_destroy(frames->rig);
 }
 
-/* ---- one after the other ----------------------------------------------------------------------------------------- */
+/* ---- one after the other
+ * ----------------------------------------------------------------------------------------- */
 
 uint32_t frames_count(const Frames *frames) {
   uint32_t poses = (frames->last - frames->first) / frames->step + 1;
@@ -200,9 +248,11 @@ uint32_t frames_count(const Frames *frames) {
 static Frame make_frame(const Frames *frames, uint32_t number, uint32_t which) {
   Frame frame = {.number = number, .camera = &frames->cameras[which]};
   frame.pose.time = VL_UNSET;
-  if (!frames->trajectory) return frame;
+  if (!frames->trajectory)
+    return frame;
   vl_trajectory_frame(frames->trajectory, frame.number, &frame.pose);
-  if (!frames->rig) frame.camera = &frames->cameras[frame.pose.camera == VL_NO_CAMERA ? 0 : frame.pose.camera];
+  if (!frames->rig)
+    frame.camera = &frames->cameras[frame.pose.camera == VL_NO_CAMERA ? 0 : frame.pose.camera];
   return frame;
 }
 
@@ -215,9 +265,12 @@ Frame frames_first(const Frames *frames) {
   return make_frame(frames, 0, 0);
 }
 
-bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size) {
-  if (!frames->trajectory && frames->views == 1) return snprintf(path, size, "%s", pattern) < (int)size;
-  const PatternValues values = {frame->number, frame->pose.name, frame->camera->name, frames->view_names[view]};
+bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view,
+                 char *path, size_t size) {
+  if (!frames->trajectory && frames->views == 1)
+    return snprintf(path, size, "%s", pattern) < (int)size;
+  const PatternValues values = {frame->number, frame->pose.name, frame->camera->name,
+                                frames->view_names[view]};
   return pattern_expand(pattern, &values, path, size);
 }
 
@@ -226,20 +279,23 @@ bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outpu
   for (int i = 0; i < outputs->count; i++) {
     int views = pattern_has(outputs->paths[i], 'v') ? frames->views : 1;
     for (int view = 0; view < views; view++)
-      if (!frames_path(frames, frame, outputs->paths[i], view, path, sizeof path) || access(path, F_OK) != 0)
+      if (!frames_path(frames, frame, outputs->paths[i], view, path, sizeof path) ||
+          access(path, F_OK) != 0)
         return false;
   }
   return true;
 }
 
 /* Moves a camera whose pose is relative to the frame. */
-static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *from, vlCamera *camera,
-                      vlError *error) {
+static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *from,
+                      vlCamera *camera, vlError *error) {
   double pose[16];
   *camera = *from;
-  if (!frames->trajectory) return VL_OK;
+  if (!frames->trajectory)
+    return VL_OK;
   memcpy(pose, frame->pose.world_from_camera, sizeof pose);
-  if (frames->rig) matrix_multiply(pose, frame->camera->mount, pose);
+  if (frames->rig)
+    matrix_multiply(pose, frame->camera->mount, pose);
   matrix_multiply(pose, from->world_from_camera, pose);
   vlResult result = vl_camera_move(from, pose, camera, error);
   if (result == VL_OK && !isnan(frame->pose.time)) {
@@ -249,21 +305,27 @@ static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *
   return result;
 }
 
-vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error) {
+vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera,
+                       vlError *error) {
   return place(frames, frame, &frame->camera->eyes[view], camera, error);
 }
 
-vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera, vlError *error) {
+vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera,
+                       vlError *error) {
   return place(frames, frame, &frame->camera->middle, camera, error);
 }
 
-/* ---- names ------------------------------------------------------------------------------------------------------- */
+/* ---- names
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static int compare_paths(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Checks all paths of one pattern. Two paths may be equal only if the trajectory repeats the name. */
+/* Checks all paths of one pattern. Two paths may be equal only if the trajectory repeats the
+ * name.
+ */
 static int check_twice(const Frames *frames, const char *pattern) {
   uint32_t count = frames_count(frames);
   char **paths = calloc(count, sizeof *paths), path[4096];
@@ -275,12 +337,15 @@ static int check_twice(const Frames *frames, const char *pattern) {
     else if (!(paths[i] = strdup(path)))
       status = report_error(NULL, VL_ERROR_MEMORY, NULL);
   }
-  if (status < 0) qsort(paths, count, sizeof *paths, compare_paths);
+  if (status < 0)
+    qsort(paths, count, sizeof *paths, compare_paths);
   for (uint32_t i = 1; i < count && status < 0; i++)
     if (strcmp(paths[i - 1], paths[i]) == 0)
-      status = report_usage("output \"%s\": two of the %u frames would be \"%s\"; %s", pattern, count, paths[i],
-                            frames->rig ? "put %d and %c into the name" : "put %d into the name");
-  for (uint32_t i = 0; i < count && paths; i++) free(paths[i]);
+      status = report_usage(
+          "output \"%s\": two of the %u frames would be \"%s\"; %s", pattern, count, paths[i],
+          frames->rig ? "put %d and %c into the name" : "put %d into the name");
+  for (uint32_t i = 0; i < count && paths; i++)
+    free(paths[i]);
   free(paths);
   return status;
 }
@@ -288,10 +353,13 @@ static int check_twice(const Frames *frames, const char *pattern) {
 /* Makes directories that contain pattern fields; other directories must exist. */
 static int make_folder(char *path) {
   char *slash = strrchr(path, '/');
-  if (!slash || slash == path) return -1;
+  if (!slash || slash == path)
+    return -1;
   *slash = 0;
   int failed = mkdir(path, 0777) != 0 && errno != EEXIST ? errno : 0;
-  int status = failed ? report_failure(STATUS_IO, "cannot make the folder %s: %s", path, strerror(failed)) : -1;
+  int status = failed ? report_failure(STATUS_IO, "cannot make the folder %s: %s", path,
+                                       strerror(failed))
+                      : -1;
   *slash = '/';
   return status;
 }
@@ -300,25 +368,34 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
   char path[4096];
   if (frames->films && frames->views == 2 &&
       (pattern_check(frames->films->path) >= 0 || !pattern_has(frames->films->path, 'v')))
-    return report_usage("--film \"%s\": each eye has a film; put %%v (left, right) into the name", frames->films->path);
+    return report_usage(
+        "--film \"%s\": each eye has a film; put %%v (left, right) into the name",
+        frames->films->path);
   for (int i = 0; i < outputs->count; i++) {
     const char *pattern = outputs->paths[i], *slash = strrchr(pattern, '/');
     bool by_view = pattern_has(pattern, 'v');
-    if (frames->views == 2 && pattern_check(pattern) >= 0) return STATUS_USAGE;
+    if (frames->views == 2 && pattern_check(pattern) >= 0)
+      return STATUS_USAGE;
     if (frames->views == 2 && !by_view && !output_holds_layers(pattern))
-      return report_usage("output \"%s\": only .exr holds both eyes in one file; put %%v (left, right) into the name",
-                          pattern);
+      return report_usage(
+          "output \"%s\": only .exr holds both eyes in one file; put %%v (left, right) into "
+          "the "
+          "name",
+          pattern);
     if (frames_count(frames) > 1) {
       int status = check_twice(frames, pattern);
-      if (status >= 0) return status;
+      if (status >= 0)
+        return status;
     }
     bool folders = slash && memchr(pattern, '%', (size_t)(slash - pattern));
     for (uint32_t k = 0; k < frames_count(frames) && folders; k++)
       for (int view = 0; view < (by_view ? frames->views : 1); view++) {
         Frame frame = frames_at(frames, k);
-        if (!frames_path(frames, &frame, pattern, view, path, sizeof path)) continue;
+        if (!frames_path(frames, &frame, pattern, view, path, sizeof path))
+          continue;
         int status = make_folder(path);
-        if (status >= 0) return status;
+        if (status >= 0)
+          return status;
       }
   }
   return -1;

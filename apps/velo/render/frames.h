@@ -1,5 +1,6 @@
-/* render/frames.h: several images of one world: frames of a trajectory, cameras of a rig, two eyes. The world is loaded
- * once; films and the workers' memory are reused; files are written while the next frame renders. */
+/* render/frames.h: several images of one world: frames of a trajectory, cameras of a rig, two
+ * eyes. The world is loaded once; films and the workers' memory are reused; files are written
+ * while the next frame renders. */
 #ifndef APP_RENDER_FRAMES_H
 #define APP_RENDER_FRAMES_H
 
@@ -17,7 +18,7 @@ typedef struct FrameCamera {
   vlCamera eyes[2]; /* poses relative to the frame */
   vlCamera middle;  /* between the eyes; without stereo the camera itself */
   double mount[16]; /* frame_from_camera in a rig */
-  vlFilm *film;     /* shared by cameras of the same size and crop; owned by the first of them */
+  vlFilm *film; /* shared by cameras of the same size and crop; owned by the first of them */
   bool owns_film;
 } FrameCamera;
 
@@ -40,15 +41,17 @@ typedef struct Frame {
   FrameCamera *camera;
 } Frame;
 
-/* Returns whether several images are rendered, because of --trajectory or stereo. job is null before the scene is
- * loaded; then stereo is unknown. */
+/* Returns whether several images are rendered, because of --trajectory or stereo. job is null
+ * before the scene is loaded; then stereo is unknown. */
 bool frames_wanted(const Arguments *arguments, const Job *job);
-/* Checks that the options are compatible, and the name patterns. Returns -1 or the exit code. */
+/* Checks that the options are compatible, and the name patterns. Returns -1 or the exit code.
+ */
 int frames_check(const Arguments *arguments, Outputs *outputs);
-/* Reads trajectory and rig and makes all cameras. Returns -1, or the exit code after reporting the error. */
+/* Reads trajectory and rig and makes all cameras. Returns -1, or the exit code after reporting
+ * the error. */
 int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments);
-/* Checks names and directories of all files before rendering; two frames must not have the same name. Returns -1 or the
- * exit code. */
+/* Checks names and directories of all files before rendering; two frames must not have the same
+ * name. Returns -1 or the exit code. */
 int frames_check_names(const Frames *frames, const Outputs *outputs);
 /* Return the number of images, and image i. Both eyes count as one image. */
 uint32_t frames_count(const Frames *frames);
@@ -56,17 +59,21 @@ Frame frames_at(const Frames *frames, uint32_t index);
 /* The first image of all poses and cameras, whatever part of them is rendered. */
 Frame frames_first(const Frames *frames);
 /* The path of an image. view: 0 or 1, for %v. False: too long. */
-bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size);
-/* Returns whether all image files of the frame exist. Files are written atomically, so their content is not checked. */
+bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view,
+                 char *path, size_t size);
+/* Returns whether all image files of the frame exist. Files are written atomically, so their
+ * content is not checked. */
 bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs);
 /* The camera of one view in the frame's pose. */
-vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error);
+vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera,
+                       vlError *error);
 /* The camera between the eyes in the frame's pose. */
-vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera, vlError *error);
+vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera,
+                       vlError *error);
 void frames_free(Frames *frames);
 
 /* Renders and writes all frames. Returns the exit code. */
-int frames_render(Frames *frames, vlContext *context, const vlWorld *world, const Outputs *outputs,
-                  const Channels *channels);
+int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
+                  const Outputs *outputs, const Channels *channels);
 
 #endif

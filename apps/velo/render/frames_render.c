@@ -1,5 +1,5 @@
-/* render/frames_render.c: renders the frames one after the other. A failed frame does not stop the rest; the exit code
- * reports it. */
+/* render/frames_render.c: renders the frames one after the other. A failed frame does not stop
+ * the rest; the exit code reports it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,7 +28,8 @@ typedef struct Run {
 
 static bool on_progress(void *user, const vlProgress *now) {
   Run *run = user;
-  if (run->count == 1) progress_show(&run->progress, now);
+  if (run->count == 1)
+    progress_show(&run->progress, now);
   if (now->pass_done && now->spp_done < now->spp_total && !signals_pending())
     film_keeper_checkpoint(&run->keeper, run->film);
   return !signals_pending();
@@ -37,10 +38,13 @@ static bool on_progress(void *user, const vlProgress *now) {
 /* Shows at intervals how many frames are done. */
 static void show(Run *run, const Frame *frame) {
   double now = monotonic_seconds();
-  if (run->count == 1 || report_is_quiet() || now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0)) return;
+  if (run->count == 1 || report_is_quiet() ||
+      now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0))
+    return;
   run->last_shown = now;
   char text[200], elapsed[32], left[32];
-  double each = run->done ? (now - run->start) / run->done : INFINITY; /* infinite until the first frame is done */
+  double each = run->done ? (now - run->start) / run->done
+                          : INFINITY; /* infinite until the first frame is done */
   if (report_is_json()) {
     Json json = report_json_begin("progress");
     json_integer(&json, "frame", frame->number);
@@ -55,8 +59,10 @@ static void show(Run *run, const Frame *frame) {
   format_seconds(left, sizeof left, each * (run->count - run->done));
   bool narrow = report_is_terminal() && report_terminal_columns() < 60;
   int n = snprintf(text, sizeof text, "frame %u: %u/%u", frame->number, run->done, run->count);
-  if (!narrow) n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", elapsed);
-  if (run->done) snprintf(text + n, sizeof text - (size_t)n, "  %s left", left);
+  if (!narrow)
+    n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", elapsed);
+  if (run->done)
+    snprintf(text + n, sizeof text - (size_t)n, "  %s left", left);
   if (report_is_terminal())
     report_status_line(text);
   else if (run->done)
@@ -89,22 +95,28 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
   vlDevelopDef def = vl_default_develop_def();
   def.exposure = job->defs->develop.exposure;
   vlResult result = vl_film_develop(film, &def, image);
-  return result == VL_OK ? STATUS_OK : report_reason(result, job->path, "the image cannot be made of the film");
+  return result == VL_OK
+             ? STATUS_OK
+             : report_reason(result, job->path, "the image cannot be made of the film");
 }
 
-/* Gets the film of a view. It is the camera's film, cleared, or the film to continue, which the caller then frees. own
- * null: only checks the film to continue. */
+/* Gets the film of a view. It is the camera's film, cleared, or the film to continue, which the
+ * caller then frees. own null: only checks the film to continue. */
 static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **own) {
   const FilmPlan *plan = run->frames->films;
   const char *name = run->frames->view_names[view];
-  if (own) vl_film_clear(frame->camera->film);
+  if (own)
+    vl_film_clear(frame->camera->film);
   run->film = frame->camera->film;
-  if (!plan) return -1;
-  int status = film_keeper_start(&run->keeper, plan, view, run->context, job, *name ? name : NULL);
+  if (!plan)
+    return -1;
+  int status =
+      film_keeper_start(&run->keeper, plan, view, run->context, job, *name ? name : NULL);
   if (status < 0)
-    status =
-        continue_film(&plan->claims[view], plan->receipt->arguments, run->keeper.receipt, run->context, job->defs, own);
-  if (own && *own) run->film = *own;
+    status = continue_film(&plan->claims[view], plan->receipt->arguments, run->keeper.receipt,
+                           run->context, job->defs, own);
+  if (own && *own)
+    run->film = *own;
   return status;
 }
 
@@ -112,16 +124,23 @@ static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **
 static int render_film(Run *run, const char *place, int view, Job *job, FrameImage *image) {
   vlError error = {0};
   vlRenderStats stats = {0};
-  vlResult result = vl_render(run->world, &job->camera, run->film, &job->defs->render, &stats, &error);
+  vlResult result =
+      vl_render(run->world, &job->camera, run->film, &job->defs->render, &stats, &error);
   add_stats(&run->total, &stats);
-  if (result != VL_OK && result != VL_CANCELLED) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
+  if (result != VL_OK && result != VL_CANCELLED)
+    return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
   image->spp = vl_film_spp(run->film);
   int status = image->spp ? film_keeper_finish(&run->keeper, run->film) : STATUS_OK;
-  if (status == STATUS_OK && image->spp) status = develop(job, run->film, &image->images[view]);
-  if (status != STATUS_OK) return status;
-  if (result == VL_CANCELLED) return 128 + signals_pending();
+  if (status == STATUS_OK && image->spp)
+    status = develop(job, run->film, &image->images[view]);
+  if (status != STATUS_OK)
+    return status;
+  if (result == VL_CANCELLED)
+    return 128 + signals_pending();
   image->channels[view] = *run->channels;
-  return run->layers ? channels_render(&image->channels[view], run->context, run->world, job, run->film) : STATUS_OK;
+  return run->layers
+             ? channels_render(&image->channels[view], run->context, run->world, job, run->film)
+             : STATUS_OK;
 }
 
 /* Makes the job of a view, with its camera. */
@@ -131,7 +150,8 @@ static int make_view(Run *run, const Frame *frame, int view, Job *job) {
   *job = frame->camera->job;
   frame_place(run, frame, place, sizeof place);
   vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
-  if (result != VL_OK) return report_error(&error, result, place);
+  if (result != VL_OK)
+    return report_error(&error, result, place);
   return lens_autofocus(job, NULL, run->world);
 }
 
@@ -144,24 +164,28 @@ static int check_films(Run *run) {
     status = make_view(run, &frame, view, &job);
     vlSceneDefs defs = *job.defs; /* continuing changes them */
     job.defs = &defs;
-    if (status < 0) status = open_film(run, &frame, view, &job, NULL);
+    if (status < 0)
+      status = open_film(run, &frame, view, &job, NULL);
     film_keeper_free(&run->keeper);
   }
   return status;
 }
 
-/* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a whole pass is done. */
+/* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a
+ * whole pass is done. */
 static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
   char place[200];
   vlFilm *own = NULL;
   Job *job = &image->jobs[view];
   frame_place(run, frame, place, sizeof place);
   int status = make_view(run, frame, view, job);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = run;
   status = open_film(run, frame, view, job, &own);
-  if (status < 0) status = render_film(run, place, view, job, image);
+  if (status < 0)
+    status = render_film(run, place, view, job, image);
   film_keeper_free(&run->keeper);
   vl_film_destroy(own);
   return status;
@@ -169,13 +193,16 @@ static int render_view(Run *run, const Frame *frame, int view, FrameImage *image
 
 /* Keeps an interrupted frame for NAME.part.EXT. An eye that was not begun is black. */
 static bool keep_stopped(Run *run, FrameImage *image) {
-  if (!image->images[0]) return false;
+  if (!image->images[0])
+    return false;
   for (int v = 1; v < run->frames->views; v++) {
-    if (image->images[v]) continue;
+    if (image->images[v])
+      continue;
     vlFilm *film = image->frame.camera->film;
     image->jobs[v] = image->jobs[0];
     vl_film_clear(film);
-    if (develop(&image->jobs[v], film, &image->images[v]) != STATUS_OK) return false;
+    if (develop(&image->jobs[v], film, &image->images[v]) != STATUS_OK)
+      return false;
   }
   return image->stopped = true;
 }
@@ -184,8 +211,10 @@ static void report_end(const Run *run, uint32_t written, int status) {
   double seconds = monotonic_seconds() - run->start;
   const vlRenderStats *t = &run->total;
   if (t->not_finite)
-    report_warning("%llu samples were not finite or negative and were left out; the first one at pixel %u, %u",
-                   (unsigned long long)t->not_finite, t->worst_x, t->worst_y);
+    report_warning(
+        "%llu samples were not finite or negative and were left out; the first one at pixel "
+        "%u, %u",
+        (unsigned long long)t->not_finite, t->worst_x, t->worst_y);
   if (report_is_json()) {
     Json json = report_json_begin("result");
     json_integer(&json, "status", status);
@@ -210,11 +239,12 @@ static void report_end(const Run *run, uint32_t written, int status) {
               images                ? "wrote "
               : run->outputs->count ? "no image is written"
                                     : "kept in films",
-              images ? run->outputs->paths[0] : "", images && run->outputs->count > 1 ? ", ..." : "");
+              images ? run->outputs->paths[0] : "",
+              images && run->outputs->count > 1 ? ", ..." : "");
 }
 
-int frames_render(Frames *frames, vlContext *context, const vlWorld *world, const Outputs *outputs,
-                  const Channels *channels) {
+int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
+                  const Outputs *outputs, const Channels *channels) {
   Run run = {.frames = frames,
              .context = context,
              .world = world,
@@ -222,17 +252,22 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
              .channels = channels,
              .count = frames_count(frames),
              .start = monotonic_seconds()};
-  for (int i = 0; i < outputs->count; i++) run.layers = run.layers || output_holds_layers(outputs->paths[i]);
+  for (int i = 0; i < outputs->count; i++)
+    run.layers = run.layers || output_holds_layers(outputs->paths[i]);
   int checked = check_films(&run);
-  if (checked >= 0) return checked;
+  if (checked >= 0)
+    return checked;
   FrameWriter *writer = frame_writer_start(context, world, frames, outputs);
-  if (!writer) return report_error(NULL, VL_ERROR_MEMORY, NULL);
+  if (!writer)
+    return report_error(NULL, VL_ERROR_MEMORY, NULL);
   signals_remember();
   int status = STATUS_OK;
   const uint32_t all = run.count;
   for (uint32_t i = 0; i < all && status < 128; i++) {
-    if (signals_pending()) status = 128 + signals_pending();
-    if (status >= 128) break;
+    if (signals_pending())
+      status = 128 + signals_pending();
+    if (status >= 128)
+      break;
     FrameImage image;
     memset(&image, 0, sizeof image);
     image.frame = frames_at(frames, i);
@@ -250,15 +285,19 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
       frame_writer_put(writer, &image);
     else
       frame_image_free(&image);
-    if (code != STATUS_OK && (status == STATUS_OK || code >= 128)) status = code;
+    if (code != STATUS_OK && (status == STATUS_OK || code >= 128))
+      status = code;
     run.done++;
   }
   uint32_t written;
   int code = frame_writer_finish(writer, &written);
   report_status_line(NULL);
-  if (status < 128 && code != STATUS_OK) status = code;
-  if (run.count < all) report_note("%u frames exist and were left out", all - run.count);
-  if (status >= 128) report_note("interrupted; %u of %u frames are written", written, run.count);
+  if (status < 128 && code != STATUS_OK)
+    status = code;
+  if (run.count < all)
+    report_note("%u frames exist and were left out", all - run.count);
+  if (status >= 128)
+    report_note("interrupted; %u of %u frames are written", written, run.count);
   report_end(&run, written, status);
   return status;
 }

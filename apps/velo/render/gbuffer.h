@@ -5,8 +5,10 @@
 #include "render/job.h"
 #include "velo/render.h"
 
-/* Makes the image after the render into `film`, whose def had `errors` set. Positions and normals are in the coordinate
- * system that the scene's gbuffer film names. Returns STATUS_OK or the exit code. */
-int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **image);
+/* Makes the image after the render into `film`, whose def had `errors` set. Positions and
+ * normals are in the coordinate system that the scene's gbuffer film names. Returns STATUS_OK
+ * or the exit code. */
+int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
+                   vlImage **image);
 
 #endif

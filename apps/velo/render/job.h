@@ -100,9 +100,10 @@ enum {
   RENDER_LENS /* the first of lens_options.h */
 };
 
-extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], filter_samples_choices[],
-    color_choices[], view_choices[], isa_choices[], bits_choices[], accelerator_choices[], shard_choices[],
-    stereo_choices[], eye_choices[], framing_choices[], walls_choices[], up_choices[];
+extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[],
+    filter_samples_choices[], color_choices[], view_choices[], isa_choices[], bits_choices[],
+    accelerator_choices[], shard_choices[], stereo_choices[], eye_choices[], framing_choices[],
+    walls_choices[], up_choices[];
 
 extern const Option render_options[];
 extern const Section render_sections[];
@@ -110,8 +111,8 @@ extern const Section render_sections[];
 /* The value of --tracer auto. */
 enum { TRACER_AUTO = 255 };
 
-/* What is chosen by a race before the render (race.h): the tracer, or the number of light paths of the bidirectional
- * one. */
+/* What is chosen by a race before the render (race.h): the tracer, or the number of light paths
+ * of the bidirectional one. */
 typedef enum RaceKind { RACE_NONE, RACE_TRACERS, RACE_LIGHT_PATHS } RaceKind;
 
 /* The camera, image size and crop of a receipt. */
@@ -123,36 +124,43 @@ typedef struct ReceiptCamera {
 
 typedef struct Job {
   const char *path; /* path of the scene file */
-  /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the size of its description */
+  /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the
+   * size of its description */
   vlSceneDefs *defs;
-  vlError camera_place;                /* place of the camera in its file; only file, line and column are used */
-  vlCamera camera;                     /* at the film's size */
+  vlError
+      camera_place; /* place of the camera in its file; only file, line and column are used */
+  vlCamera camera;  /* at the film's size */
   const ReceiptCamera *receipt_camera; /* replaces --camera FILE; null: none */
   const struct ReceiptPlan *receipt;   /* receipts of the images; null: none */
   bool records_files;                  /* for receipts */
   RaceKind race;                       /* before the render */
-  bool raced;                          /* receipts name the tracer and the number of light paths */
-  double channels_share,
-      channels_seconds; /* time of the ground truth as a fraction of the shutter interval, unless seconds are set */
+  bool raced; /* receipts name the tracer and the number of light paths */
+  double channels_share, channels_seconds; /* time of the ground truth as a fraction of the
+                                              shutter interval, unless seconds are set */
 } Job;
 
-/* Overrides the scene's defs and makes the camera. Returns -1, or the exit code after reporting the error. */
-int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
+/* Overrides the scene's defs and makes the camera. Returns -1, or the exit code after reporting
+ * the error. */
+int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
+             const Arguments *arguments);
 
-/* Returns whether the planned number of samples determines the length of the sampler's sequence. */
+/* Returns whether the planned number of samples determines the length of the sampler's
+ * sequence. */
 bool job_sequence_is_planned(const Job *job, const Arguments *arguments);
 
 /* The time of the ground truth and of the camera in the header, in seconds. */
 double job_channels_time(const Job *job);
 
-/* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive it. */
-int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path, const Arguments *arguments);
+/* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive it.
+ */
+int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path,
+                    const Arguments *arguments);
 
 /* Reports why vl_film_create failed. Returns the exit code. */
 int job_no_film(const Job *job, vlResult result);
 
 /* Prints what would be rendered to stdout (or as a JSON line). */
-void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
-                  const char *const *outputs, int output_count);
+void job_describe(const Job *job, vlContext *context, const vlScene *scene,
+                  const vlWorld *world, const char *const *outputs, int output_count);
 
 #endif

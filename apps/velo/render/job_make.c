@@ -1,4 +1,5 @@
-/* render/job_make.c: see job.h. Makes the defs and the camera of a render from the scene's defs and the command line.
+/* render/job_make.c: see job.h. Makes the defs and the camera of a render from the scene's defs
+ * and the command line.
  */
 #include "render/job.h"
 
@@ -35,11 +36,14 @@ const Choice sensor_choices[] = {
     {"sony_ilce_9", 17},
     {NULL, 0},
 };
-const Choice light_sampler_choices[] = {
-    {"bvh", VL_LIGHT_SAMPLER_BVH}, {"power", VL_LIGHT_SAMPLER_POWER}, {"uniform", VL_LIGHT_SAMPLER_UNIFORM}, {NULL, 0}};
+const Choice light_sampler_choices[] = {{"bvh", VL_LIGHT_SAMPLER_BVH},
+                                        {"power", VL_LIGHT_SAMPLER_POWER},
+                                        {"uniform", VL_LIGHT_SAMPLER_UNIFORM},
+                                        {NULL, 0}};
 const Choice filter_samples_choices[] = {{"own", 0}, {"shared", 1}, {NULL, 0}};
 const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {NULL, 0}};
-const Choice color_choices[] = {{"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
+const Choice color_choices[] = {
+    {"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
 const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
                                {"neutral", VL_VIEW_KHRONOS_NEUTRAL},
                                {"agx", VL_VIEW_AGX},
@@ -52,31 +56,41 @@ const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {"omnidirectional", VL_STEREO_OMNIDIRECTIONAL},
                                  {"ods", VL_STEREO_OMNIDIRECTIONAL},
                                  {NULL, 0}};
-const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
-const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
-const Choice accelerator_choices[] = {{"embree", VL_ACCELERATOR_EMBREE}, {"bvh", VL_ACCELERATOR_BVH}, {NULL, 0}};
+const Choice eye_choices[] = {
+    {"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
+const Choice bits_choices[] = {
+    {"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
+const Choice accelerator_choices[] = {
+    {"embree", VL_ACCELERATOR_EMBREE}, {"bvh", VL_ACCELERATOR_BVH}, {NULL, 0}};
 const Choice shard_choices[] = {{"samples", 0}, {"tiles", 1}, {NULL, 0}};
 const Choice isa_choices[] = {
     {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
-/* ---- overrides --------------------------------------------------------------------------------------------------- */
+/* ---- overrides
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-/* File, line and column of the camera. The name is copied, since the scene's string ends with the scene. */
+/* File, line and column of the camera. The name is copied, since the scene's string ends with
+ * the scene. */
 static vlError camera_place(const vlSceneDefs *defs, const char *path) {
   vlSource source = defs->camera_source;
-  vlError place = {.line = source.file ? source.line : 0, .column = source.file ? source.column : 0};
+  vlError place = {.line = source.file ? source.line : 0,
+                   .column = source.file ? source.column : 0};
   snprintf(place.file, sizeof place.file, "%s", source.file ? source.file : path);
   return place;
 }
 
-/* Takes camera and image size from a camera file. Returns -1, or the exit code after reporting the error. */
+/* Takes camera and image size from a camera file. Returns -1, or the exit code after reporting
+ * the error. */
 static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path,
                             const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlCameraRecord record;
   const char *frame = v[RENDER_FRAME].given ? v[RENDER_FRAME].text : NULL;
-  int status = camera_load(context, path, 0, frame, &v[RENDER_SIZE], &v[RENDER_RESOLUTION], &record);
-  if (status >= 0) return status;
+  int status =
+      camera_load(context, path, 0, frame, &v[RENDER_SIZE], &v[RENDER_RESOLUTION], &record);
+  if (status >= 0)
+    return status;
   defs->camera = record.camera;
   defs->film.width = record.camera.width;
   defs->film.height = record.camera.height;
@@ -96,16 +110,20 @@ static void take_receipt_camera(Job *job, vlSceneDefs *defs) {
 }
 
 /* Takes camera and image size from another scene file. */
-static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
-  if (!camera_is_scene(path)) return take_camera_file(job, context, vl_scene_defs(scene), path, arguments);
+static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path,
+                       const Arguments *arguments) {
+  if (!camera_is_scene(path))
+    return take_camera_file(job, context, vl_scene_defs(scene), path, arguments);
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[RENDER_PERMISSIVE].given;
   load.strict = arguments->values[RENDER_STRICT].given;
-  if (arguments->values[RENDER_SEARCH].given) load.search_path = arguments->values[RENDER_SEARCH].text;
-  if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
+  if (arguments->values[RENDER_SEARCH].given)
+    load.search_path = arguments->values[RENDER_SEARCH].text;
+  if (result == VL_OK)
+    result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
     job->camera_place = camera_place(vl_scene_defs(other), path);
     result = vl_scene_take_camera(scene, other, &error);
@@ -115,27 +133,33 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
   return status;
 }
 
-/* The first pixel whose left edge is at or right of the fraction: pbrt's ceil(resolution * fraction). */
+/* The first pixel whose left edge is at or right of the fraction: pbrt's ceil(resolution *
+ * fraction). */
 static uint32_t crop_pixel(uint32_t size, double fraction) {
   double pixel = ceil(size * fraction);
   return pixel < size ? (uint32_t)pixel : size;
 }
 
 static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
-  const OptionValue *crop = &arguments->values[RENDER_CROP], *window = &arguments->values[RENDER_CROPWINDOW];
+  const OptionValue *crop = &arguments->values[RENDER_CROP],
+                    *window = &arguments->values[RENDER_CROPWINDOW];
   uint32_t width = defs->film.width, height = defs->film.height;
-  if (crop->given && window->given) return report_usage("--crop and --cropwindow exclude each other");
+  if (crop->given && window->given)
+    return report_usage("--crop and --cropwindow exclude each other");
   if (crop->given) {
     if (crop->integers[2] > width || crop->integers[3] > height)
-      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text, width, height);
-    for (int i = 0; i < 4; i++) defs->film.crop[i] = (uint32_t)crop->integers[i];
+      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text, width,
+                          height);
+    for (int i = 0; i < 4; i++)
+      defs->film.crop[i] = (uint32_t)crop->integers[i];
   } else if (window->given) {
     defs->film.crop[0] = crop_pixel(width, window->numbers[0]);
     defs->film.crop[2] = crop_pixel(width, window->numbers[1]);
     defs->film.crop[1] = crop_pixel(height, window->numbers[2]);
     defs->film.crop[3] = crop_pixel(height, window->numbers[3]);
     if (defs->film.crop[0] >= defs->film.crop[2] || defs->film.crop[1] >= defs->film.crop[3])
-      return report_usage("--cropwindow \"%s\": holds no pixel of %u x %u", window->text, width, height);
+      return report_usage("--cropwindow \"%s\": holds no pixel of %u x %u", window->text, width,
+                          height);
   }
   return -1;
 }
@@ -149,8 +173,10 @@ static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
     double pixel = ceil(crop[i] * (i & 1 ? sy : sx) - 1e-6);
     crop[i] = pixel < limit ? (uint32_t)pixel : limit;
   }
-  if (crop[0] == crop[2]) crop[crop[0] ? 0 : 2] += crop[0] ? (uint32_t)-1 : 1u;
-  if (crop[1] == crop[3]) crop[crop[1] ? 1 : 3] += crop[1] ? (uint32_t)-1 : 1u;
+  if (crop[0] == crop[2])
+    crop[crop[0] ? 0 : 2] += crop[0] ? (uint32_t)-1 : 1u;
+  if (crop[1] == crop[3])
+    crop[crop[1] ? 1 : 3] += crop[1] ? (uint32_t)-1 : 1u;
   defs->film.width = width;
   defs->film.height = height;
 }
@@ -158,34 +184,50 @@ static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
 /* Whether the sampler can continue beyond its planned number of samples per pixel. */
 static bool sampler_is_open(vlSamplerKind kind) {
   const vlKindFamily *samplers = vl_kind_family_find("samplers");
-  return (uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
+  return (uint32_t)kind < samplers->kind_count &&
+         samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
 }
 
-/* The tracer with which --tracer auto begins: one that sees of the scene what its own tracer sees (vl_choose_tracer).
+/* The tracer with which --tracer auto begins: one that sees of the scene what its own tracer
+ * sees (vl_choose_tracer).
  */
 static vlTracer before_race(vlTracer tracer) {
   const vlKindFamily *tracers = vl_kind_family_find("tracers");
-  bool past = (uint32_t)tracer < tracers->kind_count && tracers->rows[tracer]->traits & VL_TRACER_TRAIT_NO_MEDIA;
+  bool past = (uint32_t)tracer < tracers->kind_count &&
+              tracers->rows[tracer]->traits & VL_TRACER_TRAIT_NO_MEDIA;
   return past ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
 }
 
 static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_TRACER].given)
-    defs->render.tracer =
-        v[RENDER_TRACER].integer == TRACER_AUTO ? before_race(defs->render.tracer) : (vlTracer)v[RENDER_TRACER].integer;
-  if (v[RENDER_MERGE_RADIUS].given) defs->render.merge_radius = v[RENDER_MERGE_RADIUS].number;
-  if (v[RENDER_LIGHT_PATHS].given) defs->render.light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
-  if (v[RENDER_SAMPLER].given) defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
-  if (v[RENDER_FILTER].given) defs->film.filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
-  if (v[RENDER_LIGHT_SAMPLER].given) defs->build.light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
-  if (v[RENDER_FILTER_SAMPLES].given) defs->render.share_samples = v[RENDER_FILTER_SAMPLES].integer == 1;
-  if (v[RENDER_REGULARIZE].given) defs->build.regularize = v[RENDER_REGULARIZE].integer == 1;
-  if (v[RENDER_SENSOR].given) defs->film.sensor = vl_sensor_name((uint32_t)v[RENDER_SENSOR].integer);
-  if (v[RENDER_COLOR].given) defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;
-  if (v[RENDER_MAX_DEPTH].given) defs->render.max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
-  if (v[RENDER_SEED].given) defs->render.seed = (uint32_t)v[RENDER_SEED].integer;
-  if (v[RENDER_SEQUENCE].given) defs->render.sequence = (uint32_t)v[RENDER_SEQUENCE].integer;
+    defs->render.tracer = v[RENDER_TRACER].integer == TRACER_AUTO
+                              ? before_race(defs->render.tracer)
+                              : (vlTracer)v[RENDER_TRACER].integer;
+  if (v[RENDER_MERGE_RADIUS].given)
+    defs->render.merge_radius = v[RENDER_MERGE_RADIUS].number;
+  if (v[RENDER_LIGHT_PATHS].given)
+    defs->render.light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
+  if (v[RENDER_SAMPLER].given)
+    defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
+  if (v[RENDER_FILTER].given)
+    defs->film.filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
+  if (v[RENDER_LIGHT_SAMPLER].given)
+    defs->build.light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+  if (v[RENDER_FILTER_SAMPLES].given)
+    defs->render.share_samples = v[RENDER_FILTER_SAMPLES].integer == 1;
+  if (v[RENDER_REGULARIZE].given)
+    defs->build.regularize = v[RENDER_REGULARIZE].integer == 1;
+  if (v[RENDER_SENSOR].given)
+    defs->film.sensor = vl_sensor_name((uint32_t)v[RENDER_SENSOR].integer);
+  if (v[RENDER_COLOR].given)
+    defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;
+  if (v[RENDER_MAX_DEPTH].given)
+    defs->render.max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
+  if (v[RENDER_SEED].given)
+    defs->render.seed = (uint32_t)v[RENDER_SEED].integer;
+  if (v[RENDER_SEQUENCE].given)
+    defs->render.sequence = (uint32_t)v[RENDER_SEQUENCE].integer;
   if (v[RENDER_SPP].given) {
     defs->render.spp = (uint32_t)v[RENDER_SPP].integer;
   } else if (v[RENDER_TIME].given) {
@@ -193,16 +235,19 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
       defs->render.spp = 65536;
     else
       report_warning(
-          "the sampler %s has a fixed number of samples: the render ends at %u spp even if --time is not over; give "
+          "the sampler %s has a fixed number of samples: the render ends at %u spp even if "
+          "--time "
+          "is not over; give "
           "--spp",
           kind_name("samplers", (int)defs->render.sampler), defs->render.spp);
   }
 }
 
-/* Samplers with a fixed number of samples get the sequence of the whole render, even if only some of its samples are
- * rendered (--shard, --samples). */
+/* Samplers with a fixed number of samples get the sequence of the whole render, even if only
+ * some of its samples are rendered (--shard, --samples). */
 static void fix_sequence(vlRenderDef *render) {
-  if (!render->sequence && !sampler_is_open(render->sampler)) render->sequence = render->spp;
+  if (!render->sequence && !sampler_is_open(render->sampler))
+    render->sequence = render->spp;
 }
 
 /* Parses N[:MIN:MAX]. */
@@ -212,14 +257,17 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
     unsigned count;
     double low = 360, high = 830;
     int used = 0;
-    bool good = sscanf(v->text, "%5u%n", &count, &used) == 1 && count <= 1000 && v->text[0] != '-';
+    bool good =
+        sscanf(v->text, "%5u%n", &count, &used) == 1 && count <= 1000 && v->text[0] != '-';
     if (good && v->text[used]) {
       int more = 0;
-      good = sscanf(v->text + used, ":%lf:%lf%n", &low, &high, &more) == 2 && !v->text[used + more];
+      good = sscanf(v->text + used, ":%lf:%lf%n", &low, &high, &more) == 2 &&
+             !v->text[used + more];
     }
     if (!good || !(low >= 360 && high <= 830 && low < high))
       return report_usage(
-          "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, inside of "
+          "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, "
+          "inside of "
           "360 to 830 nm",
           v->text);
     defs->film.buckets = count;
@@ -233,14 +281,15 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
 }
 
 bool job_sequence_is_planned(const Job *job, const Arguments *arguments) {
-  return !arguments->values[RENDER_SEQUENCE].given && !sampler_is_open(job->defs->render.sampler);
+  return !arguments->values[RENDER_SEQUENCE].given &&
+         !sampler_is_open(job->defs->render.sampler);
 }
 
 static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
   vlError error = {0};
   vlCamera camera;
-  vlResult result =
-      vl_camera_make(&def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
+  vlResult result = vl_camera_make(
+      &def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
   if (result != VL_OK) {
     snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s",
              error.message[0] ? error.message : vl_result_name(result));
@@ -251,46 +300,56 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
     return -1;
   }
   result = vl_camera_resize(&camera, width, height, &job->camera);
-  if (result == VL_OK) return -1;
-  return report_failure(STATUS_SCENE, "%s: the camera of %u x %u pixels cannot have %u x %u", job->path, camera.width,
-                        camera.height, width, height);
+  if (result == VL_OK)
+    return -1;
+  return report_failure(STATUS_SCENE, "%s: the camera of %u x %u pixels cannot have %u x %u",
+                        job->path, camera.width, camera.height, width, height);
 }
 
 int job_no_film(const Job *job, vlResult result) {
   const vlFilmDef *film = &job->defs->film;
   char what[200];
-  snprintf(what, sizeof what, "no film of %u x %u pixels with these settings is possible", film->width, film->height);
+  snprintf(what, sizeof what, "no film of %u x %u pixels with these settings is possible",
+           film->width, film->height);
   return report_reason(result, job->path, what);
 }
 
-/* Applies the options of stereo. The def describes the camera midway between the eyes; frames.c makes the cameras of
- * the eyes. */
+/* Applies the options of stereo. The def describes the camera midway between the eyes; frames.c
+ * makes the cameras of the eyes. */
 static int override_stereo(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlStereo *stereo = &defs->camera.stereo;
-  if (v[RENDER_STEREO].given) stereo->mode = (vlStereoMode)v[RENDER_STEREO].integer;
+  if (v[RENDER_STEREO].given)
+    stereo->mode = (vlStereoMode)v[RENDER_STEREO].integer;
   bool none = stereo->mode == VL_STEREO_NONE;
-  if (none && (v[RENDER_INTEROCULAR].given || v[RENDER_CONVERGENCE].given || v[RENDER_EYE].given))
+  if (none &&
+      (v[RENDER_INTEROCULAR].given || v[RENDER_CONVERGENCE].given || v[RENDER_EYE].given))
     return report_usage("--interocular, --convergence and --eye go with --stereo MODE");
-  if (v[RENDER_INTEROCULAR].given) stereo->interocular = v[RENDER_INTEROCULAR].number;
-  if (v[RENDER_CONVERGENCE].given) stereo->convergence = v[RENDER_CONVERGENCE].number;
-  if (v[RENDER_EYE].given) defs->camera.stereo_eye = (vlEye)v[RENDER_EYE].integer;
+  if (v[RENDER_INTEROCULAR].given)
+    stereo->interocular = v[RENDER_INTEROCULAR].number;
+  if (v[RENDER_CONVERGENCE].given)
+    stereo->convergence = v[RENDER_CONVERGENCE].number;
+  if (v[RENDER_EYE].given)
+    defs->camera.stereo_eye = (vlEye)v[RENDER_EYE].integer;
   return -1;
 }
 
-/* Applies image size and crop of the command line and makes the camera. The camera is made for the image size of its
- * description and then resized, which keeps the framing. */
+/* Applies image size and crop of the command line and makes the camera. The camera is made for
+ * the image size of its description and then resized, which keeps the framing. */
 static int fit_camera(Job *job, vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *size = &arguments->values[RENDER_RESOLUTION];
   vlCameraDef camera = defs->camera;
   camera.stereo_eye = VL_EYE_BOTH;
-  if (size->given) override_size(defs, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
+  if (size->given)
+    override_size(defs, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
   int status = override_crop(defs, arguments);
-  if (status < 0) status = make_camera(job, camera, defs->film.width, defs->film.height);
+  if (status < 0)
+    status = make_camera(job, camera, defs->film.width, defs->film.height);
   return status < 0 ? lens_focus_on(&job->camera, arguments) : status;
 }
 
-int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path, const Arguments *arguments) {
+int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path,
+                    const Arguments *arguments) {
   vlStereo stereo = job->defs->camera.stereo;
   *defs = *job->defs;
   defs->camera = *def;
@@ -312,7 +371,8 @@ static int read_channels_time(Job *job, const Arguments *arguments) {
   const OptionValue *v = &arguments->values[RENDER_CHANNELS_TIME];
   job->channels_share = 0.5;
   job->channels_seconds = VL_UNSET;
-  if (!v->given) return -1;
+  if (!v->given)
+    return -1;
   for (int i = 0; i < 3; i++)
     if (strcmp(v->text, words[i]) == 0) {
       job->channels_share = 0.5 * i;
@@ -320,17 +380,21 @@ static int read_channels_time(Job *job, const Arguments *arguments) {
     }
   char *end;
   job->channels_seconds = strtod(v->text, &end);
-  if (end != v->text && !*end && fabs(job->channels_seconds) < 1e12) return -1;
-  return report_usage("--channels-time \"%s\": must be open, middle, close or seconds", v->text);
+  if (end != v->text && !*end && fabs(job->channels_seconds) < 1e12)
+    return -1;
+  return report_usage("--channels-time \"%s\": must be open, middle, close or seconds",
+                      v->text);
 }
 
 double job_channels_time(const Job *job) {
   const vlCamera *c = &job->camera;
-  if (!isnan(job->channels_seconds)) return job->channels_seconds;
+  if (!isnan(job->channels_seconds))
+    return job->channels_seconds;
   return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, job->channels_share);
 }
 
-int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
+int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
+             const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlSceneDefs *defs = vl_scene_defs(scene);
   job->path = path;
@@ -344,19 +408,28 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
     else
       status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
     vl_context_record_files(context, job->records_files);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   int status = read_channels_time(job, arguments);
-  if (status < 0) status = override_stereo(defs, arguments);
-  if (status < 0) status = lens_override(scene, defs, arguments);
-  if (status < 0) status = fit_camera(job, defs, arguments);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = override_stereo(defs, arguments);
+  if (status < 0)
+    status = lens_override(scene, defs, arguments);
+  if (status < 0)
+    status = fit_camera(job, defs, arguments);
+  if (status >= 0)
+    return status;
   override_sampling(defs, arguments);
   defs->render.transparent = v[RENDER_TRANSPARENT].given;
   fix_sequence(&defs->render);
-  if (v[RENDER_TIME].given) defs->render.time_limit = v[RENDER_TIME].number;
-  if (v[RENDER_BITS].given) defs->build.bits = (vlBits)v[RENDER_BITS].integer;
-  if (v[RENDER_ACCELERATOR].given) defs->build.accelerator = (vlAccelerator)v[RENDER_ACCELERATOR].integer;
-  if (v[RENDER_IMITATE_PBRT].given) defs->build.imitate_pbrt = true;
+  if (v[RENDER_TIME].given)
+    defs->render.time_limit = v[RENDER_TIME].number;
+  if (v[RENDER_BITS].given)
+    defs->build.bits = (vlBits)v[RENDER_BITS].integer;
+  if (v[RENDER_ACCELERATOR].given)
+    defs->build.accelerator = (vlAccelerator)v[RENDER_ACCELERATOR].integer;
+  if (v[RENDER_IMITATE_PBRT].given)
+    defs->build.imitate_pbrt = true;
   return override_spectrum(defs, arguments);
 }

@@ -12,9 +12,11 @@
 /* Parses "X,Y", decimal numbers. */
 static bool read_point(const char *text, double point[2]) {
   char *end;
-  if (strspn(text, "0123456789+-.eE,") != strlen(text)) return false;
+  if (strspn(text, "0123456789+-.eE,") != strlen(text))
+    return false;
   point[0] = strtod(text, &end);
-  if (end == text || *end != ',') return false;
+  if (end == text || *end != ',')
+    return false;
   const char *second = end + 1;
   point[1] = strtod(second, &end);
   return end != second && *end == 0 && isfinite(point[0]) && isfinite(point[1]);
@@ -23,7 +25,8 @@ static bool read_point(const char *text, double point[2]) {
 static int refocus(vlScene *scene, const vlSceneDefs *defs, double distance) {
   vlError error = {0};
   vlResult result = vl_scene_refocus(scene, distance, &error);
-  if (result == VL_OK) return -1;
+  if (result == VL_OK)
+    return -1;
   const vlSource *place = &defs->camera_source;
   if (place->file) {
     snprintf(error.file, sizeof error.file, "%s", place->file);
@@ -40,14 +43,18 @@ int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments)
   if (v[RENDER_FOCUS_PIXEL].given && v[RENDER_FOCUS_DISTANCE].given)
     return report_usage("--focus-pixel and --focus-distance exclude each other");
   if (v[RENDER_FOCUS_PIXEL].given && !read_point(v[RENDER_FOCUS_PIXEL].text, point))
-    return report_usage("--focus-pixel \"%s\": not two numbers X,Y", v[RENDER_FOCUS_PIXEL].text);
+    return report_usage("--focus-pixel \"%s\": not two numbers X,Y",
+                        v[RENDER_FOCUS_PIXEL].text);
   if (v[RENDER_FOCUS_PIXEL].given || v[RENDER_FOCUS_DISTANCE].given) {
-    for (int i = 0; i < 2; i++) def->lens.focus_pixel[i] = VL_UNSET;
-    for (int i = 0; i < 3; i++) def->lens.focus_point[i] = VL_UNSET;
+    for (int i = 0; i < 2; i++)
+      def->lens.focus_pixel[i] = VL_UNSET;
+    for (int i = 0; i < 3; i++)
+      def->lens.focus_point[i] = VL_UNSET;
     def->focus_distance = VL_UNSET;
   }
   if (v[RENDER_FOCUS_DISTANCE].given) {
-    if (def->lens.optics) return refocus(scene, defs, v[RENDER_FOCUS_DISTANCE].number);
+    if (def->lens.optics)
+      return refocus(scene, defs, v[RENDER_FOCUS_DISTANCE].number);
     def->focus_distance = v[RENDER_FOCUS_DISTANCE].number;
   }
   if (v[RENDER_LENS_RADIUS].given) {
@@ -56,21 +63,27 @@ int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments)
   }
   if (v[RENDER_F_NUMBER].given) {
     def->lens.f_number = v[RENDER_F_NUMBER].number;
-    if (!v[RENDER_LENS_RADIUS].given) def->lens_radius = 0;
+    if (!v[RENDER_LENS_RADIUS].given)
+      def->lens_radius = 0;
   }
-  if (v[RENDER_ISO].given || v[RENDER_SECONDS].given) def->exposure_time = 1;
-  if (v[RENDER_ISO].given) def->lens.iso = v[RENDER_ISO].number;
-  if (v[RENDER_SECONDS].given) def->lens.seconds = v[RENDER_SECONDS].number;
+  if (v[RENDER_ISO].given || v[RENDER_SECONDS].given)
+    def->exposure_time = 1;
+  if (v[RENDER_ISO].given)
+    def->lens.iso = v[RENDER_ISO].number;
+  if (v[RENDER_SECONDS].given)
+    def->lens.seconds = v[RENDER_SECONDS].number;
   return -1;
 }
 
 int lens_focus_on(vlCamera *camera, const Arguments *arguments) {
   const OptionValue *v = &arguments->values[RENDER_FOCUS_PIXEL];
   double point[2];
-  if (!v->given || !read_point(v->text, point)) return -1;
-  if (!(point[0] >= 0 && point[1] >= 0 && point[0] <= camera->width && point[1] <= camera->height))
-    return report_usage("--focus-pixel \"%s\": the image has only %u x %u pixels", v->text, camera->width,
-                        camera->height);
+  if (!v->given || !read_point(v->text, point))
+    return -1;
+  if (!(point[0] >= 0 && point[1] >= 0 && point[0] <= camera->width &&
+        point[1] <= camera->height))
+    return report_usage("--focus-pixel \"%s\": the image has only %u x %u pixels", v->text,
+                        camera->width, camera->height);
   camera->lens.focus_pixel[0] = point[0];
   camera->lens.focus_pixel[1] = point[1];
   return -1;
@@ -79,28 +92,33 @@ int lens_focus_on(vlCamera *camera, const Arguments *arguments) {
 int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world) {
   vlCamera *camera = &job->camera;
   double *pixel = camera->lens.focus_pixel, distance;
-  if (isnan(pixel[0]) || isnan(pixel[1])) return -1;
+  if (isnan(pixel[0]) || isnan(pixel[1]))
+    return -1;
   vlError error = {0};
   vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, &error);
   if (result != VL_OK) {
     snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s", error.message);
-    return report_error(&job->camera_place, result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
+    return report_error(&job->camera_place,
+                        result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
   }
   pixel[0] = pixel[1] = VL_UNSET;
   if (camera->lens.optics && !scene)
-    return report_usage("--focus-pixel: along a trajectory a lens of many elements keeps its focus");
+    return report_usage(
+        "--focus-pixel: along a trajectory a lens of many elements keeps its focus");
   if (!camera->lens.optics) {
     camera->focus_distance = distance;
     return -1;
   }
   int status = refocus(scene, job->defs, distance);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   vlCameraDef def = job->defs->camera;
   vlCamera made;
   def.width = camera->width;
   def.height = camera->height;
   result = vl_camera_make(&def, &made, NULL, &error);
-  if (result != VL_OK) return report_error(&error, result, job->path);
+  if (result != VL_OK)
+    return report_error(&error, result, job->path);
   camera->fx = made.fx;
   camera->fy = made.fy;
   camera->focus_distance = made.focus_distance;

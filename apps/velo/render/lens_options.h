@@ -1,4 +1,5 @@
-/* render/lens_options.h: lens options of `velo render`: focus, aperture, exposure from camera settings. */
+/* render/lens_options.h: lens options of `velo render`: focus, aperture, exposure from camera
+ * settings. */
 #ifndef APP_RENDER_LENS_OPTIONS_H
 #define APP_RENDER_LENS_OPTIONS_H
 
@@ -14,12 +15,14 @@ enum {
   RENDER_SECONDS,
   RENDER_OPTIONS
 };
-_Static_assert((int)RENDER_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+_Static_assert((int)RENDER_OPTIONS <= (int)MAX_OPTIONS,
+               "Arguments.values has no room for an option");
 
-/* Overrides the camera of defs. A lens of many elements is made anew with the new focus and belongs to the scene.
- * Returns -1 or the exit code. */
+/* Overrides the camera of defs. A lens of many elements is made anew with the new focus and
+ * belongs to the scene. Returns -1 or the exit code. */
 int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments);
-/* Sets the pixel to focus on, once the camera has the size of the rendered image. Returns -1 or the exit code. */
+/* Sets the pixel to focus on, once the camera has the size of the rendered image. Returns -1 or
+ * the exit code. */
 int lens_focus_on(vlCamera *camera, const Arguments *arguments);
 /* Focuses a camera on its pixel, once the world exists. Returns -1 or the exit code. */
 int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world);

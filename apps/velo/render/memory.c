@@ -9,51 +9,67 @@
 #include "cli/report.h"
 #include "render/progress.h"
 
-/* ---- the process ------------------------------------------------------------------------------------------------- */
+/* ---- the process
+ * -------------------------------------------------------------------------------------------------
+ */
 
 /* Bytes of resident memory of the process. */
 static uint64_t process_resident(void) {
   unsigned long long pages[2] = {0, 0};
   FILE *file = fopen("/proc/self/statm", "r");
-  if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2) pages[0] = pages[1] = 0;
-  if (file) fclose(file);
+  if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2)
+    pages[0] = pages[1] = 0;
+  if (file)
+    fclose(file);
   return pages[1] * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-/* ---- who needs how much ------------------------------------------------------------------------------------------ */
+/* ---- who needs how much
+ * ------------------------------------------------------------------------------------------ */
 
 void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes) {
-  if (!bytes) return;
+  if (!bytes)
+    return;
   plan->needs[plan->count].what = what;
   plan->needs[plan->count++].bytes = bytes;
   plan->total += bytes;
 }
 
-/* OpenEXR files are compressed in chunks of 16 rows, two per worker, with three copies of each. */
-static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width, uint64_t height, uint64_t values) {
+/* OpenEXR files are compressed in chunks of 16 rows, two per worker, with three copies of each.
+ */
+static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width,
+                        uint64_t height, uint64_t values) {
   uint64_t most = 0, rows = 32 * (uint64_t)vl_context_threads(context);
-  if (rows > height) rows = height;
+  if (rows > height)
+    rows = height;
   for (int i = 0; i < outputs->count; i++) {
-    uint64_t bytes = 12 * width * (output_holds_layers(outputs->paths[i]) ? rows * (4 + values) : 16);
-    if (bytes > most) most = bytes;
+    uint64_t bytes =
+        12 * width * (output_holds_layers(outputs->paths[i]) ? rows * (4 + values) : 16);
+    if (bytes > most)
+      most = bytes;
   }
   return most;
 }
 
 static uint64_t film_bytes(const Job *job, const Frames *frames) {
-  if (!frames) return vl_film_memory(&job->defs->film);
+  if (!frames)
+    return vl_film_memory(&job->defs->film);
   uint64_t sum = 0;
   for (uint32_t i = 0; i < frames->camera_count; i++)
-    if (frames->cameras[i].owns_film) sum += vl_film_memory(&frames->cameras[i].job.defs->film);
+    if (frames->cameras[i].owns_film)
+      sum += vl_film_memory(&frames->cameras[i].job.defs->film);
   return sum;
 }
 
-void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
-                 const Channels *channels, const Frames *frames) {
-  enum { WAITING = 6 }; /* images of a trajectory that are rendered, queued or written at the same time */
+void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job,
+                 const Outputs *outputs, const Channels *channels, const Frames *frames) {
+  enum {
+    WAITING = 6
+  }; /* images of a trajectory that are rendered, queued or written at the same time */
   memset(plan, 0, sizeof *plan);
   const uint32_t *crop = job->defs->film.crop;
-  uint64_t width = crop[2] - crop[0], height = crop[3] - crop[1], pixels = width * height, copies = 1;
+  uint64_t width = crop[2] - crop[0], height = crop[3] - crop[1], pixels = width * height,
+           copies = 1;
   for (uint32_t i = 0; frames && i < frames->camera_count; i++) {
     const uint32_t *c = frames->cameras[i].job.defs->film.crop;
     uint64_t other = (uint64_t)(c[2] - c[0]) * (c[3] - c[1]);
@@ -63,7 +79,9 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
       height = c[3] - c[1];
     }
   }
-  if (frames) copies = (frames_count(frames) < WAITING ? frames_count(frames) : WAITING) * (uint64_t)frames->views;
+  if (frames)
+    copies = (frames_count(frames) < WAITING ? frames_count(frames) : WAITING) *
+             (uint64_t)frames->views;
   bool eight_bit = false, layers = false;
   for (int i = 0; i < outputs->count; i++) {
     bool display = false;
@@ -82,7 +100,9 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   memory_add(plan, "writing", writing(context, outputs, width, height, values));
 }
 
-/* ---- does it fit ------------------------------------------------------------------------------------------------- */
+/* ---- does it fit
+ * -------------------------------------------------------------------------------------------------
+ */
 
 void memory_list(const MemoryPlan *plan, char *text, size_t size) {
   text[0] = 0;
@@ -99,11 +119,13 @@ static int too_much(const MemoryPlan *plan, uint64_t limit, const char *who) {
   memory_list(plan, list, sizeof list);
   format_count(needed, sizeof needed, (double)plan->total);
   format_count(most, sizeof most, (double)limit);
-  return report_failure(STATUS_OTHER, "out of memory: this needs %sB, and %s %sB: %s", needed, who, most, list);
+  return report_failure(STATUS_OTHER, "out of memory: this needs %sB, and %s %sB: %s", needed,
+                        who, most, list);
 }
 
 int memory_check(const MemoryPlan *plan, uint64_t limit) {
-  if (limit && plan->total > limit) return too_much(plan, limit, "--max-memory allows");
+  if (limit && plan->total > limit)
+    return too_much(plan, limit, "--max-memory allows");
   const char *who;
   uint64_t most = vl_memory_limit(&who);
   return plan->total > most ? too_much(plan, most, who) : -1;
@@ -111,9 +133,11 @@ int memory_check(const MemoryPlan *plan, uint64_t limit) {
 
 void memory_report_json(const MemoryPlan *plan, uint64_t limit) {
   Json json = report_json_begin("memory");
-  for (int i = 0; i < plan->count; i++) json_integer(&json, plan->needs[i].what, (int64_t)plan->needs[i].bytes);
+  for (int i = 0; i < plan->count; i++)
+    json_integer(&json, plan->needs[i].what, (int64_t)plan->needs[i].bytes);
   json_integer(&json, "total", (int64_t)plan->total);
-  if (limit) json_integer(&json, "limit", (int64_t)limit);
+  if (limit)
+    json_integer(&json, "limit", (int64_t)limit);
   report_json_end(&json);
 }
 

@@ -1,4 +1,5 @@
-/* render/memory.h: estimates the memory of a render before it begins, and checks that it is available. */
+/* render/memory.h: estimates the memory of a render before it begins, and checks that it is
+ * available. */
 #ifndef APP_RENDER_MEMORY_H
 #define APP_RENDER_MEMORY_H
 
@@ -18,14 +19,14 @@ typedef struct MemoryPlan {
   uint64_t total; /* estimated peak, including the scene */
 } MemoryPlan;
 
-/* Estimates the memory held by the scene and needed by the render, its ground truth and the writing of its files.
- * `frames`: null, or the images of a trajectory. */
-void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
-                 const Channels *channels, const Frames *frames);
+/* Estimates the memory held by the scene and needed by the render, its ground truth and the
+ * writing of its files. `frames`: null, or the images of a trajectory. */
+void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job,
+                 const Outputs *outputs, const Channels *channels, const Frames *frames);
 /* Adds an optional item to the plan. Does nothing for 0 bytes. */
 void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes);
-/* Returns -1 if the plan fits within --max-memory (`limit`; 0: none), the process's limits and the machine's memory.
- * Otherwise returns the exit code after one line that lists the items. */
+/* Returns -1 if the plan fits within --max-memory (`limit`; 0: none), the process's limits and
+ * the machine's memory. Otherwise returns the exit code after one line that lists the items. */
 int memory_check(const MemoryPlan *plan, uint64_t limit);
 /* Text such as "scene 12.0 MB, film 132 MB". */
 void memory_list(const MemoryPlan *plan, char *text, size_t size);

@@ -1,5 +1,7 @@
-/* render/needs.c: see needs.h. One table says what an option needs, another when that is there. Where the answer is not
- * certain, the option counts as having an effect: a film keeps options for --continue and velo film develop. */
+/* render/needs.c: see needs.h. One table says what an option needs, another when that is there.
+ * Where the answer is not certain, the option counts as having an effect: a film keeps options
+ * for
+ * --continue and velo film develop. */
 #include "render/needs.h"
 
 #include "camera/camera.h"
@@ -39,7 +41,8 @@ typedef enum Need {
   NEED_COUNT
 } Need;
 
-/* Options that are not here always have an effect, or their command line is refused without what they need. */
+/* Options that are not here always have an effect, or their command line is refused without
+ * what they need. */
 static const Need needs_of[MAX_OPTIONS] = {
     [RENDER_SCENE] = NEED_GLTF,
     [RENDER_AT] = NEED_ANIMATIONS,
@@ -80,7 +83,9 @@ static const Need needs_of[MAX_OPTIONS] = {
     [RENDER_REGULARIZE] = NEED_LIGHT_SAMPLES,
 };
 
-/* ---- when it is there -------------------------------------------------------------------------------------------- */
+/* ---- when it is there
+ * --------------------------------------------------------------------------------------------
+ */
 
 /* What the tests look at. */
 typedef struct Facts {
@@ -115,12 +120,13 @@ static bool has_added_light(const Facts *f) {
 }
 
 static bool has_added_ground(const Facts *f) {
-  return f->needs->opening->model && has_added_camera(f) && f->needs->opening->environment == VL_ENVIRONMENT_STUDIO;
+  return f->needs->opening->model && has_added_camera(f) &&
+         f->needs->opening->environment == VL_ENVIRONMENT_STUDIO;
 }
 
 static bool has_added(const Facts *f) {
-  return has_added_camera(f) || has_added_light(f) || f->v[RENDER_GROUND].given || f->v[RENDER_TURN].given ||
-         f->v[RENDER_TURNTABLE].given;
+  return has_added_camera(f) || has_added_light(f) || f->v[RENDER_GROUND].given ||
+         f->v[RENDER_TURN].given || f->v[RENDER_TURNTABLE].given;
 }
 
 static bool has_camera_file(const Facts *f) {
@@ -150,11 +156,13 @@ static bool is_display(const char *path) {
 
 /* Whether a film, or an image for which the test is true, is written. */
 static bool has_output(const Facts *f, bool (*test)(const char *path)) {
-  if (!f->render) return true;
+  if (!f->render)
+    return true;
   const Outputs *all[] = {&f->render->outputs, &f->render->denoised.outputs};
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < all[k]->count; i++)
-      if (test(all[k]->paths[i])) return true;
+      if (test(all[k]->paths[i]))
+        return true;
   return has_film(f);
 }
 
@@ -171,11 +179,13 @@ static bool has_alpha(const Facts *f) {
 }
 
 static bool has_channels(const Facts *f) {
-  return !f->render || (has_exr(f) && (f->render->channels.bits || f->render->channels.gbuffer));
+  return !f->render ||
+         (has_exr(f) && (f->render->channels.bits || f->render->channels.gbuffer));
 }
 
 static bool has_crypto(const Facts *f) {
-  const uint32_t crypto = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+  const uint32_t crypto =
+      VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
   return !f->render || (has_exr(f) && f->render->channels.bits & crypto);
 }
 
@@ -207,15 +217,20 @@ static const struct {
   Need before;       /* is needed for it, too, and looked at first */
 } rows[NEED_COUNT] = {
     [NEED_GLTF] = {has_gltf, " is not a glTF file", .names_scene = true},
-    [NEED_ANIMATIONS] = {has_animations, " has no animations", .names_scene = true, .before = NEED_GLTF},
-    [NEED_PLAYED_TIME] = {has_played_time, "no animation is played (--at, --animate)", .before = NEED_ANIMATIONS},
+    [NEED_ANIMATIONS] = {has_animations, " has no animations", .names_scene = true,
+                         .before = NEED_GLTF},
+    [NEED_PLAYED_TIME] = {has_played_time, "no animation is played (--at, --animate)",
+                          .before = NEED_ANIMATIONS},
     [NEED_ANIMATE] = {has_animate, "it goes with --animate"},
     [NEED_ADDED] = {has_added, " has a camera and light of its own", .names_scene = true},
     [NEED_ADDED_CAMERA] = {has_added_camera, "no camera is added, the camera is given"},
     [NEED_ADDED_GROUND] = {has_added_ground, "no ground would be added"},
     [NEED_ADDED_LIGHT] = {has_added_light, "no environment map is added (--environment)"},
-    [NEED_CAMERA_FILE] = {has_camera_file, "the file of --camera is a scene, or the scene's own camera is taken"},
-    [NEED_CAMERA_OR_POSES] = {has_camera_or_poses, "there is no camera file (--camera, --trajectory)"},
+    [NEED_CAMERA_FILE] =
+        {has_camera_file,
+         "the file of --camera is a scene, or the scene's own camera is taken"},
+    [NEED_CAMERA_OR_POSES] = {has_camera_or_poses,
+                              "there is no camera file (--camera, --trajectory)"},
     [NEED_LENS] = {has_lens, "the camera is a pinhole (--lens-radius, --f-number)"},
     [NEED_FILM] = {has_film, "there is no film (--film)"},
     [NEED_DISPLAY] = {has_display, "no output is a .png, .jpg or .tga"},
@@ -224,42 +239,54 @@ static const struct {
     [NEED_ALPHA] = {has_alpha, "no output is a .png or .exr", .is_warned_of = true},
     [NEED_CHANNELS] = {has_channels, "no ground truth is written (--channels, into an .exr)"},
     [NEED_CRYPTO] = {has_crypto, "no Cryptomatte is written (--channels crypto, into an .exr)"},
-    [NEED_OTHER_DENOISER] = {has_other_denoiser, "the denoiser is velo's own (--denoiser oidn)"},
+    [NEED_OTHER_DENOISER] = {has_other_denoiser,
+                             "the denoiser is velo's own (--denoiser oidn)"},
     [NEED_MERGING] = {has_merging, "only merging and sppm merge"},
-    [NEED_LIGHT_PATHS] = {has_light_paths, "only bidirectional, merging, sppm and lightpath follow light paths"},
+    [NEED_LIGHT_PATHS] = {has_light_paths,
+                          "only bidirectional, merging, sppm and lightpath follow light paths"},
     [NEED_BOUNCES] = {has_bounces, "this tracer follows no path"},
     [NEED_LIGHT_SAMPLES] = {has_light_samples, "this tracer samples no lights"},
 };
 
-/* ---- the check --------------------------------------------------------------------------------------------------- */
+/* ---- the check
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static int report_option(const Facts *f, const Option *option, Need need) {
   const bool strict = f->v[RENDER_STRICT_OPTIONS].given;
   const char *scene = rows[need].names_scene ? f->needs->job->path : "", *why = rows[need].why;
   const bool of_tracer = need > NEED_OF_TRACER;
-  const char *tracer = of_tracer ? kind_name("tracers", (int)f->tracer) : "", *gap = of_tracer ? ": " : "";
-  if (strict) return report_usage("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
-  if (!rows[need].is_warned_of) report_note("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
+  const char *tracer = of_tracer ? kind_name("tracers", (int)f->tracer) : "",
+             *gap = of_tracer ? ": " : "";
+  if (strict)
+    return report_usage("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
+  if (!rows[need].is_warned_of)
+    report_note("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
   return -1;
 }
 
 /* What is missing of a need: itself, or one before it. NEED_NOTHING: it is there. */
 static Need missing(const Facts *f, Need need) {
-  if (need == NEED_NOTHING) return need;
+  if (need == NEED_NOTHING)
+    return need;
   const Need before = missing(f, rows[need].before);
-  if (before != NEED_NOTHING) return before;
+  if (before != NEED_NOTHING)
+    return before;
   return rows[need].has(f) ? NEED_NOTHING : need;
 }
 
 static int check(const Facts *f, bool of_tracer) {
   int status = -1;
   for (const Option *option = f->needs->options; option->name; option++) {
-    if (option->id >= RENDER_OPTIONS || !f->v[option->id].given) continue; /* an option of another command */
+    if (option->id >= RENDER_OPTIONS || !f->v[option->id].given)
+      continue; /* an option of another command */
     const Need need = needs_of[option->id];
-    if ((need > NEED_OF_TRACER) != of_tracer) continue;
+    if ((need > NEED_OF_TRACER) != of_tracer)
+      continue;
     const Need lacking = missing(f, need);
     const int code = lacking == NEED_NOTHING ? -1 : report_option(f, option, lacking);
-    if (code >= 0) status = code;
+    if (code >= 0)
+      status = code;
   }
   return status;
 }
@@ -273,8 +300,10 @@ int needs_check_tracer(const Needs *needs, const vlWorld *world) {
   const Job *job = needs->job;
   const vlTracer tracer = job->defs->render.tracer;
   const bool replaced = vl_tracer_lacks(world, &job->camera, &job->defs->film, tracer) != 0;
-  const Facts facts = {
-      .needs = needs, .render = needs->render, .v = needs->values, .tracer = replaced ? VL_TRACER_VOLPATH : tracer};
+  const Facts facts = {.needs = needs,
+                       .render = needs->render,
+                       .v = needs->values,
+                       .tracer = replaced ? VL_TRACER_VOLPATH : tracer};
   return check(&facts, true);
 }
 
@@ -292,17 +321,22 @@ static Needs needs_of_render(const Render *render, const Arguments *arguments) {
 
 int needs_check_render_scene(Render *render, const Arguments *arguments) {
   AnimateShared *shared = render->shared;
-  if (shared && shared->job_checked) return -1;
-  if (shared) shared->job_checked = true;
+  if (shared && shared->job_checked)
+    return -1;
+  if (shared)
+    shared->job_checked = true;
   const Needs needs = needs_of_render(render, arguments);
   return needs_check_scene(&needs);
 }
 
 int needs_check_render_tracer(Render *render, const Arguments *arguments) {
   AnimateShared *shared = render->shared;
-  if (shared && shared->tracer_checked) return -1;
-  if (shared) shared->tracer_checked = true;
-  if (render->job.race == RACE_TRACERS && arguments->values[RENDER_DRY_RUN].given) return -1; /* there was no race */
+  if (shared && shared->tracer_checked)
+    return -1;
+  if (shared)
+    shared->tracer_checked = true;
+  if (render->job.race == RACE_TRACERS && arguments->values[RENDER_DRY_RUN].given)
+    return -1; /* there was no race */
   const Needs needs = needs_of_render(render, arguments);
   return needs_check_tracer(&needs, render->world);
 }

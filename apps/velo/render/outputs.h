@@ -1,6 +1,7 @@
-/* render/outputs.h: the output files of one render. They are checked before the render and written atomically. While
- * rendering and after an interruption, the image of NAME.EXT is in NAME.part.EXT. Only a finished render replaces
- * NAME.EXT. The output "-.EXT" is the standard output in that format; "-" is "-.exr". */
+/* render/outputs.h: the output files of one render. They are checked before the render and
+ * written atomically. While rendering and after an interruption, the image of NAME.EXT is in
+ * NAME.part.EXT. Only a finished render replaces NAME.EXT. The output "-.EXT" is the standard
+ * output in that format; "-" is "-.exr". */
 #ifndef APP_RENDER_OUTPUTS_H
 #define APP_RENDER_OUTPUTS_H
 
@@ -19,13 +20,14 @@ typedef struct Outputs {
   const char *paths[MAX_OUTPUTS];
   int count;
   bool half;
-  bool to_stdout;           /* "-" is allowed: the command prints nothing else */
-  bool patterns;            /* the names are patterns (pattern.h): directories with a % are made later */
-  vlView view;              /* for 8-bit files */
-  float exposure;           /* EV, for 8-bit files */
-  bool transparent;         /* .png files have alpha */
-  bool meter;               /* meter the exposure from the image; `exposure` is not used */
-  float *shared;            /* with meter: the exposure of several images; NaN until the first is metered; null: none */
+  bool to_stdout; /* "-" is allowed: the command prints nothing else */
+  bool patterns;  /* the names are patterns (pattern.h): directories with a % are made later */
+  vlView view;    /* for 8-bit files */
+  float exposure; /* EV, for 8-bit files */
+  bool transparent; /* .png files have alpha */
+  bool meter;       /* meter the exposure from the image; `exposure` is not used */
+  float *shared; /* with meter: the exposure of several images; NaN until the first is metered;
+                    null: none */
   const vlImage *layers[4]; /* further channels of .exr files; null: none */
   struct {
     uint32_t part_spp; /* samples per pixel in NAME.part.EXT; 0: it was not written */
@@ -43,30 +45,37 @@ bool output_is_stream(const char *path);
 bool output_holds_layers(const char *path);
 /* Whether the file's format holds an alpha channel. */
 bool output_holds_alpha(const char *path);
-/* Whether velo writes files with this suffix. *eight_bit: whether the format holds display values. */
+/* Whether velo writes files with this suffix. *eight_bit: whether the format holds display
+ * values.
+ */
 bool output_suffix(const char *path, bool *eight_bit);
 /* The largest width and height of the format. */
 uint32_t output_largest_side(const char *path);
-/* Both functions return -1, or the exit code after reporting the error. The first does not access the file system. */
+/* Both functions return -1, or the exit code after reporting the error. The first does not
+ * access the file system. */
 int outputs_check_names(const Outputs *outputs);
 int outputs_check_folders(const Outputs *outputs);
-/* Checks one name against the file system and against what the context, which may be null, has read. Returns -1, or the
- * exit code after reporting the error. */
+/* Checks one name against the file system and against what the context, which may be null, has
+ * read. Returns -1, or the exit code after reporting the error. */
 int output_check(vlContext *context, const char *path, vlOutputKind kind);
-/* NAME.part.EXT beside the target of `path`; names that are too long are shortened. False: still too long, or `path` is
- * a device or pipe. */
+/* NAME.part.EXT beside the target of `path`; names that are too long are shortened. False:
+ * still too long, or `path` is a device or pipe. */
 bool output_part_path(const char *path, char *part, size_t size);
 /* Removes NAME.part.EXT once NAME.EXT is complete, also that of an earlier render. */
 void output_remove_part(const char *path);
 /* Makes the path PATH.ids.json; a name that is too long is shortened. */
 bool output_ids_path(const char *path, char *ids, size_t size);
 /* Writes an image with its layers to one output. */
-vlResult output_write_layers(const vlImage *const *images, uint32_t count, const char *path, vlWriteDef def,
-                             vlError *error);
-/* Writes the image with `spp` samples per pixel to every file, also after one of them failed. Returns STATUS_OK or the
- * exit code of the first failure. */
-int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage);
-/* The path to which output i was written at that stage: its own, or its NAME.part.EXT (in `part`). */
-const char *output_written(const Outputs *outputs, int i, OutputStage stage, char *part, size_t size);
+vlResult output_write_layers(const vlImage *const *images, uint32_t count, const char *path,
+                             vlWriteDef def, vlError *error);
+/* Writes the image with `spp` samples per pixel to every file, also after one of them failed.
+ * Returns STATUS_OK or the exit code of the first failure. */
+int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp,
+                  OutputStage stage);
+/* The path to which output i was written at that stage: its own, or its NAME.part.EXT (in
+ * `part`).
+ */
+const char *output_written(const Outputs *outputs, int i, OutputStage stage, char *part,
+                           size_t size);
 
 #endif

@@ -7,15 +7,17 @@
 
 #include "cli/report.h"
 
-/* Parses the text after a percent sign: digits of the width, then a letter, which is returned. 0: unknown. *length:
- * number of characters after the sign. */
+/* Parses the text after a percent sign: digits of the width, then a letter, which is returned.
+ * 0: unknown. *length: number of characters after the sign. */
 static char sign_at(const char *at, size_t *length, int *width) {
   size_t digits = strspn(at, "0123456789");
   *width = 0;
-  for (size_t i = 0; i < digits && i < 3; i++) *width = 10 * *width + (at[i] - '0');
+  for (size_t i = 0; i < digits && i < 3; i++)
+    *width = 10 * *width + (at[i] - '0');
   *length = digits + 1;
   char kind = at[digits];
-  if (kind == 'd') return digits <= 2 ? 'd' : 0;
+  if (kind == 'd')
+    return digits <= 2 ? 'd' : 0;
   return digits == 0 && kind && strchr("ncv%", kind) ? kind : 0;
 }
 
@@ -25,7 +27,9 @@ int pattern_check(const char *pattern) {
     int width;
     if (!sign_at(at + 1, &length, &width))
       return report_usage(
-          "output \"%s\": \"%.*s\" is not known; there are %%d or %%04d (the frame's number), %%n (its name), %%c "
+          "output \"%s\": \"%.*s\" is not known; there are %%d or %%04d (the frame's number), "
+          "%%n "
+          "(its name), %%c "
           "(camera), %%v (eye), %%%%",
           pattern, (int)(at[1] ? length + 1 : 1), at);
     at += 1 + length;
@@ -37,22 +41,27 @@ bool pattern_has(const char *pattern, char kind) {
   for (const char *at = strchr(pattern, '%'); at; at = strchr(at, '%')) {
     size_t length;
     int width;
-    if (sign_at(at + 1, &length, &width) == kind) return true;
+    if (sign_at(at + 1, &length, &width) == kind)
+      return true;
     at += 1 + length;
   }
   return false;
 }
 
-/* The last component of a path, without its suffix. Characters that some systems do not allow in file names become
+/* The last component of a path, without its suffix. Characters that some systems do not allow
+ * in file names become
  * "_". */
 static void clean(const char *name, char *result, size_t size) {
   const char *slash = strrchr(name, '/'), *back = strrchr(slash ? slash : name, '\\');
   const char *start = back ? back + 1 : slash ? slash + 1 : name, *dot = strrchr(start, '.');
-  size_t length = dot && dot > start && strlen(dot) <= 6 ? (size_t)(dot - start) : strlen(start);
-  if (length >= size) length = size - 1;
+  size_t length =
+      dot && dot > start && strlen(dot) <= 6 ? (size_t)(dot - start) : strlen(start);
+  if (length >= size)
+    length = size - 1;
   for (size_t i = 0; i < length; i++) {
     unsigned char c = (unsigned char)start[i];
-    bool bad = c < 0x20 || c == 0x7f || strchr("\"*:<>?|", c) || (i == 0 && (c == '.' || c == '-'));
+    bool bad =
+        c < 0x20 || c == 0x7f || strchr("\"*:<>?|", c) || (i == 0 && (c == '.' || c == '-'));
     result[i] = bad ? '_' : (char)c;
   }
   result[length] = 0;
@@ -64,7 +73,8 @@ bool pattern_expand(const char *pattern, const PatternValues *v, char *path, siz
     char piece[300] = "";
     if (*at != '%') {
       size_t n = strcspn(at, "%");
-      if (used + n >= size) return false;
+      if (used + n >= size)
+        return false;
       memcpy(path + used, at, n);
       used += n;
       at += n;
@@ -73,18 +83,25 @@ bool pattern_expand(const char *pattern, const PatternValues *v, char *path, siz
     size_t length;
     int width;
     char kind = sign_at(at + 1, &length, &width);
-    if (kind == 'n' && v->name) clean(v->name, piece, sizeof piece);
-    if (kind == 'c') clean(v->camera && *v->camera ? v->camera : "0", piece, sizeof piece);
-    if (kind == 'v' && v->view) snprintf(piece, sizeof piece, "%s", v->view);
-    if (kind == '%') snprintf(piece, sizeof piece, "%%");
-    if (kind == 'd' || (kind == 'n' && !*piece)) snprintf(piece, sizeof piece, "%0*u", width, v->number);
+    if (kind == 'n' && v->name)
+      clean(v->name, piece, sizeof piece);
+    if (kind == 'c')
+      clean(v->camera && *v->camera ? v->camera : "0", piece, sizeof piece);
+    if (kind == 'v' && v->view)
+      snprintf(piece, sizeof piece, "%s", v->view);
+    if (kind == '%')
+      snprintf(piece, sizeof piece, "%%");
+    if (kind == 'd' || (kind == 'n' && !*piece))
+      snprintf(piece, sizeof piece, "%0*u", width, v->number);
     size_t n = strlen(piece);
-    if (used + n >= size) return false;
+    if (used + n >= size)
+      return false;
     memcpy(path + used, piece, n);
     used += n;
     at += 1 + length;
   }
-  if (size == 0) return false;
+  if (size == 0)
+    return false;
   path[used] = 0;
   return true;
 }
@@ -93,16 +110,21 @@ bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *
   char *end;
   const char *at = text;
   unsigned long long numbers[3] = {0, UINT32_MAX, 1};
-  if (!(*at >= '0' && *at <= '9')) return false;
+  if (!(*at >= '0' && *at <= '9'))
+    return false;
   numbers[0] = strtoull(at, &end, 10);
-  if (*end != '-') numbers[1] = numbers[0];
+  if (*end != '-')
+    numbers[1] = numbers[0];
   if (*end == '-') {
     at = end + 1;
     end = (char *)at;
-    if (*at >= '0' && *at <= '9') numbers[1] = strtoull(at, &end, 10);
+    if (*at >= '0' && *at <= '9')
+      numbers[1] = strtoull(at, &end, 10);
   }
-  if (*end == ':' && end[1] >= '0' && end[1] <= '9') numbers[2] = strtoull(end + 1, &end, 10);
-  if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX) return false;
+  if (*end == ':' && end[1] >= '0' && end[1] <= '9')
+    numbers[2] = strtoull(end + 1, &end, 10);
+  if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX)
+    return false;
   *first = (uint32_t)numbers[0];
   *last = (uint32_t)numbers[1];
   *step = (uint32_t)numbers[2];

@@ -24,7 +24,11 @@ void format_count(char *text, size_t size, double count) {
   if (unit == 0)
     snprintf(text, size, "%.0f", count);
   else
-    snprintf(text, size, "%.*f%s", count < 9.995 ? 2 : count < 99.95 ? 1 : 0, count, units[unit]);
+    snprintf(text, size, "%.*f%s",
+             count < 9.995   ? 2
+             : count < 99.95 ? 1
+                             : 0,
+             count, units[unit]);
 }
 
 void format_seconds(char *text, size_t size, double seconds) {
@@ -47,29 +51,40 @@ void progress_start(Progress *progress, double time_limit) {
   *progress = (Progress){.time_limit = time_limit, .last_shown = -1};
 }
 
-/* The finished share of the work and the remaining seconds, by samples or by the time limit, whichever ends first. */
-static void estimate(const Progress *progress, const vlProgress *now, double *fraction, double *remaining) {
+/* The finished share of the work and the remaining seconds, by samples or by the time limit,
+ * whichever ends first. */
+static void estimate(const Progress *progress, const vlProgress *now, double *fraction,
+                     double *remaining) {
   *fraction = now->fraction > 0 ? now->fraction < 1 ? now->fraction : 1 : 0;
   *remaining = now->remaining;
   if (progress->time_limit > 0) {
-    double by_time = now->elapsed / progress->time_limit, left = progress->time_limit - now->elapsed;
-    if (by_time > *fraction) *fraction = by_time < 1 ? by_time : 1;
-    if (!(*remaining >= 0) || left < *remaining) *remaining = left > 0 ? left : 0;
+    double by_time = now->elapsed / progress->time_limit,
+           left = progress->time_limit - now->elapsed;
+    if (by_time > *fraction)
+      *fraction = by_time < 1 ? by_time : 1;
+    if (!(*remaining >= 0) || left < *remaining)
+      *remaining = left > 0 ? left : 0;
   }
 }
 
 /* The longest text that fits the line. The remaining time is dropped last. */
-static void describe(const vlProgress *now, double remaining, double rate, int room, char *text, size_t size) {
+static void describe(const vlProgress *now, double remaining, double rate, int room, char *text,
+                     size_t size) {
   char elapsed[32], left[40] = "", speed[32], number[32];
   format_seconds(elapsed, sizeof elapsed, now->elapsed);
   format_seconds(number, sizeof number, remaining);
   format_count(speed, sizeof speed, rate);
-  if (isfinite(remaining)) snprintf(left, sizeof left, "  %s left", number);
-  int n =
-      snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done, now->spp_total, speed, elapsed, left);
-  if (n > room) n = snprintf(text, size, "%u/%u spp  %s elapsed%s", now->spp_done, now->spp_total, elapsed, left);
-  if (n > room) n = snprintf(text, size, "%u/%u spp%s", now->spp_done, now->spp_total, left);
-  if (n > room) snprintf(text, size, "%s", *left ? left + 2 : "");
+  if (isfinite(remaining))
+    snprintf(left, sizeof left, "  %s left", number);
+  int n = snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done,
+                   now->spp_total, speed, elapsed, left);
+  if (n > room)
+    n = snprintf(text, size, "%u/%u spp  %s elapsed%s", now->spp_done, now->spp_total, elapsed,
+                 left);
+  if (n > room)
+    n = snprintf(text, size, "%u/%u spp%s", now->spp_done, now->spp_total, left);
+  if (n > room)
+    snprintf(text, size, "%s", *left ? left + 2 : "");
 }
 
 static void draw_bar(double fraction, const char *text) {
@@ -78,11 +93,14 @@ static void draw_bar(double fraction, const char *text) {
   int room = columns - 1 - (int)strlen(text) - 10;
   int width = room > 40 ? 40 : room < 0 ? 0 : room;
   int full = (int)(fraction * width);
-  for (int i = 0; i < width; i++) bar[i] = i < full ? '=' : i == full ? '>' : ' ';
+  for (int i = 0; i < width; i++)
+    bar[i] = i < full ? '=' : i == full ? '>' : ' ';
   bar[width] = 0;
-  int n = width >= 8 ? snprintf(line, sizeof line, "[%s] %3.0f %%  %s", bar, 100 * fraction, text)
-                     : snprintf(line, sizeof line, "%3.0f %%  %s", 100 * fraction, text);
-  if (n >= columns && columns > 1 && columns < (int)sizeof line) line[columns - 1] = 0;
+  int n = width >= 8
+              ? snprintf(line, sizeof line, "[%s] %3.0f %%  %s", bar, 100 * fraction, text)
+              : snprintf(line, sizeof line, "%3.0f %%  %s", 100 * fraction, text);
+  if (n >= columns && columns > 1 && columns < (int)sizeof line)
+    line[columns - 1] = 0;
   report_status_line(line);
 }
 
@@ -98,14 +116,17 @@ void progress_show(Progress *progress, const vlProgress *now) {
   if (report_is_terminal())
     due = first || since >= 0.1;
   else
-    due = (now->pass_done && now->spp_done != progress->last_spp && (is_power_of_two(now->spp_done) || last)) ||
+    due = (now->pass_done && now->spp_done != progress->last_spp &&
+           (is_power_of_two(now->spp_done) || last)) ||
           since >= 5;
-  if (!due || report_is_quiet()) return;
+  if (!due || report_is_quiet())
+    return;
 
   double fraction, remaining, rate = now->elapsed > 0 ? (double)now->paths / now->elapsed : 0;
   estimate(progress, now, &fraction, &remaining);
   progress->last_shown = now->elapsed;
-  if (now->pass_done) progress->last_spp = now->spp_done;
+  if (now->pass_done)
+    progress->last_spp = now->spp_done;
   if (report_is_json()) {
     Json json = report_json_begin("progress");
     json_integer(&json, "spp", now->spp_done);

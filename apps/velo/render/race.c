@@ -1,5 +1,6 @@
-/* render/race.c: see race.h. From then on the render has a tracer like any other: receipts and film files name the
- * chosen one, so that --continue, --again and velo film merge need no race. */
+/* render/race.c: see race.h. From then on the render has a tracer like any other: receipts and
+ * film files name the chosen one, so that --continue, --again and velo film merge need no race.
+ */
 #include "render/race.h"
 
 #include "cli/kinds.h"
@@ -34,13 +35,17 @@ static void take_films_own(Render *render, const FilmClaim *claim) {
 int race_plan(Render *render, const Arguments *arguments) {
   const FilmClaim *claims = render->film_plan.claims;
   bool repeats = render->resumed.path || render->again.receipt;
-  if (race_is_asked(arguments) || !repeats) render->job.race = race_kind(&render->film_plan.whole, arguments);
+  if (race_is_asked(arguments) || !repeats)
+    render->job.race = race_kind(&render->film_plan.whole, arguments);
   for (int i = 0; i < 2 && render->job.race != RACE_NONE; i++)
-    if (claims[i].earlier) take_films_own(render, &claims[i]);
+    if (claims[i].earlier)
+      take_films_own(render, &claims[i]);
   return -1;
 }
 
-/* ---- the race ---------------------------------------------------------------------------------------------------- */
+/* ---- the race
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static bool on_progress(void *user, const vlProgress *now) {
   (void)user;
@@ -51,13 +56,15 @@ static bool on_progress(void *user, const vlProgress *now) {
 static void report_json(const vlTracerChoice *choice) {
   Json json = report_json_begin("tracer");
   json_text(&json, "tracer", kind_name("tracers", (int)choice->tracer));
-  if (choice->light_paths != VL_AS_MANY_AS_PIXELS) json_integer(&json, "light_paths", choice->light_paths);
+  if (choice->light_paths != VL_AS_MANY_AS_PIXELS)
+    json_integer(&json, "light_paths", choice->light_paths);
   json_begin(&json, "trials", '[');
   for (uint32_t i = 0; i < choice->count; i++) {
     const vlTracerTrial *trial = &choice->trials[i];
     json_begin(&json, NULL, '{');
     json_text(&json, "tracer", kind_name("tracers", (int)trial->tracer));
-    if (trial->light_paths != VL_AS_MANY_AS_PIXELS) json_integer(&json, "light_paths", trial->light_paths);
+    if (trial->light_paths != VL_AS_MANY_AS_PIXELS)
+      json_integer(&json, "light_paths", trial->light_paths);
     json_number(&json, "error", trial->error);
     json_number(&json, "tail", trial->tail);
     json_number(&json, "missing", trial->missing);
@@ -79,12 +86,14 @@ static void report(const Job *job, const vlTracerChoice *choice) {
   report_note("%s", line);
 }
 
-/* The camera and the image of the race. Several images have the race of the first one of all, so that a part of them
- * has the tracer of the whole. */
-static vlResult find_image(const Render *render, vlCamera *camera, const vlFilmDef **film, vlError *error) {
+/* The camera and the image of the race. Several images have the race of the first one of all,
+ * so that a part of them has the tracer of the whole. */
+static vlResult find_image(const Render *render, vlCamera *camera, const vlFilmDef **film,
+                           vlError *error) {
   *camera = render->job.camera;
   *film = &render->film_plan.whole.film;
-  if (!render->many) return VL_OK;
+  if (!render->many)
+    return VL_OK;
   const Frame first = frames_first(&render->frames);
   *film = &first.camera->job.defs->film;
   return frames_middle(&render->frames, &first, camera, error);
@@ -107,17 +116,22 @@ static void take_all(Render *render, const vlTracerChoice *choice) {
 static int take_shared(Render *render, const AnimateShared *shared) {
   render->job.race = shared->race;
   render->job.raced = shared->race != RACE_NONE;
-  if (shared->race != RACE_NONE) take_all(render, &shared->choice);
+  if (shared->race != RACE_NONE)
+    take_all(render, &shared->choice);
   return -1;
 }
 
 int race_run(Render *render, const Arguments *arguments) {
   Job *job = &render->job;
   AnimateShared *shared = render->shared;
-  if (arguments->values[RENDER_DRY_RUN].given) return -1;
-  if (shared && shared->raced) return take_shared(render, shared);
-  if (shared) shared->raced = true;
-  if (job->race == RACE_NONE) return -1;
+  if (arguments->values[RENDER_DRY_RUN].given)
+    return -1;
+  if (shared && shared->raced)
+    return take_shared(render, shared);
+  if (shared)
+    shared->raced = true;
+  if (job->race == RACE_NONE)
+    return -1;
   const vlSceneDefs *whole = &render->film_plan.whole;
   vlRenderDef def = whole->render;
   vlTracerChoice choice;
@@ -130,12 +144,17 @@ int race_run(Render *render, const Arguments *arguments) {
   signals_remember();
   vlResult result = find_image(render, &camera, &film, &error);
   if (result == VL_OK)
-    result = vl_choose_tracer(render->world, &camera, film, &def, job->race == RACE_TRACERS, &choice, &error);
+    result = vl_choose_tracer(render->world, &camera, film, &def, job->race == RACE_TRACERS,
+                              &choice, &error);
   if (result == VL_CANCELLED)
-    return report_failure(128 + signals_pending(), "interrupted before the first pass was done; nothing is written");
-  if (result != VL_OK) return report_error(&error, result, job->path);
-  if (choice.count || race_is_asked(arguments)) report(job, &choice);
-  if (!choice.count && job->race == RACE_LIGHT_PATHS) return -1;
+    return report_failure(128 + signals_pending(),
+                          "interrupted before the first pass was done; nothing is written");
+  if (result != VL_OK)
+    return report_error(&error, result, job->path);
+  if (choice.count || race_is_asked(arguments))
+    report(job, &choice);
+  if (!choice.count && job->race == RACE_LIGHT_PATHS)
+    return -1;
   job->raced = choice.count > 0 || race_is_asked(arguments);
   take_all(render, &choice);
   if (shared && job->raced) {

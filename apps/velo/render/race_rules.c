@@ -7,8 +7,9 @@
 #include "cli/kinds.h"
 #include "cli/report.h"
 
-/* The race is planned for at most MOST_SAMPLES, so that all longer renders of an image have the same race: a film of 64
- * samples that is continued to 256 is that of 256. With --time, PATHS_PER_SECOND count as one second. */
+/* The race is planned for at most MOST_SAMPLES, so that all longer renders of an image have the
+ * same race: a film of 64 samples that is continued to 256 is that of 256. With --time,
+ * PATHS_PER_SECOND count as one second. */
 enum { MOST_SAMPLES = 64, PATHS_PER_SECOND = 200000 };
 
 bool race_is_asked(const Arguments *arguments) {
@@ -17,28 +18,36 @@ bool race_is_asked(const Arguments *arguments) {
 }
 
 int race_check_options(const Arguments *arguments) {
-  if (!race_is_asked(arguments) || !arguments->values[RENDER_LIGHT_PATHS].given) return -1;
-  return report_usage("--light-paths: --tracer auto chooses their number; give the name of a tracer");
+  if (!race_is_asked(arguments) || !arguments->values[RENDER_LIGHT_PATHS].given)
+    return -1;
+  return report_usage(
+      "--light-paths: --tracer auto chooses their number; give the name of a tracer");
 }
 
 uint32_t race_samples(const vlSceneDefs *defs) {
   const vlRenderDef *render = &defs->render;
-  double pixels = (double)defs->film.width * defs->film.height, most = fmin(render->spp, MOST_SAMPLES);
-  if (render->time_limit > 0) most = fmin(most, render->time_limit * PATHS_PER_SECOND / pixels);
+  double pixels = (double)defs->film.width * defs->film.height,
+         most = fmin(render->spp, MOST_SAMPLES);
+  if (render->time_limit > 0)
+    most = fmin(most, render->time_limit * PATHS_PER_SECOND / pixels);
   return (uint32_t)most;
 }
 
 static bool is_default(const vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_LIGHT_PATHS].given || v[RENDER_MERGE_RADIUS].given || defs->build.imitate_pbrt) return false;
-  if (race_samples(defs) < RACE_LEAST_SAMPLES) return false;
+  if (v[RENDER_LIGHT_PATHS].given || v[RENDER_MERGE_RADIUS].given || defs->build.imitate_pbrt)
+    return false;
+  if (race_samples(defs) < RACE_LEAST_SAMPLES)
+    return false;
   bool free_paths = defs->render.light_paths == VL_AS_MANY_AS_PIXELS;
-  if (defs->render.tracer == VL_TRACER_BIDIRECTIONAL) return free_paths;
+  if (defs->render.tracer == VL_TRACER_BIDIRECTIONAL)
+    return free_paths;
   return defs->tracer_missing && !v[RENDER_TRACER].given;
 }
 
 RaceKind race_kind(const vlSceneDefs *defs, const Arguments *arguments) {
-  if (!race_is_asked(arguments) && !is_default(defs, arguments)) return RACE_NONE;
+  if (!race_is_asked(arguments) && !is_default(defs, arguments))
+    return RACE_NONE;
   return defs->render.tracer == VL_TRACER_BIDIRECTIONAL ? RACE_LIGHT_PATHS : RACE_TRACERS;
 }
 
@@ -50,19 +59,24 @@ void race_take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice) {
     def->light_paths = 0;
 }
 
-/* ---- the line ---------------------------------------------------------------------------------------------------- */
+/* ---- the line
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void trial_name(const vlTracerTrial *trial, char *text, size_t size) {
   bool camera = trial->tracer == VL_TRACER_VOLPATH;
   snprintf(text, size, "%s%s", kind_name("tracers", (int)trial->tracer),
-           trial->light_paths == VL_AS_MANY_AS_PIXELS || camera ? "" : " with a quarter of the light paths");
+           trial->light_paths == VL_AS_MANY_AS_PIXELS || camera
+               ? ""
+               : " with a quarter of the light paths");
 }
 
 void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t size) {
   char name[80], trials[400], chosen[80] = "";
   size_t n = 0;
   if (!choice->count) {
-    snprintf(text, size, "auto: %s (no race: docs/tracers.md says when)", kind_name("tracers", (int)choice->tracer));
+    snprintf(text, size, "auto: %s (no race: docs/tracers.md says when)",
+             kind_name("tracers", (int)choice->tracer));
     return;
   }
   for (uint32_t i = 0; i < choice->count; i++) {
@@ -70,9 +84,11 @@ void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t s
     trial_name(trial, name, sizeof name);
     if (trial->tracer == choice->tracer && trial->light_paths == choice->light_paths)
       snprintf(chosen, sizeof chosen, "%s", name);
-    n += (size_t)snprintf(trials + n, sizeof trials - n, "%s%s %.2g", i ? ", " : "", name, trial->work);
+    n += (size_t)snprintf(trials + n, sizeof trials - n, "%s%s %.2g", i ? ", " : "", name,
+                          trial->work);
   }
   if (kind == RACE_LIGHT_PATHS && choice->tracer == VL_TRACER_VOLPATH)
     snprintf(chosen, sizeof chosen, "no light paths");
-  snprintf(text, size, "%s: %s (error x rays: %s)", kind == RACE_TRACERS ? "auto" : "bidirectional", chosen, trials);
+  snprintf(text, size, "%s: %s (error x rays: %s)",
+           kind == RACE_TRACERS ? "auto" : "bidirectional", chosen, trials);
 }

@@ -1,4 +1,5 @@
-/* render/receipt.h: the receipt of a rendered image (velo/receipt.h, docs/receipts.md), its header attribute. */
+/* render/receipt.h: the receipt of a rendered image (velo/receipt.h, docs/receipts.md), its
+ * header attribute. */
 #ifndef APP_RENDER_RECEIPT_H
 #define APP_RENDER_RECEIPT_H
 
@@ -8,7 +9,9 @@
 
 /* The name of the attribute. */
 #define RECEIPT_ATTRIBUTE "velo.receipt"
-enum { RECEIPT_MOST_WORD = 4096 }; /* longest word of a receipt's command, bytes with the zero */
+enum {
+  RECEIPT_MOST_WORD = 4096
+}; /* longest word of a receipt's command, bytes with the zero */
 
 /* Settings shared by all receipts of a command. */
 typedef struct ReceiptPlan {
@@ -20,25 +23,31 @@ typedef struct ReceiptPlan {
 
 /* The image of which a receipt is made, besides its job. */
 typedef struct ReceiptImage {
-  const char *eye;            /* "left", "right": the file holds this eye alone; null: what --eye says */
-  bool is_frame;              /* the image is a frame of a trajectory */
-  uint32_t frame;             /* its number */
-  uint32_t samples;           /* samples per pixel */
+  const char *eye;  /* "left", "right": the file holds this eye alone; null: what --eye says */
+  bool is_frame;    /* the image is a frame of a trajectory */
+  uint32_t frame;   /* its number */
+  uint32_t samples; /* samples per pixel */
   const char *const *outputs; /* for a film: the image files of its render; null: none */
   uint32_t output_count;
 } ReceiptImage;
 
-/* Returns whether the option changes the content of an image. Other options choose output paths, speed or messages. */
+/* Returns whether the option changes the content of an image. Other options choose output
+ * paths, speed or messages. */
 bool receipt_option_counts(const Arguments *arguments, int option);
-vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job, const ReceiptImage *which,
-                      vlReceipt **receipt);
+vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job,
+                      const ReceiptImage *which, vlReceipt **receipt);
 /* Sets the attribute. Does nothing with --no-receipt. */
-vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *which, vlImage *image);
-/* Finds the receipt in a header. Returns -1, or the exit code after reporting that there is none or that it is wrong.
+vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *which,
+                     vlImage *image);
+/* Finds the receipt in a header. Returns -1, or the exit code after reporting that there is
+ * none or that it is wrong.
  */
-int receipt_of_image(vlContext *context, const vlImage *image, const char *path, vlReceipt **receipt);
-/* Checks the scene's path that a receipt holds: it must be that of a file. what, owner: the file that holds the
- * receipt, for messages; option: that by which it was given. Returns -1 or the exit code. */
-int receipt_check_scene(const char *path, const char *what, const char *owner, const char *option);
+int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
+                     vlReceipt **receipt);
+/* Checks the scene's path that a receipt holds: it must be that of a file. what, owner: the
+ * file that holds the receipt, for messages; option: that by which it was given. Returns -1 or
+ * the exit code. */
+int receipt_check_scene(const char *path, const char *what, const char *owner,
+                        const char *option);
 
 #endif

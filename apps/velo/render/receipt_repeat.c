@@ -8,10 +8,13 @@
 #include "cli/report.h"
 #include "render/receipt.h"
 
-/* ---- the command ------------------------------------------------------------------------------------------------- */
+/* ---- the command
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static int fail_command(const char *path, const char *why) {
-  return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", path, why);
+  return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s",
+                        path, why);
 }
 
 int receipt_parse_command(const vlReceipt *receipt, const char *path, Arguments *arguments) {
@@ -19,22 +22,30 @@ int receipt_parse_command(const vlReceipt *receipt, const char *path, Arguments 
   const char *word;
   int count = 0, most = (int)(sizeof words / sizeof *words);
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) {
-    if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(path, "it is not velo render");
-    if (i < 2) continue;
-    if (count == most) return fail_command(path, "it is too long");
-    if (strlen(word) >= RECEIPT_MOST_WORD) return fail_command(path, "a word is too long");
-    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(path, "it asks for help");
+    if (i < 2 && strcmp(word, i ? "render" : "velo") != 0)
+      return fail_command(path, "it is not velo render");
+    if (i < 2)
+      continue;
+    if (count == most)
+      return fail_command(path, "it is too long");
+    if (strlen(word) >= RECEIPT_MOST_WORD)
+      return fail_command(path, "a word is too long");
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)
+      return fail_command(path, "it asks for help");
     words[count++] = (char *)(uintptr_t)word; /* is not changed */
   }
-  if (count == 0) return fail_command(path, "there is none");
+  if (count == 0)
+    return fail_command(path, "there is none");
   report_usage_of(path);
   int status = options_parse(&render_command, count, words, arguments);
   report_usage_of(NULL);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   for (const Option *option = render_options; option->name; option++)
     if (arguments->values[option->id].given && !receipt_option_counts(arguments, option->id))
-      return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image", path,
-                            option->name);
+      return report_failure(
+          STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
+          path, option->name);
   return arguments->operand_count == 1 ? -1 : fail_command(path, "it names no scene");
 }
 
@@ -45,7 +56,9 @@ void receipt_take_names(Arguments *arguments, const Arguments *given) {
   arguments->folder_count = given->folder_count;
 }
 
-/* ---- differences ------------------------------------------------------------------------------------------------- */
+/* ---- differences
+ * -------------------------------------------------------------------------------------------------
+ */
 
 /* The first differences are named in one line; the rest are counted. */
 typedef struct Difference {
@@ -63,17 +76,21 @@ static bool name_difference(void *user, const char *text) {
   return true;
 }
 
-bool receipt_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts, char *text, size_t size) {
+bool receipt_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts,
+                         char *text, size_t size) {
   Difference difference = {.count = 0};
   vl_receipt_compare(then, now, parts, name_difference, &difference);
   char more[40] = "";
-  if (difference.more) snprintf(more, sizeof more, "; and %u more", difference.more);
+  if (difference.more)
+    snprintf(more, sizeof more, "; and %u more", difference.more);
   snprintf(text, size, "%s%s", difference.text, more);
   return difference.count > 0;
 }
 
-int receipt_report_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts, const char *path) {
+int receipt_report_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts,
+                               const char *path) {
   char text[600];
-  if (!receipt_differences(then, now, parts, text, sizeof text)) return -1;
+  if (!receipt_differences(then, now, parts, text, sizeof text))
+    return -1;
   return report_failure(STATUS_SCENE, "%s: %s", path, text);
 }

@@ -1,6 +1,6 @@
-/* render/render.c: `velo render`: reads the options, loads the scene, builds the world, plans outputs and memory; then
- * run.c renders one image, frames_render.c several. Only a render that reached its samples or its time replaces an
- * earlier image (outputs.h). */
+/* render/render.c: `velo render`: reads the options, loads the scene, builds the world, plans
+ * outputs and memory; then run.c renders one image, frames_render.c several. Only a render that
+ * reached its samples or its time replaces an earlier image (outputs.h). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -25,31 +25,38 @@
 /* A model becomes a .png, unless something is asked for that only .exr holds. */
 static const char *default_suffix(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  bool exr = v[RENDER_CHANNELS].given || v[RENDER_SPECTRUM].given || v[RENDER_HALF].given || v[RENDER_STEREO].given;
+  bool exr = v[RENDER_CHANNELS].given || v[RENDER_SPECTRUM].given || v[RENDER_HALF].given ||
+             v[RENDER_STEREO].given;
   return render->opening.model && !exr ? ".png" : ".exr";
 }
 
-/* The default output name: the last component of the name that the scene gives, otherwise the scene's name with the
- * suffix. It is in the current directory, since scenes may be untrusted. */
-static void choose_output(Render *render, const char *scene_path, const char *asked, const char *suffix) {
+/* The default output name: the last component of the name that the scene gives, otherwise the
+ * scene's name with the suffix. It is in the current directory, since scenes may be untrusted.
+ */
+static void choose_output(Render *render, const char *scene_path, const char *asked,
+                          const char *suffix) {
   bool eight_bit;
   const char *slash = strrchr(asked, '/');
-  if (slash) asked = slash + 1;
+  if (slash)
+    asked = slash + 1;
   if (output_suffix(asked, &eight_bit)) {
     snprintf(render->default_output, sizeof render->default_output, "%s", asked);
   } else {
     slash = strrchr(scene_path, '/');
     const char *name = slash ? slash + 1 : scene_path, *end = strstr(name, ".pbrt");
-    if (!end) end = strrchr(name, '.');
+    if (!end)
+      end = strrchr(name, '.');
     int length = end && end > name ? (int)(end - name) : (int)strlen(name);
-    snprintf(render->default_output, sizeof render->default_output, "%.*s%s", length > 500 ? 500 : length, name,
-             suffix);
+    snprintf(render->default_output, sizeof render->default_output, "%.*s%s",
+             length > 500 ? 500 : length, name, suffix);
   }
   render->outputs.paths[0] = render->default_output;
   render->outputs.count = 1;
 }
 
-/* ---- ground truth ------------------------------------------------------------------------------------------------ */
+/* ---- ground truth
+ * ------------------------------------------------------------------------------------------------
+ */
 
 static void warn_of_channels(const Render *render) {
   const Channels *c = &render->channels;
@@ -65,10 +72,12 @@ static void warn_of_channels(const Render *render) {
 static void warn_of_alpha(const Render *render) {
   for (int i = 0; i < render->outputs.count && render->outputs.transparent; i++)
     if (!output_holds_alpha(render->outputs.paths[i]))
-      report_warning("--transparent: %s cannot hold alpha, only .png and .exr can", render->outputs.paths[i]);
+      report_warning("--transparent: %s cannot hold alpha, only .png and .exr can",
+                     render->outputs.paths[i]);
 }
 
-/* ---- steps: each returns -1 to go on, else the exit code --------------------------------------------------------- */
+/* ---- steps: each returns -1 to go on, else the exit code
+ * --------------------------------------------------------- */
 
 static void set_up_reports(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
@@ -77,15 +86,19 @@ static void set_up_reports(const Arguments *arguments) {
                                                                    : REPORT_NORMAL);
 }
 
-/* Whether a file of this render holds a receipt: a film, or an .exr. Without -o the name of the image is known only
- * when the scene is loaded. */
+/* Whether a file of this render holds a receipt: a film, or an .exr. Without -o the name of the
+ * image is known only when the scene is loaded. */
 static bool writes_receipt(const Render *render, const Arguments *arguments) {
   const Outputs *outputs = &render->outputs;
-  if (arguments->values[RENDER_DRY_RUN].given) return false;
-  if (render->film_plan.path) return true;
-  if (arguments->values[RENDER_NO_RECEIPT].given) return false;
+  if (arguments->values[RENDER_DRY_RUN].given)
+    return false;
+  if (render->film_plan.path)
+    return true;
+  if (arguments->values[RENDER_NO_RECEIPT].given)
+    return false;
   for (int i = 0; i < outputs->count; i++)
-    if (output_holds_layers(outputs->paths[i])) return true;
+    if (output_holds_layers(outputs->paths[i]))
+      return true;
   return outputs->count == 0;
 }
 
@@ -98,21 +111,27 @@ static void record_files(Render *render, const Arguments *arguments) {
 /* Sets what the images' receipts have in common. From this call on, files are recorded. */
 static void start_receipt(Render *render, const Arguments *arguments) {
   const Again *again = &render->again;
-  render->receipt = (ReceiptPlan){
-      .arguments = arguments, .opening = &render->opening, .again = again->receipt, .again_is_ours = again->is_ours};
-  if (again->camera.given) render->job.receipt_camera = &again->camera;
-  if (!arguments->values[RENDER_NO_RECEIPT].given) render->job.receipt = &render->receipt;
+  render->receipt = (ReceiptPlan){.arguments = arguments,
+                                  .opening = &render->opening,
+                                  .again = again->receipt,
+                                  .again_is_ours = again->is_ours};
+  if (again->camera.given)
+    render->job.receipt_camera = &again->camera;
+  if (!arguments->values[RENDER_NO_RECEIPT].given)
+    render->job.receipt = &render->receipt;
   record_files(render, arguments);
 }
 
 /* Tells the context of files that others read: no output may replace them. */
 static int note_inputs(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  const char *const plain[] = {render->again.path,
-                               v[RENDER_DENOISER_LIBRARY].given ? v[RENDER_DENOISER_LIBRARY].text : NULL};
+  const char *const plain[] = {render->again.path, v[RENDER_DENOISER_LIBRARY].given
+                                                       ? v[RENDER_DENOISER_LIBRARY].text
+                                                       : NULL};
   vlResult result = VL_OK;
   for (size_t i = 0; i < sizeof plain / sizeof *plain && result != VL_ERROR_MEMORY; i++)
-    if (plain[i]) result = vl_note_input(render->context, plain[i], VL_OUTPUT_PLAIN);
+    if (plain[i])
+      result = vl_note_input(render->context, plain[i], VL_OUTPUT_PLAIN);
   if (render->resumed.path && result != VL_ERROR_MEMORY)
     result = vl_note_input(render->context, render->resumed.path, VL_OUTPUT_FILM);
   return result == VL_ERROR_MEMORY ? report_error(NULL, result, NULL) : -1;
@@ -120,20 +139,26 @@ static int note_inputs(const Render *render, const Arguments *arguments) {
 
 /* --sandbox: what the render opens besides the files of the scene. */
 static void confine(const Render *render, const Arguments *arguments) {
-  static const int inputs[] = {RENDER_CAMERA,      RENDER_TRAJECTORY,         RENDER_RIG,
-                               RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE, RENDER_DENOISER_LIBRARY};
+  static const int inputs[] = {
+      RENDER_CAMERA,      RENDER_TRAJECTORY,         RENDER_RIG,
+      RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE, RENDER_DENOISER_LIBRARY};
   const OptionValue *v = arguments->values;
   Confine c = {.sockets = v[RENDER_SERVE].given};
   confine_read(&c, arguments->operands[0]);
   confine_read(&c, render->again.path);
-  if (v[RENDER_ENVIRONMENT].given) confine_read(&c, v[RENDER_ENVIRONMENT].text);
+  if (v[RENDER_ENVIRONMENT].given)
+    confine_read(&c, v[RENDER_ENVIRONMENT].text);
   for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
-    if (v[inputs[i]].given) confine_read_folder(&c, v[inputs[i]].text);
-  for (int i = 0; i < render->outputs.count; i++) confine_write(&c, render->outputs.paths[i]);
-  if (!render->outputs.count) confine_write(&c, "default.exr"); /* its name is chosen later, its folder is this one */
+    if (v[inputs[i]].given)
+      confine_read_folder(&c, v[inputs[i]].text);
+  for (int i = 0; i < render->outputs.count; i++)
+    confine_write(&c, render->outputs.paths[i]);
+  if (!render->outputs.count)
+    confine_write(&c, "default.exr"); /* its name is chosen later, its folder is this one */
   confine_write(&c, render->film_plan.path);
   confine_write(&c, render->film_plan.from);
-  if (render->denoised.outputs.count) confine_write(&c, render->denoised.outputs.paths[0]);
+  if (render->denoised.outputs.count)
+    confine_write(&c, render->denoised.outputs.paths[0]);
   confine_apply(&c, arguments);
 }
 
@@ -142,26 +167,34 @@ static int make_context(Render *render, const Arguments *arguments) {
   int status = -1;
   vlContextDef def = vl_default_context_def();
   def.log = report_log;
-  if (v[RENDER_THREADS].given) def.threads = (uint32_t)v[RENDER_THREADS].integer;
-  if (v[RENDER_ISA].given) def.isa = (vlIsa)v[RENDER_ISA].integer;
-  if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
-  if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
+  if (v[RENDER_THREADS].given)
+    def.threads = (uint32_t)v[RENDER_THREADS].integer;
+  if (v[RENDER_ISA].given)
+    def.isa = (vlIsa)v[RENDER_ISA].integer;
+  if (v[RENDER_MAX_MEMORY].given)
+    def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
+  if (v[RENDER_MAX_TEXTURE].given)
+    def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
   def.sandbox = arguments->folders;
   def.sandbox_count = (uint32_t)arguments->folder_count;
   if (!render->context) {
     confine(render, arguments);
     status = context_open(&def, &render->context);
   }
-  if (status < 0) report_memory_of(render->context, def.max_memory);
-  if (status < 0) status = note_inputs(render, arguments);
+  if (status < 0)
+    report_memory_of(render->context, def.max_memory);
+  if (status < 0)
+    status = note_inputs(render, arguments);
   return status;
 }
 
 static int prepare(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given) return report_usage("--quiet and --verbose exclude each other");
+  if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given)
+    return report_usage("--quiet and --verbose exclude each other");
   Outputs *outputs = &render->outputs;
-  for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
+  for (int i = 0; i < arguments->text_count; i++)
+    outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
   render->film_plan = (FilmPlan){.path = v[RENDER_FILM].given       ? v[RENDER_FILM].text
                                          : v[RENDER_CONTINUE].given ? v[RENDER_CONTINUE].text
@@ -171,25 +204,39 @@ static int prepare(Render *render, const Arguments *arguments) {
                                  .receipt = &render->receipt,
                                  .outputs = &render->outputs,
                                  .channels = &render->channels};
-  if (render->film_plan.path) render->film_plan.path = output_opened(render->film_plan.path);
+  if (render->film_plan.path)
+    render->film_plan.path = output_opened(render->film_plan.path);
   outputs->to_stdout = true;
   outputs->half = v[RENDER_HALF].given;
   outputs->transparent = v[RENDER_TRANSPARENT].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
   int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
-  if (status < 0) status = channels_choose(&render->channels, arguments);
-  if (status < 0) status = outputs_check_names(outputs);
-  if (status < 0) status = shard_check(arguments);
-  if (status < 0) status = noise_check(arguments);
-  if (status < 0) status = race_check(render, arguments);
-  if (status < 0) status = frames_check(arguments, outputs);
-  if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
-  if (status < 0) status = outputs_check_folders(outputs);
-  if (status < 0) status = film_claim_check(v[RENDER_OVERWRITE].given, v[RENDER_FILM].text, render->film_plan.from);
-  const Outputs film = {
-      .paths = {render->film_plan.path}, .count = render->film_plan.path ? 1 : 0, .patterns = outputs->patterns};
-  if (status < 0) status = outputs_check_folders(&film);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = channels_choose(&render->channels, arguments);
+  if (status < 0)
+    status = outputs_check_names(outputs);
+  if (status < 0)
+    status = shard_check(arguments);
+  if (status < 0)
+    status = noise_check(arguments);
+  if (status < 0)
+    status = race_check(render, arguments);
+  if (status < 0)
+    status = frames_check(arguments, outputs);
+  if (status < 0)
+    status = denoised_choose(&render->denoised, arguments, outputs);
+  if (status < 0)
+    status = outputs_check_folders(outputs);
+  if (status < 0)
+    status = film_claim_check(v[RENDER_OVERWRITE].given, v[RENDER_FILM].text,
+                              render->film_plan.from);
+  const Outputs film = {.paths = {render->film_plan.path},
+                        .count = render->film_plan.path ? 1 : 0,
+                        .patterns = outputs->patterns};
+  if (status < 0)
+    status = outputs_check_folders(&film);
+  if (status >= 0)
+    return status;
 
   return make_context(render, arguments);
 }
@@ -212,14 +259,18 @@ static void add_frames(const Render *render, OutputNames *names) {
   }
 }
 
-/* Checks that no file which this command writes is one that it has read, and that no two are the same. */
+/* Checks that no file which this command writes is one that it has read, and that no two are
+ * the same. */
 static int check_outputs(const Render *render) {
   OutputNames names = {.frames = render->many};
-  if (render->many) add_frames(render, &names);
+  if (render->many)
+    add_frames(render, &names);
   for (int i = 0; i < render->outputs.count && !render->many; i++)
     output_names_add_image(&names, render->outputs.paths[i], true, render->channels.bits);
-  if (render->film_plan.path && !render->many) output_names_add(&names, render->film_plan.path, VL_OUTPUT_FILM);
-  if (render->denoised.outputs.count) output_names_add_image(&names, render->denoised.outputs.paths[0], true, false);
+  if (render->film_plan.path && !render->many)
+    output_names_add(&names, render->film_plan.path, VL_OUTPUT_FILM);
+  if (render->denoised.outputs.count)
+    output_names_add_image(&names, render->denoised.outputs.paths[0], true, false);
   return output_names_check(&names, render->context);
 }
 
@@ -230,44 +281,56 @@ static int check_sizes(const Render *render) {
   for (int i = 0; i < render->outputs.count; i++) {
     uint32_t most = output_largest_side(render->outputs.paths[i]);
     if (width > most || height > most)
-      return report_usage("output \"%s\": %u x %u pixels, this format holds at most %u each way",
-                          render->outputs.paths[i], width, height, most);
+      return report_usage(
+          "output \"%s\": %u x %u pixels, this format holds at most %u each way",
+          render->outputs.paths[i], width, height, most);
   }
   vlFilm *film_made = NULL; /* memory is allocated by the first pass */
   vlResult result = vl_film_create(render->context, film, &film_made);
   vl_film_destroy(film_made);
-  if (result == VL_OK) return -1;
+  if (result == VL_OK)
+    return -1;
   return job_no_film(&render->job, result);
 }
 
-/* A trajectory is metered by its first frame, so a part without that frame cannot be metered. */
+/* A trajectory is metered by its first frame, so a part without that frame cannot be metered.
+ */
 static int check_metering(const Outputs *outputs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   bool shard = v[RENDER_SHARD].given, eight_bit;
-  if (!outputs->meter || !v[RENDER_TRAJECTORY].given || !(shard || v[RENDER_SKIP_EXISTING].given)) return -1;
+  if (!outputs->meter || !v[RENDER_TRAJECTORY].given ||
+      !(shard || v[RENDER_SKIP_EXISTING].given))
+    return -1;
   for (int i = 0; i < outputs->count; i++)
     if (output_suffix(outputs->paths[i], &eight_bit) && eight_bit)
-      return report_usage("output \"%s\": the first frame would set the exposure: with %s give --exposure EV",
-                          outputs->paths[i], shard ? "--shard" : "--skip-existing");
+      return report_usage(
+          "output \"%s\": the first frame would set the exposure: with %s give --exposure EV",
+          outputs->paths[i], shard ? "--shard" : "--skip-existing");
   return -1;
 }
 
-/* Meters a model before the render, so that neither noise nor the crop nor a part of the work changes its exposure. */
+/* Meters a model before the render, so that neither noise nor the crop nor a part of the work
+ * changes its exposure. */
 static int meter_model(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   Outputs *outputs = &render->outputs;
   bool eight_bit = false;
-  for (int i = 0; i < outputs->count && !eight_bit; i++) output_suffix(outputs->paths[i], &eight_bit);
+  for (int i = 0; i < outputs->count && !eight_bit; i++)
+    output_suffix(outputs->paths[i], &eight_bit);
   bool wanted = outputs->meter || !v[RENDER_EXPOSURE].given;
-  eight_bit |= v[RENDER_NOISE].given; /* its threshold is of display values, also in parts without an image */
-  if (!render->opening.model || !eight_bit || !wanted || v[RENDER_DRY_RUN].given) return -1;
+  eight_bit |=
+      v[RENDER_NOISE]
+          .given; /* its threshold is of display values, also in parts without an image */
+  if (!render->opening.model || !eight_bit || !wanted || v[RENDER_DRY_RUN].given)
+    return -1;
   const vlCamera *camera = &render->job.camera;
   vlCamera first;
   vlError error = {0};
   if (render->many) {
     const Frame frame = frames_at(&render->frames, 0);
     vlResult result = frames_camera(&render->frames, &frame, 0, &first, &error);
-    if (result != VL_OK) return -1; /* the render reports it */
+    if (result != VL_OK)
+      return -1; /* the render reports it */
     camera = &first;
   }
   bool given = outputs->meter || render->opening.lamps;
@@ -276,10 +339,12 @@ static int meter_model(Render *render, const Arguments *arguments) {
     outputs->exposure = *outputs->shared;
     return -1;
   }
-  int status =
-      exposure_meter_model(render->context, render->world, camera, render->job.defs, given ? 0 : 1, &outputs->exposure);
-  if (status < 0 && outputs->shared) *outputs->shared = outputs->exposure;
-  if (status < 0 && (given || outputs->exposure != 0)) exposure_tell(outputs->exposure);
+  int status = exposure_meter_model(render->context, render->world, camera, render->job.defs,
+                                    given ? 0 : 1, &outputs->exposure);
+  if (status < 0 && outputs->shared)
+    *outputs->shared = outputs->exposure;
+  if (status < 0 && (given || outputs->exposure != 0))
+    exposure_tell(outputs->exposure);
   return status;
 }
 
@@ -314,7 +379,8 @@ static int build_world(Render *render, const char *path) {
   build->previous = shared ? shared->world : NULL;
   vlResult result = vl_world_build_last(render->scene, build, &render->world, &error);
   build->previous = NULL;
-  if (result != VL_OK) return report_error(&error, result, path);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
   if (shared) {
     vl_world_destroy(shared->world);
     shared->world = render->world;
@@ -322,8 +388,10 @@ static int build_world(Render *render, const char *path) {
   return -1;
 }
 
-static bool film_name(const Render *render, const char *pattern, int view, char *path, size_t size) {
-  if (!render->many) return snprintf(path, size, "%s", pattern) < (int)size;
+static bool film_name(const Render *render, const char *pattern, int view, char *path,
+                      size_t size) {
+  if (!render->many)
+    return snprintf(path, size, "%s", pattern) < (int)size;
   const Frame frame = frames_at(&render->frames, 0);
   return frames_path(&render->frames, &frame, pattern, view, path, size);
 }
@@ -331,17 +399,20 @@ static bool film_name(const Render *render, const char *pattern, int view, char 
 /* Locks the film files, and opens the films that are there. */
 static int claim_films(Render *render, const Arguments *arguments) {
   FilmPlan *plan = &render->film_plan;
-  if (!plan->path || arguments->values[RENDER_DRY_RUN].given) return -1;
+  if (!plan->path || arguments->values[RENDER_DRY_RUN].given)
+    return -1;
   int status = -1, views = render->many ? render->frames.views : 1;
   for (int view = 0; view < views && status < 0; view++) {
     char path[4096], from[4096];
     if (!film_name(render, plan->path, view, path, sizeof path) ||
         !film_name(render, plan->from ? plan->from : "", view, from, sizeof from))
       return report_failure(STATUS_IO, "%s: the file's name is too long", plan->path);
-    if (render->many && access(from, F_OK) != 0) *from = 0; /* an eye that was not begun */
+    if (render->many && access(from, F_OK) != 0)
+      *from = 0; /* an eye that was not begun */
     status = film_claim(&plan->claims[view], render->context, path, from, plan->overwrite);
   }
-  if (status >= 0 || render->many) return status;
+  if (status >= 0 || render->many)
+    return status;
   film_claim_take(&plan->claims[0], &render->job.defs->film);
   plan->whole.film.errors = render->job.defs->film.errors;
   return -1;
@@ -350,8 +421,10 @@ static int claim_films(Render *render, const Arguments *arguments) {
 static int load_frames(Render *render, const Arguments *arguments) {
   render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
   int status = frames_load(&render->frames, render->context, &render->job, arguments);
-  if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
-  if (status < 0) status = check_metering(&render->outputs, arguments);
+  if (status < 0)
+    status = frames_check_names(&render->frames, &render->outputs);
+  if (status < 0)
+    status = check_metering(&render->outputs, arguments);
   return status;
 }
 
@@ -360,47 +433,62 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   const bool kept = render->shared && render->shared->scene;
   start_receipt(render, arguments);
   int status = open_scene(render, path, arguments);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   double loaded = monotonic_seconds();
 
   status = job_make(&render->job, render->context, render->scene, path, arguments);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   warn_of_alpha(render);
   if (render->outputs.count == 0 && !render->film_plan.path) {
     choose_output(render, path, render->job.defs->output, default_suffix(render, arguments));
     record_files(render, arguments);
     status = outputs_check_folders(&render->outputs);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   status = denoised_check(&render->denoised, render->context);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   status = check_sizes(render);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   channels_take(&render->channels, &render->job);
   warn_of_channels(render);
   status = channels_load(&render->channels, render->context, &render->job);
-  if (status >= 0) return status;
-  render->job.defs->film.errors = ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
-                                   (run_has_layers(render) || render->film_plan.path)) ||
-                                  render->denoised.outputs.count;
+  if (status >= 0)
+    return status;
+  render->job.defs->film.errors =
+      ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
+       (run_has_layers(render) || render->film_plan.path)) ||
+      render->denoised.outputs.count;
   noise_apply(arguments, &render->outputs, render->job.defs);
   if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
     render->job.defs->render.sequence = vl_film_file_sequence(render->resumed.file);
   render->film_plan.whole = *render->job.defs;
   status = shard_apply(arguments, &render->job.defs->film, &render->job.defs->render);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   render->many = frames_wanted(arguments, &render->job);
-  if (render->many && arguments->values[RENDER_SERVE].given) return report_usage("--serve goes with one image");
-  if (render->many && render->denoised.outputs.count) return report_usage("--denoise goes with one image");
+  if (render->many && arguments->values[RENDER_SERVE].given)
+    return report_usage("--serve goes with one image");
+  if (render->many && render->denoised.outputs.count)
+    return report_usage("--denoise goes with one image");
   if (render->many) {
     status = load_frames(render, arguments);
-    if (status >= 0) return status;
+    if (status >= 0)
+      return status;
   }
   status = needs_check_render_scene(render, arguments);
-  if (status < 0) status = claim_films(render, arguments);
-  if (status < 0) status = race_plan(render, arguments);
-  if (status < 0) status = build_world(render, path);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = claim_films(render, arguments);
+  if (status < 0)
+    status = race_plan(render, arguments);
+  if (status < 0)
+    status = build_world(render, path);
+  if (status >= 0)
+    return status;
   vl_context_record_files(render->context, false);
   if (arguments->values[RENDER_VERBOSE].given && !kept) {
     char bytes[32];
@@ -416,10 +504,12 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
 static int reckon_memory(Render *render, const Arguments *arguments) {
   const OptionValue *limit = &arguments->values[RENDER_MAX_MEMORY];
   uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
-  memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs, &render->channels,
-              render->many ? &render->frames : NULL);
-  if (render->denoised.outputs.count) memory_add(&render->memory, "denoising", denoised_memory(run_pixels(render)));
-  if (report_is_json()) memory_report_json(&render->memory, most);
+  memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs,
+              &render->channels, render->many ? &render->frames : NULL);
+  if (render->denoised.outputs.count)
+    memory_add(&render->memory, "denoising", denoised_memory(run_pixels(render)));
+  if (report_is_json())
+    memory_report_json(&render->memory, most);
   if (arguments->values[RENDER_VERBOSE].given) {
     char list[400], total[32];
     memory_list(&render->memory, list, sizeof list);
@@ -440,10 +530,12 @@ static int check_again(const Render *render) {
     which.frame = first.number;
     job = &first.camera->job; /* a file of poses may have its own cameras */
     if (frames_count(frames) > 1)
-      return report_usage("--again: the images of a rig are made again by the command in the receipt");
+      return report_usage(
+          "--again: the images of a rig are made again by the command in the receipt");
   }
   /* several images have different cameras; the files and the command determine them */
-  return again_check(&render->again, &render->receipt, render->context, job, &which, !render->many);
+  return again_check(&render->again, &render->receipt, render->context, job, &which,
+                     !render->many);
 }
 
 /* Frees what a frame does not leave to the next one. */
@@ -453,19 +545,25 @@ static void free_render(Render *render) {
   frames_free(&render->frames);
   channels_free(&render->channels);
   film_keeper_free(&render->keeper);
-  for (int i = 0; i < 2; i++) film_claim_release(&render->film_plan.claims[i]);
+  for (int i = 0; i < 2; i++)
+    film_claim_release(&render->film_plan.claims[i]);
   vl_film_destroy(render->film);
-  if (!shared) vl_world_destroy(render->world);
-  if (!shared || render->scene != shared->scene) vl_scene_destroy(render->scene);
+  if (!shared)
+    vl_world_destroy(render->world);
+  if (!shared || render->scene != shared->scene)
+    vl_scene_destroy(render->scene);
   report_memory_of(NULL, 0);
-  if (!shared) context_close(render->context);
-  if (shared) shared->context = render->context;
+  if (!shared)
+    context_close(render->context);
+  if (shared)
+    shared->context = render->context;
   again_close(&render->again);
   continue_close(&render->resumed);
 }
 
 /* shared: what the frames of an animation have in common; null: this is one image. */
-static int render_once(const Command *command, const Arguments *arguments, AnimateShared *shared) {
+static int render_once(const Command *command, const Arguments *arguments,
+                       AnimateShared *shared) {
   Render render;
   memset(&render, 0, sizeof render);
   render.start = monotonic_seconds();
@@ -474,36 +572,54 @@ static int render_once(const Command *command, const Arguments *arguments, Anima
   render.context = shared ? shared->context : NULL;
   set_up_reports(arguments);
   int status = again_open(&render.again, &arguments);
-  if (status < 0) status = continue_open(&render.resumed, &arguments);
-  if (status < 0 && arguments->operand_count == 0)
-    status = report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
-  if (status < 0) status = prepare(&render, arguments);
-  if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
-  if (status < 0) status = check_outputs(&render);
-  if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
-  if (status < 0) status = race_run(&render, arguments);
-  if (status < 0) status = needs_check_render_tracer(&render, arguments);
-  if (status < 0) status = reckon_memory(&render, arguments);
-  if (status < 0) status = meter_model(&render, arguments);
-  if (status < 0 && shared && shared->preparing) status = STATUS_OK;
   if (status < 0)
-    status = noise_expose(&render.outputs, render.many, &render.job.defs->render, &render.film_plan.whole.render);
-  if (status < 0 && render.again.receipt) status = check_again(&render);
+    status = continue_open(&render.resumed, &arguments);
+  if (status < 0 && arguments->operand_count == 0)
+    status = report_usage("%s: too few arguments; usage: velo %s %s", command->name,
+                          command->name, command->usage);
+  if (status < 0)
+    status = prepare(&render, arguments);
+  if (status < 0)
+    status = load_and_build(&render, arguments->operands[0], arguments);
+  if (status < 0)
+    status = check_outputs(&render);
+  if (status < 0 && !render.many)
+    status = lens_autofocus(&render.job, render.scene, render.world);
+  if (status < 0)
+    status = race_run(&render, arguments);
+  if (status < 0)
+    status = needs_check_render_tracer(&render, arguments);
+  if (status < 0)
+    status = reckon_memory(&render, arguments);
+  if (status < 0)
+    status = meter_model(&render, arguments);
+  if (status < 0 && shared && shared->preparing)
+    status = STATUS_OK;
+  if (status < 0)
+    status = noise_expose(&render.outputs, render.many, &render.job.defs->render,
+                          &render.film_plan.whole.render);
+  if (status < 0 && render.again.receipt)
+    status = check_again(&render);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
-    job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);
+    job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths,
+                 render.outputs.count);
     if (render.many && frames_count(&render.frames) > 1)
-      report_note("%u frames%s", frames_count(&render.frames), render.frames.views == 2 ? ", two eyes each" : "");
+      report_note("%u frames%s", frames_count(&render.frames),
+                  render.frames.views == 2 ? ", two eyes each" : "");
     status = STATUS_OK;
   }
   if (status < 0 && render.many)
-    status = frames_render(&render.frames, render.context, render.world, &render.outputs, &render.channels);
-  if (status < 0) status = run_image(&render);
+    status = frames_render(&render.frames, render.context, render.world, &render.outputs,
+                           &render.channels);
+  if (status < 0)
+    status = run_image(&render);
   free_render(&render);
   return status;
 }
 
 static int run_render(const Command *command, const Arguments *arguments) {
-  if (arguments->operand_count && animate_wanted(arguments)) return animate_run(command, arguments, render_once);
+  if (arguments->operand_count && animate_wanted(arguments))
+    return animate_run(command, arguments, render_once);
   return render_once(command, arguments, NULL);
 }
 
@@ -512,9 +628,14 @@ const Command render_command = {
     .usage = "FILE [options]",
     .summary = "render a scene: .pbrt .gltf .glb .obj .ply .stl .off",
     .text =
-        "Renders FILE. Options override the settings in the file. After the first pass, and then about every\n"
-        "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it becomes NAME.EXT.\n"
-        "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film file of --film,\n"
+        "Renders FILE. Options override the settings in the file. After the first pass, and "
+        "then "
+        "about every\n"
+        "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it becomes "
+        "NAME.EXT.\n"
+        "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film file "
+        "of "
+        "--film,\n"
         "which the same command again continues, or --continue.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"

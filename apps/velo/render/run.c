@@ -1,5 +1,5 @@
-/* render/run.c: see run.h. The first pass is written at once and later ones at intervals, so that there is a progress
- * image. A signal stops the render and keeps its whole passes. */
+/* render/run.c: see run.h. The first pass is written at once and later ones at intervals, so
+ * that there is a progress image. A signal stops the render and keeps its whole passes. */
 #include "render/run.h"
 
 #include <stdio.h>
@@ -10,10 +10,13 @@
 #include "render/attributes.h"
 #include "render/noise.h"
 
-/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time. */
+/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time.
+ */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
-/* ---- files ------------------------------------------------------------------------------------------------------- */
+/* ---- files
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static int write_image(Render *render, OutputStage stage) {
   vlDevelopDef develop = vl_default_develop_def();
@@ -21,24 +24,29 @@ static int write_image(Render *render, OutputStage stage) {
   vlImage *image = NULL;
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &develop, &image);
-  if (result == VL_OK) result = attributes_set(image, &render->job, spp);
-  if (result == VL_OK) result = channels_describe(&render->channels, image);
+  if (result == VL_OK)
+    result = attributes_set(image, &render->job, spp);
+  if (result == VL_OK)
+    result = channels_describe(&render->channels, image);
   const ReceiptImage which = {.samples = spp};
-  if (result == VL_OK) result = receipt_set(render->context, &render->job, &which, image);
+  if (result == VL_OK)
+    result = receipt_set(render->context, &render->job, &which, image);
   int status = STATUS_OK;
   if (result == VL_OK)
     status = outputs_write(render->context, &render->outputs, image, spp, stage);
   else if (stage == OUTPUT_PROGRESS)
     report_warning("progress image: %s", vl_result_name(result));
   else
-    status = report_reason(result, render->outputs.paths[0], "the image and its header cannot be made");
+    status = report_reason(result, render->outputs.paths[0],
+                           "the image and its header cannot be made");
   vl_image_destroy(image);
   return status;
 }
 
 bool run_has_layers(const Render *render) {
   for (int i = 0; i < render->outputs.count && channels_any(&render->channels); i++)
-    if (output_holds_layers(render->outputs.paths[i])) return true;
+    if (output_holds_layers(render->outputs.paths[i]))
+      return true;
   return false;
 }
 
@@ -48,18 +56,21 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
   text[0] = 0;
   for (int i = 0; i < render->outputs.count; i++) {
     size_t n = strlen(text);
-    snprintf(text + n, size - n, "%s%s", i ? ", " : "", output_written(&render->outputs, i, stage, part, sizeof part));
+    snprintf(text + n, size - n, "%s%s", i ? ", " : "",
+             output_written(&render->outputs, i, stage, part, sizeof part));
   }
   if (render->denoised.written && stage != OUTPUT_PROGRESS) {
     size_t n = strlen(text);
-    snprintf(text + n, size - n, ", %s", output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
+    snprintf(text + n, size - n, ", %s",
+             output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
   }
 }
 
 /* Reported once, when the render outlasts its first progress images. */
 static void name_parts(Render *render, const vlProgress *now) {
   char files[1200];
-  if (render->part_named || now->remaining < WRITE_EVERY) return;
+  if (render->part_named || now->remaining < WRITE_EVERY)
+    return;
   render->part_named = true;
   list_files(render, OUTPUT_PROGRESS, files, sizeof files);
   report_note("the image so far is in %s", files);
@@ -70,8 +81,8 @@ uint64_t run_pixels(const Render *render) {
   return (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
 }
 
-/* Returns the smallest number of samples per pixel that suffices for every output. A denoiser needs more samples, for
- * its standard errors. */
+/* Returns the smallest number of samples per pixel that suffices for every output. A denoiser
+ * needs more samples, for its standard errors. */
 static uint32_t least_samples(const Render *render) {
   return render->denoised.outputs.count ? 2 : 1;
 }
@@ -80,9 +91,11 @@ static uint32_t least_samples(const Render *render) {
 static double finish_seconds(const Render *render) {
   const vlFilmDef *film = &render->job.defs->film;
   uint32_t spp = vl_film_spp(render->film);
-  double seconds = render->write_cost + film_keeper_seconds(&render->keeper, vl_film_memory(film));
+  double seconds =
+      render->write_cost + film_keeper_seconds(&render->keeper, vl_film_memory(film));
   if (run_has_layers(render))
-    seconds += channels_seconds(&render->channels, film->buckets, spp, render->first_pass, render->write_cost);
+    seconds += channels_seconds(&render->channels, film->buckets, spp, render->first_pass,
+                                render->write_cost);
   if (render->denoised.outputs.count)
     seconds += denoised_seconds(run_pixels(render), spp, render->first_pass, render->write_cost,
                                 vl_context_threads(render->context));
@@ -91,19 +104,27 @@ static double finish_seconds(const Render *render) {
 
 /* Sets the render's time limit so that the whole command ends after --time. */
 static void limit_time(Render *render) {
-  if (!(render->time_limit > 0)) return;
-  double left = render->time_limit - (render->render_start - render->start) - finish_seconds(render);
+  if (!(render->time_limit > 0))
+    return;
+  double left =
+      render->time_limit - (render->render_start - render->start) - finish_seconds(render);
   render->job.defs->render.time_limit = left > 1e-3 ? left : 1e-3;
-  if (vl_film_spp(render->film) < least_samples(render)) render->job.defs->render.time_limit = 0;
+  if (vl_film_spp(render->film) < least_samples(render))
+    render->job.defs->render.time_limit = 0;
 }
 
 static void write_progress_image(Render *render, const vlProgress *now) {
-  if (render->outputs.count == 0) return;
+  if (render->outputs.count == 0)
+    return;
   double start = monotonic_seconds(), wait = WRITE_SHARE * render->write_cost;
   bool ends = now->spp_done >= now->spp_total || now->remaining <= 2 * render->write_cost;
-  if (ends && render->time_limit > 0) return; /* the final image follows soon */
-  if (now->spp_done >= now->spp_total) return;
-  if (render->written_spp && start - render->last_write < (wait > WRITE_EVERY ? wait : WRITE_EVERY)) return;
+  if (ends && render->time_limit > 0)
+    return; /* the final image follows soon */
+  if (now->spp_done >= now->spp_total)
+    return;
+  if (render->written_spp &&
+      start - render->last_write < (wait > WRITE_EVERY ? wait : WRITE_EVERY))
+    return;
   write_image(render, OUTPUT_PROGRESS);
   name_parts(render, now);
   render->written_spp = vl_film_spp(render->film);
@@ -112,16 +133,19 @@ static void write_progress_image(Render *render, const vlProgress *now) {
 }
 
 static void write_checkpoint(Render *render, const vlProgress *now) {
-  if (now->spp_done < now->spp_total) film_keeper_checkpoint(&render->keeper, render->film);
+  if (now->spp_done < now->spp_total)
+    film_keeper_checkpoint(&render->keeper, render->film);
 }
 
 static bool on_progress(void *user, const vlProgress *now) {
   Render *render = user;
   progress_show(&render->progress, now);
   if (now->pass_done && !signals_pending()) {
-    if (!(render->first_pass > 0)) render->first_pass = now->elapsed;
+    if (!(render->first_pass > 0))
+      render->first_pass = now->elapsed;
     write_checkpoint(render, now);
-    if (render->serve) serve_film(render->serve, render->film, now);
+    if (render->serve)
+      serve_film(render->serve, render->film, now);
     write_progress_image(render, now);
     limit_time(render);
   }
@@ -129,30 +153,38 @@ static bool on_progress(void *user, const vlProgress *now) {
 }
 
 static int render_channels(Render *render) {
-  if (!run_has_layers(render)) return STATUS_OK;
+  if (!run_has_layers(render))
+    return STATUS_OK;
   Channels *channels = &render->channels;
-  int status = channels_render(channels, render->context, render->world, &render->job, render->film);
-  for (int k = 0; k < CHANNEL_LAYERS; k++) render->outputs.layers[k] = channels->layers[k];
+  int status =
+      channels_render(channels, render->context, render->world, &render->job, render->film);
+  for (int k = 0; k < CHANNEL_LAYERS; k++)
+    render->outputs.layers[k] = channels->layers[k];
   return status;
 }
 
 /* ---- the result
- * ------------------------------------------------------------------------------------------------------ */
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static void report_not_finite(const vlRenderStats *stats) {
   if (stats->not_finite)
-    report_warning("%llu samples were not finite or negative and were left out; the first one at pixel %u, %u",
-                   (unsigned long long)stats->not_finite, stats->worst_x, stats->worst_y);
+    report_warning(
+        "%llu samples were not finite or negative and were left out; the first one at pixel "
+        "%u, %u",
+        (unsigned long long)stats->not_finite, stats->worst_x, stats->worst_y);
 }
 
 static void report_memory(const Render *render) {
   char peak[32], needed[32];
   format_count(peak, sizeof peak, (double)memory_peak());
   format_count(needed, sizeof needed, (double)render->memory.total);
-  if (report_is_verbose()) report_note("memory: %sB at most, %sB were reckoned", peak, needed);
+  if (report_is_verbose())
+    report_note("memory: %sB at most, %sB were reckoned", peak, needed);
 }
 
-static void report_result(const Render *render, const vlRenderStats *stats, OutputStage stage, int status) {
+static void report_result(const Render *render, const vlRenderStats *stats, OutputStage stage,
+                          int status) {
   const Outputs *outputs = &render->outputs;
   uint64_t rays = stats->camera_rays + stats->bounce_rays + stats->shadow_rays;
   uint32_t spp = vl_film_spp(render->film);
@@ -176,19 +208,23 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     for (int i = 0; i < outputs->count && spp; i++)
       json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
     if (render->denoised.written)
-      json_text(&json, NULL, output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
-    if (render->film_plan.path && spp) json_text(&json, NULL, render->film_plan.path);
+      json_text(&json, NULL,
+                output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
+    if (render->film_plan.path && spp)
+      json_text(&json, NULL, render->film_plan.path);
     json_end(&json, ']');
     report_json_end(&json);
     return;
   }
   char time[32], speed[32], ray_count[32], files[1200];
   format_seconds(time, sizeof time, stats->seconds);
-  format_count(speed, sizeof speed, stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
+  format_count(speed, sizeof speed,
+               stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
   format_count(ray_count, sizeof ray_count, (double)rays);
   list_files(render, stage, files, sizeof files);
-  report_note("%u spp in %s, %s paths/s, %s rays; wrote %s%s%s", spp, time, speed, ray_count, files,
-              *files && render->film_plan.path ? ", " : "", render->film_plan.path ? render->film_plan.path : "");
+  report_note("%u spp in %s, %s paths/s, %s rays; wrote %s%s%s", spp, time, speed, ray_count,
+              files, *files && render->film_plan.path ? ", " : "",
+              render->film_plan.path ? render->film_plan.path : "");
   report_memory(render);
 }
 
@@ -201,14 +237,17 @@ static void report_late(const Render *render, uint32_t spp) {
     return;
   format_seconds(wanted, sizeof wanted, render->time_limit);
   format_seconds(taken, sizeof taken, elapsed);
-  report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp, taken, wanted);
+  report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp, taken,
+                 wanted);
 }
 
-/* Writes the final image with its ground truth. A stopped render is written before its ground truth is rendered, which
- * another signal may interrupt. *stage: the stage of the last write. */
+/* Writes the final image with its ground truth. A stopped render is written before its ground
+ * truth is rendered, which another signal may interrupt. *stage: the stage of the last write.
+ */
 static int write_last(Render *render, OutputStage *stage) {
   int written = STATUS_OK;
-  if (*stage == OUTPUT_STOPPED && run_has_layers(render)) written = write_image(render, *stage);
+  if (*stage == OUTPUT_STOPPED && run_has_layers(render))
+    written = write_image(render, *stage);
   int status = render_channels(render);
   if (status > 128) {
     *stage = OUTPUT_STOPPED;
@@ -220,33 +259,39 @@ static int write_last(Render *render, OutputStage *stage) {
   for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++) {
     char part[5000];
     if (render->channels.bits && output_holds_layers(render->outputs.paths[i]))
-      written = channels_write_ids(&render->channels, NULL, render->context, render->world,
-                                   output_written(&render->outputs, i, *stage, part, sizeof part));
+      written =
+          channels_write_ids(&render->channels, NULL, render->context, render->world,
+                             output_written(&render->outputs, i, *stage, part, sizeof part));
   }
   denoised_share_exposure(&render->denoised, &render->outputs);
   int code = write_image(render, *stage);
   if (code == STATUS_OK && status == STATUS_OK)
-    code = denoised_write(&render->denoised, render->context, render->world, &render->job, render->film, *stage);
+    code = denoised_write(&render->denoised, render->context, render->world, &render->job,
+                          render->film, *stage);
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 
 /* Makes the film, or reads the film to continue. */
 static int open_film(Render *render) {
   const FilmClaim *claim = &render->film_plan.claims[0];
-  int status = film_keeper_start(&render->keeper, &render->film_plan, 0, render->context, &render->job, NULL);
+  int status = film_keeper_start(&render->keeper, &render->film_plan, 0, render->context,
+                                 &render->job, NULL);
   if (status < 0)
-    status = continue_film(claim, render->receipt.arguments, render->keeper.receipt, render->context, render->job.defs,
-                           &render->film);
-  if (status >= 0 || render->film) return status;
+    status = continue_film(claim, render->receipt.arguments, render->keeper.receipt,
+                           render->context, render->job.defs, &render->film);
+  if (status >= 0 || render->film)
+    return status;
   vlResult result = vl_film_create(render->context, &render->job.defs->film, &render->film);
   return result == VL_OK ? -1 : job_no_film(&render->job, result);
 }
 
 /* The receipt of a render that ended at its time limit states the samples that it reached. */
 static int plan_reached(Render *render, uint32_t end) {
-  if (!(render->time_limit > 0) || end >= render->job.defs->render.spp) return -1;
+  if (!(render->time_limit > 0) || end >= render->job.defs->render.spp)
+    return -1;
   render->job.defs->render.spp = render->film_plan.whole.render.spp = end;
-  return film_keeper_describe(&render->keeper, &render->film_plan, render->context, &render->job, NULL);
+  return film_keeper_describe(&render->keeper, &render->film_plan, render->context,
+                              &render->job, NULL);
 }
 
 int run_image(Render *render) {
@@ -254,42 +299,57 @@ int run_image(Render *render) {
   vlError error = {0};
   vlRenderStats stats = {0};
   int opened = open_film(render);
-  if (opened >= 0) return opened;
+  if (opened >= 0)
+    return opened;
   if (render->receipt.arguments->values[RENDER_SERVE].given)
-    opened = serve_start(job, render->world, render->outputs.view, render->outputs.exposure, &render->serve);
-  if (opened >= 0) return opened;
+    opened = serve_start(job, render->world, render->outputs.view, render->outputs.exposure,
+                         &render->serve);
+  if (opened >= 0)
+    return opened;
   render->time_limit = job->defs->render.time_limit;
   render->begun_spp = vl_film_spp(render->film);
   if (render->film_plan.claims[0].earlier)
-    report_note("%s is continued from %u samples per pixel on", render->film_plan.path, render->begun_spp);
+    report_note("%s is continued from %u samples per pixel on", render->film_plan.path,
+                render->begun_spp);
   render->render_start = monotonic_seconds();
   progress_start(&render->progress, render->time_limit);
   limit_time(render);
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = render;
   signals_remember();
-  vlResult result = vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
+  vlResult result =
+      vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
   report_status_line(NULL);
   report_not_finite(&stats);
   noise_report(&job->defs->render, &stats);
-  if (result != VL_OK && result != VL_CANCELLED) return report_error(&error, result, job->path);
+  if (result != VL_OK && result != VL_CANCELLED)
+    return report_error(&error, result, job->path);
 
   uint32_t spp = vl_film_spp(render->film);
   OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
   if (!spp) {
-    report_failure(128 + signals_pending(), "interrupted before the first pass was done; nothing is written");
+    report_failure(128 + signals_pending(),
+                   "interrupted before the first pass was done; nothing is written");
     return 128 + signals_pending();
   }
-  if (stage == OUTPUT_STOPPED) report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
-  if (stage == OUTPUT_FINISHED && (opened = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
+  if (stage == OUTPUT_STOPPED)
+    report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
+  if (stage == OUTPUT_FINISHED &&
+      (opened = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
     return opened;
   int kept = film_keeper_finish(&render->keeper, render->film);
-  /* The image's receipt states the samples that its blocks needed at most; the film's states the limit. */
-  if (job->defs->render.noise > 0) job->defs->render.spp = spp;
+  /* The image's receipt states the samples that its blocks needed at most; the film's states
+   * the limit. */
+  if (job->defs->render.noise > 0)
+    job->defs->render.spp = spp;
   int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
-  if (kept != STATUS_OK && (status == STATUS_OK || status > 128)) status = kept;
-  if (status == STATUS_OK) report_late(render, spp);
-  if (signals_pending() && status == STATUS_OK) status = 128 + signals_pending();
-  if (status == STATUS_OK || status > 128) report_result(render, &stats, stage, status);
+  if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
+    status = kept;
+  if (status == STATUS_OK)
+    report_late(render, spp);
+  if (signals_pending() && status == STATUS_OK)
+    status = 128 + signals_pending();
+  if (status == STATUS_OK || status > 128)
+    report_result(render, &stats, stage, status);
   return status;
 }

@@ -1,4 +1,5 @@
-/* render/run.h: the state of `velo render`, and its last step: the render of one image and its files. */
+/* render/run.h: the state of `velo render`, and its last step: the render of one image and its
+ * files. */
 #ifndef APP_RENDER_RUN_H
 #define APP_RENDER_RUN_H
 
@@ -24,15 +25,16 @@ typedef struct Render {
   Outputs outputs;
   char default_output[600];
   Progress progress;
-  uint32_t begun_spp;            /* samples per pixel of a film that is continued */
-  uint32_t written_spp;          /* samples per pixel of the last progress image */
-  bool part_named;               /* the paths of the NAME.part.EXT files were reported */
-  double last_write, write_cost; /* seconds: when, and for how long, a progress image was written */
-  double first_pass;             /* seconds of the first pass, one sample; 0: not done */
-  double start, render_start;    /* start of the command, start of the first pass; seconds */
-  double time_limit;             /* --time, seconds; 0: none */
-  Channels channels;             /* of the ground truth */
-  Frames frames;                 /* of a trajectory, a rig or two eyes */
+  uint32_t begun_spp;   /* samples per pixel of a film that is continued */
+  uint32_t written_spp; /* samples per pixel of the last progress image */
+  bool part_named;      /* the paths of the NAME.part.EXT files were reported */
+  double last_write,
+      write_cost;    /* seconds: when, and for how long, a progress image was written */
+  double first_pass; /* seconds of the first pass, one sample; 0: not done */
+  double start, render_start; /* start of the command, start of the first pass; seconds */
+  double time_limit;          /* --time, seconds; 0: none */
+  Channels channels;          /* of the ground truth */
+  Frames frames;              /* of a trajectory, a rig or two eyes */
   MemoryPlan memory;
   Denoised denoised;
   bool many; /* whether `frames` is used */
@@ -42,8 +44,9 @@ typedef struct Render {
   FilmKeeper keeper;
   FilmPlan film_plan;
   ReceiptPlan receipt;
-  Serve *serve;                 /* the page of --serve; null: none */
-  struct AnimateShared *shared; /* what the frames of an animation have in common; null: this is one image */
+  Serve *serve; /* the page of --serve; null: none */
+  struct AnimateShared
+      *shared; /* what the frames of an animation have in common; null: this is one image */
 } Render;
 
 /* Whether an output holds ground truth. */

@@ -47,8 +47,10 @@ static void choose_environment(const char *text, vlCompleteDef *def) {
   def->path = text;
 }
 
-const Choice framing_choices[] = {
-    {"auto", VL_FRAMING_AUTO}, {"corner", VL_FRAMING_CORNER}, {"front", VL_FRAMING_FRONT}, {NULL, 0}};
+const Choice framing_choices[] = {{"auto", VL_FRAMING_AUTO},
+                                  {"corner", VL_FRAMING_CORNER},
+                                  {"front", VL_FRAMING_FRONT},
+                                  {NULL, 0}};
 const Choice walls_choices[] = {{"hide", 0}, {"keep", 1}, {NULL, 0}};
 const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {NULL, 0}};
 
@@ -60,21 +62,28 @@ static void choose_up(int axis, vlCompleteDef *def) {
   }
 }
 
-/* Reports the lecture's parameters of the added camera. d: distance of the view plane in pixels. */
+/* Reports the lecture's parameters of the added camera. d: distance of the view plane in
+ * pixels. */
 static void tell_camera(const vlSceneDefs *s) {
   const vlCameraDef *c = &s->camera;
-  double d = 0.5 * (s->film.width < s->film.height ? s->film.width : s->film.height) / tan(0.5 * c->fov);
+  double d = 0.5 * (s->film.width < s->film.height ? s->film.width : s->film.height) /
+             tan(0.5 * c->fov);
   report_note(
-      "no camera in the file: eye (%.5g, %.5g, %.5g), lookat (%.5g, %.5g, %.5g), up (%.3g, %.3g, %.3g), d %.5g "
+      "no camera in the file: eye (%.5g, %.5g, %.5g), lookat (%.5g, %.5g, %.5g), up (%.3g, "
+      "%.3g, "
+      "%.3g), d %.5g "
       "pixels",
-      c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0], c->up[1], c->up[2], d);
+      c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0],
+      c->up[1], c->up[2], d);
 }
 
 /* Reads --at T, --at T0:T1 and --shutter S. */
 static int choose_times(const OptionValue *v, vlLoadDef *load) {
   const OptionValue *at = &v[RENDER_AT], *shutter = &v[RENDER_SHUTTER];
-  if (shutter->given && !at->given) return report_usage("--shutter goes with --at SECONDS");
-  if (!at->given) return -1;
+  if (shutter->given && !at->given)
+    return report_usage("--shutter goes with --at SECONDS");
+  if (!at->given)
+    return -1;
   char *end;
   load->time = strtod(at->text, &end);
   bool ok = end != at->text && fabs(load->time) <= 1e6;
@@ -82,57 +91,74 @@ static int choose_times(const OptionValue *v, vlLoadDef *load) {
     const char *text = end + 1;
     load->time_close = strtod(text, &end);
     ok = end != text && fabs(load->time_close) <= 1e6;
-    if (ok && shutter->given) return report_usage("--at \"%s\" says already when the shutter closes", at->text);
+    if (ok && shutter->given)
+      return report_usage("--at \"%s\" says already when the shutter closes", at->text);
     if (ok && !(load->time_close >= load->time))
       return report_usage("--at \"%s\": the shutter cannot close before it opens", at->text);
   }
-  if (!ok || *end) return report_usage("--at \"%s\": must be SECONDS or T0:T1, within a million", at->text);
-  if (shutter->given) load->time_close = load->time + shutter->number;
+  if (!ok || *end)
+    return report_usage("--at \"%s\": must be SECONDS or T0:T1, within a million", at->text);
+  if (shutter->given)
+    load->time_close = load->time + shutter->number;
   return -1;
 }
 
 /* What is added to the scene. */
-static void choose_completion(const char *path, const Arguments *arguments, bool model, vlCompleteDef *complete) {
+static void choose_completion(const char *path, const Arguments *arguments, bool model,
+                              vlCompleteDef *complete) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_RESOLUTION].given) {
     complete->width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
     complete->height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
   }
-  if (v[RENDER_ENVIRONMENT].given) choose_environment(v[RENDER_ENVIRONMENT].text, complete);
+  if (v[RENDER_ENVIRONMENT].given)
+    choose_environment(v[RENDER_ENVIRONMENT].text, complete);
   if (v[RENDER_ENVIRONMENT_ROTATION].given)
     complete->rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
-  if (v[RENDER_ENVIRONMENT_STRENGTH].given) complete->strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
+  if (v[RENDER_ENVIRONMENT_STRENGTH].given)
+    complete->strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
   complete->ground = v[RENDER_GROUND].given;
-  /* Ground truth is of the file alone. A film that is continued keeps the ground that it has. */
-  complete->backdrop = model && !v[RENDER_NO_GROUND].given && (!v[RENDER_CHANNELS].given || arguments->channels_later);
+  /* Ground truth is of the file alone. A film that is continued keeps the ground that it has.
+   */
+  complete->backdrop = model && !v[RENDER_NO_GROUND].given &&
+                       (!v[RENDER_CHANNELS].given || arguments->channels_later);
   complete->open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
-  if (v[RENDER_FRAMING].given) complete->framing = (vlFraming)v[RENDER_FRAMING].integer;
+  if (v[RENDER_FRAMING].given)
+    complete->framing = (vlFraming)v[RENDER_FRAMING].integer;
   if (v[RENDER_UP].given)
     choose_up((int)v[RENDER_UP].integer, complete);
   else if (text_ends_with(path, ".stl") || text_ends_with(path, ".stl.gz"))
     choose_up(2, complete);
 }
 
-int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
-               SceneOpening *opening) {
+int scene_open(vlContext *context, const char *path, const Arguments *arguments,
+               vlScene **scene, SceneOpening *opening) {
   const OptionValue *v = arguments->values;
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
   load.cancel = opening->cancel;
   load.permissive = v[RENDER_PERMISSIVE].given;
   load.strict = v[RENDER_STRICT].given;
-  if (v[RENDER_SEARCH].given) load.search_path = v[RENDER_SEARCH].text;
+  if (v[RENDER_SEARCH].given)
+    load.search_path = v[RENDER_SEARCH].text;
   int status = choose_times(v, &load);
-  if (status >= 0) return status;
-  if (v[RENDER_SCENE].given) load.scene = v[RENDER_SCENE].text;
-  if (v[RENDER_ANIMATION].given) load.animation = v[RENDER_ANIMATION].text;
-  if (v[RENDER_VARIANT].given) load.variant = v[RENDER_VARIANT].text;
-  if (scene_camera_is_own(path, arguments)) load.camera = v[RENDER_CAMERA].text;
+  if (status >= 0)
+    return status;
+  if (v[RENDER_SCENE].given)
+    load.scene = v[RENDER_SCENE].text;
+  if (v[RENDER_ANIMATION].given)
+    load.animation = v[RENDER_ANIMATION].text;
+  if (v[RENDER_VARIANT].given)
+    load.variant = v[RENDER_VARIANT].text;
+  if (scene_camera_is_own(path, arguments))
+    load.camera = v[RENDER_CAMERA].text;
   vlResult result = vl_scene_create(context, scene);
   if (result == VL_OK)
-    result = opening->text ? vl_scene_load_memory(*scene, path, opening->text, strlen(opening->text), &load, &error)
+    result = opening->text ? vl_scene_load_memory(*scene, path, opening->text,
+                                                  strlen(opening->text), &load, &error)
                            : vl_scene_load(*scene, path, &load, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
 
   vlCompleteDef complete = vl_default_complete_def();
   vlSceneDefs *defs = vl_scene_defs(*scene);
@@ -147,14 +173,17 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (opening->environment == VL_ENVIRONMENT_AUTO)
     opening->environment = defs->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   result = vl_scene_complete(*scene, &complete, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
   opening->load = load;
   opening->complete = complete;
   if (v[RENDER_TURN].given && v[RENDER_CAMERA].given && !load.camera)
-    return report_usage("--turn turns the scene's own camera: it does not go with --camera FILE");
+    return report_usage(
+        "--turn turns the scene's own camera: it does not go with --camera FILE");
   opening->camera_added = camera;
   opening->camera = defs->camera;
-  if (v[RENDER_TURN].given) vl_scene_bounds(*scene, opening->low, opening->high);
+  if (v[RENDER_TURN].given)
+    vl_scene_bounds(*scene, opening->low, opening->high);
   scene_turn(opening, arguments, defs);
   return -1;
 }
@@ -163,7 +192,8 @@ void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlScene
   const OptionValue *turned = &arguments->values[RENDER_TURN];
   defs->camera = opening->camera;
   if (turned->given)
-    turn_camera(&defs->camera, opening->low, opening->high, opening->camera_added, opening->complete.up,
-                turned->number);
-  if (opening->camera_added) tell_camera(defs);
+    turn_camera(&defs->camera, opening->low, opening->high, opening->camera_added,
+                opening->complete.up, turned->number);
+  if (opening->camera_added)
+    tell_camera(defs);
 }

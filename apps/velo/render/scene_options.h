@@ -1,5 +1,5 @@
-/* render/scene_options.h: options of `velo render` about the scene: the camera, time and variant of a glTF file, and
- * the camera or light that is added if the file has none. */
+/* render/scene_options.h: options of `velo render` about the scene: the camera, time and
+ * variant of a glTF file, and the camera or light that is added if the file has none. */
 #ifndef APP_RENDER_SCENE_OPTIONS_H
 #define APP_RENDER_SCENE_OPTIONS_H
 
@@ -11,27 +11,29 @@
 typedef struct SceneOpening {
   vlLoadDef load;
   vlCompleteDef complete;
-  bool lamps;                    /* a file of a model (glTF, OBJ, PLY) with lights of its own */
-  const vlCancel *cancel;        /* input: stops the load; null: nothing does */
-  const char *text;              /* input: a pbrt scene in memory, in place of the file; null: the file */
-  bool model;                    /* a file of a model: its exposure is metered, its default output is a .png */
-  vlEnvironmentKind environment; /* what is added: VL_ENVIRONMENT_NONE or a kind other than VL_ENVIRONMENT_AUTO */
+  bool lamps;             /* a file of a model (glTF, OBJ, PLY) with lights of its own */
+  const vlCancel *cancel; /* input: stops the load; null: nothing does */
+  const char *text; /* input: a pbrt scene in memory, in place of the file; null: the file */
+  bool model; /* a file of a model: its exposure is metered, its default output is a .png */
+  vlEnvironmentKind environment; /* what is added: VL_ENVIRONMENT_NONE or a kind other than
+                                    VL_ENVIRONMENT_AUTO */
   bool camera_added;             /* the file has no camera: one was made for the scene */
   vlCameraDef camera;            /* before it was turned */
-  double low[3], high[3];        /* the scene's bounds, if the camera turns; low > high: it is empty */
+  double low[3], high[3]; /* the scene's bounds, if the camera turns; low > high: it is empty */
 } SceneOpening;
 
-/* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after reporting the error. */
-int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
-               SceneOpening *opening);
+/* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after
+ * reporting the error. */
+int scene_open(vlContext *context, const char *path, const Arguments *arguments,
+               vlScene **scene, SceneOpening *opening);
 /* Turns the camera as it was opened as --turn asks. *defs: the scene's. */
 void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs);
 /* Whether the file holds a model: a format other than pbrt. */
 bool scene_is_model(const char *path);
 /* Whether it is a glTF file, by its name. */
 bool scene_is_gltf(const char *path);
-/* Returns whether --camera names a camera of the scene. This requires that the scene is glTF and that no file has that
- * name. */
+/* Returns whether --camera names a camera of the scene. This requires that the scene is glTF
+ * and that no file has that name. */
 bool scene_camera_is_own(const char *path, const Arguments *arguments);
 
 #endif

@@ -1,4 +1,5 @@
-/* render/shard.h: which part of a film a command renders: samples A to B - 1, or a rectangle of its blocks. */
+/* render/shard.h: which part of a film a command renders: samples A to B - 1, or a rectangle of
+ * its blocks. */
 #ifndef APP_RENDER_SHARD_H
 #define APP_RENDER_SHARD_H
 

@@ -45,12 +45,14 @@ static void turn(const double axis[3], double degrees, const double *middle, dou
   }
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    p[i] = (middle ? middle[i] : 0) + c * v[i] + s * (axis[j] * v[k] - axis[k] * v[j]) + (1 - c) * along * axis[i];
+    p[i] = (middle ? middle[i] : 0) + c * v[i] + s * (axis[j] * v[k] - axis[k] * v[j]) +
+           (1 - c) * along * axis[i];
   }
 }
 
 /* Looks at the middle from a distance at which the sphere around the scene's box fits. */
-static void stand_back(vlCameraDef *camera, const double low[3], const double high[3], const double middle[3]) {
+static void stand_back(vlCameraDef *camera, const double low[3], const double high[3],
+                       const double middle[3]) {
   double radius = 0, length = 0, sine, cosine;
   sine_cosine(0.5 * camera->fov * (180 / 3.14159265358979323846), &sine, &cosine);
   for (int i = 0; i < 3; i++) {
@@ -65,15 +67,16 @@ static void stand_back(vlCameraDef *camera, const double low[3], const double hi
   }
 }
 
-void turn_camera(vlCameraDef *camera, const double low[3], const double high[3], bool automatic, const double up[3],
-                 double degrees) {
+void turn_camera(vlCameraDef *camera, const double low[3], const double high[3], bool automatic,
+                 const double up[3], double degrees) {
   const double length = vector_length(up);
   double middle[3], axis[3];
   for (int i = 0; i < 3; i++) {
     axis[i] = length > 0 ? up[i] / length : i == 1;
     middle[i] = low[0] <= high[0] ? 0.5 * (low[i] + high[i]) : 0;
   }
-  if (automatic && low[0] <= high[0]) stand_back(camera, low, high, middle);
+  if (automatic && low[0] <= high[0])
+    stand_back(camera, low, high, middle);
   if (camera->has_matrix) {
     for (int column = 0; column < 4; column++) {
       double *m = camera->world_from_camera, v[3] = {m[column], m[4 + column], m[8 + column]};

@@ -1,5 +1,5 @@
-/* scene/check.c: `velo scene check`: reads a scene, continuing after errors, checks its description, and prints all
- * findings with their positions to stdout. */
+/* scene/check.c: `velo scene check`: reads a scene, continuing after errors, checks its
+ * description, and prints all findings with their positions to stdout. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,17 +29,19 @@ typedef struct List {
   size_t count, capacity;
 } List;
 
-static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult code, const char *file, uint32_t line,
-                uint32_t column, const char *message) {
+static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult code,
+                const char *file, uint32_t line, uint32_t column, const char *message) {
   if (list->count == list->capacity) {
     size_t wanted = list->capacity ? 2 * list->capacity : 64;
     Entry *grown = realloc(list->items, wanted * sizeof *grown);
-    if (!grown) return; /* out of memory: the finding is lost */
+    if (!grown)
+      return; /* out of memory: the finding is lost */
     list->items = grown;
     list->capacity = wanted;
   }
   Entry *e = &list->items[list->count++];
-  *e = (Entry){.kind = kind, .severity = severity, .code = code, .line = line, .column = column};
+  *e =
+      (Entry){.kind = kind, .severity = severity, .code = code, .line = line, .column = column};
   snprintf(e->file, sizeof e->file, "%s", file ? file : "");
   snprintf(e->message, sizeof e->message, "%s", message);
 }
@@ -48,17 +50,18 @@ static void report_message(void *user, const vlError *e) {
   vlFindingKind kind = e->code == VL_OK              ? VL_FINDING_OVERWRITTEN
                        : e->code == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE
                                                      : VL_FINDING_WRONG;
-  add(user, kind, e->code == VL_OK ? VL_SEVERITY_WARNING : VL_SEVERITY_ERROR, e->code, e->file, e->line, e->column,
-      e->message);
+  add(user, kind, e->code == VL_OK ? VL_SEVERITY_WARNING : VL_SEVERITY_ERROR, e->code, e->file,
+      e->line, e->column, e->message);
 }
 
-/* The importer's warnings become findings; its notes do not. An error in its log does not end a render: what is wrong
- * is not used. */
+/* The importer's warnings become findings; its notes do not. An error in its log does not end a
+ * render: what is wrong is not used. */
 static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
   const bool wrong = level == VL_LOG_ERROR;
   if (level <= VL_LOG_WARNING)
-    add(user, wrong ? VL_FINDING_WRONG : VL_FINDING_REMARK, wrong ? VL_SEVERITY_WARNING : VL_SEVERITY_NOTE, VL_OK,
-        where ? where->file : "", where ? where->line : 0, where ? where->column : 0, message);
+    add(user, wrong ? VL_FINDING_WRONG : VL_FINDING_REMARK,
+        wrong ? VL_SEVERITY_WARNING : VL_SEVERITY_NOTE, VL_OK, where ? where->file : "",
+        where ? where->line : 0, where ? where->column : 0, message);
 }
 
 /* Returns -1 when the whole scene was checked. */
@@ -68,24 +71,30 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[CHECK_PERMISSIVE].given;
-  if (arguments->values[CHECK_SEARCH].given) load.search_path = arguments->values[CHECK_SEARCH].text;
+  if (arguments->values[CHECK_SEARCH].given)
+    load.search_path = arguments->values[CHECK_SEARCH].text;
   vlResult r = vl_scene_create(context, &scene);
-  if (r == VL_OK) r = vl_scene_diagnose(scene, arguments->operands[0], &load, report_message, list, &error);
+  if (r == VL_OK)
+    r = vl_scene_diagnose(scene, arguments->operands[0], &load, report_message, list, &error);
   bool read = r == VL_OK;
-  if (!read && r != VL_ERROR_MEMORY) report_message(list, &error);
+  if (!read && r != VL_ERROR_MEMORY)
+    report_message(list, &error);
   if (!read && r == VL_ERROR_SCENE)
     add(list, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, arguments->operands[0], 0, 0,
         "nothing after this place was looked at");
   vlCheckDef def = vl_default_check_def();
   def.images = !arguments->values[CHECK_NO_IMAGES].given;
-  if (read) r = vl_scene_check(scene, &def, &check, &error);
+  if (read)
+    r = vl_scene_check(scene, &def, &check, &error);
   for (uint32_t i = 0; r == VL_OK && i < vl_check_count(check); i++) {
     const vlFinding *f = vl_check_finding(check, i);
-    add(list, f->kind, f->severity, f->code, f->source.file, f->source.line, f->source.column, f->message);
+    add(list, f->kind, f->severity, f->code, f->source.file, f->source.line, f->source.column,
+        f->message);
   }
   vl_check_destroy(check);
   vl_scene_destroy(scene);
-  if (r == VL_ERROR_MEMORY) return report_error(&error, r, NULL);
+  if (r == VL_ERROR_MEMORY)
+    return report_error(&error, r, NULL);
   return -1;
 }
 
@@ -96,12 +105,16 @@ static void print_text(const List *list, const char *path, bool all) {
   for (int severity = VL_SEVERITY_ERROR; severity <= (int)VL_SEVERITY_NOTE; severity++)
     for (size_t i = 0; i < list->count; i++) {
       const Entry *e = &list->items[i];
-      if ((int)e->severity != severity) continue;
+      if ((int)e->severity != severity)
+        continue;
       total[severity]++;
-      if (of_kind[severity][e->kind]++ >= SHOWN && !all) continue;
+      if (of_kind[severity][e->kind]++ >= SHOWN && !all)
+        continue;
       text_print_plain(e->file[0] ? e->file : path);
-      if (e->line) printf(":%u", e->line);
-      if (e->line && e->column) printf(":%u", e->column);
+      if (e->line)
+        printf(":%u", e->line);
+      if (e->line && e->column)
+        printf(":%u", e->column);
       printf(": %s: ", severities[severity]);
       text_print_plain(e->message);
       printf(" [%s]\n", vl_finding_kind_name(e->kind));
@@ -109,18 +122,21 @@ static void print_text(const List *list, const char *path, bool all) {
   for (int severity = 0; severity < 3; severity++)
     for (int k = 0; k < (int)VL_FINDING_KINDS && !all; k++)
       if (of_kind[severity][k] > SHOWN)
-        printf("%zu more %ss of this kind: %s (--all shows them)\n", of_kind[severity][k] - SHOWN, severities[severity],
+        printf("%zu more %ss of this kind: %s (--all shows them)\n",
+               of_kind[severity][k] - SHOWN, severities[severity],
                vl_finding_kind_name((vlFindingKind)k));
-  if (list->count == 0) printf("nothing found\n");
+  if (list->count == 0)
+    printf("nothing found\n");
   if (list->count)
-    printf("%zu error%s, %zu warning%s, %zu note%s\n", total[0], total[0] == 1 ? "" : "s", total[1],
-           total[1] == 1 ? "" : "s", total[2], total[2] == 1 ? "" : "s");
+    printf("%zu error%s, %zu warning%s, %zu note%s\n", total[0], total[0] == 1 ? "" : "s",
+           total[1], total[1] == 1 ? "" : "s", total[2], total[2] == 1 ? "" : "s");
 }
 
 static void print_json(const List *list, const char *path, int status) {
   Json json = {.out = stdout};
   size_t total[3] = {0};
-  for (size_t i = 0; i < list->count; i++) total[list->items[i].severity]++;
+  for (size_t i = 0; i < list->count; i++)
+    total[list->items[i].severity]++;
   json_begin(&json, NULL, '{');
   json_text(&json, "file", path);
   json_integer(&json, "status", status);
@@ -131,13 +147,17 @@ static void print_json(const List *list, const char *path, int status) {
   for (int severity = 0; severity < 3; severity++)
     for (size_t i = 0; i < list->count; i++) {
       const Entry *e = &list->items[i];
-      if ((int)e->severity != severity) continue;
+      if ((int)e->severity != severity)
+        continue;
       json_begin(&json, NULL, '{');
       json_text(&json, "kind", vl_finding_kind_name(e->kind));
       json_text(&json, "severity", severities[severity]);
-      if (e->file[0]) json_text(&json, "file", e->file);
-      if (e->line) json_integer(&json, "line", e->line);
-      if (e->line && e->column) json_integer(&json, "column", e->column);
+      if (e->file[0])
+        json_text(&json, "file", e->file);
+      if (e->line)
+        json_integer(&json, "line", e->line);
+      if (e->line && e->column)
+        json_integer(&json, "column", e->column);
       json_text(&json, "message", e->message);
       json_end(&json, '}');
     }
@@ -146,17 +166,21 @@ static void print_json(const List *list, const char *path, int status) {
   putchar('\n');
 }
 
-/* The exit code of `velo render` for this scene; 1 when it would render, but probably not as intended. */
+/* The exit code of `velo render` for this scene; 1 when it would render, but probably not as
+ * intended. */
 static int status_of(const List *list) {
   int status = STATUS_OK;
   for (size_t i = 0; i < list->count; i++) {
     const Entry *e = &list->items[i];
-    if (e->severity == VL_SEVERITY_WARNING) status = STATUS_OTHER;
+    if (e->severity == VL_SEVERITY_WARNING)
+      status = STATUS_OTHER;
   }
   for (size_t i = 0; i < list->count; i++) {
     const Entry *e = &list->items[i];
     if (e->severity == VL_SEVERITY_ERROR)
-      return e->code == VL_ERROR_MISSING ? STATUS_MISSING : e->code == VL_ERROR_IO ? STATUS_IO : STATUS_SCENE;
+      return e->code == VL_ERROR_MISSING ? STATUS_MISSING
+             : e->code == VL_ERROR_IO    ? STATUS_IO
+                                         : STATUS_SCENE;
   }
   return status;
 }
@@ -166,7 +190,8 @@ static int run(const Command *command, const Arguments *arguments) {
   vlContext *context = NULL;
   List list = {0};
   int status = scene_context(&context, arguments, logged, &list);
-  if (status < 0) status = look(context, arguments, &list);
+  if (status < 0)
+    status = look(context, arguments, &list);
   if (status < 0) {
     status = status_of(&list);
     if (arguments->values[CHECK_JSON].given)
@@ -182,8 +207,10 @@ static int run(const Command *command, const Arguments *arguments) {
 
 static const Option options[] = {
     {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "print every finding; default: the first 10 of each kind"},
-    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL, "do not read texture images; missing ones are still reported"},
+    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL,
+     "print every finding; default: the first 10 of each kind"},
+    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL,
+     "do not read texture images; missing ones are still reported"},
     {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "parts of the scene that velo does not understand are notes, not errors"},
     SCENE_SEARCH_OPTION(CHECK_SEARCH),
@@ -195,12 +222,22 @@ const Command scene_check_command = {
     .usage = "FILE [options]",
     .summary = "find errors and likely mistakes in a scene",
     .text =
-        "Reads a scene, continues after errors, and prints all findings, each with its kind and its place\n"
-        "in the file: missing, damaged and invalid files; unused and overwritten names; solids of glass\n"
-        "that are open or inside out; media that overlap; faces without area; textures over uv on a mesh\n"
-        "without uv; surfaces that reflect more light than they receive; a camera inside a solid; lights\n"
+        "Reads a scene, continues after errors, and prints all findings, each with its kind "
+        "and "
+        "its place\n"
+        "in the file: missing, damaged and invalid files; unused and overwritten names; solids "
+        "of "
+        "glass\n"
+        "that are open or inside out; media that overlap; faces without area; textures over uv "
+        "on "
+        "a mesh\n"
+        "without uv; surfaces that reflect more light than they receive; a camera inside a "
+        "solid; "
+        "lights\n"
         "of power 0. Renders nothing.\n\n"
-        "exit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error that would end velo render",
+        "exit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error that would end "
+        "velo "
+        "render",
     .examples =
         "velo scene check room.pbrt\n"
         "velo scene check --json --no-images model.glb",

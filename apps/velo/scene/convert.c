@@ -1,4 +1,5 @@
-/* scene/convert.c: `velo scene convert`: converts a scene to another format and reports losses. */
+/* scene/convert.c: `velo scene convert`: converts a scene to another format and reports losses.
+ */
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -29,16 +30,22 @@ static const Option convert_options[] = {
     {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL,
      "anything that B's format cannot hold is an error, and nothing is written"},
     {CONVERT_COMPLETE, 0, "complete", OPTION_FLAG, NULL,
-     "add the camera and light that A lacks, as velo render does; always done if B is a .pbrt file"},
+     "add the camera and light that A lacks, as velo render does; always done if B is a .pbrt "
+     "file"},
     {CONVERT_PROVE, 0, "prove", OPTION_FLAG, NULL,
-     "render A and B, 256 pixels wide, and print for each material the ratio of its brightness, B divided by A, in "
+     "render A and B, 256 pixels wide, and print for each material the ratio of its "
+     "brightness, B "
+     "divided by A, in "
      "red, green and blue"},
-    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: camera to write, by name or number from 0"},
+    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME",
+     "glTF: camera to write, by name or number from 0"},
     {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS",
-     "glTF: time of the animation in seconds; default: the model without animation", 0, 1e9, NULL},
+     "glTF: time of the animation in seconds; default: the model without animation", 0, 1e9,
+     NULL},
     {CONVERT_ANIMATION, 0, "animation", OPTION_TEXT, "NAME",
      "glTF: animation to play, by name or number from 0; several separated by commas, or all"},
-    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant to use, by name"},
+    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME",
+     "glTF: material variant to use, by name"},
     {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "parts of the scene that velo does not understand are warnings, not errors"},
     SCENE_SEARCH_OPTION(CONVERT_SEARCH),
@@ -61,32 +68,45 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (!pbrt && !text_ends_with(to, ".gltf") && !text_ends_with(to, ".glb"))
     return report_usage("%s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", to);
   int status = scene_context(&context, arguments, report_log, NULL);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   vlLoadDef load = vl_default_load_def();
   load.permissive = v[CONVERT_PERMISSIVE].given;
-  if (v[CONVERT_SEARCH].given) load.search_path = v[CONVERT_SEARCH].text;
-  if (v[CONVERT_CAMERA].given) load.camera = v[CONVERT_CAMERA].text;
-  if (v[CONVERT_VARIANT].given) load.variant = v[CONVERT_VARIANT].text;
-  if (v[CONVERT_ANIMATION].given) load.animation = v[CONVERT_ANIMATION].text;
-  if (v[CONVERT_AT].given) load.time = v[CONVERT_AT].number;
+  if (v[CONVERT_SEARCH].given)
+    load.search_path = v[CONVERT_SEARCH].text;
+  if (v[CONVERT_CAMERA].given)
+    load.camera = v[CONVERT_CAMERA].text;
+  if (v[CONVERT_VARIANT].given)
+    load.variant = v[CONVERT_VARIANT].text;
+  if (v[CONVERT_ANIMATION].given)
+    load.animation = v[CONVERT_ANIMATION].text;
+  if (v[CONVERT_AT].given)
+    load.time = v[CONVERT_AT].number;
   vlSaveDef save = vl_default_save_def();
   save.strict = v[CONVERT_STRICT].given;
   save.lost = tell;
   vlResult result = vl_scene_create(context, &scene);
-  if (result == VL_OK) result = vl_scene_load(scene, from, &load, &error);
+  if (result == VL_OK)
+    result = vl_scene_load(scene, from, &load, &error);
   const vlSceneDefs *defs = scene ? vl_scene_defs(scene) : NULL;
-  if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) && (defs->camera_missing || defs->light_missing)) {
+  if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) &&
+      (defs->camera_missing || defs->light_missing)) {
     result = vl_scene_complete(scene, NULL, &error);
-    if (result == VL_OK) report_note("%s lacks a camera or light: those that velo render would make are written", from);
+    if (result == VL_OK)
+      report_note("%s lacks a camera or light: those that velo render would make are written",
+                  from);
   }
-  if (result != VL_OK) status = report_error(&error, result, from);
-  if (status < 0) status = output_check(context, to, VL_OUTPUT_PLAIN);
+  if (result != VL_OK)
+    status = report_error(&error, result, from);
+  if (status < 0)
+    status = output_check(context, to, VL_OUTPUT_PLAIN);
   if (status < 0) {
     result = vl_scene_save(scene, to, &save, &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, to);
   }
   vl_scene_destroy(scene);
-  if (status == STATUS_OK && v[CONVERT_PROVE].given) status = convert_prove(context, &load, from, to);
+  if (status == STATUS_OK && v[CONVERT_PROVE].given)
+    status = convert_prove(context, &load, from, to);
   context_close(context);
   return status;
 }
@@ -96,8 +116,11 @@ const Command scene_convert_command = {
     .usage = "A B [options]",
     .summary = "write a scene in another format: .gltf, .glb, .pbrt",
     .text =
-        "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of B's suffix. What that\n"
-        "format cannot hold exactly is reported: one line per kind, with the number of occurrences.",
+        "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of B's "
+        "suffix. "
+        "What that\n"
+        "format cannot hold exactly is reported: one line per kind, with the number of "
+        "occurrences.",
     .examples =
         "velo scene convert room.pbrt room.glb\n"
         "velo scene convert model.gltf model.pbrt",

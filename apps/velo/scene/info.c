@@ -1,5 +1,5 @@
-/* scene/info.c: `velo scene info`: the content of a scene: counts, extent, memory, camera, film, lights, unused
- * definitions. Also functions shared by the scene commands. */
+/* scene/info.c: `velo scene info`: the content of a scene: counts, extent, memory, camera,
+ * film, lights, unused definitions. Also functions shared by the scene commands. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,8 @@
 #include "scene/scene.h"
 #include "velo/check.h"
 
-int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user) {
+int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
+                  void *log_user) {
   vlContextDef def = vl_default_context_def();
   def.log = log;
   def.log_user = log_user;
@@ -23,7 +24,8 @@ int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
   def.sandbox_count = (uint32_t)arguments->folder_count;
   Confine confine = {.read_count = 0};
   confine_read(&confine, arguments->operands[0]);
-  if (arguments->operand_count > 1) confine_write(&confine, arguments->operands[1]);
+  if (arguments->operand_count > 1)
+    confine_write(&confine, arguments->operands[1]);
   confine_apply(&confine, arguments);
   return context_open(&def, context);
 }
@@ -45,7 +47,8 @@ static void count(const char *name, uint64_t n) {
 }
 
 static void eye_of(const vlCameraDef *d, double eye[3]) {
-  for (int k = 0; k < 3; k++) eye[k] = d->has_matrix ? d->world_from_camera[4 * k + 3] : d->eye[k];
+  for (int k = 0; k < 3; k++)
+    eye[k] = d->has_matrix ? d->world_from_camera[4 * k + 3] : d->eye[k];
 }
 
 static void print_lights(const Facts *f) {
@@ -53,21 +56,25 @@ static void print_lights(const Facts *f) {
   printf("lights      %u\n", n);
   for (uint32_t i = 0; i < n && i < LIGHTS; i++) {
     vlLightInfo l;
-    if (vl_scene_light_info(f->scene, i, &l) != VL_OK) continue;
+    if (vl_scene_light_info(f->scene, i, &l) != VL_OK)
+      continue;
     printf("  %-9s ", l.kind);
     if (isfinite(l.power))
       printf("power %-10.5g", l.power);
     else
       printf("%-16s", "of an image");
-    if (l.faces > 1) printf(" %llu faces", (unsigned long long)l.faces);
+    if (l.faces > 1)
+      printf(" %llu faces", (unsigned long long)l.faces);
     if (l.source.file) {
       printf("  ");
       text_print_plain(l.source.file);
-      if (l.source.line) printf(":%u", l.source.line);
+      if (l.source.line)
+        printf(":%u", l.source.line);
     }
     putchar('\n');
   }
-  if (n > LIGHTS) printf("  and %u more\n", n - LIGHTS);
+  if (n > LIGHTS)
+    printf("  and %u more\n", n - LIGHTS);
 }
 
 /* Returns the name in scene files, or the constant's name if files have none. */
@@ -82,7 +89,8 @@ static void count_kinds(const Facts *f, const char *name, uint64_t all) {
   printf("%-12s%llu", name, (unsigned long long)all);
   for (uint32_t i = 0; all && i < family->kind_count; i++) {
     uint64_t n = vl_scene_kind_count(f->scene, name, i);
-    if (!n) continue;
+    if (!n)
+      continue;
     printf("%s%llu %s", before, (unsigned long long)n, name_of(family, i));
     before = ", ";
   }
@@ -93,15 +101,24 @@ static void count_kinds(const Facts *f, const char *name, uint64_t all) {
 static bool value_of(const vlParameter *p, const void *def, char text[32]) {
   const void *at = (const char *)def + p->offset;
   const double scale = p->factor != 0 ? 1 / p->factor : 1;
-  if (!p->name || !p->size) return false;
+  if (!p->name || !p->size)
+    return false;
   switch (p->type) {
-    case VL_PARAMETER_BOOL: snprintf(text, 32, "%s", *(const bool *)at ? "true" : "false"); return true;
-    case VL_PARAMETER_COUNT: snprintf(text, 32, "%u", *(const uint32_t *)at); return true;
-    case VL_PARAMETER_FLOAT: snprintf(text, 32, "%.6g", scale * (double)*(const float *)at); return true;
+    case VL_PARAMETER_BOOL:
+      snprintf(text, 32, "%s", *(const bool *)at ? "true" : "false");
+      return true;
+    case VL_PARAMETER_COUNT:
+      snprintf(text, 32, "%u", *(const uint32_t *)at);
+      return true;
+    case VL_PARAMETER_FLOAT:
+      snprintf(text, 32, "%.6g", scale * (double)*(const float *)at);
+      return true;
     case VL_PARAMETER_DOUBLE:
       snprintf(text, 32, "%.6g", scale * *(const double *)at);
       return *(const double *)at == *(const double *)at;
-    case VL_PARAMETER_CHOICE: snprintf(text, 32, "%s", p->choices[*(const int *)at]); return true;
+    case VL_PARAMETER_CHOICE:
+      snprintf(text, 32, "%s", p->choices[*(const int *)at]);
+      return true;
     case VL_PARAMETER_FLOAT3:
     case VL_PARAMETER_DOUBLE3:
     case VL_PARAMETER_STRING:
@@ -111,12 +128,14 @@ static bool value_of(const vlParameter *p, const void *def, char text[32]) {
     case VL_PARAMETER_SPECTRUM_INPUT:
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: return false;
+    case VL_PARAMETER_BLOCK:
+      return false;
   }
   return false;
 }
 
-/* What the scene's file chose: a kind of each of these families, with the parameters of its row. */
+/* What the scene's file chose: a kind of each of these families, with the parameters of its
+ * row. */
 typedef struct Chosen {
   const char *key, *family;
   int kind;
@@ -132,7 +151,8 @@ static void chosen(const vlSceneDefs *defs, Chosen list[CHOSEN]) {
 
 static bool is_repeated(const vlKindRow *row, uint32_t i) {
   for (uint32_t k = 0; k < i; k++)
-    if (row->parameters[k].name && row->parameters[k].offset == row->parameters[i].offset) return true;
+    if (row->parameters[k].name && row->parameters[k].offset == row->parameters[i].offset)
+      return true;
   return false;
 }
 
@@ -145,7 +165,8 @@ static void print_chosen(const vlSceneDefs *defs) {
     printf("%-12s%s", list[k].key, row->name);
     for (uint32_t i = 0; i < row->parameter_count; i++) {
       char text[32];
-      if (is_repeated(row, i) || !value_of(&row->parameters[i], list[k].def, text)) continue;
+      if (is_repeated(row, i) || !value_of(&row->parameters[i], list[k].def, text))
+        continue;
       printf("%s%s %s", before, row->parameters[i].name, text);
       before = ", ";
     }
@@ -165,20 +186,22 @@ static void print_text(const Facts *f) {
   count_kinds(f, "textures", f->info.textures);
   count_kinds(f, "materials", f->info.materials);
   count_kinds(f, "media", f->info.media);
-  printf("memory      %.1f MB for the description, read in %.2f s\n", (double)f->bytes / 1e6, f->seconds);
+  printf("memory      %.1f MB for the description, read in %.2f s\n", (double)f->bytes / 1e6,
+         f->seconds);
   if (f->low[0] <= f->high[0])
-    printf("bounds      (%.5g, %.5g, %.5g) to (%.5g, %.5g, %.5g)\n", f->low[0], f->low[1], f->low[2], f->high[0],
-           f->high[1], f->high[2]);
+    printf("bounds      (%.5g, %.5g, %.5g) to (%.5g, %.5g, %.5g)\n", f->low[0], f->low[1],
+           f->low[2], f->high[0], f->high[1], f->high[2]);
   eye_of(&defs->camera, eye);
   if (defs->camera_missing)
     printf("camera      none: velo render makes one\n");
   else
-    printf("camera      %s at (%.5g, %.5g, %.5g)\n", vl_projection_name(defs->camera.projection), eye[0], eye[1],
-           eye[2]);
+    printf("camera      %s at (%.5g, %.5g, %.5g)\n",
+           vl_projection_name(defs->camera.projection), eye[0], eye[1], eye[2]);
   printf("film        %u x %u", defs->film.width, defs->film.height);
   if (defs->film.crop[0] || defs->film.crop[1] || defs->film.crop[2] != defs->film.width ||
       defs->film.crop[3] != defs->film.height)
-    printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2], defs->film.crop[3]);
+    printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2],
+           defs->film.crop[3]);
   putchar('\n');
   print_chosen(defs);
   info_print_choices(f->scene);
@@ -187,25 +210,32 @@ static void print_text(const Facts *f) {
   uint32_t unused = 0;
   for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
     const vlFinding *u = vl_check_finding(f->check, i);
-    if (u->kind != VL_FINDING_UNUSED) continue;
-    if (!unused++) printf("unused\n");
+    if (u->kind != VL_FINDING_UNUSED)
+      continue;
+    if (!unused++)
+      printf("unused\n");
     printf("  ");
     text_print_plain(u->message);
-    if (u->source.line) printf(" (line %u)", u->source.line);
+    if (u->source.line)
+      printf(" (line %u)", u->source.line);
     putchar('\n');
   }
 }
 
 static void json_box(Json *json, const char *key, const double v[3]) {
   json_begin(json, key, '[');
-  for (int k = 0; k < 3; k++) json_number(json, NULL, v[k]);
+  for (int k = 0; k < 3; k++)
+    json_number(json, NULL, v[k]);
   json_end(json, ']');
 }
 
 static void json_place(Json *json, const vlSource *source) {
-  if (source->file) json_text(json, "file", source->file);
-  if (source->line) json_integer(json, "line", source->line);
-  if (source->line && source->column) json_integer(json, "column", source->column);
+  if (source->file)
+    json_text(json, "file", source->file);
+  if (source->line)
+    json_integer(json, "line", source->line);
+  if (source->line && source->column)
+    json_integer(json, "column", source->column);
 }
 
 /* Things of each kind: {"materials": {"diffuse": 5}, ...}. */
@@ -217,7 +247,8 @@ static void json_kinds(Json *json, const Facts *f) {
     json_begin(json, families[k], '{');
     for (uint32_t i = 0; i < family->kind_count; i++) {
       uint64_t n = vl_scene_kind_count(f->scene, families[k], i);
-      if (n) json_integer(json, name_of(family, i), (int64_t)n);
+      if (n)
+        json_integer(json, name_of(family, i), (int64_t)n);
     }
     json_end(json, '}');
   }
@@ -234,7 +265,8 @@ static void json_chosen(Json *json, const vlSceneDefs *defs) {
     for (uint32_t i = 0; i < row->parameter_count; i++) {
       const vlParameter *p = &row->parameters[i];
       char text[32];
-      if (is_repeated(row, i) || !value_of(p, list[k].def, text)) continue;
+      if (is_repeated(row, i) || !value_of(p, list[k].def, text))
+        continue;
       if (p->type == VL_PARAMETER_CHOICE)
         json_text(json, p->name, text);
       else if (p->type == VL_PARAMETER_BOOL)
@@ -258,7 +290,8 @@ static void json_defs(Json *json, const vlSceneDefs *defs) {
   json_integer(json, "width", defs->film.width);
   json_integer(json, "height", defs->film.height);
   json_begin(json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(json, NULL, defs->film.crop[i]);
+  for (int i = 0; i < 4; i++)
+    json_integer(json, NULL, defs->film.crop[i]);
   json_end(json, ']');
   json_integer(json, "spp", defs->render.spp);
   json_text(json, "tracer", kind_name("tracers", (int)defs->render.tracer));
@@ -272,12 +305,14 @@ static void json_lights(Json *json, const Facts *f) {
   json_begin(json, "lights", '[');
   for (uint32_t i = 0; i < n && i < LIGHTS_JSON; i++) {
     vlLightInfo l;
-    if (vl_scene_light_info(f->scene, i, &l) != VL_OK) continue;
+    if (vl_scene_light_info(f->scene, i, &l) != VL_OK)
+      continue;
     json_begin(json, NULL, '{');
     json_text(json, "kind", l.kind);
     json_number(json, "power", l.power);
     json_bool(json, "image", l.image);
-    if (l.faces) json_integer(json, "faces", (int64_t)l.faces);
+    if (l.faces)
+      json_integer(json, "faces", (int64_t)l.faces);
     json_place(json, &l.source);
     json_end(json, '}');
   }
@@ -288,7 +323,8 @@ static void json_unused(Json *json, const Facts *f) {
   json_begin(json, "unused", '[');
   for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
     const vlFinding *u = vl_check_finding(f->check, i);
-    if (u->kind != VL_FINDING_UNUSED) continue;
+    if (u->kind != VL_FINDING_UNUSED)
+      continue;
     json_begin(json, NULL, '{');
     json_text(json, "message", u->message);
     json_place(json, &u->source);
@@ -305,10 +341,17 @@ static void print_json(const Facts *f) {
   const struct {
     const char *name;
     uint64_t n;
-  } counts[] = {{"shapes", f->info.shapes},       {"triangles", f->info.triangles}, {"vertices", f->info.vertices},
-                {"objects", f->info.groups},      {"instances", f->info.instances}, {"textures", f->info.textures},
-                {"materials", f->info.materials}, {"media", f->info.media},         {"bytes", f->bytes}};
-  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) json_integer(&json, counts[i].name, (int64_t)counts[i].n);
+  } counts[] = {{"shapes", f->info.shapes},
+                {"triangles", f->info.triangles},
+                {"vertices", f->info.vertices},
+                {"objects", f->info.groups},
+                {"instances", f->info.instances},
+                {"textures", f->info.textures},
+                {"materials", f->info.materials},
+                {"media", f->info.media},
+                {"bytes", f->bytes}};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    json_integer(&json, counts[i].name, (int64_t)counts[i].n);
   json_number(&json, "seconds", f->seconds);
   json_begin(&json, "bounds", '[');
   if (f->low[0] <= f->high[0]) {
@@ -333,16 +376,20 @@ static int run(const Command *command, const Arguments *arguments) {
   vlContext *context = NULL;
   vlError error = {0};
   int status = scene_context(&context, arguments, report_log, NULL);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[INFO_PERMISSIVE].given;
-  if (arguments->values[INFO_SEARCH].given) load.search_path = arguments->values[INFO_SEARCH].text;
+  if (arguments->values[INFO_SEARCH].given)
+    load.search_path = arguments->values[INFO_SEARCH].text;
   struct timespec start, end;
   clock_gettime(CLOCK_MONOTONIC, &start);
   vlResult r = vl_scene_create(context, &f.scene);
-  if (r == VL_OK) r = vl_scene_load(f.scene, f.path, &load, &error);
+  if (r == VL_OK)
+    r = vl_scene_load(f.scene, f.path, &load, &error);
   clock_gettime(CLOCK_MONOTONIC, &end);
-  f.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  f.seconds =
+      (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
   if (r == VL_OK) {
     f.bytes = vl_context_memory(context, NULL);
     vl_scene_info(f.scene, &f.info);
@@ -357,7 +404,8 @@ static int run(const Command *command, const Arguments *arguments) {
     print_json(&f);
   else
     print_text(&f);
-  if (r == VL_OK) status = report_stdout(STATUS_OK);
+  if (r == VL_OK)
+    status = report_stdout(STATUS_OK);
   vl_check_destroy(f.check);
   vl_scene_destroy(f.scene);
   context_close(context);
@@ -367,7 +415,8 @@ static int run(const Command *command, const Arguments *arguments) {
 static const Option options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
-     "leave out parts of the scene that velo does not understand, instead of ending with an error"},
+     "leave out parts of the scene that velo does not understand, instead of ending with an "
+     "error"},
     SCENE_SEARCH_OPTION(INFO_SEARCH),
     SCENE_SANDBOX_OPTION(INFO_SANDBOX),
     {0}};
@@ -377,8 +426,12 @@ const Command scene_info_command = {
     .usage = "FILE [options]",
     .summary = "print what a scene contains: counts, bounds, camera, lights",
     .text =
-        "Reads a scene and prints its contents, without building or rendering it. The power of a light is the\n"
-        "luminance that it emits, integrated over area and solid angle; of distant and infinite lights, the\n"
+        "Reads a scene and prints its contents, without building or rendering it. The power of "
+        "a "
+        "light is the\n"
+        "luminance that it emits, integrated over area and solid angle; of distant and "
+        "infinite "
+        "lights, the\n"
         "part that enters a sphere around the scene.",
     .examples =
         "velo scene info room.pbrt\n"

@@ -1,4 +1,5 @@
-/* scene/info_names.c: the names in a scene and what its file lets one choose, for `velo scene info`. */
+/* scene/info_names.c: the names in a scene and what its file lets one choose, for `velo scene
+ * info`. */
 #include <stdio.h>
 
 #include "cli/text.h"
@@ -10,7 +11,8 @@ enum { NAMES = 20 }; /* most names listed as text */
 static const struct {
   const char *key;
   vlIdKind kind;
-} id_kinds[] = {{"shape", VL_ID_OBJECT}, {"material", VL_ID_MATERIAL}, {"instance", VL_ID_INSTANCE}};
+} id_kinds[] = {
+    {"shape", VL_ID_OBJECT}, {"material", VL_ID_MATERIAL}, {"instance", VL_ID_INSTANCE}};
 enum { ID_KINDS = sizeof id_kinds / sizeof *id_kinds };
 static const struct {
   const char *key;
@@ -21,7 +23,8 @@ static const struct {
                     {"variants", VL_CHOICE_VARIANT}};
 enum { CHOICE_KINDS = sizeof choice_kinds / sizeof *choice_kinds };
 
-/* Named shapes, materials and instances with their ids: "  shape 3     Hall/Chair  nodes[3].meshes[1].primitives[0]".
+/* Named shapes, materials and instances with their ids: "  shape 3     Hall/Chair
+ * nodes[3].meshes[1].primitives[0]".
  */
 void info_print_names(const vlScene *scene) {
   for (int k = 0; k < ID_KINDS; k++) {
@@ -29,15 +32,20 @@ void info_print_names(const vlScene *scene) {
     uint32_t named = 0;
     for (uint32_t id = 1; id <= n; id++) {
       vlIdInfo info;
-      if (vl_scene_id_info(scene, id_kinds[k].kind, id, &info) != VL_OK || !info.name) continue;
-      if (named++ == 0) printf("%s names\n", id_kinds[k].key);
-      if (named > NAMES) continue;
+      if (vl_scene_id_info(scene, id_kinds[k].kind, id, &info) != VL_OK || !info.name)
+        continue;
+      if (named++ == 0)
+        printf("%s names\n", id_kinds[k].key);
+      if (named > NAMES)
+        continue;
       printf("  %-4u ", id);
       text_print_plain(info.name);
-      if (info.place) printf("  (%s)", info.place);
+      if (info.place)
+        printf("  (%s)", info.place);
       putchar('\n');
     }
-    if (named > NAMES) printf("  and %u more (--json has all)\n", named - NAMES);
+    if (named > NAMES)
+      printf("  and %u more (--json has all)\n", named - NAMES);
   }
 }
 
@@ -46,17 +54,21 @@ void info_print_choices(const vlScene *scene) {
   for (int k = 0; k < CHOICE_KINDS; k++) {
     const uint32_t n = vl_scene_choice_count(scene, choice_kinds[k].kind);
     vlChoiceInfo info;
-    if (n) printf("%-12s%u", choice_kinds[k].key, n);
+    if (n)
+      printf("%-12s%u", choice_kinds[k].key, n);
     for (uint32_t i = 0; i < n && i < NAMES; i++) {
-      if (vl_scene_choice_info(scene, choice_kinds[k].kind, i, &info) != VL_OK) continue;
+      if (vl_scene_choice_info(scene, choice_kinds[k].kind, i, &info) != VL_OK)
+        continue;
       printf("%s%u", i ? ", " : ": ", i);
       if (info.name) {
         putchar(' ');
         text_print_plain(info.name);
       }
-      if (choice_kinds[k].kind == VL_CHOICE_ANIMATION) printf(" (%g s)", info.seconds);
+      if (choice_kinds[k].kind == VL_CHOICE_ANIMATION)
+        printf(" (%g s)", info.seconds);
     }
-    if (n) puts(n > NAMES ? ", ..." : "");
+    if (n)
+      puts(n > NAMES ? ", ..." : "");
   }
 }
 
@@ -67,12 +79,15 @@ void info_json_names(Json *json, const vlScene *scene) {
     json_begin(json, id_kinds[k].key, '[');
     for (uint32_t id = 1; id <= n; id++) {
       vlIdInfo info;
-      if (vl_scene_id_info(scene, id_kinds[k].kind, id, &info) != VL_OK || !info.name) continue;
+      if (vl_scene_id_info(scene, id_kinds[k].kind, id, &info) != VL_OK || !info.name)
+        continue;
       json_begin(json, NULL, '{');
       json_integer(json, "id", id);
       json_text(json, "name", info.name);
-      if (info.path) json_text(json, "path", info.path);
-      if (info.place) json_text(json, "place", info.place);
+      if (info.path)
+        json_text(json, "path", info.path);
+      if (info.place)
+        json_text(json, "place", info.place);
       json_end(json, '}');
     }
     json_end(json, ']');
@@ -86,11 +101,14 @@ void info_json_choices(Json *json, const vlScene *scene) {
     vlChoiceInfo info;
     json_begin(json, choice_kinds[k].key, '[');
     for (uint32_t i = 0; i < n; i++) {
-      if (vl_scene_choice_info(scene, choice_kinds[k].kind, i, &info) != VL_OK) continue;
+      if (vl_scene_choice_info(scene, choice_kinds[k].kind, i, &info) != VL_OK)
+        continue;
       json_begin(json, NULL, '{');
       json_integer(json, "number", i);
-      if (info.name) json_text(json, "name", info.name);
-      if (choice_kinds[k].kind == VL_CHOICE_ANIMATION) json_number(json, "seconds", info.seconds);
+      if (info.name)
+        json_text(json, "name", info.name);
+      if (choice_kinds[k].kind == VL_CHOICE_ANIMATION)
+        json_number(json, "seconds", info.seconds);
       json_end(json, '}');
     }
     json_end(json, ']');

@@ -1,5 +1,5 @@
-/* scene/prove.c: `velo scene convert --prove`: renders the scene and what was written of it, and compares the mean
- * radiance of each material. */
+/* scene/prove.c: `velo scene convert --prove`: renders the scene and what was written of it,
+ * and compares the mean radiance of each material. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,11 @@
 #include "scene/scene.h"
 #include "velo/channels.h"
 
-enum { SIDE = 256, SPP = 64, MOST = 64 }; /* pixels of the longer side; samples; materials printed */
+enum {
+  SIDE = 256,
+  SPP = 64,
+  MOST = 64
+}; /* pixels of the longer side; samples; materials printed */
 
 /* An image of a scene, with the material of each pixel. */
 typedef struct Shot {
@@ -38,36 +42,48 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   vlFilm *film = NULL;
   vlCamera whole, camera;
   vlCompleteDef complete = vl_default_complete_def();
-  if (alone) complete.environment = VL_ENVIRONMENT_NONE;
+  if (alone)
+    complete.environment = VL_ENVIRONMENT_NONE;
   vlResult r = vl_scene_complete(shot->scene, &complete, error);
-  if (r != VL_OK) return r;
-  const double most = fmax(defs->film.width, defs->film.height), k = most > SIDE ? SIDE / most : 1;
+  if (r != VL_OK)
+    return r;
+  const double most = fmax(defs->film.width, defs->film.height),
+               k = most > SIDE ? SIDE / most : 1;
   vlFilmDef film_def = vl_default_film_def((uint32_t)fmax(1, k * defs->film.width + 0.5),
                                            (uint32_t)fmax(1, k * defs->film.height + 0.5));
   vlRenderDef render = defs->render;
   vlDevelopDef develop = vl_default_develop_def();
   render.spp = SPP;
   r = vl_world_build(shot->scene, &defs->build, &shot->world, error);
-  if (r == VL_OK) r = vl_camera_make(&defs->camera, &whole, NULL, error);
-  if (r == VL_OK) r = vl_camera_resize(&whole, film_def.width, film_def.height, &camera);
-  if (r == VL_OK) r = vl_film_create(context, &film_def, &film);
-  if (r == VL_OK) r = vl_render(shot->world, &camera, film, &render, NULL, error);
-  if (r == VL_OK) r = vl_film_develop(film, &develop, &shot->image);
+  if (r == VL_OK)
+    r = vl_camera_make(&defs->camera, &whole, NULL, error);
+  if (r == VL_OK)
+    r = vl_camera_resize(&whole, film_def.width, film_def.height, &camera);
+  if (r == VL_OK)
+    r = vl_film_create(context, &film_def, &film);
+  if (r == VL_OK)
+    r = vl_render(shot->world, &camera, film, &render, NULL, error);
+  if (r == VL_OK)
+    r = vl_film_develop(film, &develop, &shot->image);
   vlChannelsDef channels = vl_default_channels_def(film_def.width, film_def.height);
   channels.channels = VL_CHANNEL_ID_MATERIAL;
-  if (r == VL_OK && ids) r = vl_render_channels(shot->world, &camera, &channels, NULL, &shot->ids, error);
+  if (r == VL_OK && ids)
+    r = vl_render_channels(shot->world, &camera, &channels, NULL, &shot->ids, error);
   vl_film_destroy(film);
   return r;
 }
 
 static void add_up(const Shot *before, const Shot *after, Sums *sums, uint32_t count) {
   const uint32_t *ids = vl_image_const_pixels(before->ids);
-  const float *a = vl_image_const_pixels(before->image), *b = vl_image_const_pixels(after->image);
+  const float *a = vl_image_const_pixels(before->image),
+              *b = vl_image_const_pixels(after->image);
   const size_t pixels = (size_t)vl_image_width(before->image) * vl_image_height(before->image);
-  const size_t step = vl_image_channels(before->image), id_step = vl_image_channels(before->ids);
+  const size_t step = vl_image_channels(before->image),
+               id_step = vl_image_channels(before->ids);
   for (size_t i = 0; i < pixels; i++) {
     const uint32_t id = ids[i * id_step];
-    if (id > count) continue;
+    if (id > count)
+      continue;
     for (size_t c = 0; c < 3; c++) {
       sums[id].before[c] += (double)a[i * step + c];
       sums[id].after[c] += (double)b[i * step + c];
@@ -78,21 +94,25 @@ static void add_up(const Shot *before, const Shot *after, Sums *sums, uint32_t c
 
 static void print_ratios(const Shot *before, const Sums *sums, uint32_t count) {
   uint32_t printed = 0;
-  printf("radiance after / before, per material\n%8s  %7s %7s %7s  material\n", "pixels", "red", "green", "blue");
+  printf("radiance after / before, per material\n%8s  %7s %7s %7s  material\n", "pixels", "red",
+         "green", "blue");
   for (uint32_t id = 0; id <= count; id++) {
     const Sums *s = &sums[id];
     vlIdInfo info = {0};
-    if (!s->pixels || printed++ >= MOST) continue;
+    if (!s->pixels || printed++ >= MOST)
+      continue;
     printf("%8llu ", (unsigned long long)s->pixels);
     for (int c = 0; c < 3; c++)
       if (s->before[c] > 0)
         printf(" %7.3f", s->after[c] / s->before[c]);
       else
         printf(" %7s", s->after[c] > 0 ? "inf" : "-");
-    if (id) vl_world_id_info(before->world, VL_ID_MATERIAL, id, &info);
+    if (id)
+      vl_world_id_info(before->world, VL_ID_MATERIAL, id, &info);
     printf("  ");
     text_print_plain(!id ? "(background)" : info.name ? info.name : info.type ? info.type : "");
-    if (id && !info.name) printf(".%u", id);
+    if (id && !info.name)
+      printf(".%u", id);
     putchar('\n');
   }
 }
@@ -104,12 +124,17 @@ int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, c
   vlLoadDef plain = vl_default_load_def();
   plain.permissive = load->permissive;
   vlResult r = vl_scene_create(context, &before.scene);
-  if (r == VL_OK) r = vl_scene_create(context, &after.scene);
-  if (r == VL_OK) r = vl_scene_load(before.scene, from, load, &error);
-  if (r == VL_OK) r = vl_scene_load(after.scene, to, &plain, &error);
+  if (r == VL_OK)
+    r = vl_scene_create(context, &after.scene);
+  if (r == VL_OK)
+    r = vl_scene_load(before.scene, from, load, &error);
+  if (r == VL_OK)
+    r = vl_scene_load(after.scene, to, &plain, &error);
   const bool alone = r == VL_OK && !vl_scene_defs(before.scene)->light_missing;
-  if (r == VL_OK) r = take(context, &before, true, alone, &error);
-  if (r == VL_OK) r = take(context, &after, false, alone, &error);
+  if (r == VL_OK)
+    r = take(context, &before, true, alone, &error);
+  if (r == VL_OK)
+    r = take(context, &after, false, alone, &error);
   bool same = r == VL_OK && vl_image_width(before.image) == vl_image_width(after.image) &&
               vl_image_height(before.image) == vl_image_height(after.image);
   if (r == VL_OK && same) {
@@ -119,11 +144,15 @@ int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, c
       add_up(&before, &after, sums, count);
       print_ratios(&before, sums, count);
     }
-    if (!sums) r = VL_ERROR_MEMORY;
+    if (!sums)
+      r = VL_ERROR_MEMORY;
   }
   free(sums);
   close_shot(&before);
   close_shot(&after);
-  if (r != VL_OK) return report_error(&error, r, to);
-  return same ? STATUS_OK : report_failure(STATUS_OTHER, "%s: its images have another shape than %s", to, from);
+  if (r != VL_OK)
+    return report_error(&error, r, to);
+  return same ? STATUS_OK
+              : report_failure(STATUS_OTHER, "%s: its images have another shape than %s", to,
+                               from);
 }

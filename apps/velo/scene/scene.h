@@ -7,27 +7,34 @@
 #include "velo/load.h"
 
 /* The option of all scene commands that restricts the location of a scene's files. */
-#define SCENE_SANDBOX_OPTION(id)                                                                                  \
-  {                                                                                                               \
-    (id), 0, "sandbox", OPTION_FOLDERS, "DIR",                                                                    \
-        "a file that the scene names must be in DIR or below it, after links are resolved; may be given several " \
-        "times",                                                                                                  \
-        0, 0, NULL                                                                                                \
+#define SCENE_SANDBOX_OPTION(id)                                                             \
+  {                                                                                          \
+    (id), 0, "sandbox", OPTION_FOLDERS, "DIR",                                               \
+        "a file that the scene names must be in DIR or below it, after links are resolved; " \
+        "may "                                                                               \
+        "be given several "                                                                  \
+        "times",                                                                             \
+        0, 0, NULL                                                                           \
   }
 
 /* The option of all scene commands that adds folders to look in. */
-#define SCENE_SEARCH_OPTION(id)                                                                                  \
-  {                                                                                                              \
-    (id), 0, "search-path", OPTION_SEARCH, "DIR",                                                                \
-        "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL \
+#define SCENE_SEARCH_OPTION(id)                                                         \
+  {                                                                                     \
+    (id), 0, "search-path", OPTION_SEARCH, "DIR",                                       \
+        "folder in which files that the scene names are also looked for; may be given " \
+        "several "                                                                      \
+        "times",                                                                        \
+        0, 0, NULL                                                                      \
   }
 
-/* Creates a context with the options' --sandbox folder and a log callback, and confines the program to that folder,
- * the first operand (read) and the folder of the second (written). Returns -1, or the exit code after reporting
- * the error. */
-int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);
+/* Creates a context with the options' --sandbox folder and a log callback, and confines the
+ * program to that folder, the first operand (read) and the folder of the second (written).
+ * Returns -1, or the exit code after reporting the error. */
+int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
+                  void *log_user);
 
-/* prove.c: renders both files and prints the ratio of their radiance per material. Returns the exit code. */
+/* prove.c: renders both files and prints the ratio of their radiance per material. Returns the
+ * exit code. */
 int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, const char *to);
 /* info_names.c */
 void info_print_names(const vlScene *scene);

@@ -1,5 +1,7 @@
-/* scene/verify.c: `velo scene verify`: whether the tracers agree about the light of a scene, with themselves when the
- * whole scene is shifted, turned and scaled, and with the reference renderer. */
+/* scene/verify.c: `velo scene verify`: whether the tracers agree about the light of a scene,
+ * with themselves when the whole scene is shifted, turned and scaled, and with the reference
+ * renderer.
+ */
 #include "scene/verify.h"
 
 #include <math.h>
@@ -19,7 +21,8 @@
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum { VERIFY_RAYS = RENDER_OPTIONS, VERIFY_JSON, VERIFY_REFERENCE, VERIFY_OPTIONS };
-_Static_assert((int)VERIFY_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+_Static_assert((int)VERIFY_OPTIONS <= (int)MAX_OPTIONS,
+               "Arguments.values has no room for an option");
 
 enum { LONGER_SIDE = 64 };
 #define DEFAULT_RAYS 60 /* millions */
@@ -27,7 +30,8 @@ enum { LONGER_SIDE = 64 };
 /* Messages of the library during the many renders are the same each time. */
 static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
   const Verify *v = user;
-  if (!v->drowned) report_log(NULL, level, where, message);
+  if (!v->drowned)
+    report_log(NULL, level, where, message);
 }
 
 static int open_scene(Verify *v, const Command *command, const Arguments *arguments) {
@@ -37,17 +41,22 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
   vlWorld *world = NULL;
   def.log = logged;
   def.log_user = v;
-  if (o[RENDER_THREADS].given) def.threads = (uint32_t)o[RENDER_THREADS].integer;
+  if (o[RENDER_THREADS].given)
+    def.threads = (uint32_t)o[RENDER_THREADS].integer;
   def.sandbox = arguments->folders;
   def.sandbox_count = (uint32_t)arguments->folder_count;
   Confine confine = {.read_count = 0};
   confine_read(&confine, v->path);
-  if (o[RENDER_CAMERA].given) confine_read_folder(&confine, o[RENDER_CAMERA].text);
+  if (o[RENDER_CAMERA].given)
+    confine_read_folder(&confine, o[RENDER_CAMERA].text);
   confine_apply(&confine, arguments);
   int status = context_open(&def, &v->context);
-  if (status < 0) status = scene_open(v->context, v->path, arguments, &v->scene, &v->opening);
-  if (status < 0) status = job_make(&v->job, v->context, v->scene, v->path, arguments);
-  if (status >= 0) return status;
+  if (status < 0)
+    status = scene_open(v->context, v->path, arguments, &v->scene, &v->opening);
+  if (status < 0)
+    status = job_make(&v->job, v->context, v->scene, v->path, arguments);
+  if (status >= 0)
+    return status;
   const Needs needs = {.options = command->options,
                        .values = o,
                        .arguments = arguments,
@@ -55,9 +64,11 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
                        .opening = &v->opening,
                        .job = &v->job};
   status = needs_check_scene(&needs);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, &error);
-  status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world) : report_error(&error, result, v->path);
+  status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world)
+                           : report_error(&error, result, v->path);
   vl_world_destroy(world);
   return status;
 }
@@ -66,7 +77,9 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
 static vlResult make_camera(Verify *v, const Arguments *arguments) {
   const vlFilmDef *film = &v->job.defs->film;
   const double longer = fmax(film->width, film->height);
-  const double k = arguments->values[RENDER_RESOLUTION].given || longer < LONGER_SIDE ? 1 : LONGER_SIDE / longer;
+  const double k = arguments->values[RENDER_RESOLUTION].given || longer < LONGER_SIDE
+                       ? 1
+                       : LONGER_SIDE / longer;
   v->width = (uint32_t)fmax(1, k * film->width + 0.5);
   v->height = (uint32_t)fmax(1, k * film->height + 0.5);
   return vl_camera_resize(&v->job.camera, v->width, v->height, &v->camera);
@@ -74,11 +87,15 @@ static vlResult make_camera(Verify *v, const Arguments *arguments) {
 
 /* Remembers which shapes emit light. */
 static vlResult list_lights(Verify *v) {
-  while (vl_scene_shape(v->scene, (vlShapeId){v->shapes + 1})) v->shapes++;
-  while (vl_scene_light(v->scene, (vlLightId){v->light_count + 1})) v->light_count++;
+  while (vl_scene_shape(v->scene, (vlShapeId){v->shapes + 1}))
+    v->shapes++;
+  while (vl_scene_light(v->scene, (vlLightId){v->light_count + 1}))
+    v->light_count++;
   v->emissions = calloc((size_t)v->shapes + 1, sizeof *v->emissions);
-  if (!v->emissions) return VL_ERROR_MEMORY;
-  for (uint32_t i = 0; i < v->shapes; i++) v->emissions[i] = vl_scene_shape(v->scene, (vlShapeId){i + 1})->emission;
+  if (!v->emissions)
+    return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < v->shapes; i++)
+    v->emissions[i] = vl_scene_shape(v->scene, (vlShapeId){i + 1})->emission;
   return VL_OK;
 }
 
@@ -86,21 +103,31 @@ static int verify(Verify *v, const Arguments *arguments) {
   vlError error = {0};
   signals_remember();
   vlResult result = make_camera(v, arguments);
-  if (result == VL_OK) result = list_lights(v);
-  if (result == VL_OK) result = verify_prepare(v, &error);
-  if (result == VL_OK) verify_plan(v);
-  if (result == VL_OK) result = verify_measure(v, &error);
-  if (result == VL_OK) result = verify_render(v, 0, &error);
-  if (result == VL_OK) result = verify_first(v);
-  if (result == VL_OK && v->mark_count) result = verify_render(v, 1, &error);
-  if (result == VL_OK) verify_second(v);
-  if (result == VL_CANCELLED && signals_pending()) return report_failure(128 + signals_pending(), "interrupted");
+  if (result == VL_OK)
+    result = list_lights(v);
+  if (result == VL_OK)
+    result = verify_prepare(v, &error);
+  if (result == VL_OK)
+    verify_plan(v);
+  if (result == VL_OK)
+    result = verify_measure(v, &error);
+  if (result == VL_OK)
+    result = verify_render(v, 0, &error);
+  if (result == VL_OK)
+    result = verify_first(v);
+  if (result == VL_OK && v->mark_count)
+    result = verify_render(v, 1, &error);
+  if (result == VL_OK)
+    verify_second(v);
+  if (result == VL_CANCELLED && signals_pending())
+    return report_failure(128 + signals_pending(), "interrupted");
   return result == VL_OK ? -1 : report_error(&error, result, v->path);
 }
 
 static void close_all(Verify *v) {
   for (int i = 0; i < v->run_count; i++)
-    for (int look = 0; look < 2; look++) free(v->runs[i].values[look]);
+    for (int look = 0; look < 2; look++)
+      free(v->runs[i].values[look]);
   free(v->emissions);
   free(v->cells);
   free(v->block_of);
@@ -117,8 +144,10 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   v.budget = 1e6 * (o[VERIFY_RAYS].given ? o[VERIFY_RAYS].number : DEFAULT_RAYS);
   v.seed = o[RENDER_SEED].given ? (uint32_t)o[RENDER_SEED].integer : 0;
   int status = verify_reference_find(&v, arguments, &o[VERIFY_REFERENCE]);
-  if (status < 0) status = open_scene(&v, command, arguments);
-  if (status < 0) status = verify(&v, arguments);
+  if (status < 0)
+    status = open_scene(&v, command, arguments);
+  if (status < 0)
+    status = verify(&v, arguments);
   if (status < 0) {
     if (o[VERIFY_JSON].given)
       verify_print_json(&v);
@@ -131,44 +160,63 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {
-    {VERIFY_RAYS, 0, "rays", OPTION_NUMBER, "M", "millions of rays of the first look; default 60", 0.001, 1e6, NULL},
-    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; default 0", 0, 1048575, NULL},
+    {VERIFY_RAYS, 0, "rays", OPTION_NUMBER, "M",
+     "millions of rays of the first look; default 60", 0.001, 1e6, NULL},
+    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; default 0", 0,
+     1048575, NULL},
     {VERIFY_REFERENCE, 0, "reference", OPTION_TEXT, "PROGRAM",
-     "the reference renderer; default: the environment variable VELO_REFERENCE, else velo-reference beside velo"},
+     "the reference renderer; default: the environment variable VELO_REFERENCE, else "
+     "velo-reference beside velo"},
     {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N", "number of threads; default: one per processor core"},
+    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
+     "number of threads; default: one per processor core"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
-     "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer side", 1, 4096},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera"},
+     "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer "
+     "side",
+     1, 4096},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "scene or camera file that gives the camera"},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file of --camera has several"},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path"},
-    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
-     color_choices},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
+     "largest number of bounces of a path"},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME",
+     "representation of colours during light transport:", 0, 0, color_choices},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "parts of the scene that velo does not understand are warnings, not errors"},
     {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "DIR",
-     "a file that the scene names must be in DIR or below it; the reference renderer is not started"},
+     "a file that the scene names must be in DIR or below it; the reference renderer is not "
+     "started"},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several times"},
+     "folder in which files that the scene names are also looked for; may be given several "
+     "times"},
     STRICT_OPTIONS_OPTION,
     {0}};
 
-static const Section sections[] = {
-    {VERIFY_RAYS, "the check"}, {RENDER_RESOLUTION, "the image, as in `velo render`"}, {0, NULL}};
+static const Section sections[] = {{VERIFY_RAYS, "the check"},
+                                   {RENDER_RESOLUTION, "the image, as in `velo render`"},
+                                   {0, NULL}};
 
 const Command scene_verify_command = {
     .name = "scene verify",
     .usage = "FILE [options]",
     .summary = "check that the tracers agree about the light of a scene",
     .text =
-        "Renders the scene at a small size with each unbiased tracer that claims its light, with the whole\n"
-        "scene shifted, turned and scaled, and by the reference renderer, 32 times each, and compares the\n"
-        "means of the image, of blocks of 8 x 8 pixels, of the pixels of each material, and of each kind of\n"
-        "light. What differs is rendered again with other seeds and four times the samples; it counts only\n"
-        "if it differs again. One run in a thousand or fewer reports a difference where there is none\n"
+        "Renders the scene at a small size with each unbiased tracer that claims its light, "
+        "with "
+        "the whole\n"
+        "scene shifted, turned and scaled, and by the reference renderer, 32 times each, and "
+        "compares the\n"
+        "means of the image, of blocks of 8 x 8 pixels, of the pixels of each material, and of "
+        "each kind of\n"
+        "light. What differs is rendered again with other seeds and four times the samples; it "
+        "counts only\n"
+        "if it differs again. One run in a thousand or fewer reports a difference where there "
+        "is "
+        "none\n"
         "(docs/verify.md).\n\n"
-        "exit codes: 0 all agree; 1 a difference beyond chance; 5 the reference renderer failed",
+        "exit codes: 0 all agree; 1 a difference beyond chance; 5 the reference renderer "
+        "failed",
     .examples =
         "velo scene verify room.pbrt\n"
         "velo scene verify room.pbrt --rays 5 --json",

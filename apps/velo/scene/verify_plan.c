@@ -1,4 +1,5 @@
-/* scene/verify_plan.c: which tracers claim the light of a scene, and which renders are compared. */
+/* scene/verify_plan.c: which tracers claim the light of a scene, and which renders are
+ * compared. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +12,8 @@
 
 void verify_note(Verify *v, const char *format, ...) {
   va_list arguments;
-  if (v->note_count == VERIFY_MOST_NOTES) return;
+  if (v->note_count == VERIFY_MOST_NOTES)
+    return;
   va_start(arguments, format);
   vsnprintf(v->notes[v->note_count++], sizeof v->notes[0], format, arguments);
   va_end(arguments);
@@ -20,11 +22,16 @@ void verify_note(Verify *v, const char *format, ...) {
 bool verify_has_light(VerifyLights lights, vlLightKind kind) {
   const bool small = kind != VL_LIGHT_INFINITE;
   switch (lights) {
-    case VERIFY_ALL: return true;
-    case VERIFY_NOT_SMALL: return !small;
-    case VERIFY_SMALL: return small;
-    case VERIFY_SKY: return !small;
-    case VERIFY_SURFACES: break;
+    case VERIFY_ALL:
+      return true;
+    case VERIFY_NOT_SMALL:
+      return !small;
+    case VERIFY_SMALL:
+      return small;
+    case VERIFY_SKY:
+      return !small;
+    case VERIFY_SURFACES:
+      break;
   }
   return false;
 }
@@ -33,11 +40,14 @@ bool verify_has_surfaces(VerifyLights lights) {
   return lights == VERIFY_ALL || lights == VERIFY_NOT_SMALL || lights == VERIFY_SURFACES;
 }
 
-/* ---- what the scene has ------------------------------------------------------------------------------------------ */
+/* ---- what the scene has
+ * ------------------------------------------------------------------------------------------ */
 
-/* What decides which light of the scene the tracers find, besides what they do not support (vl_tracer_lacks). */
+/* What decides which light of the scene the tracers find, besides what they do not support
+ * (vl_tracer_lacks). */
 typedef struct Features {
-  bool narrow; /* hair and glass: their lobes are so narrow that uniform directions hardly ever meet them */
+  bool narrow; /* hair and glass: their lobes are so narrow that uniform directions hardly ever
+                  meet them */
   bool smooth; /* a material that may reflect or refract like a mirror */
   bool media;  /* any medium, or light that goes through a solid */
   bool small, sky, surfaces;
@@ -45,20 +55,27 @@ typedef struct Features {
   bool textures;
 } Features;
 
-/* Whether a roughness may be so small that the surface is a mirror. A texture may have any value. */
+/* Whether a roughness may be so small that the surface is a mirror. A texture may have any
+ * value.
+ */
 static bool may_be_small(vlFloatInput roughness) {
   return roughness.texture.index != 0 || roughness.value < 0.05f;
 }
 
-/* Whether the material may reflect or transmit like a mirror. The parts of a mixed one are materials of their own. */
+/* Whether the material may reflect or transmit like a mirror. The parts of a mixed one are
+ * materials of their own. */
 static bool may_be_smooth(const vlMaterialDef *m) {
   const bool rough = !may_be_small(m->u_roughness) && !may_be_small(m->v_roughness);
-  const bool rough_coat = !may_be_small(m->coat_u_roughness) && !may_be_small(m->coat_v_roughness);
+  const bool rough_coat =
+      !may_be_small(m->coat_u_roughness) && !may_be_small(m->coat_v_roughness);
   const bool coat = m->principled.clearcoat.texture.index || m->principled.clearcoat.value > 0;
   if (m->kind == VL_MATERIAL_PRINCIPLED)
-    return may_be_small(m->principled.roughness) || (coat && may_be_small(m->principled.clearcoat_roughness));
-  if (m->kind == VL_MATERIAL_THIN_DIELECTRIC) return true;
-  if (m->kind == VL_MATERIAL_COATED_CONDUCTOR && !rough_coat) return true;
+    return may_be_small(m->principled.roughness) ||
+           (coat && may_be_small(m->principled.clearcoat_roughness));
+  if (m->kind == VL_MATERIAL_THIN_DIELECTRIC)
+    return true;
+  if (m->kind == VL_MATERIAL_COATED_CONDUCTOR && !rough_coat)
+    return true;
   const vlKindRow *row = vl_kind_family_find("materials")->rows[m->kind];
   return (row->traits & VL_MATERIAL_ROUGH) && !rough;
 }
@@ -69,7 +86,8 @@ static Features find_features(Verify *v) {
   const vlLightDef *light;
   for (uint32_t i = 1; (material = vl_scene_material(v->scene, (vlMaterialId){i})); i++) {
     f.smooth = f.smooth || may_be_smooth(material);
-    f.narrow = f.narrow || material->kind == VL_MATERIAL_HAIR || material->kind == VL_MATERIAL_DIELECTRIC;
+    f.narrow = f.narrow || material->kind == VL_MATERIAL_HAIR ||
+               material->kind == VL_MATERIAL_DIELECTRIC;
     f.media = f.media || material->kind == VL_MATERIAL_SUBSURFACE;
   }
   f.media = f.media || vl_scene_medium(v->scene, (vlMediumId){1});
@@ -83,17 +101,21 @@ static Features find_features(Verify *v) {
   f.lamps = v->light_count;
   for (uint32_t i = 0; i < v->shapes; i++) {
     const uint32_t faces = vl_scene_shape(v->scene, (vlShapeId){i + 1})->faces;
-    if (!v->emissions[i].index) continue;
+    if (!v->emissions[i].index)
+      continue;
     f.surfaces = true;
     f.lamps += faces ? faces : 1;
   }
   return f;
 }
 
-/* ---- the runs ---------------------------------------------------------------------------------------------------- */
+/* ---- the runs
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static int add(Verify *v, VerifyRun run) {
-  if (v->run_count == VERIFY_MOST_RUNS) return run.against;
+  if (v->run_count == VERIFY_MOST_RUNS)
+    return run.against;
   v->runs[v->run_count] = run;
   return v->run_count++;
 }
@@ -101,37 +123,62 @@ static int add(Verify *v, VerifyRun run) {
 /* Tracers that must agree with volpath, which is run `against`, under the same lights. */
 static void add_tracers(Verify *v, const Features *f, VerifyLights lights, int against) {
   const bool small = f->small && lights == VERIFY_ALL;
-  add(v, (VerifyRun){.name = "bidirectional", .tracer = VL_TRACER_BIDIRECTIONAL, .lights = lights, .against = against});
+  add(v, (VerifyRun){.name = "bidirectional",
+                     .tracer = VL_TRACER_BIDIRECTIONAL,
+                     .lights = lights,
+                     .against = against});
   if (f->smooth)
-    verify_note(v, "lightpath and randomwalk are not compared: smooth surfaces are black with them");
+    verify_note(
+        v, "lightpath and randomwalk are not compared: smooth surfaces are black with them");
   else
-    add(v, (VerifyRun){.name = "lightpath", .tracer = VL_TRACER_LIGHT_PATH, .lights = lights, .against = against});
+    add(v, (VerifyRun){.name = "lightpath",
+                       .tracer = VL_TRACER_LIGHT_PATH,
+                       .lights = lights,
+                       .against = against});
   if (!f->smooth && !f->media && !f->narrow && !small)
-    add(v, (VerifyRun){.name = "randomwalk", .tracer = VL_TRACER_RANDOM_WALK, .lights = lights, .against = against});
-  add(v,
-      (VerifyRun){.name = "merging", .tracer = VL_TRACER_MERGING, .lights = lights, .against = against, .apart = true});
+    add(v, (VerifyRun){.name = "randomwalk",
+                       .tracer = VL_TRACER_RANDOM_WALK,
+                       .lights = lights,
+                       .against = against});
+  add(v, (VerifyRun){.name = "merging",
+                     .tracer = VL_TRACER_MERGING,
+                     .lights = lights,
+                     .against = against,
+                     .apart = true});
 }
 
 /* Two tracers under a part of the lights. */
-static void add_lights(Verify *v, VerifyLights lights, const char *volpath, const char *bidirectional) {
-  const int against =
-      add(v, (VerifyRun){.name = volpath, .tracer = VL_TRACER_VOLPATH, .lights = lights, .against = -1});
-  add(v, (VerifyRun){.name = bidirectional, .tracer = VL_TRACER_BIDIRECTIONAL, .lights = lights, .against = against});
+static void add_lights(Verify *v, VerifyLights lights, const char *volpath,
+                       const char *bidirectional) {
+  const int against = add(
+      v, (VerifyRun){
+             .name = volpath, .tracer = VL_TRACER_VOLPATH, .lights = lights, .against = -1});
+  add(v, (VerifyRun){.name = bidirectional,
+                     .tracer = VL_TRACER_BIDIRECTIONAL,
+                     .lights = lights,
+                     .against = against});
 }
 
 /* The reference renderer does not filter textures by the pixel's footprint. */
 static void add_reference(Verify *v, const Features *f, int volpath) {
   int against = volpath;
-  if (!v->reference[0]) return;
+  if (!v->reference[0])
+    return;
   if (f->textures)
-    against = add(
-        v, (VerifyRun){.name = "volpath, sharp textures", .tracer = VL_TRACER_VOLPATH, .sharp = true, .against = -1});
-  add(v, (VerifyRun){.name = "reference", .tracer = VL_TRACER_VOLPATH, .reference = true, .against = against});
+    against = add(v, (VerifyRun){.name = "volpath, sharp textures",
+                                 .tracer = VL_TRACER_VOLPATH,
+                                 .sharp = true,
+                                 .against = -1});
+  add(v, (VerifyRun){.name = "reference",
+                     .tracer = VL_TRACER_VOLPATH,
+                     .reference = true,
+                     .against = against});
 }
 
 void verify_plan(Verify *v) {
   const Features f = find_features(v);
-  const int volpath = add(v, (VerifyRun){.name = "volpath", .tracer = VL_TRACER_VOLPATH, .against = -1});
+  const int volpath =
+      add(v, (VerifyRun){.name = "volpath", .tracer = VL_TRACER_VOLPATH, .against = -1});
   add_reference(v, &f, volpath);
   /* Behind a smooth surface only light paths find a small light. */
   const bool caustics = f.small && f.smooth;
@@ -139,7 +186,8 @@ void verify_plan(Verify *v) {
   if (!caustics) {
     add_tracers(v, &f, VERIFY_ALL, volpath);
   } else {
-    verify_note(v, "between tracers, point, spot, distant and similar lights are not compared: %s",
+    verify_note(v,
+                "between tracers, point, spot, distant and similar lights are not compared: %s",
                 "only light paths find them through smooth surfaces");
     if (f.sky || f.surfaces) {
       const int others = add(v, (VerifyRun){.name = "volpath, without small lights",
@@ -150,25 +198,36 @@ void verify_plan(Verify *v) {
     }
   }
   if (!caustics && f.small + f.sky + f.surfaces > 1) {
-    if (f.small) add_lights(v, VERIFY_SMALL, "volpath, small lights", "bidirectional, small lights");
-    if (f.sky) add_lights(v, VERIFY_SKY, "volpath, sky", "bidirectional, sky");
-    if (f.surfaces) add_lights(v, VERIFY_SURFACES, "volpath, surfaces", "bidirectional, surfaces");
+    if (f.small)
+      add_lights(v, VERIFY_SMALL, "volpath, small lights", "bidirectional, small lights");
+    if (f.sky)
+      add_lights(v, VERIFY_SKY, "volpath, sky", "bidirectional, sky");
+    if (f.surfaces)
+      add_lights(v, VERIFY_SURFACES, "volpath, surfaces", "bidirectional, surfaces");
   }
   if (f.lamps > 1)
-    add(v,
-        (VerifyRun){
-            .name = "volpath, lights chosen evenly", .tracer = VL_TRACER_VOLPATH, .evenly = true, .against = volpath});
-  add(v, (VerifyRun){
-             .name = "volpath, shifted", .tracer = VL_TRACER_VOLPATH, .place = VERIFY_SHIFTED, .against = volpath});
-  add(v,
-      (VerifyRun){.name = "volpath, turned", .tracer = VL_TRACER_VOLPATH, .place = VERIFY_TURNED, .against = volpath});
-  add(v,
-      (VerifyRun){.name = "volpath, scaled", .tracer = VL_TRACER_VOLPATH, .place = VERIFY_SCALED, .against = volpath});
-  const int both =
-      caustics
-          ? add(v, (VerifyRun){.name = "bidirectional, all lights", .tracer = VL_TRACER_BIDIRECTIONAL, .against = -1})
-          : first;
-  add(v,
-      (VerifyRun){
-          .name = "bidirectional, moved", .tracer = VL_TRACER_BIDIRECTIONAL, .place = VERIFY_MOVED, .against = both});
+    add(v, (VerifyRun){.name = "volpath, lights chosen evenly",
+                       .tracer = VL_TRACER_VOLPATH,
+                       .evenly = true,
+                       .against = volpath});
+  add(v, (VerifyRun){.name = "volpath, shifted",
+                     .tracer = VL_TRACER_VOLPATH,
+                     .place = VERIFY_SHIFTED,
+                     .against = volpath});
+  add(v, (VerifyRun){.name = "volpath, turned",
+                     .tracer = VL_TRACER_VOLPATH,
+                     .place = VERIFY_TURNED,
+                     .against = volpath});
+  add(v, (VerifyRun){.name = "volpath, scaled",
+                     .tracer = VL_TRACER_VOLPATH,
+                     .place = VERIFY_SCALED,
+                     .against = volpath});
+  const int both = caustics ? add(v, (VerifyRun){.name = "bidirectional, all lights",
+                                                 .tracer = VL_TRACER_BIDIRECTIONAL,
+                                                 .against = -1})
+                            : first;
+  add(v, (VerifyRun){.name = "bidirectional, moved",
+                     .tracer = VL_TRACER_BIDIRECTIONAL,
+                     .place = VERIFY_MOVED,
+                     .against = both});
 }

@@ -1,5 +1,6 @@
-/* scene/verify_reference.c: renders the scene by the reference renderer (reference/), which shares only the description
- * of the scene with velo. It is a program of its own, started once for each replicate, without a shell. */
+/* scene/verify_reference.c: renders the scene by the reference renderer (reference/), which
+ * shares only the description of the scene with velo. It is a program of its own, started once
+ * for each replicate, without a shell. */
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -23,14 +24,18 @@ enum { MOST_CHILDREN = 64 };
 /* Seconds of a look after which the reference renderer is stopped. */
 static const double longest[2] = {40, 100};
 
-/* ---- finding the program ----------------------------------------------------------------------------------------- */
+/* ---- finding the program
+ * ----------------------------------------------------------------------------------------- */
 
 /* Options that change what is rendered, which the reference renderer does not have. */
 static const char *other_scene(const Arguments *arguments) {
   const OptionValue *o = arguments->values;
-  if (arguments->folder_count) return "--sandbox allows no other programs";
-  if (o[RENDER_CAMERA].given || o[RENDER_FRAME].given) return "it does not know --camera and --frame";
-  if (o[RENDER_SEARCH].given || o[RENDER_PERMISSIVE].given) return "it does not know --search-path and --permissive";
+  if (arguments->folder_count)
+    return "--sandbox allows no other programs";
+  if (o[RENDER_CAMERA].given || o[RENDER_FRAME].given)
+    return "it does not know --camera and --frame";
+  if (o[RENDER_SEARCH].given || o[RENDER_PERMISSIVE].given)
+    return "it does not know --search-path and --permissive";
   return NULL;
 }
 
@@ -46,25 +51,31 @@ static void find_beside(char *path, size_t size) {
 }
 
 int verify_reference_find(Verify *v, const Arguments *arguments, const OptionValue *given) {
-  const char *named = given->given ? given->text : getenv("VELO_REFERENCE"), *why = other_scene(arguments);
+  const char *named = given->given ? given->text : getenv("VELO_REFERENCE"),
+             *why = other_scene(arguments);
   const size_t size = sizeof v->reference;
   if (why) {
     snprintf(v->unreferenced, sizeof v->unreferenced, "%s", why);
   } else if (named && named[0]) {
     if (strlen(named) >= size || access(named, X_OK) != 0)
-      return report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: the reference renderer: %s", named,
+      return report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO,
+                            "%s: the reference renderer: %s", named,
                             strlen(named) >= size ? "the name is too long" : strerror(errno));
     snprintf(v->reference, size, "%s", named);
   } else {
     find_beside(v->reference, size);
-    if (v->reference[0] && access(v->reference, X_OK) == 0) return -1;
+    if (v->reference[0] && access(v->reference, X_OK) == 0)
+      return -1;
     v->reference[0] = 0;
-    snprintf(v->unreferenced, sizeof v->unreferenced, "velo-reference is not beside velo (--reference names it)");
+    snprintf(v->unreferenced, sizeof v->unreferenced,
+             "velo-reference is not beside velo (--reference names it)");
   }
   return -1;
 }
 
-/* ---- one look ---------------------------------------------------------------------------------------------------- */
+/* ---- one look
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Child {
   pid_t pid;
@@ -96,7 +107,8 @@ static void name_file(const Look *l, uint32_t replicate, const char *end, char p
 
 static vlResult fail(const Look *l, const char *what) {
   *l->error = (vlError){.code = VL_ERROR_IO};
-  snprintf(l->error->message, sizeof l->error->message, "the reference renderer %.100s: %s", l->v->reference, what);
+  snprintf(l->error->message, sizeof l->error->message, "the reference renderer %.100s: %s",
+           l->v->reference, what);
   return VL_ERROR_IO;
 }
 
@@ -110,9 +122,10 @@ static vlResult start(Look *l) {
   snprintf(depth, sizeof depth, "%u", v->job.defs->render.max_depth);
   snprintf(size, sizeof size, "%ux%u", v->width, v->height);
   const char *color = v->job.defs->build.color == VL_COLOR_RGB ? "rgb" : "spectral";
-  const char *const words[] = {v->reference, v->path,    "-o",           image,      "--spp", spp,           "--seed",
-                               seed,         "--tracer", "volpath",      "--filter", "box",   "--max-depth", depth,
-                               "--color",    color,      "--resolution", size,       NULL};
+  const char *const words[] = {
+      v->reference, v->path,    "-o",           image,      "--spp", spp,           "--seed",
+      seed,         "--tracer", "volpath",      "--filter", "box",   "--max-depth", depth,
+      "--color",    color,      "--resolution", size,       NULL};
   char *arguments[sizeof words / sizeof *words];
   memcpy(arguments, words, sizeof words);
   Child *child = &l->children[l->running];
@@ -124,7 +137,8 @@ static vlResult start(Look *l) {
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, text, O_WRONLY | O_CREAT, 0600);
   const int wrong = posix_spawn(&child->pid, v->reference, &actions, NULL, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (wrong) return fail(l, strerror(wrong));
+  if (wrong)
+    return fail(l, strerror(wrong));
   l->running++;
   l->next++;
   return VL_OK;
@@ -136,12 +150,15 @@ static void read_text(const Look *l, uint32_t replicate, char *line, size_t size
   name_file(l, replicate, "txt", path);
   line[0] = 0;
   FILE *file = fopen(path, "r");
-  if (!file) return;
-  if (!fgets(line, (int)size, file)) line[0] = 0;
+  if (!file)
+    return;
+  if (!fgets(line, (int)size, file))
+    line[0] = 0;
   fclose(file);
   line[strcspn(line, "\n")] = 0;
   for (char *c = line; *c; c++)
-    if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
+    if ((unsigned char)*c < 0x20 || *c == 0x7f)
+      *c = '?';
 }
 
 /* Takes the means of a replicate's image. */
@@ -151,9 +168,12 @@ static vlResult take_image(Look *l, uint32_t replicate) {
   char path[64];
   vlImage *image = NULL;
   name_file(l, replicate, "exr", path);
-  vlResult result = vl_image_read_channels(v->context, path, names, VERIFY_CHANNELS, &image, l->error);
-  if (result == VL_ERROR_MEMORY) return result;
-  if (result != VL_OK || vl_image_width(image) != v->width || vl_image_height(image) != v->height) {
+  vlResult result =
+      vl_image_read_channels(v->context, path, names, VERIFY_CHANNELS, &image, l->error);
+  if (result == VL_ERROR_MEMORY)
+    return result;
+  if (result != VL_OK || vl_image_width(image) != v->width ||
+      vl_image_height(image) != v->height) {
     vl_image_destroy(image);
     return fail(l, "its image cannot be read, or has another size");
   }
@@ -161,9 +181,11 @@ static vlResult take_image(Look *l, uint32_t replicate) {
     const uint32_t values = v->cell_count * VERIFY_CHANNELS;
     double *row = l->rows + (size_t)replicate * values;
     verify_take_means(v, image, row);
-    for (uint32_t i = 0; i < values; i++) row[i] /= (double)v->job.defs->develop.exposure;
+    for (uint32_t i = 0; i < values; i++)
+      row[i] /= (double)v->job.defs->develop.exposure;
     for (uint32_t i = 0; i < values && result == VL_OK; i++)
-      if (!isfinite(row[i])) result = fail(l, "its image has values that are not finite");
+      if (!isfinite(row[i]))
+        result = fail(l, "its image has values that are not finite");
   }
   vl_image_destroy(image);
   return result;
@@ -175,16 +197,20 @@ static vlResult finish(Look *l, uint32_t replicate, int status) {
   unsigned long long lost;
   read_text(l, replicate, line, sizeof line);
   if (WIFEXITED(status) && WEXITSTATUS(status) == STATUS_OK) {
-    if (sscanf(line, "velo-reference: %llu samples", &lost) == 1) l->run->dropped += lost;
+    if (sscanf(line, "velo-reference: %llu samples", &lost) == 1)
+      l->run->dropped += lost;
     return take_image(l, replicate);
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == STATUS_SCENE) {
-    if (!l->refused) snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "%s", line);
+    if (!l->refused)
+      snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "%s", line);
     l->refused = true;
     return VL_OK;
   }
-  if (WIFSIGNALED(status)) snprintf(line, sizeof line, "it was ended by signal %d", WTERMSIG(status));
-  if (!line[0]) snprintf(line, sizeof line, "it ended with exit code %d", WEXITSTATUS(status));
+  if (WIFSIGNALED(status))
+    snprintf(line, sizeof line, "it was ended by signal %d", WTERMSIG(status));
+  if (!line[0])
+    snprintf(line, sizeof line, "it ended with exit code %d", WEXITSTATUS(status));
   return fail(l, line);
 }
 
@@ -205,8 +231,10 @@ static vlResult collect(Look *l) {
 }
 
 static void stop(Look *l) {
-  for (uint32_t i = 0; i < l->running; i++) kill(l->children[i].pid, SIGKILL);
-  for (uint32_t i = 0; i < l->running; i++) waitpid(l->children[i].pid, NULL, 0);
+  for (uint32_t i = 0; i < l->running; i++)
+    kill(l->children[i].pid, SIGKILL);
+  for (uint32_t i = 0; i < l->running; i++)
+    waitpid(l->children[i].pid, NULL, 0);
   l->running = 0;
 }
 
@@ -228,11 +256,15 @@ static vlResult render_all(Look *l, double limit) {
   const double end = now() + limit;
   vlResult result = VL_OK;
   while (result == VL_OK && !l->refused && (l->running || l->next < l->count)) {
-    while (result == VL_OK && l->running < most && l->next < l->count) result = start(l);
-    if (result == VL_OK) result = collect(l);
-    if (result == VL_OK && signals_pending()) result = VL_CANCELLED;
+    while (result == VL_OK && l->running < most && l->next < l->count)
+      result = start(l);
+    if (result == VL_OK)
+      result = collect(l);
+    if (result == VL_OK && signals_pending())
+      result = VL_CANCELLED;
     if (result == VL_OK && now() > end) {
-      snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "it takes longer than %.0f s", limit);
+      snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "it takes longer than %.0f s",
+               limit);
       l->refused = true;
     }
     nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
@@ -242,11 +274,13 @@ static vlResult render_all(Look *l, double limit) {
 
 static vlResult run_look(Look *l, double limit) {
   snprintf(l->folder, sizeof l->folder, "/tmp/velo-verify-XXXXXX");
-  if (!mkdtemp(l->folder)) return fail(l, "no folder for its images can be made in /tmp");
+  if (!mkdtemp(l->folder))
+    return fail(l, "no folder for its images can be made in /tmp");
   const vlResult result = render_all(l, limit);
   stop(l);
   remove_files(l);
-  if (l->refused) l->run->left_out = true;
+  if (l->refused)
+    l->run->left_out = true;
   return result;
 }
 
@@ -257,7 +291,12 @@ vlResult verify_reference_try(Verify *v, VerifyRun *run, vlError *error) {
 }
 
 vlResult verify_reference(Verify *v, VerifyRun *run, int look, vlError *error) {
-  Look l = {.v = v, .run = run, .look = look, .spp = run->spp[look], .count = VERIFY_REPLICATES, .error = error};
+  Look l = {.v = v,
+            .run = run,
+            .look = look,
+            .spp = run->spp[look],
+            .count = VERIFY_REPLICATES,
+            .error = error};
   l.rows = run->values[look];
   return run_look(&l, longest[look]);
 }

@@ -1,5 +1,5 @@
-/* scene/verify_report.c: prints the result of `velo scene verify`: a row for each run that was compared, then what
- * differs. */
+/* scene/verify_report.c: prints the result of `velo scene verify`: a row for each run that was
+ * compared, then what differs. */
 #include <math.h>
 #include <stdio.h>
 
@@ -21,29 +21,36 @@ static double ratio_of(const VerifyDifference *d) {
 
 /* The farthest z of each family, 0 for those without values. */
 static void find_farthest(const Verify *v, const VerifyRun *run, double z[VERIFY_FAMILIES]) {
-  for (int f = 0; f < VERIFY_FAMILIES; f++) z[f] = 0;
+  for (int f = 0; f < VERIFY_FAMILIES; f++)
+    z[f] = 0;
   for (uint32_t value = 0; value < v->cell_count * VERIFY_CHANNELS; value++) {
     const uint32_t cell = value / VERIFY_CHANNELS;
-    if (!verify_uses_cell(v, run, cell)) continue;
+    if (!verify_uses_cell(v, run, cell))
+      continue;
     const VerifyDifference d = verify_difference(v, run, 0, value);
     double *most = &z[verify_family(run, &v->cells[cell])];
-    if (fabs(d.z) > fabs(*most)) *most = d.z;
+    if (fabs(d.z) > fabs(*most))
+      *most = d.z;
   }
 }
 
 static const char *verdict_of(const VerifyRun *run) {
-  if (run->apart) return "not judged";
-  if (run->differs) return "DIFFERS";
+  if (run->apart)
+    return "not judged";
+  if (run->differs)
+    return "DIFFERS";
   return run->marked ? "agrees (second look)" : "agrees";
 }
 
 /* "block 3,4 at 24,32" or "material 5 (dielectric glass)" */
-static void name_cell(const Verify *v, const VerifyRun *run, uint32_t cell, char *text, size_t size) {
+static void name_cell(const Verify *v, const VerifyRun *run, uint32_t cell, char *text,
+                      size_t size) {
   const VerifyCell *c = &v->cells[cell];
   const VerifyFamily family = verify_family(run, c);
   const uint32_t column = c->index % v->columns, row = c->index / v->columns;
   if (family == VERIFY_BLOCK)
-    snprintf(text, size, "block at %u,%u", column * v->width / v->columns, row * v->height / v->rows);
+    snprintf(text, size, "block at %u,%u", column * v->width / v->columns,
+             row * v->height / v->rows);
   else if (family == VERIFY_MATERIAL && c->index)
     snprintf(text, size, "material %u", c->index);
   else if (family == VERIFY_MATERIAL)
@@ -58,34 +65,40 @@ static void print_marks(const Verify *v, int index) {
   const VerifyMark *most[VERIFY_FAMILIES] = {NULL};
   for (uint32_t k = 0; k < v->mark_count; k++) {
     const VerifyMark *mark = &v->marks[k];
-    if (mark->run != index || !mark->differs) continue;
-    const VerifyMark **slot = &most[verify_family(run, &v->cells[mark->value / VERIFY_CHANNELS])];
-    if (!*slot || fabs(mark->second.z) > fabs((*slot)->second.z)) *slot = mark;
+    if (mark->run != index || !mark->differs)
+      continue;
+    const VerifyMark **slot =
+        &most[verify_family(run, &v->cells[mark->value / VERIFY_CHANNELS])];
+    if (!*slot || fabs(mark->second.z) > fabs((*slot)->second.z))
+      *slot = mark;
   }
   for (int f = 0; f < VERIFY_FAMILIES; f++) {
     char name[80];
-    if (!most[f]) continue;
+    if (!most[f])
+      continue;
     const VerifyDifference *d = &most[f]->second;
     name_cell(v, run, most[f]->value / VERIFY_CHANNELS, name, sizeof name);
     printf("%s, %s, %s: %.5g, %s: %.5g; ratio %.4f, z %.1f and %.1f\n", run->name, name,
-           channels[most[f]->value % VERIFY_CHANNELS], d->a, v->runs[run->against].name, d->b, ratio_of(d),
-           most[f]->first.z, d->z);
+           channels[most[f]->value % VERIFY_CHANNELS], d->a, v->runs[run->against].name, d->b,
+           ratio_of(d), most[f]->first.z, d->z);
   }
 }
 
 int verify_count(const Verify *v) {
   int count = 0;
-  for (int i = 0; i < v->run_count; i++) count += v->runs[i].differs > 0;
+  for (int i = 0; i < v->run_count; i++)
+    count += v->runs[i].differs > 0;
   return count;
 }
 
 void verify_print(const Verify *v) {
   int compared = 0;
   text_print_plain(v->path);
-  printf(": %u x %u pixels, %d replicates of each run\n", v->width, v->height, VERIFY_REPLICATES);
+  printf(": %u x %u pixels, %d replicates of each run\n", v->width, v->height,
+         VERIFY_REPLICATES);
   printf("%-29s %6s  %-23s  %-27s\n", "", "", "ratio of the images", "farthest z");
-  printf("%-29s %6s  %7s %7s %7s  %6s %6s %8s %6s\n", "run", "spp", "red", "green", "blue", "image", "block",
-         "material", "lights");
+  printf("%-29s %6s  %7s %7s %7s  %6s %6s %8s %6s\n", "run", "spp", "red", "green", "blue",
+         "image", "block", "material", "lights");
   if (v->unreferenced[0]) {
     printf("%-29s %6s  not compared: ", "reference", "");
     text_print_plain(v->unreferenced);
@@ -94,7 +107,8 @@ void verify_print(const Verify *v) {
   for (int i = 0; i < v->run_count; i++) {
     const VerifyRun *run = &v->runs[i];
     double z[VERIFY_FAMILIES];
-    if (!is_shown(run)) continue;
+    if (!is_shown(run))
+      continue;
     compared += !run->apart;
     printf("%-29s %6u ", run->name, run->spp[0]);
     for (uint32_t c = 0; c < VERIFY_CHANNELS; c++) {
@@ -102,18 +116,24 @@ void verify_print(const Verify *v) {
       printf(" %7.4f", ratio_of(&d));
     }
     find_farthest(v, run, z);
-    printf("  %6.1f %6.1f %8.1f %6.1f  %s\n", z[VERIFY_IMAGE], z[VERIFY_BLOCK], z[VERIFY_MATERIAL], z[VERIFY_LIGHT],
-           verdict_of(run));
+    printf("  %6.1f %6.1f %8.1f %6.1f  %s\n", z[VERIFY_IMAGE], z[VERIFY_BLOCK],
+           z[VERIFY_MATERIAL], z[VERIFY_LIGHT], verdict_of(run));
   }
-  for (int i = 0; i < v->run_count; i++) print_marks(v, i);
+  for (int i = 0; i < v->run_count; i++)
+    print_marks(v, i);
   for (int i = 0; i < v->run_count; i++)
     if (v->runs[i].dropped)
-      printf("%s: %llu samples were not finite\n", v->runs[i].name, (unsigned long long)v->runs[i].dropped);
-  for (int i = 0; i < v->note_count; i++) printf("%s\n", v->notes[i]);
-  printf("%d of %d comparisons differ beyond chance (%u values)\n", verify_count(v), compared, v->compared);
+      printf("%s: %llu samples were not finite\n", v->runs[i].name,
+             (unsigned long long)v->runs[i].dropped);
+  for (int i = 0; i < v->note_count; i++)
+    printf("%s\n", v->notes[i]);
+  printf("%d of %d comparisons differ beyond chance (%u values)\n", verify_count(v), compared,
+         v->compared);
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------------------- */
+/* ---- JSON
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static void put_difference(Json *json, const char *key, const VerifyDifference *d) {
   json_begin(json, key, '{');
@@ -144,13 +164,15 @@ static void put_run(Json *json, const Verify *v, int index) {
   json_end(json, ']');
   find_farthest(v, run, z);
   json_begin(json, "farthest", '{');
-  for (int f = 0; f < VERIFY_FAMILIES; f++) json_number(json, families[f], z[f]);
+  for (int f = 0; f < VERIFY_FAMILIES; f++)
+    json_number(json, families[f], z[f]);
   json_end(json, '}');
   json_begin(json, "values", '[');
   for (uint32_t k = 0; k < v->mark_count; k++) {
     const VerifyMark *mark = &v->marks[k];
     char name[80];
-    if (mark->run != index) continue;
+    if (mark->run != index)
+      continue;
     name_cell(v, run, mark->value / VERIFY_CHANNELS, name, sizeof name);
     json_begin(json, NULL, '{');
     json_text(json, "cell", name);
@@ -175,11 +197,13 @@ void verify_print_json(const Verify *v) {
   json_integer(&json, "differ", verify_count(v));
   json_begin(&json, "runs", '[');
   for (int i = 0; i < v->run_count; i++)
-    if (is_shown(&v->runs[i])) put_run(&json, v, i);
+    if (is_shown(&v->runs[i]))
+      put_run(&json, v, i);
   json_end(&json, ']');
   json_text(&json, "reference_not_compared", v->unreferenced); /* empty: it is */
   json_begin(&json, "notes", '[');
-  for (int i = 0; i < v->note_count; i++) json_text(&json, NULL, v->notes[i]);
+  for (int i = 0; i < v->note_count; i++)
+    json_text(&json, NULL, v->notes[i]);
   json_end(&json, ']');
   json_end(&json, '}');
   putchar('\n');

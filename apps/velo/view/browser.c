@@ -16,9 +16,11 @@ static void wait_and_open(int from) {
   char address[512];
   size_t size = 0;
   ssize_t got;
-  while (size < sizeof address - 1 && (got = read(from, address + size, sizeof address - 1 - size)) > 0)
+  while (size < sizeof address - 1 &&
+         (got = read(from, address + size, sizeof address - 1 - size)) > 0)
     size += (size_t)got;
-  if (!size) _exit(0);
+  if (!size)
+    _exit(0);
   address[size] = 0;
   const int nowhere = open("/dev/null", O_WRONLY);
   dup2(nowhere, STDOUT_FILENO);
@@ -32,7 +34,8 @@ static void wait_and_open(int from) {
 void browser_prepare(Browser *browser) {
   int ends[2];
   *browser = (Browser){0};
-  if ((!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY")) || pipe(ends) != 0) return;
+  if ((!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY")) || pipe(ends) != 0)
+    return;
   fcntl(ends[0], F_SETFD, FD_CLOEXEC);
   fcntl(ends[1], F_SETFD, FD_CLOEXEC);
   const pid_t child = fork();
@@ -48,14 +51,17 @@ void browser_prepare(Browser *browser) {
 }
 
 void browser_open(Browser *browser, const char *address) {
-  if (!browser->child) return;
-  if (address && write(browser->pipe, address, strlen(address)) < 0) report_note("open the address in a browser");
+  if (!browser->child)
+    return;
+  if (address && write(browser->pipe, address, strlen(address)) < 0)
+    report_note("open the address in a browser");
   close(browser->pipe);
 }
 
 void browser_collect(Browser *browser) {
   int status;
-  if (!browser->child || waitpid(browser->child, &status, WNOHANG) != browser->child) return;
+  if (!browser->child || waitpid(browser->child, &status, WNOHANG) != browser->child)
+    return;
   browser->child = 0;
   if (WIFEXITED(status) && WEXITSTATUS(status) == NO_PROGRAM)
     report_note("xdg-open is missing: open the address in a browser");

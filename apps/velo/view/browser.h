@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* A process that waits for the address, made before this one is confined (cli/confine.h). {0}: none. */
+/* A process that waits for the address, made before this one is confined (cli/confine.h). {0}:
+ * none. */
 typedef struct Browser {
   pid_t child;
   int pipe;

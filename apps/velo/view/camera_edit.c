@@ -1,5 +1,5 @@
-/* view/camera_edit.c: see camera_edit.h. Each field has a row with a function that puts its value into the def and
- * removes the spellings that it replaces. */
+/* view/camera_edit.c: see camera_edit.h. Each field has a row with a function that puts its
+ * value into the def and removes the spellings that it replaces. */
 #include "view/camera_edit.h"
 
 #include <math.h>
@@ -10,16 +10,22 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 /* Takes the units that the def names. */
 static void note_units(const vlCameraDef *def, CameraUnits *units) {
-  if (!isnan(def->zoom)) units->zoom = def->zoom;
-  if (!isnan(def->pixel_size)) units->pixel_size = def->pixel_size;
-  if (!isnan(def->sensor_width_mm)) units->sensor_mm = def->sensor_width_mm;
+  if (!isnan(def->zoom))
+    units->zoom = def->zoom;
+  if (!isnan(def->pixel_size))
+    units->pixel_size = def->pixel_size;
+  if (!isnan(def->sensor_width_mm))
+    units->sensor_mm = def->sensor_width_mm;
 }
 
-/* ---- the focal length -------------------------------------------------------------------------------------------- */
+/* ---- the focal length
+ * --------------------------------------------------------------------------------------------
+ */
 
 /* Replaces a window in scene units by the principal point. */
 static void drop_window(const ViewCamera *now, vlCameraDef *def) {
-  if (isnan(def->screen_min_x)) return;
+  if (isnan(def->screen_min_x))
+    return;
   def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
   def->cx = now->made.cx;
   def->cy = now->made.cy;
@@ -27,7 +33,8 @@ static void drop_window(const ViewCamera *now, vlCameraDef *def) {
 
 /* Removes every spelling of the focal length but the width of the sensor. */
 static void drop_focal(vlCameraDef *def) {
-  def->fov = def->view_distance = def->zoom = def->pixel_size = def->focal_mm = def->fx = def->fy = VL_UNSET;
+  def->fov = def->view_distance = def->zoom = def->pixel_size = def->focal_mm = def->fx =
+      def->fy = VL_UNSET;
 }
 
 static void spell_matrix(const ViewCamera *now, vlCameraDef *def) {
@@ -40,7 +47,8 @@ static void spell_matrix(const ViewCamera *now, vlCameraDef *def) {
 }
 
 static void spell_lecture(const ViewCamera *now, vlCameraDef *def) {
-  if (!isnan(def->view_distance)) return;
+  if (!isnan(def->view_distance))
+    return;
   const CameraUnits u = now->units;
   drop_window(now, def);
   drop_focal(def);
@@ -80,8 +88,10 @@ typedef struct Edit {
 typedef bool Setter(Edit *edit, const MessageField *field);
 
 static bool one(const MessageField *field, double *value) {
-  if (field->count == 1) *value = field->numbers[0];
-  if (field->null) *value = VL_UNSET;
+  if (field->count == 1)
+    *value = field->numbers[0];
+  if (field->null)
+    *value = VL_UNSET;
   return field->count == 1 || field->null;
 }
 
@@ -99,8 +109,10 @@ static bool set_s(Edit *e, const MessageField *f) {
 }
 static bool set_fov(Edit *e, const MessageField *f) {
   drop_focal(e->def);
-  if (!one(f, &e->def->fov)) return false;
-  if (!f->null) e->def->fov *= degree;
+  if (!one(f, &e->def->fov))
+    return false;
+  if (!f->null)
+    e->def->fov *= degree;
   return true;
 }
 static bool set_fov_axis(Edit *e, const MessageField *f) {
@@ -112,7 +124,8 @@ static bool set_focal_mm(Edit *e, const MessageField *f) {
   return one(f, &e->def->focal_mm);
 }
 static bool set_sensor_mm(Edit *e, const MessageField *f) {
-  if (!isnan(e->def->focal_mm)) spell_lens_mm(e->now, e->def);
+  if (!isnan(e->def->focal_mm))
+    spell_lens_mm(e->now, e->def);
   return one(f, &e->def->sensor_width_mm);
 }
 static bool set_fx(Edit *e, const MessageField *f) {
@@ -125,21 +138,24 @@ static bool set_fy(Edit *e, const MessageField *f) {
 }
 /* A field of view describes a window centred on the axis, so the matrix replaces it. */
 static bool set_cx(Edit *e, const MessageField *f) {
-  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x)) spell_matrix(e->now, e->def);
+  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x))
+    spell_matrix(e->now, e->def);
   return one(f, &e->def->cx);
 }
 static bool set_cy(Edit *e, const MessageField *f) {
-  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x)) spell_matrix(e->now, e->def);
+  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x))
+    spell_matrix(e->now, e->def);
   return one(f, &e->def->cy);
 }
 static bool set_skew(Edit *e, const MessageField *f) {
   return one(f, &e->def->skew);
 }
 
-/* ---- projection and distortion ----------------------------------------------------------------------------------- */
+/* ---- projection and distortion
+ * ----------------------------------------------------------------------------------- */
 
-/* Parameters with which a projection starts, where its own defaults do not do: a field of view over the image's smaller
- * side (0: none), and the numbers of its shape. */
+/* Parameters with which a projection starts, where its own defaults do not do: a field of view
+ * over the image's smaller side (0: none), and the numbers of its shape. */
 static const struct {
   vlProjection projection;
   double fov_degrees, shape[2];
@@ -156,41 +172,52 @@ static const struct {
 static void start_projection(const ViewCamera *now, vlCameraDef *def) {
   double field = 2.0 * atan(0.5 * now->made.height / now->made.fy), distance = 1.0;
   const CameraPose pose = camera_pose(now);
-  for (int i = 0; i < 3; i++) distance += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
+  for (int i = 0; i < 3; i++)
+    distance += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
   distance = sqrt(distance - 1.0);
   drop_focal(def);
   def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
   def->cx = def->cy = def->skew = def->shape[0] = def->shape[1] = def->max_angle = VL_UNSET;
   def->distortion = VL_DISTORTION_NONE;
   def->distortion_count = 0;
-  if (def->projection == VL_PROJECTION_PERSPECTIVE) def->fov = field < 120 * degree ? field : 60 * degree;
-  if (def->projection == VL_PROJECTION_ORTHOGRAPHIC) def->fx = now->made.fx / (distance > 0 ? distance : 1);
+  if (def->projection == VL_PROJECTION_PERSPECTIVE)
+    def->fov = field < 120 * degree ? field : 60 * degree;
+  if (def->projection == VL_PROJECTION_ORTHOGRAPHIC)
+    def->fx = now->made.fx / (distance > 0 ? distance : 1);
   for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
-    if (starts[i].projection != def->projection) continue;
+    if (starts[i].projection != def->projection)
+      continue;
     if (starts[i].fov_degrees > 0) {
       def->fov = starts[i].fov_degrees * degree;
       def->fov_axis = VL_FOV_SMALLER;
     }
-    for (int j = 0; j < 2; j++) def->shape[j] = starts[i].shape[j];
+    for (int j = 0; j < 2; j++)
+      def->shape[j] = starts[i].shape[j];
     if (!isnan(def->shape[0]))
-      def->fx = def->fy = 0.4 * (now->made.width < now->made.height ? now->made.width : now->made.height);
+      def->fx = def->fy =
+          0.4 * (now->made.width < now->made.height ? now->made.width : now->made.height);
   }
 }
 
 static bool set_projection(Edit *e, const MessageField *f) {
-  if (e->def->projection == (vlProjection)f->choice) return true;
+  if (e->def->projection == (vlProjection)f->choice)
+    return true;
   e->def->projection = (vlProjection)f->choice;
   start_projection(e->now, e->def);
   return true;
 }
 static bool set_shape(Edit *e, const MessageField *f) {
-  if (f->count > 2) return false;
-  for (uint32_t i = 0; i < 2; i++) e->def->shape[i] = i < f->count ? f->numbers[i] : VL_UNSET;
+  if (f->count > 2)
+    return false;
+  for (uint32_t i = 0; i < 2; i++)
+    e->def->shape[i] = i < f->count ? f->numbers[i] : VL_UNSET;
   return true;
 }
 static bool set_max_angle(Edit *e, const MessageField *f) {
-  if (!one(f, &e->def->max_angle)) return false;
-  if (!f->null) e->def->max_angle *= degree;
+  if (!one(f, &e->def->max_angle))
+    return false;
+  if (!f->null)
+    e->def->max_angle *= degree;
   return true;
 }
 static bool set_distortion(Edit *e, const MessageField *f) {
@@ -203,16 +230,20 @@ static bool set_distortion(Edit *e, const MessageField *f) {
   return true;
 }
 static bool set_coefficients(Edit *e, const MessageField *f) {
-  if (f->count > 14) return false;
+  if (f->count > 14)
+    return false;
   e->def->distortion_count = f->count;
   memcpy(e->def->distortion_coefficients, f->numbers, f->count * sizeof *f->numbers);
   return true;
 }
 
-/* ---- pose -------------------------------------------------------------------------------------------------------- */
+/* ---- pose
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static bool three(const MessageField *f, double value[3], bool *given) {
-  if (f->count != 3) return false;
+  if (f->count != 3)
+    return false;
   memcpy(value, f->numbers, 3 * sizeof *value);
   *given = true;
   return true;
@@ -227,12 +258,15 @@ static bool set_up(Edit *e, const MessageField *f) {
   return three(f, e->pose.pose.up, &e->pose.given);
 }
 static bool set_roll(Edit *e, const MessageField *f) {
-  if (f->count != 1) return false;
+  if (f->count != 1)
+    return false;
   e->pose.pose.roll = f->numbers[0] * degree;
   return e->pose.given = true;
 }
 
-/* ---- lens -------------------------------------------------------------------------------------------------------- */
+/* ---- lens
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static bool set_lens_radius(Edit *e, const MessageField *f) {
   e->def->lens.f_number = VL_UNSET;
@@ -240,16 +274,20 @@ static bool set_lens_radius(Edit *e, const MessageField *f) {
 }
 static bool set_f_number(Edit *e, const MessageField *f) {
   e->def->lens_radius = 0;
-  if (isnan(e->def->focal_mm) && isnan(e->def->sensor_width_mm)) e->def->sensor_width_mm = 36;
+  if (isnan(e->def->focal_mm) && isnan(e->def->sensor_width_mm))
+    e->def->sensor_width_mm = 36;
   return one(f, &e->def->lens.f_number);
 }
 static bool set_focus_distance(Edit *e, const MessageField *f) {
-  for (int i = 0; i < 3; i++) e->def->lens.focus_point[i] = VL_UNSET;
-  for (int i = 0; i < 2; i++) e->def->lens.focus_pixel[i] = VL_UNSET;
+  for (int i = 0; i < 3; i++)
+    e->def->lens.focus_point[i] = VL_UNSET;
+  for (int i = 0; i < 2; i++)
+    e->def->lens.focus_pixel[i] = VL_UNSET;
   return one(f, &e->def->focus_distance);
 }
 static bool set_blades(Edit *e, const MessageField *f) {
-  if (f->count != 1) return false;
+  if (f->count != 1)
+    return false;
   e->def->lens.blades = (uint32_t)f->numbers[0];
   return true;
 }
@@ -259,7 +297,8 @@ static bool set_ratio(Edit *e, const MessageField *f) {
 
 /* An angle of the lens, given in degrees. */
 static bool set_angle(const MessageField *f, double *angle) {
-  if (f->count != 1) return false;
+  if (f->count != 1)
+    return false;
   *angle = f->numbers[0] * degree;
   return true;
 }
@@ -279,23 +318,28 @@ static bool set_lens_tilt_y(Edit *e, const MessageField *f) {
   return set_angle(f, &e->def->lens.lens_tilt_y);
 }
 static bool set_near(Edit *e, const MessageField *f) {
-  if (f->null) e->def->near_plane = 0;
+  if (f->null)
+    e->def->near_plane = 0;
   return f->null || one(f, &e->def->near_plane);
 }
 static bool set_far(Edit *e, const MessageField *f) {
-  if (f->null) e->def->far_plane = INFINITY;
+  if (f->null)
+    e->def->far_plane = INFINITY;
   return f->null || one(f, &e->def->far_plane);
 }
 static bool set_exposure_time(Edit *e, const MessageField *f) {
   return f->count == 1 && one(f, &e->def->exposure_time);
 }
 
-/* ---- all fields -------------------------------------------------------------------------------------------------- */
+/* ---- all fields
+ * --------------------------------------------------------------------------------------------------
+ */
 
 /* In the order in which the fields of one message are applied. */
 static const struct {
   const char *name;
-  const char *setting; /* its numbers, in the row's unit, are values of this setting; null: of none */
+  const char
+      *setting; /* its numbers, in the row's unit, are values of this setting; null: of none */
   Setter *set;
 } setters[] = {{"projection", "projection", set_projection},
                {"fov_axis", "fov_axis", set_fov_axis},
@@ -338,8 +382,10 @@ enum { PROJECTIONS = VL_PROJECTION_OPTICS + 1 };
 /* The row of a field's values; projections have the names of the page, which `names` gets. */
 static vlParameter row_of(const char *setting, const char *names[PROJECTIONS + 1]) {
   vlParameter row = *vl_setting(VL_SETTING_CAMERA, setting);
-  if (strcmp(setting, "projection") != 0) return row;
-  for (int i = 0; i < PROJECTIONS; i++) names[i] = vl_projection_name((vlProjection)i);
+  if (strcmp(setting, "projection") != 0)
+    return row;
+  for (int i = 0; i < PROJECTIONS; i++)
+    names[i] = vl_projection_name((vlProjection)i);
   names[PROJECTIONS] = NULL;
   row.choices = names;
   return row;
@@ -354,7 +400,8 @@ static vlResult refuse(vlError *error, const char *message) {
 static vlResult check_field(MessageField *field, const char *setting, vlError *error) {
   char name[80];
   char message[VL_GIVEN_MESSAGE];
-  if (!setting || field->null) return VL_OK;
+  if (!setting || field->null)
+    return VL_OK;
   const char *names[PROJECTIONS + 1];
   const vlParameter row = row_of(setting, names);
   snprintf(name, sizeof name, "camera: %s", field->name);
@@ -362,23 +409,27 @@ static vlResult check_field(MessageField *field, const char *setting, vlError *e
   uint32_t count = field->count ? field->count : 1;
   for (uint32_t i = 0; i < count; i++) {
     double number;
-    if (field->count) given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = field->numbers[i], .factor = row.factor};
-    if (!vl_given_check(&row, name, &given, &number, message)) return refuse(error, message);
+    if (field->count)
+      given =
+          (vlGiven){.kind = VL_GIVEN_NUMBER, .number = field->numbers[i], .factor = row.factor};
+    if (!vl_given_check(&row, name, &given, &number, message))
+      return refuse(error, message);
     field->choice = row.type == VL_PARAMETER_CHOICE ? (int)number : 0;
   }
   return VL_OK;
 }
 
 static vlResult refuse_count(vlError *error, const MessageField *field) {
-  snprintf(error->message, sizeof error->message, "camera: %s has %u numbers, which is not their number", field->name,
-           field->count);
+  snprintf(error->message, sizeof error->message,
+           "camera: %s has %u numbers, which is not their number", field->name, field->count);
   return error->code = VL_ERROR_ARGUMENT;
 }
 
 static vlResult refuse_name(vlError *error, const char *name) {
   const char *names[SETTERS];
   char message[VL_GIVEN_MESSAGE];
-  for (int i = 0; i < SETTERS; i++) names[i] = setters[i].name;
+  for (int i = 0; i < SETTERS; i++)
+    names[i] = setters[i].name;
   vl_unknown_name("field of the camera", "", name, names, SETTERS, message);
   return refuse(error, message);
 }
@@ -389,16 +440,22 @@ static vlResult apply_fields(Edit *edit, vlError *error) {
   for (int s = 0; s < SETTERS; s++)
     for (uint32_t i = 0; i < message->field_count; i++) {
       MessageField field = message->fields[i];
-      if (strcmp(field.name, setters[s].name) != 0) continue;
+      if (strcmp(field.name, setters[s].name) != 0)
+        continue;
       known++;
-      if (check_field(&field, setters[s].setting, error) != VL_OK) return VL_ERROR_ARGUMENT;
-      if (!setters[s].set(edit, &field)) return refuse_count(error, &field);
+      if (check_field(&field, setters[s].setting, error) != VL_OK)
+        return VL_ERROR_ARGUMENT;
+      if (!setters[s].set(edit, &field))
+        return refuse_count(error, &field);
     }
-  if (known == message->field_count) return VL_OK;
+  if (known == message->field_count)
+    return VL_OK;
   for (uint32_t i = 0; i < message->field_count; i++) {
     int s = 0;
-    while (s < SETTERS && strcmp(setters[s].name, message->fields[i].name) != 0) s++;
-    if (s == SETTERS) return refuse_name(error, message->fields[i].name);
+    while (s < SETTERS && strcmp(setters[s].name, message->fields[i].name) != 0)
+      s++;
+    if (s == SETTERS)
+      return refuse_name(error, message->fields[i].name);
   }
   return VL_OK;
 }
@@ -406,7 +463,8 @@ static vlResult apply_fields(Edit *edit, vlError *error) {
 /* Gives the width of the sensor only where it has a meaning. */
 static void tidy_sensor(const CameraUnits *units, vlCameraDef *def) {
   const vlLensDef *lens = &def->lens;
-  bool needed = !isnan(def->focal_mm) || !isnan(lens->f_number) || lens->lens_tilt_x != 0 || lens->lens_tilt_y != 0;
+  bool needed = !isnan(def->focal_mm) || !isnan(lens->f_number) || lens->lens_tilt_x != 0 ||
+                lens->lens_tilt_y != 0;
   def->sensor_width_mm = needed ? units->sensor_mm : VL_UNSET;
 }
 
@@ -424,13 +482,20 @@ static bool same_camera(const vlCamera *a, const vlCamera *b) {
 static void spell_at_size(ViewCamera *camera) {
   vlCameraDef *def = &camera->def;
   const vlCamera *made = &camera->made;
-  if (!isnan(def->view_distance)) def->view_distance = made->fx * camera->units.pixel_size / camera->units.zoom;
-  if (!isnan(def->focal_mm)) def->focal_mm = made->fx * def->sensor_width_mm / made->width;
-  if (!isnan(def->fx)) def->fx = made->fx;
-  if (!isnan(def->fy)) def->fy = made->fy;
-  if (!isnan(def->cx)) def->cx = made->cx;
-  if (!isnan(def->cy)) def->cy = made->cy;
-  if (!isnan(def->skew)) def->skew = made->skew;
+  if (!isnan(def->view_distance))
+    def->view_distance = made->fx * camera->units.pixel_size / camera->units.zoom;
+  if (!isnan(def->focal_mm))
+    def->focal_mm = made->fx * def->sensor_width_mm / made->width;
+  if (!isnan(def->fx))
+    def->fx = made->fx;
+  if (!isnan(def->fy))
+    def->fy = made->fy;
+  if (!isnan(def->cx))
+    def->cx = made->cx;
+  if (!isnan(def->cy))
+    def->cy = made->cy;
+  if (!isnan(def->skew))
+    def->skew = made->skew;
   def->width = made->width;
   def->height = made->height;
 }
@@ -453,7 +518,8 @@ static void spell_plainly(ViewCamera *camera) {
   def->lens.iso = def->lens.seconds = VL_UNSET;
 }
 
-vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat, ViewCamera *camera, vlError *error) {
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat,
+                     ViewCamera *camera, vlError *error) {
   *camera = (ViewCamera){.def = *def, .made = *made, .units = {1, 1, 36, lookat}};
   vlLensDef *lens = &camera->def.lens;
   note_units(def, &camera->units);
@@ -465,29 +531,38 @@ vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat
   if (def->width != made->width || def->height != made->height) {
     vlCamera again;
     spell_at_size(camera);
-    if (vl_camera_make(&camera->def, &again, NULL, error) != VL_OK || !same_camera(&again, made)) spell_plainly(camera);
+    if (vl_camera_make(&camera->def, &again, NULL, error) != VL_OK ||
+        !same_camera(&again, made))
+      spell_plainly(camera);
   }
   return vl_camera_make(&camera->def, &camera->made, NULL, error);
 }
 
-vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result, const char **warning,
-                     vlError *error) {
+vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result,
+                     const char **warning, vlError *error) {
   ViewCamera next = *now;
-  Edit edit = {.now = now, .def = &next.def, .message = message, .pose = {.pose = camera_pose(now)}};
+  Edit edit = {
+      .now = now, .def = &next.def, .message = message, .pose = {.pose = camera_pose(now)}};
   vlResult status = apply_fields(&edit, error);
-  if (status == VL_OK && edit.pose.given) camera_place(now, &edit.pose.pose, &next.def);
+  if (status == VL_OK && edit.pose.given)
+    camera_place(now, &edit.pose.pose, &next.def);
   note_units(&next.def, &next.units);
   const CameraPose *pose = &edit.pose.pose;
   double arm = 0;
-  for (int i = 0; i < 3; i++) arm += (pose->lookat[i] - pose->eye[i]) * (pose->lookat[i] - pose->eye[i]);
-  if (arm > 0) next.units.lookat = sqrt(arm);
+  for (int i = 0; i < 3; i++)
+    arm += (pose->lookat[i] - pose->eye[i]) * (pose->lookat[i] - pose->eye[i]);
+  if (arm > 0)
+    next.units.lookat = sqrt(arm);
   tidy_sensor(&next.units, &next.def);
-  if (status == VL_OK) status = vl_camera_make(&next.def, &next.made, warning, error);
-  if (status == VL_OK) *result = next;
+  if (status == VL_OK)
+    status = vl_camera_make(&next.def, &next.made, warning, error);
+  if (status == VL_OK)
+    *result = next;
   return status;
 }
 
-vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result, vlError *error) {
+vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result,
+                          vlError *error) {
   ViewMessage message = {.field_count = 1};
   strcpy(message.fields[0].name, "focus_distance");
   message.fields[0].count = 1;

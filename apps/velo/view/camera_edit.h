@@ -1,5 +1,5 @@
-/* view/camera_edit.h: edits of a camera by its fields, in any of its equivalent spellings, and all spellings of a
- * camera. The last edited spelling is the one that the def keeps. */
+/* view/camera_edit.h: edits of a camera by its fields, in any of its equivalent spellings, and
+ * all spellings of a camera. The last edited spelling is the one that the def keeps. */
 #ifndef APP_VIEW_CAMERA_EDIT_H
 #define APP_VIEW_CAMERA_EDIT_H
 
@@ -8,15 +8,18 @@
 #include "view/camera_pose.h"
 #include "view/message.h"
 
-/* Applies the fields of a message. Errors: ARGUMENT: a field or value is refused; the error has the message of
- * vl_camera_make, or names the field. *result is unchanged then. warning: as vl_camera_make's. */
-vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result, const char **warning,
-                     vlError *error);
+/* Applies the fields of a message. Errors: ARGUMENT: a field or value is refused; the error has
+ * the message of vl_camera_make, or names the field. *result is unchanged then. warning: as
+ * vl_camera_make's. */
+vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result,
+                     const char **warning, vlError *error);
 /* Replaces the focus of a camera by a distance. Errors as camera_edit. */
-vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result, vlError *error);
-/* The camera of a def whose image has the size of `made`. It keeps the def's spelling of the focal length where it can.
- * lookat: see CameraUnits. Errors as camera_edit. */
-vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat, ViewCamera *camera, vlError *error);
+vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result,
+                          vlError *error);
+/* The camera of a def whose image has the size of `made`. It keeps the def's spelling of the
+ * focal length where it can. lookat: see CameraUnits. Errors as camera_edit. */
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat,
+                     ViewCamera *camera, vlError *error);
 
 /* Writes all spellings as members of the open JSON object. */
 void camera_spellings(Json *json, const ViewCamera *camera);

@@ -6,7 +6,8 @@
 
 #include "cli/vector.h"
 
-/* The rotation whose z axis is that of the matrix and whose y axis is as near as possible; columns x, y, z. */
+/* The rotation whose z axis is that of the matrix and whose y axis is as near as possible;
+ * columns x, y, z. */
 static void rotation_of(const double m[16], double r[3][3]) {
   for (int i = 0; i < 3; i++) {
     r[1][i] = m[4 * i + 1];
@@ -37,13 +38,17 @@ CameraPose camera_pose(const ViewCamera *camera) {
   return pose;
 }
 
-/* Camera axes that look from eye to lookat; columns x right, y down, z forward. False: there are none. */
+/* Camera axes that look from eye to lookat; columns x right, y down, z forward. False: there
+ * are none. */
 static bool look(const CameraPose *pose, double r[3][3]) {
-  for (int i = 0; i < 3; i++) r[2][i] = pose->lookat[i] - pose->eye[i];
-  if (!vector_normalize(r[2])) return false;
+  for (int i = 0; i < 3; i++)
+    r[2][i] = pose->lookat[i] - pose->eye[i];
+  if (!vector_normalize(r[2]))
+    return false;
   const double down[3] = {-pose->up[0], -pose->up[1], -pose->up[2]};
   vector_cross(down, r[2], r[0]);
-  if (!vector_normalize(r[0])) return false;
+  if (!vector_normalize(r[0]))
+    return false;
   vector_cross(r[2], r[0], r[1]);
   return true;
 }
@@ -62,7 +67,8 @@ void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *de
       }
   }
   def->has_matrix_close = false;
-  for (int i = 0; i < 3; i++) def->eye_close[i] = def->lookat_close[i] = def->up_close[i] = VL_UNSET;
+  for (int i = 0; i < 3; i++)
+    def->eye_close[i] = def->lookat_close[i] = def->up_close[i] = VL_UNSET;
   def->roll_close = VL_UNSET;
   def->roll = pose->roll;
   if (rigid || !look(pose, new)) {
@@ -75,7 +81,8 @@ void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *de
   for (int row = 0; row < 3; row++) {
     for (int j = 0; j < 3; j++) {
       double sum = 0;
-      for (int k = 0; k < 3; k++) sum += new[k][row] * rest[k][j];
+      for (int k = 0; k < 3; k++)
+        sum += new[k][row] * rest[k][j];
       def->world_from_camera[4 * row + j] = sum;
     }
     def->world_from_camera[4 * row + 3] = pose->eye[row];

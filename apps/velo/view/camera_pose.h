@@ -1,5 +1,5 @@
-/* view/camera_pose.h: a camera as described and as compiled, and its pose as the lecture spells it: eye, lookat, up,
- * roll. */
+/* view/camera_pose.h: a camera as described and as compiled, and its pose as the lecture spells
+ * it: eye, lookat, up, roll. */
 #ifndef APP_VIEW_CAMERA_POSE_H
 #define APP_VIEW_CAMERA_POSE_H
 

@@ -8,7 +8,8 @@ static const double degrees = 180.0 / 3.14159265358979323846;
 
 static void put_numbers(Json *json, const char *key, const double *values, uint32_t count) {
   json_begin(json, key, '[');
-  for (uint32_t i = 0; i < count; i++) json_number(json, NULL, values[i]);
+  for (uint32_t i = 0; i < count; i++)
+    json_number(json, NULL, values[i]);
   json_end(json, ']');
 }
 
@@ -25,7 +26,8 @@ static void put_pose(Json *json, const ViewCamera *camera) {
 /* The angle between the rays of two points of the film, degrees; NaN: one has none. */
 static double angle(const vlCamera *c, double x0, double y0, double x1, double y1) {
   double o[3], a[3], b[3];
-  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
+  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b))
+    return NAN;
   return degrees * vector_angle(a, b);
 }
 
@@ -48,15 +50,24 @@ static void put_focal(Json *json, const ViewCamera *camera) {
                                                            : "fov";
   json_text(json, "spelled", spelled);
   json_text(json, "fov_axis", axes[def->fov_axis]);
-  json_number(json, "fov", flat ? NAN : isnan(def->fov) ? fields[def->fov_axis] : def->fov * degrees);
+  json_number(json, "fov",
+              flat              ? NAN
+              : isnan(def->fov) ? fields[def->fov_axis]
+                                : def->fov * degrees);
   json_number(json, "fov_horizontal", flat ? NAN : horizontal);
   json_number(json, "fov_vertical", flat ? NAN : vertical);
   json_number(json, "fov_diagonal", flat ? NAN : diagonal);
-  json_number(json, "d", flat ? NAN : !isnan(def->view_distance) ? def->view_distance : c->fx * u.pixel_size / u.zoom);
+  json_number(json, "d",
+              flat                         ? NAN
+              : !isnan(def->view_distance) ? def->view_distance
+                                           : c->fx * u.pixel_size / u.zoom);
   json_number(json, "zoom", u.zoom);
   json_number(json, "s", flat && isnan(def->pixel_size) ? u.zoom / c->fx : u.pixel_size);
   json_number(json, "sensor_width_mm", u.sensor_mm);
-  json_number(json, "focal_mm", flat ? NAN : !isnan(def->focal_mm) ? def->focal_mm : c->fx * u.sensor_mm / w);
+  json_number(json, "focal_mm",
+              flat                    ? NAN
+              : !isnan(def->focal_mm) ? def->focal_mm
+                                      : c->fx * u.sensor_mm / w);
   json_number(json, "fx", c->fx);
   json_number(json, "fy", c->fy);
   json_number(json, "cx", c->cx);

@@ -1,5 +1,5 @@
-/* view/engine.h: renders what the pages ask for: the first image coarse, then finer, then more samples. One thread
- * renders; the server's thread brings messages. */
+/* view/engine.h: renders what the pages ask for: the first image coarse, then finer, then more
+ * samples. One thread renders; the server's thread brings messages. */
 #ifndef APP_VIEW_ENGINE_H
 #define APP_VIEW_ENGINE_H
 
@@ -11,8 +11,8 @@ typedef struct Engine Engine;
 
 typedef struct EngineDef {
   vlContext *context;
-  const char *path;           /* of the scene; it stays valid */
-  bool lecture;               /* pages choose among the scenes of the lecture; nothing is saved */
+  const char *path; /* of the scene; it stays valid */
+  bool lecture;     /* pages choose among the scenes of the lecture; nothing is saved */
   const Arguments *arguments; /* of the command line */
   const char *film_path;      /* to write the film to at the end; null: none */
   vlFilmLock *film_lock;      /* of film_path */

@@ -1,6 +1,7 @@
-/* view/engine_film.c: the film of --film, with a receipt, so that `velo render --continue` adds samples to it. The
- * receipt's command is that of `velo render` for the last image: its tracer, its crop, and its camera, which is written
- * into a file beside the film, unless it is still the scene's. */
+/* view/engine_film.c: the film of --film, with a receipt, so that `velo render --continue` adds
+ * samples to it. The receipt's command is that of `velo render` for the last image: its tracer,
+ * its crop, and its camera, which is written into a file beside the film, unless it is still
+ * the scene's. */
 #include <stdio.h>
 #include <string.h>
 
@@ -23,21 +24,26 @@ static void set_option(FilmCommand *c, int option, const char *text) {
   c->arguments.values[option].text = text;
 }
 
-/* Whether the camera is the scene's. An edit that changes no number may make it seem another one. */
+/* Whether the camera is the scene's. An edit that changes no number may make it seem another
+ * one.
+ */
 static bool is_scenes_own(const Engine *e) {
   const ViewCamera *a = &e->now.camera, *b = &e->scene_camera;
-  return memcmp(&a->def, &b->def, sizeof a->def) == 0 && memcmp(&a->made, &b->made, sizeof a->made) == 0;
+  return memcmp(&a->def, &b->def, sizeof a->def) == 0 &&
+         memcmp(&a->made, &b->made, sizeof a->made) == 0;
 }
 
 void engine_film_camera(const char *film_path, char *path, size_t size) {
   snprintf(path, size, "%s.camera.json", film_path);
 }
 
-/* Writes the camera, and replaces the options that give it. Returns -1, or the exit code after reporting the error. */
+/* Writes the camera, and replaces the options that give it. Returns -1, or the exit code after
+ * reporting the error. */
 static int take_camera(const Engine *e, FilmCommand *c) {
-  static const int replaced[] = {
-      RENDER_FRAME,       RENDER_SIZE,     RENDER_TURN,       RENDER_FOCUS_PIXEL, RENDER_FOCUS_DISTANCE,
-      RENDER_LENS_RADIUS, RENDER_F_NUMBER, RENDER_RESOLUTION, RENDER_ISO,         RENDER_SECONDS};
+  static const int replaced[] = {RENDER_FRAME,       RENDER_SIZE,           RENDER_TURN,
+                                 RENDER_FOCUS_PIXEL, RENDER_FOCUS_DISTANCE, RENDER_LENS_RADIUS,
+                                 RENDER_F_NUMBER,    RENDER_RESOLUTION,     RENDER_ISO,
+                                 RENDER_SECONDS};
   const vlCamera *made = &e->now.camera.made;
   const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
   vlCameraFileDef def = vl_default_camera_file_def();
@@ -45,8 +51,10 @@ static int take_camera(const Engine *e, FilmCommand *c) {
   def.dialect = VL_CAMERA_DIALECT_VELO;
   engine_film_camera(e->def.film_path, c->camera, sizeof c->camera);
   vlResult result = vl_camera_write(e->def.context, c->camera, &def, &record, &error);
-  if (result != VL_OK) return report_error(&error, result, c->camera);
-  for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++) set_option(c, replaced[i], NULL);
+  if (result != VL_OK)
+    return report_error(&error, result, c->camera);
+  for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
+    set_option(c, replaced[i], NULL);
   set_option(c, RENDER_CAMERA, c->camera);
   snprintf(c->resolution, sizeof c->resolution, "%ux%u", made->width, made->height);
   if (record.camera.width != made->width || record.camera.height != made->height)
@@ -54,16 +62,19 @@ static int take_camera(const Engine *e, FilmCommand *c) {
   return -1;
 }
 
-/* Makes the receipt and the header attributes; null if the scene's files have changed since the image began. Returns
- * -1, or the exit code. */
-static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt, vlImage **attributes) {
+/* Makes the receipt and the header attributes; null if the scene's files have changed since the
+ * image began. Returns -1, or the exit code. */
+static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt,
+                        vlImage **attributes) {
   Job job = e->model.job;
   vlSceneDefs defs = engine_present_defs(e);
   const uint32_t *crop = e->now.crop;
   const ReceiptPlan plan = {.arguments = &c->arguments, .opening = &e->model.opening};
   if (e->model.load != e->loads) {
-    report_warning("%s has no receipt and cannot be continued: the scene's files changed during its last image",
-                   e->def.film_path);
+    report_warning(
+        "%s has no receipt and cannot be continued: the scene's files changed during its last "
+        "image",
+        e->def.film_path);
     return -1;
   }
   c->arguments = *e->def.arguments;
@@ -71,13 +82,15 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt, vl
   snprintf(c->crop, sizeof c->crop, "%u,%u,%u,%u", crop[0], crop[1], crop[2], crop[3]);
   if (is_scenes_own(e)) {
     defs.camera = job.defs->camera;
-    if (memcmp(crop, job.defs->film.crop, sizeof job.defs->film.crop) != 0) set_option(c, RENDER_CROP, c->crop);
+    if (memcmp(crop, job.defs->film.crop, sizeof job.defs->film.crop) != 0)
+      set_option(c, RENDER_CROP, c->crop);
   } else {
     const uint32_t whole[4] = {0, 0, defs.film.width, defs.film.height};
     set_option(c, RENDER_CROP, memcmp(crop, whole, sizeof whole) == 0 ? NULL : c->crop);
     status = take_camera(e, c);
   }
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   set_option(c, RENDER_TRAJECTORY, NULL);
   set_option(c, RENDER_CHANNELS, "error"); /* the film has their sums */
   defs.film.errors = true;
@@ -87,10 +100,14 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt, vl
   job.raced = true; /* the command names the tracer */
   const ReceiptImage which = {.samples = defs.render.spp};
   vlResult result = receipt_make(&plan, e->def.context, &job, &which, receipt);
-  if (result == VL_OK) result = attributes_make(e->def.context, &job, NULL, attributes);
+  if (result == VL_OK)
+    result = attributes_make(e->def.context, &job, NULL, attributes);
   const Channels channels = {.bits = VL_CHANNEL_ERROR};
-  if (result == VL_OK) result = channels_describe_mode(&channels, *attributes);
-  return result == VL_OK ? -1 : report_reason(result, e->def.film_path, "the film's receipt cannot be made");
+  if (result == VL_OK)
+    result = channels_describe_mode(&channels, *attributes);
+  return result == VL_OK
+             ? -1
+             : report_reason(result, e->def.film_path, "the film's receipt cannot be made");
 }
 
 int engine_write_film(Engine *e) {
@@ -100,7 +117,8 @@ int engine_write_film(Engine *e) {
   vlImage *attributes = NULL;
   vlError error = {0};
   if (!e->film || !vl_film_spp(e->film))
-    return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet", path);
+    return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet",
+                          path);
   int status = make_receipt(e, &command, &receipt, &attributes);
   vlFilmWriteDef def = vl_default_film_write_def();
   def.receipt = receipt ? vl_receipt_text(receipt) : NULL;
@@ -109,6 +127,7 @@ int engine_write_film(Engine *e) {
   vlResult result = status < 0 ? vl_film_write(e->film, &def, path, &error) : VL_OK;
   vl_receipt_destroy(receipt);
   vl_image_destroy(attributes);
-  if (status < 0) status = result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+  if (status < 0)
+    status = result == VL_OK ? STATUS_OK : report_error(&error, result, path);
   return status;
 }

@@ -1,5 +1,5 @@
-/* view/engine_messages.c: the engine's side of the server: greets pages and applies their messages. All of it runs on
- * the server's thread; nothing here renders. */
+/* view/engine_messages.c: the engine's side of the server: greets pages and applies their
+ * messages. All of it runs on the server's thread; nothing here renders. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,18 +27,21 @@ static char *engine_state(const Engine *e) {
 
 void engine_post_state(Engine *e, uint32_t client) {
   char *text = engine_state(e);
-  if (text) server_post(e->server, client, text);
+  if (text)
+    server_post(e->server, client, text);
   free(text);
 }
 
 void engine_greet(void *user, uint32_t client) {
   Engine *e = user;
   char *lists = state_lists();
-  if (lists) server_post(e->server, client, lists);
+  if (lists)
+    server_post(e->server, client, lists);
   free(lists);
   pthread_mutex_lock(&e->lock);
   engine_post_state(e, client);
-  if (e->last_status) server_post(e->server, client, e->last_status);
+  if (e->last_status)
+    server_post(e->server, client, e->last_status);
   pthread_mutex_unlock(&e->lock);
 }
 
@@ -54,11 +57,14 @@ void engine_clients(void *user, uint32_t count) {
   pthread_mutex_unlock(&e->lock);
 }
 
-/* ---- the camera -------------------------------------------------------------------------------------------------- */
+/* ---- the camera
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const char *why) {
   JsonText text;
-  if (!json_text_begin(&text, "refused")) return;
+  if (!json_text_begin(&text, "refused"))
+    return;
   json_integer(&text.json, "change", m->change);
   json_integer(&text.json, "id", m->id);
   json_text(&text.json, "field", m->field_count ? m->fields[0].name : "");
@@ -81,7 +87,8 @@ void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
     memmove(h->cameras, h->cameras + 1, (HISTORY - 1) * sizeof *h->cameras);
     h->at--;
   }
-  if (!same) h->at++;
+  if (!same)
+    h->at++;
   h->cameras[h->at] = *camera;
   h->count = h->at + 1;
 }
@@ -101,7 +108,8 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
   engine_post_state(e, 0);
   if (warning) {
     JsonText text;
-    if (!json_text_begin(&text, "warning")) return;
+    if (!json_text_begin(&text, "warning"))
+      return;
     json_text(&text.json, "message", warning);
     json_text_post(&text, e->server, client);
   }
@@ -124,7 +132,9 @@ static void step_history(Engine *e, const ViewMessage *m) {
   engine_post_state(e, 0);
 }
 
-/* ---- settings ---------------------------------------------------------------------------------------------------- */
+/* ---- settings
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static bool set_channel(Engine *e, const char *name) {
   if (strcmp(name, "image") == 0) {
@@ -146,13 +156,15 @@ static bool set_crop(Engine *e, const uint32_t crop[4]) {
     memcpy(e->wanted.crop, whole, sizeof whole);
     return true;
   }
-  if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > c->width || crop[3] > c->height) return false;
+  if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > c->width || crop[3] > c->height)
+    return false;
   memcpy(e->wanted.crop, crop, sizeof whole);
   return true;
 }
 
 static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
-  if (m->has_channel && !set_channel(e, m->channel)) post_refusal(e, client, m, "there is no such channel");
+  if (m->has_channel && !set_channel(e, m->channel))
+    post_refusal(e, client, m, "there is no such channel");
   if (m->has_crop) {
     if (set_crop(e, m->crop))
       e->wanted.generation++;
@@ -163,9 +175,12 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
     e->wanted.mark = e->wanted.camera.made;
     e->wanted.generation += e->wanted.channel == CHANNEL_FLOW;
   }
-  if (m->has_spp) e->wanted.spp = m->spp;
-  if (m->has_paused) e->wanted.paused = m->paused;
-  if (m->has_crop || m->has_channel || m->mark || e->wanted.paused) engine_interrupt(e);
+  if (m->has_spp)
+    e->wanted.spp = m->spp;
+  if (m->has_paused)
+    e->wanted.paused = m->paused;
+  if (m->has_crop || m->has_channel || m->mark || e->wanted.paused)
+    engine_interrupt(e);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);
 }
@@ -173,7 +188,9 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
 static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
   const char *scene = e->def.lecture ? lecture_scene(m->name) : NULL;
   if (!scene) {
-    post_refusal(e, client, m, e->def.lecture ? "the lecture has no such scene" : "this page has one scene only");
+    post_refusal(
+        e, client, m,
+        e->def.lecture ? "the lecture has no such scene" : "this page has one scene only");
     return;
   }
   e->chosen = scene;
@@ -181,7 +198,8 @@ static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
 }
 
 /* Adds a message to a list of tasks. */
-static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks, uint32_t *count) {
+static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks,
+                     uint32_t *count) {
   if (*count == MOST_TASKS) {
     post_refusal(e, client, m, "too much at once");
     return;
@@ -191,8 +209,8 @@ static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tas
 
 /* Messages that change nothing that others see. */
 static bool is_harmless(MessageKind kind) {
-  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE || kind == MESSAGE_OUTSIDE ||
-         kind == MESSAGE_PATHS || kind == MESSAGE_CAMERAS;
+  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE ||
+         kind == MESSAGE_OUTSIDE || kind == MESSAGE_PATHS || kind == MESSAGE_CAMERAS;
 }
 
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
@@ -202,11 +220,17 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
     post_refusal(e, client, m, "another page steers");
   } else {
     switch (m->kind) {
-      case MESSAGE_CAMERA: edit_camera(e, client, m); break;
+      case MESSAGE_CAMERA:
+        edit_camera(e, client, m);
+        break;
       case MESSAGE_UNDO:
       case MESSAGE_REDO:
-      case MESSAGE_RESET: step_history(e, m); break;
-      case MESSAGE_SETTINGS: change_settings(e, client, m); break;
+      case MESSAGE_RESET:
+        step_history(e, m);
+        break;
+      case MESSAGE_SETTINGS:
+        change_settings(e, client, m);
+        break;
       case MESSAGE_SAVE:
       case MESSAGE_COMMAND:
         if (e->def.lecture)
@@ -214,16 +238,23 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
         else
           add_task(e, client, m, e->tasks, &e->task_count);
         break;
-      case MESSAGE_SCENE: choose_scene(e, client, m); break;
-      case MESSAGE_PATHS: engine_add_trace(e, client, m); break;
+      case MESSAGE_SCENE:
+        choose_scene(e, client, m);
+        break;
+      case MESSAGE_PATHS:
+        engine_add_trace(e, client, m);
+        break;
       case MESSAGE_PICK:
       case MESSAGE_FOCUS:
       case MESSAGE_OUTLINE:
       case MESSAGE_OUTSIDE:
       case MESSAGE_CAMERAS:
-      case MESSAGE_OVERLAY: add_task(e, client, m, e->questions, &e->question_count); break;
+      case MESSAGE_OVERLAY:
+        add_task(e, client, m, e->questions, &e->question_count);
+        break;
       case MESSAGE_SEEN:
-      case MESSAGE_STEER: break; /* the server's own */
+      case MESSAGE_STEER:
+        break; /* the server's own */
     }
   }
   pthread_cond_broadcast(&e->wake);

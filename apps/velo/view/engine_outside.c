@@ -1,5 +1,5 @@
-/* view/engine_outside.c: the camera from outside: the lines of its drawing, which the page projects, and a small image
- * of the scene behind them. */
+/* view/engine_outside.c: the camera from outside: the lines of its drawing, which the page
+ * projects, and a small image of the scene behind them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,16 +11,19 @@
 
 enum { LARGEST_SIDE = 800, OUTSIDE_SPP = 2 };
 
-static const double outside_fov = 40 * 3.14159265358979323846 / 180; /* vertical; web/outside.js has the same */
+static const double outside_fov =
+    40 * 3.14159265358979323846 / 180; /* vertical; web/outside.js has the same */
 
 static const MessageField *find_field(const ViewMessage *m, const char *name, uint32_t count) {
   for (uint32_t i = 0; i < m->field_count; i++)
-    if (strcmp(m->fields[i].name, name) == 0 && m->fields[i].count == count) return &m->fields[i];
+    if (strcmp(m->fields[i].name, name) == 0 && m->fields[i].count == count)
+      return &m->fields[i];
   return NULL;
 }
 
 static void put_numbers(Json *json, const double *values, int count) {
-  for (int i = 0; i < count; i++) json_number(json, NULL, values[i]);
+  for (int i = 0; i < count; i++)
+    json_number(json, NULL, values[i]);
 }
 
 static void put_drawing(Json *json, const vlDrawing *d) {
@@ -46,17 +49,19 @@ static void put_drawing(Json *json, const vlDrawing *d) {
   json_end(json, ']');
 }
 
-/* The view plane where the page has it, so that it moves with d while it is dragged; else at the lecture's d, where
- * that is before what the camera looks at; else nearer. */
+/* The view plane where the page has it, so that it moves with d while it is dragged; else at
+ * the lecture's d, where that is before what the camera looks at; else nearer. */
 static double plane_distance(const ViewCamera *camera, const MessageField *given) {
   double d = camera->def.view_distance, arm = camera->units.lookat;
   const CameraPose pose = camera_pose(camera);
   if (!camera->def.has_matrix) {
     arm = 0;
-    for (int i = 0; i < 3; i++) arm += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
+    for (int i = 0; i < 3; i++)
+      arm += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
     arm = sqrt(arm);
   }
-  if (given && given->numbers[0] > 0.02 * arm && given->numbers[0] < 4 * arm) return given->numbers[0];
+  if (given && given->numbers[0] > 0.02 * arm && given->numbers[0] < 4 * arm)
+    return given->numbers[0];
   return d > 0.02 * arm && d < 4 * arm ? d : 0.4 * arm;
 }
 
@@ -98,11 +103,14 @@ void engine_cameras(Engine *e, const Task *task) {
   def.plane = plane > 0 ? plane : 0.1 * model->lookat;
   def.parts &= ~(1u << VL_DRAWING_GRID);
   if (model->camera_count)
-    result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def, &drawing, &error);
+    result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def,
+                               &drawing, &error);
   if (json_text_begin(&text, result == VL_OK ? "cameras" : "refused")) {
     json_integer(&text.json, "id", task->message.id);
-    if (result != VL_OK) json_text(&text.json, "message", error.message);
-    if (drawing) put_drawing(&text.json, drawing);
+    if (result != VL_OK)
+      json_text(&text.json, "message", error.message);
+    if (drawing)
+      put_drawing(&text.json, drawing);
     json_begin(&text.json, "poses", '[');
     for (uint32_t i = 0; i < model->camera_count; i++) {
       json_begin(&text.json, NULL, '[');
@@ -115,17 +123,22 @@ void engine_cameras(Engine *e, const Task *task) {
   vl_drawing_destroy(drawing);
 }
 
-/* ---- the scene from outside -------------------------------------------------------------------------------------- */
+/* ---- the scene from outside
+ * -------------------------------------------------------------------------------------- */
 
 /* Bytes as base64 (RFC 4648); null: no memory. */
 static char *to_base64(const uint8_t *data, size_t size) {
-  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static const char digits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   char *text = malloc((size + 2) / 3 * 4 + 1), *to = text;
-  if (!text) return NULL;
+  if (!text)
+    return NULL;
   for (size_t i = 0; i < size; i += 3) {
     uint32_t left = size - i < 3 ? (uint32_t)(size - i) : 3, bits = 0;
-    for (uint32_t k = 0; k < 3; k++) bits = bits << 8 | (k < left ? data[i + k] : 0u);
-    for (uint32_t k = 0; k < 4; k++) *to++ = k <= left ? digits[bits >> (18 - 6 * k) & 63] : '=';
+    for (uint32_t k = 0; k < 3; k++)
+      bits = bits << 8 | (k < left ? data[i + k] : 0u);
+    for (uint32_t k = 0; k < 4; k++)
+      *to++ = k <= left ? digits[bits >> (18 - 6 * k) & 63] : '=';
   }
   *to = 0;
   return text;
@@ -134,19 +147,21 @@ static char *to_base64(const uint8_t *data, size_t size) {
 static vlResult make_camera(const ViewMessage *m, vlCamera *camera, vlError *error) {
   static const char *const names[] = {"eye", "lookat", "up"};
   uint32_t width = m->size[0] ? m->size[0] : 320, height = m->size[1] ? m->size[1] : 200;
-  vlCameraDef def =
-      vl_default_camera_def(width < LARGEST_SIDE ? width : LARGEST_SIDE, height < LARGEST_SIDE ? height : LARGEST_SIDE);
+  vlCameraDef def = vl_default_camera_def(width < LARGEST_SIDE ? width : LARGEST_SIDE,
+                                          height < LARGEST_SIDE ? height : LARGEST_SIDE);
   double *const values[] = {def.eye, def.lookat, def.up};
   for (int i = 0; i < 3; i++) {
     const MessageField *field = find_field(m, names[i], 3);
-    if (field) memcpy(values[i], field->numbers, 3 * sizeof(double));
+    if (field)
+      memcpy(values[i], field->numbers, 3 * sizeof(double));
   }
   def.fov = outside_fov;
   def.fov_axis = VL_FOV_VERTICAL;
   return vl_camera_make(&def, camera, NULL, error);
 }
 
-static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage **image, vlError *error) {
+static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage **image,
+                               vlError *error) {
   vlRenderDef render = e->model.job.defs->render;
   vlFilmDef def = vl_default_film_def(camera->width, camera->height);
   vlFilm *film = NULL;
@@ -156,12 +171,15 @@ static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage 
   render.first_sample = 0;
   render.time_limit = 0;
   render.noise = 0;
-  if (render.max_depth > 3) render.max_depth = 3;
+  if (render.max_depth > 3)
+    render.max_depth = 3;
   render.cancel = e->end;
   render.priority = 1;
   vlResult result = vl_film_create(e->def.context, &def, &film);
-  if (result == VL_OK) result = vl_render(e->model.world, camera, film, &render, NULL, error);
-  if (result == VL_OK) result = vl_film_develop(film, &e->model.job.defs->develop, image);
+  if (result == VL_OK)
+    result = vl_render(e->model.world, camera, film, &render, NULL, error);
+  if (result == VL_OK)
+    result = vl_film_develop(film, &e->model.job.defs->develop, image);
   vl_film_destroy(film);
   return result;
 }
@@ -176,10 +194,13 @@ void engine_outside(Engine *e, const Task *task) {
   vlWriteDef write = vl_default_write_def();
   write.quality = 85;
   vlResult result = make_camera(&task->message, &camera, &error);
-  if (result == VL_OK) result = render_outside(e, &camera, &image, &error);
   if (result == VL_OK)
-    result = display_image(e->def.context, image, VL_VIEW_STANDARD, (float)task->message.exposure, false, &shown);
-  if (result == VL_OK) result = vl_image_write_memory(shown, ".jpg", &write, &data, &size, &error);
+    result = render_outside(e, &camera, &image, &error);
+  if (result == VL_OK)
+    result = display_image(e->def.context, image, VL_VIEW_STANDARD,
+                           (float)task->message.exposure, false, &shown);
+  if (result == VL_OK)
+    result = vl_image_write_memory(shown, ".jpg", &write, &data, &size, &error);
   char *bytes = result == VL_OK ? to_base64(data, size) : NULL;
   if (result != VL_CANCELLED && json_text_begin(&text, bytes ? "outside" : "refused")) {
     json_integer(&text.json, "id", task->message.id);

@@ -1,4 +1,5 @@
-/* view/engine_overlay.c: what the page draws over the image: vanishing points, horizon, boxes of objects. */
+/* view/engine_overlay.c: what the page draws over the image: vanishing points, horizon, boxes
+ * of objects. */
 #include <stdlib.h>
 
 #include "velo/boxes.h"
@@ -10,20 +11,24 @@ enum { MOST_BOXES = 500 };
 static void put_vanishing(Json *json, const vlCamera *camera, const double up[3]) {
   static const char *const kinds[] = {"none", "finite", "infinite"};
   vlVanishingPoints points;
-  if (!vl_camera_vanishing_points(camera, up, &points)) return;
+  if (!vl_camera_vanishing_points(camera, up, &points))
+    return;
   json_begin(json, "vanishing", '[');
   for (int i = 0; i < 3; i++) {
     const vlVanishingPoint *p = &points.axes[i];
     json_begin(json, NULL, '{');
     json_text(json, "kind", kinds[p->kind]);
     for (int k = 0; k < 2; k++)
-      json_number(json, k ? "y" : "x", p->kind == VL_VANISHING_INFINITE ? p->direction[k] : p->pixel[k]);
+      json_number(json, k ? "y" : "x",
+                  p->kind == VL_VANISHING_INFINITE ? p->direction[k] : p->pixel[k]);
     json_end(json, '}');
   }
   json_end(json, ']');
-  if (!points.has_horizon) return;
+  if (!points.has_horizon)
+    return;
   json_begin(json, "horizon", '[');
-  for (int i = 0; i < 3; i++) json_number(json, NULL, points.horizon[i]);
+  for (int i = 0; i < 3; i++)
+    json_number(json, NULL, points.horizon[i]);
   json_end(json, ']');
 }
 
@@ -41,12 +46,14 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
   json_begin(json, "boxes", '[');
   for (uint32_t i = 0; i < count && put < MOST_BOXES; i++) {
     vlIdInfo info;
-    if (!boxes[i].seen || vl_world_id_info(e->model.world, VL_ID_OBJECT, i + 1, &info) != VL_OK) continue;
+    if (!boxes[i].seen || vl_world_id_info(e->model.world, VL_ID_OBJECT, i + 1, &info) != VL_OK)
+      continue;
     json_begin(json, NULL, '{');
     json_integer(json, "id", i + 1);
     json_text(json, "name", info.name ? info.name : "");
     json_begin(json, "box", '[');
-    for (int k = 0; k < 4; k++) json_integer(json, NULL, boxes[i].seen_box[k]);
+    for (int k = 0; k < 4; k++)
+      json_integer(json, NULL, boxes[i].seen_box[k]);
     json_end(json, ']');
     json_end(json, '}');
     put++;
@@ -57,7 +64,8 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
 
 void engine_overlay(Engine *e, const Task *task) {
   JsonText text;
-  if (!json_text_begin(&text, "overlay")) return;
+  if (!json_text_begin(&text, "overlay"))
+    return;
   pthread_mutex_lock(&e->lock);
   const ViewCamera camera = e->wanted.camera;
   uint32_t change = e->wanted.change;
@@ -68,6 +76,7 @@ void engine_overlay(Engine *e, const Task *task) {
   put_vanishing(&text.json, &camera.made, pose.up);
   if (task->message.curves || task->message.field)
     engine_put_curves(&text.json, &camera, &e->model.info, task->message.field);
-  if (task->message.boxes) put_boxes(&text.json, e, &camera.made);
+  if (task->message.boxes)
+    put_boxes(&text.json, e, &camera.made);
   json_text_post(&text, e->server, task->client);
 }

@@ -8,7 +8,8 @@
 #include "view/engine.h"
 
 enum { MOST_TASKS = 32, HISTORY = 256 };
-/* Values of Wanted.channel that are not plain ground truth: the standard error needs the film, flow needs a camera. */
+/* Values of Wanted.channel that are not plain ground truth: the standard error needs the film,
+ * flow needs a camera. */
 enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16 };
 
 /* What makes the samples of a film, as in vlRenderDef. */
@@ -55,8 +56,10 @@ struct Engine {
   vlCancel *trace_stop;        /* stops the tracing of a pixel's paths; as `stop` */
   /* under the lock */
   bool quit;
-  double interrupted;  /* time of the first request to stop that the render thread has not obeyed; 0: none */
-  double stop_seconds; /* the longest time from such a request to the end of the work, since the last status */
+  double interrupted;  /* time of the first request to stop that the render thread has not
+                          obeyed; 0:  none */
+  double stop_seconds; /* the longest time from such a request to the end of the work, since the
+                          last status */
   uint32_t clients;
   Wanted wanted;
   ViewCamera scene_camera; /* as the scene and the command line give it */
@@ -64,14 +67,16 @@ struct Engine {
   char *last_status; /* the last state of the render, for pages that come; null: none */
   uint32_t loads;    /* how often the scene was loaded again, or failed to */
   Model *next;       /* the scene after a change of its files; null: none */
-  /* of the lecture: the scene that a page has chosen and that is not loaded yet, null: none; the scene of `next` */
+  /* of the lecture: the scene that a page has chosen and that is not loaded yet, null: none;
+   * the scene of `next` */
   const char *chosen, *next_path;
   uint32_t chosen_change, next_change;           /* the page's numbers of these choices */
   Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
   uint32_t task_count, question_count;
-  Task traces[MOST_TASKS];            /* pixels whose paths are to be traced: at most one of each page */
-  uint32_t trace_count, trace_client; /* trace_client: the page whose paths are being traced; 0: none */
-  ViewTracer shown;                   /* of `film`; without one, of the next film */
+  Task traces[MOST_TASKS]; /* pixels whose paths are to be traced: at most one of each page */
+  uint32_t trace_count,
+      trace_client; /* trace_client: the page whose paths are being traced; 0: none */
+  ViewTracer shown; /* of `film`; without one, of the next film */
   /* the watcher's own */
   FileList files; /* of which the scene was made */
   /* the render thread's own; the model is replaced under the lock */
@@ -79,31 +84,36 @@ struct Engine {
   Wanted now; /* what is being rendered */
   vlFilm *film;
   ViewTracer best;    /* of new films */
-  uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the choice is made */
+  uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
+                         choice is made */
   bool racing;        /* it goes on */
   bool by_race;       /* `best` is its result */
-  /* the image by the tracer that won the race; it replaces `film` when it has less noise. Null: none */
+  /* the image by the tracer that won the race; it replaces `film` when it has less noise. Null:
+   * none */
   vlFilm *successor;
   uint32_t successor_enough; /* samples per pixel at which it does */
   bool failed;               /* the image cannot be rendered */
   uint32_t serial;           /* of the last frame */
-  double pixel_seconds;      /* time of one sample of one pixel of the whole image; 0: not known */
-  double coarse_seconds;     /* the same of coarse images */
-  double publish_seconds;    /* time to make a frame */
-  double frame_seconds;      /* processor time of this thread for all frames */
+  double pixel_seconds;   /* time of one sample of one pixel of the whole image; 0: not known */
+  double coarse_seconds;  /* the same of coarse images */
+  double publish_seconds; /* time to make a frame */
+  double frame_seconds;   /* processor time of this thread for all frames */
   double begun, published, reported,
-      looked;      /* times of this image: begin, last frame, last status, last error estimate */
+      looked; /* times of this image: begin, last frame, last status, last error estimate */
   double rendered; /* seconds that this image has rendered */
   uint64_t paths;  /* of this image */
   double noise;    /* estimated standard error of the display values; NaN: not known */
   double pass_start;
 };
 
-/* The race of --tracer auto (engine_race.c); on the render thread. Forgets the last scene's result. */
+/* The race of --tracer auto (engine_race.c); on the render thread. Forgets the last scene's
+ * result.
+ */
 void engine_race_forget(Engine *engine);
 /* Whether the race is due, if `spp` samples per pixel are wanted. */
 bool engine_race_due(const Engine *engine, uint32_t spp);
-/* Runs it, tells its result, and begins the successor if another tracer won. False: interrupted. */
+/* Runs it, tells its result, and begins the successor if another tracer won. False:
+ * interrupted. */
 bool engine_race(Engine *engine);
 /* Shows the successor in place of the film if it has enough samples. Returns whether it did. */
 bool engine_succeed(Engine *engine);
@@ -119,18 +129,21 @@ double engine_clock(void);
 /* Seconds of processor time of the calling thread; of the whole program. */
 double engine_thread_seconds(void);
 double engine_program_seconds(void);
-/* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after reporting an error. */
+/* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after
+ * reporting an error. */
 int engine_take_model(Engine *engine);
 /* Stops what the render thread does; the caller holds the lock. */
 void engine_interrupt(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */
 bool engine_interrupted(Engine *engine);
-/* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per pixel of the frame. */
-void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels, uint32_t scale);
+/* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per
+ * pixel of the frame. */
+void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels,
+                    uint32_t scale);
 /* Posts the state to a page, or to all (0); the caller holds the lock. */
 void engine_post_state(Engine *engine, uint32_t client);
-/* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of one gesture are one
- * step; 0: none. */
+/* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of
+ * one gesture are one step; 0: none. */
 void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
 /* The thread that watches the files. */
 void *engine_watch(void *engine);
@@ -146,18 +159,22 @@ void *engine_answer_questions(void *engine);
 void engine_save(Engine *engine, const Task *task);
 /* Writes the camera and posts the command that renders the present image. */
 void engine_command(Engine *engine, const Task *task);
-/* The settings of the present image; its crop, its samples and its tracer are those of the film. */
+/* The settings of the present image; its crop, its samples and its tracer are those of the
+ * film. */
 vlSceneDefs engine_present_defs(const Engine *engine);
 /* Writes the film of --film; when the threads have ended. Returns the exit code. */
 int engine_write_film(Engine *engine);
-/* Posts vanishing points, horizon and, if asked for, the boxes of objects and the curves of engine_put_curves. */
+/* Posts vanishing points, horizon and, if asked for, the boxes of objects and the curves of
+ * engine_put_curves. */
 void engine_overlay(Engine *engine, const Task *task);
-/* Posts the lines that draw the camera from outside; a small image of the scene from outside. */
+/* Posts the lines that draw the camera from outside; a small image of the scene from outside.
+ */
 void engine_outline(Engine *engine, const Task *task);
 void engine_outside(Engine *engine, const Task *task);
 /* Posts the cameras of --trajectory, and the lines that draw them. */
 void engine_cameras(Engine *engine, const Task *task);
-/* Adds a pixel whose paths are to be traced, in place of the page's one before; the caller holds the lock. */
+/* Adds a pixel whose paths are to be traced, in place of the page's one before; the caller
+ * holds the lock. */
 void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *message);
 /* Drops the pixels of a page, or of all (0), because of `why`; the caller holds the lock. */
 void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
@@ -165,9 +182,10 @@ void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 void *engine_trace(void *engine);
 /* Posts why a message is not answered. */
 void engine_refuse(Engine *engine, const Task *task, const char *why);
-/* Writes the drawings over the image as curves in pixels, for every projection and distortion; field: also where a
- * pinhole would show the same things. */
-void engine_put_curves(Json *json, const ViewCamera *camera, const vlWorldInfo *info, bool field);
+/* Writes the drawings over the image as curves in pixels, for every projection and distortion;
+ * field: also where a pinhole would show the same things. */
+void engine_put_curves(Json *json, const ViewCamera *camera, const vlWorldInfo *info,
+                       bool field);
 /* The server's calls. */
 void engine_greet(void *user, uint32_t client);
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);

@@ -1,5 +1,7 @@
-/* view/engine_paths.c: the paths of a pixel, traced again for a page, on a thread beside the render. A page has one
- * request at a time: a newer one, another camera or another scene ends it. */
+/* view/engine_paths.c: the paths of a pixel, traced again for a page, on a thread beside the
+ * render. A page has one request at a time: a newer one, another camera or another scene ends
+ * it.
+ */
 #include <string.h>
 
 #include "camera/paths.h"
@@ -17,7 +19,8 @@ void engine_drop_traces(Engine *e, uint32_t client, const char *why) {
       engine_refuse(e, &e->traces[i], why);
   }
   e->trace_count = kept;
-  if (e->trace_client && (!client || e->trace_client == client)) vl_cancel_request(e->trace_stop);
+  if (e->trace_client && (!client || e->trace_client == client))
+    vl_cancel_request(e->trace_stop);
 }
 
 void engine_add_trace(Engine *e, uint32_t client, const ViewMessage *m) {
@@ -30,11 +33,15 @@ void engine_add_trace(Engine *e, uint32_t client, const ViewMessage *m) {
 }
 
 static void post_paths(Engine *e, const Task *task, const TracedPaths *traced) {
-  uint32_t most = task->message.show ? task->message.show : DEFAULT_SHOWN, count = traced->paths->count;
-  const PathsReport report = {
-      .file = e->def.path, .world = e->model.world, .traced = traced, .shown = count < most ? count : most};
+  uint32_t most = task->message.show ? task->message.show : DEFAULT_SHOWN,
+           count = traced->paths->count;
+  const PathsReport report = {.file = e->def.path,
+                              .world = e->model.world,
+                              .traced = traced,
+                              .shown = count < most ? count : most};
   JsonText text;
-  if (!json_text_begin(&text, "paths")) return;
+  if (!json_text_begin(&text, "paths"))
+    return;
   json_integer(&text.json, "id", task->message.id);
   paths_put_json(&text.json, &report);
   json_text_post(&text, e->server, task->client);
@@ -54,7 +61,9 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
   }
   if (render.tracer != VL_TRACER_PATH && render.tracer != VL_TRACER_VOLPATH) {
     char why[200];
-    snprintf(why, sizeof why, "paths of the tracer %s are not recorded; start velo view with --tracer path or volpath",
+    snprintf(why, sizeof why,
+             "paths of the tracer %s are not recorded; start velo view with --tracer path or "
+             "volpath",
              kind_name("tracers", (int)render.tracer));
     engine_refuse(e, task, why);
     return;
@@ -82,8 +91,10 @@ void *engine_trace(void *user) {
   static ViewCamera camera;
   pthread_mutex_lock(&e->lock);
   for (;;) {
-    while (!e->quit && !e->trace_count) pthread_cond_wait(&e->wake, &e->lock);
-    if (e->quit) break;
+    while (!e->quit && !e->trace_count)
+      pthread_cond_wait(&e->wake, &e->lock);
+    if (e->quit)
+      break;
     task = e->traces[0];
     memmove(e->traces, e->traces + 1, --e->trace_count * sizeof *e->traces);
     camera = e->wanted.camera;

@@ -1,7 +1,8 @@
-/* view/engine_race.c: --tracer auto in the viewer. The image begins with the scene's tracer. When it has stood still
- * for RACE_LEAST_SAMPLES samples, a race chooses the tracer, as for `velo render` with this camera. If another one
- * wins, its image is rendered beside the shown one, and replaces it when it has less noise. The choice holds for all
- * cameras until the scene is loaded again; coarse images keep the scene's tracer, which is the quickest. */
+/* view/engine_race.c: --tracer auto in the viewer. The image begins with the scene's tracer.
+ * When it has stood still for RACE_LEAST_SAMPLES samples, a race chooses the tracer, as for
+ * `velo render` with this camera. If another one wins, its image is rendered beside the shown
+ * one, and replaces it when it has less noise. The choice holds for all cameras until the scene
+ * is loaded again; coarse images keep the scene's tracer, which is the quickest. */
 #include <math.h>
 
 #include "cli/report.h"
@@ -23,8 +24,8 @@ ViewTracer engine_shown(Engine *e) {
   return shown;
 }
 
-/* The bidirectional tracer always has a number of light paths: without one, the command that renders the image again
- * would choose it. */
+/* The bidirectional tracer always has a number of light paths: without one, the command that
+ * renders the image again would choose it. */
 static ViewTracer tracer_of(const Engine *e, vlTracer tracer, uint32_t light_paths) {
   const vlFilmDef *film = &e->model.job.defs->film;
   uint64_t pixels = (uint64_t)film->width * film->height;
@@ -56,34 +57,44 @@ static RaceKind plan(const Engine *e, uint32_t spp, vlSceneDefs *defs) {
 bool engine_race_due(const Engine *e, uint32_t spp) {
   vlSceneDefs defs;
   uint32_t least = spp < RACE_LEAST_SAMPLES ? spp : RACE_LEAST_SAMPLES;
-  if (e->raced_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < least) return false;
+  if (e->raced_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < least)
+    return false;
   return plan(e, spp, &defs) != RACE_NONE && race_samples(&defs) > e->raced_for;
 }
 
-/* ---- the successor ----------------------------------------------------------------------------------------------- */
+/* ---- the successor
+ * -----------------------------------------------------------------------------------------------
+ */
 
-static const vlTracerTrial *find_trial(const Engine *e, const vlTracerChoice *choice, ViewTracer tracer) {
+static const vlTracerTrial *find_trial(const Engine *e, const vlTracerChoice *choice,
+                                       ViewTracer tracer) {
   for (uint32_t i = 0; i < choice->count; i++) {
     const vlTracerTrial *trial = &choice->trials[i];
-    bool camera = trial->tracer == VL_TRACER_VOLPATH && (tracer.tracer == VL_TRACER_VOLPATH || !tracer.light_paths);
+    bool camera = trial->tracer == VL_TRACER_VOLPATH &&
+                  (tracer.tracer == VL_TRACER_VOLPATH || !tracer.light_paths);
     ViewTracer own = tracer_of(e, trial->tracer, trial->light_paths);
-    if (camera || (own.tracer == tracer.tracer && own.light_paths == tracer.light_paths)) return trial;
+    if (camera || (own.tracer == tracer.tracer && own.light_paths == tracer.light_paths))
+      return trial;
   }
   return NULL;
 }
 
-/* The samples per pixel at which the successor has at most the error of the film, by the errors of the race; at most as
- * many as the film has. */
+/* The samples per pixel at which the successor has at most the error of the film, by the errors
+ * of the race; at most as many as the film has. */
 static uint32_t enough_samples(const Engine *e, const vlTracerChoice *choice) {
-  const vlTracerTrial *now = find_trial(e, choice, e->shown), *next = find_trial(e, choice, e->best);
+  const vlTracerTrial *now = find_trial(e, choice, e->shown),
+                      *next = find_trial(e, choice, e->best);
   uint32_t done = vl_film_spp(e->film);
-  if (!now || !next) return done;
-  double error = MOST_RACE_SAMPLES * now->error / done + now->missing, n = MOST_RACE_SAMPLES * next->error / error;
+  if (!now || !next)
+    return done;
+  double error = MOST_RACE_SAMPLES * now->error / done + now->missing,
+         n = MOST_RACE_SAMPLES * next->error / error;
   return n >= 1 && n < done ? (uint32_t)ceil(n) : n < 1 ? 1 : done;
 }
 
 static bool is_same(ViewTracer a, ViewTracer b) {
-  return a.tracer == b.tracer && (a.tracer == VL_TRACER_VOLPATH || a.light_paths == b.light_paths);
+  return a.tracer == b.tracer &&
+         (a.tracer == VL_TRACER_VOLPATH || a.light_paths == b.light_paths);
 }
 
 static void show(Engine *e, vlFilm *film) {
@@ -108,21 +119,26 @@ static void take(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
   e->successor_enough = enough_samples(e, choice);
   e->pixel_seconds = 0; /* of the other tracer */
   e->successor = engine_make_film(e);
-  if (!e->successor) show(e, NULL); /* no memory for two: the image begins anew */
+  if (!e->successor)
+    show(e, NULL); /* no memory for two: the image begins anew */
 }
 
 bool engine_succeed(Engine *e) {
-  if (!e->successor || vl_film_spp(e->successor) < e->successor_enough) return false;
+  if (!e->successor || vl_film_spp(e->successor) < e->successor_enough)
+    return false;
   show(e, e->successor);
   e->successor = NULL;
   return true;
 }
 
-/* ---- the race ---------------------------------------------------------------------------------------------------- */
+/* ---- the race
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void post_note(Engine *e, const char *line) {
   JsonText text;
-  if (!json_text_begin(&text, "note")) return;
+  if (!json_text_begin(&text, "note"))
+    return;
   json_text(&text.json, "message", line);
   json_text_post(&text, e->server, 0);
 }
@@ -130,10 +146,12 @@ static void post_note(Engine *e, const char *line) {
 /* In the log; a page shows the tracer beside the samples, and the line if the image changes. */
 static void tell(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
   char line[600];
-  if (!choice->count && !race_is_asked(e->def.arguments)) return;
+  if (!choice->count && !race_is_asked(e->def.arguments))
+    return;
   race_line(kind, choice, line, sizeof line);
   report_note("%s", line);
-  if (!is_same(e->best, e->shown)) post_note(e, line);
+  if (!is_same(e->best, e->shown))
+    post_note(e, line);
 }
 
 bool engine_race(Engine *e) {
@@ -147,18 +165,22 @@ bool engine_race(Engine *e) {
   e->racing = true;
   status_tell(e, false);
   double start = engine_clock();
-  vlResult result =
-      vl_choose_tracer(e->model.world, &e->now.camera.made, &defs.film, &def, kind == RACE_TRACERS, &choice, &error);
+  vlResult result = vl_choose_tracer(e->model.world, &e->now.camera.made, &defs.film, &def,
+                                     kind == RACE_TRACERS, &choice, &error);
   e->rendered += engine_clock() - start;
   e->racing = false;
-  if (result == VL_CANCELLED) return false;
-  e->raced_for = result != VL_OK || choice.count ? UINT32_MAX : def.spp; /* more samples may allow a race */
+  if (result == VL_CANCELLED)
+    return false;
+  e->raced_for = result != VL_OK || choice.count ? UINT32_MAX
+                                                 : def.spp; /* more samples may allow a race */
   if (result != VL_OK) {
-    report_warning("no race of the tracers: %s", error.message[0] ? error.message : vl_result_name(result));
+    report_warning("no race of the tracers: %s",
+                   error.message[0] ? error.message : vl_result_name(result));
     return true;
   }
   bool taken = choice.count || kind == RACE_TRACERS;
-  if (taken) take(e, kind, &choice);
+  if (taken)
+    take(e, kind, &choice);
   tell(e, kind, &choice);
   status_tell(e, false);
   return true;

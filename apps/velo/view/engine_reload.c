@@ -1,6 +1,7 @@
-/* view/engine_reload.c: watches the scene's files. When one changed, the scene is loaded in the background, and the
- * render thread goes on with the new world; when it cannot be loaded, the old image stays and the error is shown. In
- * the same way the lecture's scenes are loaded when a page chooses one. */
+/* view/engine_reload.c: watches the scene's files. When one changed, the scene is loaded in the
+ * background, and the render thread goes on with the new world; when it cannot be loaded, the
+ * old image stays and the error is shown. In the same way the lecture's scenes are loaded when
+ * a page chooses one. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,31 +12,39 @@
 static void on_report(void *user, const char *kind, const vlError *what) {
   Engine *e = user;
   JsonText text;
-  if (kind && strcmp(kind, "warning") != 0) return;
-  if (!json_text_begin(&text, kind ? "warning" : "error")) return;
-  if (what->file[0]) json_text(&text.json, "file", what->file);
-  if (what->line) json_integer(&text.json, "line", what->line);
-  if (what->column) json_integer(&text.json, "column", what->column);
+  if (kind && strcmp(kind, "warning") != 0)
+    return;
+  if (!json_text_begin(&text, kind ? "warning" : "error"))
+    return;
+  if (what->file[0])
+    json_text(&text.json, "file", what->file);
+  if (what->line)
+    json_integer(&text.json, "line", what->line);
+  if (what->column)
+    json_integer(&text.json, "column", what->column);
   json_text(&text.json, "message", what->message);
   json_text_post(&text, e->server, 0);
 }
 
 static void post(Engine *e, const char *type) {
   JsonText text;
-  if (json_text_begin(&text, type)) json_text_post(&text, e->server, 0);
+  if (json_text_begin(&text, type))
+    json_text_post(&text, e->server, 0);
 }
 
 /* Loads the scene again. Returns whether it could be loaded. */
 static bool load_again(Engine *e, Watch *watch) {
   Model *model = calloc(1, sizeof *model);
-  if (!model) return false;
+  if (!model)
+    return false;
   post(e, "loading");
   pthread_mutex_lock(&e->lock);
   uint32_t load = ++e->loads;
   pthread_mutex_unlock(&e->lock);
   report_listen(on_report, e);
   pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
-  int status = model_load(e->def.context, e->def.path, e->def.arguments, e->model.world, e->end, model, &e->files);
+  int status = model_load(e->def.context, e->def.path, e->def.arguments, e->model.world, e->end,
+                          model, &e->files);
   pthread_rwlock_unlock(&e->model_lock);
   report_listen(NULL, NULL);
   watch_files(watch, &e->files);
@@ -52,7 +61,8 @@ static bool load_again(Engine *e, Watch *watch) {
   engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
-  if (unused) model_free(unused);
+  if (unused)
+    model_free(unused);
   free(unused);
   return true;
 }
@@ -74,17 +84,20 @@ void *engine_watch(void *user) {
   }
   watch_files(watch, &e->files);
   while (!ends(e))
-    if (watch_wait(watch, 0.1, !good) && !ends(e)) good = load_again(e, watch);
+    if (watch_wait(watch, 0.1, !good) && !ends(e))
+      good = load_again(e, watch);
   watch_destroy(watch);
   return NULL;
 }
 
-/* ---- the lecture's scenes ---------------------------------------------------------------------------------------- */
+/* ---- the lecture's scenes
+ * ---------------------------------------------------------------------------------------- */
 
 /* Waits for a choice. Null: the end. */
 static const char *wait_for_choice(Engine *e, uint32_t *change) {
   pthread_mutex_lock(&e->lock);
-  while (!e->quit && !e->chosen) pthread_cond_wait(&e->wake, &e->lock);
+  while (!e->quit && !e->chosen)
+    pthread_cond_wait(&e->wake, &e->lock);
   const char *path = e->quit ? NULL : e->chosen;
   *change = e->chosen_change;
   e->chosen = NULL;
@@ -99,7 +112,9 @@ void *engine_load_chosen(void *user) {
   for (const char *path; (path = wait_for_choice(e, &change));) {
     Model *model = calloc(1, sizeof *model);
     FileList files = {.count = 0};
-    int status = model ? model_load(e->def.context, path, e->def.arguments, NULL, e->end, model, &files) : STATUS_OTHER;
+    int status =
+        model ? model_load(e->def.context, path, e->def.arguments, NULL, e->end, model, &files)
+              : STATUS_OTHER;
     file_list_free(&files);
     if (status >= 0) {
       free(model);
@@ -113,21 +128,24 @@ void *engine_load_chosen(void *user) {
     engine_interrupt(e);
     pthread_cond_broadcast(&e->wake);
     pthread_mutex_unlock(&e->lock);
-    if (unused) model_free(unused);
+    if (unused)
+      model_free(unused);
     free(unused);
   }
   report_listen(NULL, NULL);
   return NULL;
 }
 
-/* ---- the render thread ------------------------------------------------------------------------------------------- */
+/* ---- the render thread
+ * -------------------------------------------------------------------------------------------
+ */
 
 /* Whether two cameras are described by the same numbers. */
 static bool same_place(const ViewCamera *a, const ViewCamera *b) {
   const vlCamera *c = &a->made, *d = &b->made;
-  return c->projection == d->projection && c->width == d->width && c->height == d->height && c->fx == d->fx &&
-         c->fy == d->fy && c->cx == d->cx && c->cy == d->cy && c->lens_radius == d->lens_radius &&
-         c->focus_distance == d->focus_distance &&
+  return c->projection == d->projection && c->width == d->width && c->height == d->height &&
+         c->fx == d->fx && c->fy == d->fy && c->cx == d->cx && c->cy == d->cy &&
+         c->lens_radius == d->lens_radius && c->focus_distance == d->focus_distance &&
          memcmp(c->world_from_camera, d->world_from_camera, sizeof c->world_from_camera) == 0 &&
          memcmp(&c->distortion, &d->distortion, sizeof c->distortion) == 0;
 }
@@ -136,7 +154,8 @@ bool engine_swap_model(Engine *e) {
   pthread_mutex_lock(&e->lock);
   Model *next = e->next;
   pthread_mutex_unlock(&e->lock);
-  if (!next) return false;
+  if (!next)
+    return false;
   pthread_rwlock_wrlock(&e->model_lock);
   pthread_mutex_lock(&e->lock);
   next = e->next; /* another load may have replaced it */
@@ -155,15 +174,18 @@ bool engine_swap_model(Engine *e) {
     e->wanted.paused = false;
   }
   bool taken = engine_take_model(e) < 0,
-       sized = shown.made.width == e->scene_camera.made.width && shown.made.height == e->scene_camera.made.height;
-  /* the page's camera stays unless the file's camera changed, or it has parts of the old scene */
-  bool keep =
-      !other && sized && same_place(&before, &e->scene_camera) && !shown.def.lens.optics && !shown.def.lens.aperture;
+       sized = shown.made.width == e->scene_camera.made.width &&
+               shown.made.height == e->scene_camera.made.height;
+  /* the page's camera stays unless the file's camera changed, or it has parts of the old scene
+   */
+  bool keep = !other && sized && same_place(&before, &e->scene_camera) &&
+              !shown.def.lens.optics && !shown.def.lens.aperture;
   if (taken && keep) {
     e->wanted.camera = e->history.cameras[0] = shown;
     memcpy(e->wanted.crop, crop, sizeof crop);
   }
-  if (spp != old_spp && !other) e->wanted.spp = spp;
+  if (spp != old_spp && !other)
+    e->wanted.spp = spp;
   engine_post_state(e, 0);
   pthread_mutex_unlock(&e->lock);
   pthread_rwlock_unlock(&e->model_lock);

@@ -1,5 +1,6 @@
-/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine as fits into
- * first_seconds; then come finer ones, then the film of the whole image, whose samples add up. */
+/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine
+ * as fits into first_seconds; then come finer ones, then the film of the whole image, whose
+ * samples add up. */
 #include "view/engine.h"
 
 #include <math.h>
@@ -13,14 +14,15 @@
 #include "view/engine_status.h"
 #include "view/view.h"
 
-/* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before speed is known, at
- * least. */
+/* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before
+ * speed is known, at least. */
 enum { COARSEST = 32, FIRST_PIXELS = 8192, FEWEST_PIXELS = 2048 };
 /* Of the first image after a change: others can follow it 25 times a second. */
 static const double first_seconds = 0.03;
-static const double pass_seconds = 0.2;    /* of a pass at the beginning; */
-static const double longest_pass = 1.0;    /* later ones are longer */
-static const double publish_share = 0.03;  /* of the time, for frames, when the image is nearly done */
+static const double pass_seconds = 0.2; /* of a pass at the beginning; */
+static const double longest_pass = 1.0; /* later ones are longer */
+static const double publish_share =
+    0.03; /* of the time, for frames, when the image is nearly done */
 static const double status_seconds = 0.25; /* between two states of the render */
 
 static double read_clock(clockid_t clock) {
@@ -46,7 +48,8 @@ static bool must_stop(const Engine *e) {
 }
 
 void engine_interrupt(Engine *engine) {
-  if (engine->interrupted <= 0) engine->interrupted = engine_clock();
+  if (engine->interrupted <= 0)
+    engine->interrupted = engine_clock();
   vl_cancel_request(engine->stop);
 }
 
@@ -57,13 +60,18 @@ bool engine_interrupted(Engine *engine) {
   return stop;
 }
 
-/* ---- frames ------------------------------------------------------------------------------------------------------ */
+/* ---- frames
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels, uint32_t scale) {
+void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels,
+                    uint32_t scale) {
   double start = engine_clock();
-  const float *matrix = format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
+  const float *matrix =
+      format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
   ViewFrame *frame = frame_make(image, format, channels, matrix);
-  if (!frame) return;
+  if (!frame)
+    return;
   frame->serial = ++e->serial;
   frame->change = e->now.change;
   frame->width = e->now.camera.made.width;
@@ -90,12 +98,15 @@ static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
   e->frame_seconds += engine_thread_seconds() - used;
 }
 
-/* ---- coarse images ----------------------------------------------------------------------------------------------- */
+/* ---- coarse images
+ * -----------------------------------------------------------------------------------------------
+ */
 
 /* Notes the time of one sample in a mean of the last ones. */
 static void note_speed(double *sample_seconds, const vlRenderStats *stats, double seconds) {
   double one = seconds / (double)(stats->camera_rays ? stats->camera_rays : 1);
-  if (stats->camera_rays > 1000) *sample_seconds = *sample_seconds > 0 ? 0.5 * (*sample_seconds + one) : one;
+  if (stats->camera_rays > 1000)
+    *sample_seconds = *sample_seconds > 0 ? 0.5 * (*sample_seconds + one) : one;
 }
 
 /* False: interrupted. */
@@ -115,9 +126,11 @@ static bool render_coarse(Engine *e, uint32_t scale) {
   render.cancel = e->stop;
   render.priority = 1;
   vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
-  if (result == VL_OK) result = vl_film_create(e->def.context, &def, &film);
+  if (result == VL_OK)
+    result = vl_film_create(e->def.context, &def, &film);
   double start = engine_clock();
-  if (result == VL_OK) result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
+  if (result == VL_OK)
+    result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
     note_speed(&e->coarse_seconds, &stats, engine_clock() - start);
     publish_film(e, film, scale);
@@ -130,15 +143,20 @@ static bool render_coarse(Engine *e, uint32_t scale) {
 static bool render_coarse_images(Engine *e) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
   double most = e->coarse_seconds > 0 ? first_seconds / e->coarse_seconds : FIRST_PIXELS;
-  if (most < FEWEST_PIXELS) most = FEWEST_PIXELS; /* fewer would hardly be quicker */
+  if (most < FEWEST_PIXELS)
+    most = FEWEST_PIXELS; /* fewer would hardly be quicker */
   uint32_t scale = 1;
-  while (scale < COARSEST && pixels > most * scale * scale) scale++;
+  while (scale < COARSEST && pixels > most * scale * scale)
+    scale++;
   for (; scale > 1; scale /= 2)
-    if (!render_coarse(e, scale)) return false;
+    if (!render_coarse(e, scale))
+      return false;
   return true;
 }
 
-/* ---- ground truth ------------------------------------------------------------------------------------------------ */
+/* ---- ground truth
+ * ------------------------------------------------------------------------------------------------
+ */
 
 /* Flow and whether the other camera sees the point, in one image. Null: no memory. */
 static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage *hidden) {
@@ -146,7 +164,8 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
   vlImageDef def = vl_default_image_def(width, height, 3);
   vlImage *image = NULL;
   def.type = VL_PIXEL_F32;
-  if (vl_image_create(context, &def, &image) != VL_OK) return NULL;
+  if (vl_image_create(context, &def, &image) != VL_OK)
+    return NULL;
   float *to = vl_image_pixels(image);
   const float *from = vl_image_const_pixels(flow);
   const uint32_t *ids = vl_image_const_pixels(hidden);
@@ -160,7 +179,8 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
 
 /* False: interrupted. */
 static bool render_channel(Engine *e) {
-  vlChannelsDef def = vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
+  vlChannelsDef def =
+      vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};
   def.forward = e->now.channel == CHANNEL_FLOW ? &e->now.mark : NULL;
@@ -171,20 +191,27 @@ static bool render_channel(Engine *e) {
   def.film = e->film;
   def.exposure = e->model.job.defs->develop.exposure;
   def.cancel = e->stop;
-  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return true;
-  vlResult result = vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
-  vlImage *flow = def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids) : NULL;
+  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2))
+    return true;
+  vlResult result =
+      vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
+  vlImage *flow =
+      def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids) : NULL;
   const vlImage *image = flow ? flow : floats ? floats : ids;
   if (result == VL_OK && image)
-    engine_publish(e, image, FRAME_FLOAT, vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, 1);
-  if (result != VL_OK && result != VL_CANCELLED) status_error(e, &error, result);
+    engine_publish(e, image, FRAME_FLOAT,
+                   vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, 1);
+  if (result != VL_OK && result != VL_CANCELLED)
+    status_error(e, &error, result);
   vl_image_destroy(floats);
   vl_image_destroy(ids);
   vl_image_destroy(flow);
   return result != VL_CANCELLED;
 }
 
-/* ---- the whole image --------------------------------------------------------------------------------------------- */
+/* ---- the whole image
+ * ---------------------------------------------------------------------------------------------
+ */
 
 vlFilm *engine_make_film(Engine *e) {
   vlFilmDef def = e->model.job.defs->film;
@@ -192,7 +219,8 @@ vlFilm *engine_make_film(Engine *e) {
   def.errors = true;
   memcpy(def.crop, e->now.crop, sizeof def.crop);
   vlResult result = vl_film_create(e->def.context, &def, &film);
-  if (result != VL_OK) report_reason(result, e->def.path, "no film for the image");
+  if (result != VL_OK)
+    report_reason(result, e->def.path, "no film for the image");
   return film;
 }
 
@@ -210,15 +238,18 @@ static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most)
          n = seconds / (e->pixel_seconds * pixels + 1e-9);
   uint32_t done = vl_film_spp(film), left = most - done;
   n = n < 1 ? 1 : n > 256 ? 256 : floor(n);
-  if (done == 0) n = 1;
+  if (done == 0)
+    n = 1;
   return n < left ? (uint32_t)n : left;
 }
 
 static void publish_if_due(Engine *e) {
   double now = engine_clock(), share = 0.25 / (1 + 2 * e->rendered);
   bool last = vl_film_spp(e->film) >= e->now.spp;
-  if (share < publish_share) share = publish_share;
-  if (!last && vl_film_spp(e->film) > 1 && now - e->published < e->publish_seconds / share) return;
+  if (share < publish_share)
+    share = publish_share;
+  if (!last && vl_film_spp(e->film) > 1 && now - e->published < e->publish_seconds / share)
+    return;
   if (e->now.channel == CHANNEL_ERROR)
     render_channel(e);
   else
@@ -227,7 +258,8 @@ static void publish_if_due(Engine *e) {
 
 static void tell_if_due(Engine *e, bool always) {
   double now = engine_clock();
-  if (!always && now - e->reported < status_seconds) return;
+  if (!always && now - e->reported < status_seconds)
+    return;
   e->reported = now;
   status_tell(e, always);
 }
@@ -240,10 +272,11 @@ static void tell_end(Engine *e) {
   tell_if_due(e, !changed);
 }
 
-/* Whether samples are missing, or the race, or the image of the tracer that won it. spp: the samples per pixel that are
- * wanted. */
+/* Whether samples are missing, or the race, or the image of the tracer that won it. spp: the
+ * samples per pixel that are wanted. */
 static bool is_unfinished(const Engine *e, uint32_t spp) {
-  return !e->failed && (!e->film || vl_film_spp(e->film) < spp || e->successor || engine_race_due(e, spp));
+  return !e->failed &&
+         (!e->film || vl_film_spp(e->film) < spp || e->successor || engine_race_due(e, spp));
 }
 
 /* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
@@ -256,11 +289,14 @@ static bool render_pass(Engine *e) {
   render.cancel = e->stop;
   render.first_sample = 0;
   render.time_limit = 0;
-  render.spp = vl_film_spp(film) + pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
+  render.spp = vl_film_spp(film) +
+               pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
   double start = engine_clock();
-  vlResult result = vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
+  vlResult result =
+      vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
   double seconds = engine_clock() - start;
-  if (result == VL_CANCELLED) return false;
+  if (result == VL_CANCELLED)
+    return false;
   if (result != VL_OK) {
     status_error(e, &error, result);
     e->failed = true; /* until the next change */
@@ -274,18 +310,25 @@ static bool render_pass(Engine *e) {
 
 /* Adds samples until the image is done or something else is asked for. */
 static void render_film(Engine *e) {
-  if (!e->film) begin_film(e);
+  if (!e->film)
+    begin_film(e);
   while (e->film && is_unfinished(e, e->now.spp) && !engine_interrupted(e)) {
     bool race = !e->successor && engine_race_due(e, e->now.spp);
-    if (race ? !engine_race(e) : !render_pass(e)) return;
-    if (race) continue;
-    if (engine_succeed(e)) e->published = e->reported = 0; /* both are due */
-    if (!e->successor) publish_if_due(e);
+    if (race ? !engine_race(e) : !render_pass(e))
+      return;
+    if (race)
+      continue;
+    if (engine_succeed(e))
+      e->published = e->reported = 0; /* both are due */
+    if (!e->successor)
+      publish_if_due(e);
     tell_if_due(e, !is_unfinished(e, e->now.spp));
   }
 }
 
-/* ---- the thread -------------------------------------------------------------------------------------------------- */
+/* ---- the thread
+ * --------------------------------------------------------------------------------------------------
+ */
 
 /* Takes over what is wanted. Returns whether the image begins anew. */
 static bool take_wanted(Engine *e) {
@@ -293,10 +336,12 @@ static bool take_wanted(Engine *e) {
   bool anew = e->wanted.generation != e->now.generation;
   bool channel = e->wanted.channel != e->now.channel;
   e->now = e->wanted;
-  if (!e->quit && !e->next) vl_cancel_clear(e->stop);
+  if (!e->quit && !e->next)
+    vl_cancel_clear(e->stop);
   e->interrupted = 0;
   pthread_mutex_unlock(&e->lock);
-  if (!anew) return channel;
+  if (!anew)
+    return channel;
   e->failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
@@ -312,14 +357,17 @@ static bool take_wanted(Engine *e) {
 /* Waits until there is something to do. False: the end. */
 static bool wait_for_work(Engine *e) {
   pthread_mutex_lock(&e->lock);
-  if (e->interrupted > 0) e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
+  if (e->interrupted > 0)
+    e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
   e->interrupted = 0;
   for (;;) {
     bool samples = e->wanted.channel == 0 || e->wanted.channel == CHANNEL_ERROR;
     bool unfinished = samples && is_unfinished(e, e->wanted.spp);
     bool changed = e->wanted.channel != e->now.channel || e->wanted.spp != e->now.spp;
-    if (must_stop(e) || (e->clients && !e->wanted.paused && (unfinished || changed))) break;
-    if (e->clients && e->wanted.channel != e->now.channel) break;
+    if (must_stop(e) || (e->clients && !e->wanted.paused && (unfinished || changed)))
+      break;
+    if (e->clients && e->wanted.channel != e->now.channel)
+      break;
     pthread_cond_wait(&e->wake, &e->lock);
   }
   bool quit = e->quit;
@@ -337,7 +385,8 @@ static void answer_tasks(Engine *e) {
       memmove(e->tasks, e->tasks + 1, --e->task_count * sizeof *e->tasks);
     }
     pthread_mutex_unlock(&e->lock);
-    if (!any) return;
+    if (!any)
+      return;
     engine_answer(e, &task);
   }
 }
@@ -349,14 +398,16 @@ static void *run(void *user) {
     answer_tasks(e);
     bool anew = take_wanted(e);
     if (anew && e->now.channel) {
-      if (!render_channel(e)) e->now.channel = UINT32_MAX; /* it is rendered anew */
+      if (!render_channel(e))
+        e->now.channel = UINT32_MAX; /* it is rendered anew */
     } else if (anew && e->film) {
       publish_film(e, e->film, 1);
     } else if (anew && !render_coarse_images(e)) {
       tell_end(e);
       continue;
     }
-    if ((e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed) render_film(e);
+    if ((e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed)
+      render_film(e);
     tell_end(e);
   }
   return NULL;
@@ -366,8 +417,10 @@ int engine_take_model(Engine *e) {
   const vlSceneDefs *defs = e->model.job.defs;
   Wanted *w = &e->wanted;
   vlError error = {0};
-  vlResult result = camera_take(&defs->camera, &e->model.job.camera, e->model.lookat, &w->camera, &error);
-  if (result != VL_OK) return report_error(&error, result, e->def.path);
+  vlResult result =
+      camera_take(&defs->camera, &e->model.job.camera, e->model.lookat, &w->camera, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, e->def.path);
   e->scene_camera = w->camera;
   w->mark = w->camera.made;
   memcpy(w->crop, defs->film.crop, sizeof w->crop);
@@ -380,7 +433,8 @@ int engine_take_model(Engine *e) {
   return -1;
 }
 
-/* Reports options that have no effect. The page can open the lens; a race may take any tracer. */
+/* Reports options that have no effect. The page can open the lens; a race may take any tracer.
+ */
 static int check_options(const Engine *e) {
   const Arguments *arguments = e->def.arguments;
   const Needs needs = {.options = view_options,
@@ -391,12 +445,15 @@ static int check_options(const Engine *e) {
                        .job = &e->model.job,
                        .edited = true};
   const int status = needs_check_scene(&needs);
-  return status >= 0 || needs.job->race == RACE_TRACERS ? status : needs_check_tracer(&needs, e->model.world);
+  return status >= 0 || needs.job->race == RACE_TRACERS
+             ? status
+             : needs_check_tracer(&needs, e->model.world);
 }
 
 int engine_create(const EngineDef *def, Engine **result) {
   Engine *engine = calloc(1, sizeof *engine);
-  if (!engine) return report_failure(STATUS_OTHER, "out of memory");
+  if (!engine)
+    return report_failure(STATUS_OTHER, "out of memory");
   engine->def = *def;
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
@@ -406,16 +463,22 @@ int engine_create(const EngineDef *def, Engine **result) {
               vl_cancel_create(def->context, &engine->trace_stop) == VL_OK;
   int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
   if (status < 0)
-    status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model, &engine->files);
-  if (status < 0) status = check_options(engine);
-  if (status < 0) status = engine_take_model(engine);
+    status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model,
+                        &engine->files);
+  if (status < 0)
+    status = check_options(engine);
+  if (status < 0)
+    status = engine_take_model(engine);
   engine->wanted.paused = def->lecture; /* until a page chooses a scene */
   *result = engine;
   return status;
 }
 
 ServerCalls engine_calls(Engine *engine) {
-  return (ServerCalls){.user = engine, .greet = engine_greet, .message = engine_message, .clients = engine_clients};
+  return (ServerCalls){.user = engine,
+                       .greet = engine_greet,
+                       .message = engine_message,
+                       .clients = engine_clients};
 }
 
 int engine_start(Engine *engine, Server *server) {
@@ -423,7 +486,8 @@ int engine_start(Engine *engine, Server *server) {
   if (pthread_create(&engine->thread, NULL, run, engine) != 0)
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
   engine->started = true;
-  engine->answering = pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
+  engine->answering =
+      pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
   engine->tracing = pthread_create(&engine->tracer, NULL, engine_trace, engine) == 0;
   void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
   engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
@@ -431,7 +495,8 @@ int engine_start(Engine *engine, Server *server) {
 }
 
 int engine_stop(Engine *engine) {
-  if (!engine->started) return STATUS_OK;
+  if (!engine->started)
+    return STATUS_OK;
   pthread_mutex_lock(&engine->lock);
   engine->quit = true;
   engine_interrupt(engine);
@@ -440,19 +505,24 @@ int engine_stop(Engine *engine) {
   pthread_cond_broadcast(&engine->wake);
   pthread_mutex_unlock(&engine->lock);
   pthread_join(engine->thread, NULL);
-  if (engine->watching) pthread_join(engine->watcher, NULL);
-  if (engine->answering) pthread_join(engine->answerer, NULL);
-  if (engine->tracing) pthread_join(engine->tracer, NULL);
+  if (engine->watching)
+    pthread_join(engine->watcher, NULL);
+  if (engine->answering)
+    pthread_join(engine->answerer, NULL);
+  if (engine->tracing)
+    pthread_join(engine->tracer, NULL);
   engine->started = false;
   return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
 }
 
 void engine_destroy(Engine *engine) {
-  if (!engine) return;
+  if (!engine)
+    return;
   vl_film_destroy(engine->film);
   vl_film_destroy(engine->successor);
   model_free(&engine->model);
-  if (engine->next) model_free(engine->next);
+  if (engine->next)
+    model_free(engine->next);
   free(engine->next);
   file_list_free(&engine->files);
   free(engine->last_status);

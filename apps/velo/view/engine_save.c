@@ -1,5 +1,5 @@
-/* view/engine_save.c: writes cameras and images into the folder in which the program was started, and makes the command
- * that renders the present image again. */
+/* view/engine_save.c: writes cameras and images into the folder in which the program was
+ * started, and makes the command that renders the present image again. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,8 @@ enum { NAME_SIZE = 300 };
 
 /* A page may name files of this folder only, and none that is hidden. */
 static bool name_is_plain(const char *name) {
-  return name[0] && name[0] != '.' && name[0] != '-' && !strchr(name, '/') && strlen(name) < MESSAGE_NAME;
+  return name[0] && name[0] != '.' && name[0] != '-' && !strchr(name, '/') &&
+         strlen(name) < MESSAGE_NAME;
 }
 
 /* The name, or where a file has it already, the name with a number before its suffix. */
@@ -33,13 +34,16 @@ static bool free_name(const char *wanted, char name[NAME_SIZE]) {
 
 /* The scene's name without folder and suffix. */
 static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
-  const char *slash = strrchr(e->def.path, '/'), *name = slash ? slash + 1 : e->def.path, *dot = strchr(name, '.');
-  snprintf(stem, NAME_SIZE, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
+  const char *slash = strrchr(e->def.path, '/'), *name = slash ? slash + 1 : e->def.path,
+             *dot = strchr(name, '.');
+  snprintf(stem, NAME_SIZE, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name),
+           name);
 }
 
 static void post_saved(Engine *e, const Task *task, const char *name) {
   JsonText text;
-  if (!json_text_begin(&text, "saved")) return;
+  if (!json_text_begin(&text, "saved"))
+    return;
   json_integer(&text.json, "id", task->message.id);
   json_text(&text.json, "file", name);
   json_text_post(&text, e->server, task->client);
@@ -47,11 +51,14 @@ static void post_saved(Engine *e, const Task *task, const char *name) {
 
 static int choice_value(const Choice *choices, const char *name, int otherwise) {
   for (; choices->name; choices++)
-    if (strcmp(choices->name, name) == 0) return choices->value;
+    if (strcmp(choices->name, name) == 0)
+      return choices->value;
   return otherwise;
 }
 
-/* ---- files ------------------------------------------------------------------------------------------------------- */
+/* ---- files
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static void save_camera(Engine *e, const Task *task, const char *wanted, const char *dialect) {
   char name[NAME_SIZE];
@@ -59,8 +66,10 @@ static void save_camera(Engine *e, const Task *task, const char *wanted, const c
   vlCameraFileDef def = vl_default_camera_file_def();
   vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
   int found = choice_value(dialect_choices, dialect, -1);
-  if (found < 0 || found == VL_CAMERA_DIALECT_EXR) return engine_refuse(e, task, "there is no such dialect");
-  if (!free_name(wanted, name)) return engine_refuse(e, task, "there are too many files of this name");
+  if (found < 0 || found == VL_CAMERA_DIALECT_EXR)
+    return engine_refuse(e, task, "there is no such dialect");
+  if (!free_name(wanted, name))
+    return engine_refuse(e, task, "there are too many files of this name");
   def.dialect = (vlCameraDialect)found;
   vlResult result = vl_camera_write(e->def.context, name, &def, &record, &error);
   if (result == VL_OK)
@@ -92,9 +101,12 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
   char name[NAME_SIZE];
   bool eight_bit;
   const ViewMessage *m = &task->message;
-  if (!e->film || !vl_film_spp(e->film)) return engine_refuse(e, task, "the image has no samples yet");
-  if (!output_suffix(wanted, &eight_bit)) return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
-  if (!free_name(wanted, name)) return engine_refuse(e, task, "there are too many files of this name");
+  if (!e->film || !vl_film_spp(e->film))
+    return engine_refuse(e, task, "the image has no samples yet");
+  if (!output_suffix(wanted, &eight_bit))
+    return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
+  if (!free_name(wanted, name))
+    return engine_refuse(e, task, "there are too many files of this name");
   Outputs outputs = {.paths = {name},
                      .count = 1,
                      .view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD),
@@ -103,9 +115,11 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
   const Job job = present_job(e, &defs);
   vlImage *image = NULL;
   vlResult result = vl_film_develop(e->film, &defs.develop, &image);
-  if (result == VL_OK) result = attributes_set(image, &job, defs.render.spp);
+  if (result == VL_OK)
+    result = attributes_set(image, &job, defs.render.spp);
   int status = STATUS_OTHER;
-  if (result == VL_OK) status = outputs_write(e->def.context, &outputs, image, defs.render.spp, OUTPUT_FINISHED);
+  if (result == VL_OK)
+    status = outputs_write(e->def.context, &outputs, image, defs.render.spp, OUTPUT_FINISHED);
   vl_image_destroy(image);
   if (status == STATUS_OK)
     post_saved(e, task, name);
@@ -115,39 +129,52 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
 
 void engine_save(Engine *e, const Task *task) {
   const ViewMessage *m = &task->message;
-  if (!name_is_plain(m->name)) return engine_refuse(e, task, "the name must be that of a file in this folder");
-  if (strcmp(m->what, "camera") == 0) return save_camera(e, task, m->name, m->dialect);
-  if (strcmp(m->what, "image") == 0) return save_image(e, task, m->name);
+  if (!name_is_plain(m->name))
+    return engine_refuse(e, task, "the name must be that of a file in this folder");
+  if (strcmp(m->what, "camera") == 0)
+    return save_camera(e, task, m->name, m->dialect);
+  if (strcmp(m->what, "image") == 0)
+    return save_image(e, task, m->name);
   engine_refuse(e, task, "only cameras and images can be saved");
 }
 
-/* ---- the command ------------------------------------------------------------------------------------------------- */
+/* ---- the command
+ * -------------------------------------------------------------------------------------------------
+ */
 
 /* Writes a word so that a shell reads it as one. */
 static void put_word(FILE *out, const char *word) {
   bool plain =
-      *word && strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:=@%") == strlen(word);
+      *word &&
+      strspn(word,
+             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:=@%") ==
+          strlen(word);
   fputc(' ', out);
-  if (!plain) fputc('\'', out);
+  if (!plain)
+    fputc('\'', out);
   for (const char *s = word; *s; s++)
     if (*s == '\'')
       fputs("'\\''", out);
     else
       fputc(*s, out);
-  if (!plain) fputc('\'', out);
+  if (!plain)
+    fputc('\'', out);
 }
 
-/* Options that the camera file and the following words of the command replace, or that do not matter. */
+/* Options that the camera file and the following words of the command replace, or that do not
+ * matter. */
 static bool option_is_replaced(int id) {
-  static const int replaced[] = {VIEW_PORT,       VIEW_LISTEN,           VIEW_NO_OPEN,         RENDER_SPP,
-                                 RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,          RENDER_CAMERA,
-                                 RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,      RENDER_VIEW,
-                                 RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,   RENDER_F_NUMBER,
-                                 RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,         RENDER_MAX_MEMORY,
-                                 RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,          RENDER_TRAJECTORY,
-                                 RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS};
+  static const int replaced[] = {
+      VIEW_PORT,       VIEW_LISTEN,           VIEW_NO_OPEN,         RENDER_SPP,
+      RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,          RENDER_CAMERA,
+      RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,      RENDER_VIEW,
+      RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,   RENDER_F_NUMBER,
+      RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,         RENDER_MAX_MEMORY,
+      RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,          RENDER_TRAJECTORY,
+      RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS};
   for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
-    if (replaced[i] == id) return true;
+    if (replaced[i] == id)
+      return true;
   return false;
 }
 
@@ -155,7 +182,8 @@ static void put_options(FILE *out, const Engine *e) {
   const Arguments *arguments = e->def.arguments;
   for (const Option *o = view_options; o->name; o++) {
     const OptionValue *value = &arguments->values[o->id];
-    if (!value->given || option_is_replaced(o->id)) continue;
+    if (!value->given || option_is_replaced(o->id))
+      continue;
     if (o->kind == OPTION_FOLDERS) {
       for (int i = 0; i < arguments->folder_count; i++) {
         fprintf(out, " --%s", o->name);
@@ -164,11 +192,13 @@ static void put_options(FILE *out, const Engine *e) {
       continue;
     }
     fprintf(out, " --%s", o->name);
-    if (o->kind != OPTION_FLAG) put_word(out, value->text);
+    if (o->kind != OPTION_FLAG)
+      put_word(out, value->text);
   }
 }
 
-/* Writes the camera and returns the command's text, which the caller frees; null after posting why not. */
+/* Writes the camera and returns the command's text, which the caller frees; null after posting
+ * why not. */
 static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   char stem[NAME_SIZE - 40], whole[NAME_SIZE], *text = NULL;
   size_t size;
@@ -209,10 +239,11 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   put_options(out, e);
   /* the tracer of the image, so that there is no race */
   fprintf(out, " --tracer %s", kind_name("tracers", (int)e->shown.tracer));
-  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS) fprintf(out, " --light-paths %u", e->shown.light_paths);
+  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS)
+    fprintf(out, " --light-paths %u", e->shown.light_paths);
   format_number(number, sizeof number, m->exposure);
-  fprintf(out, " --spp %u --sequence %u --view %s --exposure %s --no-receipt -o", vl_film_spp(e->film),
-          render->sequence ? render->sequence : 65536,
+  fprintf(out, " --spp %u --sequence %u --view %s --exposure %s --no-receipt -o",
+          vl_film_spp(e->film), render->sequence ? render->sequence : 65536,
           choice_name(view_choices, choice_value(view_choices, m->view, 0)), number);
   snprintf(whole, sizeof whole, "%s.png", stem);
   put_word(out, whole);
@@ -221,7 +252,8 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
 
 void engine_command(Engine *e, const Task *task) {
   char camera[NAME_SIZE];
-  if (!e->film || !vl_film_spp(e->film)) return engine_refuse(e, task, "the image has no samples yet");
+  if (!e->film || !vl_film_spp(e->film))
+    return engine_refuse(e, task, "the image has no samples yet");
   char *command = make_command(e, task, camera);
   JsonText text;
   if (command && json_text_begin(&text, "command")) {

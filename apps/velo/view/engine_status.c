@@ -9,18 +9,21 @@
 
 void json_text_post(JsonText *json, Server *server, uint32_t client) {
   char *text = json_text_end(json);
-  if (text) server_post(server, client, text);
+  if (text)
+    server_post(server, client, text);
   free(text);
 }
 
-/* ---- the error of the image -------------------------------------------------------------------------------------- */
+/* ---- the error of the image
+ * -------------------------------------------------------------------------------------- */
 
 static double display_value(double linear) {
   double x = linear > 0 ? linear < 1 ? linear : 1 : 0;
   return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
 }
 
-/* The root mean square of the standard errors of the display values, at every fourth pixel of every fourth row. */
+/* The root mean square of the standard errors of the display values, at every fourth pixel of
+ * every fourth row. */
 static double display_noise(const vlImage *image, const vlImage *errors, double scale) {
   double sum = 0, count = 0;
   uint32_t width = vl_image_width(image), height = vl_image_height(image);
@@ -41,8 +44,10 @@ static double display_noise(const vlImage *image, const vlImage *errors, double 
 static void estimate_noise(Engine *e) {
   vlImage *image = NULL, *errors = NULL;
   const vlDevelopDef *develop = &e->model.job.defs->develop;
-  if (!e->film || vl_film_spp(e->film) < 2) return;
-  if (vl_film_develop(e->film, develop, &image) == VL_OK && vl_film_errors(e->film, develop, &errors) == VL_OK)
+  if (!e->film || vl_film_spp(e->film) < 2)
+    return;
+  if (vl_film_develop(e->film, develop, &image) == VL_OK &&
+      vl_film_errors(e->film, develop, &errors) == VL_OK)
     e->noise = display_noise(image, errors, exp2((double)e->model.exposure));
   vl_image_destroy(image);
   vl_image_destroy(errors);
@@ -56,7 +61,8 @@ void status_tell(Engine *e, bool estimate) {
     e->looked = engine_clock();
   }
   JsonText json;
-  if (!json_text_begin(&json, "status")) return;
+  if (!json_text_begin(&json, "status"))
+    return;
   pthread_mutex_lock(&e->lock);
   bool paused = e->wanted.paused;
   double stop = e->stop_seconds;
@@ -64,19 +70,23 @@ void status_tell(Engine *e, bool estimate) {
   pthread_mutex_unlock(&e->lock);
   json_integer(&json.json, "spp", spp);
   json_integer(&json.json, "target", e->now.spp);
-  json_number(&json.json, "paths_per_second", e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
+  json_number(&json.json, "paths_per_second",
+              e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
   json_number(&json.json, "seconds", e->rendered);
   json_number(&json.json, "error", e->noise);
   json_number(&json.json, "program_seconds", engine_program_seconds());
   json_number(&json.json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
-  if (stop > 0) json_number(&json.json, "stop_seconds", stop);
+  if (stop > 0)
+    json_number(&json.json, "stop_seconds", stop);
   json_bool(&json.json, "paused", paused);
   json_text(&json.json, "tracer", kind_name("tracers", (int)engine_shown(e).tracer));
   json_bool(&json.json, "racing", e->racing || engine_race_due(e, e->now.spp));
   json_bool(&json.json, "raced", e->by_race);
-  if (e->successor) json_text(&json.json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
+  if (e->successor)
+    json_text(&json.json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
   char *text = json_text_end(&json);
-  if (!text) return;
+  if (!text)
+    return;
   server_post(e->server, 0, text);
   pthread_mutex_lock(&e->lock);
   char *before = e->last_status;
@@ -87,10 +97,14 @@ void status_tell(Engine *e, bool estimate) {
 
 void status_error(Engine *e, const vlError *error, vlResult result) {
   JsonText json;
-  if (!json_text_begin(&json, "error")) return;
-  if (error->file[0]) json_text(&json.json, "file", error->file);
-  if (error->file[0] && error->line) json_integer(&json.json, "line", error->line);
-  if (error->file[0] && error->line && error->column) json_integer(&json.json, "column", error->column);
+  if (!json_text_begin(&json, "error"))
+    return;
+  if (error->file[0])
+    json_text(&json.json, "file", error->file);
+  if (error->file[0] && error->line)
+    json_integer(&json.json, "line", error->line);
+  if (error->file[0] && error->line && error->column)
+    json_integer(&json.json, "column", error->column);
   json_text(&json.json, "message", error->message[0] ? error->message : vl_result_name(result));
   json_text_post(&json, e->server, 0);
 }

@@ -1,5 +1,5 @@
-/* view/engine_tasks.c: answers to messages that need the world: of the render thread, which has the film, and of a
- * thread beside it, with a higher priority. */
+/* view/engine_tasks.c: answers to messages that need the world: of the render thread, which has
+ * the film, and of a thread beside it, with a higher priority. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,8 @@
 
 void engine_refuse(Engine *e, const Task *task, const char *why) {
   JsonText text;
-  if (!json_text_begin(&text, "refused")) return;
+  if (!json_text_begin(&text, "refused"))
+    return;
   json_integer(&text.json, "id", task->message.id);
   json_text(&text.json, "message", why);
   json_text_post(&text, e->server, task->client);
@@ -22,29 +23,37 @@ static ViewCamera present_camera(Engine *e) {
   return camera;
 }
 
-/* ---- a pixel ----------------------------------------------------------------------------------------------------- */
+/* ---- a pixel
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static void put_values(Json *json, const char *key, const vlImage *image, const char *const *names, int count) {
+static void put_values(Json *json, const char *key, const vlImage *image,
+                       const char *const *names, int count) {
   json_begin(json, key, '[');
   for (int i = 0; i < count; i++) {
     int channel = vl_image_find_channel(image, names[i]);
-    json_number(json, NULL, channel < 0 ? NAN : (double)vl_image_get(image, 0, 0, (uint32_t)channel));
+    json_number(json, NULL,
+                channel < 0 ? NAN : (double)vl_image_get(image, 0, 0, (uint32_t)channel));
   }
   json_end(json, ']');
 }
 
-static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *channel, vlIdKind kind,
-                   const char *key) {
+static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *channel,
+                   vlIdKind kind, const char *key) {
   int at = vl_image_find_channel(ids, channel);
   const uint32_t id = at < 0 ? 0 : ((const uint32_t *)vl_image_const_pixels(ids))[at];
   vlIdInfo info;
   json_begin(json, key, '{');
   json_integer(json, "id", id);
   if (id && vl_world_id_info(e->model.world, kind, id, &info) == VL_OK) {
-    if (info.name) json_text(json, "name", info.name);
-    if (info.type) json_text(json, "type", info.type);
-    if (info.source.file) json_text(json, "file", info.source.file);
-    if (info.source.file) json_integer(json, "line", info.source.line);
+    if (info.name)
+      json_text(json, "name", info.name);
+    if (info.type)
+      json_text(json, "type", info.type);
+    if (info.source.file)
+      json_text(json, "file", info.source.file);
+    if (info.source.file)
+      json_integer(json, "line", info.source.line);
   }
   json_end(json, '}');
 }
@@ -76,14 +85,16 @@ static void pick(Engine *e, const Task *task) {
                                              {"Ng", "Ng.X", "Ng.Y", "Ng.Z"},
                                              {"albedo", "albedo.R", "albedo.G", "albedo.B"},
                                              {"ray", "ray.X", "ray.Y", "ray.Z"}};
-    static const char *const uv[] = {"uv.U", "uv.V"}, *const z[] = {"Z"}, *const distance[] = {"distance.Y"};
+    static const char *const uv[] = {"uv.U", "uv.V"}, *const z[] = {"Z"},
+                             *const distance[] = {"distance.Y"};
     json_integer(&text.json, "id", m->id);
     json_integer(&text.json, "x", x);
     json_integer(&text.json, "y", y);
     put_values(&text.json, "Z", floats, z, 1);
     put_values(&text.json, "distance", floats, distance, 1);
     put_values(&text.json, "uv", floats, uv, 2);
-    for (int i = 0; i < 5; i++) put_values(&text.json, vectors[i][0], floats, vectors[i] + 1, 3);
+    for (int i = 0; i < 5; i++)
+      put_values(&text.json, vectors[i][0], floats, vectors[i] + 1, 3);
     put_id(&text.json, e, ids, "id.object", VL_ID_OBJECT, "object");
     put_id(&text.json, e, ids, "id.material", VL_ID_MATERIAL, "material");
     put_id(&text.json, e, ids, "id.instance", VL_ID_INSTANCE, "instance");
@@ -100,7 +111,8 @@ static void focus(Engine *e, const Task *task) {
   vlError error = {0};
   double distance;
   vlResult result = vl_autofocus(e->model.world, &camera.made, m->x, m->y, &distance, &error);
-  if (result == VL_OK) result = camera_set_focus(&camera, distance, &next, &error);
+  if (result == VL_OK)
+    result = camera_set_focus(&camera, distance, &next, &error);
   if (result != VL_OK) {
     engine_refuse(e, task, error.message);
     return;
@@ -119,14 +131,30 @@ static void focus(Engine *e, const Task *task) {
 
 void engine_answer(Engine *e, const Task *task) {
   switch (task->message.kind) {
-    case MESSAGE_PICK: pick(e, task); break;
-    case MESSAGE_FOCUS: focus(e, task); break;
-    case MESSAGE_SAVE: engine_save(e, task); break;
-    case MESSAGE_COMMAND: engine_command(e, task); break;
-    case MESSAGE_OVERLAY: engine_overlay(e, task); break;
-    case MESSAGE_OUTLINE: engine_outline(e, task); break;
-    case MESSAGE_OUTSIDE: engine_outside(e, task); break;
-    case MESSAGE_CAMERAS: engine_cameras(e, task); break;
+    case MESSAGE_PICK:
+      pick(e, task);
+      break;
+    case MESSAGE_FOCUS:
+      focus(e, task);
+      break;
+    case MESSAGE_SAVE:
+      engine_save(e, task);
+      break;
+    case MESSAGE_COMMAND:
+      engine_command(e, task);
+      break;
+    case MESSAGE_OVERLAY:
+      engine_overlay(e, task);
+      break;
+    case MESSAGE_OUTLINE:
+      engine_outline(e, task);
+      break;
+    case MESSAGE_OUTSIDE:
+      engine_outside(e, task);
+      break;
+    case MESSAGE_CAMERAS:
+      engine_cameras(e, task);
+      break;
     case MESSAGE_PATHS: /* engine_trace answers it */
     case MESSAGE_SEEN:  /* these need no world */
     case MESSAGE_CAMERA:
@@ -135,7 +163,8 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_RESET:
     case MESSAGE_SETTINGS:
     case MESSAGE_STEER:
-    case MESSAGE_SCENE: break;
+    case MESSAGE_SCENE:
+      break;
   }
 }
 
@@ -144,14 +173,16 @@ void *engine_answer_questions(void *user) {
   static Task task; /* this thread alone uses it */
   for (;;) {
     pthread_mutex_lock(&e->lock);
-    while (!e->quit && !e->question_count) pthread_cond_wait(&e->wake, &e->lock);
+    while (!e->quit && !e->question_count)
+      pthread_cond_wait(&e->wake, &e->lock);
     bool quit = e->quit;
     if (!quit) {
       task = e->questions[0];
       memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
     }
     pthread_mutex_unlock(&e->lock);
-    if (quit) return NULL;
+    if (quit)
+      return NULL;
     pthread_rwlock_rdlock(&e->model_lock);
     engine_answer(e, &task);
     pthread_rwlock_unlock(&e->model_lock);

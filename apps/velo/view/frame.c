@@ -4,17 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rounds to the nearest half float, ties to even. Values above the largest half become the largest; NaN becomes 0. */
+/* Rounds to the nearest half float, ties to even. Values above the largest half become the
+ * largest; NaN becomes 0. */
 static uint16_t to_half(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
   uint32_t sign = bits >> 16 & 0x8000u, rest = bits & 0x7fffffffu;
-  if (rest > 0x7f800000u) return 0;
-  if (rest >= 0x477fe000u) return (uint16_t)(sign | 0x7bffu);
-  if (rest < 0x33000001u) return (uint16_t)sign;
+  if (rest > 0x7f800000u)
+    return 0;
+  if (rest >= 0x477fe000u)
+    return (uint16_t)(sign | 0x7bffu);
+  if (rest < 0x33000001u)
+    return (uint16_t)sign;
   if (rest < 0x38800000u) { /* a subnormal half */
     uint32_t shift = 126u - (rest >> 23), mantissa = (rest & 0x7fffffu) | 0x800000u;
-    uint32_t half = mantissa >> shift, left = mantissa & ((1u << shift) - 1u), middle = 1u << (shift - 1u);
+    uint32_t half = mantissa >> shift, left = mantissa & ((1u << shift) - 1u),
+             middle = 1u << (shift - 1u);
     half += left > middle || (left == middle && (half & 1u));
     return (uint16_t)(sign | half);
   }
@@ -39,7 +44,8 @@ static void fill_row(ViewFrame *frame, const vlImage *image, uint32_t y, const f
       v[c] = ids ? (float)((const uint32_t *)pixels)[at + c] : ((const float *)pixels)[at + c];
     if (matrix) {
       const float a = v[0], b = v[1], d = v[2];
-      for (int i = 0; i < 3; i++) v[i] = matrix[3 * i] * a + matrix[3 * i + 1] * b + matrix[3 * i + 2] * d;
+      for (int i = 0; i < 3; i++)
+        v[i] = matrix[3 * i] * a + matrix[3 * i + 1] * b + matrix[3 * i + 2] * d;
     }
     for (uint32_t c = 0; c < n; c++) {
       uint16_t half = to_half(v[c]);
@@ -52,9 +58,11 @@ static void fill_row(ViewFrame *frame, const vlImage *image, uint32_t y, const f
   }
 }
 
-ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channels, const float *matrix) {
+ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channels,
+                      const float *matrix) {
   ViewFrame *frame = calloc(1, sizeof *frame);
-  if (!frame) return NULL;
+  if (!frame)
+    return NULL;
   frame->references = 1;
   frame->format = format;
   frame->channels = channels;
@@ -66,7 +74,8 @@ ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channel
     free(frame);
     return NULL;
   }
-  for (uint32_t y = 0; y < frame->rows; y++) fill_row(frame, image, y, matrix);
+  for (uint32_t y = 0; y < frame->rows; y++)
+    fill_row(frame, image, y, matrix);
   return frame;
 }
 
@@ -74,43 +83,54 @@ const float *frame_to_rec709(vlColorSpace space) {
   /* The primaries of the spaces; the white of ACES is not adapted, as in image/display.c. */
   static const float p3[9] = {1.2249402f, -0.2249404f, 0,           -0.0420569f, 1.0420571f,
                               0,          -0.0196376f, -0.0786361f, 1.0982735f};
-  static const float rec2020[9] = {1.6604910f,  -0.5876411f, -0.0728499f, -0.1245505f, 1.1328999f,
-                                   -0.0083494f, -0.0181508f, -0.1005789f, 1.1187297f};
+  static const float rec2020[9] = {1.6604910f,  -0.5876411f, -0.0728499f,
+                                   -0.1245505f, 1.1328999f,  -0.0083494f,
+                                   -0.0181508f, -0.1005789f, 1.1187297f};
   static const float aces[9] = {2.5589994f,  -1.1194568f, -0.3959560f, -0.2769877f, 1.3706185f,
                                 -0.0936305f, -0.0171289f, -0.1485457f, 1.0813307f};
   switch (space) {
-    case VL_SPACE_SRGB: return NULL;
-    case VL_SPACE_DCI_P3: return p3;
-    case VL_SPACE_REC2020: return rec2020;
-    case VL_SPACE_ACES2065_1: return aces;
+    case VL_SPACE_SRGB:
+      return NULL;
+    case VL_SPACE_DCI_P3:
+      return p3;
+    case VL_SPACE_REC2020:
+      return rec2020;
+    case VL_SPACE_ACES2065_1:
+      return aces;
   }
   return NULL;
 }
 
 ViewFrame *frame_keep(ViewFrame *frame) {
-  if (frame) atomic_fetch_add(&frame->references, 1);
+  if (frame)
+    atomic_fetch_add(&frame->references, 1);
   return frame;
 }
 
 void frame_drop(ViewFrame *frame) {
-  if (!frame || atomic_fetch_sub(&frame->references, 1) != 1) return;
+  if (!frame || atomic_fetch_sub(&frame->references, 1) != 1)
+    return;
   free(frame->pixels);
   free(frame);
 }
 
-/* ---- the message ------------------------------------------------------------------------------------------------- */
+/* ---- the message
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static bool same_form(const ViewFrame *a, const ViewFrame *b) {
-  return b && a->width == b->width && a->height == b->height && a->x0 == b->x0 && a->y0 == b->y0 &&
-         a->scale == b->scale && a->columns == b->columns && a->rows == b->rows && a->format == b->format &&
-         a->channels == b->channels && a->channel == b->channel;
+  return b && a->width == b->width && a->height == b->height && a->x0 == b->x0 &&
+         a->y0 == b->y0 && a->scale == b->scale && a->columns == b->columns &&
+         a->rows == b->rows && a->format == b->format && a->channels == b->channels &&
+         a->channel == b->channel;
 }
 
 static bool tile_differs(const ViewFrame *a, const ViewFrame *b, const uint32_t tile[4]) {
   size_t size = pixel_size(a);
   for (uint32_t y = tile[1]; y < tile[3]; y++) {
     size_t at = ((size_t)y * a->columns + tile[0]) * size;
-    if (memcmp(a->pixels + at, b->pixels + at, (tile[2] - tile[0]) * size) != 0) return true;
+    if (memcmp(a->pixels + at, b->pixels + at, (tile[2] - tile[0]) * size) != 0)
+      return true;
   }
   return false;
 }
@@ -121,13 +141,14 @@ static size_t tile_bytes(const ViewFrame *frame, const uint32_t tile[4]) {
 }
 
 static uint8_t *put_tile(const ViewFrame *frame, const uint32_t tile[4], uint8_t *to) {
-  const uint16_t place[4] = {(uint16_t)tile[0], (uint16_t)tile[1], (uint16_t)(tile[2] - tile[0]),
-                             (uint16_t)(tile[3] - tile[1])};
+  const uint16_t place[4] = {(uint16_t)tile[0], (uint16_t)tile[1],
+                             (uint16_t)(tile[2] - tile[0]), (uint16_t)(tile[3] - tile[1])};
   size_t row = place[2] * pixel_size(frame), used = 0;
   memcpy(to, place, sizeof place);
   to += sizeof place;
   for (uint32_t y = tile[1]; y < tile[3]; y++, used += row)
-    memcpy(to + used, frame->pixels + ((size_t)y * frame->columns + tile[0]) * pixel_size(frame), row);
+    memcpy(to + used,
+           frame->pixels + ((size_t)y * frame->columns + tile[0]) * pixel_size(frame), row);
   memset(to + used, 0, (4 - used % 4) % 4);
   return to + (used + 3) / 4 * 4;
 }
@@ -136,8 +157,10 @@ static uint32_t tile_end(uint32_t start, uint32_t limit) {
   return start + FRAME_TILE < limit ? start + FRAME_TILE : limit;
 }
 
-/* Lists the tiles that changed. Returns their number; the whole frame counts as one tile if most changed. */
-static uint32_t changed_tiles(const ViewFrame *now, const ViewFrame *before, uint32_t (*tiles)[4]) {
+/* Lists the tiles that changed. Returns their number; the whole frame counts as one tile if
+ * most changed. */
+static uint32_t changed_tiles(const ViewFrame *now, const ViewFrame *before,
+                              uint32_t (*tiles)[4]) {
   uint32_t count = 0, all = 0;
   const uint32_t whole[4] = {0, 0, now->columns, now->rows};
   if (!same_form(now, before)) {
@@ -147,28 +170,36 @@ static uint32_t changed_tiles(const ViewFrame *now, const ViewFrame *before, uin
   for (uint32_t y = 0; y < now->rows; y += FRAME_TILE)
     for (uint32_t x = 0; x < now->columns; x += FRAME_TILE, all++) {
       const uint32_t tile[4] = {x, y, tile_end(x, now->columns), tile_end(y, now->rows)};
-      if (tile_differs(now, before, tile)) memcpy(tiles[count++], tile, sizeof tile);
+      if (tile_differs(now, before, tile))
+        memcpy(tiles[count++], tile, sizeof tile);
     }
-  if (4 * count <= 3 * all) return count;
+  if (4 * count <= 3 * all)
+    return count;
   memcpy(tiles[0], whole, sizeof whole);
   return 1;
 }
 
-uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t before_room, size_t *size) {
-  size_t most = (size_t)((now->columns + FRAME_TILE - 1) / FRAME_TILE) * ((now->rows + FRAME_TILE - 1) / FRAME_TILE);
+uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t before_room,
+                       size_t *size) {
+  size_t most = (size_t)((now->columns + FRAME_TILE - 1) / FRAME_TILE) *
+                ((now->rows + FRAME_TILE - 1) / FRAME_TILE);
   uint32_t(*tiles)[4] = malloc(most * sizeof *tiles);
-  if (!tiles) return NULL;
+  if (!tiles)
+    return NULL;
   uint32_t count = changed_tiles(now, before, tiles);
   *size = FRAME_HEADER;
-  for (uint32_t i = 0; i < count; i++) *size += tile_bytes(now, tiles[i]);
+  for (uint32_t i = 0; i < count; i++)
+    *size += tile_bytes(now, tiles[i]);
   uint8_t *message = malloc(before_room + *size);
   if (message) {
-    const uint32_t header[FRAME_HEADER / 4] = {1,           now->serial,   now->change,  now->width,   now->height,
-                                               now->x0,     now->y0,       now->scale,   now->columns, now->rows,
-                                               now->format, now->channels, now->channel, now->spp,     count};
+    const uint32_t header[FRAME_HEADER / 4] = {
+        1,           now->serial,   now->change,  now->width,   now->height,
+        now->x0,     now->y0,       now->scale,   now->columns, now->rows,
+        now->format, now->channels, now->channel, now->spp,     count};
     memcpy(message + before_room, header, sizeof header);
     uint8_t *to = message + before_room + FRAME_HEADER;
-    for (uint32_t i = 0; i < count; i++) to = put_tile(now, tiles[i], to);
+    for (uint32_t i = 0; i < count; i++)
+      to = put_tile(now, tiles[i], to);
   }
   free(tiles);
   return message;

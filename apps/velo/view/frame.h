@@ -1,5 +1,6 @@
-/* view/frame.h: an image as it is sent to pages: half floats (colours) or floats (ground truth), and the binary message
- * that brings a page from one frame to the next: only tiles that changed. docs/view.md has the layout. */
+/* view/frame.h: an image as it is sent to pages: half floats (colours) or floats (ground
+ * truth), and the binary message that brings a page from one frame to the next: only tiles that
+ * changed. docs/view.md has the layout. */
 #ifndef APP_VIEW_FRAME_H
 #define APP_VIEW_FRAME_H
 
@@ -30,16 +31,20 @@ typedef struct ViewFrame {
 
 enum { FRAME_HEADER = 64, FRAME_TILE = 64 };
 
-/* The first channels of an image as a frame, with one reference; null without memory. matrix: 3x3 for three channels,
- * row-major, applied to each pixel; null: none. */
-ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channels, const float *matrix);
-/* The matrix from a film's space to linear Rec. 709, which pages show; null: it is that space. */
+/* The first channels of an image as a frame, with one reference; null without memory. matrix:
+ * 3x3 for three channels, row-major, applied to each pixel; null: none. */
+ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channels,
+                      const float *matrix);
+/* The matrix from a film's space to linear Rec. 709, which pages show; null: it is that space.
+ */
 const float *frame_to_rec709(vlColorSpace space);
 ViewFrame *frame_keep(ViewFrame *frame);
 /* Null is allowed. */
 void frame_drop(ViewFrame *frame);
-/* The bytes of the message that shows `now` where `before` is shown (null: nothing); `before_room` bytes are left free
- * before it. The caller frees the result; null without memory. *size: length of the message. */
-uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t before_room, size_t *size);
+/* The bytes of the message that shows `now` where `before` is shown (null: nothing);
+ * `before_room` bytes are left free before it. The caller frees the result; null without
+ * memory. *size: length of the message. */
+uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t before_room,
+                       size_t *size);
 
 #endif

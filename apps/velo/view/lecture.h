@@ -1,4 +1,5 @@
-/* view/lecture.h: `velo view --lecture`: its scenes, which are in the program, and its language. */
+/* view/lecture.h: `velo view --lecture`: its scenes, which are in the program, and its
+ * language. */
 #ifndef APP_VIEW_LECTURE_H
 #define APP_VIEW_LECTURE_H
 
@@ -7,12 +8,15 @@
 /* The scene that is there before the page names one. */
 extern const char lecture_first_scene[];
 
-/* A scene of the lecture by its name, "scenes/lecture/pinhole.pbrt": the name, for as long as the program runs; null:
- * there is no such scene. */
+/* A scene of the lecture by its name, "scenes/lecture/pinhole.pbrt": the name, for as long as
+ * the program runs; null: there is no such scene. */
 const char *lecture_scene(const char *name);
-/* The text of a scene of the lecture, with the files that it includes. The caller frees it. Null: no memory. */
+/* The text of a scene of the lecture, with the files that it includes. The caller frees it.
+ * Null: no memory. */
 char *lecture_text(const char *scene);
-/* What follows the address of the page: its language, from --language, else from the environment. */
+/* What follows the address of the page: its language, from --language, else from the
+ * environment.
+ */
 const char *lecture_query(const Arguments *arguments);
 
 #endif

@@ -1,5 +1,5 @@
-/* view/message.h: the messages that a page sends, one JSON object each, and their parser. It trusts nothing: sizes,
- * types and ranges are checked here. docs/view.md lists the messages. */
+/* view/message.h: the messages that a page sends, one JSON object each, and their parser. It
+ * trusts nothing: sizes, types and ranges are checked here. docs/view.md lists the messages. */
 #ifndef APP_VIEW_MESSAGE_H
 #define APP_VIEW_MESSAGE_H
 
@@ -58,11 +58,13 @@ typedef struct ViewMessage {
   bool paused, boxes, curves, field, mark, by_sample;
   uint32_t crop[4]; /* all 0: none */
   uint32_t size[2]; /* pixels */
-  char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME], view[MESSAGE_NAME];
+  char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME],
+      view[MESSAGE_NAME];
   double exposure; /* EV */
 } ViewMessage;
 
 /* Parses a message of `size` bytes. False: it is malformed; why then holds the reason. */
-bool message_parse(const char *text, size_t size, ViewMessage *message, char why[VL_GIVEN_MESSAGE]);
+bool message_parse(const char *text, size_t size, ViewMessage *message,
+                   char why[VL_GIVEN_MESSAGE]);
 
 #endif

@@ -16,12 +16,14 @@ static int choose_exposure(vlContext *context, const Arguments *arguments, Model
   bool meter;
   int status = exposure_parse(&arguments->values[RENDER_EXPOSURE], &model->exposure, &meter);
   bool wanted = meter || !arguments->values[RENDER_EXPOSURE].given;
-  if (status >= 0 || !model->opening.model || !wanted) return status;
+  if (status >= 0 || !model->opening.model || !wanted)
+    return status;
   return exposure_meter_model(context, model->world, &model->job.camera, model->job.defs,
                               meter || model->opening.lamps ? 0 : 1, &model->exposure);
 }
 
-/* The depth of what the middle of the image shows; where it shows nothing, of the middle of the scene. */
+/* The depth of what the middle of the image shows; where it shows nothing, of the middle of the
+ * scene. */
 static double find_lookat(const Model *model) {
   const vlCamera *c = &model->job.camera;
   vlChannelsDef def = vl_default_channels_def(c->width, c->height);
@@ -33,32 +35,38 @@ static double find_lookat(const Model *model) {
   if (vl_render_channels(model->world, c, &def, &image, NULL, NULL) == VL_OK)
     distance = (double)vl_image_get(image, 0, 0, 0);
   vl_image_destroy(image);
-  if (distance > 0 && isfinite(distance)) return distance;
+  if (distance > 0 && isfinite(distance))
+    return distance;
   const double *m = c->world_from_camera;
   for (int i = 0; i < 3; i++)
-    middle +=
-        m[4 * i + 2] * (0.5 * ((double)model->info.bounds_min[i] + (double)model->info.bounds_max[i]) - m[4 * i + 3]);
+    middle += m[4 * i + 2] *
+              (0.5 * ((double)model->info.bounds_min[i] + (double)model->info.bounds_max[i]) -
+               m[4 * i + 3]);
   return middle > 0 && isfinite(middle) ? middle : 1;
 }
 
 /* The cameras of --trajectory, if it is given. */
-static int load_poses(vlContext *context, const Arguments *arguments, Model *model, FileList *files) {
+static int load_poses(vlContext *context, const Arguments *arguments, Model *model,
+                      FileList *files) {
   const OptionValue *value = &arguments->values[RENDER_TRAJECTORY];
   vlError error = {0};
-  if (!value->given) return -1;
+  if (!value->given)
+    return -1;
   file_list_add(files, value->text);
-  vlResult result = poses_load(context, value->text, &model->job.camera, &model->cameras, &model->camera_count, &error);
+  vlResult result = poses_load(context, value->text, &model->job.camera, &model->cameras,
+                               &model->camera_count, &error);
   return result == VL_OK ? -1 : report_error(&error, result, value->text);
 }
 
-int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
-               const vlCancel *cancel, Model *model, FileList *files) {
+int model_load(vlContext *context, const char *path, const Arguments *arguments,
+               const vlWorld *previous, const vlCancel *cancel, Model *model, FileList *files) {
   memset(model, 0, sizeof *model);
   model->opening.cancel = cancel;
   char *text = NULL;
   if (arguments->values[VIEW_LECTURE].given) {
     model->opening.text = text = lecture_text(path);
-    if (!text) return report_failure(STATUS_OTHER, "out of memory");
+    if (!text)
+      return report_failure(STATUS_OTHER, "out of memory");
   }
   vlError error = {0};
   vl_context_record_files(context, false);
@@ -67,21 +75,27 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   int status = scene_open(context, path, arguments, &model->scene, &model->opening);
   free(text);
   model->opening.text = NULL;
-  if (status < 0) status = job_make(&model->job, context, model->scene, path, arguments);
+  if (status < 0)
+    status = job_make(&model->job, context, model->scene, path, arguments);
   if (status < 0) {
     vlBuildDef build = model->job.defs->build;
     build.previous = previous;
     build.cancel = cancel;
     vlResult result = vl_world_build_last(model->scene, &build, &model->world, &error);
-    if (result != VL_OK) status = report_error(&error, result, path);
+    if (result != VL_OK)
+      status = report_error(&error, result, path);
   }
   file_list_add(files, path);
   const vlFileRecord *file;
-  for (uint32_t i = 0; (file = vl_context_file(context, i)); i++) file_list_add(files, file->path);
+  for (uint32_t i = 0; (file = vl_context_file(context, i)); i++)
+    file_list_add(files, file->path);
   vl_context_record_files(context, false);
-  if (status < 0) status = lens_autofocus(&model->job, model->scene, model->world);
-  if (status < 0) status = load_poses(context, arguments, model, files);
-  if (status < 0) status = choose_exposure(context, arguments, model);
+  if (status < 0)
+    status = lens_autofocus(&model->job, model->scene, model->world);
+  if (status < 0)
+    status = load_poses(context, arguments, model, files);
+  if (status < 0)
+    status = choose_exposure(context, arguments, model);
   if (status >= 0) {
     model_free(model);
     return status;

@@ -1,4 +1,5 @@
-/* view/model.h: a scene file as the viewer has it: the scene, its world, its job, and the files that it was made of. */
+/* view/model.h: a scene file as the viewer has it: the scene, its world, its job, and the files
+ * that it was made of. */
 #ifndef APP_VIEW_MODEL_H
 #define APP_VIEW_MODEL_H
 
@@ -12,17 +13,18 @@ typedef struct Model {
   Job job;
   SceneOpening opening;
   vlWorldInfo info;
-  double lookat;     /* distance of what the middle of the image shows, or of the scene's middle */
-  float exposure;    /* EV of the first view */
+  double lookat;  /* distance of what the middle of the image shows, or of the scene's middle */
+  float exposure; /* EV of the first view */
   vlCamera *cameras; /* of --trajectory; null: none */
   uint32_t camera_count;
   uint32_t load; /* Engine.loads at this load */
 } Model;
 
-/* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. Adds the paths of the files that
- * were read to the list. Returns -1, or the exit code after reporting the error; *model is empty then. */
-int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
-               const vlCancel *cancel, Model *model, FileList *files);
+/* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. Adds the
+ * paths of the files that were read to the list. Returns -1, or the exit code after reporting
+ * the error; *model is empty then. */
+int model_load(vlContext *context, const char *path, const Arguments *arguments,
+               const vlWorld *previous, const vlCancel *cancel, Model *model, FileList *files);
 /* Frees what the model has and empties it. */
 void model_free(Model *model);
 

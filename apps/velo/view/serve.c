@@ -26,7 +26,8 @@ struct Serve {
 };
 
 static void post_and_free(Server *server, uint32_t client, char *text) {
-  if (text) server_post(server, client, text);
+  if (text)
+    server_post(server, client, text);
   free(text);
 }
 
@@ -48,7 +49,8 @@ static void refuse(void *user, uint32_t client, bool steers, const ViewMessage *
   Serve *s = user;
   JsonText text;
   (void)steers;
-  if (!json_text_begin(&text, "refused")) return;
+  if (!json_text_begin(&text, "refused"))
+    return;
   json_integer(&text.json, "id", message->id);
   json_integer(&text.json, "change", message->change);
   json_text(&text.json, "message", "this page looks on: velo render --serve");
@@ -59,29 +61,36 @@ static void count(void *user, uint32_t clients) {
   ((Serve *)user)->clients = clients;
 }
 
-int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure, Serve **result) {
+int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure,
+                Serve **result) {
   Serve *s = calloc(1, sizeof *s);
   *result = s;
-  if (!s) return report_failure(STATUS_OTHER, "out of memory");
+  if (!s)
+    return report_failure(STATUS_OTHER, "out of memory");
   s->job = job;
   s->view = view;
   s->exposure = exposure;
-  s->camera = (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
+  s->camera =
+      (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
   vl_world_info(world, &s->info);
   const ServerDef def = {.home = "index.html", .query = ""};
   const ServerCalls calls = {.user = s, .greet = greet, .message = refuse, .clients = count};
   int status = server_open(&def, &s->server);
-  if (status < 0) status = server_start(s->server, &calls);
-  if (status < 0) report_note("the image while it renders: %s", server_address(s->server));
+  if (status < 0)
+    status = server_start(s->server, &calls);
+  if (status < 0)
+    report_note("the image while it renders: %s", server_address(s->server));
   return status;
 }
 
 static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
   JsonText text;
-  if (!json_text_begin(&text, "status")) return;
+  if (!json_text_begin(&text, "status"))
+    return;
   json_integer(&text.json, "spp", vl_film_spp(film));
   json_integer(&text.json, "target", p->spp_total);
-  json_number(&text.json, "paths_per_second", p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN);
+  json_number(&text.json, "paths_per_second",
+              p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN);
   json_number(&text.json, "seconds", p->elapsed);
   json_number(&text.json, "error", NAN);
   json_bool(&text.json, "paused", false);
@@ -90,14 +99,18 @@ static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
 
 void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {
   double start = monotonic_seconds(), pause = fmax(least_pause, s->cost / most_share);
-  if (!s->clients || (!s->fresh && start - s->shown < pause && progress->spp_done < progress->spp_total)) return;
+  if (!s->clients ||
+      (!s->fresh && start - s->shown < pause && progress->spp_done < progress->spp_total))
+    return;
   s->fresh = false;
   vlImage *image = NULL;
   const vlFilmDef *def = &s->job->defs->film;
-  if (vl_film_develop(film, &s->job->defs->develop, &image) != VL_OK) return;
+  if (vl_film_develop(film, &s->job->defs->develop, &image) != VL_OK)
+    return;
   ViewFrame *frame = frame_make(image, FRAME_HALF, 3, frame_to_rec709(def->space));
   vl_image_destroy(image);
-  if (!frame) return;
+  if (!frame)
+    return;
   frame->serial = ++s->serial;
   frame->width = def->width;
   frame->height = def->height;
@@ -112,7 +125,8 @@ void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {
 }
 
 void serve_stop(Serve *s) {
-  if (!s) return;
+  if (!s)
+    return;
   server_stop(s->server);
   free(s);
 }

@@ -1,6 +1,7 @@
-/* view/server.h: the server of the live page: HTTP and WebSocket through libwebsockets, in a thread of its own. It
- * serves the files of web/ from memory, sends frames and texts to the pages, and hands their messages on. Requests
- * need the token in their address; a foreign Host or Origin is refused, and so is a malformed message. */
+/* view/server.h: the server of the live page: HTTP and WebSocket through libwebsockets, in a
+ * thread of its own. It serves the files of web/ from memory, sends frames and texts to the
+ * pages, and hands their messages on. Requests need the token in their address; a foreign Host
+ * or Origin is refused, and so is a malformed message. */
 #ifndef APP_VIEW_SERVER_H
 #define APP_VIEW_SERVER_H
 
@@ -28,7 +29,8 @@ typedef struct ServerDef {
   bool steering;       /* one page steers; false: all only look */
 } ServerDef;
 
-/* Opens the port; pages that come wait. Returns -1 with *server, or the exit code after reporting the error. */
+/* Opens the port; pages that come wait. Returns -1 with *server, or the exit code after
+ * reporting the error. */
 int server_open(const ServerDef *def, Server **server);
 /* Starts the thread. It needs no further sockets of the system. Returns -1 or the exit code. */
 int server_start(Server *server, const ServerCalls *calls);
@@ -40,7 +42,8 @@ int server_port(const Server *server);
 
 /* Sends a text to a page, or to all (client 0). Any thread. */
 void server_post(Server *server, uint32_t client, const char *text);
-/* Sends a frame to all pages, each when it has drawn the one before. The server keeps a reference. Any thread. */
+/* Sends a frame to all pages, each when it has drawn the one before. The server keeps a
+ * reference. Any thread. */
 void server_show(Server *server, ViewFrame *frame);
 /* Seconds of processor time that packing and sending took. Any thread. */
 double server_seconds(const Server *server);

@@ -10,10 +10,11 @@
 
 enum {
   MOST_CLIENTS = 64,
-  MOST_TEXTS = 64,          /* texts that wait for one page */
-  FRAGMENT = 64 * 1024,     /* bytes of a message that one write hands to the system */
-  PORTION = 16 * 1024,      /* bytes of a file that one write hands to the system */
-  SEEN_TIMEOUT_SECONDS = 20 /* a page that does not answer a frame for so long gets the next one all the same */
+  MOST_TEXTS = 64,      /* texts that wait for one page */
+  FRAGMENT = 64 * 1024, /* bytes of a message that one write hands to the system */
+  PORTION = 16 * 1024,  /* bytes of a file that one write hands to the system */
+  SEEN_TIMEOUT_SECONDS =
+      20 /* a page that does not answer a frame for so long gets the next one all the same */
 };
 
 /* A text that waits; LWS_PRE bytes are free before it. */
@@ -50,7 +51,8 @@ struct Server {
   bool started;
   atomic_bool quit;
   _Atomic double seconds;
-  /* Under the lock: the clients, their texts, the frame. The server's thread alone changes the list of clients. */
+  /* Under the lock: the clients, their texts, the frame. The server's thread alone changes the
+   * list of clients. */
   pthread_mutex_t lock;
   Client *clients[MOST_CLIENTS];
   unsigned client_count;
@@ -59,8 +61,10 @@ struct Server {
 };
 
 /* The callbacks of the two protocols. */
-int server_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t size);
-int server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t size);
+int server_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                size_t size);
+int server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                  size_t size);
 /* The bytes of a connection of each protocol. */
 extern const size_t server_http_bytes, server_socket_bytes;
 

@@ -1,5 +1,6 @@
-/* view/server_socket.c: the server's WebSockets: one client for each page. Texts go before frames. A page gets the next
- * frame when it has told that it drew the one before, so that a slow link holds one frame at most. */
+/* view/server_socket.c: the server's WebSockets: one client for each page. Texts go before
+ * frames. A page gets the next frame when it has told that it drew the one before, so that a
+ * slow link holds one frame at most. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -27,9 +28,13 @@ static Server *server_of(struct lws *wsi) {
 static bool is_ours(struct lws *wsi) {
   const Server *server = server_of(wsi);
   char host[256], origin[300], path[128];
-  if (!server_check_host(wsi, server, host, sizeof host)) return false;
-  if (lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) <= 0 || !access_origin(origin, host)) return false;
-  if (lws_hdr_copy(wsi, path, sizeof path, WSI_TOKEN_GET_URI) <= 0) return false;
+  if (!server_check_host(wsi, server, host, sizeof host))
+    return false;
+  if (lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) <= 0 ||
+      !access_origin(origin, host))
+    return false;
+  if (lws_hdr_copy(wsi, path, sizeof path, WSI_TOKEN_GET_URI) <= 0)
+    return false;
   const char *name = access_path(path, server->token);
   return name && strcmp(name, "socket") == 0 && server->client_count < MOST_CLIENTS;
 }
@@ -37,15 +42,17 @@ static bool is_ours(struct lws *wsi) {
 /* Tells a page whether it steers. */
 static void post_role(Server *server, const Client *client) {
   char text[160];
-  snprintf(text, sizeof text, "{\"type\":\"role\",\"client\":%u,\"steers\":%s,\"steering\":%s}", client->id,
-           client->steers ? "true" : "false", server->def.steering ? "true" : "false");
+  snprintf(text, sizeof text, "{\"type\":\"role\",\"client\":%u,\"steers\":%s,\"steering\":%s}",
+           client->id, client->steers ? "true" : "false",
+           server->def.steering ? "true" : "false");
   server_post(server, client->id, text);
 }
 
 static int begin(struct lws *wsi, Connection *connection) {
   Server *server = server_of(wsi);
   Client *client = calloc(1, sizeof *client);
-  if (!client) return -1;
+  if (!client)
+    return -1;
   client->wsi = wsi;
   client->last = &client->first;
   pthread_mutex_lock(&server->lock);
@@ -53,7 +60,8 @@ static int begin(struct lws *wsi, Connection *connection) {
   if (room) {
     client->id = ++server->next_id;
     client->steers = server->def.steering;
-    for (unsigned i = 0; i < server->client_count; i++) client->steers &= !server->clients[i]->steers;
+    for (unsigned i = 0; i < server->client_count; i++)
+      client->steers &= !server->clients[i]->steers;
     server->clients[server->client_count++] = client;
   }
   unsigned count = server->client_count;
@@ -86,27 +94,34 @@ static void end(struct lws *wsi, Connection *connection) {
   Server *server = server_of(wsi);
   Client *client = connection->client, *heir = NULL;
   connection->client = NULL;
-  if (!client) return;
+  if (!client)
+    return;
   pthread_mutex_lock(&server->lock);
   unsigned kept = 0;
   for (unsigned i = 0; i < server->client_count; i++)
-    if (server->clients[i] != client) server->clients[kept++] = server->clients[i];
+    if (server->clients[i] != client)
+      server->clients[kept++] = server->clients[i];
   server->client_count = kept;
-  if (client->steers && kept) { /* the page that has looked on for the longest time steers now */
+  if (client->steers &&
+      kept) { /* the page that has looked on for the longest time steers now */
     heir = server->clients[0];
     heir->steers = true;
   }
   pthread_mutex_unlock(&server->lock);
   free_client(client);
-  if (heir) post_role(server, heir);
+  if (heir)
+    post_role(server, heir);
   server->calls.clients(server->calls.user, kept);
 }
 
-/* ---- sending ----------------------------------------------------------------------------------------------------- */
+/* ---- sending
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* Whether there is something to send; the caller holds the lock. */
 static bool has_work(const Server *server, const Client *client) {
-  if (client->message || client->first) return true;
+  if (client->message || client->first)
+    return true;
   bool late = client->waits_for && now_seconds() - client->sent > SEEN_TIMEOUT_SECONDS;
   return server->frame && server->frame != client->shown && (!client->waits_for || late);
 }
@@ -114,7 +129,8 @@ static bool has_work(const Server *server, const Client *client) {
 static void wake_all(Server *server) {
   pthread_mutex_lock(&server->lock);
   for (unsigned i = 0; i < server->client_count; i++)
-    if (has_work(server, server->clients[i])) lws_callback_on_writable(server->clients[i]->wsi);
+    if (has_work(server, server->clients[i]))
+      lws_callback_on_writable(server->clients[i]->wsi);
   pthread_mutex_unlock(&server->lock);
 }
 
@@ -133,14 +149,19 @@ static bool pack_frame(Server *server, Client *client) {
 }
 
 static bool send_fragment(struct lws *wsi, Client *client) {
-  size_t left = client->message_size - client->message_sent, n = left < FRAGMENT ? left : FRAGMENT;
+  size_t left = client->message_size - client->message_sent,
+         n = left < FRAGMENT ? left : FRAGMENT;
   bool first = client->message_sent == 0, last = n == left;
   enum lws_write_protocol kind = first ? LWS_WRITE_BINARY : LWS_WRITE_CONTINUATION;
-  if (!last) kind |= LWS_WRITE_NO_FIN;
-  /* the bytes before the fragment are sent already, so that the header of the fragment may replace them */
-  if (lws_write(wsi, client->message + LWS_PRE + client->message_sent, n, kind) < (int)n) return false;
+  if (!last)
+    kind |= LWS_WRITE_NO_FIN;
+  /* the bytes before the fragment are sent already, so that the header of the fragment may
+   * replace them */
+  if (lws_write(wsi, client->message + LWS_PRE + client->message_sent, n, kind) < (int)n)
+    return false;
   client->message_sent += n;
-  if (!last) return true;
+  if (!last)
+    return true;
   free(client->message);
   client->message = NULL;
   return true;
@@ -149,7 +170,8 @@ static bool send_fragment(struct lws *wsi, Client *client) {
 static int send_next(struct lws *wsi, Connection *connection) {
   Client *client = connection->client;
   Server *server = server_of(wsi);
-  if (!client) return -1;
+  if (!client)
+    return -1;
   bool good = true;
   Text *text = NULL;
   pthread_mutex_lock(&server->lock);
@@ -157,7 +179,8 @@ static int send_next(struct lws *wsi, Connection *connection) {
   if (!client->message && client->first) {
     text = client->first;
     client->first = text->next;
-    if (!client->first) client->last = &client->first;
+    if (!client->first)
+      client->last = &client->first;
     client->texts--;
   }
   pthread_mutex_unlock(&server->lock);
@@ -166,21 +189,27 @@ static int send_next(struct lws *wsi, Connection *connection) {
   else if (work)
     good = (client->message || pack_frame(server, client)) && send_fragment(wsi, client);
   free(text);
-  if (!good) return -1;
+  if (!good)
+    return -1;
   pthread_mutex_lock(&server->lock);
   work = has_work(server, client);
   pthread_mutex_unlock(&server->lock);
-  if (work) lws_callback_on_writable(wsi);
+  if (work)
+    lws_callback_on_writable(wsi);
   return 0;
 }
 
-/* ---- receiving --------------------------------------------------------------------------------------------------- */
+/* ---- receiving
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 /* A reason has at most 123 bytes of UTF-8. */
 static int refuse(struct lws *wsi, enum lws_close_status status, const char *why) {
   size_t length = strlen(why);
-  if (length > 120) length = 120;
-  while (length > 0 && ((unsigned char)why[length] & 0xc0) == 0x80) length--;
+  if (length > 120)
+    length = 120;
+  while (length > 0 && ((unsigned char)why[length] & 0xc0) == 0x80)
+    length--;
   lws_close_reason(wsi, status, (unsigned char *)why, length);
   return -1;
 }
@@ -188,7 +217,8 @@ static int refuse(struct lws *wsi, enum lws_close_status status, const char *why
 static void take_over(Server *server, Client *client) {
   bool free_seat = server->def.steering;
   pthread_mutex_lock(&server->lock);
-  for (unsigned i = 0; i < server->client_count; i++) free_seat &= !server->clients[i]->steers;
+  for (unsigned i = 0; i < server->client_count; i++)
+    free_seat &= !server->clients[i]->steers;
   client->steers |= free_seat;
   pthread_mutex_unlock(&server->lock);
   post_role(server, client);
@@ -198,9 +228,11 @@ static int handle(struct lws *wsi, Client *client, const char *text, size_t size
   Server *server = server_of(wsi);
   static ViewMessage message; /* the server's thread alone uses it */
   char why[VL_GIVEN_MESSAGE];
-  if (!message_parse(text, size, &message, why)) return refuse(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
+  if (!message_parse(text, size, &message, why))
+    return refuse(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
   if (message.kind == MESSAGE_SEEN) {
-    if (message.serial == client->waits_for) client->waits_for = 0;
+    if (message.serial == client->waits_for)
+      client->waits_for = 0;
     lws_callback_on_writable(wsi);
   } else if (message.kind == MESSAGE_STEER) {
     take_over(server, client);
@@ -212,27 +244,38 @@ static int handle(struct lws *wsi, Client *client, const char *text, size_t size
 
 static int receive(struct lws *wsi, Connection *connection, const char *in, size_t size) {
   Client *client = connection->client;
-  if (!client) return -1;
-  if (lws_frame_is_binary(wsi)) return refuse(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text is expected");
+  if (!client)
+    return -1;
+  if (lws_frame_is_binary(wsi))
+    return refuse(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text is expected");
   if (client->received_size + size > MESSAGE_LARGEST)
     return refuse(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
   char *larger = realloc(client->received, client->received_size + size + 1);
-  if (!larger) return -1;
+  if (!larger)
+    return -1;
   client->received = larger;
   memcpy(larger + client->received_size, in, size);
   client->received_size += size;
-  if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi)) return 0;
+  if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi))
+    return 0;
   size_t whole = client->received_size;
   client->received_size = 0;
   return handle(wsi, client, larger, whole);
 }
 
-int server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t size) {
-  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION) return is_ours(wsi) ? 0 : -1;
-  if (reason == LWS_CALLBACK_ESTABLISHED) return begin(wsi, user);
-  if (reason == LWS_CALLBACK_CLOSED) end(wsi, user);
-  if (reason == LWS_CALLBACK_SERVER_WRITEABLE) return send_next(wsi, user);
-  if (reason == LWS_CALLBACK_RECEIVE) return receive(wsi, user, in, size);
-  if (reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED) wake_all(server_of(wsi));
+int server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                  size_t size) {
+  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION)
+    return is_ours(wsi) ? 0 : -1;
+  if (reason == LWS_CALLBACK_ESTABLISHED)
+    return begin(wsi, user);
+  if (reason == LWS_CALLBACK_CLOSED)
+    end(wsi, user);
+  if (reason == LWS_CALLBACK_SERVER_WRITEABLE)
+    return send_next(wsi, user);
+  if (reason == LWS_CALLBACK_RECEIVE)
+    return receive(wsi, user, in, size);
+  if (reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED)
+    wake_all(server_of(wsi));
   return 0;
 }

@@ -24,10 +24,12 @@ static void *serve(void *user) {
 }
 
 static int open_port(Server *server) {
-  static const lws_retry_bo_t alive = {.secs_since_valid_ping = 10, .secs_since_valid_hangup = 30};
-  struct lws_protocols protocols[] = {{"http", server_http, server_http_bytes, 0, 0, NULL, 0},
-                                      {"velo-view", server_socket, server_socket_bytes, 4096, 0, NULL, 0},
-                                      {NULL, NULL, 0, 0, 0, NULL, 0}};
+  static const lws_retry_bo_t alive = {.secs_since_valid_ping = 10,
+                                       .secs_since_valid_hangup = 30};
+  struct lws_protocols protocols[] = {
+      {"http", server_http, server_http_bytes, 0, 0, NULL, 0},
+      {"velo-view", server_socket, server_socket_bytes, 4096, 0, NULL, 0},
+      {NULL, NULL, 0, 0, 0, NULL, 0}};
   static struct lws_protocols kept[3];
   memcpy(kept, protocols, sizeof kept);
   struct lws_context_creation_info info = {.port = CONTEXT_PORT_NO_LISTEN_SERVER,
@@ -41,7 +43,8 @@ static int open_port(Server *server) {
                                            .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS};
   lws_set_log_level(0, NULL);
   server->lws = lws_create_context(&info);
-  if (!server->lws) return report_failure(STATUS_OTHER, "the server cannot be started");
+  if (!server->lws)
+    return report_failure(STATUS_OTHER, "the server cannot be started");
   info.port = server->def.port;
   info.iface = server->listen[0] ? server->listen : "127.0.0.1";
   info.vhost_name = "velo";
@@ -49,11 +52,15 @@ static int open_port(Server *server) {
     info.iface = NULL;
     info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   }
-  if (info.iface && strcmp(info.iface, "::") == 0) info.iface = NULL;
-  if (info.iface && !strchr(info.iface, ':')) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
+  if (info.iface && strcmp(info.iface, "::") == 0)
+    info.iface = NULL;
+  if (info.iface && !strchr(info.iface, ':'))
+    info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   server->vhost = lws_create_vhost(server->lws, &info);
-  if (server->vhost) server->port = lws_get_vhost_listen_port(server->vhost);
-  if (server->vhost && server->port > 0) return -1;
+  if (server->vhost)
+    server->port = lws_get_vhost_listen_port(server->vhost);
+  if (server->vhost && server->port > 0)
+    return -1;
   return report_failure(STATUS_IO, "cannot listen on %s port %d: is another program using it?",
                         info.iface ? info.iface : server->listen, server->def.port);
 }
@@ -61,23 +68,28 @@ static int open_port(Server *server) {
 int server_open(const ServerDef *def, Server **result) {
   *result = NULL;
   Server *server = calloc(1, sizeof *server);
-  if (!server) return report_failure(STATUS_OTHER, "out of memory");
+  if (!server)
+    return report_failure(STATUS_OTHER, "out of memory");
   server->def = *def;
-  if (def->address) snprintf(server->listen, sizeof server->listen, "%s", def->address);
+  if (def->address)
+    snprintf(server->listen, sizeof server->listen, "%s", def->address);
   pthread_mutex_init(&server->lock, NULL);
-  int status =
-      access_make_token(server->token) ? -1 : report_failure(STATUS_OTHER, "the system gives no random numbers");
-  if (status < 0) status = open_port(server);
+  int status = access_make_token(server->token)
+                   ? -1
+                   : report_failure(STATUS_OTHER, "the system gives no random numbers");
+  if (status < 0)
+    status = open_port(server);
   if (status < 0) {
     bool all = strcmp(server->listen, "0.0.0.0") == 0 || strcmp(server->listen, "::") == 0;
     const char *name = server->listen[0] && !all ? server->listen : "127.0.0.1";
     bool six = strchr(name, ':') != NULL;
-    snprintf(server->address, sizeof server->address, "http://%s%s%s:%d/%s/%s", six ? "[" : "", name, six ? "]" : "",
-             server->port, server->token, def->query);
+    snprintf(server->address, sizeof server->address, "http://%s%s%s:%d/%s/%s", six ? "[" : "",
+             name, six ? "]" : "", server->port, server->token, def->query);
     *result = server;
     return -1;
   }
-  if (server->lws) lws_context_destroy(server->lws);
+  if (server->lws)
+    lws_context_destroy(server->lws);
   pthread_mutex_destroy(&server->lock);
   free(server);
   return status;
@@ -86,14 +98,17 @@ int server_open(const ServerDef *def, Server **result) {
 int server_start(Server *server, const ServerCalls *calls) {
   server->calls = *calls;
   server->started = pthread_create(&server->thread, NULL, serve, server) == 0;
-  return server->started ? -1 : report_failure(STATUS_OTHER, "the system refuses to start a thread");
+  return server->started ? -1
+                         : report_failure(STATUS_OTHER, "the system refuses to start a thread");
 }
 
 void server_stop(Server *server) {
-  if (!server) return;
+  if (!server)
+    return;
   server->quit = true;
   lws_cancel_service(server->lws);
-  if (server->started) pthread_join(server->thread, NULL);
+  if (server->started)
+    pthread_join(server->thread, NULL);
   lws_context_destroy(server->lws);
   frame_drop(server->frame);
   pthread_mutex_destroy(&server->lock);
@@ -114,9 +129,11 @@ double server_seconds(const Server *server) {
 
 static void add_text(Client *client, const char *text) {
   size_t size = strlen(text);
-  if (client->texts >= MOST_TEXTS) return;
+  if (client->texts >= MOST_TEXTS)
+    return;
   Text *made = malloc(sizeof *made + LWS_PRE + size);
-  if (!made) return;
+  if (!made)
+    return;
   made->next = NULL;
   made->size = size;
   memcpy(made->bytes + LWS_PRE, text, size);
@@ -128,7 +145,8 @@ static void add_text(Client *client, const char *text) {
 void server_post(Server *server, uint32_t client, const char *text) {
   pthread_mutex_lock(&server->lock);
   for (unsigned i = 0; i < server->client_count; i++)
-    if (!client || server->clients[i]->id == client) add_text(server->clients[i], text);
+    if (!client || server->clients[i]->id == client)
+      add_text(server->clients[i], text);
   pthread_mutex_unlock(&server->lock);
   lws_cancel_service(server->lws);
 }

@@ -6,7 +6,8 @@
 bool json_text_begin(JsonText *json, const char *type) {
   *json = (JsonText){.text = NULL};
   json->json.out = open_memstream(&json->text, &json->size);
-  if (!json->json.out) return false;
+  if (!json->json.out)
+    return false;
   json_begin(&json->json, NULL, '{');
   json_text(&json->json, "type", type);
   return true;
@@ -19,7 +20,8 @@ char *json_text_end(JsonText *json) {
 
 char *state_text(const ViewState *s) {
   JsonText text;
-  if (!json_text_begin(&text, "state")) return NULL;
+  if (!json_text_begin(&text, "state"))
+    return NULL;
   Json *json = &text.json;
   json_text(json, "scene", s->scene);
   json_integer(json, "change", s->change);
@@ -29,13 +31,15 @@ char *state_text(const ViewState *s) {
   json_bool(json, "can_undo", s->can_undo);
   json_bool(json, "can_redo", s->can_redo);
   json_begin(json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(json, NULL, s->crop[i]);
+  for (int i = 0; i < 4; i++)
+    json_integer(json, NULL, s->crop[i]);
   json_end(json, ']');
   json_number(json, "exposure", s->exposure);
   json_integer(json, "view", s->view);
   json_begin(json, "bounds", '[');
   for (int i = 0; i < 6; i++)
-    json_number(json, NULL, (double)(i < 3 ? s->info->bounds_min[i] : s->info->bounds_max[i - 3]));
+    json_number(json, NULL,
+                (double)(i < 3 ? s->info->bounds_min[i] : s->info->bounds_max[i - 3]));
   json_end(json, ']');
   json_begin(json, "camera", '{');
   camera_spellings(json, s->camera);
@@ -45,17 +49,21 @@ char *state_text(const ViewState *s) {
 
 char *state_lists(void) {
   JsonText text;
-  if (!json_text_begin(&text, "lists")) return NULL;
+  if (!json_text_begin(&text, "lists"))
+    return NULL;
   Json *json = &text.json;
   json_begin(json, "dialects", '[');
   for (int i = VL_CAMERA_DIALECT_AUTO + 1; i < VL_CAMERA_DIALECT_COUNT; i++)
-    if (i != VL_CAMERA_DIALECT_EXR) json_text(json, NULL, vl_camera_dialect_name((vlCameraDialect)i));
+    if (i != VL_CAMERA_DIALECT_EXR)
+      json_text(json, NULL, vl_camera_dialect_name((vlCameraDialect)i));
   json_end(json, ']');
   json_begin(json, "projections", '[');
-  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) json_text(json, NULL, vl_projection_name((vlProjection)i));
+  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++)
+    json_text(json, NULL, vl_projection_name((vlProjection)i));
   json_end(json, ']');
   json_begin(json, "channels", '[');
-  for (uint32_t i = 0; i <= 15; i++) json_text(json, NULL, vl_channel_name(i));
+  for (uint32_t i = 0; i <= 15; i++)
+    json_text(json, NULL, vl_channel_name(i));
   json_end(json, ']');
   return json_text_end(&text);
 }

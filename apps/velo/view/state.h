@@ -1,4 +1,5 @@
-/* view/state.h: what a page must know, as JSON: scene, settings, camera, and what can be chosen. */
+/* view/state.h: what a page must know, as JSON: scene, settings, camera, and what can be
+ * chosen. */
 #ifndef APP_VIEW_STATE_H
 #define APP_VIEW_STATE_H
 
@@ -16,7 +17,8 @@ typedef struct ViewState {
   const ViewCamera *camera;
 } ViewState;
 
-/* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to free; null: no memory. */
+/* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to
+ * free; null: no memory. */
 typedef struct JsonText {
   Json json;
   char *text;

@@ -1,4 +1,5 @@
-/* view/view.c: `velo view`: its options. Also tells that a build without libwebsockets lacks it. */
+/* view/view.c: `velo view`: its options. Also tells that a build without libwebsockets lacks
+ * it. */
 #include "view/view.h"
 
 #include <stddef.h>
@@ -15,7 +16,8 @@ static bool goes_with_lecture(int option) {
                             VIEW_LANGUAGE,      RENDER_SPP,        RENDER_THREADS, RENDER_BITS,
                             RENDER_ACCELERATOR, RENDER_MAX_MEMORY, RENDER_QUIET};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (all[i] == option) return true;
+    if (all[i] == option)
+      return true;
   return false;
 }
 
@@ -23,37 +25,47 @@ static bool goes_with_lecture(int option) {
 static int check_usage(const Command *command, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   int status = race_check_options(arguments);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
   if (!v[VIEW_LECTURE].given) {
-    if (v[VIEW_LANGUAGE].given) return report_usage("--language goes with --lecture");
-    if (arguments->operand_count) return -1;
+    if (v[VIEW_LANGUAGE].given)
+      return report_usage("--language goes with --lecture");
+    if (arguments->operand_count)
+      return -1;
     return report_usage("view: too few arguments; usage: velo view %s", command->usage);
   }
   if (arguments->operand_count)
     return report_usage("--lecture takes no FILE, but \"%s\" is given", arguments->operands[0]);
   for (const Option *o = view_options; o->name; o++)
-    if (v[o->id].given && !goes_with_lecture(o->id)) return report_usage("--%s does not go with --lecture", o->name);
+    if (v[o->id].given && !goes_with_lecture(o->id))
+      return report_usage("--%s does not go with --lecture", o->name);
   return -1;
 }
 
 static int run_view(const Command *command, const Arguments *arguments) {
   int status = check_usage(command, arguments);
-  if (status >= 0) return status;
+  if (status >= 0)
+    return status;
 #ifdef VELO_HAS_VIEW
   return view_run(arguments);
 #else
-  return report_failure(STATUS_OTHER, "velo view: this velo was built without libwebsockets, which the command needs");
+  return report_failure(
+      STATUS_OTHER,
+      "velo view: this velo was built without libwebsockets, which the command needs");
 #endif
 }
 
 #ifndef VELO_HAS_VIEW
-int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure, Serve **serve) {
+int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure,
+                Serve **serve) {
   (void)job;
   (void)world;
   (void)view;
   (void)exposure;
   (void)serve;
-  return report_failure(STATUS_OTHER, "--serve: this velo was built without libwebsockets, which the option needs");
+  return report_failure(
+      STATUS_OTHER,
+      "--serve: this velo was built without libwebsockets, which the option needs");
 }
 void serve_film(Serve *serve, const vlFilm *film, const vlProgress *progress) {
   (void)serve;
@@ -67,34 +79,47 @@ void serve_stop(Serve *serve) {
 
 /* Families of velo/schema.h. */
 static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {NULL, 0}},
-                    samplers[] = {{"samplers", 0}, {NULL, 0}}, filters[] = {{"filters", 0}, {NULL, 0}};
+                    samplers[] = {{"samplers", 0}, {NULL, 0}},
+                    filters[] = {{"filters", 0}, {NULL, 0}};
 
-static const Choice languages[] = {{"en", LANGUAGE_ENGLISH}, {"it", LANGUAGE_ITALIAN}, {NULL, 0}};
+static const Choice languages[] = {
+    {"en", LANGUAGE_ENGLISH}, {"it", LANGUAGE_ITALIAN}, {NULL, 0}};
 
 const Option view_options[] = {
-    {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1, 65535, NULL},
+    {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1,
+     65535, NULL},
     {VIEW_LISTEN, 0, "listen", OPTION_TEXT, "ADDRESS",
-     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other machine can reach"},
+     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other "
+     "machine can reach"},
     {VIEW_NO_OPEN, 0, "no-open", OPTION_FLAG, NULL, "do not open a browser"},
-    {VIEW_LECTURE, 0, "lecture", OPTION_FLAG, NULL, "show the lecture with live scenes, in place of FILE"},
-    {VIEW_LANGUAGE, 0, "language", OPTION_CHOICE, "NAME", "language of the lecture; default: that of LANG, else en:", 0,
-     0, languages},
+    {VIEW_LECTURE, 0, "lecture", OPTION_FLAG, NULL,
+     "show the lecture with live scenes, in place of FILE"},
+    {VIEW_LANGUAGE, 0, "language", OPTION_CHOICE, "NAME",
+     "language of the lecture; default: that of LANG, else en:", 0, 0, languages},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel at which the image is done"},
-    {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE", "write the film of the last image to this file at the end"},
-    {RENDER_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL, "replace a film that is there already"},
+    {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE",
+     "write the film of the last image to this file at the end"},
+    {RENDER_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL,
+     "replace a film that is there already"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
      "image size in pixels; the field of view across the smaller side is kept"},
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels at first"},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera and the image size"},
-    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, if the file of --camera has several"},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "scene or camera file that gives the camera and the image size"},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, if the file of --camera has several"},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
-     "show the cameras of this trajectory or rig in the view from outside; at most 200 of them"},
-    {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for a file of --camera that does not give one"},
+     "show the cameras of this trajectory or rig in the view from outside; at most 200 of "
+     "them"},
+    {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH",
+     "image size for a file of --camera that does not give one"},
     {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: scene, by name or number from 0"},
     {RENDER_AT, 0, "at", OPTION_TEXT, "T[:T1]", "glTF: time of the animation, in seconds"},
-    {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS", "time for which the shutter is open, from --at on"},
+    {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS",
+     "time for which the shutter is open, from --at on"},
     {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME", "glTF: animation to play"},
-    {RENDER_TURN, 0, "turn", OPTION_NUMBER, "DEGREES", "rotate the scene's camera about the vertical axis"},
+    {RENDER_TURN, 0, "turn", OPTION_NUMBER, "DEGREES",
+     "rotate the scene's camera about the vertical axis"},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant"},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
      "environment map that lights the scene: studio, sky, white, none, or an image file"},
@@ -102,76 +127,105 @@ const Option view_options[] = {
      "rotation of the environment map about the vertical axis, in degrees"},
     {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X",
      "factor on the radiance of the environment map"},
-    {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL, "add a wide grey disk below the scene as ground"},
+    {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL,
+     "add a wide grey disk below the scene as ground"},
     {RENDER_NO_GROUND, 0, "no-ground", OPTION_FLAG, NULL, "add no ground below a model"},
-    {RENDER_FRAMING, 0, "framing", OPTION_CHOICE, "NAME", "viewpoint of the camera that a model without one gets:", 0,
-     0, framing_choices},
+    {RENDER_FRAMING, 0, "framing", OPTION_CHOICE, "NAME",
+     "viewpoint of the camera that a model without one gets:", 0, 0, framing_choices},
     {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME",
      "closed models: hide the walls before the camera, or keep them:", 0, 0, walls_choices},
-    {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS", "axis of the model that points up:", 0, 0, up_choices},
+    {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS", "axis of the model that points up:", 0, 0,
+     up_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
-     "light transport algorithm; auto: chosen by a short race when the image has 32 samples, the default where the "
+     "light transport algorithm; auto: chosen by a short race when the image has 32 samples, "
+     "the "
+     "default where the "
      "scene names none:",
      0, 0, tracers},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path"},
-    {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R", "merging, sppm: radius of the first pass"},
-    {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N", "number of light paths per pass", 0, 1 << 24},
-    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
+     "largest number of bounces of a path"},
+    {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R",
+     "merging, sppm: radius of the first pass"},
+    {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N",
+     "number of light paths per pass", 0, 1 << 24},
+    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0,
+     samplers},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers"},
     {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N",
      "number of samples per pixel for which the sampler arranges its points", 1, 1 << 24, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
-    {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME", "method that chooses a light:", 0, 0,
-     light_sampler_choices},
-    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME", "regularization:", 0, 0, regularize_choices},
-    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
-     color_choices},
-    {RENDER_SENSOR, 0, "sensor", OPTION_CHOICE, "NAME", "camera whose spectral response the sensor has:", 0, 0,
-     sensor_choices},
-    {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "view transform of the first view:", 0, 0, view_choices},
-    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the first view: a number, or auto for models"},
+    {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME",
+     "method that chooses a light:", 0, 0, light_sampler_choices},
+    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME", "regularization:", 0, 0,
+     regularize_choices},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME",
+     "representation of colours during light transport:", 0, 0, color_choices},
+    {RENDER_SENSOR, 0, "sensor", OPTION_CHOICE, "NAME",
+     "camera whose spectral response the sensor has:", 0, 0, sensor_choices},
+    {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "view transform of the first view:", 0, 0,
+     view_choices},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
+     "exposure of the first view: a number, or auto for models"},
     {RENDER_ISO, 0, "iso", OPTION_NUMBER, "S", "sensitivity for a physical exposure"},
     {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso, in seconds"},
-    {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y", "focus on the surface that is seen at this point"},
-    {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D", "depth of the plane in focus, in scene units"},
-    {RENDER_LENS_RADIUS, 0, "lens-radius", OPTION_NUMBER, "R", "radius of the thin lens, in scene units"},
+    {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y",
+     "focus on the surface that is seen at this point"},
+    {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D",
+     "depth of the plane in focus, in scene units"},
+    {RENDER_LENS_RADIUS, 0, "lens-radius", OPTION_NUMBER, "R",
+     "radius of the thin lens, in scene units"},
     {RENDER_F_NUMBER, 0, "f-number", OPTION_NUMBER, "N", "f-number"},
-    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N", "worker threads; default: one for each processor"},
-    {RENDER_BITS, 0, "bits", OPTION_CHOICE, "NAME", "the same image on every machine, or less time:", 0, 0,
-     bits_choices},
-    {RENDER_ACCELERATOR, 0, "accelerator", OPTION_CHOICE, "NAME", "what finds the surfaces that rays meet:", 0, 0,
-     accelerator_choices},
-    {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE", "limit of the memory, such as 2G"},
+    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
+     "worker threads; default: one for each processor"},
+    {RENDER_BITS, 0, "bits", OPTION_CHOICE, "NAME",
+     "the same image on every machine, or less time:", 0, 0, bits_choices},
+    {RENDER_ACCELERATOR, 0, "accelerator", OPTION_CHOICE, "NAME",
+     "what finds the surfaces that rays meet:", 0, 0, accelerator_choices},
+    {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE",
+     "limit of the memory, such as 2G"},
     {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "FOLDER",
-     "files that the scene names must be in this folder, and the system confines velo where it can"},
-    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn of unsupported features instead of refusing them"},
+     "files that the scene names must be in this folder, and the system confines velo where it "
+     "can"},
+    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+     "warn of unsupported features instead of refusing them"},
     {RENDER_STRICT, 0, "strict", OPTION_FLAG, NULL, "glTF, OBJ: a missing image is an error"},
     STRICT_OPTIONS_OPTION,
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
      "further folder in which files of the scene are looked for"},
-    {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL, "reproduce a known error of pbrt-v4"},
-    {RENDER_QUIET, 'q', "quiet", OPTION_FLAG, NULL, "print only the address, warnings and errors"},
+    {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,
+     "reproduce a known error of pbrt-v4"},
+    {RENDER_QUIET, 'q', "quiet", OPTION_FLAG, NULL,
+     "print only the address, warnings and errors"},
     {0}};
 
-static const Section view_sections[] = {{VIEW_PORT, "the page"},
-                                        {RENDER_SPP, "the image"},
-                                        {RENDER_CAMERA, "camera and scene, as for velo render"},
-                                        {RENDER_TRACER, "light transport and sampling, as for velo render"},
-                                        {RENDER_COLOR, "colour, focus, exposure, as for velo render"},
-                                        {RENDER_THREADS, "processor, memory, reading the scene"},
-                                        {0, NULL}};
+static const Section view_sections[] = {
+    {VIEW_PORT, "the page"},
+    {RENDER_SPP, "the image"},
+    {RENDER_CAMERA, "camera and scene, as for velo render"},
+    {RENDER_TRACER, "light transport and sampling, as for velo render"},
+    {RENDER_COLOR, "colour, focus, exposure, as for velo render"},
+    {RENDER_THREADS, "processor, memory, reading the scene"},
+    {0, NULL}};
 
 const Command view_command = {
     .name = "view",
     .usage = "FILE | --lecture [options]",
     .summary = "see and steer a scene in the browser while it renders",
     .text =
-        "Prints the address of a page and opens it in a browser. The page shows the scene while it renders,\n"
-        "moves the camera, edits it in every spelling, shows ground truth, and saves cameras and images\n"
-        "(docs/view.md). The address has a random token; only this machine can reach it. Through ssh, the\n"
+        "Prints the address of a page and opens it in a browser. The page shows the scene "
+        "while it "
+        "renders,\n"
+        "moves the camera, edits it in every spelling, shows ground truth, and saves cameras "
+        "and "
+        "images\n"
+        "(docs/view.md). The address has a random token; only this machine can reach it. "
+        "Through "
+        "ssh, the\n"
         "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.\n"
         "\n"
-        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose images are live: a slider\n"
+        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose images "
+        "are "
+        "live: a slider\n"
         "moves d, e, zoom, s or roll, and image, formulas and the view from outside follow.",
     .examples =
         "velo view scenes/lecture/pinhole.pbrt\n"

@@ -4,9 +4,18 @@
 
 #include "render/lens_options.h"
 
-/* Indices into Arguments.values, behind those of the lens. The other options are those of `velo render`. */
-enum { VIEW_PORT = RENDER_OPTIONS, VIEW_LISTEN, VIEW_NO_OPEN, VIEW_LECTURE, VIEW_LANGUAGE, VIEW_OPTIONS };
-_Static_assert((int)VIEW_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+/* Indices into Arguments.values, behind those of the lens. The other options are those of `velo
+ * render`. */
+enum {
+  VIEW_PORT = RENDER_OPTIONS,
+  VIEW_LISTEN,
+  VIEW_NO_OPEN,
+  VIEW_LECTURE,
+  VIEW_LANGUAGE,
+  VIEW_OPTIONS
+};
+_Static_assert((int)VIEW_OPTIONS <= (int)MAX_OPTIONS,
+               "Arguments.values has no room for an option");
 
 enum { LANGUAGE_ENGLISH, LANGUAGE_ITALIAN }; /* of --language */
 

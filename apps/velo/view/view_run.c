@@ -1,4 +1,5 @@
-/* view/view_run.c: runs `velo view`: loads the scene, starts server and render thread, and waits for Ctrl-C. */
+/* view/view_run.c: runs `velo view`: loads the scene, starts server and render thread, and
+ * waits for Ctrl-C. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,22 +22,26 @@
 static void tell_tunnel(const Server *server) {
   const char *connection = getenv("SSH_CONNECTION"), *user = getenv("USER");
   char host[64] = "HOST";
-  if (!connection) return;
+  if (!connection)
+    return;
   sscanf(connection, "%*s %*s %63s", host);
-  report_note("on your own machine: ssh -N -L %d:127.0.0.1:%d %s%s%s", server_port(server), server_port(server),
-              user ? user : "", user ? "@" : "", host);
+  report_note("on your own machine: ssh -N -L %d:127.0.0.1:%d %s%s%s", server_port(server),
+              server_port(server), user ? user : "", user ? "@" : "", host);
 }
 
 static int open_context(const Arguments *arguments, vlContext **context) {
   const OptionValue *v = arguments->values;
   vlContextDef def = vl_default_context_def();
   def.log = report_log;
-  if (v[RENDER_THREADS].given) def.threads = (uint32_t)v[RENDER_THREADS].integer;
-  if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
+  if (v[RENDER_THREADS].given)
+    def.threads = (uint32_t)v[RENDER_THREADS].integer;
+  if (v[RENDER_MAX_MEMORY].given)
+    def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
   def.sandbox = arguments->folders;
   def.sandbox_count = (uint32_t)arguments->folder_count;
   int status = context_open(&def, context);
-  if (status < 0) report_memory_of(*context, def.max_memory);
+  if (status < 0)
+    report_memory_of(*context, def.max_memory);
   return status;
 }
 
@@ -59,17 +64,21 @@ static int open_server(const Arguments *arguments, Server **server) {
   return server_open(&def, server);
 }
 
-/* --sandbox: what the page reads and writes besides the files of the scene. The folders of its inputs are read, since
- * an editor replaces a file that it changes by another one. Cameras and images are saved in the current folder. */
+/* --sandbox: what the page reads and writes besides the files of the scene. The folders of its
+ * inputs are read, since an editor replaces a file that it changes by another one. Cameras and
+ * images are saved in the current folder. */
 static void confine(const Arguments *arguments) {
   static const int inputs[] = {RENDER_CAMERA, RENDER_TRAJECTORY, RENDER_ENVIRONMENT};
   const OptionValue *v = arguments->values;
   Confine c = {.listens = true};
-  if (arguments->operand_count) confine_read_folder(&c, arguments->operands[0]);
+  if (arguments->operand_count)
+    confine_read_folder(&c, arguments->operands[0]);
   for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
-    if (v[inputs[i]].given) confine_read_folder(&c, v[inputs[i]].text);
+    if (v[inputs[i]].given)
+      confine_read_folder(&c, v[inputs[i]].text);
   confine_write(&c, "saved.exr");
-  if (v[RENDER_FILM].given) confine_write(&c, v[RENDER_FILM].text);
+  if (v[RENDER_FILM].given)
+    confine_write(&c, v[RENDER_FILM].text);
   confine_apply(&c, arguments);
 }
 
@@ -79,13 +88,17 @@ static int claim_film(FilmClaim *claim, vlContext *context, const Arguments *arg
   const bool overwrite = arguments->values[RENDER_OVERWRITE].given;
   char camera[4200];
   int status = film_claim_check(overwrite, path, NULL);
-  if (status >= 0 || !path) return status;
+  if (status >= 0 || !path)
+    return status;
   status = film_claim(claim, context, path, "", overwrite);
-  if (status >= 0 || overwrite) return status;
+  if (status >= 0 || overwrite)
+    return status;
   engine_film_camera(path, camera, sizeof camera);
-  if (claim->earlier) return film_claim_refuse("%s is a film already", path);
-  return access(camera, F_OK) == 0 ? film_claim_refuse("%s, where its camera is written, is there already", camera)
-                                   : -1;
+  if (claim->earlier)
+    return film_claim_refuse("%s is a film already", path);
+  return access(camera, F_OK) == 0
+             ? film_claim_refuse("%s, where its camera is written, is there already", camera)
+             : -1;
 }
 
 /* Checks the names of the film and of the camera beside it (engine_film.c). */
@@ -111,28 +124,35 @@ int view_run(const Arguments *arguments) {
                          .lecture = lecture,
                          .arguments = arguments,
                          .film_path = v[RENDER_FILM].given ? v[RENDER_FILM].text : NULL};
-  if (!v[VIEW_NO_OPEN].given) browser_prepare(&browser);
+  if (!v[VIEW_NO_OPEN].given)
+    browser_prepare(&browser);
   int status = open_server(arguments, &server);
-  if (status < 0) confine(arguments);
-  if (status < 0) status = open_context(arguments, &context);
-  if (status < 0) status = claim_film(&claim, context, arguments);
+  if (status < 0)
+    confine(arguments);
+  if (status < 0)
+    status = open_context(arguments, &context);
+  if (status < 0)
+    status = claim_film(&claim, context, arguments);
   if (status < 0) {
     EngineDef complete = def;
     complete.context = context;
     complete.film_lock = claim.lock;
     status = engine_create(&complete, &engine);
   }
-  if (status < 0 && def.film_path) status = check_film(context, def.film_path);
+  if (status < 0 && def.film_path)
+    status = check_film(context, def.film_path);
   if (status < 0) {
     const ServerCalls calls = engine_calls(engine);
     signals_remember();
     status = engine_start(engine, server);
-    if (status < 0) status = server_start(server, &calls);
+    if (status < 0)
+      status = server_start(server, &calls);
   }
   if (status < 0) {
     if (v[VIEW_LISTEN].given)
       report_warning(
-          "--listen %s: whoever reaches this address and knows the token sees and steers the scene; the "
+          "--listen %s: whoever reaches this address and knows the token sees and steers the "
+          "scene; the "
           "connection is not encrypted",
           v[VIEW_LISTEN].text);
     printf("%s\n", server_address(server));

@@ -1,4 +1,5 @@
-/* view/watch.c: see watch.h. The folders are watched, since an editor may replace a file by another one. */
+/* view/watch.c: see watch.h. The folders are watched, since an editor may replace a file by
+ * another one. */
 #include "view/watch.h"
 
 #include <poll.h>
@@ -18,31 +19,38 @@ struct Watch {
 
 void file_list_add(FileList *list, const char *path) {
   for (uint32_t i = 0; i < list->count; i++)
-    if (strcmp(list->paths[i], path) == 0) return;
+    if (strcmp(list->paths[i], path) == 0)
+      return;
   char **larger = realloc(list->paths, (list->count + 1) * sizeof *larger);
-  if (!larger) return;
+  if (!larger)
+    return;
   list->paths = larger;
   larger[list->count] = strdup(path);
-  if (larger[list->count]) list->count++;
+  if (larger[list->count])
+    list->count++;
 }
 
 void file_list_free(FileList *list) {
-  for (uint32_t i = 0; i < list->count; i++) free(list->paths[i]);
+  for (uint32_t i = 0; i < list->count; i++)
+    free(list->paths[i]);
   free(list->paths);
   *list = (FileList){.count = 0};
 }
 
 Watch *watch_create(void) {
   Watch *watch = calloc(1, sizeof *watch);
-  if (!watch) return NULL;
+  if (!watch)
+    return NULL;
   watch->fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-  if (watch->fd >= 0) return watch;
+  if (watch->fd >= 0)
+    return watch;
   free(watch);
   return NULL;
 }
 
 void watch_destroy(Watch *watch) {
-  if (!watch) return;
+  if (!watch)
+    return;
   close(watch->fd);
   file_list_free(&watch->files);
   free(watch->folders);
@@ -56,7 +64,8 @@ static const char *file_name(const char *path) {
 
 static int watch_folder(int fd, const char *path) {
   const char *name = file_name(path);
-  char *folder = name == path ? strdup(".") : strndup(path, name - path > 1 ? (size_t)(name - path - 1) : 1);
+  char *folder = name == path ? strdup(".")
+                              : strndup(path, name - path > 1 ? (size_t)(name - path - 1) : 1);
   int descriptor = folder ? inotify_add_watch(fd, folder, IN_CLOSE_WRITE | IN_MOVED_TO) : -1;
   free(folder);
   return descriptor;
@@ -64,14 +73,19 @@ static int watch_folder(int fd, const char *path) {
 
 void watch_files(Watch *watch, const FileList *list) {
   int *folders = calloc(list->count + 1, sizeof *folders);
-  if (!folders) return;
+  if (!folders)
+    return;
   FileList files = {.count = 0};
-  for (uint32_t i = 0; i < list->count; i++) file_list_add(&files, list->paths[i]);
-  for (uint32_t i = 0; i < files.count; i++) folders[i] = watch_folder(watch->fd, files.paths[i]);
+  for (uint32_t i = 0; i < list->count; i++)
+    file_list_add(&files, list->paths[i]);
+  for (uint32_t i = 0; i < files.count; i++)
+    folders[i] = watch_folder(watch->fd, files.paths[i]);
   for (uint32_t i = 0; i < watch->folder_count; i++) { /* folders that are watched no longer */
     bool kept = false;
-    for (uint32_t k = 0; k < files.count; k++) kept |= folders[k] == watch->folders[i];
-    if (!kept && watch->folders[i] >= 0) inotify_rm_watch(watch->fd, watch->folders[i]);
+    for (uint32_t k = 0; k < files.count; k++)
+      kept |= folders[k] == watch->folders[i];
+    if (!kept && watch->folders[i] >= 0)
+      inotify_rm_watch(watch->fd, watch->folders[i]);
   }
   file_list_free(&watch->files);
   free(watch->folders);
@@ -104,7 +118,9 @@ static bool read_events(Watch *watch, bool any) {
 
 bool watch_wait(Watch *watch, double seconds, bool any) {
   struct pollfd wait = {.fd = watch->fd, .events = POLLIN};
-  if (poll(&wait, 1, (int)(1000 * seconds)) <= 0 || !read_events(watch, any)) return false;
-  while (poll(&wait, 1, CALM_MILLISECONDS) > 0) read_events(watch, any);
+  if (poll(&wait, 1, (int)(1000 * seconds)) <= 0 || !read_events(watch, any))
+    return false;
+  while (poll(&wait, 1, CALM_MILLISECONDS) > 0)
+    read_events(watch, any);
   return true;
 }

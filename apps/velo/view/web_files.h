@@ -1,4 +1,5 @@
-/* view/web_files.h: the files of the pages, which the build puts into the program: web/, the lecture and its scenes. */
+/* view/web_files.h: the files of the pages, which the build puts into the program: web/, the
+ * lecture and its scenes. */
 #ifndef APP_VIEW_WEB_FILES_H
 #define APP_VIEW_WEB_FILES_H
 

@@ -1,5 +1,6 @@
-/* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The principled material is exported
- * losslessly where possible; other materials are approximated. */
+/* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The
+ * principled material is exported losslessly where possible; other materials are approximated.
+ */
 #include <math.h>
 
 #include "export/export.h"
@@ -13,18 +14,23 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-/* ---- inputs ------------------------------------------------------------------------------------------------------ */
+/* ---- inputs
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static json_t *extension(vlExport *x, json_t *material, const char *name) {
   json_t *all = json_object_get(material, "extensions"), *one = json_object_get(all, name);
-  if (!all) json_object_set_new(material, "extensions", all = json_object());
-  if (!one) json_object_set_new(all, name, one = json_object());
+  if (!all)
+    json_object_set_new(material, "extensions", all = json_object());
+  if (!one)
+    json_object_set_new(all, name, one = json_object());
   vl_gltf_use(x, name);
   return one;
 }
 
 static void set_number(json_t *to, const char *key, double value) {
-  if (isfinite(value)) json_object_set_new(to, key, json_real(value));
+  if (isfinite(value))
+    json_object_set_new(to, key, json_real(value));
 }
 
 static double unit(double v) {
@@ -32,21 +38,25 @@ static double unit(double v) {
 }
 
 /* Writes a factor times a channel of an image. */
-static void put_channel(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, int channel,
-                        const vlFloatInput *input) {
+static void put_channel(vlExport *x, json_t *to, const char *factor_key,
+                        const char *texture_key, int channel, const vlFloatInput *input) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
   json_t *info = t && t->channel == channel && t->bias == 0 && isnan(t->cutoff) && !t->invert
                      ? vl_gltf_texture_info(x, t, channel != 3)
                      : NULL;
-  if (input->texture.index && !info) vl_export_lose(x, "textured %s: a number stands in", factor_key);
+  if (input->texture.index && !info)
+    vl_export_lose(x, "textured %s: a number stands in", factor_key);
   set_number(to, factor_key,
-             unit(info ? (double)t->scale * (double)t->tint[channel] : (double)vl_export_number(x, input)));
-  if (info) json_object_set_new(to, texture_key, info);
+             unit(info ? (double)t->scale * (double)t->tint[channel]
+                       : (double)vl_export_number(x, input)));
+  if (info)
+    json_object_set_new(to, texture_key, info);
 }
 
-/* Writes a colour factor times an sRGB image. *alpha (may be null) receives the texture, for its fourth channel. */
-static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, bool bounded,
-                      const vlSpectrumInput *input, double coverage) {
+/* Writes a colour factor times an sRGB image. *alpha (may be null) receives the texture, for
+ * its fourth channel. */
+static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key,
+                      bool bounded, const vlSpectrumInput *input, double coverage) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
   json_t *info = t && !t->invert ? vl_gltf_texture_info(x, t, false) : NULL;
   float rgb[3];
@@ -54,37 +64,49 @@ static void put_color(vlExport *x, json_t *to, const char *factor_key, const cha
   json_t *factor = json_array();
   for (int i = 0; i < 3; i++) {
     double v = info ? (double)t->tint[i] * (double)t->scale : (double)rgb[i];
-    if (bounded && v > 1 + 1e-6) vl_export_lose(x, "%s above 1: cut off", factor_key);
+    if (bounded && v > 1 + 1e-6)
+      vl_export_lose(x, "%s above 1: cut off", factor_key);
     json_array_append_new(factor, json_real(bounded ? unit(v) : v > 0 ? v : 0));
   }
-  if (coverage >= 0) json_array_append_new(factor, json_real(unit(coverage)));
+  if (coverage >= 0)
+    json_array_append_new(factor, json_real(unit(coverage)));
   json_object_set_new(to, factor_key, factor);
-  if (info) json_object_set_new(to, texture_key, info);
+  if (info)
+    json_object_set_new(to, texture_key, info);
 }
 
 static void put_normal(vlExport *x, json_t *to, const char *key, vlTextureId id, float scale) {
   const vlTextureDef *t = vl_export_texture(x, id);
   json_t *info = t ? vl_gltf_texture_info(x, t, true) : NULL;
-  if (!info) return;
-  if (scale != 1.0f) set_number(info, "scale", scale);
+  if (!info)
+    return;
+  if (scale != 1.0f)
+    set_number(info, "scale", scale);
   json_object_set_new(to, key, info);
 }
 
-/* ---- the base ---------------------------------------------------------------------------------------------------- */
+/* ---- the base
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha, double *factor) {
-  const vlTextureDef *t = alpha->texture.index ? &x->scene->textures.items[alpha->texture.index - 1] : NULL;
+static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha,
+                         double *factor) {
+  const vlTextureDef *t =
+      alpha->texture.index ? &x->scene->textures.items[alpha->texture.index - 1] : NULL;
   *factor = t ? (double)t->tint[3] : (double)alpha->value;
-  if (!t && alpha->value >= 1) return;
+  if (!t && alpha->value >= 1)
+    return;
   bool mask = t && !isnan(t->cutoff);
   json_object_set_new(material, "alphaMode", json_string(mask ? "MASK" : "BLEND"));
-  if (mask) set_number(material, "alphaCutoff", t->cutoff);
-  if (t && t->kind != VL_TEXTURE_VERTEX_COLOR && (t->kind != VL_TEXTURE_IMAGE || t->channel != 3))
+  if (mask)
+    set_number(material, "alphaCutoff", t->cutoff);
+  if (t && t->kind != VL_TEXTURE_VERTEX_COLOR &&
+      (t->kind != VL_TEXTURE_IMAGE || t->channel != 3))
     vl_export_lose(x, "coverage that is not the fourth channel of the base colour's image");
 }
 
-static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color, double coverage, double metallic,
-                     double roughness) {
+static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color,
+                     double coverage, double metallic, double roughness) {
   json_t *base = json_object();
   put_color(x, base, "baseColorFactor", "baseColorTexture", true, color, coverage);
   set_number(base, "metallicFactor", unit(metallic));
@@ -98,14 +120,19 @@ static bool same_image(const vlTextureDef *a, const vlTextureDef *b) {
 }
 
 static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
-  const vlTextureDef *m = vl_export_texture(x, p->metallic.texture), *r = vl_export_texture(x, p->roughness.texture);
-  bool good = m && r && same_image(m, r) && m->channel == 2 && r->channel == 1 && m->bias == 0 && r->bias == 0;
+  const vlTextureDef *m = vl_export_texture(x, p->metallic.texture),
+                     *r = vl_export_texture(x, p->roughness.texture);
+  bool good = m && r && same_image(m, r) && m->channel == 2 && r->channel == 1 &&
+              m->bias == 0 && r->bias == 0;
   json_t *info = good ? vl_gltf_texture_info(x, m, true) : NULL;
   if ((p->metallic.texture.index || p->roughness.texture.index) && !info)
     vl_export_lose(x, "textured metallic or roughness, not of one image: numbers stand in");
-  set_number(base, "metallicFactor", unit(info ? (double)m->tint[2] : (double)vl_export_number(x, &p->metallic)));
-  set_number(base, "roughnessFactor", unit(info ? (double)r->tint[1] : (double)vl_export_number(x, &p->roughness)));
-  if (info) json_object_set_new(base, "metallicRoughnessTexture", info);
+  set_number(base, "metallicFactor",
+             unit(info ? (double)m->tint[2] : (double)vl_export_number(x, &p->metallic)));
+  set_number(base, "roughnessFactor",
+             unit(info ? (double)r->tint[1] : (double)vl_export_number(x, &p->roughness)));
+  if (info)
+    json_object_set_new(base, "metallicRoughnessTexture", info);
 }
 
 static bool is_on(const vlFloatInput *input) {
@@ -114,25 +141,30 @@ static bool is_on(const vlFloatInput *input) {
 
 static bool is_white(vlExport *x, const vlSpectrumInput *input) {
   float rgb[3];
-  if (input->texture.index) return false;
+  if (input->texture.index)
+    return false;
   vl_export_rgb(x, input, rgb);
   return rgb[0] == 1 && rgb[1] == 1 && rgb[2] == 1;
 }
 
 static void put_ior(vlExport *x, json_t *material, float eta) {
-  if (eta != 1.5f) set_number(extension(x, material, "KHR_materials_ior"), "ior", eta >= 1 || eta == 0 ? eta : 1.0f);
+  if (eta != 1.5f)
+    set_number(extension(x, material, "KHR_materials_ior"), "ior",
+               eta >= 1 || eta == 0 ? eta : 1.0f);
 }
 
 static bool is_zero(const vlSpectrum *s) {
   float rgb[3];
   vl_export_light_rgb(s, rgb);
-  return s->scale == 0 || (s->kind == VL_SPECTRUM_CONSTANT && s->value == 0) || !(rgb[0] + rgb[1] + rgb[2] > 0);
+  return s->scale == 0 || (s->kind == VL_SPECTRUM_CONSTANT && s->value == 0) ||
+         !(rgb[0] + rgb[1] + rgb[2] > 0);
 }
 
 static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
   json_t *volume = extension(x, material, "KHR_materials_volume");
   set_number(volume, "thicknessFactor", 1);
-  if (!inside.index) return;
+  if (!inside.index)
+    return;
   const vlMediumDef *m = &x->scene->media.items[inside.index - 1];
   float sigma[3], most;
   vlSpectrum s = m->sigma_a;
@@ -140,16 +172,21 @@ static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
   if (m->kind != VL_MEDIUM_HOMOGENEOUS || !is_zero(&m->sigma_s))
     vl_export_lose(x, "media that scatter or vary: what they absorb alone");
   vl_export_rgb(x, &input, sigma);
-  for (int i = 0; i < 3; i++) sigma[i] *= m->scale;
+  for (int i = 0; i < 3; i++)
+    sigma[i] *= m->scale;
   most = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
-  if (!(most > 0)) return;
+  if (!(most > 0))
+    return;
   json_t *color = json_array();
-  for (int i = 0; i < 3; i++) json_array_append_new(color, json_real(vl_precise_exp(-(double)sigma[i] / (double)most)));
+  for (int i = 0; i < 3; i++)
+    json_array_append_new(color, json_real(vl_precise_exp(-(double)sigma[i] / (double)most)));
   json_object_set_new(volume, "attenuationColor", color);
   set_number(volume, "attenuationDistance", 1.0 / (double)most);
 }
 
-/* ---- principled -------------------------------------------------------------------------------------------------- */
+/* ---- principled
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef *p) {
   float sheen[3];
@@ -159,10 +196,12 @@ static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef 
     put_color(x, e, "sheenColorFactor", "sheenColorTexture", true, &p->sheen_color, -1);
     put_channel(x, e, "sheenRoughnessFactor", "sheenRoughnessTexture", 3, &p->sheen_roughness);
   }
-  if (!is_on(&p->clearcoat)) return;
+  if (!is_on(&p->clearcoat))
+    return;
   json_t *e = extension(x, material, "KHR_materials_clearcoat");
   put_channel(x, e, "clearcoatFactor", "clearcoatTexture", 0, &p->clearcoat);
-  put_channel(x, e, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1, &p->clearcoat_roughness);
+  put_channel(x, e, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1,
+              &p->clearcoat_roughness);
   put_normal(x, e, "clearcoatNormalTexture", p->clearcoat_normal, p->clearcoat_normal_scale);
 }
 
@@ -173,34 +212,42 @@ static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
     set_number(e, "iridescenceIor", p->iridescence_ior);
     const vlTextureDef *t = vl_export_texture(x, p->iridescence_thickness.texture);
     json_t *info = t && t->channel == 1 ? vl_gltf_texture_info(x, t, true) : NULL;
-    double most = info ? (double)t->bias + (double)t->tint[1] : (double)vl_export_number(x, &p->iridescence_thickness);
+    double most = info ? (double)t->bias + (double)t->tint[1]
+                       : (double)vl_export_number(x, &p->iridescence_thickness);
     set_number(e, "iridescenceThicknessMinimum", info ? (double)t->bias : fmin(100, most));
     set_number(e, "iridescenceThicknessMaximum", most);
-    if (info) json_object_set_new(e, "iridescenceThicknessTexture", info);
+    if (info)
+      json_object_set_new(e, "iridescenceThicknessTexture", info);
   }
-  if (!is_on(&p->anisotropy)) return;
+  if (!is_on(&p->anisotropy))
+    return;
   json_t *e = extension(x, material, "KHR_materials_anisotropy");
   put_channel(x, e, "anisotropyStrength", "anisotropyTexture", 2, &p->anisotropy);
   set_number(e, "anisotropyRotation", p->anisotropy_rotation.value);
 }
 
-static void put_passing(vlExport *x, json_t *material, const vlPrincipledDef *p, vlMediumId inside) {
+static void put_passing(vlExport *x, json_t *material, const vlPrincipledDef *p,
+                        vlMediumId inside) {
   if (is_on(&p->transmission))
-    put_channel(x, extension(x, material, "KHR_materials_transmission"), "transmissionFactor", "transmissionTexture", 0,
-                &p->transmission);
+    put_channel(x, extension(x, material, "KHR_materials_transmission"), "transmissionFactor",
+                "transmissionTexture", 0, &p->transmission);
   if (is_on(&p->diffuse_transmission)) {
     json_t *e = extension(x, material, "KHR_materials_diffuse_transmission");
-    put_channel(x, e, "diffuseTransmissionFactor", "diffuseTransmissionTexture", 3, &p->diffuse_transmission);
+    put_channel(x, e, "diffuseTransmissionFactor", "diffuseTransmissionTexture", 3,
+                &p->diffuse_transmission);
     put_color(x, e, "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", true,
               &p->diffuse_transmission_color, -1);
   }
   if (!p->thin_walled && (is_on(&p->transmission) || is_on(&p->diffuse_transmission))) {
     put_volume(x, material, inside);
-    if (p->dispersion > 0) set_number(extension(x, material, "KHR_materials_dispersion"), "dispersion", p->dispersion);
+    if (p->dispersion > 0)
+      set_number(extension(x, material, "KHR_materials_dispersion"), "dispersion",
+                 p->dispersion);
   }
 }
 
-static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m,
+                           vlMediumId inside, double coverage) {
   const vlPrincipledDef *p = &m->principled;
   put_base(x, material, &m->reflectance, coverage, 1, 1);
   put_metal(x, json_object_get(material, "pbrMetallicRoughness"), p);
@@ -208,7 +255,8 @@ static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m
   if (p->specular.texture.index || p->specular.value != 1 || !is_white(x, &p->specular_color)) {
     json_t *e = extension(x, material, "KHR_materials_specular");
     put_channel(x, e, "specularFactor", "specularTexture", 3, &p->specular);
-    put_color(x, e, "specularColorFactor", "specularColorTexture", false, &p->specular_color, -1);
+    put_color(x, e, "specularColorFactor", "specularColorTexture", false, &p->specular_color,
+              -1);
   }
   put_sheen_coat(x, material, p);
   put_film(x, material, p);
@@ -216,15 +264,20 @@ static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m
   put_normal(x, material, "normalTexture", p->normal, p->normal_scale);
 }
 
-/* ---- others ------------------------------------------------------------------------------------------------------ */
+/* ---- others
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
+                      double coverage) {
   vlSpectrumInput white = vl_spectrum_input(vl_spectrum_constant(1));
   bool thin = m->kind == VL_MATERIAL_THIN_DIELECTRIC;
-  put_base(x, material, &white, coverage, 0, thin ? 0 : sqrt((double)vl_export_alpha(x, m, &m->u_roughness)));
+  put_base(x, material, &white, coverage, 0,
+           thin ? 0 : sqrt((double)vl_export_alpha(x, m, &m->u_roughness)));
   put_ior(x, material, vl_export_eta(&m->eta.value));
   set_number(extension(x, material, "KHR_materials_transmission"), "transmissionFactor", 1);
-  if (!thin) put_volume(x, material, inside);
+  if (!thin)
+    put_volume(x, material, inside);
   if (m->eta.value.kind != VL_SPECTRUM_CONSTANT)
     vl_export_lose(x, "indices of refraction by wavelength: that at 589 nm");
 }
@@ -233,31 +286,36 @@ static double own_roughness(vlExport *x, const vlMaterialDef *m) {
   return sqrt((double)vl_export_alpha(x, m, &m->u_roughness));
 }
 
-static void put_diffuse(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_diffuse(vlExport *x, json_t *material, const vlMaterialDef *m,
+                        vlMediumId inside, double coverage) {
   (void)inside;
   put_base(x, material, &m->reflectance, coverage, 0, 1);
   set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
 }
 
-static void put_coated(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_coated(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
+                       double coverage) {
   (void)inside;
   vl_export_lose(x, "coateddiffuse: as a rough dielectric");
   put_base(x, material, &m->reflectance, coverage, 0, own_roughness(x, m));
   put_ior(x, material, vl_export_eta(&m->eta.value));
 }
 
-static void put_conductor(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_conductor(vlExport *x, json_t *material, const vlMaterialDef *m,
+                          vlMediumId inside, double coverage) {
   float rgb[3];
   vlSpectrumInput color = m->reflectance;
   (void)inside;
   vl_export_metal_rgb(x, m, rgb);
-  if (!m->use_reflectance) color = vl_spectrum_input(vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]));
-  if (!m->use_reflectance) vl_export_lose(x, "metals by eta and k: their colour at normal incidence");
+  if (!m->use_reflectance)
+    color = vl_spectrum_input(vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]));
+  if (!m->use_reflectance)
+    vl_export_lose(x, "metals by eta and k: their colour at normal incidence");
   put_base(x, material, &color, coverage, 1, own_roughness(x, m));
 }
 
-static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
-                                 double coverage) {
+static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterialDef *m,
+                                 vlMediumId inside, double coverage) {
   put_conductor(x, material, m, inside, coverage);
   vl_export_lose(x, "coatedconductor: as a metal with a clear coat");
   set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatFactor", 1);
@@ -265,26 +323,33 @@ static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterial
              unit(sqrt((double)vl_export_alpha(x, m, &m->coat_u_roughness))));
 }
 
-static void put_leaf(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_leaf(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
+                     double coverage) {
   (void)inside;
   vl_export_lose(x, "diffusetransmission: reflected and passed light share one colour");
   put_base(x, material, &m->reflectance, coverage, 0, 1);
   set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
-  set_number(extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionFactor", 0.5);
-  put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionColorFactor",
-            "diffuseTransmissionColorTexture", true, &m->transmittance, -1);
+  set_number(extension(x, material, "KHR_materials_diffuse_transmission"),
+             "diffuseTransmissionFactor", 0.5);
+  put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"),
+            "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", true,
+            &m->transmittance, -1);
 }
 
-static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m,
+                           vlMediumId inside, double coverage) {
   vlSpectrumInput color = m->reflectance;
   (void)inside;
-  vl_export_lose(x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
-  if (!m->subsurface.from_reflectance) color = vl_spectrum_input(vl_spectrum_constant(0.5f));
+  vl_export_lose(
+      x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
+  if (!m->subsurface.from_reflectance)
+    color = vl_spectrum_input(vl_spectrum_constant(0.5f));
   put_base(x, material, &color, coverage, 0, own_roughness(x, m));
   put_ior(x, material, vl_export_eta(&m->eta.value));
 }
 
-static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
+                     double coverage) {
   const vlSpectrumInput grey = vl_spectrum_input(vl_spectrum_constant(0.5f));
   (void)m;
   (void)inside;
@@ -292,16 +357,24 @@ static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMe
   put_base(x, material, &grey, coverage, 0, 1);
 }
 
-/* Writes one kind of material. inside: the medium behind the surface. Kinds without an entry: put_grey. */
-typedef void Put(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage);
+/* Writes one kind of material. inside: the medium behind the surface. Kinds without an entry:
+ * put_grey. */
+typedef void Put(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
+                 double coverage);
 static Put *const puts_of_kind[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
-    [VL_MATERIAL_DIFFUSE] = put_diffuse,       [VL_MATERIAL_COATED_DIFFUSE] = put_coated,
-    [VL_MATERIAL_CONDUCTOR] = put_conductor,   [VL_MATERIAL_COATED_CONDUCTOR] = put_coated_conductor,
-    [VL_MATERIAL_DIELECTRIC] = put_glass,      [VL_MATERIAL_THIN_DIELECTRIC] = put_glass,
-    [VL_MATERIAL_PRINCIPLED] = put_principled, [VL_MATERIAL_DIFFUSE_TRANSMISSION] = put_leaf,
+    [VL_MATERIAL_DIFFUSE] = put_diffuse,
+    [VL_MATERIAL_COATED_DIFFUSE] = put_coated,
+    [VL_MATERIAL_CONDUCTOR] = put_conductor,
+    [VL_MATERIAL_COATED_CONDUCTOR] = put_coated_conductor,
+    [VL_MATERIAL_DIELECTRIC] = put_glass,
+    [VL_MATERIAL_THIN_DIELECTRIC] = put_glass,
+    [VL_MATERIAL_PRINCIPLED] = put_principled,
+    [VL_MATERIAL_DIFFUSE_TRANSMISSION] = put_leaf,
     [VL_MATERIAL_SUBSURFACE] = put_subsurface};
 
-/* ---- emission ---------------------------------------------------------------------------------------------------- */
+/* ---- emission
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) {
   float rgb[3];
@@ -309,27 +382,37 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) 
   const vlTextureDef *t = vl_export_texture(x, e->texture);
   vl_export_light_rgb(&e->radiance, rgb);
   if (t)
-    for (int i = 0; i < 3; i++) rgb[i] = t->tint[i] * t->scale;
+    for (int i = 0; i < 3; i++)
+      rgb[i] = t->tint[i] * t->scale;
   if (e->image) {
     image.path = e->image;
     rgb[0] = rgb[1] = rgb[2] = 1;
     t = &image;
   }
   double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), scale = e->scale;
-  if (!(most > 0)) return;
-  if (!isnan(e->power)) vl_export_lose(x, "area lights given by their power: radiance 1 is written");
+  if (!(most > 0))
+    return;
+  if (!isnan(e->power))
+    vl_export_lose(x, "area lights given by their power: radiance 1 is written");
   json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;
   double over = most * scale > 1 ? most * scale : 1;
-  for (int i = 0; i < 3; i++) json_array_append_new(factor, json_real(unit((double)rgb[i] * scale / over)));
+  for (int i = 0; i < 3; i++)
+    json_array_append_new(factor, json_real(unit((double)rgb[i] * scale / over)));
   json_object_set_new(material, "emissiveFactor", factor);
-  if (info) json_object_set_new(material, "emissiveTexture", info);
-  if (over > 1) set_number(extension(x, material, "KHR_materials_emissive_strength"), "emissiveStrength", over);
+  if (info)
+    json_object_set_new(material, "emissiveTexture", info);
+  if (over > 1)
+    set_number(extension(x, material, "KHR_materials_emissive_strength"), "emissiveStrength",
+               over);
 }
 
-/* ---- the whole --------------------------------------------------------------------------------------------------- */
+/* ---- the whole
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static const vlMaterialDef *material_of(const vlExport *x, const vlShapeDef *d) {
-  const vlMaterialDef *m = d->material.index ? &x->scene->materials.items[d->material.index - 1] : NULL;
+  const vlMaterialDef *m =
+      d->material.index ? &x->scene->materials.items[d->material.index - 1] : NULL;
   for (int depth = 0; m && m->kind == VL_MATERIAL_MIX && depth < 16; depth++)
     m = m->materials[0].index ? &x->scene->materials.items[m->materials[0].index - 1] : NULL;
   return m;
@@ -341,12 +424,14 @@ bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d) {
 }
 
 static bool wants_colors(const vlExport *x, const vlMaterialDef *m) {
-  const vlTextureDef *t =
-      m && m->reflectance.texture.index ? &x->scene->textures.items[m->reflectance.texture.index - 1] : NULL;
+  const vlTextureDef *t = m && m->reflectance.texture.index
+                              ? &x->scene->textures.items[m->reflectance.texture.index - 1]
+                              : NULL;
   return t && (t->kind == VL_TEXTURE_VERTEX_COLOR || t->colors);
 }
 
-json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, bool *tangents) {
+json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
+                                bool *tangents) {
   const vlMaterialDef *m = material_of(x, d);
   vlExportLook look = {.material = d->material,
                        .alpha = d->alpha,
@@ -354,39 +439,50 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
                        .inside = d->inside,
                        .one_sided = d->one_sided};
   *colors = wants_colors(x, m);
-  *tangents =
-      m && (m->principled.normal.index || m->principled.clearcoat_normal.index || is_on(&m->principled.anisotropy));
+  *tangents = m && (m->principled.normal.index || m->principled.clearcoat_normal.index ||
+                    is_on(&m->principled.anisotropy));
   for (size_t i = 0; i < x->looks.count; i++) {
     const vlExportLook *l = &x->looks.items[i];
     if (l->material.index == look.material.index && l->emission.index == look.emission.index &&
         l->inside.index == look.inside.index && l->one_sided == look.one_sided &&
-        l->alpha.texture.index == look.alpha.texture.index && l->alpha.value == look.alpha.value)
+        l->alpha.texture.index == look.alpha.texture.index &&
+        l->alpha.value == look.alpha.value)
       return l->index;
   }
   json_t *json = json_object();
   double coverage;
-  if (m && m->name && m->name[0]) json_object_set_new(json, "name", json_string(m->name));
-  if (d->material.index && x->scene->materials.items[d->material.index - 1].kind == VL_MATERIAL_MIX)
+  if (m && m->name && m->name[0])
+    json_object_set_new(json, "name", json_string(m->name));
+  if (d->material.index &&
+      x->scene->materials.items[d->material.index - 1].kind == VL_MATERIAL_MIX)
     vl_export_lose(x, "material mix: its first alone");
   put_coverage(x, json, &d->alpha, &coverage);
   vlMaterialDef plain = vl_default_material_def(VL_MATERIAL_DIFFUSE);
-  if (!m) m = &plain;
+  if (!m)
+    m = &plain;
   Put *put = puts_of_kind[m->kind] ? puts_of_kind[m->kind] : put_grey;
   put(x, json, m, d->inside, coverage);
-  if (m->displacement.texture.index) vl_export_lose(x, "bump maps: left out");
+  if (m->displacement.texture.index)
+    vl_export_lose(x, "bump maps: left out");
   if (m->normal_map) {
     vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     image.path = m->normal_map;
     json_t *info = vl_gltf_texture_info(x, &image, true);
-    if (info) json_object_set_new(json, "normalTexture", info);
+    if (info)
+      json_object_set_new(json, "normalTexture", info);
   }
-  if (d->emission.index) put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);
+  if (d->emission.index)
+    put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);
   /* rays hit transmissive surfaces from both sides */
-  bool body = json_object_get(json_object_get(json, "extensions"), "KHR_materials_volume") != NULL;
-  if (!d->one_sided && !body) json_object_set_new(json, "doubleSided", json_true());
-  if (!json_object_size(json_object_get(json, "extensions"))) json_object_del(json, "extensions");
+  bool body =
+      json_object_get(json_object_get(json, "extensions"), "KHR_materials_volume") != NULL;
+  if (!d->one_sided && !body)
+    json_object_set_new(json, "doubleSided", json_true());
+  if (!json_object_size(json_object_get(json, "extensions")))
+    json_object_del(json, "extensions");
   look.index = vl_gltf_put(x, "materials", json);
   vlExportLook *slot = VL_PUSH(x->context, &x->looks);
-  if (slot) *slot = look;
+  if (slot)
+    *slot = look;
   return look.index;
 }

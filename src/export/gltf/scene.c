@@ -11,11 +11,19 @@
 #include "velo/light.h"
 
 /* Camera fields that glTF cannot represent. Velo's own description in the extras keeps them. */
-static const char *const beyond[] = {
-    "projection",   "distortion",    "cx",           "cy", "skew", "lens_radius", "focus_distance",
-    "shutter_open", "shutter_close", "exposure_time"};
+static const char *const beyond[] = {"projection",
+                                     "distortion",
+                                     "cx",
+                                     "cy",
+                                     "skew",
+                                     "lens_radius",
+                                     "focus_distance",
+                                     "shutter_open",
+                                     "shutter_close",
+                                     "exposure_time"};
 
-static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const char *path, bool drop) {
+static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const char *path,
+                             bool drop) {
   vlCameraFileDef def = vl_default_camera_file_def();
   vlError error;
   vl_error_clear(&error);
@@ -32,33 +40,42 @@ static void remove_file(int descriptor, const char *path) {
   unlink(path);
 }
 
-/* Makes axes exactly orthogonal if they are orthogonal except for rounding, since readers of glTF decompose
- * transforms. */
+/* Makes axes exactly orthogonal if they are orthogonal except for rounding, since readers of
+ * glTF decompose transforms. */
 static void square_up(double m[16]) {
   double a[3][3], dot, l;
   for (int c = 0; c < 3; c++)
-    for (int i = 0; i < 3; i++) a[c][i] = m[4 * i + c];
+    for (int i = 0; i < 3; i++)
+      a[c][i] = m[4 * i + c];
   const int order[3] = {2, 1, 0};
   for (int k = 0; k < 3; k++) {
     double *v = a[order[k]];
     l = 0;
     for (int j = 0; j < k; j++) {
       dot = 0;
-      for (int i = 0; i < 3; i++) dot += v[i] * a[order[j]][i];
-      if (fabs(dot) > 1e-4) return;
-      for (int i = 0; i < 3; i++) v[i] -= dot * a[order[j]][i];
+      for (int i = 0; i < 3; i++)
+        dot += v[i] * a[order[j]][i];
+      if (fabs(dot) > 1e-4)
+        return;
+      for (int i = 0; i < 3; i++)
+        v[i] -= dot * a[order[j]][i];
     }
-    for (int i = 0; i < 3; i++) l += v[i] * v[i];
-    if (!(fabs(l - 1) < 1e-4)) return;
-    for (int i = 0; i < 3; i++) v[i] /= sqrt(l);
+    for (int i = 0; i < 3; i++)
+      l += v[i] * v[i];
+    if (!(fabs(l - 1) < 1e-4))
+      return;
+    for (int i = 0; i < 3; i++)
+      v[i] /= sqrt(l);
   }
   for (int c = 0; c < 3; c++)
-    for (int i = 0; i < 3; i++) m[4 * i + c] = a[c][i];
+    for (int i = 0; i < 3; i++)
+      m[4 * i + c] = a[c][i];
 }
 
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   const vlSceneDefs *defs = &x->scene->defs;
-  if (defs->camera_missing) return true;
+  if (defs->camera_missing)
+    return true;
   vlCameraRecord record = {.camera = defs->camera, .name = "Camera"};
   if (mirror) {
     vlCamera camera;
@@ -68,10 +85,13 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
       return false;
     }
     record.camera.has_matrix = true;
-    memcpy(record.camera.world_from_camera, camera.world_from_camera, sizeof camera.world_from_camera);
-    for (int i = 8; i < 12; i++) record.camera.world_from_camera[i] *= -1;
+    memcpy(record.camera.world_from_camera, camera.world_from_camera,
+           sizeof camera.world_from_camera);
+    for (int i = 8; i < 12; i++)
+      record.camera.world_from_camera[i] *= -1;
   }
-  if (record.camera.has_matrix) square_up(record.camera.world_from_camera);
+  if (record.camera.has_matrix)
+    square_up(record.camera.world_from_camera);
   if (record.camera.own) {
     vl_export_lose(x, "the camera's own functions: a perspective camera in its place");
     record.camera.own = NULL;
@@ -79,27 +99,36 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   }
   char name[64], path[4096];
   snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
-  if (!vl_export_path(x, name, path, sizeof path)) return false;
-  vlUnfinished *unfinished = vl_unfinished_add(vl_context_unfinished(x->context), path, -1, remove_file);
-  if (!unfinished) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  if (!vl_export_path(x, name, path, sizeof path))
+    return false;
+  vlUnfinished *unfinished =
+      vl_unfinished_add(vl_context_unfinished(x->context), path, -1, remove_file);
+  if (!unfinished)
+    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   vlResult r = write_camera(x, &record, path, false);
   if (r == VL_ERROR_UNSUPPORTED) {
-    vl_export_lose(x, "the camera's projection, lens or principal point: in the extras, which velo alone reads");
+    vl_export_lose(x,
+                   "the camera's projection, lens or principal point: in the extras, which "
+                   "velo alone reads");
     r = write_camera(x, &record, path, true);
   }
   json_t *tree = r == VL_OK ? json_load_file(path, 0, NULL) : NULL;
   unlink(path);
   vl_unfinished_drop(unfinished);
-  if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
+  if (r == VL_ERROR_MEMORY)
+    return vl_export_fail(x, r, "out of memory");
   if (r == VL_ERROR_IO || (r == VL_OK && !tree)) {
     json_decref(tree);
-    return vl_export_fail(x, VL_ERROR_IO, "the camera cannot be written to a temporary file beside %.300s", x->path);
+    return vl_export_fail(x, VL_ERROR_IO,
+                          "the camera cannot be written to a temporary file beside %.300s",
+                          x->path);
   }
   json_t *camera = json_array_get(json_object_get(tree, "cameras"), 0),
          *node = json_array_get(json_object_get(tree, "nodes"), 0);
   if (camera && node) {
     json_t *copy = json_deep_copy(node);
-    json_object_set_new(copy, "camera", json_integer(vl_gltf_put(x, "cameras", json_deep_copy(camera))));
+    json_object_set_new(copy, "camera",
+                        json_integer(vl_gltf_put(x, "cameras", json_deep_copy(camera))));
     json_array_append_new(nodes, json_integer(vl_gltf_put(x, "nodes", copy)));
   } else {
     vl_export_lose(x, "the camera: left out");
@@ -111,26 +140,30 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
 /* Orients the node so that its -z is the light's direction. */
 static json_t *light_node(const vlLightDef *d, json_int_t index) {
   vlMat4 m = vl_mat4_load(d->world_from_light);
-  double from[3], to[3], a[3] = {d->from[0], d->from[1], d->from[2]}, b[3] = {d->to[0], d->to[1], d->to[2]}, z[3],
-                         l = 0;
+  double from[3], to[3], a[3] = {d->from[0], d->from[1], d->from[2]},
+                         b[3] = {d->to[0], d->to[1], d->to[2]}, z[3], l = 0;
   vl_mat4_point(&m, a, from);
   vl_mat4_point(&m, b, to);
   for (int i = 0; i < 3; i++) {
     z[i] = from[i] - to[i];
     l += z[i] * z[i];
   }
-  for (int i = 0; i < 3; i++) z[i] = l > 0 ? z[i] / sqrt(l) : i == 2;
-  json_t *node = json_pack("{s:{s:{s:I}}}", "extensions", "KHR_lights_punctual", "light", index);
+  for (int i = 0; i < 3; i++)
+    z[i] = l > 0 ? z[i] / sqrt(l) : i == 2;
+  json_t *node =
+      json_pack("{s:{s:{s:I}}}", "extensions", "KHR_lights_punctual", "light", index);
   if (d->kind != VL_LIGHT_DISTANT)
     json_object_set_new(node, "translation", json_pack("[f,f,f]", from[0], from[1], from[2]));
-  if (d->kind == VL_LIGHT_POINT) return node;
+  if (d->kind == VL_LIGHT_POINT)
+    return node;
   /* the shortest rotation from +z to z: quaternion (-z1, z0, 0, 1 + z2), normalised */
   double q[4] = {-z[1], z[0], 0, 1 + z[2]}, n = sqrt(q[0] * q[0] + q[1] * q[1] + q[3] * q[3]);
   if (n < 1e-6) {
     q[0] = n = 1;
     q[1] = q[3] = 0;
   }
-  json_object_set_new(node, "rotation", json_pack("[f,f,f,f]", q[0] / n, q[1] / n, 0.0, q[3] / n));
+  json_object_set_new(node, "rotation",
+                      json_pack("[f,f,f,f]", q[0] / n, q[1] / n, 0.0, q[3] / n));
   return node;
 }
 
@@ -142,27 +175,33 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
   for (size_t i = 0; i < x->scene->lights.count; i++) {
     const vlLightDef *d = &x->scene->lights.items[i];
     float rgb[3];
-    if (d->kind == VL_LIGHT_INFINITE) continue; /* vl_gltf_put_environment */
+    if (d->kind == VL_LIGHT_INFINITE)
+      continue; /* vl_gltf_put_environment */
     if (d->kind >= VL_LENGTH(types) || !types[d->kind]) {
       vl_export_lose(x, "lights of kinds that glTF has not: left out");
       continue;
     }
     vl_export_light_rgb(&d->color, rgb);
     double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), intensity = most * d->scale;
-    if (!(most > 0)) continue;
-    if (!isnan(d->illuminance)) intensity = most * d->illuminance;
+    if (!(most > 0))
+      continue;
+    if (!isnan(d->illuminance))
+      intensity = most * d->illuminance;
     if (!isnan(d->power)) {
-      double cone = 2 * 3.14159265358979 * (1 - vl_precise_cos(d->cone_angle - 0.5 * d->cone_delta));
+      double cone =
+          2 * 3.14159265358979 * (1 - vl_precise_cos(d->cone_angle - 0.5 * d->cone_delta));
       intensity = most * d->power / (d->kind == VL_LIGHT_SPOT ? cone : 4 * 3.14159265358979);
       vl_export_lose(x, "lights given by their power: an approximate intensity is written");
     }
-    json_t *light = json_pack("{s:s,s:[f,f,f],s:f}", "type", types[d->kind], "color", rgb[0] / most, rgb[1] / most,
-                              rgb[2] / most, "intensity", intensity);
+    json_t *light =
+        json_pack("{s:s,s:[f,f,f],s:f}", "type", types[d->kind], "color", rgb[0] / most,
+                  rgb[1] / most, rgb[2] / most, "intensity", intensity);
     if (d->kind == VL_LIGHT_SPOT) {
       double inner = d->cone_angle - d->cone_delta, outer = fmin(d->cone_angle, 1.57079632679);
       json_object_set_new(
           light, "spot",
-          json_pack("{s:f,s:f}", "innerConeAngle", fmax(0, fmin(inner, outer - 1e-6)), "outerConeAngle", outer));
+          json_pack("{s:f,s:f}", "innerConeAngle", fmax(0, fmin(inner, outer - 1e-6)),
+                    "outerConeAngle", outer));
     }
     json_array_append_new(lights, light);
     json_t *node = light_node(d, (json_int_t)json_array_size(lights) - 1);
@@ -170,7 +209,8 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
   }
   if (json_array_size(lights)) {
     vl_gltf_use(x, "KHR_lights_punctual");
-    json_object_set_new(x->root, "extensions", json_pack("{s:{s:O}}", "KHR_lights_punctual", "lights", lights));
+    json_object_set_new(x->root, "extensions",
+                        json_pack("{s:{s:O}}", "KHR_lights_punctual", "lights", lights));
   }
   json_decref(lights);
   return true;

@@ -1,5 +1,5 @@
-/* export/pbrt/film.c: writes the film of a scene by the row of its kind, and functions for parameters that do not stand
- * in the scene as they do in files. */
+/* export/pbrt/film.c: writes the film of a scene by the row of its kind, and functions for
+ * parameters that do not stand in the scene as they do in files. */
 #include <math.h>
 
 #include "base/text.h"
@@ -13,7 +13,9 @@ const char *vl_pbrt_film_kind(const vlSceneDefs *defs) {
   return vl_kind_row(&vl_film_family, (int)kind_of(defs))->name;
 }
 
-/* ---- parameters -------------------------------------------------------------------------------------------------- */
+/* ---- parameters
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static void put_number(vlExport *x, const vlParameter *p, double value) {
   const double k = p->factor != 0 ? 1 / p->factor : 1;
@@ -37,14 +39,16 @@ static void put_line(vlExport *x, const vlParameter *p, double value) {
 
 /* A text that pbrt's language can hold. */
 static void put_text(vlExport *x, const vlParameter *p, const char *text) {
-  if (text && text[0] && !strpbrk(text, "\"\\\n")) PUT("  \"string %s\" \"%s\"\n", p->name, text);
+  if (text && text[0] && !strpbrk(text, "\"\\\n"))
+    PUT("  \"string %s\" \"%s\"\n", p->name, text);
 }
 
 typedef void Rule(vlExport *x, const vlParameter *p, double shutter);
 
 static void put_system(vlExport *x, const vlParameter *p, double shutter) {
   (void)shutter;
-  if (x->scene->defs.gbuffer == VL_GBUFFER_WORLD) PUT("  \"string %s\" \"%s\"\n", p->name, p->choices[1]);
+  if (x->scene->defs.gbuffer == VL_GBUFFER_WORLD)
+    PUT("  \"string %s\" \"%s\"\n", p->name, p->choices[1]);
 }
 
 /* The number of buckets and their limits in one line, which is always written. */
@@ -65,7 +69,8 @@ static void put_buckets(vlExport *x, const vlParameter *p, double shutter) {
 static void put_iso(vlExport *x, const vlParameter *p, double shutter) {
   const vlSceneDefs *defs = &x->scene->defs;
   double exposure = (double)defs->develop.exposure * defs->camera.exposure_time / shutter;
-  if (fabs(exposure - 1) > 1e-7) put_line(x, p, p->value[0] * exposure);
+  if (fabs(exposure - 1) > 1e-7)
+    put_line(x, p, p->value[0] * exposure);
 }
 
 static void put_sensor(vlExport *x, const vlParameter *p, double shutter) {
@@ -75,14 +80,16 @@ static void put_sensor(vlExport *x, const vlParameter *p, double shutter) {
 
 static void put_white_balance(vlExport *x, const vlParameter *p, double shutter) {
   (void)shutter;
-  if (number_of(x, p) > 0) put_line(x, p, number_of(x, p));
+  if (number_of(x, p) > 0)
+    put_line(x, p, number_of(x, p));
 }
 
 /* pbrt clamps the sensor's output, velo's film its input. */
 static void put_max_component(vlExport *x, const vlParameter *p, double shutter) {
   const float exposure = x->scene->defs.develop.exposure;
   (void)shutter;
-  if (number_of(x, p) < 1e30) put_line(x, p, number_of(x, p) * (exposure > 0 ? (double)exposure : 1));
+  if (number_of(x, p) < 1e30)
+    put_line(x, p, number_of(x, p) * (exposure > 0 ? (double)exposure : 1));
 }
 
 static void put_bounds(vlExport *x, const vlParameter *p, double shutter) {
@@ -98,8 +105,8 @@ static void put_file_name(vlExport *x, const vlParameter *p, double shutter) {
   put_text(x, p, x->scene->defs.output);
 }
 
-/* In the order of the file. Null: what another parameter or the camera's text says. Parameters that are not here are
- * written by their rows alone. */
+/* In the order of the file. Null: what another parameter or the camera's text says. Parameters
+ * that are not here are written by their rows alone. */
 static const struct {
   const char *name;
   Rule *put;
@@ -126,7 +133,8 @@ enum { RULES = VL_LENGTH(rules) };
 
 static bool has_rule(const vlParameter *p) {
   for (size_t i = 0; i < RULES; i++)
-    if (vl_text_is(rules[i].name, p->name)) return true;
+    if (vl_text_is(rules[i].name, p->name))
+      return true;
   return false;
 }
 
@@ -135,11 +143,13 @@ void vl_pbrt_film(vlExport *x, double shutter) {
   const vlKindRow *row = vl_kind_row(&vl_film_family, (int)kind_of(defs));
   for (size_t i = 0; i < RULES; i++) {
     const vlParameter *p = vl_row_find(row, rules[i].name);
-    if (p && rules[i].put) rules[i].put(x, p, shutter);
+    if (p && rules[i].put)
+      rules[i].put(x, p, shutter);
   }
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (!p->name || has_rule(p) || vl_parameter_is_default(p, defs, false)) continue;
+    if (!p->name || has_rule(p) || vl_parameter_is_default(p, defs, false))
+      continue;
     PUT(" ");
     vl_pbrt_parameter(x, p, defs);
     PUT("\n");

@@ -1,12 +1,14 @@
-/* export/pbrt/material.c: materials of pbrt-v4. pbrt's own kinds are written unchanged; the principled material is
- * approximated. */
+/* export/pbrt/material.c: materials of pbrt-v4. pbrt's own kinds are written unchanged; the
+ * principled material is approximated. */
 #include <stdio.h>
 
 #include "export/pbrt/pbrt.h"
 #include "velo/material.h"
 #include "velo/texture.h"
 
-/* ---- principled -------------------------------------------------------------------------------------------------- */
+/* ---- principled
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static bool is_on(const vlFloatInput *input) {
   return input->texture.index || input->value > 0;
@@ -15,15 +17,20 @@ static bool is_on(const vlFloatInput *input) {
 static void count_losses(vlExport *x, const vlMaterialDef *m) {
   const vlPrincipledDef *p = &m->principled;
   float rgb[3];
-  if (is_on(&p->clearcoat)) vl_export_lose(x, "clear coats: left out");
+  if (is_on(&p->clearcoat))
+    vl_export_lose(x, "clear coats: left out");
   vl_export_rgb(x, &p->sheen_color, rgb);
-  if (p->sheen_color.texture.index || rgb[0] + rgb[1] + rgb[2] > 0) vl_export_lose(x, "sheen: left out");
-  if (is_on(&p->iridescence)) vl_export_lose(x, "iridescence: left out");
-  if (is_on(&p->anisotropy)) vl_export_lose(x, "anisotropy of principled materials: left out");
-  if (p->dispersion > 0) vl_export_lose(x, "dispersion: left out");
+  if (p->sheen_color.texture.index || rgb[0] + rgb[1] + rgb[2] > 0)
+    vl_export_lose(x, "sheen: left out");
+  if (is_on(&p->iridescence))
+    vl_export_lose(x, "iridescence: left out");
+  if (is_on(&p->anisotropy))
+    vl_export_lose(x, "anisotropy of principled materials: left out");
+  if (p->dispersion > 0)
+    vl_export_lose(x, "dispersion: left out");
   vl_export_rgb(x, &p->specular_color, rgb);
-  if (p->specular_color.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1 || p->specular.texture.index ||
-      (p->specular.value != 1 && p->specular.value != 0))
+  if (p->specular_color.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1 ||
+      p->specular.texture.index || (p->specular.value != 1 && p->specular.value != 0))
     vl_export_lose(x, "strength and colour of dielectrics' reflection: left out");
   if (p->clearcoat_normal.index || (p->normal.index && p->normal_scale != 1))
     vl_export_lose(x, "normal maps' scale, and those of coats: left out");
@@ -32,17 +39,22 @@ static void count_losses(vlExport *x, const vlMaterialDef *m) {
 static bool put_normal(vlExport *x, const vlMaterialDef *m) {
   const vlTextureDef *t = vl_export_texture(x, m->principled.normal);
   char name[300];
-  if (!t) return true;
-  if (!vl_pbrt_image(x, t, VL_PBRT_COLORS, name)) return false;
+  if (!t)
+    return true;
+  if (!vl_pbrt_image(x, t, VL_PBRT_COLORS, name))
+    return false;
   PUT(" \"string normalmap\" \"%s\"", name);
   return true;
 }
 
-/* Albedo of the specular lobe of a principled dielectric, averaged over all directions: a fit, within 0.0015, to
- * renders of black spheres of eta 1.5, whose reflectance at normal incidence is 0.04. */
+/* Albedo of the specular lobe of a principled dielectric, averaged over all directions: a fit,
+ * within 0.0015, to renders of black spheres of eta 1.5, whose reflectance at normal incidence
+ * is 0.04. */
 static float specular_albedo(vlExport *x, const vlPrincipledDef *p, double eta, float alpha) {
-  const double f0 = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1)), a = alpha < 1 ? (double)alpha : 1;
-  const double e = (0.0575 - 0.0555 * a + 0.0147 * a * a) * f0 / 0.04 * (double)vl_export_number(x, &p->specular);
+  const double f0 = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1)),
+               a = alpha < 1 ? (double)alpha : 1;
+  const double e = (0.0575 - 0.0555 * a + 0.0147 * a * a) * f0 / 0.04 *
+                   (double)vl_export_number(x, &p->specular);
   return (float)(e > 0 ? e < 1 ? e : 1 : 0);
 }
 
@@ -56,9 +68,11 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
   eta = eta > 1 ? eta : 1.5;
   bool clear = transmission >= 0.5f, leaf = is_on(&p->diffuse_transmission);
   const float mean_alpha = clear || leaf ? 0 : vl_export_mean_square(x, &p->roughness);
-  bool dull = !p->specular.texture.index && p->specular.value == 0, bare = dull || mean_alpha > 0.15f;
+  bool dull = !p->specular.texture.index && p->specular.value == 0,
+       bare = dull || mean_alpha > 0.15f;
   bool coated = !clear && !leaf && !bare;
-  const float white = bare && !dull && !clear && !leaf ? specular_albedo(x, p, eta, mean_alpha) : 0;
+  const float white =
+      bare && !dull && !clear && !leaf ? specular_albedo(x, p, eta, mean_alpha) : 0;
   if (!(coated      ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
         : white > 0 ? vl_pbrt_prepare_raised(x, &m->reflectance, white, &color)
                     : vl_pbrt_prepare_color(x, &m->reflectance, &color)) ||
@@ -79,23 +93,29 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
       vl_export_lose(x, "rough sheets of glass: smooth");
     }
   } else if (leaf) {
-    vl_export_lose(x, "diffuse transmission: without reflection at the surface, halves of the light each way");
+    vl_export_lose(x,
+                   "diffuse transmission: without reflection at the surface, halves of the "
+                   "light each way");
     PUT("\"diffusetransmission\"");
     vl_pbrt_put_color(x, "reflectance", &color);
     vl_pbrt_put_color(x, "transmittance", &passed);
     PUT(" \"float scale\" [0.5]");
   } else if (bare) {
     /* pbrt's rough coats lose energy; diffuse is the closer approximation */
-    if (!dull) vl_export_lose(x, "rough principled dielectrics: as diffuse of the same albedo");
+    if (!dull)
+      vl_export_lose(x, "rough principled dielectrics: as diffuse of the same albedo");
     PUT("\"diffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
   } else {
     vl_export_lose(x, "principled dielectrics: as coateddiffuse, brighter below the coat");
-    if (transmission > 0) vl_export_lose(x, "surfaces that pass a part of light: opaque");
+    if (transmission > 0)
+      vl_export_lose(x, "surfaces that pass a part of light: opaque");
     PUT("\"coateddiffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
     vl_pbrt_put_number(x, "roughness", &alpha);
-    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] \"integer maxdepth\" [100]", eta);
+    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] \"integer "
+        "maxdepth\" [100]",
+        eta);
   }
   bool fine = put_normal(x, m);
   PUT("\n");
@@ -104,7 +124,8 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
 
 static bool put_metal_part(vlExport *x, const vlMaterialDef *m, const char *name) {
   vlPbrtInput color, alpha;
-  if (!vl_pbrt_prepare_metal(x, &m->reflectance, vl_export_mean_square(x, &m->principled.roughness), &color) ||
+  if (!vl_pbrt_prepare_metal(x, &m->reflectance,
+                             vl_export_mean_square(x, &m->principled.roughness), &color) ||
       !vl_pbrt_prepare_number(x, &m->principled.roughness, true, &alpha))
     return false;
   vl_export_lose(x, "principled metals: as conductors of that mean reflectance");
@@ -123,31 +144,40 @@ static bool put_principled(vlExport *x, const vlMaterialDef *m, uint32_t id) {
   count_losses(x, m);
   snprintf(name, sizeof name, "material%u", id);
   const vlTextureDef *t = vl_export_texture(x, metallic->texture);
-  bool textured = metallic->texture.index && !(t && t->bias == 0 && t->channel >= 0 && t->tint[t->channel] == 0);
+  bool textured = metallic->texture.index &&
+                  !(t && t->bias == 0 && t->channel >= 0 && t->tint[t->channel] == 0);
   float value = metallic->texture.index ? vl_export_number(x, metallic) : metallic->value;
-  if (!textured && value <= 0) return put_dielectric(x, m, name);
-  if (!textured && value >= 1) return put_metal_part(x, m, name);
+  if (!textured && value <= 0)
+    return put_dielectric(x, m, name);
+  if (!textured && value >= 1)
+    return put_metal_part(x, m, name);
   vlPbrtInput amount;
   snprintf(a, sizeof a, "material%u-dielectric", id);
   snprintf(b, sizeof b, "material%u-metal", id);
-  if (!put_dielectric(x, m, a) || !put_metal_part(x, m, b) || !vl_pbrt_prepare_number(x, metallic, false, &amount))
+  if (!put_dielectric(x, m, a) || !put_metal_part(x, m, b) ||
+      !vl_pbrt_prepare_number(x, metallic, false, &amount))
     return false;
-  PUT("MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [\"%s\" \"%s\"]", name, a, b);
+  PUT("MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [\"%s\" \"%s\"]",
+      name, a, b);
   vl_pbrt_put_number(x, "amount", &amount);
   PUT("\n");
   return true;
 }
 
-/* ---- pbrt's own -------------------------------------------------------------------------------------------------- */
+/* ---- pbrt's own
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* Of alternative parameters, only the one that has an effect is written, even if it has its default. */
+/* Of alternative parameters, only the one that has an effect is written, even if it has its
+ * default. */
 static vlPbrtWished one_of(bool counts) {
   return counts ? VL_PBRT_ALWAYS : VL_PBRT_NEVER;
 }
 
 static vlPbrtWished metal_wish(const void *def, const vlParameter *p) {
   const vlMaterialDef *m = def;
-  if (p->offset == offsetof(vlMaterialDef, reflectance)) return one_of(m->use_reflectance);
+  if (p->offset == offsetof(vlMaterialDef, reflectance))
+    return one_of(m->use_reflectance);
   if (p->offset == offsetof(vlMaterialDef, eta) || p->offset == offsetof(vlMaterialDef, k))
     return one_of(!m->use_reflectance);
   return VL_PBRT_UNLESS_DEFAULT;
@@ -155,16 +185,20 @@ static vlPbrtWished metal_wish(const void *def, const vlParameter *p) {
 
 static vlPbrtWished hair_wish(const void *def, const vlParameter *p) {
   vlHairColor color = ((const vlMaterialDef *)def)->hair.color;
-  if (p->offset == offsetof(vlMaterialDef, hair.sigma_a)) return one_of(color == VL_HAIR_SIGMA_A);
-  if (p->offset == offsetof(vlMaterialDef, reflectance)) return one_of(color == VL_HAIR_REFLECTANCE);
-  if (p->offset == offsetof(vlMaterialDef, hair.eumelanin) || p->offset == offsetof(vlMaterialDef, hair.pheomelanin))
+  if (p->offset == offsetof(vlMaterialDef, hair.sigma_a))
+    return one_of(color == VL_HAIR_SIGMA_A);
+  if (p->offset == offsetof(vlMaterialDef, reflectance))
+    return one_of(color == VL_HAIR_REFLECTANCE);
+  if (p->offset == offsetof(vlMaterialDef, hair.eumelanin) ||
+      p->offset == offsetof(vlMaterialDef, hair.pheomelanin))
     return one_of(color == VL_HAIR_MELANIN);
   return VL_PBRT_UNLESS_DEFAULT;
 }
 
 static vlPbrtWished subsurface_wish(const void *def, const vlParameter *p) {
   bool from_reflectance = ((const vlMaterialDef *)def)->subsurface.from_reflectance;
-  if (p->offset == offsetof(vlMaterialDef, reflectance) || p->offset == offsetof(vlMaterialDef, subsurface.mfp))
+  if (p->offset == offsetof(vlMaterialDef, reflectance) ||
+      p->offset == offsetof(vlMaterialDef, subsurface.mfp))
     return one_of(from_reflectance);
   if (p->offset == offsetof(vlMaterialDef, subsurface.sigma_a) ||
       p->offset == offsetof(vlMaterialDef, subsurface.sigma_s))
@@ -172,18 +206,21 @@ static vlPbrtWished subsurface_wish(const void *def, const vlParameter *p) {
   return VL_PBRT_UNLESS_DEFAULT;
 }
 
-static vlPbrtWish *const wishes[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {[VL_MATERIAL_CONDUCTOR] = metal_wish,
-                                                                       [VL_MATERIAL_COATED_CONDUCTOR] = metal_wish,
-                                                                       [VL_MATERIAL_HAIR] = hair_wish,
-                                                                       [VL_MATERIAL_SUBSURFACE] = subsurface_wish};
+static vlPbrtWish *const wishes[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
+    [VL_MATERIAL_CONDUCTOR] = metal_wish,
+    [VL_MATERIAL_COATED_CONDUCTOR] = metal_wish,
+    [VL_MATERIAL_HAIR] = hair_wish,
+    [VL_MATERIAL_SUBSURFACE] = subsurface_wish};
 
 static bool put_own(vlExport *x, const vlMaterialDef *m, uint32_t id) {
   vlPbrtParameter list[VL_PBRT_PARAMETERS];
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)m->kind);
-  if (!vl_pbrt_prepare(x, row, m, true, wishes[m->kind], 0, list)) return false;
+  if (!vl_pbrt_prepare(x, row, m, true, wishes[m->kind], 0, list))
+    return false;
   PUT("MakeNamedMaterial \"material%u\" \"string type\" \"%s\"", id, row->name);
   if (m->kind == VL_MATERIAL_MIX)
-    PUT(" \"string materials\" [\"material%u\" \"material%u\"]", m->materials[0].index, m->materials[1].index);
+    PUT(" \"string materials\" [\"material%u\" \"material%u\"]", m->materials[0].index,
+        m->materials[1].index);
   vl_pbrt_put(x, row, m, true, list);
   PUT("\n");
   return true;

@@ -6,11 +6,14 @@
 #include "velo/medium.h"
 
 /* `per` numbers per cell. */
-static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, const float *v, size_t per) {
+static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, const float *v,
+                      size_t per) {
   size_t count = per * m->nx * m->ny * m->nz;
-  if (!v) return;
+  if (!v)
+    return;
   PUT("\n  \"%s\" [", parameter);
-  for (size_t i = 0; i < count; i++) PUT("%s%.9g", i ? " " : "", (double)v[i]);
+  for (size_t i = 0; i < count; i++)
+    PUT("%s%.9g", i ? " " : "", (double)v[i]);
   PUT("]");
 }
 
@@ -18,11 +21,13 @@ static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, 
 static void put_arrays(vlExport *x, const vlKindRow *row, const vlMediumDef *m) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (p->type != VL_PARAMETER_BLOCK || !p->name) continue;
+    if (p->type != VL_PARAMETER_BLOCK || !p->name)
+      continue;
     bool rgb = vl_text_is(p->text, "rgb array");
     char name[64];
     snprintf(name, sizeof name, "%s %s", rgb ? "rgb" : "float", p->name);
-    put_cells(x, name, m, *(const float *const *)(const void *)((const char *)m + p->offset), rgb ? 3 : 1);
+    put_cells(x, name, m, *(const float *const *)(const void *)((const char *)m + p->offset),
+              rgb ? 3 : 1);
   }
 }
 
@@ -35,7 +40,8 @@ static bool put_grid(vlExport *x, const vlMediumDef *m) {
 }
 
 static bool put_rgb_grid(vlExport *x, const vlMediumDef *m) {
-  if (m->space != x->scene->defs.film.space) vl_export_lose(x, "colour spaces of RGB grids: the scene's");
+  if (m->space != x->scene->defs.film.space)
+    vl_export_lose(x, "colour spaces of RGB grids: the scene's");
   return true;
 }
 
@@ -47,7 +53,8 @@ static bool put_nanovdb(vlExport *x, const vlMediumDef *m) {
   vl_error_clear(&error);
   snprintf(name, sizeof name, "%.200s-medium%zu.nvdb", x->stem, index);
   vlResult r = vl_file_read(x->context, m->path, false, &data, &size, &error);
-  bool fine = r == VL_OK ? vl_export_data(x, name, data, size) : vl_export_fail(x, r, "%s", error.message);
+  bool fine = r == VL_OK ? vl_export_data(x, name, data, size)
+                         : vl_export_fail(x, r, "%s", error.message);
   vl_free(x->context, data);
   PUT(" \"string filename\" \"%s\"", name);
   return fine;
@@ -61,7 +68,8 @@ static PutMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
 
 /* pbrt's cloud has no scale; its coefficients are multiplied instead. */
 static const vlMediumDef *without_scale(const vlMediumDef *m, vlMediumDef *copy) {
-  if (m->kind != VL_MEDIUM_CLOUD || m->scale == 1) return m;
+  if (m->kind != VL_MEDIUM_CLOUD || m->scale == 1)
+    return m;
   *copy = *m;
   copy->sigma_a.scale *= m->scale;
   copy->sigma_s.scale *= m->scale;
@@ -79,7 +87,8 @@ bool vl_pbrt_medium(vlExport *x, size_t i) {
   PUT("MakeNamedMedium \"medium%zu\" \"string type\" \"%s\"", i + 1, row->name);
   vl_pbrt_row(x, row, m, false, m->emission_scales ? "Lescale" : NULL);
   put_arrays(x, row, m);
-  if (rules[m->kind] && !rules[m->kind](x, m)) return false;
+  if (rules[m->kind] && !rules[m->kind](x, m))
+    return false;
   PUT(placed ? "\nIdentity\n" : "\n");
   return true;
 }

@@ -1,12 +1,13 @@
-/* export/pbrt/parameters.c: writes the members of a def that differ from their defaults as parameters, by the row of
- * its kind. */
+/* export/pbrt/parameters.c: writes the members of a def that differ from their defaults as
+ * parameters, by the row of its kind. */
 
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
 #include "velo/texture.h"
 
 bool vl_pbrt_knows(vlExport *x, const vlKindRow *row, const vlParameter *p) {
-  if (p->flags & VL_PARAMETER_OWN) vl_export_lose(x, "%s of %s: left out", p->name, row->name);
+  if (p->flags & VL_PARAMETER_OWN)
+    vl_export_lose(x, "%s of %s: left out", p->name, row->name);
   return !(p->flags & VL_PARAMETER_OWN);
 }
 
@@ -20,31 +21,37 @@ static bool prepare_file(vlExport *x, const vlParameter *p, const char *path, ch
   t.path = path;
   t.encoding = VL_ENCODING_LINEAR;
   t.encoding_given = true;
-  return vl_pbrt_image(x, &t, vl_text_is(p->name, "normalmap") ? VL_PBRT_COLORS : VL_PBRT_ANY, name);
+  return vl_pbrt_image(x, &t, vl_text_is(p->name, "normalmap") ? VL_PBRT_COLORS : VL_PBRT_ANY,
+                       name);
 }
 
-static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spectrum, int depth,
-                    vlPbrtParameter *result) {
+static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spectrum,
+                    int depth, vlPbrtParameter *result) {
   const char *at = (const char *)def + p->offset;
   if (p->type == VL_PARAMETER_EITHER_INPUT && spectrum)
-    return vl_pbrt_inner_color(x, (const void *)((const char *)def + p->second), depth, &result->input);
+    return vl_pbrt_inner_color(x, (const void *)((const char *)def + p->second), depth,
+                               &result->input);
   if (p->type == VL_PARAMETER_EITHER_INPUT || p->type == VL_PARAMETER_FLOAT_INPUT)
     return vl_pbrt_inner_number(x, (const void *)at, depth, &result->input);
-  if (p->type == VL_PARAMETER_SPECTRUM_INPUT) return vl_pbrt_inner_color(x, (const void *)at, depth, &result->input);
-  if (p->type == VL_PARAMETER_FILE) return prepare_file(x, p, *(const char *const *)(const void *)at, result->file);
+  if (p->type == VL_PARAMETER_SPECTRUM_INPUT)
+    return vl_pbrt_inner_color(x, (const void *)at, depth, &result->input);
+  if (p->type == VL_PARAMETER_FILE)
+    return prepare_file(x, p, *(const char *const *)(const void *)at, result->file);
   return true;
 }
 
-bool vl_pbrt_prepare(vlExport *x, const vlKindRow *row, const void *def, bool spectrum, vlPbrtWish *wish, int depth,
-                     vlPbrtParameter *list) {
+bool vl_pbrt_prepare(vlExport *x, const vlKindRow *row, const void *def, bool spectrum,
+                     vlPbrtWish *wish, int depth, vlPbrtParameter *list) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     vlPbrtWished w = wish ? wish(def, p) : VL_PBRT_UNLESS_DEFAULT;
     list[i] = (vlPbrtParameter){0};
-    if (!is_file_parameter(p) || w == VL_PBRT_NEVER) continue;
+    if (!is_file_parameter(p) || w == VL_PBRT_NEVER)
+      continue;
     list[i].wanted = w == VL_PBRT_ALWAYS || !vl_parameter_is_default(p, def, spectrum);
     list[i].wanted = list[i].wanted && vl_pbrt_knows(x, row, p);
-    if (list[i].wanted && !prepare(x, p, def, spectrum, depth, &list[i])) return false;
+    if (list[i].wanted && !prepare(x, p, def, spectrum, depth, &list[i]))
+      return false;
   }
   return true;
 }
@@ -62,21 +69,41 @@ static void put_float3(vlExport *x, const vlParameter *p, const float v[3]) {
   PUT(" \"vector3 %s\" [%.9g %.9g %.9g]", p->name, (double)v[0], (double)v[1], (double)v[2]);
 }
 
-static void put(vlExport *x, const vlParameter *p, const void *def, bool spectrum, const vlPbrtParameter *prepared) {
+static void put(vlExport *x, const vlParameter *p, const void *def, bool spectrum,
+                const vlPbrtParameter *prepared) {
   const void *at = (const char *)def + p->offset;
   double k = p->factor != 0 ? 1 / p->factor : 1;
   vlPbrtInput input = prepared->input;
   switch (p->type) {
-    case VL_PARAMETER_BOOL: PUT(" \"bool %s\" %s", p->name, *(const bool *)at ? "true" : "false"); break;
-    case VL_PARAMETER_COUNT: PUT(" \"integer %s\" [%u]", p->name, *(const uint32_t *)at); break;
-    case VL_PARAMETER_FLOAT: PUT(" \"float %s\" [%.9g]", p->name, k * (double)*(const float *)at); break;
-    case VL_PARAMETER_DOUBLE: PUT(" \"float %s\" [%.17g]", p->name, k * *(const double *)at); break;
-    case VL_PARAMETER_FLOAT3: put_float3(x, p, at); break;
-    case VL_PARAMETER_DOUBLE3: break; /* only cameras have parameters of this type */
-    case VL_PARAMETER_CHOICE: PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]); break;
-    case VL_PARAMETER_STRING: PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at); break;
-    case VL_PARAMETER_FILE: PUT(" \"string %s\" \"%s\"", p->name, prepared->file); break;
-    case VL_PARAMETER_SPECTRUM: vl_pbrt_spectrum(x, p->name, at); break;
+    case VL_PARAMETER_BOOL:
+      PUT(" \"bool %s\" %s", p->name, *(const bool *)at ? "true" : "false");
+      break;
+    case VL_PARAMETER_COUNT:
+      PUT(" \"integer %s\" [%u]", p->name, *(const uint32_t *)at);
+      break;
+    case VL_PARAMETER_FLOAT:
+      PUT(" \"float %s\" [%.9g]", p->name, k * (double)*(const float *)at);
+      break;
+    case VL_PARAMETER_DOUBLE:
+      PUT(" \"float %s\" [%.17g]", p->name, k * *(const double *)at);
+      break;
+    case VL_PARAMETER_FLOAT3:
+      put_float3(x, p, at);
+      break;
+    case VL_PARAMETER_DOUBLE3:
+      break; /* only cameras have parameters of this type */
+    case VL_PARAMETER_CHOICE:
+      PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]);
+      break;
+    case VL_PARAMETER_STRING:
+      PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at);
+      break;
+    case VL_PARAMETER_FILE:
+      PUT(" \"string %s\" \"%s\"", p->name, prepared->file);
+      break;
+    case VL_PARAMETER_SPECTRUM:
+      vl_pbrt_spectrum(x, p->name, at);
+      break;
     case VL_PARAMETER_EITHER_INPUT:
       if (spectrum)
         vl_pbrt_put_color(x, p->name, &input);
@@ -87,13 +114,18 @@ static void put(vlExport *x, const vlParameter *p, const void *def, bool spectru
       input.number *= (float)k;
       vl_pbrt_put_number(x, p->name, &input);
       break;
-    case VL_PARAMETER_SPECTRUM_INPUT: put_spectrum(x, p, &input); break;
+    case VL_PARAMETER_SPECTRUM_INPUT:
+      put_spectrum(x, p, &input);
+      break;
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: break;
+    case VL_PARAMETER_BLOCK:
+      break;
   }
 }
 
-void vl_pbrt_put(vlExport *x, const vlKindRow *row, const void *def, bool spectrum, const vlPbrtParameter *list) {
+void vl_pbrt_put(vlExport *x, const vlKindRow *row, const void *def, bool spectrum,
+                 const vlPbrtParameter *list) {
   for (uint32_t i = 0; i < row->parameter_count; i++)
-    if (list[i].wanted) put(x, &row->parameters[i], def, spectrum, &list[i]);
+    if (list[i].wanted)
+      put(x, &row->parameters[i], def, spectrum, &list[i]);
 }

@@ -1,4 +1,5 @@
-/* export/pbrt/pbrt.c: a scene in pbrt-v4's language: the part before WorldBegin, the order of the rest, lights. */
+/* export/pbrt/pbrt.c: a scene in pbrt-v4's language: the part before WorldBegin, the order of
+ * the rest, lights. */
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -16,10 +17,13 @@ static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 void vl_pbrt_matrix(vlExport *x, const double m[16]) {
   static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   bool plain = true;
-  for (int i = 0; i < 16; i++) plain = plain && m[i] == identity[i];
-  if (plain) return;
+  for (int i = 0; i < 16; i++)
+    plain = plain && m[i] == identity[i];
+  if (plain)
+    return;
   PUT("  ConcatTransform [");
-  for (int i = 0; i < 16; i++) PUT("%s%.17g", i ? " " : "", m[4 * (i % 4) + i / 4]);
+  for (int i = 0; i < 16; i++)
+    PUT("%s%.17g", i ? " " : "", m[4 * (i % 4) + i / 4]);
   PUT("]\n");
 }
 
@@ -27,10 +31,15 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
   const double k = (double)s->scale;
   float rgb[3];
   switch (s->kind) {
-    case VL_SPECTRUM_BLACKBODY: PUT(" \"blackbody %s\" [%.9g]", name, (double)s->kelvin); return;
-    case VL_SPECTRUM_NAMED: PUT(" \"spectrum %s\" \"%s\"", name, s->name); return;
+    case VL_SPECTRUM_BLACKBODY:
+      PUT(" \"blackbody %s\" [%.9g]", name, (double)s->kelvin);
+      return;
+    case VL_SPECTRUM_NAMED:
+      PUT(" \"spectrum %s\" \"%s\"", name, s->name);
+      return;
     case VL_SPECTRUM_CONSTANT:
-      PUT(" \"spectrum %s\" [200 %.9g 1000 %.9g]", name, k * (double)s->value, k * (double)s->value);
+      PUT(" \"spectrum %s\" [200 %.9g 1000 %.9g]", name, k * (double)s->value,
+          k * (double)s->value);
       return;
     case VL_SPECTRUM_SAMPLED:
       PUT(" \"spectrum %s\" [", name);
@@ -38,22 +47,29 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
         PUT("%s%.9g %.9g", i ? " " : "", (double)s->wavelengths[i], k * (double)s->values[i]);
       PUT("]");
       return;
-    case VL_SPECTRUM_RGB: break;
+    case VL_SPECTRUM_RGB:
+      break;
   }
   memcpy(rgb, s->rgb, sizeof rgb);
-  for (int i = 0; i < 3; i++) rgb[i] *= s->scale;
+  for (int i = 0; i < 3; i++)
+    rgb[i] *= s->scale;
   if (s->space != x->scene->defs.film.space)
     vl_spectrum_to_rgb(s, VL_ROLE_UNBOUNDED, x->scene->defs.film.space, rgb, NULL);
   PUT(" \"rgb %s\" [%.9g %.9g %.9g]", name, (double)rgb[0], (double)rgb[1], (double)rgb[2]);
 }
 
-/* ---- before the world -------------------------------------------------------------------------------------------- */
+/* ---- before the world
+ * --------------------------------------------------------------------------------------------
+ */
 
 static void put_options(vlExport *x) {
   const vlRenderDef *render = &x->scene->defs.render;
-  if (render->centred) PUT("Option \"disablepixeljitter\" true\n");
-  if (render->same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
-  if (render->sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
+  if (render->centred)
+    PUT("Option \"disablepixeljitter\" true\n");
+  if (render->same_wavelengths)
+    PUT("Option \"disablewavelengthjitter\" true\n");
+  if (render->sharp_textures)
+    PUT("Option \"disabletexturefiltering\" true\n");
 }
 
 /* The text of the camera is a whole scene. This function copies its part before WorldBegin. */
@@ -82,7 +98,8 @@ static bool put_camera(vlExport *x) {
   char name[64], path[4096], *text = NULL;
   size_t size = 0;
   snprintf(name, sizeof name, ".velo-export-%ld.pbrt", (long)getpid());
-  if (!vl_export_path(x, name, path, sizeof path)) return false;
+  if (!vl_export_path(x, name, path, sizeof path))
+    return false;
   vlError error;
   vl_error_clear(&error);
   vlResult r = vl_camera_write(x->context, path, &def, &record, &error);
@@ -92,16 +109,19 @@ static bool put_camera(vlExport *x) {
     def.drop_count = VL_LENGTH(beyond);
     r = vl_camera_write(x->context, path, &def, &record, &error);
   }
-  if (r == VL_OK) r = vl_file_read_given(x->context, path, false, &text, &size, &error);
+  if (r == VL_OK)
+    r = vl_file_read_given(x->context, path, false, &text, &size, &error);
   unlink(path);
-  if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
-  if (r == VL_ERROR_IO || r == VL_ERROR_MISSING) return vl_export_fail(x, VL_ERROR_IO, "%s", error.message);
+  if (r == VL_ERROR_MEMORY)
+    return vl_export_fail(x, r, "out of memory");
+  if (r == VL_ERROR_IO || r == VL_ERROR_MISSING)
+    return vl_export_fail(x, VL_ERROR_IO, "%s", error.message);
   if (r == VL_OK) {
     put_head(x, text, size);
   } else {
     vl_export_lose(x, "the camera: left out");
-    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", vl_pbrt_film_kind(defs),
-        defs->film.width, defs->film.height);
+    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n",
+        vl_pbrt_film_kind(defs), defs->film.width, defs->film.height);
   }
   double shutter = defs->camera.shutter_close - defs->camera.shutter_open;
   bool has_shutter = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
@@ -111,58 +131,72 @@ static bool put_camera(vlExport *x) {
   return true;
 }
 
-/* pbrt's name of the kind. When pbrt has no such kind, a loss is counted, the result is null and the caller writes
- * `instead`. */
-static const char *pbrt_name(vlExport *x, const vlKindFamily *family, int kind, const char *thing,
-                             const char *instead) {
+/* pbrt's name of the kind. When pbrt has no such kind, a loss is counted, the result is null
+ * and the caller writes `instead`. */
+static const char *pbrt_name(vlExport *x, const vlKindFamily *family, int kind,
+                             const char *thing, const char *instead) {
   const vlKindRow *row = vl_kind_row(family, kind);
-  if (row && row->traits & VL_TRAIT_PBRT_NAME) return row->name;
-  if (row && row->traits & VL_TRAIT_PBRT_ALIAS) return row->alias;
+  if (row && row->traits & VL_TRAIT_PBRT_NAME)
+    return row->name;
+  if (row && row->traits & VL_TRAIT_PBRT_ALIAS)
+    return row->alias;
   vl_export_lose(x, "the %s: %s in its place", thing, instead);
   return NULL;
 }
 
 static void put_sampler(vlExport *x) {
   const vlRenderDef *render = &x->scene->defs.render;
-  const char *name = pbrt_name(x, &vl_sampler_family, (int)render->sampler, "sampler", "zsobol");
+  const char *name =
+      pbrt_name(x, &vl_sampler_family, (int)render->sampler, "sampler", "zsobol");
   uint32_t side = (uint32_t)(sqrt((double)render->spp) + 0.5);
   bool square = side * side == render->spp;
   PUT("Sampler \"%s\"", name ? name : "zsobol");
   if (render->sampler == VL_SAMPLER_STRATIFIED)
-    PUT(" \"integer xsamples\" [%u] \"integer ysamples\" [%u]", square ? side : render->spp, square ? side : 1);
+    PUT(" \"integer xsamples\" [%u] \"integer ysamples\" [%u]", square ? side : render->spp,
+        square ? side : 1);
   else
     PUT(" \"integer pixelsamples\" [%u]", render->spp);
-  if (render->seed) PUT(" \"integer seed\" [%u]", render->seed);
+  if (render->seed)
+    PUT(" \"integer seed\" [%u]", render->seed);
 }
 
 static void put_filter(vlExport *x) {
   vlPixelFilter filter = x->scene->defs.film.filter;
-  const char *name = pbrt_name(x, &vl_pixel_filter_family, (int)filter.kind, "pixel filter", "gaussian");
-  if (!name) filter.kind = VL_PIXEL_FILTER_GAUSSIAN;
+  const char *name =
+      pbrt_name(x, &vl_pixel_filter_family, (int)filter.kind, "pixel filter", "gaussian");
+  if (!name)
+    filter.kind = VL_PIXEL_FILTER_GAUSSIAN;
   PUT("\nPixelFilter \"%s\"", name ? name : "gaussian");
   vl_pbrt_row(x, vl_kind_row(&vl_pixel_filter_family, (int)filter.kind), &filter, true, NULL);
 }
 
 static void put_tracer(vlExport *x) {
   const vlSceneDefs *defs = &x->scene->defs;
-  const char *name = pbrt_name(x, &vl_tracer_family, (int)defs->render.tracer, "tracer", "volpath");
-  const vlKindRow *row = vl_kind_row(&vl_tracer_family, name ? (int)defs->render.tracer : VL_TRACER_VOLPATH);
+  const char *name =
+      pbrt_name(x, &vl_tracer_family, (int)defs->render.tracer, "tracer", "volpath");
+  const vlKindRow *row =
+      vl_kind_row(&vl_tracer_family, name ? (int)defs->render.tracer : VL_TRACER_VOLPATH);
   PUT("\nIntegrator \"%s\"", name ? name : "volpath");
-  if (vl_row_find(row, "maxdepth")) PUT(" \"integer maxdepth\" [%u]", defs->render.max_depth);
-  if (vl_row_find(row, "photonsperiteration") && defs->render.light_paths != VL_AS_MANY_AS_PIXELS)
+  if (vl_row_find(row, "maxdepth"))
+    PUT(" \"integer maxdepth\" [%u]", defs->render.max_depth);
+  if (vl_row_find(row, "photonsperiteration") &&
+      defs->render.light_paths != VL_AS_MANY_AS_PIXELS)
     PUT(" \"integer photonsperiteration\" [%u]", defs->render.light_paths);
   vl_pbrt_row(x, row, defs, false, "maxdepth");
   PUT("\n");
 }
 
-/* ---- lights ------------------------------------------------------------------------------------------------------ */
+/* ---- lights
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* Writes the light's transform. It includes the position when pbrt's kind has no "from". */
 static void put_place(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
   double m[16];
   memcpy(m, d->world_from_light, sizeof m);
   for (int i = 0; i < 3 && !vl_row_find(row, "from"); i++)
-    for (int k = 0; k < 3; k++) m[4 * i + 3] += m[4 * i + k] * (double)d->from[k];
+    for (int k = 0; k < 3; k++)
+      m[4 * i + 3] += m[4 * i + k] * (double)d->from[k];
   vl_pbrt_matrix(x, m);
 }
 
@@ -173,34 +207,43 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = d->path;
     t.image = d->image;
-    if (!vl_pbrt_image(x, &t, VL_PBRT_COLORS, name)) return false;
+    if (!vl_pbrt_image(x, &t, VL_PBRT_COLORS, name))
+      return false;
   }
   PUT("AttributeBegin\n");
   put_place(x, row, d);
-  if (d->medium.index) PUT("  MediumInterface \"\" \"medium%u\"\n", d->medium.index);
+  if (d->medium.index)
+    PUT("  MediumInterface \"\" \"medium%u\"\n", d->medium.index);
   PUT("  LightSource \"%s\"", row->name);
   vl_pbrt_row(x, row, d, false, name[0] ? "L" : NULL);
-  if (name[0]) PUT(" \"string filename\" \"%s\"", name);
+  if (name[0])
+    PUT(" \"string filename\" \"%s\"", name);
   for (int i = 0; d->has_portal && i < 12; i++)
-    PUT("%s%.9g%s", i ? " " : " \"point3 portal\" [", (double)d->portal[i / 3][i % 3], i == 11 ? "]" : "");
+    PUT("%s%.9g%s", i ? " " : " \"point3 portal\" [", (double)d->portal[i / 3][i % 3],
+        i == 11 ? "]" : "");
   PUT("\nAttributeEnd\n");
   return true;
 }
 
-/* ---- the whole --------------------------------------------------------------------------------------------------- */
+/* ---- the whole
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static bool put_groups(vlExport *x) {
   const vlScene *s = x->scene;
   for (size_t g = 0; g < s->groups.count; g++) {
     PUT("ObjectBegin \"object%zu\"\n", g + 1);
     for (size_t i = 0; i < s->shapes.count; i++)
-      if (s->shapes.items[i].group.index == g + 1 && !vl_pbrt_shape(x, i)) return false;
+      if (s->shapes.items[i].group.index == g + 1 && !vl_pbrt_shape(x, i))
+        return false;
     PUT("ObjectEnd\n");
   }
   for (size_t i = 0; i < s->instances.count; i++) {
     const vlSceneInstance *instance = &s->instances.items[i];
-    if (instance->hidden) continue;
-    if (instance->keys) vl_export_lose(x, "instances that move: as they stand at first");
+    if (instance->hidden)
+      continue;
+    if (instance->keys)
+      vl_export_lose(x, "instances that move: as they stand at first");
     PUT("AttributeBegin\n");
     vl_pbrt_matrix(x, instance->world_from_group);
     PUT("  ObjectInstance \"object%u\"\nAttributeEnd\n", instance->group.index);
@@ -213,27 +256,36 @@ bool vl_export_pbrt(vlExport *x) {
   PUT("# written by velo\n");
   if (s->copyright) { /* one line */
     PUT("# ");
-    for (const char *p = s->copyright; *p; p++) PUT("%c", (unsigned char)*p < ' ' ? ' ' : *p);
+    for (const char *p = s->copyright; *p; p++)
+      PUT("%c", (unsigned char)*p < ' ' ? ' ' : *p);
     PUT("\n");
   }
   vl_export_lose_choices(x);
   if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
     PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);
   for (size_t i = 0; i < s->media.count; i++)
-    if (!vl_pbrt_medium(x, i)) return false;
-  if (s->defs.camera_medium.index) PUT("MediumInterface \"\" \"medium%u\"\n", s->defs.camera_medium.index);
-  if (!put_camera(x)) return false;
+    if (!vl_pbrt_medium(x, i))
+      return false;
+  if (s->defs.camera_medium.index)
+    PUT("MediumInterface \"\" \"medium%u\"\n", s->defs.camera_medium.index);
+  if (!put_camera(x))
+    return false;
   put_sampler(x);
   put_filter(x);
   put_tracer(x);
   PUT("WorldBegin\n");
   for (size_t i = 0; i < s->lights.count; i++)
-    if (!put_light(x, &s->lights.items[i])) return false;
+    if (!put_light(x, &s->lights.items[i]))
+      return false;
   for (size_t i = 0; i < s->materials.count; i++)
-    if (!vl_pbrt_material(x, (uint32_t)i + 1)) return false;
+    if (!vl_pbrt_material(x, (uint32_t)i + 1))
+      return false;
   for (size_t i = 0; i < s->shapes.count; i++)
-    if (!s->shapes.items[i].group.index && !vl_pbrt_shape(x, i)) return false;
-  if (!put_groups(x)) return false;
-  if (x->text.full) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    if (!s->shapes.items[i].group.index && !vl_pbrt_shape(x, i))
+      return false;
+  if (!put_groups(x))
+    return false;
+  if (x->text.full)
+    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   return vl_export_main(x, x->text.data.items, x->text.data.count);
 }

@@ -1,4 +1,5 @@
-/* export/pbrt/row.c: writes the members of a def as parameters of pbrt's language, by the row of its kind. */
+/* export/pbrt/row.c: writes the members of a def as parameters of pbrt's language, by the row
+ * of its kind. */
 
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
@@ -11,42 +12,59 @@ void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
   const void *at = (const char *)def + p->offset;
   const float *v = at;
   switch (p->type) {
-    case VL_PARAMETER_BOOL: PUT(" \"bool %s\" %s", p->name, *(const bool *)at ? "true" : "false"); break;
-    case VL_PARAMETER_COUNT: PUT(" \"integer %s\" [%u]", p->name, *(const uint32_t *)at); break;
+    case VL_PARAMETER_BOOL:
+      PUT(" \"bool %s\" %s", p->name, *(const bool *)at ? "true" : "false");
+      break;
+    case VL_PARAMETER_COUNT:
+      PUT(" \"integer %s\" [%u]", p->name, *(const uint32_t *)at);
+      break;
     case VL_PARAMETER_FLOAT:
       PUT(p->factor != 0 ? " \"float %s\" [%.17g]" : " \"float %s\" [%.9g]", p->name,
           in_files(p, (double)*(const float *)at));
       break;
-    case VL_PARAMETER_DOUBLE: PUT(" \"float %s\" [%.17g]", p->name, in_files(p, *(const double *)at)); break;
+    case VL_PARAMETER_DOUBLE:
+      PUT(" \"float %s\" [%.17g]", p->name, in_files(p, *(const double *)at));
+      break;
     case VL_PARAMETER_FLOAT3:
       PUT(" \"point3 %s\" [%.9g %.9g %.9g]", p->name, (double)v[0], (double)v[1], (double)v[2]);
       break;
     case VL_PARAMETER_DOUBLE3: {
       const double *d = at;
-      PUT(" \"%s %s\" [%.17g %.17g %.17g]", p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3", p->name, d[0], d[1],
-          d[2]);
+      PUT(" \"%s %s\" [%.17g %.17g %.17g]",
+          p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3", p->name, d[0], d[1], d[2]);
       break;
     }
-    case VL_PARAMETER_CHOICE: PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]); break;
-    case VL_PARAMETER_STRING:
-      if (*(const char *const *)at) PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at);
+    case VL_PARAMETER_CHOICE:
+      PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]);
       break;
-    case VL_PARAMETER_SPECTRUM: vl_pbrt_spectrum(x, p->name, at); break;
+    case VL_PARAMETER_STRING:
+      if (*(const char *const *)at)
+        PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at);
+      break;
+    case VL_PARAMETER_SPECTRUM:
+      vl_pbrt_spectrum(x, p->name, at);
+      break;
     case VL_PARAMETER_FILE:
     case VL_PARAMETER_FLOAT_INPUT:
     case VL_PARAMETER_SPECTRUM_INPUT:
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK: break;
+    case VL_PARAMETER_BLOCK:
+      break;
   }
 }
 
-void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip) {
+void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all,
+                 const char *skip) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && vl_text_is(p->name, skip))) continue;
+    if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && vl_text_is(p->name, skip)))
+      continue;
     bool is_default = vl_parameter_is_default(p, def, false);
-    if (p->flags & VL_PARAMETER_UNSET ? is_default : is_default && !all && !(p->flags & VL_PARAMETER_RGB)) continue;
-    if (vl_pbrt_knows(x, row, p)) vl_pbrt_parameter(x, p, def);
+    if (p->flags & VL_PARAMETER_UNSET ? is_default
+                                      : is_default && !all && !(p->flags & VL_PARAMETER_RGB))
+      continue;
+    if (vl_pbrt_knows(x, row, p))
+      vl_pbrt_parameter(x, p, def);
   }
 }

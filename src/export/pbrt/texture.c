@@ -1,5 +1,5 @@
-/* export/pbrt/texture.c: textures as pbrt's. An image of which one channel is used, or that is tinted, is written as a
- * new image (EXR, which does not round the values). */
+/* export/pbrt/texture.c: textures as pbrt's. An image of which one channel is used, or that is
+ * tinted, is written as a new image (EXR, which does not round the values). */
 #include <math.h>
 #include <stdio.h>
 
@@ -13,17 +13,19 @@ static vlExportImage *find_image(vlExport *x, const vlTextureDef *t, uint32_t va
   const void *data = t->data ? t->data : (const void *)t->image;
   for (size_t i = 0; i < x->images.count; i++) {
     vlExportImage *p = &x->images.items[i];
-    if (p->variant == variant && p->data == data && (data || (p->path && t->path && vl_text_is(p->path, t->path))))
+    if (p->variant == variant && p->data == data &&
+        (data || (p->path && t->path && vl_text_is(p->path, t->path))))
       return p;
   }
   return NULL;
 }
 
-static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes, size_t size,
-                        const char *suffix, char name[300]) {
+static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes,
+                        size_t size, const char *suffix, char name[300]) {
   snprintf(name, 300, "%.200s-%zu%s", x->stem, x->images.count, suffix);
   vlExportImage *slot = VL_PUSH(x->context, &x->images);
-  if (!slot) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  if (!slot)
+    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   const void *data = t->data ? t->data : (const void *)t->image;
   *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
   bool fine = vl_export_data(x, name, bytes, size);
@@ -35,29 +37,39 @@ static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, co
 static bool is_name_for_pbrt(const char *name) {
   static const char *const known[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
   for (size_t i = 0; i < VL_LENGTH(known); i++)
-    if (vl_ends_with(name, known[i])) return true;
+    if (vl_ends_with(name, known[i]))
+      return true;
   return false;
 }
 
 static bool fits_pbrt(const vlImage *image, vlPbrtFile kind, const char *name) {
   uint32_t channel[4], have = vl_image_color(image, channel);
-  if (!is_name_for_pbrt(name)) return false;
-  if (have >= 3 || kind == VL_PBRT_COLORS) return have >= 3;
-  bool drops_alpha = !vl_ends_with(name, ".exr") && !vl_ends_with(name, ".pfm"); /* of images with Y and A */
+  if (!is_name_for_pbrt(name))
+    return false;
+  if (have >= 3 || kind == VL_PBRT_COLORS)
+    return have >= 3;
+  bool drops_alpha =
+      !vl_ends_with(name, ".exr") && !vl_ends_with(name, ".pfm"); /* of images with Y and A */
   return image->channels == 1 || (have && drops_alpha);
 }
 
-/* Encodes an image that pbrt would refuse as an EXR of linear R, G and B. *bytes stays null when it would not. */
-static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const char *name, char **bytes, size_t *size) {
+/* Encodes an image that pbrt would refuse as an EXR of linear R, G and B. *bytes stays null
+ * when it would not. */
+static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const char *name,
+                   char **bytes, size_t *size) {
   vlImage *decoded = t->image ? NULL : vl_export_decode(x, t), *rgb = NULL;
   const vlImage *image = t->image ? t->image : decoded;
   bool fine = image != NULL;
   if (fine && !fits_pbrt(image, kind, name)) {
-    uint32_t channel[4] = {0}, have = vl_image_color(image, channel); /* else the first channel, whatever it is */
+    uint32_t channel[4] = {0},
+             have = vl_image_color(image, channel); /* else the first channel, whatever it is */
     vlImageDef def = vl_default_image_def(image->width, image->height, 3);
-    if (have < 3) channel[1] = channel[2] = channel[0];
-    if (decoded && t->encoding_given) decoded->encoding = t->encoding;
-    fine = vl_image_create(x->context, &def, &rgb) == VL_OK || vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    if (have < 3)
+      channel[1] = channel[2] = channel[0];
+    if (decoded && t->encoding_given)
+      decoded->encoding = t->encoding;
+    fine = vl_image_create(x->context, &def, &rgb) == VL_OK ||
+           vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
     for (uint32_t y = 0; fine && y < image->height; y++)
       vl_image_row_to_float(image, y, channel, 3, vl_image_row(rgb, y));
     fine = fine && vl_export_pack(x, rgb, ".exr", bytes, size);
@@ -68,7 +80,8 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
 }
 
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
-  const uint32_t variant = (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
+  const uint32_t variant =
+      (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
   vlExportImage *known = find_image(x, t, variant);
   if (known) {
     memcpy(name, known->name, sizeof known->name);
@@ -96,21 +109,26 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
   return fine;
 }
 
-/* ---- worked images --------------------------------------------------------------------------------------------- */
+/* ---- worked images
+ * ---------------------------------------------------------------------------------------------
+ */
 
 /* How the values of an image are changed. */
 typedef struct Change {
   bool squared;
-  float turned_back;  /* share of the light that a coat reflects back internally and that is compensated; 0: none */
+  float turned_back;  /* share of the light that a coat reflects back internally and that is
+                         compensated; 0: none */
   float raised;       /* share of white in the colour */
   const float *metal; /* the table of make_metal_table; null: none */
-  float lost;         /* metal: share of light that a white metal of this roughness loses between microfacets */
+  float lost; /* metal: share of light that a white metal of this roughness loses between
+                 microfacets */
 } Change;
 static const Change as_is = {0};
 
-/* The reflectance of pbrt's conductor whose mean, weighted by the cube of the cosine, is i / METAL_STEPS. Its Fresnel
- * curve rises earlier than Schlick's where it is dark: the weight is a compromise between surfaces seen along the
- * normal, which become darker, and those seen at grazing angles, which stay brighter. */
+/* The reflectance of pbrt's conductor whose mean, weighted by the cube of the cosine, is i /
+ * METAL_STEPS. Its Fresnel curve rises earlier than Schlick's where it is dark: the weight is a
+ * compromise between surfaces seen along the normal, which become darker, and those seen at
+ * grazing angles, which stay brighter. */
 enum { METAL_STEPS = 512 };
 static void make_metal_table(float table[METAL_STEPS + 1]) {
   enum { COSINES = 64 };
@@ -121,7 +139,8 @@ static void make_metal_table(float table[METAL_STEPS + 1]) {
       double mean = 0;
       for (int k = 0; k < COSINES; k++) {
         const double c = (k + 0.5) / COSINES;
-        mean += 4 * c * c * c / COSINES * (double)vl_fresnel_conductor((float)c, 1, (float)(2 * sqrt(r) / sqrt(1 - r)));
+        mean += 4 * c * c * c / COSINES *
+                (double)vl_fresnel_conductor((float)c, 1, (float)(2 * sqrt(r) / sqrt(1 - r)));
       }
       *(mean < (double)i / METAL_STEPS ? &low : &high) = r;
     }
@@ -129,9 +148,10 @@ static void make_metal_table(float table[METAL_STEPS + 1]) {
   }
 }
 
-/* Schlick's metal of the colour c reflects F = c + (1 - c)/21 of diffuse light, with several reflections between its
- * microfacets F E / (1 - F (1 - E)) (principled.md), as one of a brighter colour without them. The mean of Schlick's
- * curve with the weight above is c + (1 - c) / 126. */
+/* Schlick's metal of the colour c reflects F = c + (1 - c)/21 of diffuse light, with several
+ * reflections between its microfacets F E / (1 - F (1 - E)) (principled.md), as one of a
+ * brighter colour without them. The mean of Schlick's curve with the weight above is c + (1 -
+ * c) / 126. */
 static float metal_color(float value, Change c) {
   const float v = value < 1 ? value > 0 ? value : 0 : 1, f = v + (1 - v) / 21;
   const float brighter = (21 * fminf(1, f / (1 - f * c.lost)) - 1) / 20;
@@ -141,7 +161,8 @@ static float metal_color(float value, Change c) {
 }
 
 static float change_color(float value, Change c) {
-  if (c.metal) return metal_color(value, c);
+  if (c.metal)
+    return metal_color(value, c);
   return c.raised + (1 - c.raised) * value / (1 - c.turned_back + value * c.turned_back);
 }
 
@@ -152,10 +173,12 @@ static bool changes_color(Change c) {
 /* Changes an image: one channel as the tracer reads it, or three tinted channels. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
   uint32_t variant = 16 + (change.squared ? 1u : 0u);
-  const float key[12] = {t->tint[0],  t->tint[1],          t->tint[2],       t->tint[3],         t->bias,
-                         t->scale,    (float)t->channel,   (float)t->cutoff, change.turned_back, change.raised,
-                         change.lost, change.metal ? 1 : 0};
-  for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
+  const float key[12] = {t->tint[0],        t->tint[1],       t->tint[2],
+                         t->tint[3],        t->bias,          t->scale,
+                         (float)t->channel, (float)t->cutoff, change.turned_back,
+                         change.raised,     change.lost,      change.metal ? 1 : 0};
+  for (size_t i = 0; i < sizeof key; i++)
+    variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
   vlExportImage *known = find_image(x, t, variant);
   if (known) {
     memcpy(name, known->name, sizeof known->name);
@@ -163,14 +186,17 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   }
   vlImage *image = t->image ? NULL : vl_export_decode(x, t), *made = NULL;
   const vlImage *from = t->image ? t->image : image;
-  if (!from) return false;
+  if (!from)
+    return false;
   uint32_t channel[4], have = vl_image_color(from, channel), per = t->spectrum ? 3 : 1;
   float *row = vl_alloc_array(x->context, from->width, 4 * sizeof *row);
   vlImageDef def = vl_default_image_def(from->width, from->height, per);
   def.type = VL_PIXEL_F32;
   bool fine = row && vl_image_create(x->context, &def, &made) == VL_OK;
-  if (!fine) vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
-  if (fine && t->encoding_given && image) image->encoding = t->encoding;
+  if (!fine)
+    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  if (fine && t->encoding_given && image)
+    image->encoding = t->encoding;
   for (uint32_t y = 0; fine && y < from->height; y++) {
     float *to = vl_image_row(made, y);
     vl_image_row_to_float(from, y, channel, have, row);
@@ -181,19 +207,21 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
                        : have == 2 ? v[1]
                                    : 1.0f};
       if (per == 3) {
-        for (int k = 0; k < 3; k++) to[3 * i + (uint32_t)k] = change_color(rgba[k] * t->tint[k], change);
+        for (int k = 0; k < 3; k++)
+          to[3 * i + (uint32_t)k] = change_color(rgba[k] * t->tint[k], change);
         continue;
       }
-      float value =
-          t->bias + (t->channel < 0 ? (rgba[0] + rgba[1] + rgba[2]) / 3 : rgba[t->channel] * t->tint[t->channel]);
-      if (!isnan(t->cutoff)) value = value >= (float)t->cutoff ? 1.0f : 0.0f;
+      float value = t->bias + (t->channel < 0 ? (rgba[0] + rgba[1] + rgba[2]) / 3
+                                              : rgba[t->channel] * t->tint[t->channel]);
+      if (!isnan(t->cutoff))
+        value = value >= (float)t->cutoff ? 1.0f : 0.0f;
       to[i] = change.squared ? value * value : value;
     }
   }
   char *bytes = NULL;
   size_t size;
-  fine =
-      fine && vl_export_pack(x, made, ".exr", &bytes, &size) && write_image(x, t, variant, bytes, size, ".exr", name);
+  fine = fine && vl_export_pack(x, made, ".exr", &bytes, &size) &&
+         write_image(x, t, variant, bytes, size, ".exr", name);
   vl_free(x->context, bytes);
   vl_free(x->context, row);
   vl_image_destroy(made);
@@ -207,37 +235,49 @@ static void put_mapping(vlExport *x, const vlTextureDef *t) {
   vl_export_st_from_uv(t, m);
   PUT(" \"string mapping\" \"%s\"", names[t->mapping]);
   if (t->mapping == VL_MAPPING_UV) {
-    if (m[1] != 0 || m[3] != 0) vl_export_lose(x, "textures that are turned: only moved and scaled");
-    PUT(" \"float uscale\" [%.9g] \"float vscale\" [%.9g] \"float udelta\" [%.9g] \"float vdelta\" [%.9g]", m[0], m[4],
-        m[2], m[5]);
+    if (m[1] != 0 || m[3] != 0)
+      vl_export_lose(x, "textures that are turned: only moved and scaled");
+    PUT(" \"float uscale\" [%.9g] \"float vscale\" [%.9g] \"float udelta\" [%.9g] \"float "
+        "vdelta\" "
+        "[%.9g]",
+        m[0], m[4], m[2], m[5]);
   }
   if (t->mapping == VL_MAPPING_PLANAR)
-    PUT(" \"vector3 v1\" [%.9g %.9g %.9g] \"vector3 v2\" [%.9g %.9g %.9g] \"float udelta\" [%.9g] \"float vdelta\" "
+    PUT(" \"vector3 v1\" [%.9g %.9g %.9g] \"vector3 v2\" [%.9g %.9g %.9g] \"float udelta\" "
+        "[%.9g] "
+        "\"float vdelta\" "
         "[%.9g]",
-        (double)t->planar_v1[0], (double)t->planar_v1[1], (double)t->planar_v1[2], (double)t->planar_v2[0],
-        (double)t->planar_v2[1], (double)t->planar_v2[2], (double)t->du, (double)t->dv);
-  if (t->uv_set) vl_export_lose(x, "uv sets beyond the first: the first stands in");
+        (double)t->planar_v1[0], (double)t->planar_v1[1], (double)t->planar_v1[2],
+        (double)t->planar_v2[0], (double)t->planar_v2[1], (double)t->planar_v2[2],
+        (double)t->du, (double)t->dv);
+  if (t->uv_set)
+    vl_export_lose(x, "uv sets beyond the first: the first stands in");
 }
 
 static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
-  static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "repeat"}, *const filters[] = {
-                                                                                                     "point",
-                                                                                                     "bilinear",
-                                                                                                     "trilinear",
-                                                                                                     "ewa"};
+  static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "repeat"},
+                           *const filters[] = {"point", "bilinear", "trilinear", "ewa"};
   bool even = t->tint[0] == t->tint[1] && t->tint[1] == t->tint[2];
-  bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
+  bool plain = t->spectrum
+                   ? even
+                   : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
   plain = plain && !changes_color(change);
   char name[300];
-  if (!(plain ? vl_pbrt_image(x, t, VL_PBRT_VALUES, name) : work(x, t, change, name))) return false;
-  if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "images that repeat in a mirror: repeated plainly");
-  if (t->wrap_t_given && t->wrap_t != t->wrap) vl_export_lose(x, "wrap modes of their own for each axis: that of s");
-  if (t->colors) vl_export_lose(x, "colours of vertices: left out");
+  if (!(plain ? vl_pbrt_image(x, t, VL_PBRT_VALUES, name) : work(x, t, change, name)))
+    return false;
+  if (t->wrap == VL_WRAP_MIRROR)
+    vl_export_lose(x, "images that repeat in a mirror: repeated plainly");
+  if (t->wrap_t_given && t->wrap_t != t->wrap)
+    vl_export_lose(x, "wrap modes of their own for each axis: that of s");
+  if (t->colors)
+    vl_export_lose(x, "colours of vertices: left out");
   double scale = (double)t->scale * (plain && t->spectrum ? (double)t->tint[0] : 1);
-  PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name, wraps[t->wrap],
-      filters[t->filter]);
-  if (scale != 1) PUT(" \"float scale\" [%.9g]", change.squared ? scale * scale : scale);
-  if (t->invert) PUT(" \"bool invert\" true");
+  PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name,
+      wraps[t->wrap], filters[t->filter]);
+  if (scale != 1)
+    PUT(" \"float scale\" [%.9g]", change.squared ? scale * scale : scale);
+  if (t->invert)
+    PUT(" \"bool invert\" true");
   if (plain && t->encoding_given) {
     if (t->encoding == VL_ENCODING_GAMMA)
       PUT(" \"string encoding\" \"gamma %.9g\"", (double)t->gamma);
@@ -247,43 +287,55 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
   return true;
 }
 
-/* ---- textures ---------------------------------------------------------------------------------------------------- */
+/* ---- textures
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]);
-static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change, vlPbrtInput *result);
+static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change,
+                          vlPbrtInput *result);
 
 /* Whether the kind or the mapping needs a transform; world_from_texture receives it. */
 static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world_from_texture) {
   bool mapped = vl_row_find(row, "mapping") != NULL, placed = !mapped;
   for (uint32_t i = 0; i < row->parameter_count && !mapped; i++)
-    if (row->parameters[i].offset == offsetof(vlTextureDef, texture_from_world)) mapped = true;
-  if (!mapped) return false;
-  placed = placed || t->mapping != VL_MAPPING_UV || (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3);
+    if (row->parameters[i].offset == offsetof(vlTextureDef, texture_from_world))
+      mapped = true;
+  if (!mapped)
+    return false;
+  placed = placed || t->mapping != VL_MAPPING_UV ||
+           (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3);
   return placed && vl_mat4_inverse(vl_mat4_load(t->texture_from_world), world_from_texture);
 }
 
 /* The parameters of the mapping are left to put_mapping. */
 static vlPbrtWished wish(const void *def, const vlParameter *p) {
-  static const char *const of_mapping[] = {"mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"};
+  static const char *const of_mapping[] = {"mapping", "uscale", "vscale", "udelta",
+                                           "vdelta",  "v1",     "v2"};
   (void)def;
   for (size_t i = 0; i < VL_LENGTH(of_mapping); i++)
-    if (vl_text_is(p->name, of_mapping[i])) return VL_PBRT_NEVER;
+    if (vl_text_is(p->name, of_mapping[i]))
+      return VL_PBRT_NEVER;
   return VL_PBRT_UNLESS_DEFAULT;
 }
 
-/* Writes the texture again for each use; names are numbered in file order. name is empty when there is no texture. */
+/* Writes the texture again for each use; names are numbered in file order. name is empty when
+ * there is no texture. */
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]) {
   const vlTextureDef *t = &x->scene->textures.items[id - 1];
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);
   vlPbrtParameter list[VL_PBRT_PARAMETERS];
   bool image = t->kind == VL_TEXTURE_IMAGE;
-  if (depth > 16) return vl_export_fail(x, VL_ERROR_SCENE, "textures stand in each other too deep");
+  if (depth > 16)
+    return vl_export_fail(x, VL_ERROR_SCENE, "textures stand in each other too deep");
   if (!row->name || (change.squared && !image)) {
-    vl_export_lose(x, row->name ? "squares of computed textures: a value stands in" : "colours of vertices: left out");
+    vl_export_lose(x, row->name ? "squares of computed textures: a value stands in"
+                                : "colours of vertices: left out");
     name[0] = 0;
     return true;
   }
-  if (!image && !vl_pbrt_prepare(x, row, t, t->spectrum, wish, depth + 1, list)) return false;
+  if (!image && !vl_pbrt_prepare(x, row, t, t->spectrum, wish, depth + 1, list))
+    return false;
   snprintf(name, 64, "texture%u-%zu", id, x->text.data.count);
   vlMat4 world_from_texture;
   bool placed = is_placed(t, row, &world_from_texture);
@@ -292,43 +344,59 @@ static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char
     vl_pbrt_matrix(x, world_from_texture.m);
   }
   PUT("Texture \"%s\" \"%s\" \"%s\"", name, t->spectrum ? "spectrum" : "float", row->name);
-  if (image && !put_image(x, t, change)) return false;
-  if (!image) vl_pbrt_put(x, row, t, t->spectrum, list);
+  if (image && !put_image(x, t, change))
+    return false;
+  if (!image)
+    vl_pbrt_put(x, row, t, t->spectrum, list);
   bool solid = t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3;
-  if (vl_row_find(row, "mapping") && !solid) put_mapping(x, t);
+  if (vl_row_find(row, "mapping") && !solid)
+    put_mapping(x, t);
   PUT(placed ? "\nAttributeEnd\n" : "\n");
   return true;
 }
 
-bool vl_pbrt_inner_number(vlExport *x, const vlFloatInput *input, int depth, vlPbrtInput *result) {
+bool vl_pbrt_inner_number(vlExport *x, const vlFloatInput *input, int depth,
+                          vlPbrtInput *result) {
   *result = (vlPbrtInput){.number = input->value};
-  return !input->texture.index || put_texture(x, input->texture.index, as_is, depth, result->texture);
+  return !input->texture.index ||
+         put_texture(x, input->texture.index, as_is, depth, result->texture);
 }
 
-bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, vlPbrtInput *result) {
-  if (depth == 0) return prepare_color(x, input, as_is, result);
+bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth,
+                         vlPbrtInput *result) {
+  if (depth == 0)
+    return prepare_color(x, input, as_is, result);
   *result = (vlPbrtInput){.spectrum = input->value};
-  return !input->texture.index || put_texture(x, input->texture.index, as_is, depth, result->texture);
+  return !input->texture.index ||
+         put_texture(x, input->texture.index, as_is, depth, result->texture);
 }
 
-/* ---- inputs ------------------------------------------------------------------------------------------------------ */
+/* ---- inputs
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result) {
+bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared,
+                            vlPbrtInput *result) {
   *result = (vlPbrtInput){0};
-  if (input->texture.index && !put_texture(x, input->texture.index, (Change){.squared = squared}, 0, result->texture))
+  if (input->texture.index &&
+      !put_texture(x, input->texture.index, (Change){.squared = squared}, 0, result->texture))
     return false;
   float v = result->texture[0] ? 0 : vl_export_number(x, input);
   result->number = squared ? v * v : v;
   return true;
 }
 
-static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change, vlPbrtInput *result) {
+static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change,
+                          vlPbrtInput *result) {
   float rgb[3];
   *result = (vlPbrtInput){.spectrum = input->value};
-  if (input->texture.index && !put_texture(x, input->texture.index, change, 0, result->texture)) return false;
-  if (result->texture[0] || (!input->texture.index && !changes_color(change))) return true;
+  if (input->texture.index && !put_texture(x, input->texture.index, change, 0, result->texture))
+    return false;
+  if (result->texture[0] || (!input->texture.index && !changes_color(change)))
+    return true;
   vl_export_rgb(x, input, rgb);
-  for (int i = 0; i < 3; i++) rgb[i] = change_color(rgb[i], change);
+  for (int i = 0; i < 3; i++)
+    rgb[i] = change_color(rgb[i], change);
   result->spectrum = vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]);
   return true;
 }
@@ -337,9 +405,11 @@ bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInpu
   return prepare_color(x, input, as_is, result);
 }
 
-/* A coat reflects a share G of the light from a diffuse base back to it. A base of colour c then appears as c (1 - G) /
- * (1 - c G). With F the mean Fresnel reflectance from outside, 1 - G = (1 - F) / eta^2. */
-bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result) {
+/* A coat reflects a share G of the light from a diffuse base back to it. A base of colour c
+ * then appears as c (1 - G) / (1 - c G). With F the mean Fresnel reflectance from outside, 1 -
+ * G = (1 - F) / eta^2. */
+bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta,
+                                vlPbrtInput *result) {
   enum { STEPS = 64 };
   double f = 0;
   for (int i = 0; i < STEPS; i++) {
@@ -347,18 +417,22 @@ bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, doubl
     double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
     f += 2 * c / STEPS * 0.5 * (s * s + p * p);
   }
-  return prepare_color(x, input, (Change){.turned_back = (float)(1 - (1 - f) / (eta * eta))}, result);
+  return prepare_color(x, input, (Change){.turned_back = (float)(1 - (1 - f) / (eta * eta))},
+                       result);
 }
 
-bool vl_pbrt_prepare_raised(vlExport *x, const vlSpectrumInput *input, float white, vlPbrtInput *result) {
+bool vl_pbrt_prepare_raised(vlExport *x, const vlSpectrumInput *input, float white,
+                            vlPbrtInput *result) {
   return prepare_color(x, input, (Change){.raised = white}, result);
 }
 
-bool vl_pbrt_prepare_metal(vlExport *x, const vlSpectrumInput *input, float alpha, vlPbrtInput *result) {
+bool vl_pbrt_prepare_metal(vlExport *x, const vlSpectrumInput *input, float alpha,
+                           vlPbrtInput *result) {
   const double a = alpha < 1 ? (double)alpha : 1;
   float table[METAL_STEPS + 1];
   make_metal_table(table);
-  /* 1 - E, averaged over all directions: a fit, within 0.0025, to the integral over GGX's visible normals */
+  /* 1 - E, averaged over all directions: a fit, within 0.0025, to the integral over GGX's
+   * visible normals */
   const double lost = a * (0.138 + a * (1.784 + a * (-2.104 + 0.774 * a)));
   return prepare_color(x, input, (Change){.metal = table, .lost = (float)lost}, result);
 }

@@ -1,5 +1,5 @@
-/* image/denoise/denoise.c: vl_denoise: copies an image's channels to planes, fits all tiles, and makes the result
- * an image. docs/denoising.md describes the method. */
+/* image/denoise/denoise.c: vl_denoise: copies an image's channels to planes, fits all tiles,
+ * and makes the result an image. docs/denoising.md describes the method. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -28,22 +28,31 @@ vlDenoiseDef vl_default_denoise_def(void) {
   return (vlDenoiseDef){.cookie = VL_COOKIE_DENOISE};
 }
 
-/* ---- channels ---------------------------------------------------------------------------------------------------- */
+/* ---- channels
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChannels *to, vlError *error) {
-  static const char *const colors[COLOR] = {"R", "G", "B"}, *const sigmas[COLOR] = {"error.R", "error.G", "error.B"};
-  static const char *const independent[COLOR] = {"feature.error.R", "feature.error.G", "feature.error.B"};
+static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChannels *to,
+                              vlError *error) {
+  static const char *const colors[COLOR] = {"R", "G", "B"}, *const sigmas[COLOR] = {"error.R",
+                                                                                    "error.G",
+                                                                                    "error.B"};
+  static const char *const independent[COLOR] = {"feature.error.R", "feature.error.G",
+                                                 "feature.error.B"};
   static const char *const features[VL_DENOISE_FEATURES] = {
       "feature.albedo.R", "feature.albedo.G", "feature.albedo.B",   "feature.N.X",
       "feature.N.Y",      "feature.N.Z",      "feature.disparity.Y"};
   for (int c = 0; c < COLOR; c++) {
     to->color[c] = vl_image_find_channel(image, colors[c]);
     to->error[c] = vl_image_find_channel(image, independent[c]);
-    if (to->error[c] < 0) to->error[c] = vl_image_find_channel(image, sigmas[c]);
-    if (to->color[c] < 0) return vl_fail(error, VL_ERROR_SCENE, "denoise: the image has no channel %s", colors[c]);
+    if (to->error[c] < 0)
+      to->error[c] = vl_image_find_channel(image, sigmas[c]);
+    if (to->color[c] < 0)
+      return vl_fail(error, VL_ERROR_SCENE, "denoise: the image has no channel %s", colors[c]);
     if (to->error[c] < 0 && errors)
       return vl_fail(error, VL_ERROR_SCENE,
-                     "denoise: the image has no channel %s, its standard error (velo render --channels error)",
+                     "denoise: the image has no channel %s, its standard error (velo render "
+                     "--channels error)",
                      sigmas[c]);
   }
   to->alpha = vl_image_find_channel(image, "A");
@@ -55,7 +64,9 @@ static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChanne
   return VL_OK;
 }
 
-/* ---- planes ------------------------------------------------------------------------------------------------------ */
+/* ---- planes
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static uint32_t tiles_across(const vlDenoisePlanes *p) {
   return (p->width + VL_DENOISE_TILE_X - 1) / VL_DENOISE_TILE_X;
@@ -73,7 +84,8 @@ static vlResult make_planes(Denoise *d) {
   p->stride = (ptrdiff_t)stride;
   d->memory = vl_alloc_zero(d->context, size, PLANES * sizeof(float));
   d->scratch = vl_alloc_array(d->context, vl_context_threads(d->context), sizeof *d->scratch);
-  if (!d->memory || !d->scratch) return VL_ERROR_MEMORY;
+  if (!d->memory || !d->scratch)
+    return VL_ERROR_MEMORY;
   float *at = d->memory + VL_DENOISE_BORDER * stride + VL_DENOISE_BORDER;
   for (int c = 0; c < COLOR; c++) {
     p->color[c] = at;
@@ -99,14 +111,15 @@ static ptrdiff_t place(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
   return (ptrdiff_t)y * p->stride + (ptrdiff_t)x;
 }
 
-/* The largest disparity in the image; 1 without features. read_row raises disparities below a thousandth of it to that
- * value, also the 0 of pixels that hit nothing. */
+/* The largest disparity in the image; 1 without features. read_row raises disparities below a
+ * thousandth of it to that value, also the 0 of pixels that hit nothing. */
 static float find_nearest(const Denoise *d) {
   float most = 0.0f;
   for (uint32_t y = 0; y < d->planes.height && d->channels.features; y++)
     for (uint32_t x = 0; x < d->planes.width; x++) {
       float v = get(d, x, y, d->channels.feature[VL_DENOISE_FEATURES - 1]);
-      if (isfinite(v) && v > most) most = v;
+      if (isfinite(v) && v > most)
+        most = v;
     }
   return most > 0.0f ? most : 1.0f;
 }
@@ -121,7 +134,8 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
     ptrdiff_t at = place(p, x, y);
     for (int k = 0; k < VL_DENOISE_FEATURES && from->features; k++) {
       float v = get(d, x, y, from->feature[k]);
-      if (!isfinite(v)) v = 0.0f;
+      if (!isfinite(v))
+        v = 0.0f;
       p->feature[k][at] = k < VL_DENOISE_FEATURES - 1 ? v : vl_ln(v > farthest ? v : farthest);
     }
     bool valid = true;
@@ -132,15 +146,17 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
       p->variance[c][at] = e * e;
     }
     p->valid[at] = valid ? 1.0f : 0.0f;
-    for (int c = 0; c < COLOR && !valid; c++) p->color[c][at] = p->variance[c][at] = 0.0f;
-    if (!valid) atomic_fetch_add_explicit(&d->not_finite, 1, memory_order_relaxed);
+    for (int c = 0; c < COLOR && !valid; c++)
+      p->color[c][at] = p->variance[c][at] = 0.0f;
+    if (!valid)
+      atomic_fetch_add_explicit(&d->not_finite, 1, memory_order_relaxed);
   }
 }
 
-/* Mean and variance of the valid pixels in the smallest square around `at` that contains a valid pixel; 0 if the window
- * contains none. */
-static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], ptrdiff_t at, float mean[COLOR],
-                          float variance[COLOR]) {
+/* Mean and variance of the valid pixels in the smallest square around `at` that contains a
+ * valid pixel; 0 if the window contains none. */
+static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], ptrdiff_t at,
+                          float mean[COLOR], float variance[COLOR]) {
   float sums[COLOR] = {0}, squares[COLOR] = {0}, count = 0.0f;
   for (int reach = 1; reach <= VL_DENOISE_RADIUS && count == 0.0f; reach++)
     for (int dy = -reach; dy <= reach; dy++)
@@ -159,7 +175,8 @@ static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], p
   }
 }
 
-/* Replaces the values of a pixel that is not finite, so that patches that contain it can be compared. */
+/* Replaces the values of a pixel that is not finite, so that patches that contain it can be
+ * compared. */
 static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
   float mean[COLOR], variance[COLOR];
   nearest_valid(p, p->color, at, mean, variance);
@@ -173,24 +190,29 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const Denoise *d = user;
   for (uint32_t x = 0; x < d->planes.width; x++)
-    if (d->planes.valid[place(&d->planes, x, y)] == 0.0f) fill(&d->planes, place(&d->planes, x, y));
+    if (d->planes.valid[place(&d->planes, x, y)] == 0.0f)
+      fill(&d->planes, place(&d->planes, x, y));
 }
 
-/* ---- outliers ---------------------------------------------------------------------------------------------------- */
+/* ---- outliers
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static float mean3(float *const plane[COLOR], ptrdiff_t at) {
   return (plane[0][at] + plane[1][at] + plane[2][at]) * (1.0f / 3.0f);
 }
 
-/* The third largest mean of R, G and B among the 24 pixels of the ring at a distance of 3 around a pixel (7 x 7).
- * Nearer pixels may have counted the same samples as the pixel itself. */
+/* The third largest mean of R, G and B among the 24 pixels of the ring at a distance of 3
+ * around a pixel (7 x 7). Nearer pixels may have counted the same samples as the pixel itself.
+ */
 static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
   enum { REACH = 3, RANK = 3 };
   float top[RANK] = {0};
   for (int dy = -REACH; dy <= REACH; dy++)
     for (int dx = -REACH; dx <= REACH; dx += dy == -REACH || dy == REACH ? 1 : 2 * REACH) {
       ptrdiff_t q = at + dy * p->stride + dx;
-      if (p->valid[q] == 0.0f) continue;
+      if (p->valid[q] == 0.0f)
+        continue;
       float v = mean3(p->color, q);
       for (int k = 0; k < RANK; k++)
         if (v > top[k]) {
@@ -202,9 +224,10 @@ static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
   return top[RANK - 1];
 }
 
-/* Finds outliers: pixels whose value comes from few samples (the standard error is above half of the value), and whose
- * light the fit would spread over the whole window. Their factor scales them to at most 4 times the third largest
- * neighbour. Factors are stored in the plane result[0], since neighbours still need the original values. */
+/* Finds outliers: pixels whose value comes from few samples (the standard error is above half
+ * of the value), and whose light the fit would spread over the whole window. Their factor
+ * scales them to at most 4 times the third largest neighbour. Factors are stored in the plane
+ * result[0], since neighbours still need the original values. */
 static void cap_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
@@ -213,7 +236,8 @@ static void cap_row(void *user, uint32_t y, uint32_t worker) {
     float v = mean3(p->color, at), factor = 1.0f;
     if (v > 0.0f && mean3(p->variance, at) > 0.25f * v * v) {
       float most = 4.0f * third_neighbour(p, at);
-      if (most < v) factor = most / v;
+      if (most < v)
+        factor = most / v;
     }
     p->result[0][at] = factor;
   }
@@ -232,7 +256,9 @@ static void scale_row(void *user, uint32_t y, uint32_t worker) {
   }
 }
 
-/* ---- the border -------------------------------------------------------------------------------------------------- */
+/* ---- the border
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static ptrdiff_t mirror(ptrdiff_t i, uint32_t size) {
   ptrdiff_t last = (ptrdiff_t)size - 1;
@@ -240,10 +266,11 @@ static ptrdiff_t mirror(ptrdiff_t i, uint32_t size) {
   return i < 0 ? 0 : i > last ? last : i;
 }
 
-/* Mirrors the image into the border, as far as patches in windows reach. Mirrored pixels are used to compare patches.
- * They are not valid and so have no weight in the fit. */
+/* Mirrors the image into the border, as far as patches in windows reach. Mirrored pixels are
+ * used to compare patches. They are not valid and so have no weight in the fit. */
 static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
-  const ptrdiff_t reach = VL_DENOISE_RADIUS + VL_DENOISE_PATCH, width = p->width, height = p->height;
+  const ptrdiff_t reach = VL_DENOISE_RADIUS + VL_DENOISE_PATCH, width = p->width,
+                  height = p->height;
   for (ptrdiff_t y = 0; y < height; y++) {
     float *row = plane + y * p->stride;
     for (ptrdiff_t k = 1; k <= reach; k++) {
@@ -253,13 +280,17 @@ static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
   }
   size_t bytes = (size_t)(width + 2 * reach) * sizeof(float);
   for (ptrdiff_t k = 1; k <= reach; k++) {
-    memcpy(plane - k * p->stride - reach, plane + mirror(-k, p->height) * p->stride - reach, bytes);
+    memcpy(plane - k * p->stride - reach, plane + mirror(-k, p->height) * p->stride - reach,
+           bytes);
     ptrdiff_t below = height - 1 + k;
-    memcpy(plane + below * p->stride - reach, plane + mirror(below, p->height) * p->stride - reach, bytes);
+    memcpy(plane + below * p->stride - reach,
+           plane + mirror(below, p->height) * p->stride - reach, bytes);
   }
 }
 
-/* ---- the fit ----------------------------------------------------------------------------------------------------- */
+/* ---- the fit
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static void fit_tile(void *user, uint32_t index, uint32_t worker) {
   const Denoise *d = user;
@@ -268,17 +299,19 @@ static void fit_tile(void *user, uint32_t index, uint32_t worker) {
                    index / across * VL_DENOISE_TILE_Y);
 }
 
-/* Writes a row of the result. A value is at least 0, or at least the input's value if that is negative. A pixel that is
- * not finite becomes the mean of the nearest denoised pixels. */
+/* Writes a row of the result. A value is at least 0, or at least the input's value if that is
+ * negative. A pixel that is not finite becomes the mean of the nearest denoised pixels. */
 static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
   const vlDenoisePlanes *p = &d->planes;
   float *to = vl_image_row(clean, y), filled[COLOR], variance[COLOR];
   for (uint32_t x = 0; x < p->width; x++, to += clean->channels) {
     ptrdiff_t at = place(p, x, y);
     bool valid = p->valid[at] != 0.0f;
-    if (!valid) nearest_valid(p, p->result, at, filled, variance);
+    if (!valid)
+      nearest_valid(p, p->result, at, filled, variance);
     for (int c = 0; c < COLOR; c++) {
-      float own = p->color[c][at], least = own < 0.0f ? own : 0.0f, v = valid ? p->result[c][at] : filled[c];
+      float own = p->color[c][at], least = own < 0.0f ? own : 0.0f,
+            v = valid ? p->result[c][at] : filled[c];
       to[c] = v > least ? v : least;
     }
   }
@@ -294,7 +327,8 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     vl_parallel_for(context, p->height, read_row, d);
     if (d->not_finite == (uint64_t)p->width * p->height)
       result = vl_fail(error, VL_ERROR_SCENE,
-                       "denoise: no pixel has a finite value and standard error; at least 2 samples per pixel are "
+                       "denoise: no pixel has a finite value and standard error; at least 2 "
+                       "samples per pixel are "
                        "needed");
   } else {
     vl_fail_memory(error);
@@ -308,14 +342,17 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
       mirror_plane(p, p->variance[c]);
     }
     vl_parallel_for(context, tiles_across(p) * tiles_down(p), fit_tile, d);
-    for (uint32_t y = 0; y < p->height; y++) write_row(d, y, clean);
+    for (uint32_t y = 0; y < p->height; y++)
+      write_row(d, y, clean);
   }
   vl_free(context, d->memory);
   vl_free(context, d->scratch);
   return result;
 }
 
-/* ---- the call ---------------------------------------------------------------------------------------------------- */
+/* ---- the call
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* Makes the image for the result, with the alpha and the attributes of the input. */
 static vlResult make_clean(const vlImage *image, int alpha, vlImage **clean) {
@@ -323,30 +360,37 @@ static vlResult make_clean(const vlImage *image, int alpha, vlImage **clean) {
   vlResult result = vl_image_create(image->context, &def, clean);
   float *to = result == VL_OK ? vl_image_pixels(*clean) : NULL;
   for (uint32_t y = 0; y < def.height && to && alpha >= 0; y++)
-    for (uint32_t x = 0; x < def.width; x++, to += 4) to[3] = vl_image_get(image, x, y, (uint32_t)alpha);
+    for (uint32_t x = 0; x < def.width; x++, to += 4)
+      to[3] = vl_image_get(image, x, y, (uint32_t)alpha);
   for (uint32_t i = 0; i < vl_image_attribute_count(image) && result == VL_OK; i++) {
     vlAttribute a;
     result = vl_image_attribute(image, i, &a);
-    if (result == VL_OK) result = vl_image_set_attribute(*clean, &a);
+    if (result == VL_OK)
+      result = vl_image_set_attribute(*clean, &a);
   }
   return result;
 }
 
-vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **clean, vlDenoiseStats *stats,
-                    vlError *error) {
+vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **clean,
+                    vlDenoiseStats *stats, vlError *error) {
   double start = vl_seconds();
   vl_error_clear(error);
-  if (clean) *clean = NULL;
+  if (clean)
+    *clean = NULL;
   vlDenoiseDef standard = vl_default_denoise_def();
-  if (!def) def = &standard;
+  if (!def)
+    def = &standard;
   if (!image || !clean || !image->pixels)
     return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: image, its pixels or clean is null");
   if (def->cookie != VL_COOKIE_DENOISE || (unsigned)def->denoiser > VL_DENOISER_OIDN)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "denoise: def.cookie or def.denoiser is not that of a default def of this version");
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "denoise: def.cookie or def.denoiser is not that of a default def of this version");
   Denoise work = {.image = image, .context = image->context};
-  vlResult result = find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
-  if (result != VL_OK) return result;
+  vlResult result =
+      find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
+  if (result != VL_OK)
+    return result;
   result = make_clean(image, work.channels.alpha, clean);
   if (result != VL_OK)
     vl_fail_memory(error);
@@ -354,8 +398,10 @@ vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **cle
     result = vl_denoise_oidn(image, &work.channels, def->library, *clean, error);
   else
     result = denoise(&work, *clean, error);
-  if (stats) *stats = (vlDenoiseStats){work.not_finite, work.channels.features, vl_seconds() - start};
-  if (result == VL_OK) return VL_OK;
+  if (stats)
+    *stats = (vlDenoiseStats){work.not_finite, work.channels.features, vl_seconds() - start};
+  if (result == VL_OK)
+    return VL_OK;
   vl_image_destroy(*clean);
   *clean = NULL;
   return result;

@@ -1,5 +1,5 @@
-/* image/denoise/denoise.h: the denoiser's planes and kernels; private to the denoiser. docs/denoising.md describes the
- * method. */
+/* image/denoise/denoise.h: the denoiser's planes and kernels; private to the denoiser.
+ * docs/denoising.md describes the method. */
 #ifndef IMAGE_DENOISE_DENOISE_H
 #define IMAGE_DENOISE_DENOISE_H
 
@@ -7,8 +7,9 @@
 #include "image/image.h"
 #include "velo/denoise.h"
 
-/* A tile of pixels is the unit of work. The neighbours of a pixel lie in a window of (2 VL_DENOISE_RADIUS + 1)^2
- * pixels. Two pixels are compared by patches of (2 VL_DENOISE_PATCH + 1)^2 pixels around them. */
+/* A tile of pixels is the unit of work. The neighbours of a pixel lie in a window of (2
+ * VL_DENOISE_RADIUS + 1)^2 pixels. Two pixels are compared by patches of (2 VL_DENOISE_PATCH +
+ * 1)^2 pixels around them. */
 enum {
   VL_DENOISE_TILE_X = 64,
   VL_DENOISE_TILE_Y = 16,
@@ -17,12 +18,15 @@ enum {
   VL_DENOISE_PATCH = 2,
   VL_DENOISE_BORDER = 16, /* width of the planes' border in pixels; at least radius + patch */
   VL_DENOISE_WINDOW = 2 * VL_DENOISE_RADIUS + 1,
-  VL_DENOISE_FEATURES = 7,                          /* albedo, normal, logarithm of the disparity */
-  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 + 1 /* slopes of the features, slopes of x and y, and the constant */
+  VL_DENOISE_FEATURES = 7, /* albedo, normal, logarithm of the disparity */
+  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 +
+                        1 /* slopes of the features, slopes of x and y, and the constant */
 };
-_Static_assert((int)VL_DENOISE_BORDER >= (int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH, "windows end in the border");
+_Static_assert((int)VL_DENOISE_BORDER >= (int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH,
+               "windows end in the border");
 
-/* Planes with a border on all sides. The pointers are to pixel (0, 0); rows are `stride` floats apart. */
+/* Planes with a border on all sides. The pointers are to pixel (0, 0); rows are `stride` floats
+ * apart. */
 typedef struct vlDenoisePlanes {
   uint32_t width, height;
   ptrdiff_t stride;
@@ -41,7 +45,8 @@ typedef struct vlDenoiseScratch {
 
 typedef struct vlDenoiseKernels {
   /* Fits the pixels of the tile whose first pixel is (x, y). */
-  void (*tile)(const vlDenoisePlanes *planes, vlDenoiseScratch *scratch, uint32_t x, uint32_t y);
+  void (*tile)(const vlDenoisePlanes *planes, vlDenoiseScratch *scratch, uint32_t x,
+               uint32_t y);
 } vlDenoiseKernels;
 VL_KERNEL_TABLE(vlDenoiseKernels, vl_denoise)
 
@@ -51,9 +56,9 @@ typedef struct vlDenoiseChannels {
   bool features; /* the image has all feature channels */
 } vlDenoiseChannels;
 
-/* Denoises the image's colours by Intel Open Image Denoise (oidn.c). The result goes to `clean`, a float image of
- * `channels` channels. Errors: MISSING, UNSUPPORTED, MEMORY. */
-vlResult vl_denoise_oidn(const vlImage *image, const vlDenoiseChannels *channels, const char *library, vlImage *clean,
-                         vlError *error);
+/* Denoises the image's colours by Intel Open Image Denoise (oidn.c). The result goes to
+ * `clean`, a float image of `channels` channels. Errors: MISSING, UNSUPPORTED, MEMORY. */
+vlResult vl_denoise_oidn(const vlImage *image, const vlDenoiseChannels *channels,
+                         const char *library, vlImage *clean, vlError *error);
 
 #endif

@@ -1,5 +1,5 @@
-/* import/gltf/accessor.c: typed arrays over buffer views. An accessor is checked once; its elements are then read as
- * floats or unsigned integers. */
+/* import/gltf/accessor.c: typed arrays over buffer views. An accessor is checked once; its
+ * elements are then read as floats or unsigned integers. */
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -7,12 +7,16 @@
 static uint32_t component_size(uint32_t type) {
   switch (type) {
     case VL_GLTF_BYTE:
-    case VL_GLTF_UBYTE: return 1;
+    case VL_GLTF_UBYTE:
+      return 1;
     case VL_GLTF_SHORT:
-    case VL_GLTF_USHORT: return 2;
+    case VL_GLTF_USHORT:
+      return 2;
     case VL_GLTF_UINT:
-    case VL_GLTF_FLOAT: return 4;
-    default: return 0;
+    case VL_GLTF_FLOAT:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -20,7 +24,8 @@ static uint32_t component_count(const char *type, bool *matrix) {
   static const struct {
     const char *name;
     uint32_t count;
-  } types[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+  } types[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4},
+               {"MAT2", 4},   {"MAT3", 9}, {"MAT4", 16}};
   for (size_t i = 0; i < VL_LENGTH(types); i++)
     if (vl_text_is(types[i].name, type)) {
       *matrix = i > 3;
@@ -29,29 +34,38 @@ static uint32_t component_count(const char *type, bool *matrix) {
   return 0;
 }
 
-/* Checks that `count` elements of `size` bytes, `stride` bytes apart from `offset` on, lie inside the view. */
-static bool fits(vlGltf *g, const vlGltfPlace *at, int64_t view, size_t offset, size_t count, size_t size,
-                 size_t stride) {
+/* Checks that `count` elements of `size` bytes, `stride` bytes apart from `offset` on, lie
+ * inside the view. */
+static bool fits(vlGltf *g, const vlGltfPlace *at, int64_t view, size_t offset, size_t count,
+                 size_t size, size_t stride) {
   const vlGltfView *v = &g->views[view];
-  if (!v->data) return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
-  if (count == 0) return true;
-  /* count and offset are below 2^53 and stride is at most 252. The division avoids an overflow of the sum. */
+  if (!v->data)
+    return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+  if (count == 0)
+    return true;
+  /* count and offset are below 2^53 and stride is at most 252. The division avoids an overflow
+   * of the sum. */
   if (count > v->size || offset > v->size || size > v->size - offset ||
       (count - 1) > (v->size - offset - size) / stride)
-    return vl_gltf_fail(g, at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes", count,
-                        size, (int)view, v->size);
+    return vl_gltf_fail(
+        g, at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes",
+        count, size, (int)view, v->size);
   return true;
 }
 
-static bool read_sparse(vlGltf *g, const vlGltfPlace *up, const json_t *json, vlGltfAccessor *a, size_t size) {
+static bool read_sparse(vlGltf *g, const vlGltfPlace *up, const json_t *json, vlGltfAccessor *a,
+                        size_t size) {
   const json_t *sparse, *indices, *values;
-  if (!vl_gltf_object(g, up, json, "sparse", &sparse)) return false;
-  if (!sparse) return true;
+  if (!vl_gltf_object(g, up, json, "sparse", &sparse))
+    return false;
+  if (!sparse)
+    return true;
   const vlGltfPlace *at = VL_GLTF_KEY(up, "sparse"), *at_i = VL_GLTF_KEY(at, "indices"),
                     *at_v = VL_GLTF_KEY(at, "values");
   int64_t index_view, value_view;
   size_t index_offset = 0, value_offset = 0, type = 0;
-  if (!vl_gltf_size(g, at, sparse, "count", &a->sparse_count) || !vl_gltf_object(g, at, sparse, "indices", &indices) ||
+  if (!vl_gltf_size(g, at, sparse, "count", &a->sparse_count) ||
+      !vl_gltf_object(g, at, sparse, "indices", &indices) ||
       !vl_gltf_object(g, at, sparse, "values", &values) ||
       !vl_gltf_index(g, at_i, indices, "bufferView", g->view_count, &index_view) ||
       !vl_gltf_size(g, at_i, indices, "byteOffset", &index_offset) ||
@@ -59,11 +73,15 @@ static bool read_sparse(vlGltf *g, const vlGltfPlace *up, const json_t *json, vl
       !vl_gltf_index(g, at_v, values, "bufferView", g->view_count, &value_view) ||
       !vl_gltf_size(g, at_v, values, "byteOffset", &value_offset))
     return false;
-  if (index_view < 0) return vl_gltf_fail(g, at_i, "\"bufferView\" is missing");
-  if (value_view < 0) return vl_gltf_fail(g, at_v, "\"bufferView\" is missing");
+  if (index_view < 0)
+    return vl_gltf_fail(g, at_i, "\"bufferView\" is missing");
+  if (value_view < 0)
+    return vl_gltf_fail(g, at_v, "\"bufferView\" is missing");
   if (type != VL_GLTF_UBYTE && type != VL_GLTF_USHORT && type != VL_GLTF_UINT)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125", type);
-  if (a->sparse_count > a->count) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "more than the accessor's count");
+    return vl_gltf_fail(g, VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125",
+                        type);
+  if (a->sparse_count > a->count)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "more than the accessor's count");
   size_t index_size = component_size((uint32_t)type);
   if (!fits(g, at_i, index_view, index_offset, a->sparse_count, index_size, index_size) ||
       !fits(g, at_v, value_view, value_offset, a->sparse_count, size, size))
@@ -77,7 +95,8 @@ static bool read_sparse(vlGltf *g, const vlGltfPlace *up, const json_t *json, vl
 static uint32_t read_uint(const uint8_t *p, uint32_t type) {
   uint16_t s;
   uint32_t i;
-  if (type == VL_GLTF_UBYTE) return *p;
+  if (type == VL_GLTF_UBYTE)
+    return *p;
   if (type == VL_GLTF_USHORT) {
     memcpy(&s, p, 2);
     return s;
@@ -89,27 +108,32 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_t index) {
   (void)from;
   vlGltfAccessor *a = &g->accessors[index];
-  if (a->state == VL_GLTF_GOOD) return a;
+  if (a->state == VL_GLTF_GOOD)
+    return a;
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "accessors", index);
   const json_t *json = vl_gltf_item(g, "accessors", index);
   const char *type = "";
   int64_t view;
   size_t offset = 0, component = 0;
   if (!vl_gltf_index(g, at, json, "bufferView", g->view_count, &view) ||
-      !vl_gltf_size(g, at, json, "byteOffset", &offset) || !vl_gltf_size(g, at, json, "count", &a->count) ||
-      !vl_gltf_size(g, at, json, "componentType", &component) || !vl_gltf_text(g, at, json, "type", &type) ||
+      !vl_gltf_size(g, at, json, "byteOffset", &offset) ||
+      !vl_gltf_size(g, at, json, "count", &a->count) ||
+      !vl_gltf_size(g, at, json, "componentType", &component) ||
+      !vl_gltf_text(g, at, json, "type", &type) ||
       !vl_gltf_bool(g, at, json, "normalized", &a->normalized))
     return NULL;
   a->components = component_count(type, &a->matrix);
   a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
   size_t one = component_size(a->type);
   if (!a->components) {
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "type"),
+                 "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
                  vl_short_text(type).text);
     return NULL;
   }
   if (!one) {
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"),
+                 "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
     return NULL;
   }
   if (a->count == 0) {
@@ -127,23 +151,28 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
   size_t size = one * a->components;
   a->stride = view >= 0 && g->views[view].stride ? g->views[view].stride : size;
   if (a->stride < size) {
-    vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size, a->stride);
+    vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size,
+                 a->stride);
     return NULL;
   }
   if (view >= 0) {
-    if (!fits(g, at, view, offset, a->count, size, a->stride)) return NULL;
+    if (!fits(g, at, view, offset, a->count, size, a->stride))
+      return NULL;
     a->data = g->views[view].data + offset;
-  } else if (a->count >
-             g->total +
-                 65536) { /* without a view all elements are zero, so the file's size does not limit their number */
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file", a->count);
+  } else if (a->count > g->total + 65536) { /* without a view all elements are zero, so the
+                                               file's size does not limit their number */
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file",
+                 a->count);
     return NULL;
   }
-  if (!read_sparse(g, at, json, a, size)) return NULL;
+  if (!read_sparse(g, at, json, a, size))
+    return NULL;
   for (size_t i = 0; i < a->sparse_count; i++) {
-    uint32_t k = read_uint(a->sparse_indices + i * component_size(a->sparse_type), a->sparse_type);
+    uint32_t k =
+        read_uint(a->sparse_indices + i * component_size(a->sparse_type), a->sparse_type);
     if (k >= a->count) {
-      vl_gltf_fail(g, VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k, a->count);
+      vl_gltf_fail(g, VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k,
+                   a->count);
       return NULL;
     }
   }
@@ -151,7 +180,9 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
   return a;
 }
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
+/* ---- reading
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static float read_float(const uint8_t *p, uint32_t type, bool normalized) {
   int8_t b;
@@ -166,16 +197,25 @@ static float read_float(const uint8_t *p, uint32_t type, bool normalized) {
       memcpy(&s, p, 2);
       f = normalized ? (float)s / 32767.0f : (float)s;
       return normalized && f < -1.0f ? -1.0f : f;
-    case VL_GLTF_FLOAT: memcpy(&f, p, 4); return f;
-    case VL_GLTF_UBYTE: return normalized ? (float)*p / 255.0f : (float)*p;
-    case VL_GLTF_USHORT: f = (float)read_uint(p, type); return normalized ? f / 65535.0f : f;
-    default: return normalized ? (float)((double)read_uint(p, type) / 4294967295.0) : (float)read_uint(p, type);
+    case VL_GLTF_FLOAT:
+      memcpy(&f, p, 4);
+      return f;
+    case VL_GLTF_UBYTE:
+      return normalized ? (float)*p / 255.0f : (float)*p;
+    case VL_GLTF_USHORT:
+      f = (float)read_uint(p, type);
+      return normalized ? f / 65535.0f : f;
+    default:
+      return normalized ? (float)((double)read_uint(p, type) / 4294967295.0)
+                        : (float)read_uint(p, type);
   }
 }
 
-static void read_element(const vlGltfAccessor *a, const uint8_t *p, uint32_t components, float *out) {
+static void read_element(const vlGltfAccessor *a, const uint8_t *p, uint32_t components,
+                         float *out) {
   size_t one = component_size(a->type);
-  for (uint32_t c = 0; c < components; c++) out[c] = p ? read_float(p + c * one, a->type, a->normalized) : 0.0f;
+  for (uint32_t c = 0; c < components; c++)
+    out[c] = p ? read_float(p + c * one, a->type, a->normalized) : 0.0f;
 }
 
 void vl_gltf_read_floats(const vlGltfAccessor *a, uint32_t wanted, float *out) {
@@ -184,19 +224,22 @@ void vl_gltf_read_floats(const vlGltfAccessor *a, uint32_t wanted, float *out) {
     if (n == a->components && a->stride == 4 * n)
       memcpy(out, a->data, a->count * 4 * n);
     else
-      for (size_t i = 0; i < a->count; i++) memcpy(out + i * wanted, a->data + i * a->stride, 4 * n);
+      for (size_t i = 0; i < a->count; i++)
+        memcpy(out + i * wanted, a->data + i * a->stride, 4 * n);
   } else {
     for (size_t i = 0; i < a->count; i++)
       read_element(a, a->data ? a->data + i * a->stride : NULL, n, out + i * wanted);
   }
   size_t size = component_size(a->type) * a->components, step = component_size(a->sparse_type);
   for (size_t i = 0; i < a->sparse_count; i++)
-    read_element(a, a->sparse_values + i * size, n,
-                 out + (size_t)read_uint(a->sparse_indices + i * step, a->sparse_type) * wanted);
+    read_element(
+        a, a->sparse_values + i * size, n,
+        out + (size_t)read_uint(a->sparse_indices + i * step, a->sparse_type) * wanted);
 }
 
 static uint32_t as_uint(const uint8_t *p, uint32_t type) {
-  if (type == VL_GLTF_UBYTE || type == VL_GLTF_USHORT || type == VL_GLTF_UINT) return read_uint(p, type);
+  if (type == VL_GLTF_UBYTE || type == VL_GLTF_USHORT || type == VL_GLTF_UINT)
+    return read_uint(p, type);
   float f = read_float(p, type, false);
   return f > 0 && f < 4e9f ? (uint32_t)f : 0;
 }
@@ -206,40 +249,49 @@ void vl_gltf_read_uints(const vlGltfAccessor *a, uint32_t wanted, uint32_t *out)
   size_t one = component_size(a->type), step = component_size(a->sparse_type);
   for (size_t i = 0; i < a->count; i++)
     for (uint32_t c = 0; c < wanted; c++)
-      out[i * wanted + c] = a->data && c < n ? as_uint(a->data + i * a->stride + c * one, a->type) : 0;
+      out[i * wanted + c] =
+          a->data && c < n ? as_uint(a->data + i * a->stride + c * one, a->type) : 0;
   for (size_t i = 0; i < a->sparse_count; i++) {
     uint32_t k = read_uint(a->sparse_indices + i * step, a->sparse_type);
     for (uint32_t c = 0; c < n; c++)
-      out[(size_t)k * wanted + c] = as_uint(a->sparse_values + (i * a->components + c) * one, a->type);
+      out[(size_t)k * wanted + c] =
+          as_uint(a->sparse_values + (i * a->components + c) * one, a->type);
   }
 }
 
 bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
-  /* Triangles may share their data and points become small solids, so the geometry may be larger than the file. More
-   * than a thousandfold is refused. */
+  /* Triangles may share their data and points become small solids, so the geometry may be
+   * larger than the file. More than a thousandfold is refused. */
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
   g->spent += bytes;
-  return g->spent <= limit || vl_gltf_fail(g, at, "the file repeats its data too often: more than %llu MB of geometry",
-                                           (unsigned long long)(limit >> 20));
+  return g->spent <= limit ||
+         vl_gltf_fail(g, at,
+                      "the file repeats its data too often: more than %llu MB of geometry",
+                      (unsigned long long)(limit >> 20));
 }
 
-float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components, size_t count,
-                           size_t *read) {
+float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components,
+                           size_t count, size_t *read) {
   const vlGltfAccessor *a = vl_gltf_accessor(g, at, index);
-  if (!a) return NULL;
+  if (!a)
+    return NULL;
   if (count && a->count != count) {
-    vl_gltf_fail(g, at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count, count);
+    vl_gltf_fail(g, at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count,
+                 count);
     return NULL;
   }
-  if (!vl_gltf_spend(g, at, (uint64_t)a->count * components * 4)) return NULL;
+  if (!vl_gltf_spend(g, at, (uint64_t)a->count * components * 4))
+    return NULL;
   float *out = vl_alloc_array(g->context, a->count, components * sizeof(float));
   if (!out) {
     vl_gltf_fail_memory(g);
     return NULL;
   }
   if (components > a->components)
-    for (size_t i = 0; i < a->count * components; i++) out[i] = i % components == 3 ? 1.0f : 0.0f;
+    for (size_t i = 0; i < a->count * components; i++)
+      out[i] = i % components == 3 ? 1.0f : 0.0f;
   vl_gltf_read_floats(a, components, out);
-  if (read) *read = a->count;
+  if (read)
+    *read = a->count;
   return out;
 }

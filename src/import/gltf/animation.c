@@ -1,6 +1,6 @@
-/* import/gltf/animation.c: node transforms and morph weights at one moment. Interpolations: STEP, LINEAR (rotations by
- * slerp) and CUBICSPLINE (specification, appendix C). A channel holds its first value before the first key and its last
- * value after the last key. */
+/* import/gltf/animation.c: node transforms and morph weights at one moment. Interpolations:
+ * STEP, LINEAR (rotations by slerp) and CUBICSPLINE (specification, appendix C). A channel
+ * holds its first value before the first key and its last value after the last key. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,7 +11,8 @@
 
 typedef enum { STEP, LINEAR, CUBIC } Mode;
 
-/* The keys of a sampler: `count` times and count * width values; for CUBICSPLINE three times as many values. */
+/* The keys of a sampler: `count` times and count * width values; for CUBICSPLINE three times as
+ * many values. */
 typedef struct {
   size_t count, width;
   float *times, *values;
@@ -23,7 +24,8 @@ static void free_track(vlContext *context, Track *t) {
   vl_free(context, t->values);
 }
 
-static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler, uint32_t components, Track *t) {
+static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler,
+                       uint32_t components, Track *t) {
   int64_t input, output;
   static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
   int mode = LINEAR;
@@ -32,25 +34,33 @@ static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler, 
       !vl_gltf_index(g, at, sampler, "output", g->accessor_count, &output) ||
       !vl_gltf_choice(g, at, sampler, "interpolation", modes, 3, &mode))
     return false;
-  if (input < 0 || output < 0) return vl_gltf_fail(g, at, "needs \"input\" and \"output\"");
+  if (input < 0 || output < 0)
+    return vl_gltf_fail(g, at, "needs \"input\" and \"output\"");
   t->mode = (Mode)mode;
-  if (!(t->times = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), (size_t)input, 1, 0, &t->count)) ||
-      !(t->values = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), (size_t)output, components, 0, &total)))
+  if (!(t->times =
+            vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), (size_t)input, 1, 0, &t->count)) ||
+      !(t->values = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), (size_t)output,
+                                        components, 0, &total)))
     return false;
   for (size_t i = 0; i < t->count; i++)
     if (!isfinite(t->times[i]) || (i && !(t->times[i] > t->times[i - 1])))
-      return vl_gltf_fail(g, VL_GLTF_KEY(at, "input"), "times must ascend; number %zu does not", i);
+      return vl_gltf_fail(g, VL_GLTF_KEY(at, "input"), "times must ascend; number %zu does not",
+                          i);
   for (size_t i = 0; i < total * components; i++)
-    if (!isfinite(t->values[i])) return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "a value is not finite");
+    if (!isfinite(t->values[i]))
+      return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "a value is not finite");
   size_t keys = t->count * (t->mode == CUBIC ? 3 : 1);
-  if (total % keys != 0) return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total, t->count);
+  if (total % keys != 0)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total,
+                        t->count);
   t->width = total / keys * components;
   return true;
 }
 
 static void slerp(const float *a, const float *b, double u, double out[4]) {
   double dot = 0, q[4];
-  for (int i = 0; i < 4; i++) dot += (double)a[i] * b[i];
+  for (int i = 0; i < 4; i++)
+    dot += (double)a[i] * b[i];
   double sign = dot < 0 ? -1 : 1;
   dot = fmin(fabs(dot), 1);
   double angle = vl_precise_acos(dot), s = vl_precise_sin(angle), wa = 1 - u, wb = u;
@@ -58,7 +68,8 @@ static void slerp(const float *a, const float *b, double u, double out[4]) {
     wa = vl_precise_sin((1 - u) * angle) / s;
     wb = vl_precise_sin(u * angle) / s;
   }
-  for (int i = 0; i < 4; i++) q[i] = wa * a[i] + sign * wb * b[i];
+  for (int i = 0; i < 4; i++)
+    q[i] = wa * a[i] + sign * wb * b[i];
   memcpy(out, q, sizeof q);
 }
 
@@ -72,7 +83,8 @@ static void evaluate(const Track *t, double time, bool rotation, double *out) {
   size_t value = t->mode == CUBIC ? 1 : 0, last = t->count - 1, k = 0;
   if (time <= t->times[0] || last == 0 || time >= t->times[last]) {
     size_t key = last && time >= t->times[last] ? last : 0;
-    for (size_t c = 0; c < t->width; c++) out[c] = at_key(t, key, value, c);
+    for (size_t c = 0; c < t->width; c++)
+      out[c] = at_key(t, key, value, c);
     return;
   }
   size_t high = last;
@@ -90,11 +102,16 @@ static void evaluate(const Track *t, double time, bool rotation, double *out) {
   }
   for (size_t c = 0; c < t->width; c++) {
     double a = at_key(t, k, value, c), b = at_key(t, k + 1, value, c);
-    if (t->mode == STEP) out[c] = a;
-    if (t->mode == LINEAR) out[c] = a + u * (b - a);
-    if (t->mode != CUBIC) continue;
-    double u2 = u * u, u3 = u2 * u, from = span * at_key(t, k, 2, c), to = span * at_key(t, k + 1, 0, c);
-    out[c] = (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * from + (3 * u2 - 2 * u3) * b + (u3 - u2) * to;
+    if (t->mode == STEP)
+      out[c] = a;
+    if (t->mode == LINEAR)
+      out[c] = a + u * (b - a);
+    if (t->mode != CUBIC)
+      continue;
+    double u2 = u * u, u3 = u2 * u, from = span * at_key(t, k, 2, c),
+           to = span * at_key(t, k + 1, 0, c);
+    out[c] = (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * from + (3 * u2 - 2 * u3) * b +
+             (u3 - u2) * to;
   }
 }
 
@@ -103,7 +120,8 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
   float *weights = vl_alloc_array(g->context, t->width + 1, sizeof *weights);
   if (values && weights) {
     evaluate(t, g->time, false, values);
-    for (size_t i = 0; i < t->width; i++) weights[i] = (float)values[i];
+    for (size_t i = 0; i < t->width; i++)
+      weights[i] = (float)values[i];
     vl_free(g->context, node->weights);
     node->weights = weights;
     node->weight_count = (uint32_t)t->width;
@@ -115,12 +133,15 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
   return ok || vl_gltf_fail_memory(g);
 }
 
-/* KHR_animation_pointer: pointers to node properties ("/nodes/3/translation") are read. Other pointers are ignored. */
-static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target, int64_t *node, const char **path) {
+/* KHR_animation_pointer: pointers to node properties ("/nodes/3/translation") are read. Other
+ * pointers are ignored. */
+static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target, int64_t *node,
+                         const char **path) {
   const json_t *json = vl_gltf_extension(target, "KHR_animation_pointer");
   const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
   const char *pointer = "";
-  if (!vl_gltf_text(g, at, json, "pointer", &pointer)) return false;
+  if (!vl_gltf_text(g, at, json, "pointer", &pointer))
+    return false;
   const char *number = pointer + 7;
   char *end = NULL;
   bool is_node = strncmp(pointer, "/nodes/", 7) == 0 && *number >= '0' && *number <= '9';
@@ -129,36 +150,43 @@ static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target,
   *node = is_node ? (int64_t)index : -1;
   *path = is_node ? end + 1 : "";
   if (!is_node)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"), "%s is not animated: velo moves nodes only",
-                 vl_short_text(pointer).text);
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"),
+                 "%s is not animated: velo moves nodes only", vl_short_text(pointer).text);
   return true;
 }
 
 static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animation, size_t i) {
   static const char *const paths[] = {"translation", "rotation", "scale", "weights"};
-  const vlGltfPlace *at = VL_GLTF_ITEM(up, "channels", i), *at_target = VL_GLTF_KEY(at, "target");
+  const vlGltfPlace *at = VL_GLTF_ITEM(up, "channels", i),
+                    *at_target = VL_GLTF_KEY(at, "target");
   const json_t *channel = json_array_get(json_object_get(animation, "channels"), i), *target;
   const json_t *samplers = json_object_get(animation, "samplers");
   const char *path = "";
   int64_t sampler, node;
-  if (!json_is_object(channel)) return vl_gltf_fail(g, at, "must be an object");
+  if (!json_is_object(channel))
+    return vl_gltf_fail(g, at, "must be an object");
   if (!vl_gltf_index(g, at, channel, "sampler", json_array_size(samplers), &sampler) ||
       !vl_gltf_object(g, at, channel, "target", &target) ||
       !vl_gltf_index(g, at_target, target, "node", g->node_count, &node) ||
       !vl_gltf_text(g, at_target, target, "path", &path))
     return false;
-  if (sampler < 0) return vl_gltf_fail(g, at, "\"sampler\" is missing");
-  if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, target, &node, &path)) return false;
+  if (sampler < 0)
+    return vl_gltf_fail(g, at, "\"sampler\" is missing");
+  if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, target, &node, &path))
+    return false;
   int what = -1;
   for (int k = 0; k < 4; k++)
-    if (vl_text_is(path, paths[k])) what = k;
+    if (vl_text_is(path, paths[k]))
+      what = k;
   if (what < 0 && *path)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%s\" is ignored",
-                 vl_short_text(path).text);
-  if (node < 0 || what < 0) return true; /* the specification allows to ignore these channels */
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"),
+                 "unknown name \"%s\" is ignored", vl_short_text(path).text);
+  if (node < 0 || what < 0)
+    return true; /* the specification allows to ignore these channels */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
-  if (!json_is_object(json)) return vl_gltf_fail(g, at_sampler, "must be an object");
+  if (!json_is_object(json))
+    return vl_gltf_fail(g, at_sampler, "must be an object");
   static const uint32_t components[] = {3, 4, 3, 1};
   Track track = {0};
   vlGltfNode *n = &g->nodes[node];
@@ -170,7 +198,10 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   } else if (ok) {
     double v[4];
     evaluate(&track, g->time, what == 1, v);
-    memcpy(what == 0 ? n->translation : what == 1 ? n->rotation : n->scale, v, components[what] * sizeof *v);
+    memcpy(what == 0   ? n->translation
+           : what == 1 ? n->rotation
+                       : n->scale,
+           v, components[what] * sizeof *v);
     n->has_matrix = false;
   }
   free_track(g->context, &track);
@@ -185,15 +216,18 @@ bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
       !vl_gltf_array(g, at, animation, "samplers", &samplers, &sampler_count))
     return false;
   for (size_t i = 0; i < count; i++)
-    if (!apply_channel(g, at, animation, i)) return false;
+    if (!apply_channel(g, at, animation, i))
+      return false;
   return true;
 }
 
 /* Index of the animation of this name or number; SIZE_MAX: none. */
 static size_t find_animation(const vlGltf *g, const char *name) {
   for (size_t i = 0; i < g->animation_count; i++) {
-    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
-    if (vl_text_is(own, name)) return i;
+    const char *own =
+        json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
+    if (vl_text_is(own, name))
+      return i;
   }
   char *end;
   unsigned long number = strtoul(name, &end, 10);
@@ -203,33 +237,42 @@ static size_t find_animation(const vlGltf *g, const char *name) {
 static bool fail_animation(vlGltf *g, const char *name) {
   char names[300] = "";
   for (size_t i = 0; i < g->animation_count; i++) {
-    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
-    if (own) vl_list_name(names, sizeof names, vl_short_text(own).text);
+    const char *own =
+        json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
+    if (own)
+      vl_list_name(names, sizeof names, vl_short_text(own).text);
   }
-  return vl_gltf_fail(g, NULL, "there is no animation \"%s\" (%zu are there%s)", vl_argument_text(name).text,
-                      g->animation_count, names);
+  return vl_gltf_fail(g, NULL, "there is no animation \"%s\" (%zu are there%s)",
+                      vl_argument_text(name).text, g->animation_count, names);
 }
 
-/* One animation, several in this order with commas between them, or "all". A later one overrides properties that an
- * earlier one moves, too. */
+/* One animation, several in this order with commas between them, or "all". A later one
+ * overrides properties that an earlier one moves, too. */
 bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
   const char *wanted = g->def->animation;
-  if (g->animation_count == 0) return true;
+  if (g->animation_count == 0)
+    return true;
   size_t whole = wanted ? find_animation(g, wanted) : 0;
-  if (whole != SIZE_MAX) return visit(g, whole);
+  if (whole != SIZE_MAX)
+    return visit(g, whole);
   bool all = vl_text_is(wanted, "all");
   for (size_t i = 0; all && i < g->animation_count; i++)
-    if (!visit(g, i)) return false;
+    if (!visit(g, i))
+      return false;
   for (const char *from = wanted; !all;) {
     char name[256];
     size_t n = strcspn(from, ",");
-    if (n >= sizeof name) return fail_animation(g, from);
+    if (n >= sizeof name)
+      return fail_animation(g, from);
     memcpy(name, from, n);
     name[n] = 0;
     size_t one = find_animation(g, name);
-    if (one == SIZE_MAX) return fail_animation(g, name);
-    if (!visit(g, one)) return false;
-    if (!from[n]) break;
+    if (one == SIZE_MAX)
+      return fail_animation(g, name);
+    if (!visit(g, one))
+      return false;
+    if (!from[n])
+      break;
     from += n + 1;
   }
   return true;

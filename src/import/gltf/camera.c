@@ -1,4 +1,6 @@
-/* import/gltf/camera.c: the choice of the scene's camera, and its parameters (specification, 3.10). */
+/* import/gltf/camera.c: the choice of the scene's camera, and its parameters
+ * (specification, 3.10).
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,13 +22,18 @@ static void set_size(vlGltf *g, double aspect) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
-static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlCameraDef *def) {
+static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+                             vlCameraDef *def) {
   double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
-  if (!vl_gltf_number(g, at, json, "yfov", &yfov) || !vl_gltf_number(g, at, json, "aspectRatio", &aspect) ||
-      !vl_gltf_number(g, at, json, "znear", &near_plane) || !vl_gltf_number(g, at, json, "zfar", &far_plane))
+  if (!vl_gltf_number(g, at, json, "yfov", &yfov) ||
+      !vl_gltf_number(g, at, json, "aspectRatio", &aspect) ||
+      !vl_gltf_number(g, at, json, "znear", &near_plane) ||
+      !vl_gltf_number(g, at, json, "zfar", &far_plane))
     return false;
-  if (!(yfov > 0 && yfov < 3.1415926)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
-  if (aspect == 0) aspect = 16.0 / 9.0; /* not valid, but Assimp writes it where it knows none */
+  if (!(yfov > 0 && yfov < 3.1415926))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
+  if (aspect == 0)
+    aspect = 16.0 / 9.0; /* not valid, but Assimp writes it where it knows none */
   if (!(aspect > 1e-3 && aspect < 1e3))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "aspectRatio"), "%g is no shape", aspect);
   set_size(g, aspect);
@@ -37,14 +44,17 @@ static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *jso
   return true;
 }
 
-static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlCameraDef *def) {
+static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+                              vlCameraDef *def) {
   double x = 0, y = 0, near_plane = 0, far_plane = INFINITY;
   if (!vl_gltf_number(g, at, json, "xmag", &x) || !vl_gltf_number(g, at, json, "ymag", &y) ||
-      !vl_gltf_number(g, at, json, "znear", &near_plane) || !vl_gltf_number(g, at, json, "zfar", &far_plane))
+      !vl_gltf_number(g, at, json, "znear", &near_plane) ||
+      !vl_gltf_number(g, at, json, "zfar", &far_plane))
     return false;
   x = fabs(x);
   y = fabs(y); /* some exporters write negative values */
-  if (!(x > 0 && y > 0 && x / y > 1e-3 && x / y < 1e3)) return vl_gltf_fail(g, at, "needs xmag and ymag above 0");
+  if (!(x > 0 && y > 0 && x / y > 1e-3 && x / y < 1e3))
+    return vl_gltf_fail(g, at, "needs xmag and ymag above 0");
   set_size(g, x / y);
   def->projection = VL_PROJECTION_ORTHOGRAPHIC;
   def->screen_min_x = -x;
@@ -56,15 +66,17 @@ static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *js
   return true;
 }
 
-/* A glTF camera has y up and looks along -z. The position and orientation of the node are used; its scale is
- * ignored. */
+/* A glTF camera has y up and looks along -z. The position and orientation of the node are used;
+ * its scale is ignored. */
 static void set_pose(const vlMat4 *world, double m[16]) {
   memcpy(m, world->m, 16 * sizeof *m);
   for (int column = 0; column < 3; column++) {
     double l = 0;
-    for (int row = 0; row < 3; row++) l += m[4 * row + column] * m[4 * row + column];
+    for (int row = 0; row < 3; row++)
+      l += m[4 * row + column] * m[4 * row + column];
     l = (column ? -1 : 1) / (l > 0 ? sqrt(l) : 1);
-    for (int row = 0; row < 3; row++) m[4 * row + column] *= l;
+    for (int row = 0; row < 3; row++)
+      m[4 * row + column] *= l;
   }
 }
 
@@ -73,11 +85,15 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
   static const char *const types[] = {"perspective", "orthographic"};
   int flat = 0;
-  if (!json_object_get(json, "type")) return vl_gltf_fail(g, at, "\"type\" is missing");
-  if (!vl_gltf_choice(g, at, json, "type", types, 2, &flat)) return false;
+  if (!json_object_get(json, "type"))
+    return vl_gltf_fail(g, at, "\"type\" is missing");
+  if (!vl_gltf_choice(g, at, json, "type", types, 2, &flat))
+    return false;
   const char *type = types[flat];
-  if (!vl_gltf_object(g, at, json, type, &lens)) return false;
-  if (!lens) return vl_gltf_fail(g, at, "\"%s\" is missing", type);
+  if (!vl_gltf_object(g, at, json, type, &lens))
+    return false;
+  if (!lens)
+    return vl_gltf_fail(g, at, "\"%s\" is missing", type);
   vlCameraDef def = vl_default_camera_def(1, 1);
   if (!(flat ? take_orthographic(g, VL_GLTF_KEY(at, type), lens, &def)
              : take_perspective(g, VL_GLTF_KEY(at, type), lens, &def)))
@@ -89,7 +105,8 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
     def.shutter_close = g->close - g->open;
   }
   def.has_matrix_close = vl_gltf_node_moves(g, node);
-  if (def.has_matrix_close) set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
+  if (def.has_matrix_close)
+    set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
   if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
     return vl_gltf_fail(g, at, "its node's transform is singular");
   vlSceneDefs *s = vl_scene_defs(g->scene);
@@ -121,13 +138,19 @@ bool vl_gltf_choose_camera(vlGltf *g) {
   for (size_t i = 0; i < g->node_count; i++) {
     int64_t camera;
     const vlGltfNode *node = &g->nodes[i];
-    if (!node->reached) continue;
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), node->json, "camera", g->camera_count, &camera)) return false;
-    if (camera < 0) continue;
-    bool named =
-        wanted && (is_called(node->json, wanted) || is_called(vl_gltf_item(g, "cameras", (size_t)camera), wanted));
-    if (named && by_name < 0) by_name = (int64_t)i;
-    if ((numbered || !wanted) && g->cameras_seen == number) by_number = (int64_t)i;
+    if (!node->reached)
+      continue;
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), node->json, "camera", g->camera_count,
+                       &camera))
+      return false;
+    if (camera < 0)
+      continue;
+    bool named = wanted && (is_called(node->json, wanted) ||
+                            is_called(vl_gltf_item(g, "cameras", (size_t)camera), wanted));
+    if (named && by_name < 0)
+      by_name = (int64_t)i;
+    if ((numbered || !wanted) && g->cameras_seen == number)
+      by_number = (int64_t)i;
     g->cameras_seen++;
   }
   int64_t chosen = by_name >= 0 ? by_name : by_number;
@@ -135,13 +158,15 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     char names[200] = "";
     for (size_t i = 0; i < g->node_count; i++) {
       const char *own = json_string_value(json_object_get(g->nodes[i].json, "name"));
-      if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own) continue;
+      if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own)
+        continue;
       vl_list_name(names, sizeof names, vl_short_text(own).text);
     }
-    return vl_gltf_fail(g, NULL, "the scene has no camera \"%s\" (%zu are there%s)", vl_argument_text(wanted).text,
-                        g->cameras_seen, names);
+    return vl_gltf_fail(g, NULL, "the scene has no camera \"%s\" (%zu are there%s)",
+                        vl_argument_text(wanted).text, g->cameras_seen, names);
   }
-  if (chosen < 0) return true;
+  if (chosen < 0)
+    return true;
   const vlGltfNode *node = &g->nodes[chosen];
   return take_camera(g, (size_t)json_number_value(json_object_get(node->json, "camera")), node);
 }

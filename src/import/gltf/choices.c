@@ -1,4 +1,5 @@
-/* import/gltf/choices.c: lists the file's scenes, cameras, animations and variants for vl_scene_choice_info. */
+/* import/gltf/choices.c: lists the file's scenes, cameras, animations and variants for
+ * vl_scene_choice_info. */
 #include "import/gltf/gltf.h"
 
 static const char *name_of(const json_t *json) {
@@ -7,15 +8,18 @@ static const char *name_of(const json_t *json) {
 
 /* The time of the last key: the maximum of the input accessors of its samplers. */
 double vl_gltf_animation_end(const vlGltf *g, size_t animation) {
-  const json_t *samplers = json_object_get(vl_gltf_item(g, "animations", animation), "samplers");
+  const json_t *samplers =
+      json_object_get(vl_gltf_item(g, "animations", animation), "samplers");
   double end = 0;
   for (size_t i = 0; i < json_array_size(samplers); i++) {
     const json_t *input = json_object_get(json_array_get(samplers, i), "input");
     const double index = json_number_value(input);
-    if (!json_is_number(input) || !(index >= 0 && index < (double)g->accessor_count)) continue;
+    if (!json_is_number(input) || !(index >= 0 && index < (double)g->accessor_count))
+      continue;
     const json_t *max = json_object_get(vl_gltf_item(g, "accessors", (size_t)index), "max");
     const double last = json_number_value(json_array_get(max, 0));
-    if (last > end && last < 1e9) end = last;
+    if (last > end && last < 1e9)
+      end = last;
   }
   return end;
 }
@@ -24,26 +28,37 @@ double vl_gltf_animation_end(const vlGltf *g, size_t animation) {
 static bool list_cameras(vlGltf *g) {
   for (size_t i = 0; i < g->node_count; i++) {
     int64_t camera;
-    if (!g->nodes[i].reached) continue;
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), g->nodes[i].json, "camera", g->camera_count, &camera))
+    if (!g->nodes[i].reached)
+      continue;
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), g->nodes[i].json, "camera",
+                       g->camera_count, &camera))
       return false;
-    if (camera < 0) continue;
+    if (camera < 0)
+      continue;
     const char *name = name_of(g->nodes[i].json);
-    if (!name) name = name_of(vl_gltf_item(g, "cameras", (size_t)camera));
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_CAMERA, name, 0)) return false;
+    if (!name)
+      name = name_of(vl_gltf_item(g, "cameras", (size_t)camera));
+    if (!vl_scene_add_choice(g->scene, VL_CHOICE_CAMERA, name, 0))
+      return false;
   }
   return true;
 }
 
 bool vl_gltf_list_choices(vlGltf *g) {
-  const json_t *variants = json_object_get(vl_gltf_extension(g->root, "KHR_materials_variants"), "variants");
+  const json_t *variants =
+      json_object_get(vl_gltf_extension(g->root, "KHR_materials_variants"), "variants");
   for (size_t i = 0; i < g->scene_count; i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_SCENE, name_of(vl_gltf_item(g, "scenes", i)), 0)) return false;
+    if (!vl_scene_add_choice(g->scene, VL_CHOICE_SCENE, name_of(vl_gltf_item(g, "scenes", i)),
+                             0))
+      return false;
   for (size_t i = 0; i < g->animation_count; i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_ANIMATION, name_of(vl_gltf_item(g, "animations", i)),
+    if (!vl_scene_add_choice(g->scene, VL_CHOICE_ANIMATION,
+                             name_of(vl_gltf_item(g, "animations", i)),
                              vl_gltf_animation_end(g, i)))
       return false;
   for (size_t i = 0; i < json_array_size(variants); i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_VARIANT, name_of(json_array_get(variants, i)), 0)) return false;
+    if (!vl_scene_add_choice(g->scene, VL_CHOICE_VARIANT, name_of(json_array_get(variants, i)),
+                             0))
+      return false;
   return list_cameras(g);
 }

@@ -5,17 +5,25 @@
 #include "import/gltf/gltf.h"
 #include "math/double3.h"
 
-/* ---- morph targets ----------------------------------------------------------------------------------------------- */
-
-/* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are `stride` floats apart.
+/* ---- morph targets
+ * -----------------------------------------------------------------------------------------------
  */
-static bool add_target(vlGltf *g, const vlGltfPlace *at, const json_t *target, const char *name, uint32_t components,
-                       uint32_t stride, float weight, size_t vertices, float sign_y, float *out) {
+
+/* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are
+ * `stride` floats apart.
+ */
+static bool add_target(vlGltf *g, const vlGltfPlace *at, const json_t *target, const char *name,
+                       uint32_t components, uint32_t stride, float weight, size_t vertices,
+                       float sign_y, float *out) {
   int64_t index;
-  if (!vl_gltf_index(g, at, target, name, g->accessor_count, &index)) return false;
-  if (index < 0 || !out || weight == 0.0f) return true;
-  float *delta = vl_gltf_load_floats(g, VL_GLTF_KEY(at, name), (size_t)index, components, vertices, NULL);
-  if (!delta) return false;
+  if (!vl_gltf_index(g, at, target, name, g->accessor_count, &index))
+    return false;
+  if (index < 0 || !out || weight == 0.0f)
+    return true;
+  float *delta =
+      vl_gltf_load_floats(g, VL_GLTF_KEY(at, name), (size_t)index, components, vertices, NULL);
+  if (!delta)
+    return false;
   for (size_t i = 0; i < vertices; i++)
     for (uint32_t c = 0; c < components; c++)
       out[i * stride + c] += weight * (c == 1 ? sign_y : 1.0f) * delta[i * components + c];
@@ -23,25 +31,29 @@ static bool add_target(vlGltf *g, const vlGltfPlace *at, const json_t *target, c
   return true;
 }
 
-bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
-                   const vlGltfNode *node, vlGltfPrimitive *p) {
+bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+                   const json_t *primitive, const vlGltfNode *node, vlGltfPrimitive *p) {
   const json_t *targets;
   size_t count;
   if (!vl_gltf_array(g, at, primitive, "targets", &targets, &count) || count == 0)
     return count == 0 && !g->scene->error.code;
   const json_t *given = node ? json_object_get(node->json, "weights") : NULL;
-  if (!given) given = json_object_get(mesh, "weights");
+  if (!given)
+    given = json_object_get(mesh, "weights");
   for (size_t i = 0; i < count; i++) {
     float weight = 0;
     const float *animated = !node ? NULL : g->closing ? node->weights_close : node->weights;
     if (animated)
-      weight = i < (g->closing ? node->weight_close_count : node->weight_count) ? animated[i] : 0.0f;
+      weight =
+          i < (g->closing ? node->weight_close_count : node->weight_count) ? animated[i] : 0.0f;
     else
       weight = (float)json_number_value(json_array_get(given, i));
     const json_t *target = json_array_get(targets, i);
     const vlGltfPlace *here = VL_GLTF_ITEM(at, "targets", i);
-    if (!json_is_object(target)) return vl_gltf_fail(g, here, "must be an object");
-    if (!isfinite(weight)) return vl_gltf_fail(g, here, "its weight is not finite");
+    if (!json_is_object(target))
+      return vl_gltf_fail(g, here, "must be an object");
+    if (!isfinite(weight))
+      return vl_gltf_fail(g, here, "its weight is not finite");
     if (!add_target(g, here, target, "POSITION", 3, 3, weight, p->vertices, 1, p->positions) ||
         !add_target(g, here, target, "NORMAL", 3, 3, weight, p->vertices, 1, p->normals) ||
         !add_target(g, here, target, "TANGENT", 3, 4, weight, p->vertices, 1, p->tangents) ||
@@ -53,7 +65,9 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const j
   return true;
 }
 
-/* ---- skins ------------------------------------------------------------------------------------------------------- */
+/* ---- skins
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
   return g->closing ? &node->keys[VL_GLTF_KEYS - 1] : &node->world;
@@ -68,15 +82,19 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   if (!vl_gltf_array(g, at, json, "joints", &joints, count) ||
       !vl_gltf_index(g, at, json, "inverseBindMatrices", g->accessor_count, &inverse))
     return false;
-  if (*count == 0) return vl_gltf_fail(g, at, "has no joints");
+  if (*count == 0)
+    return vl_gltf_fail(g, at, "has no joints");
   float *columns = NULL;
   size_t inverse_count = 0;
   if (inverse >= 0) {
     const vlGltfPlace *here = VL_GLTF_KEY(at, "inverseBindMatrices");
     const vlGltfAccessor *a = vl_gltf_accessor(g, here, (size_t)inverse);
-    if (!a) return false;
-    if (a->components != 16) return vl_gltf_fail(g, here, "must be of type MAT4");
-    if (!(columns = vl_gltf_load_floats(g, here, (size_t)inverse, 16, 0, &inverse_count))) return false;
+    if (!a)
+      return false;
+    if (a->components != 16)
+      return vl_gltf_fail(g, here, "must be of type MAT4");
+    if (!(columns = vl_gltf_load_floats(g, here, (size_t)inverse, 16, 0, &inverse_count)))
+      return false;
     if (inverse_count < *count) {
       vl_free(g->context, columns);
       return vl_gltf_fail(g, here, "%zu matrices for %zu joints", inverse_count, *count);
@@ -87,16 +105,20 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   for (size_t i = 0; ok && i < *count; i++) {
     const json_t *joint = json_array_get(joints, i);
     double index = json_number_value(joint);
-    if (!json_is_number(joint) || !(index >= 0 && index < (double)g->node_count) || index != floor(index)) {
+    if (!json_is_number(joint) || !(index >= 0 && index < (double)g->node_count) ||
+        index != floor(index)) {
       ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "there is no such node");
       break;
     }
     m[i] = *world_of(g, &g->nodes[(size_t)index]);
-    if (!columns) continue;
+    if (!columns)
+      continue;
     vlMat4 bind;
-    for (int k = 0; k < 16; k++) bind.m[k] = columns[16 * i + 4 * (size_t)(k % 4) + (size_t)(k / 4)];
+    for (int k = 0; k < 16; k++)
+      bind.m[k] = columns[16 * i + 4 * (size_t)(k % 4) + (size_t)(k / 4)];
     m[i] = vl_mat4_multiply(m[i], bind);
-    if (!vl_mat4_is_finite(m[i])) ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "its matrix is not finite");
+    if (!vl_mat4_is_finite(m[i]))
+      ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "its matrix is not finite");
   }
   vl_free(g->context, columns);
   if (!ok) {
@@ -107,35 +129,45 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   return ok;
 }
 
-/* Adds weight * matrix of each joint to sums (12 numbers per vertex, row-major), as the attributes JOINTS_set and
- * WEIGHTS_set give them. *found: whether the mesh has these attributes. */
-static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *joints_name,
-                           const char *weights_name, const vlMat4 *matrices, size_t count, size_t vertices,
-                           double *sums, bool *found) {
+/* Adds weight * matrix of each joint to sums (12 numbers per vertex, row-major), as the
+ * attributes JOINTS_set and WEIGHTS_set give them. *found: whether the mesh has these
+ * attributes. */
+static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attributes,
+                           const char *joints_name, const char *weights_name,
+                           const vlMat4 *matrices, size_t count, size_t vertices, double *sums,
+                           bool *found) {
   int64_t joint_index, weight_index;
   *found = false;
   if (!vl_gltf_index(g, up, attributes, joints_name, g->accessor_count, &joint_index) ||
       !vl_gltf_index(g, up, attributes, weights_name, g->accessor_count, &weight_index))
     return false;
-  if (joint_index < 0 || weight_index < 0) return true;
+  if (joint_index < 0 || weight_index < 0)
+    return true;
   const vlGltfPlace *at = VL_GLTF_KEY(up, joints_name);
   const vlGltfAccessor *a = vl_gltf_accessor(g, at, (size_t)joint_index);
-  if (!a) return false;
+  if (!a)
+    return false;
   if (a->count != vertices || a->components != 4 || a->type == VL_GLTF_FLOAT)
-    return vl_gltf_fail(g, at, "must be VEC4 of whole numbers, one for each of %zu vertices", vertices);
-  float *weights = vl_gltf_load_floats(g, VL_GLTF_KEY(up, weights_name), (size_t)weight_index, 4, vertices, NULL);
+    return vl_gltf_fail(g, at, "must be VEC4 of whole numbers, one for each of %zu vertices",
+                        vertices);
+  float *weights = vl_gltf_load_floats(g, VL_GLTF_KEY(up, weights_name), (size_t)weight_index,
+                                       4, vertices, NULL);
   uint32_t *joints = weights ? vl_alloc_array(g->context, vertices, 4 * sizeof *joints) : NULL;
   bool ok = joints || (weights && vl_gltf_fail_memory(g));
-  if (ok) vl_gltf_read_uints(a, 4, joints);
+  if (ok)
+    vl_gltf_read_uints(a, 4, joints);
   for (size_t i = 0; ok && i < 4 * vertices; i++) {
     double w = weights[i];
-    if (w == 0) continue;
+    if (w == 0)
+      continue;
     if (!isfinite(w)) {
-      ok = vl_gltf_fail(g, VL_GLTF_KEY(up, weights_name), "a weight of vertex %zu is not finite", i / 4);
+      ok = vl_gltf_fail(g, VL_GLTF_KEY(up, weights_name),
+                        "a weight of vertex %zu is not finite", i / 4);
     } else if (joints[i] >= count) {
       ok = vl_gltf_fail(g, at, "vertex %zu names joint %u of %zu", i / 4, joints[i], count);
     } else {
-      for (int k = 0; k < 12; k++) sums[12 * (i / 4) + (size_t)k] += w * matrices[joints[i]].m[k];
+      for (int k = 0; k < 12; k++)
+        sums[12 * (i / 4) + (size_t)k] += w * matrices[joints[i]].m[k];
     }
   }
   vl_free(g->context, joints);
@@ -144,49 +176,61 @@ static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attri
   return ok;
 }
 
-/* Transforms directions: tangents by the matrix, normals by its cofactors (the inverse transpose up to a factor). */
+/* Transforms directions: tangents by the matrix, normals by its cofactors (the inverse
+ * transpose up to a factor). */
 static void turn(const double *m, bool normal, float *v) {
   double x = v[0], y = v[1], z = v[2], r[3];
   double c[9] = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
   if (normal) {
-    double k[9] = {c[4] * c[8] - c[5] * c[7], c[5] * c[6] - c[3] * c[8], c[3] * c[7] - c[4] * c[6],
-                   c[2] * c[7] - c[1] * c[8], c[0] * c[8] - c[2] * c[6], c[1] * c[6] - c[0] * c[7],
-                   c[1] * c[5] - c[2] * c[4], c[2] * c[3] - c[0] * c[5], c[0] * c[4] - c[1] * c[3]};
+    double k[9] = {
+        c[4] * c[8] - c[5] * c[7], c[5] * c[6] - c[3] * c[8], c[3] * c[7] - c[4] * c[6],
+        c[2] * c[7] - c[1] * c[8], c[0] * c[8] - c[2] * c[6], c[1] * c[6] - c[0] * c[7],
+        c[1] * c[5] - c[2] * c[4], c[2] * c[3] - c[0] * c[5], c[0] * c[4] - c[1] * c[3]};
     memcpy(c, k, sizeof c);
   }
-  for (int i = 0; i < 3; i++) r[i] = c[3 * i] * x + c[3 * i + 1] * y + c[3 * i + 2] * z;
+  for (int i = 0; i < 3; i++)
+    r[i] = c[3 * i] * x + c[3 * i + 1] * y + c[3 * i + 2] * z;
   double l = vl_norm3(r);
-  for (int i = 0; i < 3; i++) v[i] = l > 0 ? (float)(r[i] / l) : v[i];
+  for (int i = 0; i < 3; i++)
+    v[i] = l > 0 ? (float)(r[i] / l) : v[i];
 }
 
-bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, const vlGltfNode *node,
-                  vlGltfPrimitive *p) {
+bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
+                  const vlGltfNode *node, vlGltfPrimitive *p) {
   static const char *const joints[] = {"JOINTS_0", "JOINTS_1", "JOINTS_2", "JOINTS_3"};
   static const char *const weights[] = {"WEIGHTS_0", "WEIGHTS_1", "WEIGHTS_2", "WEIGHTS_3"};
   int64_t skin;
-  if (!vl_gltf_index(g, VL_GLTF_KEY(NULL, "nodes"), node->json, "skin", g->skin_count, &skin)) return false;
+  if (!vl_gltf_index(g, VL_GLTF_KEY(NULL, "nodes"), node->json, "skin", g->skin_count, &skin))
+    return false;
   const json_t *attributes = json_object_get(primitive, "attributes");
   const vlGltfPlace *here = VL_GLTF_KEY(at, "attributes");
   vlMat4 *matrices;
   size_t count;
-  if (!joint_matrices(g, (size_t)(skin < 0 ? 0 : skin), &matrices, &count)) return false;
+  if (!joint_matrices(g, (size_t)(skin < 0 ? 0 : skin), &matrices, &count))
+    return false;
   double *sums = vl_alloc_zero(g->context, p->vertices, 12 * sizeof *sums);
   bool ok = sums || vl_gltf_fail_memory(g), found = true, any = false;
   for (int set = 0; set < 4 && ok && found; set++) {
-    ok = add_influences(g, here, attributes, joints[set], weights[set], matrices, count, p->vertices, sums, &found);
+    ok = add_influences(g, here, attributes, joints[set], weights[set], matrices, count,
+                        p->vertices, sums, &found);
     any = any || found;
   }
   for (size_t i = 0; ok && i < p->vertices; i++) {
     double *m = sums + 12 * i;
     float *v = p->positions + 3 * i, q[3];
     double total = 0;
-    for (int k = 0; k < 12; k++) total += fabs(m[k]);
-    if (!any || total == 0) memcpy(m, world_of(g, node)->m, 12 * sizeof *m); /* no joint influences the vertex */
+    for (int k = 0; k < 12; k++)
+      total += fabs(m[k]);
+    if (!any || total == 0)
+      memcpy(m, world_of(g, node)->m, 12 * sizeof *m); /* no joint influences the vertex */
     for (int k = 0; k < 3; k++)
-      q[k] = (float)(m[4 * k] * v[0] + m[4 * k + 1] * v[1] + m[4 * k + 2] * v[2] + m[4 * k + 3]);
+      q[k] =
+          (float)(m[4 * k] * v[0] + m[4 * k + 1] * v[1] + m[4 * k + 2] * v[2] + m[4 * k + 3]);
     memcpy(v, q, sizeof q);
-    if (p->normals) turn(m, true, p->normals + 3 * i);
-    if (p->tangents) turn(m, false, p->tangents + 4 * i);
+    if (p->normals)
+      turn(m, true, p->normals + 3 * i);
+    if (p->tangents)
+      turn(m, false, p->tangents + 4 * i);
   }
   if (ok && !any && vl_gltf_once(g, VL_GLTF_REPORTED_SKIN))
     vl_gltf_warn(g, VL_LOG_WARNING, here, "has a skin, but neither joints nor weights");

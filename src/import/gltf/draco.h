@@ -1,4 +1,5 @@
-/* import/gltf/draco.h: libdraco, behind functions of C. Only builds with VELO_DRACO have them. */
+/* import/gltf/draco.h: libdraco, behind functions of C. Only builds with VELO_DRACO have them.
+ */
 #ifndef IMPORT_GLTF_DRACO_H
 #define IMPORT_GLTF_DRACO_H
 
@@ -19,9 +20,10 @@ uint32_t vl_draco_faces(const vlDraco *mesh);
 uint32_t vl_draco_points(const vlDraco *mesh);
 /* Three per face; each below the number of points. */
 void vl_draco_indices(const vlDraco *mesh, uint32_t *indices);
-/* The values of an attribute as glTF's component type (5120 to 5126), `components` per point. False: the mesh has no
- * attribute of this id, or its values do not convert. */
-bool vl_draco_values(const vlDraco *mesh, uint32_t id, uint32_t type, uint32_t components, void *values);
+/* The values of an attribute as glTF's component type (5120 to 5126), `components` per point.
+ * False: the mesh has no attribute of this id, or its values do not convert. */
+bool vl_draco_values(const vlDraco *mesh, uint32_t id, uint32_t type, uint32_t components,
+                     void *values);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,6 @@
-/* import/gltf/draco_primitive.c: KHR_draco_mesh_compression: the accessors of a primitive get their elements from a
- * compressed mesh. Builds without libdraco report that the extension needs it. */
+/* import/gltf/draco_primitive.c: KHR_draco_mesh_compression: the accessors of a primitive get
+ * their elements from a compressed mesh. Builds without libdraco report that the extension
+ * needs it. */
 #include "import/gltf/draco.h"
 
 #include <string.h>
@@ -9,21 +10,30 @@
 static const char name[] = "KHR_draco_mesh_compression";
 
 #ifdef VELO_DRACO
-/* Fills an accessor. index: its number; id: of Draco's attribute, negative: the indices of the faces. */
-static bool fill(vlGltf *g, const vlGltfPlace *at, const vlDraco *mesh, size_t index, int64_t id) {
+/* Fills an accessor. index: its number; id: of Draco's attribute, negative: the indices of the
+ * faces. */
+static bool fill(vlGltf *g, const vlGltfPlace *at, const vlDraco *mesh, size_t index,
+                 int64_t id) {
   const vlGltfAccessor *read = vl_gltf_accessor(g, at, index);
   vlGltfAccessor *a = &g->accessors[index];
-  if (!read) return false;
+  if (!read)
+    return false;
   size_t wanted = id < 0 ? 3 * (size_t)vl_draco_faces(mesh) : vl_draco_points(mesh);
   if (a->count != wanted)
-    return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "accessors", index), "%zu elements, but the compressed mesh has %zu",
-                        a->count, wanted);
+    return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "accessors", index),
+                        "%zu elements, but the compressed mesh has %zu", a->count, wanted);
   uint32_t type = id < 0 ? VL_GLTF_UINT : a->type;
-  size_t size = id < 0 || a->type == VL_GLTF_FLOAT ? 4 : a->type == VL_GLTF_UINT ? 4 : a->type >= VL_GLTF_SHORT ? 2 : 1;
-  if (!vl_gltf_spend(g, at, (uint64_t)a->count * a->components * size)) return false;
+  size_t size = id < 0 || a->type == VL_GLTF_FLOAT ? 4
+                : a->type == VL_GLTF_UINT          ? 4
+                : a->type >= VL_GLTF_SHORT         ? 2
+                                                   : 1;
+  if (!vl_gltf_spend(g, at, (uint64_t)a->count * a->components * size))
+    return false;
   uint8_t *data = vl_alloc_array(g->context, a->count + 1, a->components * size);
-  if (!data) return vl_gltf_fail_memory(g);
-  if (!vl_scene_own(g->scene, data)) return false;
+  if (!data)
+    return vl_gltf_fail_memory(g);
+  if (!vl_scene_own(g->scene, data))
+    return false;
   if (id < 0)
     vl_draco_indices(mesh, (uint32_t *)(void *)data);
   else if (!vl_draco_values(mesh, (uint32_t)id, type, a->components, data))
@@ -34,21 +44,27 @@ static bool fill(vlGltf *g, const vlGltfPlace *at, const vlDraco *mesh, size_t i
   return true;
 }
 
-static bool fill_all(vlGltf *g, const vlGltfPlace *at, const vlGltfPlace *here, const json_t *primitive,
-                     const json_t *own, const vlDraco *mesh) {
+static bool fill_all(vlGltf *g, const vlGltfPlace *at, const vlGltfPlace *here,
+                     const json_t *primitive, const json_t *own, const vlDraco *mesh) {
   const json_t *attributes = json_object_get(primitive, "attributes");
   const char *key;
   json_t *value;
   int64_t accessor;
   g->total += 64 * (uint64_t)vl_draco_points(mesh) + 12 * (uint64_t)vl_draco_faces(mesh);
-  if (!vl_gltf_index(g, at, primitive, "indices", g->accessor_count, &accessor)) return false;
-  if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, -1)) return false;
+  if (!vl_gltf_index(g, at, primitive, "indices", g->accessor_count, &accessor))
+    return false;
+  if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, -1))
+    return false;
   json_object_foreach((json_t *)(uintptr_t)own, key, value) {
-    if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, key, g->accessor_count, &accessor)) return false;
+    if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, key, g->accessor_count,
+                       &accessor))
+      return false;
     double id = json_is_integer(value) ? json_number_value(value) : -1;
     if (!(id >= 0 && id < 4294967296.0))
-      return vl_gltf_fail(g, VL_GLTF_KEY(here, "attributes"), "an id of an attribute makes no sense");
-    if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, (int64_t)id)) return false;
+      return vl_gltf_fail(g, VL_GLTF_KEY(here, "attributes"),
+                          "an id of an attribute makes no sense");
+    if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, (int64_t)id))
+      return false;
   }
   return true;
 }
@@ -57,19 +73,24 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *pr
   const json_t *json = vl_gltf_extension(primitive, name), *own;
   const vlGltfPlace *here = VL_GLTF_KEY(at, "extensions.KHR_draco_mesh_compression");
   int64_t view, first;
-  if (!json) return true;
+  if (!json)
+    return true;
   if (!vl_gltf_index(g, here, json, "bufferView", g->view_count, &view) ||
       !vl_gltf_object(g, here, json, "attributes", &own) ||
       !vl_gltf_index(g, at, primitive, "indices", g->accessor_count, &first))
     return false;
-  if (view < 0 || !own) return vl_gltf_fail(g, here, "needs bufferView and attributes");
+  if (view < 0 || !own)
+    return vl_gltf_fail(g, here, "needs bufferView and attributes");
   const vlGltfView *v = &g->views[view];
-  if (!v->data) return vl_gltf_fail(g, here, "bufferViews[%d] holds nothing that velo can read", (int)view);
+  if (!v->data)
+    return vl_gltf_fail(g, here, "bufferViews[%d] holds nothing that velo can read", (int)view);
   /* The mesh of an accessor that stands in two primitives is decoded once. */
-  if (first >= 0 && g->accessors[first].state == VL_GLTF_GOOD && g->accessors[first].data) return true;
+  if (first >= 0 && g->accessors[first].state == VL_GLTF_GOOD && g->accessors[first].data)
+    return true;
   char reason[100] = "memory is exhausted";
   vlDraco *mesh = vl_draco_open(v->data, v->size, reason, sizeof reason);
-  if (!mesh) return vl_gltf_fail(g, here, "its bytes are no mesh of Draco: %s", reason);
+  if (!mesh)
+    return vl_gltf_fail(g, here, "its bytes are no mesh of Draco: %s", reason);
   bool ok = fill_all(g, at, here, primitive, own, mesh);
   vl_draco_close(mesh);
   return ok;
@@ -78,12 +99,16 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *pr
 bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive) {
   const json_t *attributes = json_object_get(primitive, "attributes");
   int64_t position;
-  if (!vl_gltf_extension(primitive, name)) return true;
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position))
+  if (!vl_gltf_extension(primitive, name))
+    return true;
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION",
+                     g->accessor_count, &position))
     return false;
   /* a fallback that is not compressed is read */
-  if (position < 0 || json_object_get(vl_gltf_item(g, "accessors", (size_t)position), "bufferView")) return true;
-  return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "is compressed by %s: this velo was built without libdraco",
-                           name);
+  if (position < 0 ||
+      json_object_get(vl_gltf_item(g, "accessors", (size_t)position), "bufferView"))
+    return true;
+  return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+                           "is compressed by %s: this velo was built without libdraco", name);
 }
 #endif

@@ -1,5 +1,5 @@
-/* import/gltf/extension.c: the extensions that are read. An unknown extension is an error when the file requires it and
- * a warning when the file only uses it. */
+/* import/gltf/extension.c: the extensions that are read. An unknown extension is an error when
+ * the file requires it and a warning when the file only uses it. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -22,8 +22,8 @@ static const char *const known[] = {
     "KHR_draco_mesh_compression",
 #endif
 };
-/* Extensions of the Khronos registry that velo does not read. Messages show their names in full and shorten unknown
- * names. */
+/* Extensions of the Khronos registry that velo does not read. Messages show their names in full
+ * and shorten unknown names. */
 static const char *const registered[] = {
     "ADOBE_materials_clearcoat_specular",
     "AGI_articulations",
@@ -60,11 +60,13 @@ static const char *const registered[] = {
     "VRMC_vrm",
 };
 /* These extensions do not change the image. */
-static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability", "KHR_node_selectability"};
+static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability",
+                                     "KHR_node_selectability"};
 
 static bool is_in(const char *name, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)
-    if (vl_text_is(name, names[i])) return true;
+    if (vl_text_is(name, names[i]))
+      return true;
   return false;
 }
 
@@ -74,7 +76,8 @@ bool vl_gltf_reads_extension(const char *name) {
 
 vlShortText vl_gltf_extension_text(const char *name) {
   vlShortText text = vl_short_text(name);
-  if (is_in(name, registered, VL_LENGTH(registered))) snprintf(text.text, sizeof text.text, "%s", name);
+  if (is_in(name, registered, VL_LENGTH(registered)))
+    snprintf(text.text, sizeof text.text, "%s", name);
   return text;
 }
 
@@ -88,17 +91,21 @@ bool vl_gltf_check_extensions(vlGltf *g) {
   for (size_t i = 0; i < required_count; i++) {
     const char *name = json_string_value(json_array_get(required, i));
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
-    if (!name) return vl_gltf_fail(g, at, "must be a string");
-    if (is_in(name, known, known_count)) continue;
+    if (!name)
+      return vl_gltf_fail(g, at, "must be a string");
+    if (is_in(name, known, known_count))
+      continue;
     if (vl_text_is(name, "KHR_draco_mesh_compression"))
-      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "this velo was built without libdraco, which %s needs",
-                               name);
-    if (vl_text_is(name, "KHR_texture_basisu"))
       return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
-                               "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
-                               name);
+                               "this velo was built without libdraco, which %s needs", name);
+    if (vl_text_is(name, "KHR_texture_basisu"))
+      return vl_gltf_fail_code(
+          g, VL_ERROR_UNSUPPORTED, at,
+          "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
+          name);
     const char *near = vl_nearest_name(name, known, known_count);
-    return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s (it reads %s)",
+    return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+                                    "velo does not read %s (it reads %s)",
                                     vl_gltf_extension_text(name).text, near)
                 : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s",
                                     vl_gltf_extension_text(name).text);
@@ -106,9 +113,11 @@ bool vl_gltf_check_extensions(vlGltf *g) {
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
-    if (!name) return vl_gltf_fail(g, at, "must be a string");
+    if (!name)
+      return vl_gltf_fail(g, at, "must be a string");
     if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it", vl_gltf_extension_text(name).text);
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it",
+                   vl_gltf_extension_text(name).text);
   }
   return true;
 }

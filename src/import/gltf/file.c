@@ -1,5 +1,5 @@
-/* import/gltf/file.c: reads the file: .gltf or .glb (distinguished by the first bytes), its JSON, uris, buffers and
- * buffer views. */
+/* import/gltf/file.c: reads the file: .gltf or .glb (distinguished by the first bytes), its
+ * JSON, uris, buffers and buffer views. */
 #include <stdio.h>
 
 #include "base/file.h"
@@ -15,20 +15,27 @@ static uint32_t little(const uint8_t *p) {
   return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-/* The .glb container: a header of 12 bytes, then chunks. A chunk consists of its length, its type and its data. */
+/* The .glb container: a header of 12 bytes, then chunks. A chunk consists of its length, its
+ * type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
-  if (g->file_size < 20) return vl_gltf_fail(g, NULL, "broken .glb: only %zu bytes", g->file_size);
+  if (g->file_size < 20)
+    return vl_gltf_fail(g, NULL, "broken .glb: only %zu bytes", g->file_size);
   uint32_t version = little(g->file + 4), length = little(g->file + 8);
-  if (version != 2) return vl_gltf_fail(g, NULL, ".glb of version %u; velo reads version 2", version);
+  if (version != 2)
+    return vl_gltf_fail(g, NULL, ".glb of version %u; velo reads version 2", version);
   if (length > g->file_size)
-    return vl_gltf_fail(g, NULL, "broken .glb: says that it has %u bytes, the file has %zu", length, g->file_size);
+    return vl_gltf_fail(g, NULL, "broken .glb: says that it has %u bytes, the file has %zu",
+                        length, g->file_size);
   size_t at = 12, end = length < 20 ? g->file_size : length;
   for (int k = 0; at + 8 <= end; k++) {
     size_t size = little(g->file + at);
     uint32_t kind = little(g->file + at + 4);
     if (size > end - at - 8)
-      return vl_gltf_fail(g, NULL, "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k, size, at);
-    if (k == 0 && kind != 0x4E4F534A) return vl_gltf_fail(g, NULL, "broken .glb: its first chunk is not JSON");
+      return vl_gltf_fail(g, NULL,
+                          "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k,
+                          size, at);
+    if (k == 0 && kind != 0x4E4F534A)
+      return vl_gltf_fail(g, NULL, "broken .glb: its first chunk is not JSON");
     if (k == 0) {
       *json = (const char *)g->file + at + 8;
       *json_size = size;
@@ -40,12 +47,14 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
     at += 8 + size;
     at = (at + 3) & ~(size_t)3;
   }
-  if (!*json) return vl_gltf_fail(g, NULL, "broken .glb: it has no JSON");
+  if (!*json)
+    return vl_gltf_fail(g, NULL, "broken .glb: it has no JSON");
   return true;
 }
 
 static bool parse(vlGltf *g, const char *text, size_t size) {
-  while (size && (text[size - 1] == 0 || text[size - 1] == ' ')) size--; /* padding */
+  while (size && (text[size - 1] == 0 || text[size - 1] == ' '))
+    size--; /* padding */
   if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
     text += 3;
     size -= 3;
@@ -53,27 +62,34 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   json_error_t error;
   g->root = vl_json_parse(text, size, 0, &error);
   if (!g->root) {
-    if (vl_json_lacks_memory(&error)) return vl_gltf_fail_memory(g);
-    uint32_t line = error.line > 0 ? (uint32_t)error.line : 0, column = error.column > 0 ? (uint32_t)error.column : 1;
-    vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column}, "broken JSON: %.*s",
-                  (int)vl_json_problem_length(error.text), error.text);
+    if (vl_json_lacks_memory(&error))
+      return vl_gltf_fail_memory(g);
+    uint32_t line = error.line > 0 ? (uint32_t)error.line : 0,
+             column = error.column > 0 ? (uint32_t)error.column : 1;
+    vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column},
+                  "broken JSON: %.*s", (int)vl_json_problem_length(error.text), error.text);
     return false;
   }
-  if (!json_is_object(g->root)) return vl_gltf_fail(g, NULL, "not glTF: the JSON is not an object");
+  if (!json_is_object(g->root))
+    return vl_gltf_fail(g, NULL, "not glTF: the JSON is not an object");
   const json_t *asset = json_object_get(g->root, "asset");
   const char *version = json_string_value(json_object_get(asset, "version"));
   const char *least = json_string_value(json_object_get(asset, "minVersion"));
-  if (!version) return vl_gltf_fail(g, NULL, "asset.version: is missing: not glTF 2.0");
+  if (!version)
+    return vl_gltf_fail(g, NULL, "asset.version: is missing: not glTF 2.0");
   if (strncmp(least ? least : version, "2.", 2) != 0 || (least && !vl_text_is(least, "2.0")))
-    return vl_gltf_fail(g, NULL, "asset: glTF %s; velo reads 2.0", vl_short_text(least ? least : version).text);
+    return vl_gltf_fail(g, NULL, "asset: glTF %s; velo reads 2.0",
+                        vl_short_text(least ? least : version).text);
   return true;
 }
 
 /* Counts the elements of the root's array `key` and checks that they are objects. */
 static bool count_items(vlGltf *g, const char *key, size_t *count) {
   const json_t *array;
-  if (!vl_gltf_array(g, NULL, g->root, key, &array, count)) return false;
-  if (*count > MAX_ITEMS) return vl_gltf_fail(g, VL_GLTF_KEY(NULL, key), "too many: %zu", *count);
+  if (!vl_gltf_array(g, NULL, g->root, key, &array, count))
+    return false;
+  if (*count > MAX_ITEMS)
+    return vl_gltf_fail(g, VL_GLTF_KEY(NULL, key), "too many: %zu", *count);
   for (size_t i = 0; i < *count; i++)
     if (!json_is_object(json_array_get(array, i)))
       return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, key, i), "must be an object");
@@ -82,16 +98,23 @@ static bool count_items(vlGltf *g, const char *key, size_t *count) {
 
 static bool count_all(vlGltf *g) {
   const json_t *punctual = vl_gltf_extension(g->root, "KHR_lights_punctual");
-  bool ok = count_items(g, "buffers", &g->buffer_count) && count_items(g, "bufferViews", &g->view_count) &&
-            count_items(g, "accessors", &g->accessor_count) && count_items(g, "nodes", &g->node_count) &&
-            count_items(g, "materials", &g->material_count) && count_items(g, "images", &g->image_count) &&
-            count_items(g, "textures", &g->texture_count) && count_items(g, "meshes", &g->mesh_count) &&
-            count_items(g, "skins", &g->skin_count) && count_items(g, "cameras", &g->camera_count) &&
-            count_items(g, "samplers", &g->sampler_count) && count_items(g, "animations", &g->animation_count) &&
+  bool ok = count_items(g, "buffers", &g->buffer_count) &&
+            count_items(g, "bufferViews", &g->view_count) &&
+            count_items(g, "accessors", &g->accessor_count) &&
+            count_items(g, "nodes", &g->node_count) &&
+            count_items(g, "materials", &g->material_count) &&
+            count_items(g, "images", &g->image_count) &&
+            count_items(g, "textures", &g->texture_count) &&
+            count_items(g, "meshes", &g->mesh_count) &&
+            count_items(g, "skins", &g->skin_count) &&
+            count_items(g, "cameras", &g->camera_count) &&
+            count_items(g, "samplers", &g->sampler_count) &&
+            count_items(g, "animations", &g->animation_count) &&
             count_items(g, "scenes", &g->scene_count) &&
-            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"), punctual, "lights", &g->lights,
-                          &g->light_count);
-  if (!ok) return false;
+            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"), punctual,
+                          "lights", &g->lights, &g->light_count);
+  if (!ok)
+    return false;
   vlContext *c = g->context;
   g->buffers = vl_alloc_zero(c, g->buffer_count + 1, sizeof *g->buffers);
   g->views = vl_alloc_zero(c, g->view_count + 1, sizeof *g->views);
@@ -100,7 +123,8 @@ static bool count_all(vlGltf *g) {
   g->materials = vl_alloc_zero(c, 2 * (g->material_count + 1), sizeof *g->materials);
   g->images = vl_alloc_zero(c, g->image_count + 1, sizeof *g->images);
   g->meshes = vl_alloc_zero(c, g->mesh_count + 1, sizeof *g->meshes);
-  if (!g->buffers || !g->views || !g->accessors || !g->nodes || !g->materials || !g->images || !g->meshes)
+  if (!g->buffers || !g->views || !g->accessors || !g->nodes || !g->materials || !g->images ||
+      !g->meshes)
     return vl_gltf_fail_memory(g);
   return true;
 }
@@ -115,13 +139,16 @@ bool vl_gltf_open(vlGltf *g) {
     return false;
   }
   g->file = (uint8_t *)data;
-  if (!vl_scene_own(g->scene, data)) return false;
+  if (!vl_scene_own(g->scene, data))
+    return false;
   const char *json = data;
   size_t size = g->file_size;
   if (size >= 4 && memcmp(data, "glTF", 4) == 0) {
     json = NULL;
-    if (!split_glb(g, &json, &size)) return false;
-  } else if (vl_ends_with(g->path, ".glb") && (size == 0 || (data[0] != '{' && (unsigned char)data[0] != 0xef)))
+    if (!split_glb(g, &json, &size))
+      return false;
+  } else if (vl_ends_with(g->path, ".glb") &&
+             (size == 0 || (data[0] != '{' && (unsigned char)data[0] != 0xef)))
     return vl_gltf_fail(g, NULL, "no .glb: it does not begin with \"glTF\"");
   return parse(g, json, size) && count_all(g);
 }
@@ -133,15 +160,21 @@ void vl_gltf_close(vlGltf *g) {
     vl_free(g->context, g->nodes[i].weights_close);
   }
   vl_gltf_free_labels(g);
-  VL_FREE(g->context, g->buffers, g->views, g->accessors, g->keys, g->nodes, g->materials, g->images, g->meshes);
+  VL_FREE(g->context, g->buffers, g->views, g->accessors, g->keys, g->nodes, g->materials,
+          g->images, g->meshes);
 }
 
-/* ---- uris -------------------------------------------------------------------------------------------------------- */
+/* ---- uris
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c >= 'A' && c <= 'Z')
+    return c - 'A';
+  if (c >= 'a' && c <= 'z')
+    return c - 'a' + 26;
+  if (c >= '0' && c <= '9')
+    return c - '0' + 52;
   return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
@@ -152,27 +185,34 @@ static int hex_digit(char c) {
                                 : -1;
 }
 
-/* Decodes percent escapes such as %20. A % that starts no escape stays. result has room for all of text. */
+/* Decodes percent escapes such as %20. A % that starts no escape stays. result has room for all
+ * of text. */
 static size_t unescape(const char *text, char *result) {
   size_t n = 0;
   for (; *text; text++) {
-    int high = *text == '%' ? hex_digit(text[1]) : -1, low = high >= 0 ? hex_digit(text[2]) : -1;
+    int high = *text == '%' ? hex_digit(text[1]) : -1,
+        low = high >= 0 ? hex_digit(text[2]) : -1;
     bool escaped = low >= 0 && (high || low);
     result[n++] = escaped ? (char)(16 * high + low) : *text;
-    if (escaped) text += 2;
+    if (escaped)
+      text += 2;
   }
   result[n] = 0;
   return n;
 }
 
-static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size) {
+static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data,
+                   size_t *size) {
   const char *comma = strchr(uri, ',');
-  if (!comma) return vl_gltf_fail(g, at, "broken data: uri, it has no comma");
+  if (!comma)
+    return vl_gltf_fail(g, at, "broken data: uri, it has no comma");
   bool base64 = comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0;
   const char *text = comma + 1;
   uint8_t *block = vl_alloc_array(g->context, strlen(text) + 1, 1);
-  if (!block) return vl_gltf_fail_memory(g);
-  if (!vl_scene_own(g->scene, block)) return false;
+  if (!block)
+    return vl_gltf_fail_memory(g);
+  if (!vl_scene_own(g->scene, block))
+    return false;
   *data = block;
   if (!base64) {
     *size = unescape(text, (char *)block);
@@ -182,7 +222,9 @@ static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint
   size_t n = 0;
   for (const char *s = text; *s && *s != '='; s++) {
     int digit = base64_digit(*s);
-    if (digit < 0) return vl_gltf_fail(g, at, "broken data: uri, byte %zu is not of base64", (size_t)(s - uri));
+    if (digit < 0)
+      return vl_gltf_fail(g, at, "broken data: uri, byte %zu is not of base64",
+                          (size_t)(s - uri));
     bits = (bits << 6 | (uint32_t)digit) & 0xffffff;
     held += 6;
     if (held >= 8) {
@@ -194,24 +236,32 @@ static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint
   return true;
 }
 
-bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,
-                 const char **path) {
+bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data,
+                 size_t *size, const char **path) {
   *data = NULL;
   *path = NULL;
-  if (strncmp(uri, "data:", 5) == 0) return unpack(g, at, uri, data, size);
+  if (strncmp(uri, "data:", 5) == 0)
+    return unpack(g, at, uri, data, size);
   if (strstr(uri, "://") && strncmp(uri, "file://", 7) != 0)
-    return vl_gltf_fail(g, at, "\"%s\": velo fetches nothing from the net", vl_short_text(uri).text);
-  if (strncmp(uri, "file://", 7) == 0) uri += 7;
+    return vl_gltf_fail(g, at, "\"%s\": velo fetches nothing from the net",
+                        vl_short_text(uri).text);
+  if (strncmp(uri, "file://", 7) == 0)
+    uri += 7;
   char name[4096], whole[4096];
-  if (strlen(uri) >= sizeof name) return vl_gltf_fail(g, at, "the file name is too long");
+  if (strlen(uri) >= sizeof name)
+    return vl_gltf_fail(g, at, "the file name is too long");
   unescape(uri, name);
-  vlFound found = vl_find_file(g->context, g->path, NULL, g->def->search_path, name, whole, sizeof whole);
-  if (found == VL_FOUND_TOO_LONG) return vl_gltf_fail(g, at, "the file name is too long");
+  vlFound found =
+      vl_find_file(g->context, g->path, NULL, g->def->search_path, name, whole, sizeof whole);
+  if (found == VL_FOUND_TOO_LONG)
+    return vl_gltf_fail(g, at, "the file name is too long");
   *path = whole;
   return vl_scene_copy_string(g->scene, path);
 }
 
-/* ---- buffers ----------------------------------------------------------------------------------------------------- */
+/* ---- buffers
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static bool read_buffer(vlGltf *g, size_t i) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "buffers", i);
@@ -219,28 +269,36 @@ static bool read_buffer(vlGltf *g, size_t i) {
   vlGltfBuffer *b = &g->buffers[i];
   const char *uri = NULL, *path = NULL;
   size_t length = 0, size = 0;
-  if (!vl_gltf_text(g, at, json, "uri", &uri) || !vl_gltf_size(g, at, json, "byteLength", &length)) return false;
+  if (!vl_gltf_text(g, at, json, "uri", &uri) ||
+      !vl_gltf_size(g, at, json, "byteLength", &length))
+    return false;
   if (!uri) {
     if (i == 0 && g->chunk) {
       b->data = g->chunk;
       size = g->chunk_size;
     } else {
-      return true; /* legal: a fallback of compressed views, or bytes that only another program has */
+      return true; /* legal: a fallback of compressed views, or bytes that only another program
+                    * has
+                    */
     }
   } else {
-    if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &b->data, &size, &path)) return false;
+    if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &b->data, &size, &path))
+      return false;
     if (path) {
       char *data;
       vlError error;
       vl_error_clear(&error);
       vlResult r = vl_file_read(g->context, path, false, &data, &size, &error);
-      if (r != VL_OK) return vl_gltf_fail_code(g, r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
-      if (!vl_scene_own(g->scene, data)) return false;
+      if (r != VL_OK)
+        return vl_gltf_fail_code(g, r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
+      if (!vl_scene_own(g->scene, data))
+        return false;
       b->data = (const uint8_t *)data;
     }
   }
   if (size < length)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "byteLength"), "%zu, but there are only %zu bytes", length, size);
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "byteLength"), "%zu, but there are only %zu bytes",
+                        length, size);
   b->size = length;
   g->total += length;
   return true;
@@ -252,17 +310,21 @@ static bool read_view(vlGltf *g, size_t i) {
   const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0;
-  if (packed) return vl_gltf_unpack_view(g, at, packed, &g->views[i]);
+  if (packed)
+    return vl_gltf_unpack_view(g, at, packed, &g->views[i]);
   if (!vl_gltf_index(g, at, json, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(g, at, json, "byteOffset", &offset) || !vl_gltf_size(g, at, json, "byteLength", &length) ||
+      !vl_gltf_size(g, at, json, "byteOffset", &offset) ||
+      !vl_gltf_size(g, at, json, "byteLength", &length) ||
       !vl_gltf_size(g, at, json, "byteStride", &stride))
     return false;
-  if (buffer < 0) return vl_gltf_fail(g, at, "\"buffer\" is missing");
+  if (buffer < 0)
+    return vl_gltf_fail(g, at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
-  if (!b->data) return true; /* what reads the view reports it */
+  if (!b->data)
+    return true; /* what reads the view reports it */
   if (offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset, offset + length, (int)buffer,
-                        b->size);
+    return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
+                        offset + length, (int)buffer, b->size);
   if (stride && (stride < 4 || stride > 252))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "byteStride"), "%zu is not from 4 to 252", stride);
   g->views[i] = (vlGltfView){b->data + offset, length, stride};
@@ -271,8 +333,10 @@ static bool read_view(vlGltf *g, size_t i) {
 
 bool vl_gltf_read_buffers(vlGltf *g) {
   for (size_t i = 0; i < g->buffer_count; i++)
-    if (!read_buffer(g, i)) return false;
+    if (!read_buffer(g, i))
+      return false;
   for (size_t i = 0; i < g->view_count; i++)
-    if (!read_view(g, i)) return false;
+    if (!read_view(g, i))
+      return false;
   return true;
 }

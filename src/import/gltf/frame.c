@@ -1,9 +1,13 @@
-/* import/gltf/frame.c: the extent of a whole animation: an automatic camera frames it, so that all frames agree. */
+/* import/gltf/frame.c: the extent of a whole animation: an automatic camera frames it, so that
+ * all frames agree. */
 #include <math.h>
 
 #include "import/gltf/gltf.h"
 
-enum { TIMES = 33, MOST_VERTICES = 4000000 }; /* vertices of deforming meshes that are posed at all times together */
+enum {
+  TIMES = 33,
+  MOST_VERTICES = 4000000
+}; /* vertices of deforming meshes that are posed at all times together */
 
 typedef struct Box {
   double low[3], high[3];
@@ -11,14 +15,17 @@ typedef struct Box {
 
 /* Adds the corners of the box in world space. */
 static bool add_corners(vlGltf *g, const Box *b, const vlMat4 *world) {
-  if (!(b->low[0] <= b->high[0])) return true;
-  if (!VL_RESERVE(g->context, &g->scene->frame_points, 24)) return vl_gltf_fail_memory(g);
+  if (!(b->low[0] <= b->high[0]))
+    return true;
+  if (!VL_RESERVE(g->context, &g->scene->frame_points, 24))
+    return vl_gltf_fail_memory(g);
   for (int k = 0; k < 8; k++) {
     const double corner[3] = {k & 1 ? b->low[0] : b->high[0], k & 2 ? b->low[1] : b->high[1],
                               k & 4 ? b->low[2] : b->high[2]};
     double p[3];
     vl_mat4_point(world, corner, p);
-    for (int i = 0; i < 3; i++) g->scene->frame_points.items[g->scene->frame_points.count++] = p[i];
+    for (int i = 0; i < 3; i++)
+      g->scene->frame_points.items[g->scene->frame_points.count++] = p[i];
   }
   return true;
 }
@@ -29,7 +36,8 @@ static size_t vertices_of(const vlGltf *g, size_t mesh) {
   for (size_t i = 0; i < json_array_size(primitives); i++) {
     const json_t *attributes = json_object_get(json_array_get(primitives, i), "attributes");
     const double a = json_number_value(json_object_get(attributes, "POSITION"));
-    if (!(a >= 0 && a < (double)g->accessor_count)) continue;
+    if (!(a >= 0 && a < (double)g->accessor_count))
+      continue;
     sum += json_number_value(json_object_get(vl_gltf_item(g, "accessors", (size_t)a), "count"));
   }
   return sum > 0 && sum < 1e15 ? (size_t)sum : 0;
@@ -40,7 +48,8 @@ static int choose_times(const vlGltf *g) {
   size_t sum = 0;
   for (size_t i = 0; i < g->node_count; i++) {
     const double mesh = json_number_value(json_object_get(g->nodes[i].json, "mesh"));
-    if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "mesh") || !vl_gltf_deforms(g, &g->nodes[i]))
+    if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "mesh") ||
+        !vl_gltf_deforms(g, &g->nodes[i]))
       continue;
     sum += vertices_of(g, (size_t)mesh);
   }
@@ -58,31 +67,38 @@ static bool frame_node(vlGltf *g, size_t node, Box *boxes, bool first) {
   const vlGltfNode *n = &g->nodes[node];
   const json_t *mesh = json_object_get(n->json, "mesh");
   const vlMat4 identity = vl_mat4_identity();
-  if (!n->reached || !mesh) return true;
+  if (!n->reached || !mesh)
+    return true;
   const bool deforms = vl_gltf_deforms(g, n);
   if (first || deforms) {
     for (int k = 0; k < 3; k++) {
       boxes[node].low[k] = INFINITY;
       boxes[node].high[k] = -INFINITY;
     }
-    if (!vl_gltf_mesh_box(g, (size_t)json_number_value(mesh), n, boxes[node].low, boxes[node].high)) return false;
+    if (!vl_gltf_mesh_box(g, (size_t)json_number_value(mesh), n, boxes[node].low,
+                          boxes[node].high))
+      return false;
   }
   return add_corners(g, &boxes[node], json_object_get(n->json, "skin") ? &identity : &n->world);
 }
 
 bool vl_gltf_frame_animation(vlGltf *g) {
-  if (!(g->def->time == g->def->time) || g->animation_count == 0) return true;
+  if (!(g->def->time == g->def->time) || g->animation_count == 0)
+    return true;
   g->time = 0;
-  if (!vl_gltf_each_animation(g, longest)) return false;
+  if (!vl_gltf_each_animation(g, longest))
+    return false;
   const double end = g->time;
   const int times = choose_times(g);
   Box *boxes = vl_alloc_array(g->context, g->node_count + 1, sizeof *boxes);
   bool ok = boxes || vl_gltf_fail_memory(g);
   for (int k = 0; ok && k < times; k++) {
     g->time = end * k / (times - 1);
-    for (size_t i = 0; i < g->node_count; i++) g->nodes[i].has_pose = false;
+    for (size_t i = 0; i < g->node_count; i++)
+      g->nodes[i].has_pose = false;
     ok = vl_gltf_animate(g) && vl_gltf_pose_nodes(g);
-    for (size_t i = 0; ok && i < g->node_count; i++) ok = frame_node(g, i, boxes, k == 0);
+    for (size_t i = 0; ok && i < g->node_count; i++)
+      ok = frame_node(g, i, boxes, k == 0);
   }
   vl_free(g->context, boxes);
   return ok;

@@ -7,38 +7,49 @@
 
 bool vl_gltf_choose_variant(vlGltf *g) {
   g->variant = -1;
-  if (!g->def->variant) return true;
+  if (!g->def->variant)
+    return true;
   const json_t *extension = vl_gltf_extension(g->root, "KHR_materials_variants"), *variants;
   size_t count;
   const vlGltfPlace *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
-  if (!vl_gltf_array(g, at, extension, "variants", &variants, &count)) return false;
+  if (!vl_gltf_array(g, at, extension, "variants", &variants, &count))
+    return false;
   char names[300] = "";
   for (size_t i = 0; i < count; i++) {
     const char *name = json_string_value(json_object_get(json_array_get(variants, i), "name"));
-    if (!name) continue;
+    if (!name)
+      continue;
     if (vl_text_is(name, g->def->variant)) {
       g->variant = (int64_t)i;
       return true;
     }
     vl_list_name(names, sizeof names, vl_short_text(name).text);
   }
-  return vl_gltf_fail(g, NULL, "there is no variant \"%s\" (%zu are there%s)", vl_argument_text(g->def->variant).text,
-                      count, names);
+  return vl_gltf_fail(g, NULL, "there is no variant \"%s\" (%zu are there%s)",
+                      vl_argument_text(g->def->variant).text, count, names);
 }
 
-vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,
+                        vlError *error) {
   vlLoadDef plain = vl_default_load_def();
-  vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path, .copy = SIZE_MAX};
+  vlGltf g = {.context = scene->context,
+              .scene = scene,
+              .def = def ? def : &plain,
+              .path = path,
+              .copy = SIZE_MAX};
   vl_import_plain_settings(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
-  if (ok) vl_gltf_check_names(&g);
-  ok = ok && vl_gltf_count_unread(&g) && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) &&
-       vl_gltf_read_nodes(&g) && vl_gltf_make_labels(&g) && vl_gltf_pose(&g) && vl_gltf_draw(&g) &&
-       vl_gltf_list_choices(&g);
+  if (ok)
+    vl_gltf_check_names(&g);
+  ok = ok && vl_gltf_count_unread(&g) && vl_gltf_read_buffers(&g) &&
+       vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) && vl_gltf_make_labels(&g) &&
+       vl_gltf_pose(&g) && vl_gltf_draw(&g) && vl_gltf_list_choices(&g);
   ok = ok && vl_gltf_frame_animation(&g);
   vl_repairs_report(g.context, &g.repairs, path);
-  if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
-  if (ok && scene->problem) vl_gltf_validate(&g);
+  if (ok && g.shapes_made == 0)
+    vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
+  if (ok && scene->problem)
+    vl_gltf_validate(&g);
   vl_gltf_close(&g);
   return vl_scene_result(scene, error);
 }

@@ -1,8 +1,10 @@
 /* import/gltf/gltf.h: types and functions shared by the files of the glTF 2.0 importer.
- * Data flow: file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses, animation.c) -> mesh.c (deform.c,
- * topology.c, tangent.c) with material.c, texture.c -> scene. Every index, offset and size of the file is checked
- * before it is used. An error names its place in the JSON, for example meshes[3].primitives[0].attributes.POSITION.
- * Source: the glTF 2.0 specification (Khronos) and the specifications of its extensions. */
+ * Data flow: file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses,
+ * animation.c)
+ * -> mesh.c (deform.c, topology.c, tangent.c) with material.c, texture.c -> scene. Every index,
+ * offset and size of the file is checked before it is used. An error names its place in the
+ * JSON, for example meshes[3].primitives[0].attributes.POSITION. Source: the glTF 2.0
+ * specification (Khronos) and the specifications of its extensions. */
 #ifndef IMPORT_GLTF_GLTF_H
 #define IMPORT_GLTF_GLTF_H
 
@@ -13,7 +15,8 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 
-/* A place in the JSON: a key, and an index for an element of an array. Places are linked on the caller's stack. */
+/* A place in the JSON: a key, and an index for an element of an array. Places are linked on the
+ * caller's stack. */
 typedef struct vlGltfPlace {
   const struct vlGltfPlace *up;
   const char *key;
@@ -41,8 +44,8 @@ enum {
   VL_GLTF_FLOAT = 5126
 };
 
-/* Element i lies at data + i * stride. data null: all elements are zero. Sparse elements replace the elements at their
- * indices. */
+/* Element i lies at data + i * stride. data null: all elements are zero. Sparse elements
+ * replace the elements at their indices. */
 typedef struct vlGltfAccessor {
   enum { VL_GLTF_UNREAD, VL_GLTF_GOOD } state;
   const uint8_t *data;
@@ -62,7 +65,8 @@ typedef struct vlGltfNode {
   double translation[3], rotation[4], scale[3];
   vlMat4 world;   /* world_from_node, when has_pose */
   vlMat4 *keys;   /* world_from_node at each of the VL_GLTF_KEYS key times; null: no motion */
-  float *weights; /* animated weights of the morph targets; null: the weights of the node or the mesh apply */
+  float *weights; /* animated weights of the morph targets; null: the weights of the node or the
+                     mesh apply */
   uint32_t weight_count;
   float *weights_close; /* weights at shutter close */
   uint32_t weight_close_count;
@@ -87,7 +91,9 @@ typedef struct vlGltfImage {
   const char *path;
 } vlGltfImage;
 
-enum { VL_GLTF_KEYS = 9 }; /* number of poses from shutter open to shutter close, evenly spaced */
+enum {
+  VL_GLTF_KEYS = 9
+}; /* number of poses from shutter open to shutter close, evenly spaced */
 
 typedef struct vlGltfMesh {
   uint32_t uses; /* number of nodes and instances that place the mesh undeformed */
@@ -110,12 +116,13 @@ typedef struct vlGltf {
   vlGltfView *views;
   vlGltfAccessor *accessors;
   vlGltfNode *nodes;
-  vlGltfMaterial
-      *materials; /* 2 * (count + 1): each material of the file and the default one, without and with vertex colours */
+  vlGltfMaterial *materials; /* 2 * (count + 1): each material of the file and the default one,
+                                without and with vertex colours */
   vlGltfImage *images;
   vlGltfMesh *meshes;
-  size_t buffer_count, view_count, accessor_count, node_count, material_count, image_count, texture_count, mesh_count,
-      skin_count, camera_count, light_count, sampler_count, animation_count, scene_count;
+  size_t buffer_count, view_count, accessor_count, node_count, material_count, image_count,
+      texture_count, mesh_count, skin_count, camera_count, light_count, sampler_count,
+      animation_count, scene_count;
   const json_t *lights;         /* array of KHR_lights_punctual */
   uint64_t total;               /* size of all buffers in bytes */
   double point_radius;          /* of points and lines, in the world; 0: not known */
@@ -147,60 +154,73 @@ enum {
   VL_GLTF_REPORTED_MOTION = 64
 };
 
-/* ---- errors and JSON (json.c): a function that returns bool has reported the error when it returns false --------- */
+/* ---- errors and JSON (json.c): a function that returns bool has reported the error when it
+ * returns false --------- */
 
 /* Report the error "path: place: message". Always return false. */
-bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) __attribute__((format(printf, 3, 4)));
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format,
+                       ...) __attribute__((format(printf, 4, 5)));
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
   vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
   return false;
 }
-void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format,
+                  ...) __attribute__((format(printf, 4, 5)));
 /* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 
-/* Typed members of a JSON object. An absent member leaves the value as it is and returns true. A member of the wrong
- * type is an error. object may be null: every member is absent. */
-bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, double *value);
-bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, float *value);
-bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t count,
-                     double *values);
-bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value);
-bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value);
+/* Typed members of a JSON object. An absent member leaves the value as it is and returns true.
+ * A member of the wrong type is an error. object may be null: every member is absent. */
+bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                    double *value);
+bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   float *value);
+bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                     size_t count, double *values);
+bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                  bool *value);
+bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                  const char **value);
 /* *value receives the index of the member's string among the names. */
-bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *const *names,
-                    int count, int *value);
+bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                    const char *const *names, int count, int *value);
 /* A non-negative integer. */
-bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t *value);
+bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                  size_t *value);
 /* An index below limit; -1 when absent. */
-bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t limit,
-                   int64_t *index);
-bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value);
-bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value,
-                   size_t *count);
+bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   size_t limit, int64_t *index);
+bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                    const json_t **value);
+bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   const json_t **value, size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);
 /* Element i of an array at the root, for example nodes[3]. The caller must have checked i. */
 const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 
-/* ---- files (file.c) ---------------------------------------------------------------------------------------------- */
+/* ---- files (file.c)
+ * ----------------------------------------------------------------------------------------------
+ */
 
 bool vl_gltf_open(vlGltf *g);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
-bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
-/* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is not compressed. */
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+                         vlGltfView *view);
+/* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is
+ * not compressed. */
 bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive);
-/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path: in the
- * folder of the glTF file, else on the search path. */
-bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,
-                 const char **path);
+/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is
+ * the file's path: in the folder of the glTF file, else on the search path. */
+bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data,
+                 size_t *size, const char **path);
 
-/* ---- extensions (extension.c) ------------------------------------------------------------------------------------ */
+/* ---- extensions (extension.c)
+ * ------------------------------------------------------------------------------------ */
 
 bool vl_gltf_check_extensions(vlGltf *g);
 bool vl_gltf_reads_extension(const char *name);
@@ -209,54 +229,65 @@ vlShortText vl_gltf_extension_text(const char *name);
 /* names.c: warns of members whose name is nearly a name of the format. */
 void vl_gltf_check_names(vlGltf *g);
 
-/* ---- arrays (accessor.c) ----------------------------------------------------------------------------------------- */
+/* ---- arrays (accessor.c)
+ * ----------------------------------------------------------------------------------------- */
 
 /* The accessor, checked; null after an error. */
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *at, size_t index);
-/* Reads all elements as floats, `components` per element. Components that the accessor lacks are left unchanged in out.
- * Normalised integers map to [-1, 1] or [0, 1]; other integers keep their value. */
+/* Reads all elements as floats, `components` per element. Components that the accessor lacks
+ * are left unchanged in out. Normalised integers map to [-1, 1] or [0, 1]; other integers keep
+ * their value. */
 void vl_gltf_read_floats(const vlGltfAccessor *accessor, uint32_t components, float *out);
 void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uint32_t *out);
-/* A new block of count * components floats from an accessor. The accessor must have one of the given numbers of
- * components and count elements (0: any; *read receives the count). Null after an error. */
-float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components, size_t count,
-                           size_t *read);
-/* Adds to the bytes of geometry made so far. Reports an error when the sum is out of proportion to the file's size. */
+/* A new block of count * components floats from an accessor. The accessor must have one of the
+ * given numbers of components and count elements (0: any; *read receives the count). Null after
+ * an error. */
+float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components,
+                           size_t count, size_t *read);
+/* Adds to the bytes of geometry made so far. Reports an error when the sum is out of proportion
+ * to the file's size. */
 bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
 
-/* ---- the tree (node.c, animation.c) ------------------------------------------------------------------------------ */
+/* ---- the tree (node.c, animation.c)
+ * ------------------------------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
 bool vl_gltf_animate(vlGltf *g); /* applies the animations at g->time */
 /* Applies animation `index` at g->time. */
 bool vl_gltf_apply_animation(vlGltf *g, size_t index);
-/* Visits the animations that the def chooses, in order. False after an error, also that there is no such animation. */
+/* Visits the animations that the def chooses, in order. False after an error, also that there
+ * is no such animation. */
 bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index));
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
 /* Poses all nodes at def->time and, for motion blur, at the key times up to def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
 /* Whether the node's world matrix changes between shutter open and shutter close. */
-/* frame.c: gives the scene the points of the whole animation, if there is one, for an automatic camera. The nodes have
- * other poses afterwards. */
+/* frame.c: gives the scene the points of the whole animation, if there is one, for an automatic
+ * camera. The nodes have other poses afterwards. */
 bool vl_gltf_frame_animation(vlGltf *g);
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]);
 
-/* validate.c: reads what the scene does not use, and reports what is wrong there by the log. Call last. */
+/* validate.c: reads what the scene does not use, and reports what is wrong there by the log.
+ * Call last. */
 void vl_gltf_validate(vlGltf *g);
 
 /* unread.c: counts in the scene what the file has and velo does not read (vlScene.unread). */
 bool vl_gltf_count_unread(vlGltf *g);
 
-/* choices.c: lists the file's scenes, cameras, animations and variants. Call after vl_gltf_draw. */
+/* choices.c: lists the file's scenes, cameras, animations and variants. Call after
+ * vl_gltf_draw. */
 bool vl_gltf_list_choices(vlGltf *g);
 double vl_gltf_animation_end(const vlGltf *g, size_t animation);
 
-/* ---- names (label.c) --------------------------------------------------------------------------------------------- */
+/* ---- names (label.c)
+ * ---------------------------------------------------------------------------------------------
+ */
 
-/* Where the file describes a shape. node is SIZE_MAX for a shape of a group, material -1 for the default one. */
+/* Where the file describes a shape. node is SIZE_MAX for a shape of a group, material -1 for
+ * the default one. */
 typedef struct vlGltfShapePlace {
   size_t node, mesh, primitive;
   int64_t material;
@@ -269,54 +300,63 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label);
 /* Labels the instance that was added last. */
 void vl_gltf_label_instance(vlGltf *g, size_t node);
 
-/* ---- meshes ------------------------------------------------------------------------------------------------------ */
+/* ---- meshes
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* A primitive as triangles. Its arrays are blocks of the context. */
 typedef struct vlGltfPrimitive {
   size_t vertices, faces;
-  float *positions, *normals, *tangents;  /* 3, 3, 4 per vertex; all but the positions may be null */
-  float *colors;                          /* 4 per vertex, linear */
-  float *uvs[4];                          /* 2 per vertex, v upwards */
+  float *positions, *normals,
+      *tangents; /* 3, 3, 4 per vertex; all but the positions may be null */
+  float *colors; /* 4 per vertex, linear */
+  float *uvs[4]; /* 2 per vertex, v upwards */
   float *positions_close, *normals_close; /* when the shutter closes; null: no deformation */
   uint32_t *indices;
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
 
-/* The radius of points and lines: one pixel of an image of 720 rows, at the centre of the box around the meshes of
- * these nodes. Without a camera in the file, 0.15 % of the box's diagonal, which is about a pixel of an image that
- * shows the whole box. 0: no accessor has bounds. The camera must be chosen. */
+/* The radius of points and lines: one pixel of an image of 720 rows, at the centre of the box
+ * around the meshes of these nodes. Without a camera in the file, 0.15 % of the box's diagonal,
+ * which is about a pixel of an image that shows the whole box. 0: no accessor has bounds. The
+ * camera must be chosen. */
 double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count);
 
-/* Adds mesh `index` for a node. A null node, with node_index SIZE_MAX, adds the mesh to a group, in the mesh's own
- * space. */
-bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group, vlMat4 pose);
+/* Adds mesh `index` for a node. A null node, with node_index SIZE_MAX, adds the mesh to a
+ * group, in the mesh's own space. */
+bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
+                      vlGroupId group, vlMat4 pose);
 /* Grows the box by the primitives of the mesh as the node poses it. */
-bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low[3], double high[3]);
+bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low[3],
+                      double high[3]);
 /* Whether the node deforms its mesh by a skin or morph targets. */
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
-/* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles, according to its mode. Points
- * and lines become small solids with new vertices. */
-bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices, size_t count,
-                       vlGltfPrimitive *p);
+/* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles,
+ * according to its mode. Points and lines become small solids with new vertices. */
+bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices,
+                       size_t count, vlGltfPrimitive *p);
 /* Removes the vertices that no face uses. */
 bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p);
 /* deform.c: applies morph targets and skins. */
-bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
-                   const vlGltfNode *node, vlGltfPrimitive *p);
+bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+                   const json_t *primitive, const vlGltfNode *node, vlGltfPrimitive *p);
 /* Transforms the positions to world space. */
-bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, const vlGltfNode *node,
-                  vlGltfPrimitive *p);
-/* tangent.c: MikkTSpace tangents for uv set `set`, and flat normals where the primitive has none. Vertices are split
- * where tangents differ. */
+bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
+                  const vlGltfNode *node, vlGltfPrimitive *p);
+/* tangent.c: MikkTSpace tangents for uv set `set`, and flat normals where the primitive has
+ * none. Vertices are split where tangents differ. */
 bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
 
-/* ---- materials --------------------------------------------------------------------------------------------------- */
+/* ---- materials
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-/* The material `index` (-1: the default material) for a primitive with or without vertex colours. Null after an error.
+/* The material `index` (-1: the default material) for a primitive with or without vertex
+ * colours. Null after an error.
  */
 const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors);
-/* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1 makes a colour texture. Without a
- * textureInfo *id is 0. */
+/* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1 makes a
+ * colour texture. Without a textureInfo *id is 0. */
 typedef struct vlGltfTextureUse {
   bool spectrum;
   int channel; /* 0 to 3 for a float texture; -1: a colour */
@@ -336,12 +376,15 @@ bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set);
 
-/* volume.c: vl_gltf_volume reads KHR_materials_volume of a solid. vl_gltf_angle_texture converts a texture of
- * directions to a texture of angles in radians and adds rotation. */
-bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result);
+/* volume.c: vl_gltf_volume reads KHR_materials_volume of a solid. vl_gltf_angle_texture
+ * converts a texture of directions to a texture of angles in radians and adds rotation. */
+bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+                    vlGltfMaterial *result);
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 
-/* ---- lights, cameras --------------------------------------------------------------------------------------------- */
+/* ---- lights, cameras
+ * ---------------------------------------------------------------------------------------------
+ */
 
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t light);
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *at);

@@ -1,6 +1,7 @@
-/* import/gltf/image_light.c: EXT_lights_image_based. The largest cube map of the light's specular images becomes the
- * environment. The prefiltered smaller ones and the irradiance coefficients are not read. Images with four channels are
- * RGBD: radiance = linear colour / fourth channel. */
+/* import/gltf/image_light.c: EXT_lights_image_based. The largest cube map of the light's
+ * specular images becomes the environment. The prefiltered smaller ones and the irradiance
+ * coefficients are not read. Images with four channels are RGBD: radiance = linear colour /
+ * fourth channel. */
 #include <math.h>
 #include <string.h>
 
@@ -16,24 +17,31 @@ typedef struct Cube {
 } Cube;
 
 static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube, int face) {
-  if (!vl_gltf_read_image(g, index)) return false;
+  if (!vl_gltf_read_image(g, index))
+    return false;
   const vlGltfImage *file = &g->images[index];
-  if (file->missing) return true; /* reported */
+  if (file->missing)
+    return true; /* reported */
   vlImage *image = NULL;
   vlError error;
   vl_error_clear(&error);
   vlResult r = file->path ? vl_image_read_named(g->context, NULL, file->path, &image, &error)
-                          : vl_image_read_memory(g->context, "image", file->data, file->size, &image, &error);
-  if (r != VL_OK) return vl_gltf_fail_code(g, r, at, "%s", error.message);
+                          : vl_image_read_memory(g->context, "image", file->data, file->size,
+                                                 &image, &error);
+  if (r != VL_OK)
+    return vl_gltf_fail_code(g, r, at, "%s", error.message);
   uint32_t channel[4], count = vl_image_color(image, channel);
   float *pixels = NULL;
   bool ok = count >= 3 && image->width == image->height;
-  if (!ok) vl_gltf_fail(g, at, "images[%zu]: a face of a cube must be square and in colour", index);
-  if (ok && vl_image_to_float(image, channel, count, &pixels) != VL_OK) ok = vl_gltf_fail_memory(g);
+  if (!ok)
+    vl_gltf_fail(g, at, "images[%zu]: a face of a cube must be square and in colour", index);
+  if (ok && vl_image_to_float(image, channel, count, &pixels) != VL_OK)
+    ok = vl_gltf_fail_memory(g);
   size_t texels = (size_t)image->width * image->height;
   for (size_t i = 0; ok && i < texels; i++) {
     float d = count == 4 ? pixels[4 * i + 3] : 1.0f;
-    for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = d > 0 ? pixels[count * i + c] / d : 0.0f;
+    for (size_t c = 0; c < 3; c++)
+      pixels[3 * i + c] = d > 0 ? pixels[count * i + c] / d : 0.0f;
   }
   cube->side[face] = image->width;
   cube->faces[face] = pixels;
@@ -41,8 +49,8 @@ static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube
   return ok;
 }
 
-/* Radiance from direction d, interpolated bilinearly within one face. The faces have the order and axes of OpenGL's
- * cube maps. */
+/* Radiance from direction d, interpolated bilinearly within one face. The faces have the order
+ * and axes of OpenGL's cube maps. */
 static void look(const Cube *cube, vlVec3 d, float out[3]) {
   float s, t;
   const uint32_t face = vl_cube_map_face(d, &s, &t);
@@ -57,7 +65,8 @@ static void look(const Cube *cube, vlVec3 d, float out[3]) {
     b = b < 0 ? 0 : b >= n ? n - 1 : b;
     float w = (k & 1 ? fu : 1 - fu) * (k >> 1 ? fv : 1 - fv);
     const float *p = cube->faces[face] + 3 * ((size_t)b * (size_t)n + (size_t)a);
-    for (int c = 0; c < 3; c++) out[c] += w * p[c];
+    for (int c = 0; c < 3; c++)
+      out[c] += w * p[c];
   }
 }
 
@@ -67,11 +76,14 @@ static bool add_cube(vlGltf *g, const Cube *cube, const double rotation[4], doub
   def.height = def.width;
   def.type = VL_PIXEL_F32;
   vlImage *image;
-  if (vl_image_create(g->context, &def, &image) != VL_OK) return vl_gltf_fail_memory(g);
+  if (vl_image_create(g->context, &def, &image) != VL_OK)
+    return vl_gltf_fail_memory(g);
   for (uint32_t y = 0; y < def.height; y++) {
     float *row = vl_image_row(image, y);
     for (uint32_t x = 0; x < def.width; x++)
-      look(cube, vl_octahedral_decode(((float)x + 0.5f) / (float)def.width, ((float)y + 0.5f) / (float)def.height),
+      look(cube,
+           vl_octahedral_decode(((float)x + 0.5f) / (float)def.width,
+                                ((float)y + 0.5f) / (float)def.height),
            row + 3 * (size_t)x);
   }
   const double zero[3] = {0, 0, 0}, one[3] = {1, 1, 1};
@@ -83,42 +95,56 @@ static bool add_cube(vlGltf *g, const Cube *cube, const double rotation[4], doub
   light.image = image;
   bool ok = vl_scene_add_light(g->scene, &light).index != 0;
   vl_image_destroy(image);
-  if (ok) vl_scene_defs(g->scene)->light_missing = false;
+  if (ok)
+    vl_scene_defs(g->scene)->light_missing = false;
   return ok;
 }
 
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *scene_at) {
   const json_t *own = vl_gltf_extension(scene, "EXT_lights_image_based"), *lights, *levels;
-  if (!own) return true;
+  if (!own)
+    return true;
   const vlGltfPlace *up = VL_GLTF_KEY(NULL, "extensions.EXT_lights_image_based");
   size_t count, level_count;
   int64_t index;
-  if (!vl_gltf_array(g, up, vl_gltf_extension(g->root, "EXT_lights_image_based"), "lights", &lights, &count) ||
-      !vl_gltf_index(g, VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), own, "light", count, &index))
+  if (!vl_gltf_array(g, up, vl_gltf_extension(g->root, "EXT_lights_image_based"), "lights",
+                     &lights, &count) ||
+      !vl_gltf_index(g, VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), own,
+                     "light", count, &index))
     return false;
-  if (index < 0) return true;
-  const vlGltfPlace *at = VL_GLTF_ITEM(up, "lights", (size_t)index), *at_images = VL_GLTF_KEY(at, "specularImages");
+  if (index < 0)
+    return true;
+  const vlGltfPlace *at = VL_GLTF_ITEM(up, "lights", (size_t)index),
+                    *at_images = VL_GLTF_KEY(at, "specularImages");
   const json_t *json = json_array_get(lights, (size_t)index);
   double rotation[4] = {0, 0, 0, 1}, intensity = 1;
-  if (!json_is_object(json)) return vl_gltf_fail(g, at, "must be an object");
-  if (!vl_gltf_numbers(g, at, json, "rotation", 4, rotation) || !vl_gltf_number(g, at, json, "intensity", &intensity) ||
+  if (!json_is_object(json))
+    return vl_gltf_fail(g, at, "must be an object");
+  if (!vl_gltf_numbers(g, at, json, "rotation", 4, rotation) ||
+      !vl_gltf_number(g, at, json, "intensity", &intensity) ||
       !vl_gltf_array(g, at, json, "specularImages", &levels, &level_count))
     return false;
   const json_t *faces = json_array_get(levels, 0);
-  if (json_array_size(faces) != 6) return vl_gltf_fail(g, at_images, "must hold six faces for each level");
-  if (!(intensity >= 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "intensity"), "must not be negative");
+  if (json_array_size(faces) != 6)
+    return vl_gltf_fail(g, at_images, "must hold six faces for each level");
+  if (!(intensity >= 0))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "intensity"), "must not be negative");
   Cube cube = {{0}, {NULL}};
   bool ok = true;
   for (int k = 0; ok && k < 6; k++) {
     double image = json_number_value(json_array_get(faces, (size_t)k));
-    ok = json_is_number(json_array_get(faces, (size_t)k)) && image >= 0 && image < (double)g->image_count &&
-         image == floor(image);
-    if (!ok) vl_gltf_fail(g, VL_GLTF_ITEM(at_images, "[0]", (size_t)k), "there is no such image");
+    ok = json_is_number(json_array_get(faces, (size_t)k)) && image >= 0 &&
+         image < (double)g->image_count && image == floor(image);
+    if (!ok)
+      vl_gltf_fail(g, VL_GLTF_ITEM(at_images, "[0]", (size_t)k), "there is no such image");
     ok = ok && read_face(g, at_images, (size_t)image, &cube, k);
   }
   bool whole = true;
-  for (int k = 0; k < 6; k++) whole = whole && cube.faces[k];
-  if (ok && whole && intensity > 0) ok = add_cube(g, &cube, rotation, intensity);
-  for (int k = 0; k < 6; k++) vl_free(g->context, cube.faces[k]);
+  for (int k = 0; k < 6; k++)
+    whole = whole && cube.faces[k];
+  if (ok && whole && intensity > 0)
+    ok = add_cube(g, &cube, rotation, intensity);
+  for (int k = 0; k < 6; k++)
+    vl_free(g->context, cube.faces[k]);
   return ok;
 }

@@ -8,26 +8,32 @@
 /* Writes the place from its outermost part inwards. */
 static size_t write_place(const vlGltfPlace *place, char *text, size_t size) {
   size_t n = place->up ? write_place(place->up, text, size) : 0;
-  if (n + 1 >= size) return n;
+  if (n + 1 >= size)
+    return n;
   int wrote = place->index == SIZE_MAX
                   ? snprintf(text + n, size - n, "%s%.60s", n ? "." : "", place->key)
-                  : snprintf(text + n, size - n, "%s%.60s[%zu]", n ? "." : "", place->key, place->index);
+                  : snprintf(text + n, size - n, "%s%.60s[%zu]", n ? "." : "", place->key,
+                             place->index);
   return wrote < 0 ? n : n + (size_t)wrote < size ? n + (size_t)wrote : size - 1;
 }
 
-static void format_message(const vlGltfPlace *place, const char *format, va_list args, char *text, size_t size) {
+static void format_message(const vlGltfPlace *place, const char *format, va_list args,
+                           char *text, size_t size) {
   size_t n = place ? write_place(place, text, size) : 0;
-  if (n && n + 3 < size) n += (size_t)snprintf(text + n, size - n, ": ");
+  if (n && n + 3 < size)
+    n += (size_t)snprintf(text + n, size - n, ": ");
   vsnprintf(text + n, size - n, format, args);
 }
 
-static void fail(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, va_list args) {
+static void fail(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format,
+                 va_list args) {
   char text[512];
   format_message(place, format, args, text, sizeof text);
   vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", text);
 }
 
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...) {
+bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format,
+                       ...) {
   va_list args;
   va_start(args, format);
   fail(g, code, place, format, args);
@@ -43,7 +49,8 @@ bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) 
   return false;
 }
 
-void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...) {
+void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format,
+                  ...) {
   char text[512];
   va_list args;
   va_start(args, format);
@@ -60,62 +67,84 @@ bool vl_gltf_once(vlGltf *g, uint32_t bit) {
   return first;
 }
 
-/* ---- members ----------------------------------------------------------------------------------------------------- */
+/* ---- members
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static const char *kind_of(const json_t *value) {
   switch (json_typeof(value)) {
-    case JSON_OBJECT: return "an object";
-    case JSON_ARRAY: return "an array";
-    case JSON_STRING: return "a string";
+    case JSON_OBJECT:
+      return "an object";
+    case JSON_ARRAY:
+      return "an array";
+    case JSON_STRING:
+      return "a string";
     case JSON_INTEGER:
-    case JSON_REAL: return "a number";
-    case JSON_NULL: return "null";
+    case JSON_REAL:
+      return "a number";
+    case JSON_NULL:
+      return "null";
     case JSON_TRUE:
-    case JSON_FALSE: return "true or false";
+    case JSON_FALSE:
+      return "true or false";
   }
   return "nothing";
 }
 
-static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const char *wanted, const json_t *found) {
+static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const char *wanted,
+                       const json_t *found) {
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
 }
 
-/* Looks up a member of this kind. *value is null if it is not there. Returns false after an error. */
-static bool member(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *wanted,
-                   const json_t **value) {
+/* Looks up a member of this kind. *value is null if it is not there. Returns false after an
+ * error.
+ */
+static bool member(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   const char *wanted, const json_t **value) {
   *value = json_object_get(object, key);
-  if (!*value || vl_text_is(kind_of(*value), wanted)) return true;
+  if (!*value || vl_text_is(kind_of(*value), wanted))
+    return true;
   wrong_kind(g, at, key, wanted, *value);
   *value = NULL;
   return false;
 }
 
-bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, double *value) {
+bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                    double *value) {
   const json_t *v;
-  if (!member(g, at, object, key, "a number", &v)) return false;
-  if (!v) return true;
+  if (!member(g, at, object, key, "a number", &v))
+    return false;
+  if (!v)
+    return true;
   *value = json_number_value(v);
-  if (isfinite(*value) && fabs(*value) <= 3e38) return true;
+  if (isfinite(*value) && fabs(*value) <= 3e38)
+    return true;
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%g is out of range", *value);
 }
 
-bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, float *value) {
+bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   float *value) {
   double x = *value;
   bool ok = vl_gltf_number(g, at, object, key, &x);
   *value = (float)x;
   return ok;
 }
 
-bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t count,
-                     double *values) {
+bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                     size_t count, double *values) {
   const json_t *v;
-  if (!member(g, at, object, key, "an array", &v)) return false;
-  if (!v) return true;
+  if (!member(g, at, object, key, "an array", &v))
+    return false;
+  if (!v)
+    return true;
   if (json_array_size(v) != count)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count, json_array_size(v));
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count,
+                        json_array_size(v));
   for (size_t i = 0; i < count; i++) {
     const json_t *x = json_array_get(v, i);
-    if (!json_is_number(x)) return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "must be a number, found %s", kind_of(x));
+    if (!json_is_number(x))
+      return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "must be a number, found %s",
+                          kind_of(x));
     values[i] = json_number_value(x);
     if (!isfinite(values[i]) || fabs(values[i]) > 3e38)
       return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "%g is out of range", values[i]);
@@ -123,26 +152,33 @@ bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, con
   return true;
 }
 
-bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value) {
+bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                  bool *value) {
   const json_t *v;
-  if (!member(g, at, object, key, "true or false", &v)) return false;
-  if (!v) return true;
+  if (!member(g, at, object, key, "true or false", &v))
+    return false;
+  if (!v)
+    return true;
   *value = json_is_true(v);
   return true;
 }
 
-bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value) {
+bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                  const char **value) {
   const json_t *v;
-  if (!member(g, at, object, key, "a string", &v)) return false;
-  if (!v) return true;
+  if (!member(g, at, object, key, "a string", &v))
+    return false;
+  if (!v)
+    return true;
   *value = json_string_value(v);
   return true;
 }
 
-bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *const *names,
-                    int count, int *value) {
+bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                    const char *const *names, int count, int *value) {
   const char *text = names[*value];
-  if (!vl_gltf_text(g, at, object, key, &text)) return false;
+  if (!vl_gltf_text(g, at, object, key, &text))
+    return false;
   char list[160] = "";
   for (int i = 0; i < count; i++) {
     if (vl_text_is(text, names[i])) {
@@ -151,43 +187,52 @@ bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, cons
     }
     vl_list_name(list, sizeof list, names[i]);
   }
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%s\" (known%s)", vl_short_text(text).text, list);
+  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%s\" (known%s)",
+                      vl_short_text(text).text, list);
 }
 
-static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v, size_t *value) {
-  if (!json_is_number(v)) return wrong_kind(g, at, key, "a whole number", v);
+static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v,
+                  size_t *value) {
+  if (!json_is_number(v))
+    return wrong_kind(g, at, key, "a whole number", v);
   double x = json_number_value(v); /* some exporters write integers as 3.0 */
   if (!(x >= 0 && x <= 9007199254740992.0) || x != floor(x))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be a whole number from 0 on, found %.17g", x);
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, key),
+                        "must be a whole number from 0 on, found %.17g", x);
   *value = (size_t)x;
   return true;
 }
 
-bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t *value) {
+bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                  size_t *value) {
   const json_t *v = json_object_get(object, key);
   return !v || whole(g, at, key, v, value);
 }
 
-bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t limit,
-                   int64_t *index) {
+bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   size_t limit, int64_t *index) {
   const json_t *v = json_object_get(object, key);
   size_t value = 0;
   *index = -1;
-  if (!v) return true;
-  if (!whole(g, at, key, v, &value)) return false;
+  if (!v)
+    return true;
+  if (!whole(g, at, key, v, &value))
+    return false;
   if (value >= limit)
-    return limit ? vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)", value, limit, limit - 1)
+    return limit ? vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
+                                value, limit, limit - 1)
                  : vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are none", value);
   *index = (int64_t)value;
   return true;
 }
 
-bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value) {
+bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                    const json_t **value) {
   return member(g, at, object, key, "an object", value);
 }
 
-bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value,
-                   size_t *count) {
+bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+                   const json_t **value, size_t *count) {
   const bool ok = member(g, at, object, key, "an array", value);
   *count = json_array_size(*value);
   return ok;

@@ -1,5 +1,6 @@
-/* import/gltf/label.c: names of nodes, meshes and materials become labels of shapes, instances and materials. A mesh
- * placed by one node is called by the node, else by the mesh; equal names get those of their parents: Hall/Chair. */
+/* import/gltf/label.c: names of nodes, meshes and materials become labels of shapes, instances
+ * and materials. A mesh placed by one node is called by the node, else by the mesh; equal names
+ * get those of their parents: Hall/Chair. */
 #include <stdio.h>
 
 #include "base/free.h"
@@ -17,14 +18,16 @@ static const char *name_of(const json_t *json) {
 static int64_t mesh_of(const vlGltf *g, size_t node) {
   const json_t *mesh = json_object_get(g->nodes[node].json, "mesh");
   double index = json_number_value(mesh);
-  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (int64_t)index : -1;
+  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (int64_t)index
+                                                                             : -1;
 }
 
 /* Number of named parents. */
 static uint32_t find_parents(const vlGltf *g, size_t node, uint32_t parents[CHAIN]) {
   uint32_t n = 0;
   for (uint32_t k = g->nodes[node].parent; k != UINT32_MAX && n < CHAIN; k = g->nodes[k].parent)
-    if (name_of(g->nodes[k].json)) parents[n++] = k;
+    if (name_of(g->nodes[k].json))
+      parents[n++] = k;
   return n;
 }
 
@@ -33,45 +36,53 @@ static void node_path(const vlGltf *g, size_t node, uint32_t depth, char path[VL
   uint32_t parents[CHAIN], n = find_parents(g, node, parents);
   char number[40];
   path[0] = 0;
-  for (uint32_t k = depth < n ? depth : n; k-- > 0;) vl_label_append(path, name_of(g->nodes[parents[k]].json));
+  for (uint32_t k = depth < n ? depth : n; k-- > 0;)
+    vl_label_append(path, name_of(g->nodes[parents[k]].json));
   const char *name = name_of(g->nodes[node].json);
   const int64_t mesh = mesh_of(g, node);
-  if (!name && mesh >= 0) name = name_of(vl_gltf_item(g, "meshes", (size_t)mesh));
-  if (!name) snprintf(number, sizeof number, "nodes[%zu]", node);
+  if (!name && mesh >= 0)
+    name = name_of(vl_gltf_item(g, "meshes", (size_t)mesh));
+  if (!name)
+    snprintf(number, sizeof number, "nodes[%zu]", node);
   vl_label_append(path, name ? name : number);
 }
 
 /* Makes the paths of the nodes in `list` and counts how often each occurs. */
-static bool count_paths(vlGltf *g, const uint32_t *list, size_t count, const uint8_t *depths, char **paths,
-                        vlNameTable *table) {
+static bool count_paths(vlGltf *g, const uint32_t *list, size_t count, const uint8_t *depths,
+                        char **paths, vlNameTable *table) {
   char path[VL_LABEL_SIZE];
   for (size_t i = 0; i < count; i++) {
     uint32_t before = 0;
     node_path(g, list[i], depths[i], path);
     vl_free(g->context, paths[i]);
-    if (!(paths[i] = vl_alloc(g->context, strlen(path) + 1))) return false;
+    if (!(paths[i] = vl_alloc(g->context, strlen(path) + 1)))
+      return false;
     memcpy(paths[i], path, strlen(path) + 1);
     vl_names_find(table, path, &before);
-    if (!vl_names_add(g->context, table, paths[i], before + 1)) return false;
+    if (!vl_names_add(g->context, table, paths[i], before + 1))
+      return false;
   }
   return true;
 }
 
 /* Where a path occurs twice, takes one more parent. False when nothing changes. */
-static bool deepen(const vlGltf *g, const uint32_t *list, size_t count, uint8_t *depths, char **paths,
-                   const vlNameTable *table) {
+static bool deepen(const vlGltf *g, const uint32_t *list, size_t count, uint8_t *depths,
+                   char **paths, const vlNameTable *table) {
   bool changed = false;
   for (size_t i = 0; i < count; i++) {
     uint32_t times = 0, parents[CHAIN];
     vl_names_find(table, paths[i], &times);
-    if (times < 2 || depths[i] >= MOST_PARENTS || depths[i] >= find_parents(g, list[i], parents)) continue;
+    if (times < 2 || depths[i] >= MOST_PARENTS ||
+        depths[i] >= find_parents(g, list[i], parents))
+      continue;
     depths[i]++;
     changed = true;
   }
   return changed;
 }
 
-static bool label_list(vlGltf *g, const uint32_t *list, size_t count, uint8_t *depths, char **paths) {
+static bool label_list(vlGltf *g, const uint32_t *list, size_t count, uint8_t *depths,
+                       char **paths) {
   bool ok = true, changed = true;
   for (int round = 0; ok && changed && round <= MOST_PARENTS; round++) {
     vlNameTable table = {0};
@@ -80,7 +91,8 @@ static bool label_list(vlGltf *g, const uint32_t *list, size_t count, uint8_t *d
     vl_free(g->context, table.slots);
   }
   vlNameTable table = {0};
-  if (!ok) vl_gltf_fail_memory(g);
+  if (!ok)
+    vl_gltf_fail_memory(g);
   for (size_t i = 0; ok && i < count; i++)
     ok = vl_label_make_unique(g->scene, &table, paths[i], list[i], &g->node_labels[list[i]]);
   vl_free(g->context, table.slots);
@@ -94,32 +106,39 @@ static bool label_nodes(vlGltf *g) {
   char **paths = vl_alloc_zero(g->context, g->node_count + 1, sizeof *paths);
   bool ok = (list && depths && paths) || vl_gltf_fail_memory(g);
   for (size_t i = 0; ok && i < g->node_count; i++)
-    if (mesh_of(g, i) >= 0) list[count++] = (uint32_t)i;
+    if (mesh_of(g, i) >= 0)
+      list[count++] = (uint32_t)i;
   ok = ok && label_list(g, list, count, depths, paths);
-  for (size_t i = 0; paths && i < count; i++) vl_free(g->context, paths[i]);
+  for (size_t i = 0; paths && i < count; i++)
+    vl_free(g->context, paths[i]);
   VL_FREE(g->context, list, depths, (void *)paths);
   return ok;
 }
 
 bool vl_gltf_make_labels(vlGltf *g) {
   g->node_labels = vl_alloc_zero(g->context, g->node_count + 1, sizeof *g->node_labels);
-  g->material_labels = vl_alloc_zero(g->context, g->material_count + 1, sizeof *g->material_labels);
-  if (!g->node_labels || !g->material_labels) return vl_gltf_fail_memory(g);
+  g->material_labels =
+      vl_alloc_zero(g->context, g->material_count + 1, sizeof *g->material_labels);
+  if (!g->node_labels || !g->material_labels)
+    return vl_gltf_fail_memory(g);
   for (size_t i = 0; i < g->material_count; i++) {
     char name[VL_LABEL_SIZE] = "";
     vl_label_append(name, name_of(vl_gltf_item(g, "materials", i)));
-    if (!*name) snprintf(name, sizeof name, "materials[%zu]", i);
-    if (!vl_label_make_unique(g->scene, &g->material_names, name, i, &g->material_labels[i])) return false;
+    if (!*name)
+      snprintf(name, sizeof name, "materials[%zu]", i);
+    if (!vl_label_make_unique(g->scene, &g->material_names, name, i, &g->material_labels[i]))
+      return false;
   }
   return label_nodes(g);
 }
 
 void vl_gltf_free_labels(vlGltf *g) {
-  VL_FREE(g->context, (void *)g->node_labels, (void *)g->material_labels, g->material_names.slots, g->shape_names.slots,
-          g->instance_names.slots);
+  VL_FREE(g->context, (void *)g->node_labels, (void *)g->material_labels,
+          g->material_names.slots, g->shape_names.slots, g->instance_names.slots);
 }
 
-/* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several times. */
+/* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several times.
+ */
 static int print_node(const vlGltf *g, size_t node, char *text, size_t size) {
   return g->copy == SIZE_MAX ? snprintf(text, size, "nodes[%zu]", node)
                              : snprintf(text, size, "nodes[%zu].copies[%zu]", node, g->copy);
@@ -128,7 +147,8 @@ static int print_node(const vlGltf *g, size_t node, char *text, size_t size) {
 static void append_copy(const vlGltf *g, char name[VL_LABEL_SIZE]) {
   char number[24];
   snprintf(number, sizeof number, "%zu", g->copy);
-  if (g->copy != SIZE_MAX) vl_label_append(name, number);
+  if (g->copy != SIZE_MAX)
+    vl_label_append(name, number);
 }
 
 void vl_gltf_label_instance(vlGltf *g, size_t node) {
@@ -145,10 +165,12 @@ void vl_gltf_label_instance(vlGltf *g, size_t node) {
 
 /* Whether the material of primitive `index` tells it from the mesh's other primitives. */
 static bool material_tells(const json_t *primitives, size_t index) {
-  const double own = json_number_value(json_object_get(json_array_get(primitives, index), "material"));
+  const double own =
+      json_number_value(json_object_get(json_array_get(primitives, index), "material"));
   for (size_t i = 0; i < json_array_size(primitives) && i < 100; i++) {
     const json_t *other = json_object_get(json_array_get(primitives, i), "material");
-    if (i != index && other && json_number_value(other) == own) return false;
+    if (i != index && other && json_number_value(other) == own)
+      return false;
   }
   return index < 100;
 }
@@ -156,7 +178,8 @@ static bool material_tells(const json_t *primitives, size_t index) {
 bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label) {
   char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE] = "", place[160], number[40];
   const char *mesh = name_of(vl_gltf_item(g, "meshes", at->mesh));
-  const char *material = at->material < 0 ? NULL : name_of(vl_gltf_item(g, "materials", (size_t)at->material));
+  const char *material =
+      at->material < 0 ? NULL : name_of(vl_gltf_item(g, "materials", (size_t)at->material));
   size_t n = 0;
   snprintf(number, sizeof number, "meshes[%zu]", at->mesh);
   if (at->node == SIZE_MAX) {
@@ -170,15 +193,18 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label) 
     place[n++] = '.';
   }
   const char *last = strrchr(path, '/');
-  if (mesh && !vl_text_is(last ? last + 1 : path, mesh)) vl_label_append(path, mesh);
+  if (mesh && !vl_text_is(last ? last + 1 : path, mesh))
+    vl_label_append(path, mesh);
   vl_label_append(path, material);
   snprintf(place + n, sizeof place - n, "meshes[%zu].primitives[%zu]", at->mesh, at->primitive);
   const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", at->mesh), "primitives");
   snprintf(number, sizeof number, "%zu", at->primitive);
   if (json_array_size(primitives) > 1)
-    vl_label_append(name, material && material_tells(primitives, at->primitive) ? material : number);
+    vl_label_append(name,
+                    material && material_tells(primitives, at->primitive) ? material : number);
   *label = (vlLabel){.path = path, .place = place};
-  return vl_label_make_unique(g->scene, &g->shape_names, name, at->node == SIZE_MAX ? at->mesh : at->node,
-                              &label->name) &&
-         vl_scene_copy_string(g->scene, &label->path) && vl_scene_copy_string(g->scene, &label->place);
+  return vl_label_make_unique(g->scene, &g->shape_names, name,
+                              at->node == SIZE_MAX ? at->mesh : at->node, &label->name) &&
+         vl_scene_copy_string(g->scene, &label->path) &&
+         vl_scene_copy_string(g->scene, &label->place);
 }

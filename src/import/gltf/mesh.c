@@ -1,5 +1,5 @@
-/* import/gltf/mesh.c: a mesh's primitives become shapes: attributes are read, deformed, triangulated and given
- * tangents. */
+/* import/gltf/mesh.c: a mesh's primitives become shapes: attributes are read, deformed,
+ * triangulated and given tangents. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,29 +8,37 @@
 #include "import/gltf/gltf.h"
 #include "velo/shape.h"
 
-/* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null when the primitive lacks
- * the attribute. */
-static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *name, uint32_t least,
-                      uint32_t components, size_t vertices, float **out) {
+/* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null
+ * when the primitive lacks the attribute. */
+static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes,
+                      const char *name, uint32_t least, uint32_t components, size_t vertices,
+                      float **out) {
   int64_t index;
   const vlGltfPlace *at = VL_GLTF_KEY(up, name);
-  if (!vl_gltf_index(g, up, attributes, name, g->accessor_count, &index)) return false;
-  if (index < 0) return true;
+  if (!vl_gltf_index(g, up, attributes, name, g->accessor_count, &index))
+    return false;
+  if (index < 0)
+    return true;
   const vlGltfAccessor *a = vl_gltf_accessor(g, at, (size_t)index);
-  if (!a) return false;
+  if (!a)
+    return false;
   if (a->matrix || a->components < least || a->components > components)
-    return vl_gltf_fail(g, at, "accessors[%d] has %u components, %u are needed", (int)index, a->components, components);
+    return vl_gltf_fail(g, at, "accessors[%d] has %u components, %u are needed", (int)index,
+                        a->components, components);
   *out = vl_gltf_load_floats(g, at, (size_t)index, components, vertices, NULL);
   return *out != NULL;
 }
 
-static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, int64_t position,
-                            vlGltfPrimitive *p) {
+static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *attributes,
+                            int64_t position, vlGltfPrimitive *p) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "attributes"), *at_position = VL_GLTF_KEY(at, "POSITION");
+  const vlGltfPlace *at = VL_GLTF_KEY(up, "attributes"),
+                    *at_position = VL_GLTF_KEY(at, "POSITION");
   const vlGltfAccessor *a = vl_gltf_accessor(g, at_position, (size_t)position);
-  if (!a) return false;
-  if (a->components != 3) return vl_gltf_fail(g, at_position, "must be of type VEC3");
+  if (!a)
+    return false;
+  if (a->components != 3)
+    return vl_gltf_fail(g, at_position, "must be of type VEC3");
   p->vertices = a->count;
   if (!attribute(g, at, attributes, "POSITION", 3, 3, p->vertices, &p->positions) ||
       !attribute(g, at, attributes, "NORMAL", 3, 3, p->vertices, &p->normals) ||
@@ -38,32 +46,41 @@ static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *attr
       !attribute(g, at, attributes, "COLOR_0", 3, 4, p->vertices, &p->colors))
     return false;
   for (int k = 0; k < 4; k++) {
-    if (!attribute(g, at, attributes, sets[k], 2, 2, p->vertices, &p->uvs[k])) return false;
-    for (size_t i = 0; p->uvs[k] && i < p->vertices; i++) p->uvs[k][2 * i + 1] = 1.0f - p->uvs[k][2 * i + 1];
+    if (!attribute(g, at, attributes, sets[k], 2, 2, p->vertices, &p->uvs[k]))
+      return false;
+    for (size_t i = 0; p->uvs[k] && i < p->vertices; i++)
+      p->uvs[k][2 * i + 1] = 1.0f - p->uvs[k][2 * i + 1];
   }
   return true;
 }
 
 /* The indices in a new block; 0, 1, 2, ... when the primitive has none. */
-static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primitive, size_t vertices, uint32_t **indices,
-                         size_t *count) {
+static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primitive,
+                         size_t vertices, uint32_t **indices, size_t *count) {
   int64_t index;
   const vlGltfPlace *at = VL_GLTF_KEY(up, "indices");
-  if (!vl_gltf_index(g, up, primitive, "indices", g->accessor_count, &index)) return false;
+  if (!vl_gltf_index(g, up, primitive, "indices", g->accessor_count, &index))
+    return false;
   const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, at, (size_t)index);
-  if (index >= 0 && !a) return false;
+  if (index >= 0 && !a)
+    return false;
   *count = a ? a->count : vertices;
-  if (a && (a->components != 1 || a->type == VL_GLTF_FLOAT || a->type == VL_GLTF_BYTE || a->type == VL_GLTF_SHORT))
+  if (a && (a->components != 1 || a->type == VL_GLTF_FLOAT || a->type == VL_GLTF_BYTE ||
+            a->type == VL_GLTF_SHORT))
     return vl_gltf_fail(g, at, "must be SCALAR of unsigned whole numbers");
-  if (!vl_gltf_spend(g, at, 4 * (uint64_t)*count)) return false;
-  if (!(*indices = vl_alloc_array(g->context, *count, sizeof **indices))) return vl_gltf_fail_memory(g);
+  if (!vl_gltf_spend(g, at, 4 * (uint64_t)*count))
+    return false;
+  if (!(*indices = vl_alloc_array(g->context, *count, sizeof **indices)))
+    return vl_gltf_fail_memory(g);
   if (a)
     vl_gltf_read_uints(a, 1, *indices);
   else
-    for (size_t i = 0; i < *count; i++) (*indices)[i] = (uint32_t)i;
+    for (size_t i = 0; i < *count; i++)
+      (*indices)[i] = (uint32_t)i;
   for (size_t i = 0; i < *count; i++)
     if ((*indices)[i] >= vertices) {
-      vl_gltf_fail(g, at, "number %zu names vertex %u, but there are only %zu", i, (*indices)[i], vertices);
+      vl_gltf_fail(g, at, "number %zu names vertex %u, but there are only %zu", i,
+                   (*indices)[i], vertices);
       vl_free(g->context, *indices);
       *indices = NULL;
       return false;
@@ -72,27 +89,35 @@ static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primiti
 }
 
 /* The material of the chosen variant, or the primitive's own. */
-static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, int64_t *material) {
-  if (!vl_gltf_index(g, at, primitive, "material", g->material_count, material)) return false;
-  const json_t *mappings = json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
+static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
+                            int64_t *material) {
+  if (!vl_gltf_index(g, at, primitive, "material", g->material_count, material))
+    return false;
+  const json_t *mappings =
+      json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
   const vlGltfPlace *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
   for (size_t i = 0; g->variant >= 0 && i < json_array_size(mappings); i++) {
-    const json_t *mapping = json_array_get(mappings, i), *variants = json_object_get(mapping, "variants");
+    const json_t *mapping = json_array_get(mappings, i),
+                 *variants = json_object_get(mapping, "variants");
     for (size_t k = 0; k < json_array_size(variants); k++)
       if (json_number_value(json_array_get(variants, k)) == (double)g->variant)
-        return vl_gltf_index(g, VL_GLTF_ITEM(up, "mappings", i), mapping, "material", g->material_count, material);
+        return vl_gltf_index(g, VL_GLTF_ITEM(up, "mappings", i), mapping, "material",
+                             g->material_count, material);
   }
   return true;
 }
 
-/* ---- the shape --------------------------------------------------------------------------------------------------- */
+/* ---- the shape
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 /* Applies a singular pose to the vertices, since it cannot be a transform of the scene. */
 static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
   for (size_t i = 0; i < p->vertices; i++) {
     double q[3] = {p->positions[3 * i], p->positions[3 * i + 1], p->positions[3 * i + 2]}, w[3];
     vl_mat4_point(&pose, q, w);
-    for (int k = 0; k < 3; k++) p->positions[3 * i + (size_t)k] = (float)w[k];
+    for (int k = 0; k < 3; k++)
+      p->positions[3 * i + (size_t)k] = (float)w[k];
   }
   VL_FREE(context, p->normals, p->tangents, p->positions_close, p->normals_close);
   p->normals = p->tangents = p->positions_close = p->normals_close = NULL;
@@ -100,7 +125,8 @@ static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
 
 static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
   *signs = NULL;
-  if (!p->tangents) return true;
+  if (!p->tangents)
+    return true;
   float *three = vl_alloc_array(g->context, p->vertices, 3 * sizeof *three);
   *signs = vl_alloc_array(g->context, p->vertices, sizeof **signs);
   if (!three || !*signs) {
@@ -119,9 +145,11 @@ static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
 }
 
 /* Adds the shape; the arrays move to the scene. */
-static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vlGroupId group, vlMat4 pose) {
+static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vlGroupId group,
+                      vlMat4 pose) {
   float *signs;
-  if (!split_tangents(g, p, &signs)) return false;
+  if (!split_tangents(g, p, &signs))
+    return false;
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.source.file = g->path;
   def.group = group;
@@ -140,24 +168,29 @@ static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vl
   def.tangent_signs = signs;
   def.colors = p->colors;
   def.indices = p->indices;
-  for (int k = 0; k < 3; k++) def.more_uvs[k] = p->uvs[k + 1];
+  for (int k = 0; k < 3; k++)
+    def.more_uvs[k] = p->uvs[k + 1];
   def.positions_close = p->positions_close;
   def.normals_close = p->normals_close;
   def.times[1] = p->positions_close ? g->close - g->open : def.times[1];
-  if (g->def->permissive) vl_repair_mesh(g->context, &g->repairs, &def); /* out of memory: the scene checks it */
+  if (g->def->permissive)
+    vl_repair_mesh(g->context, &g->repairs, &def); /* out of memory: the scene checks it */
   vlShapeId id = vl_scene_adopt_shape(g->scene, &def);
   memset(p, 0, sizeof *p);
   g->shapes_made++;
   return id.index != 0;
 }
 
-static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMaterial *m, vlGltfPrimitive *p,
-                             vlGroupId group, vlMat4 pose, bool posed) {
-  if (!vl_gltf_compact(g, p)) return false;
+static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMaterial *m,
+                             vlGltfPrimitive *p, vlGroupId group, vlMat4 pose, bool posed) {
+  if (!vl_gltf_compact(g, p))
+    return false;
   double det = vl_mat4_determinant3(pose), l = 0;
-  for (int i = 0; i < 12; i++) l += i % 4 == 3 ? 0 : pose.m[i] * pose.m[i];
+  for (int i = 0; i < 12; i++)
+    l += i % 4 == 3 ? 0 : pose.m[i] * pose.m[i];
   if (posed || !(fabs(det) > 1e-12 * l * sqrt(l))) {
-    if (!posed) bake(p, pose, g->context);
+    if (!posed)
+      bake(p, pose, g->context);
     pose = vl_mat4_identity();
   }
   if (!p->normals) {
@@ -168,19 +201,22 @@ static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMater
     vl_free(g->context, p->tangents);
     p->tangents = NULL;
   } else if (!p->tangents && p->uvs[m->tangent_set]) {
-    if (!vl_gltf_make_tangents(g, m->tangent_set, p)) return false;
+    if (!vl_gltf_make_tangents(g, m->tangent_set, p))
+      return false;
   }
   (void)at;
   return add_shape(g, m, p, group, pose);
 }
 
 /* The vertices as deformed at shutter close. */
-static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
-                       const vlGltfNode *node, int64_t position, bool skinned, vlGltfPrimitive *p) {
+static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+                       const json_t *primitive, const vlGltfNode *node, int64_t position,
+                       bool skinned, vlGltfPrimitive *p) {
   vlGltfPrimitive q = {0};
   g->closing = true;
   bool ok = read_attributes(g, at, json_object_get(primitive, "attributes"), position, &q) &&
-            vl_gltf_morph(g, at, mesh, primitive, node, &q) && (!skinned || vl_gltf_skin(g, at, primitive, node, &q));
+            vl_gltf_morph(g, at, mesh, primitive, node, &q) &&
+            (!skinned || vl_gltf_skin(g, at, primitive, node, &q));
   g->closing = false;
   if (ok && memcmp(p->positions, q.positions, 3 * p->vertices * sizeof(float)) != 0) {
     p->positions_close = q.positions;
@@ -191,35 +227,43 @@ static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, con
   return ok;
 }
 
-/* A deforming mesh cannot emit light. An emissive mesh keeps its emission and loses its deformation. */
+/* A deforming mesh cannot emit light. An emissive mesh keeps its emission and loses its
+ * deformation. */
 static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
   vl_free(g->context, p->positions_close);
   vl_free(g->context, p->normals_close);
   p->positions_close = p->normals_close = NULL;
   if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
-    vl_gltf_warn(g, VL_LOG_INFO, at, "gives out light, and stays as it is when the shutter opens");
+    vl_gltf_warn(g, VL_LOG_INFO, at,
+                 "gives out light, and stays as it is when the shutter opens");
 }
 
-static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
-                          const vlGltfNode *node, vlGroupId group, vlMat4 pose, vlGltfPrimitive *p) {
+static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+                          const json_t *primitive, const vlGltfNode *node, vlGroupId group,
+                          vlMat4 pose, vlGltfPrimitive *p) {
   const json_t *attributes;
   int64_t position, material;
   size_t mode = 4, count = 0;
   uint32_t *indices = NULL;
   if (!vl_gltf_object(g, at, primitive, "attributes", &attributes) ||
-      !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position) ||
-      !vl_gltf_size(g, at, primitive, "mode", &mode) || !choose_material(g, at, primitive, &material))
+      !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION",
+                     g->accessor_count, &position) ||
+      !vl_gltf_size(g, at, primitive, "mode", &mode) ||
+      !choose_material(g, at, primitive, &material))
     return false;
-  if (mode > 6) return vl_gltf_fail(g, VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
+  if (mode > 6)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
   if (position < 0) {
     vl_gltf_warn(g, VL_LOG_WARNING, at, "has no positions and is not drawn");
     return true;
   }
-  if (!vl_gltf_unpack_primitive(g, at, primitive) || !read_attributes(g, at, attributes, position, p) ||
+  if (!vl_gltf_unpack_primitive(g, at, primitive) ||
+      !read_attributes(g, at, attributes, position, p) ||
       !read_indices(g, at, primitive, p->vertices, &indices, &count))
     return false;
   bool skinned = node && json_object_get(node->json, "skin");
-  if (!vl_gltf_morph(g, at, mesh, primitive, node, p) || (skinned && !vl_gltf_skin(g, at, primitive, node, p))) {
+  if (!vl_gltf_morph(g, at, mesh, primitive, node, p) ||
+      (skinned && !vl_gltf_skin(g, at, primitive, node, p))) {
     vl_free(g->context, indices);
     return false;
   }
@@ -228,10 +272,13 @@ static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
     vl_free(g->context, indices);
     return false;
   }
-  if (!vl_gltf_triangles(g, at, (uint32_t)mode, indices, count, p)) return false;
-  if (p->faces == 0) return true;
+  if (!vl_gltf_triangles(g, at, (uint32_t)mode, indices, count, p))
+    return false;
+  if (p->faces == 0)
+    return true;
   const vlGltfMaterial *m = vl_gltf_material(g, material, p->colors != NULL);
-  if (m && p->positions_close && m->emission.index) still(g, at, p);
+  if (m && p->positions_close && m->emission.index)
+    still(g, at, p);
   return m && finish_primitive(g, at, m, p, group, pose, skinned);
 }
 
@@ -240,44 +287,56 @@ static void count_deformed(vlGltf *g, const json_t *primitive, bool skinned) {
   g->scene->morphed += json_object_get(primitive, "targets") != NULL;
 }
 
-static bool label_last(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, size_t node, size_t mesh, size_t i) {
+static bool label_last(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, size_t node,
+                       size_t mesh, size_t i) {
   vlGltfShapePlace place = {.node = node, .mesh = mesh, .primitive = i};
   return choose_material(g, at, primitive, &place.material) &&
-         vl_gltf_label_shape(g, &place, &g->scene->shapes.items[g->scene->shapes.count - 1].label);
+         vl_gltf_label_shape(g, &place,
+                             &g->scene->shapes.items[g->scene->shapes.count - 1].label);
 }
 
-bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group,
-                      vlMat4 pose) {
+bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
+                      vlGroupId group, vlMat4 pose) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
-  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count)) return false;
+  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count))
+    return false;
   for (size_t i = 0; i < count; i++) {
     const json_t *primitive = json_array_get(primitives, i);
     const vlGltfPlace *here = VL_GLTF_ITEM(at, "primitives", i);
-    if (!json_is_object(primitive)) return vl_gltf_fail(g, here, "must be an object");
+    if (!json_is_object(primitive))
+      return vl_gltf_fail(g, here, "must be an object");
     vlGltfPrimitive p = {0};
     const size_t before = g->scene->shapes.count;
     bool ok = add_primitive(g, here, mesh, primitive, node, group, pose, &p);
     vl_gltf_free_primitive(g->context, &p);
-    if (!ok || (g->scene->shapes.count > before && !label_last(g, here, primitive, node_index, index, i))) return false;
+    if (!ok || (g->scene->shapes.count > before &&
+                !label_last(g, here, primitive, node_index, index, i)))
+      return false;
     count_deformed(g, primitive, node && json_object_get(node->json, "skin"));
   }
   return true;
 }
 
-/* Grows the box by one primitive's positions, in the node's space; those of a skin are in the world. */
-static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
-                          const vlGltfNode *node, double low[3], double high[3]) {
+/* Grows the box by one primitive's positions, in the node's space; those of a skin are in the
+ * world. */
+static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+                          const json_t *primitive, const vlGltfNode *node, double low[3],
+                          double high[3]) {
   const json_t *attributes = json_object_get(primitive, "attributes");
   const bool skinned = json_object_get(node->json, "skin") != NULL;
   int64_t position;
   vlGltfPrimitive p = {0};
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position))
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION",
+                     g->accessor_count, &position))
     return false;
-  if (position < 0) return true;
-  bool ok = vl_gltf_unpack_primitive(g, at, primitive) && read_attributes(g, at, attributes, position, &p) &&
-            vl_gltf_morph(g, at, mesh, primitive, node, &p) && (!skinned || vl_gltf_skin(g, at, primitive, node, &p));
+  if (position < 0)
+    return true;
+  bool ok = vl_gltf_unpack_primitive(g, at, primitive) &&
+            read_attributes(g, at, attributes, position, &p) &&
+            vl_gltf_morph(g, at, mesh, primitive, node, &p) &&
+            (!skinned || vl_gltf_skin(g, at, primitive, node, &p));
   for (size_t i = 0; ok && i < p.vertices; i++)
     for (size_t k = 0; k < 3; k++) {
       low[k] = fmin(low[k], (double)p.positions[3 * i + k]);
@@ -287,14 +346,17 @@ static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
   return ok;
 }
 
-bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3], double high[3]) {
+bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3],
+                      double high[3]) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   const uint64_t spent = g->spent; /* the arrays are freed again */
-  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count)) return false;
+  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count))
+    return false;
   for (size_t i = 0; i < count; i++)
-    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh, json_array_get(primitives, i), node, low, high))
+    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh,
+                       json_array_get(primitives, i), node, low, high))
       return false;
   g->spent = spent;
   return true;

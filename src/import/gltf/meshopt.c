@@ -1,32 +1,44 @@
-/* import/gltf/meshopt.c: EXT_meshopt_compression: compressed buffer views, decoded by meshoptimizer. The decoders never
- * read outside their input but assert that sizes are valid: sizes are checked here. */
+/* import/gltf/meshopt.c: EXT_meshopt_compression: compressed buffer views, decoded by
+ * meshoptimizer. The decoders never read outside their input but assert that sizes are valid:
+ * sizes are checked here. */
 #include <meshoptimizer.h>
 #include <string.h>
 
 #include "import/gltf/gltf.h"
 
-enum { MOST_TIMES = 256 }; /* largest ratio of decoded to encoded bytes; the formats reach about 64 */
+enum {
+  MOST_TIMES = 256
+}; /* largest ratio of decoded to encoded bytes; the formats reach about 64 */
 
 typedef enum { ATTRIBUTES, TRIANGLES, INDICES } Mode;
 typedef enum { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL } Filter;
 
 static bool sizes_fit(Mode mode, Filter filter, size_t count, size_t stride) {
-  if (mode == TRIANGLES) return count % 3 == 0 && (stride == 2 || stride == 4) && filter == NONE;
-  if (mode == INDICES) return (stride == 2 || stride == 4) && filter == NONE;
-  if (stride == 0 || stride > 256 || stride % 4) return false;
-  return filter == OCTAHEDRAL ? stride == 4 || stride == 8 : filter != QUATERNION || stride == 8;
+  if (mode == TRIANGLES)
+    return count % 3 == 0 && (stride == 2 || stride == 4) && filter == NONE;
+  if (mode == INDICES)
+    return (stride == 2 || stride == 4) && filter == NONE;
+  if (stride == 0 || stride > 256 || stride % 4)
+    return false;
+  return filter == OCTAHEDRAL ? stride == 4 || stride == 8
+                              : filter != QUATERNION || stride == 8;
 }
 
-static int decode(Mode mode, void *out, size_t count, size_t stride, const uint8_t *data, size_t size) {
+static int decode(Mode mode, void *out, size_t count, size_t stride, const uint8_t *data,
+                  size_t size) {
   switch (mode) {
-    case TRIANGLES: return meshopt_decodeIndexBuffer(out, count, stride, data, size);
-    case INDICES: return meshopt_decodeIndexSequence(out, count, stride, data, size);
-    case ATTRIBUTES: return meshopt_decodeVertexBuffer(out, count, stride, data, size);
+    case TRIANGLES:
+      return meshopt_decodeIndexBuffer(out, count, stride, data, size);
+    case INDICES:
+      return meshopt_decodeIndexSequence(out, count, stride, data, size);
+    case ATTRIBUTES:
+      return meshopt_decodeVertexBuffer(out, count, stride, data, size);
   }
   return -1;
 }
 
-bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *up, const json_t *json, vlGltfView *view) {
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *up, const json_t *json,
+                         vlGltfView *view) {
   static const char *const modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
   static const char *const filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
   const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.EXT_meshopt_compression");
@@ -34,29 +46,38 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *up, const json_t *json, v
   size_t offset = 0, length = 0, stride = 0, count = 0;
   int mode = ATTRIBUTES, filter = NONE;
   if (!vl_gltf_index(g, at, json, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(g, at, json, "byteOffset", &offset) || !vl_gltf_size(g, at, json, "byteLength", &length) ||
-      !vl_gltf_size(g, at, json, "byteStride", &stride) || !vl_gltf_size(g, at, json, "count", &count) ||
+      !vl_gltf_size(g, at, json, "byteOffset", &offset) ||
+      !vl_gltf_size(g, at, json, "byteLength", &length) ||
+      !vl_gltf_size(g, at, json, "byteStride", &stride) ||
+      !vl_gltf_size(g, at, json, "count", &count) ||
       !vl_gltf_choice(g, at, json, "mode", modes, 3, &mode) ||
       !vl_gltf_choice(g, at, json, "filter", filters, 4, &filter))
     return false;
-  if (buffer < 0) return vl_gltf_fail(g, at, "\"buffer\" is missing");
+  if (buffer < 0)
+    return vl_gltf_fail(g, at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data || offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset, offset + length, (int)buffer,
-                        b->data ? b->size : 0);
+    return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
+                        offset + length, (int)buffer, b->data ? b->size : 0);
   if (!sizes_fit((Mode)mode, (Filter)filter, count, stride))
-    return vl_gltf_fail(g, at, "%zu elements of %zu bytes: mode %s with filter %s has no such", count, stride,
-                        modes[mode], filters[filter]);
+    return vl_gltf_fail(g, at, "%zu elements of %zu bytes: mode %s with filter %s has no such",
+                        count, stride, modes[mode], filters[filter]);
   if (count > MOST_TIMES * length / stride)
-    return vl_gltf_fail(g, at, "%zu bytes cannot hold %zu elements of %zu bytes", length, count, stride);
+    return vl_gltf_fail(g, at, "%zu bytes cannot hold %zu elements of %zu bytes", length, count,
+                        stride);
   uint8_t *out = vl_alloc_zero(g->context, count + 1, stride);
-  if (!out) return vl_gltf_fail_memory(g);
-  if (!vl_scene_own(g->scene, out)) return false;
+  if (!out)
+    return vl_gltf_fail_memory(g);
+  if (!vl_scene_own(g->scene, out))
+    return false;
   if (count && decode((Mode)mode, out, count, stride, b->data + offset, length) != 0)
     return vl_gltf_fail(g, at, "its bytes are no meshopt %s", modes[mode]);
-  if (count && filter == OCTAHEDRAL) meshopt_decodeFilterOct(out, count, stride);
-  if (count && filter == QUATERNION) meshopt_decodeFilterQuat(out, count, stride);
-  if (count && filter == EXPONENTIAL) meshopt_decodeFilterExp(out, count, stride);
+  if (count && filter == OCTAHEDRAL)
+    meshopt_decodeFilterOct(out, count, stride);
+  if (count && filter == QUATERNION)
+    meshopt_decodeFilterQuat(out, count, stride);
+  if (count && filter == EXPONENTIAL)
+    meshopt_decodeFilterExp(out, count, stride);
   g->total += count * stride;
   view->data = out;
   view->size = count * stride;

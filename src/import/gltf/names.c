@@ -1,5 +1,5 @@
-/* import/gltf/names.c: warns of members whose name is unknown but similar to a known one. Such members are ignored, as
- * the specification demands. */
+/* import/gltf/names.c: warns of members whose name is unknown but similar to a known one. Such
+ * members are ignored, as the specification demands. */
 #include <stdlib.h>
 
 #include "base/text.h"
@@ -174,39 +174,50 @@ static int compare(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Numbered attributes (TEXCOORD_7) and application-specific ones (names that start with _) are known. */
+/* Numbered attributes (TEXCOORD_7) and application-specific ones (names that start with _) are
+ * known. */
 static bool is_known(const char *key) {
-  if (key[0] == '_' || bsearch(&key, known, KNOWN, sizeof *known, compare)) return true;
+  if (key[0] == '_' || bsearch(&key, known, KNOWN, sizeof *known, compare))
+    return true;
   size_t length = strlen(key);
-  while (length > 0 && key[length - 1] >= '0' && key[length - 1] <= '9') length--;
+  while (length > 0 && key[length - 1] >= '0' && key[length - 1] <= '9')
+    length--;
   return length > 0 && key[length] && key[length - 1] == '_';
 }
 
 static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *reported) {
-  if (strlen(key) < 4 || is_known(key)) return;
+  if (strlen(key) < 4 || is_known(key))
+    return;
   const char *near = vl_nearest_name(key, known, KNOWN);
   if (near && ++*reported <= MOST_REPORTED)
     vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%s\" is ignored (did you mean \"%s\"?)",
                  vl_short_text(key).text, near);
 }
 
-/* Unknown names are also shortened where they are part of a place. Extras and extensions that velo does not read are
- * not checked. jansson limits the depth of the recursion. */
+/* Unknown names are also shortened where they are part of a place. Extras and extensions that
+ * velo does not read are not checked. jansson limits the depth of the recursion. */
 static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *reported) {
   const char *name;
   json_t *part;
   size_t i;
-  if (*reported >= MOST_REPORTED) return;
+  if (*reported >= MOST_REPORTED)
+    return;
   if (json_is_object(value)) {
     bool extensions = at && vl_text_is(at->key, "extensions");
     json_object_foreach(value, name, part) {
       const vlShortText shown = vl_short_text(name);
       const char *key =
-          bsearch(&name, known, KNOWN, sizeof *known, compare) || vl_gltf_reads_extension(name) ? name : shown.text;
-      if (extensions ? !vl_gltf_reads_extension(name) : vl_text_is(name, "extras")) continue;
-      if (!extensions) look(g, at, name, reported);
-      if (json_is_object(part)) walk(g, VL_GLTF_KEY(at, key), part, reported);
-      if (!json_is_array(part)) continue;
+          bsearch(&name, known, KNOWN, sizeof *known, compare) || vl_gltf_reads_extension(name)
+              ? name
+              : shown.text;
+      if (extensions ? !vl_gltf_reads_extension(name) : vl_text_is(name, "extras"))
+        continue;
+      if (!extensions)
+        look(g, at, name, reported);
+      if (json_is_object(part))
+        walk(g, VL_GLTF_KEY(at, key), part, reported);
+      if (!json_is_array(part))
+        continue;
       for (i = 0; i < json_array_size(part) && *reported < MOST_REPORTED; i++)
         if (json_is_object(json_array_get(part, i)))
           walk(g, VL_GLTF_ITEM(at, key, i), json_array_get(part, i), reported);

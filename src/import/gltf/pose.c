@@ -1,12 +1,13 @@
-/* import/gltf/pose.c: node poses at one moment, or at several while the shutter is open. The scene's time 0 is shutter
- * open; times are in seconds. */
+/* import/gltf/pose.c: node poses at one moment, or at several while the shutter is open. The
+ * scene's time 0 is shutter open; times are in seconds. */
 #include <string.h>
 
 #include "import/gltf/gltf.h"
 
 static bool pose_at(vlGltf *g, double time) {
   g->time = time;
-  for (size_t i = 0; i < g->node_count; i++) g->nodes[i].has_pose = false;
+  for (size_t i = 0; i < g->node_count; i++)
+    g->nodes[i].has_pose = false;
   return vl_gltf_animate(g) && vl_gltf_pose_nodes(g);
 }
 
@@ -15,21 +16,28 @@ bool vl_gltf_pose(vlGltf *g) {
   g->close = g->def->time_close;
   bool both = g->open == g->open && g->close == g->close;
   if (both && g->close < g->open)
-    return vl_gltf_fail(g, NULL, "the shutter cannot close (%g s) before it opens (%g s)", g->close, g->open);
+    return vl_gltf_fail(g, NULL, "the shutter cannot close (%g s) before it opens (%g s)",
+                        g->close, g->open);
   g->moves = both && g->close > g->open && g->animation_count > 0;
-  if (!g->moves) return pose_at(g, g->open);
-  if (!vl_gltf_spend(g, NULL, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys)) return false;
+  if (!g->moves)
+    return pose_at(g, g->open);
+  if (!vl_gltf_spend(g, NULL, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
+    return false;
   g->keys = vl_alloc_array(g->context, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
-  if (!g->keys) return vl_gltf_fail_memory(g);
+  if (!g->keys)
+    return vl_gltf_fail_memory(g);
   for (int k = VL_GLTF_KEYS - 1; k >= 0;
-       k--) { /* the order of the times does not matter, since an animation sets the same properties at any time */
+       k--) { /* the order of the times does not matter, since an
+                 animation sets the same properties at any time */
     double f = (double)k / (VL_GLTF_KEYS - 1);
-    if (!pose_at(g, k ? g->open + f * (g->close - g->open) : g->open)) return false;
+    if (!pose_at(g, k ? g->open + f * (g->close - g->open) : g->open))
+      return false;
     for (size_t i = 0; i < g->node_count; i++) {
       vlGltfNode *n = &g->nodes[i];
       n->keys = g->keys + i * VL_GLTF_KEYS;
       n->keys[k] = n->world;
-      if (k != VL_GLTF_KEYS - 1) continue;
+      if (k != VL_GLTF_KEYS - 1)
+        continue;
       n->weights_close = n->weights;
       n->weight_close_count = n->weight_count;
       n->weights = NULL;
@@ -42,8 +50,10 @@ bool vl_gltf_pose(vlGltf *g) {
 }
 
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node) {
-  if (!g->moves) return false;
+  if (!g->moves)
+    return false;
   for (int k = 1; k < VL_GLTF_KEYS; k++)
-    if (memcmp(&node->keys[0], &node->keys[k], sizeof(vlMat4)) != 0) return true;
+    if (memcmp(&node->keys[0], &node->keys[k], sizeof(vlMat4)) != 0)
+      return true;
   return false;
 }

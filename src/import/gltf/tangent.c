@@ -1,11 +1,12 @@
-/* import/gltf/tangent.c: tangents by the rules of MikkTSpace (Mikkelsen 2008, "Simulation of Wrinkled Surfaces
- * Revisited", and its published reference). Own implementation.
+/* import/gltf/tangent.c: tangents by the rules of MikkTSpace (Mikkelsen 2008, "Simulation of
+ * Wrinkled Surfaces Revisited", and its published reference). Own implementation.
  *   - Vertices with the same position, normal and uv are one vertex.
  *   - Faces that share an edge and have the same uv orientation form a group at each vertex.
- *   - A group's tangent is the sum of its faces' directions of u, projected onto the plane of the normal and weighted
- * by the faces' angles at the vertex.
+ *   - A group's tangent is the sum of its faces' directions of u, projected onto the plane of
+ * the normal and weighted by the faces' angles at the vertex.
  *
- * v points upwards, so that sign * (n x t) is the direction in which v grows: glTF's rule for tangent.w. */
+ * v points upwards, so that sign * (n x t) is the direction in which v grows: glTF's rule for
+ * tangent.w. */
 #include <math.h>
 #include <string.h>
 
@@ -40,25 +41,31 @@ static bool alike(const Maker *m, uint32_t a, uint32_t b) {
     if (p->positions[3 * (size_t)a + i] != p->positions[3 * (size_t)b + i] ||
         p->normals[3 * (size_t)a + i] != p->normals[3 * (size_t)b + i])
       return false;
-  return m->uvs[2 * (size_t)a] == m->uvs[2 * (size_t)b] && m->uvs[2 * (size_t)a + 1] == m->uvs[2 * (size_t)b + 1];
+  return m->uvs[2 * (size_t)a] == m->uvs[2 * (size_t)b] &&
+         m->uvs[2 * (size_t)a + 1] == m->uvs[2 * (size_t)b + 1];
 }
 
 static size_t table_size(size_t items) {
   size_t size = 16;
-  while (size < 2 * items) size *= 2;
+  while (size < 2 * items)
+    size *= 2;
   return size;
 }
 
 static bool weld(vlContext *context, Maker *m) {
   size_t size = table_size(m->p->vertices);
   uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
-  if (!table) return false;
+  if (!table)
+    return false;
   for (size_t i = 0; i < m->p->vertices; i++) {
-    uint32_t h = hash_floats(hash_floats(hash_floats(1, m->p->positions + 3 * i, 3), m->p->normals + 3 * i, 3),
-                             m->uvs + 2 * i, 2);
+    uint32_t h = hash_floats(
+        hash_floats(hash_floats(1, m->p->positions + 3 * i, 3), m->p->normals + 3 * i, 3),
+        m->uvs + 2 * i, 2);
     size_t slot = h & (size - 1);
-    while (table[slot] && !alike(m, table[slot] - 1, (uint32_t)i)) slot = (slot + 1) & (size - 1);
-    if (!table[slot]) table[slot] = (uint32_t)i + 1;
+    while (table[slot] && !alike(m, table[slot] - 1, (uint32_t)i))
+      slot = (slot + 1) & (size - 1);
+    if (!table[slot])
+      table[slot] = (uint32_t)i + 1;
     m->welded[i] = table[slot] - 1;
   }
   vl_free(context, table);
@@ -71,11 +78,15 @@ static void face_directions(Maker *m) {
     const uint32_t *k = p->indices + 3 * f;
     double e1[3], e2[3], t[3], l = 0;
     for (int i = 0; i < 3; i++) {
-      e1[i] = (double)p->positions[3 * (size_t)k[1] + (size_t)i] - p->positions[3 * (size_t)k[0] + (size_t)i];
-      e2[i] = (double)p->positions[3 * (size_t)k[2] + (size_t)i] - p->positions[3 * (size_t)k[0] + (size_t)i];
+      e1[i] = (double)p->positions[3 * (size_t)k[1] + (size_t)i] -
+              p->positions[3 * (size_t)k[0] + (size_t)i];
+      e2[i] = (double)p->positions[3 * (size_t)k[2] + (size_t)i] -
+              p->positions[3 * (size_t)k[0] + (size_t)i];
     }
-    const float *a = m->uvs + 2 * (size_t)k[0], *b = m->uvs + 2 * (size_t)k[1], *c = m->uvs + 2 * (size_t)k[2];
-    double s1 = (double)b[0] - a[0], t1 = (double)b[1] - a[1], s2 = (double)c[0] - a[0], t2 = (double)c[1] - a[1];
+    const float *a = m->uvs + 2 * (size_t)k[0], *b = m->uvs + 2 * (size_t)k[1],
+                *c = m->uvs + 2 * (size_t)k[2];
+    double s1 = (double)b[0] - a[0], t1 = (double)b[1] - a[1], s2 = (double)c[0] - a[0],
+           t2 = (double)c[1] - a[1];
     double area = s1 * t2 - s2 * t1;
     for (int i = 0; i < 3; i++) {
       t[i] = (t2 * e1[i] - t1 * e2[i]) * (area < 0 ? -1 : 1);
@@ -83,7 +94,8 @@ static void face_directions(Maker *m) {
     }
     l = sqrt(l);
     m->sign[f] = fabs(area) > 1e-30 && l > 0 ? (area > 0 ? 1 : -1) : 0;
-    for (int i = 0; i < 3; i++) m->direction[3 * f + (size_t)i] = m->sign[f] ? (float)(t[i] / l) : 0.0f;
+    for (int i = 0; i < 3; i++)
+      m->direction[3 * f + (size_t)i] = m->sign[f] ? (float)(t[i] / l) : 0.0f;
   }
 }
 
@@ -107,12 +119,14 @@ static void join(uint32_t *group, uint32_t a, uint32_t b) {
 /* Largest number of probes for one edge: a damaged file may use one edge a million times. */
 enum { MAX_PROBES = 200 };
 
-/* Joins the groups of the two faces at an edge. The faces must run along the edge in opposite directions. Of more than
- * two faces the first matching pairs are joined. A degenerate face joins either orientation. */
+/* Joins the groups of the two faces at an edge. The faces must run along the edge in opposite
+ * directions. Of more than two faces the first matching pairs are joined. A degenerate face
+ * joins either orientation. */
 static bool join_edges(vlContext *context, Maker *m) {
   size_t corners = 3 * m->p->faces, size = table_size(corners);
   uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
-  if (!table) return false;
+  if (!table)
+    return false;
   const uint32_t *index = m->p->indices;
   for (uint32_t c = 0; c < corners; c++) {
     uint32_t f = c / 3, next = 3 * f + (c + 1) % 3;
@@ -121,22 +135,28 @@ static bool join_edges(vlContext *context, Maker *m) {
     bool partner = false;
     int probes = MAX_PROBES;
     for (; from != to && table[slot] && probes-- > 0;
-         slot = (slot + 1) & (size - 1)) { /* looks for the reversed edge that has no partner yet */
+         slot = (slot + 1) &
+                (size - 1)) { /* looks for the reversed edge that has no partner yet */
       uint32_t d = table[slot] - 1;
-      if (d == UINT32_MAX - 1) continue;
+      if (d == UINT32_MAX - 1)
+        continue;
       uint32_t g = d / 3, d_next = 3 * g + (d + 1) % 3;
       bool same = m->sign[f] == m->sign[g] || !m->sign[f] || !m->sign[g];
-      if (m->welded[index[d]] != to || m->welded[index[d_next]] != from || !same || g == f) continue;
+      if (m->welded[index[d]] != to || m->welded[index[d_next]] != from || !same || g == f)
+        continue;
       partner = true;
       table[slot] = UINT32_MAX; /* taken */
       join(m->group, c, d_next);
       join(m->group, next, d);
       break;
     }
-    if (partner || from == to) continue;
+    if (partner || from == to)
+      continue;
     slot = vl_hash2(from, to) & (size - 1);
-    for (probes = MAX_PROBES; table[slot] && probes > 0; probes--) slot = (slot + 1) & (size - 1);
-    if (!table[slot]) table[slot] = c + 1;
+    for (probes = MAX_PROBES; table[slot] && probes > 0; probes--)
+      slot = (slot + 1) & (size - 1);
+    if (!table[slot])
+      table[slot] = c + 1;
   }
   vl_free(context, table);
   return true;
@@ -145,13 +165,15 @@ static bool join_edges(vlContext *context, Maker *m) {
 /* The part of v orthogonal to the unit vector n, normalised. False when it vanishes. */
 static bool project(const float *v, const float *n, double out[3]) {
   double d = 0, l = 0;
-  for (int i = 0; i < 3; i++) d += (double)v[i] * n[i];
+  for (int i = 0; i < 3; i++)
+    d += (double)v[i] * n[i];
   for (int i = 0; i < 3; i++) {
     out[i] = v[i] - d * n[i];
     l += out[i] * out[i];
   }
   l = sqrt(l);
-  for (int i = 0; i < 3 && l > 0; i++) out[i] /= l;
+  for (int i = 0; i < 3 && l > 0; i++)
+    out[i] /= l;
   return l > 1e-12;
 }
 
@@ -159,7 +181,8 @@ static bool project(const float *v, const float *n, double out[3]) {
 static void add_corner(const Maker *m, uint32_t c, double *sums) {
   const vlGltfPrimitive *p = m->p;
   uint32_t f = c / 3;
-  if (!m->sign[f]) return;
+  if (!m->sign[f])
+    return;
   const uint32_t *k = p->indices + 3 * (size_t)f;
   const float *n = p->normals + 3 * (size_t)p->indices[c];
   const float *x = p->positions + 3 * (size_t)p->indices[c];
@@ -171,26 +194,34 @@ static void add_corner(const Maker *m, uint32_t c, double *sums) {
     to_b[i] = b[i] - x[i];
   }
   double pa[3], pb[3], t[3];
-  if (!project(to_a, n, pa) || !project(to_b, n, pb) || !project(m->direction + 3 * (size_t)f, n, t)) return;
+  if (!project(to_a, n, pa) || !project(to_b, n, pb) ||
+      !project(m->direction + 3 * (size_t)f, n, t))
+    return;
   double dot = vl_dot3(pa, pb);
   double angle = vl_acos_double(dot > 1 ? 1 : dot < -1 ? -1 : dot);
-  for (int i = 0; i < 3; i++) sums[3 * (size_t)m->group[c] + (size_t)i] += angle * t[i];
+  for (int i = 0; i < 3; i++)
+    sums[3 * (size_t)m->group[c] + (size_t)i] += angle * t[i];
 }
 
-/* ---- the new vertices -------------------------------------------------------------------------------------------- */
+/* ---- the new vertices
+ * --------------------------------------------------------------------------------------------
+ */
 
-static float *gather(vlContext *context, const float *rows, size_t width, const uint32_t *from, size_t count,
-                     bool *ok) {
-  if (!rows || !*ok) return NULL;
+static float *gather(vlContext *context, const float *rows, size_t width, const uint32_t *from,
+                     size_t count, bool *ok) {
+  if (!rows || !*ok)
+    return NULL;
   float *out = vl_alloc_array(context, count, width * sizeof *out);
-  if (!out) *ok = false;
+  if (!out)
+    *ok = false;
   for (size_t i = 0; out && i < count; i++)
     memcpy(out + i * width, rows + (size_t)from[i] * width, width * sizeof *out);
   return out;
 }
 
 /* Makes the vertices anew: vertex i is a copy of vertex from[i] of p. */
-static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t count, const uint32_t *indices) {
+static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t count,
+                    const uint32_t *indices) {
   vlGltfPrimitive q = {.vertices = count, .faces = p->faces};
   bool ok = true;
   q.positions = gather(g->context, p->positions, 3, from, count, &ok);
@@ -198,7 +229,8 @@ static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t 
   q.positions_close = gather(g->context, p->positions_close, 3, from, count, &ok);
   q.normals_close = gather(g->context, p->normals_close, 3, from, count, &ok);
   q.colors = gather(g->context, p->colors, 4, from, count, &ok);
-  for (int k = 0; k < 4; k++) q.uvs[k] = gather(g->context, p->uvs[k], 2, from, count, &ok);
+  for (int k = 0; k < 4; k++)
+    q.uvs[k] = gather(g->context, p->uvs[k], 2, from, count, &ok);
   if (ok && (q.indices = vl_alloc_array(g->context, 3 * p->faces, sizeof *q.indices)))
     memcpy(q.indices, indices, 3 * p->faces * sizeof *indices);
   if (!ok || !q.indices) {
@@ -218,22 +250,27 @@ static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
     double n[3];
     vl_triangle_normal(v, v + 3, v + 6, n);
     double l = vl_norm3(n);
-    for (int k = 0; k < 9; k++) normals[9 * f + (size_t)k] = l > 0 ? (float)(n[k % 3] / l) : (k % 3 == 2);
+    for (int k = 0; k < 9; k++)
+      normals[9 * f + (size_t)k] = l > 0 ? (float)(n[k % 3] / l) : (k % 3 == 2);
   }
   return normals;
 }
 
-/* Gives each face its own vertices and its flat normal (specification: flat normals when none are given). */
+/* Gives each face its own vertices and its flat normal (specification: flat normals when none
+ * are given). */
 static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
   size_t corners = 3 * p->faces;
   uint32_t *order = vl_alloc_array(g->context, corners, sizeof *order);
   bool ok = order || vl_gltf_fail_memory(g);
-  for (size_t i = 0; ok && i < corners; i++) order[i] = (uint32_t)i;
+  for (size_t i = 0; ok && i < corners; i++)
+    order[i] = (uint32_t)i;
   ok = ok && rebuild(g, p, p->indices, corners, order);
   vl_free(g->context, order);
-  if (!ok) return false;
+  if (!ok)
+    return false;
   p->normals = flat_normals(g, p->positions, p->faces);
-  if (p->positions_close) p->normals_close = flat_normals(g, p->positions_close, p->faces);
+  if (p->positions_close)
+    p->normals_close = flat_normals(g, p->positions_close, p->faces);
   return (p->normals && (p->normals_close || !p->positions_close)) || vl_gltf_fail_memory(g);
 }
 
@@ -258,7 +295,8 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
       table[slot] = (uint32_t)++count;
     }
     indices[c] = table[slot] - 1;
-    if (m->sign[c / 3]) signs[indices[c]] = m->sign[c / 3];
+    if (m->sign[c / 3])
+      signs[indices[c]] = m->sign[c / 3];
   }
   ok = (ok || vl_gltf_fail_memory(g)) && rebuild(g, p, from, count, indices);
   if (ok) {
@@ -268,7 +306,8 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
   for (size_t i = 0; ok && i < count; i++) {
     const double *s = sums + 3 * (size_t)group[i];
     double l = vl_norm3(s);
-    for (int k = 0; k < 3; k++) p->tangents[4 * i + (size_t)k] = l > 0 ? (float)(s[k] / l) : 0.0f;
+    for (int k = 0; k < 3; k++)
+      p->tangents[4 * i + (size_t)k] = l > 0 ? (float)(s[k] / l) : 0.0f;
     p->tangents[4 * i + 3] = signs[i] < 0 ? -1.0f : 1.0f;
   }
   VL_FREE(g->context, table, from, group, indices, signs);
@@ -276,9 +315,11 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
 }
 
 bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p) {
-  if (!p->normals && !make_flat(g, p)) return false;
+  if (!p->normals && !make_flat(g, p))
+    return false;
   size_t corners = 3 * p->faces;
-  if (!vl_gltf_spend(g, NULL, 40 * (uint64_t)corners)) return false;
+  if (!vl_gltf_spend(g, NULL, 40 * (uint64_t)corners))
+    return false;
   Maker m = {.p = p, .uvs = p->uvs[set]};
   m.welded = vl_alloc_array(g->context, p->vertices, sizeof *m.welded);
   m.group = vl_alloc_array(g->context, corners, sizeof *m.group);
@@ -286,11 +327,15 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p) {
   m.sign = vl_alloc_array(g->context, p->faces, 1);
   double *sums = vl_alloc_zero(g->context, corners, 3 * sizeof *sums);
   bool ok = m.welded && m.group && m.direction && m.sign && sums && weld(g->context, &m);
-  for (uint32_t c = 0; ok && c < corners; c++) m.group[c] = c;
-  if (ok) face_directions(&m);
+  for (uint32_t c = 0; ok && c < corners; c++)
+    m.group[c] = c;
+  if (ok)
+    face_directions(&m);
   ok = ok && join_edges(g->context, &m);
-  for (uint32_t c = 0; ok && c < corners; c++) m.group[c] = find(m.group, c);
-  for (uint32_t c = 0; ok && c < corners; c++) add_corner(&m, c, sums);
+  for (uint32_t c = 0; ok && c < corners; c++)
+    m.group[c] = find(m.group, c);
+  for (uint32_t c = 0; ok && c < corners; c++)
+    add_corner(&m, c, sums);
   ok = (ok || vl_gltf_fail_memory(g)) && split(g, p, &m, sums);
   VL_FREE(g->context, m.welded, m.group, m.direction, m.sign, sums);
   return ok;

@@ -1,5 +1,6 @@
-/* import/gltf/texture.c: textureInfo objects become textures of the scene: image, sampler, uv set,
- * KHR_texture_transform. Images are not decoded here; the scene keeps their bytes or paths. */
+/* import/gltf/texture.c: textureInfo objects become textures of the scene: image, sampler, uv
+ * set, KHR_texture_transform. Images are not decoded here; the scene keeps their bytes or
+ * paths. */
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -11,7 +12,8 @@
 #include "velo/texture.h"
 
 vlGltfTextureUse vl_gltf_use_color(void) {
-  return (vlGltfTextureUse){.spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = VL_UNSET};
+  return (vlGltfTextureUse){
+      .spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = VL_UNSET};
 }
 
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor) {
@@ -25,34 +27,43 @@ static bool is_remote(const char *uri) {
 }
 
 /* Reports a missing image: as an error if strict. */
-static bool report_missing(vlGltf *g, const vlGltfPlace *at, vlGltfImage *image, const char *name, const char *why) {
+static bool report_missing(vlGltf *g, const vlGltfPlace *at, vlGltfImage *image,
+                           const char *name, const char *why) {
   char text[512];
   snprintf(text, sizeof text, "%.400s", name);
   vl_make_printable(text);
   if (g->def->strict || g->scene->problem)
-    return vl_gltf_fail_code(g, VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s", text, why);
-  vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s; done without", text, why);
+    return vl_gltf_fail_code(g, VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s", text,
+                             why);
+  vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s; done without", text,
+               why);
   g->repairs.images++;
   return image->read = image->missing = true;
 }
 
 bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
-  if (image->read) return true;
+  if (image->read)
+    return true;
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "images", index);
   const json_t *json = vl_gltf_item(g, "images", index);
   const char *uri = NULL;
   int64_t view;
-  if (!vl_gltf_text(g, at, json, "uri", &uri) || !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
+  if (!vl_gltf_text(g, at, json, "uri", &uri) ||
+      !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
     return false;
   if (uri) {
-    if (is_remote(uri)) return report_missing(g, at, image, uri, "velo fetches nothing from the net");
-    if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &image->data, &image->size, &image->path)) return false;
-    if (image->path && vl_context_allows(g->context, image->path) && access(image->path, F_OK) != 0 &&
+    if (is_remote(uri))
+      return report_missing(g, at, image, uri, "velo fetches nothing from the net");
+    if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &image->data, &image->size, &image->path))
+      return false;
+    if (image->path && vl_context_allows(g->context, image->path) &&
+        access(image->path, F_OK) != 0 &&
         !g->scene->problem) /* vl_scene_check reports it itself */
       return report_missing(g, at, image, image->path, "no such file");
   } else if (view >= 0) {
-    if (!g->views[view].data) return vl_gltf_fail(g, at, "its bufferView holds nothing that velo can read");
+    if (!g->views[view].data)
+      return vl_gltf_fail(g, at, "its bufferView holds nothing that velo can read");
     image->data = g->views[view].data;
     image->size = g->views[view].size;
   } else {
@@ -62,21 +73,27 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   return true;
 }
 
-/* The image of a texture; extensions may replace it by an image of another format. *image is -1, with the result true,
- * when the texture has no image; a warning was then given. */
+/* The image of a texture; extensions may replace it by an image of another format. *image is
+ * -1, with the result true, when the texture has no image; a warning was then given. */
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
-  static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"};
+  static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds",
+                                       "EXT_texture_avif"};
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
   const json_t *json = vl_gltf_item(g, "textures", texture);
   const json_t *webp = vl_gltf_extension(json, "EXT_texture_webp");
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), webp, "source", g->image_count, image))
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), webp, "source",
+                     g->image_count, image))
     return false;
-  if (*image >= 0) return true;
-  if (!vl_gltf_index(g, at, json, "source", g->image_count, image)) return false;
-  if (*image >= 0) return true;
+  if (*image >= 0)
+    return true;
+  if (!vl_gltf_index(g, at, json, "source", g->image_count, image))
+    return false;
+  if (*image >= 0)
+    return true;
   for (size_t i = 0; i < VL_LENGTH(others); i++)
     if (vl_gltf_extension(json, others[i]))
-      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "its image is there by %s only, which velo does not read",
+      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+                               "its image is there by %s only, which velo does not read",
                                others[i]);
   vl_gltf_warn(g, VL_LOG_WARNING, at, "has no image");
   return true;
@@ -89,11 +106,14 @@ static vlWrap wrap_of(double code) {
 static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
   int64_t index;
-  if (!vl_gltf_index(g, at, vl_gltf_item(g, "textures", texture), "sampler", g->sampler_count, &index)) return false;
+  if (!vl_gltf_index(g, at, vl_gltf_item(g, "textures", texture), "sampler", g->sampler_count,
+                     &index))
+    return false;
   const json_t *sampler = index < 0 ? NULL : vl_gltf_item(g, "samplers", (size_t)index);
   const vlGltfPlace *here = VL_GLTF_ITEM(NULL, "samplers", (size_t)(index < 0 ? 0 : index));
   double s = 10497, t = 10497, large = 9729;
-  if (!vl_gltf_number(g, here, sampler, "wrapS", &s) || !vl_gltf_number(g, here, sampler, "wrapT", &t) ||
+  if (!vl_gltf_number(g, here, sampler, "wrapS", &s) ||
+      !vl_gltf_number(g, here, sampler, "wrapT", &t) ||
       !vl_gltf_number(g, here, sampler, "magFilter", &large))
     return false;
   def->wrap = wrap_of(s);
@@ -106,11 +126,13 @@ static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set) {
   size_t value = 0;
   const json_t *transform = vl_gltf_extension(info, "KHR_texture_transform");
-  if (!vl_gltf_size(g, at, info, "texCoord", &value) || !vl_gltf_size(g, at, transform, "texCoord", &value))
+  if (!vl_gltf_size(g, at, info, "texCoord", &value) ||
+      !vl_gltf_size(g, at, transform, "texCoord", &value))
     return false;
   if (value > 3) {
     if (vl_gltf_once(g, VL_GLTF_REPORTED_SETS))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "uv set %zu: velo keeps sets 0 to 3; set 0 is taken", value);
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "uv set %zu: velo keeps sets 0 to 3; set 0 is taken",
+                   value);
     value = 0;
   }
   *set = (uint32_t)value;
@@ -118,19 +140,23 @@ bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, u
 }
 
 /* KHR_texture_transform maps uvs with v downwards; here v points upwards before and after. */
-static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info, vlTextureDef *def) {
+static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info,
+                           vlTextureDef *def) {
   const json_t *json = vl_gltf_extension(info, "KHR_texture_transform");
-  if (!json) return true;
+  if (!json)
+    return true;
   const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_texture_transform");
   double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
-  if (!vl_gltf_numbers(g, at, json, "offset", 2, offset) || !vl_gltf_numbers(g, at, json, "scale", 2, scale) ||
+  if (!vl_gltf_numbers(g, at, json, "offset", 2, offset) ||
+      !vl_gltf_numbers(g, at, json, "scale", 2, scale) ||
       !vl_gltf_number(g, at, json, "rotation", &rotation))
     return false;
   double c = vl_precise_cos(rotation), s = vl_precise_sin(rotation);
   double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
   const double flipped[6] = {m[0], -m[1], m[1] + m[2], -m[3], m[4], 1 - m[4] - m[5]};
   def->st_from_uv_given = true;
-  for (int i = 0; i < 6; i++) def->st_from_uv[i] = (float)flipped[i];
+  for (int i = 0; i < 6; i++)
+    def->st_from_uv[i] = (float)flipped[i];
   return true;
 }
 
@@ -140,14 +166,22 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *up, const json_t *object, con
   const vlGltfPlace *at = VL_GLTF_KEY(up, key);
   int64_t texture, image;
   *id = (vlTextureId){0};
-  if (!vl_gltf_object(g, up, object, key, &info)) return false;
-  if (!info) return true;
-  if (!vl_gltf_index(g, at, info, "index", g->texture_count, &texture)) return false;
-  if (texture < 0) return vl_gltf_fail(g, at, "\"index\" is missing");
-  if (!choose_image(g, (size_t)texture, &image)) return false;
-  if (image < 0) return true;
-  if (!vl_gltf_read_image(g, (size_t)image)) return false;
-  if (g->images[image].missing) return true;
+  if (!vl_gltf_object(g, up, object, key, &info))
+    return false;
+  if (!info)
+    return true;
+  if (!vl_gltf_index(g, at, info, "index", g->texture_count, &texture))
+    return false;
+  if (texture < 0)
+    return vl_gltf_fail(g, at, "\"index\" is missing");
+  if (!choose_image(g, (size_t)texture, &image))
+    return false;
+  if (image < 0)
+    return true;
+  if (!vl_gltf_read_image(g, (size_t)image))
+    return false;
+  if (g->images[image].missing)
+    return true;
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, use->spectrum);
   char name[64];
   snprintf(name, sizeof name, "images[%d]", (int)image);
@@ -156,8 +190,8 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *up, const json_t *object, con
   def.path = g->images[image].path;
   def.data = def.path ? NULL : g->images[image].data;
   def.data_size = g->images[image].size;
-  if (!read_sampler(g, (size_t)texture, &def) || !vl_gltf_texture_set(g, at, info, &def.uv_set) ||
-      !read_transform(g, at, info, &def))
+  if (!read_sampler(g, (size_t)texture, &def) ||
+      !vl_gltf_texture_set(g, at, info, &def.uv_set) || !read_transform(g, at, info, &def))
     return false;
   def.encoding_given = !use->srgb;
   def.encoding = VL_ENCODING_LINEAR;

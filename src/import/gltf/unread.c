@@ -1,5 +1,6 @@
-/* import/gltf/unread.c: counts what a file has and the scene does not hold: extras, extensions that velo does not read,
- * occlusion maps, further vertex attributes. Exporters report it as lost. The copyright is kept. */
+/* import/gltf/unread.c: counts what a file has and the scene does not hold: extras, extensions
+ * that velo does not read, occlusion maps, further vertex attributes. Exporters report it as
+ * lost. The copyright is kept. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -16,10 +17,13 @@ static bool add(vlGltf *g, const char *format, const char *name) {
       g->scene->unread.items[i].count++;
       return true;
     }
-  if (g->scene->unread.count == MOST_KINDS) return true;
+  if (g->scene->unread.count == MOST_KINDS)
+    return true;
   const char *what = text;
-  vlSceneUnread *slot = vl_scene_copy_string(g->scene, &what) ? VL_PUSH(g->context, &g->scene->unread) : NULL;
-  if (!slot) return vl_gltf_fail_memory(g);
+  vlSceneUnread *slot =
+      vl_scene_copy_string(g->scene, &what) ? VL_PUSH(g->context, &g->scene->unread) : NULL;
+  if (!slot)
+    return vl_gltf_fail_memory(g);
   *slot = (vlSceneUnread){what, 1};
   return true;
 }
@@ -30,14 +34,17 @@ static bool is_own(const json_t *extras) {
 }
 
 static bool count_attributes(vlGltf *g, const json_t *attributes) {
-  static const char *const read[] = {"POSITION",   "NORMAL",     "TANGENT", "TEXCOORD_0", "TEXCOORD_1",
-                                     "TEXCOORD_2", "TEXCOORD_3", "COLOR_0", "JOINTS_",    "WEIGHTS_"};
+  static const char *const read[] = {"POSITION",   "NORMAL",     "TANGENT",    "TEXCOORD_0",
+                                     "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "COLOR_0",
+                                     "JOINTS_",    "WEIGHTS_"};
   const char *name;
   json_t *value;
   json_object_foreach((json_t *)(uintptr_t)attributes, name, value) {
     bool known = false;
-    for (size_t i = 0; i < VL_LENGTH(read); i++) known = known || strncmp(name, read[i], strlen(read[i])) == 0;
-    if (!known && !add(g, "vertex attribute %s: left out", vl_short_text(name).text)) return false;
+    for (size_t i = 0; i < VL_LENGTH(read); i++)
+      known = known || strncmp(name, read[i], strlen(read[i])) == 0;
+    if (!known && !add(g, "vertex attribute %s: left out", vl_short_text(name).text))
+      return false;
   }
   return true;
 }
@@ -48,24 +55,34 @@ static bool walk(vlGltf *g, const char *key, json_t *value) {
   const char *name;
   json_t *part, *item;
   size_t i;
-  if (vl_text_is(key, "attributes") && !count_attributes(g, value)) return false;
+  if (vl_text_is(key, "attributes") && !count_attributes(g, value))
+    return false;
   json_object_foreach(value, name, part) {
     if (vl_text_is(name, "extras")) {
-      if (!is_own(part) && !add(g, "%s of applications: left out", name)) return false;
+      if (!is_own(part) && !add(g, "%s of applications: left out", name))
+        return false;
       continue;
     }
-    if (vl_text_is(name, "occlusionTexture") && !add(g, "%s: left out, velo computes occlusion", name)) return false;
+    if (vl_text_is(name, "occlusionTexture") &&
+        !add(g, "%s: left out, velo computes occlusion", name))
+      return false;
     if (extensions && !vl_gltf_reads_extension(name)) {
-      if (!add(g, "extension %s: left out, velo does not read it", vl_gltf_extension_text(name).text)) return false;
+      if (!add(g, "extension %s: left out, velo does not read it",
+               vl_gltf_extension_text(name).text))
+        return false;
       continue;
     }
-    if (json_is_object(part) && !walk(g, name, part)) return false;
-    json_array_foreach(part, i, item) if (json_is_object(item) && !walk(g, name, item)) return false;
+    if (json_is_object(part) && !walk(g, name, part))
+      return false;
+    json_array_foreach(part, i,
+                       item) if (json_is_object(item) && !walk(g, name, item)) return false;
   }
   return true;
 }
 
 bool vl_gltf_count_unread(vlGltf *g) {
-  g->scene->copyright = json_string_value(json_object_get(json_object_get(g->root, "asset"), "copyright"));
-  return (vl_scene_copy_string(g->scene, &g->scene->copyright) || vl_gltf_fail_memory(g)) && walk(g, "", g->root);
+  g->scene->copyright =
+      json_string_value(json_object_get(json_object_get(g->root, "asset"), "copyright"));
+  return (vl_scene_copy_string(g->scene, &g->scene->copyright) || vl_gltf_fail_memory(g)) &&
+         walk(g, "", g->root);
 }

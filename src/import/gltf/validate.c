@@ -1,26 +1,34 @@
-/* import/gltf/validate.c: for `velo scene check`: reads what the chosen scene does not use, into a scene that is thrown
- * away. Messages begin with the codes of Khronos' validator where it has one. */
+/* import/gltf/validate.c: for `velo scene check`: reads what the chosen scene does not use,
+ * into a scene that is thrown away. Messages begin with the codes of Khronos' validator where
+ * it has one.
+ */
 #include <math.h>
 
 #include "import/gltf/gltf.h"
 
 enum { MOST = 200 }; /* messages */
 
-/* The first error of the scene that is thrown away becomes a message, and the next object is read. */
+/* The first error of the scene that is thrown away becomes a message, and the next object is
+ * read.
+ */
 static void flush(vlGltf *g, vlScene *kept, uint32_t *reported) {
   vlError *e = &g->scene->error;
   if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++*reported <= MOST)
     vl_log(g->context, VL_LOG_ERROR, e, "no scene uses it, but: %s", e->message);
-  if (e->code == VL_ERROR_MEMORY) vl_scene_fail(kept, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  if (e->code == VL_ERROR_MEMORY)
+    vl_scene_fail(kept, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
   vl_error_clear(e);
 }
 
-/* ---- accessors --------------------------------------------------------------------------------------------------- */
+/* ---- accessors
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-static void check_bounds(vlGltf *g, size_t index, const float *values, size_t count, uint32_t components,
-                         uint32_t *reported) {
-  static const char *const keys[2] = {"min", "max"}, *const codes[2] = {"ACCESSOR_MIN_MISMATCH",
-                                                                        "ACCESSOR_MAX_MISMATCH"};
+static void check_bounds(vlGltf *g, size_t index, const float *values, size_t count,
+                         uint32_t components, uint32_t *reported) {
+  static const char *const keys[2] = {"min", "max"}, *const codes[2] = {
+                                                         "ACCESSOR_MIN_MISMATCH",
+                                                         "ACCESSOR_MAX_MISMATCH"};
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "accessors", index);
   for (int k = 0; k < 2; k++) {
     const json_t *given = json_object_get(vl_gltf_item(g, "accessors", index), keys[k]);
@@ -31,9 +39,11 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
         const float v = values[i * components + c];
         own = k ? fmaxf(own, v) : fminf(own, v);
       }
-      if (!json_is_number(number) || !isfinite(own) || own == (float)json_number_value(number)) continue;
+      if (!json_is_number(number) || !isfinite(own) || own == (float)json_number_value(number))
+        continue;
       if (++*reported <= MOST)
-        vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(at, keys[k], c), "%s: %.9g is given, the data has %.9g", codes[k],
+        vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(at, keys[k], c),
+                     "%s: %.9g is given, the data has %.9g", codes[k],
                      json_number_value(number), (double)own);
     }
   }
@@ -41,20 +51,26 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
 
 static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
   const vlGltfAccessor *a = vl_gltf_accessor(g, VL_GLTF_ITEM(NULL, "accessors", index), index);
-  if (!a || a->type != VL_GLTF_FLOAT || a->matrix || !a->count) return;
+  if (!a || a->type != VL_GLTF_FLOAT || a->matrix || !a->count)
+    return;
   size_t count;
   const uint64_t spent = g->spent;
-  float *values = vl_gltf_load_floats(g, VL_GLTF_ITEM(NULL, "accessors", index), index, a->components, 0, &count);
-  if (values) check_bounds(g, index, values, count, a->components, reported);
+  float *values = vl_gltf_load_floats(g, VL_GLTF_ITEM(NULL, "accessors", index), index,
+                                      a->components, 0, &count);
+  if (values)
+    check_bounds(g, index, values, count, a->components, reported);
   vl_free(g->context, values);
   g->spent = spent;
 }
 
-/* ---- what nothing uses ------------------------------------------------------------------------------------------- */
+/* ---- what nothing uses
+ * -------------------------------------------------------------------------------------------
+ */
 
 static void report_unused(vlGltf *g, const char *array, size_t index, uint32_t *reported) {
   if (++*reported <= MOST)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, array, index), "UNUSED_OBJECT: the scene does not use it");
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, array, index),
+                 "UNUSED_OBJECT: the scene does not use it");
 }
 
 enum { HAS_NODE = 1, HAS_REACHED_NODE = 2, HAS_MATERIAL = 4 };
@@ -64,28 +80,32 @@ static void mark_used(const vlGltf *g, uint8_t *used) {
   for (size_t i = 0; i < g->node_count; i++) {
     const json_t *mesh = json_object_get(g->nodes[i].json, "mesh");
     const double index = json_number_value(mesh);
-    if (!json_is_number(mesh) || !(index >= 0 && index < (double)g->mesh_count)) continue;
+    if (!json_is_number(mesh) || !(index >= 0 && index < (double)g->mesh_count))
+      continue;
     used[(size_t)index] |= g->nodes[i].reached ? HAS_NODE | HAS_REACHED_NODE : HAS_NODE;
   }
   for (size_t i = 0; i < g->material_count; i++) {
     vlGltfMaterial *m = &g->materials[2 * (i + 1)];
-    if (m[0].made || m[1].made) used[i] |= HAS_MATERIAL;
+    if (m[0].made || m[1].made)
+      used[i] |= HAS_MATERIAL;
     m[0].made = m[1].made = false; /* their ids are those of the scene that is kept */
   }
   g->materials[0].made = g->materials[1].made = false;
 }
 
-/* A node that no scene reaches, with its mesh as its skin and morph targets deform it, and its light. */
+/* A node that no scene reaches, with its mesh as its skin and morph targets deform it, and its
+ * light. */
 static bool read_node(vlGltf *g, size_t index) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "nodes", index);
   const vlGltfNode *node = &g->nodes[index];
   const json_t *punctual = vl_gltf_extension(node->json, "KHR_lights_punctual");
   int64_t mesh, light = -1;
   return vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) &&
-         vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.KHR_lights_punctual"), punctual, "light", g->light_count,
-                       &light) &&
+         vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.KHR_lights_punctual"), punctual, "light",
+                       g->light_count, &light) &&
          (light < 0 || vl_gltf_add_light(g, index, light)) &&
-         (mesh < 0 || vl_gltf_add_mesh(g, (size_t)mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
+         (mesh < 0 ||
+          vl_gltf_add_mesh(g, (size_t)mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
 }
 
 static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t *reported) {
@@ -98,15 +118,18 @@ static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t 
     flush(g, kept, reported);
   }
   for (size_t i = 0; i < g->material_count; i++) {
-    if (used[i] & HAS_MATERIAL) continue;
+    if (used[i] & HAS_MATERIAL)
+      continue;
     report_unused(g, "materials", i, reported);
     vl_gltf_material(g, (int64_t)i, false);
     flush(g, kept, reported);
   }
   for (size_t i = 0; i < g->mesh_count; i++) {
-    if (used[i] & HAS_REACHED_NODE) continue;
+    if (used[i] & HAS_REACHED_NODE)
+      continue;
     report_unused(g, "meshes", i, reported);
-    if (used[i] & HAS_NODE) continue; /* read with its node */
+    if (used[i] & HAS_NODE)
+      continue; /* read with its node */
     vl_gltf_add_mesh(g, i, NULL, SIZE_MAX, (vlGroupId){0}, vl_mat4_identity());
     flush(g, kept, reported);
   }

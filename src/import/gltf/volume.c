@@ -1,5 +1,5 @@
-/* import/gltf/volume.c: the medium behind a surface (KHR_materials_volume), and images that are converted before they
- * become textures. */
+/* import/gltf/volume.c: the medium behind a surface (KHR_materials_volume), and images that are
+ * converted before they become textures. */
 #include <math.h>
 
 #include "image/image.h"
@@ -9,20 +9,24 @@
 #include "velo/medium.h"
 #include "velo/texture.h"
 
-/* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) / distance per channel. */
-bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result) {
+/* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) /
+ * distance per channel. */
+bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+                    vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];
   if (!vl_gltf_number(g, at, json, "attenuationDistance", &distance) ||
       !vl_gltf_numbers(g, at, json, "attenuationColor", 3, color))
     return false;
-  if (!(distance > 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
+  if (!(distance > 0))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
   for (int i = 0; i < 3; i++) {
     double c = color[i] > 1e-4 ? color[i] < 1 ? color[i] : 1 : 1e-4;
     sigma[i] = (float)(-vl_precise_log(c) / distance);
     most = sigma[i] > most ? sigma[i] : most;
   }
-  if (!(most > 0)) return true;
+  if (!(most > 0))
+    return true;
   vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
   def.source.file = g->path;
   def.sigma_a = vl_spectrum_rgb(sigma[0], sigma[1], sigma[2]);
@@ -32,18 +36,23 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltf
   return result->inside.index != 0;
 }
 
-/* ---- anisotropy -------------------------------------------------------------------------------------------------- */
+/* ---- anisotropy
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* Converts a texture whose red and green channels are the tangent's direction to one of its angle. Angles that differ
- * by pi are equivalent, but their mean is meaningless: the new texture is not filtered. */
+/* Converts a texture whose red and green channels are the tangent's direction to one of its
+ * angle. Angles that differ by pi are equivalent, but their mean is meaningless: the new
+ * texture is not filtered. */
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input) {
   vlTextureDef def = g->scene->textures.items[from.index - 1];
   vlImage *image = NULL, *angles = NULL;
   vlError error;
   vl_error_clear(&error);
-  vlResult r = def.data ? vl_image_read_memory(g->context, def.name, def.data, def.data_size, &image, &error)
+  vlResult r = def.data ? vl_image_read_memory(g->context, def.name, def.data, def.data_size,
+                                               &image, &error)
                         : vl_image_read_named(g->context, NULL, def.path, &image, &error);
-  if (r != VL_OK) return vl_gltf_fail_code(g, r, NULL, "%s", error.message);
+  if (r != VL_OK)
+    return vl_gltf_fail_code(g, r, NULL, "%s", error.message);
   bool ok = image->channels >= 3 || vl_gltf_fail(g, NULL, "%s: has no directions", def.name);
   if (ok) {
     vlImageDef form = vl_default_image_def(image->width, image->height, 1);
@@ -53,7 +62,8 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
   uint32_t channel[4];
   float *row = ok ? vl_alloc_array(g->context, image->width, 3 * sizeof *row) : NULL;
   ok = ok && (row || vl_gltf_fail_memory(g)) && vl_image_color(image, channel) >= 3;
-  if (ok) image->encoding = VL_ENCODING_LINEAR;
+  if (ok)
+    image->encoding = VL_ENCODING_LINEAR;
   for (uint32_t y = 0; ok && y < image->height; y++) {
     float *to = vl_image_row(angles, y);
     vl_image_row_to_float(image, y, channel, 3, row);

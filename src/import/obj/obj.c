@@ -13,13 +13,16 @@
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
 enum { REPORTED_CURVES = 1, REPORTED_UNKNOWN = 2 };
 
-/* ---- errors ------------------------------------------------------------------------------------------------------ */
+/* ---- errors
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 bool vl_obj_fail(vlObj *obj, const char *format, ...) {
   char text[500];
   VL_FORMAT(text, format);
   uint32_t column = obj->line ? (uint32_t)(obj->at - obj->line_start) + 1 : 0;
-  vl_scene_fail(obj->scene, VL_ERROR_SCENE, (vlSource){obj->path, obj->line, column}, "%s", text);
+  vl_scene_fail(obj->scene, VL_ERROR_SCENE, (vlSource){obj->path, obj->line, column}, "%s",
+                text);
   return false;
 }
 
@@ -36,7 +39,9 @@ bool vl_obj_fail_memory(vlObj *obj) {
   return false;
 }
 
-/* ---- statements -------------------------------------------------------------------------------------------------- */
+/* ---- statements
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -45,16 +50,20 @@ static bool is_blank(char c) {
 bool vl_obj_statement(vlObj *obj, char **from, char *end) {
   obj->nothing[0] = 0;
   obj->line_start = obj->at = obj->end = obj->nothing;
-  if (*from >= end) return false;
+  if (*from >= end)
+    return false;
   char *p = *from, *stop = p;
   uint32_t lines = 0;
   for (;;) {
     stop = memchr(stop, '\n', (size_t)(end - stop));
     lines++;
-    if (!stop) break;
+    if (!stop)
+      break;
     char *before = stop - 1;
-    if (before >= p && *before == '\r') before--;
-    if (before < p || *before != '\\') break;
+    if (before >= p && *before == '\r')
+      before--;
+    if (before < p || *before != '\\')
+      break;
     memset(before, ' ', (size_t)(stop + 1 - before)); /* a backslash continues the line */
     stop++;
     if (stop >= end) {
@@ -67,7 +76,8 @@ bool vl_obj_statement(vlObj *obj, char **from, char *end) {
   obj->line += 1 + obj->more_lines;
   obj->more_lines = lines - 1;
   *from = stop ? stop + 1 : end;
-  /* A comment extends to the end of the line. Names may contain #, so a # counts only at the start or after a blank. */
+  /* A comment extends to the end of the line. Names may contain #, so a # counts only at the
+   * start or after a blank. */
   for (char *hash = p; (hash = memchr(hash, '#', (size_t)(obj->end - hash))); hash++)
     if (hash == p || is_blank(hash[-1])) {
       obj->end = hash;
@@ -77,20 +87,23 @@ bool vl_obj_statement(vlObj *obj, char **from, char *end) {
 }
 
 static void skip_blanks(vlObj *obj) {
-  while (obj->at < obj->end && is_blank(*obj->at)) obj->at++;
+  while (obj->at < obj->end && is_blank(*obj->at))
+    obj->at++;
 }
 
 size_t vl_obj_word(vlObj *obj, const char **word) {
   skip_blanks(obj);
   *word = obj->at;
-  while (obj->at < obj->end && !is_blank(*obj->at)) obj->at++;
+  while (obj->at < obj->end && !is_blank(*obj->at))
+    obj->at++;
   return (size_t)(obj->at - *word);
 }
 
 char *vl_obj_rest(vlObj *obj) {
   skip_blanks(obj);
   char *end = obj->end;
-  while (end > obj->at && is_blank(end[-1])) end--;
+  while (end > obj->at && is_blank(end[-1]))
+    end--;
   *end = 0; /* replaces the newline, the # of a comment, a blank or the terminating zero */
   return obj->at;
 }
@@ -99,27 +112,35 @@ bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count) 
   *count = 0;
   for (;;) {
     skip_blanks(obj);
-    if (obj->at >= obj->end || *count == most) return true;
+    if (obj->at >= obj->end || *count == most)
+      return true;
     const char *p = obj->at;
-    if (!vl_number_scan(&p, obj->end, &values[*count]) || (p < obj->end && !is_blank(*p))) return false;
-    if (!isfinite((float)values[*count])) return false;
+    if (!vl_number_scan(&p, obj->end, &values[*count]) || (p < obj->end && !is_blank(*p)))
+      return false;
+    if (!isfinite((float)values[*count]))
+      return false;
     obj->at += p - obj->at;
     ++*count;
   }
 }
 
-static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most, double *values, uint32_t *count) {
+static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most, double *values,
+                    uint32_t *count) {
   if (!vl_obj_numbers(obj, most, values, count)) {
     const char *word;
     char *at = obj->at;
     size_t n = vl_obj_word(obj, &word);
     obj->at = at;
-    return vl_obj_fail(obj, "%s: \"%s\" is not a finite number", what, vl_short_text_of(word, n).text);
+    return vl_obj_fail(obj, "%s: \"%s\" is not a finite number", what,
+                       vl_short_text_of(word, n).text);
   }
-  return *count >= least || vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
+  return *count >= least ||
+         vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
 }
 
-/* ---- vertices ---------------------------------------------------------------------------------------------------- */
+/* ---- vertices
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static float linear_from_srgb(double v) {
   double x = v < 0 ? 0 : v > 1 ? 1 : v;
@@ -130,20 +151,27 @@ static float linear_from_srgb(double v) {
 static bool read_vertex(vlObj *obj) {
   double v[7] = {0};
   uint32_t count;
-  if (!numbers(obj, "v", 3, 7, v, &count)) return false;
-  if (obj->positions.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many vertices");
-  if (!VL_RESERVE(obj->context, &obj->positions, 3)) return vl_obj_fail_memory(obj);
+  if (!numbers(obj, "v", 3, 7, v, &count))
+    return false;
+  if (obj->positions.count / 3 >= 0x7ffffff0u)
+    return vl_obj_fail(obj, "too many vertices");
+  if (!VL_RESERVE(obj->context, &obj->positions, 3))
+    return vl_obj_fail_memory(obj);
   size_t before = obj->positions.count;
   for (int i = 0; i < 3; i++) {
     obj->positions.items[obj->positions.count++] = (float)v[i];
     obj->low[i] = fmin(obj->low[i], v[i]);
     obj->high[i] = fmax(obj->high[i], v[i]);
   }
-  if (count < 6 && obj->colors.count == 0) return true;
+  if (count < 6 && obj->colors.count == 0)
+    return true;
   size_t missing = before - obj->colors.count;
-  if (!VL_RESERVE(obj->context, &obj->colors, missing + 3)) return vl_obj_fail_memory(obj);
-  for (size_t i = 0; i < missing; i++) obj->colors.items[obj->colors.count++] = 1.0f;
-  for (int i = 0; i < 3; i++) obj->colors.items[obj->colors.count++] = count < 6 ? 1.0f : linear_from_srgb(v[3 + i]);
+  if (!VL_RESERVE(obj->context, &obj->colors, missing + 3))
+    return vl_obj_fail_memory(obj);
+  for (size_t i = 0; i < missing; i++)
+    obj->colors.items[obj->colors.count++] = 1.0f;
+  for (int i = 0; i < 3; i++)
+    obj->colors.items[obj->colors.count++] = count < 6 ? 1.0f : linear_from_srgb(v[3 + i]);
   return true;
 }
 
@@ -152,52 +180,69 @@ static bool is_broken(vlObj *obj, double v[3]) {
   const char *word;
   char *at = obj->at;
   bool broken = false;
-  if (!obj->permissive) return false;
+  if (!obj->permissive)
+    return false;
   for (size_t n = vl_obj_word(obj, &word); n && !broken; n = vl_obj_word(obj, &word)) {
     size_t sign = word[0] == '-' || word[0] == '+';
-    broken = n >= sign + 3 && (strncasecmp(word + sign, "nan", 3) == 0 || strncasecmp(word + sign, "inf", 3) == 0);
+    broken = n >= sign + 3 && (strncasecmp(word + sign, "nan", 3) == 0 ||
+                               strncasecmp(word + sign, "inf", 3) == 0);
   }
   obj->at = at;
-  if (broken) v[0] = v[1] = v[2] = NAN;
+  if (broken)
+    v[0] = v[1] = v[2] = NAN;
   return broken;
 }
 
 static bool read_uv(vlObj *obj) {
   double v[3] = {0, 0, 0};
   uint32_t count;
-  if (!is_broken(obj, v) && !numbers(obj, "vt", 1, 3, v, &count)) return false;
-  if (obj->uvs.count / 2 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many uvs");
-  if (!VL_RESERVE(obj->context, &obj->uvs, 2)) return vl_obj_fail_memory(obj);
-  for (int i = 0; i < 2; i++) obj->uvs.items[obj->uvs.count++] = (float)v[i];
+  if (!is_broken(obj, v) && !numbers(obj, "vt", 1, 3, v, &count))
+    return false;
+  if (obj->uvs.count / 2 >= 0x7ffffff0u)
+    return vl_obj_fail(obj, "too many uvs");
+  if (!VL_RESERVE(obj->context, &obj->uvs, 2))
+    return vl_obj_fail_memory(obj);
+  for (int i = 0; i < 2; i++)
+    obj->uvs.items[obj->uvs.count++] = (float)v[i];
   return true;
 }
 
 static bool read_normal(vlObj *obj) {
   double v[3] = {0};
   uint32_t count;
-  if (!is_broken(obj, v) && !numbers(obj, "vn", 3, 3, v, &count)) return false;
-  if (obj->normals.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many normals");
-  if (!VL_RESERVE(obj->context, &obj->normals, 3)) return vl_obj_fail_memory(obj);
-  for (int i = 0; i < 3; i++) obj->normals.items[obj->normals.count++] = (float)v[i];
+  if (!is_broken(obj, v) && !numbers(obj, "vn", 3, 3, v, &count))
+    return false;
+  if (obj->normals.count / 3 >= 0x7ffffff0u)
+    return vl_obj_fail(obj, "too many normals");
+  if (!VL_RESERVE(obj->context, &obj->normals, 3))
+    return vl_obj_fail_memory(obj);
+  for (int i = 0; i < 3; i++)
+    obj->normals.items[obj->normals.count++] = (float)v[i];
   return true;
 }
 
-/* ---- faces ------------------------------------------------------------------------------------------------------- */
+/* ---- faces
+ * -------------------------------------------------------------------------------------------------------
+ */
 
-/* Reads an index: from 1 upwards, or from -1 downwards, counted from the last element. *index 0: the field is empty. */
+/* Reads an index: from 1 upwards, or from -1 downwards, counted from the last element. *index
+ * 0: the field is empty. */
 static bool read_index(vlObj *obj, const char *what, size_t count, uint32_t *index) {
   char *p = obj->at;
   bool negative = p < obj->end && *p == '-';
-  if (negative) p++;
+  if (negative)
+    p++;
   uint64_t value = 0;
   char *digits = p;
   for (; p < obj->end && *p >= '0' && *p <= '9'; p++)
-    if (value < 1u << 31) value = value * 10 + (uint64_t)(*p - '0');
+    if (value < 1u << 31)
+      value = value * 10 + (uint64_t)(*p - '0');
   *index = 0;
-  if (p == digits && !negative) return true;
+  if (p == digits && !negative)
+    return true;
   if (value == 0 || value > count)
-    return vl_obj_fail(obj, "f: names %s %s%llu, but there are %zu so far", what, negative ? "-" : "",
-                       (unsigned long long)value, count);
+    return vl_obj_fail(obj, "f: names %s %s%llu, but there are %zu so far", what,
+                       negative ? "-" : "", (unsigned long long)value, count);
   *index = (uint32_t)(negative ? count + 1 - value : value);
   obj->at = p;
   return true;
@@ -206,28 +251,34 @@ static bool read_index(vlObj *obj, const char *what, size_t count, uint32_t *ind
 static bool read_corner(vlObj *obj, vlObjCorner *c) {
   char *start = obj->at;
   *c = (vlObjCorner){0, 0, 0};
-  if (!read_index(obj, "vertex", obj->positions.count / 3, &c->v)) return false;
+  if (!read_index(obj, "vertex", obj->positions.count / 3, &c->v))
+    return false;
   bool fine = c->v != 0;
   if (fine && obj->at < obj->end && *obj->at == '/') {
     obj->at++;
-    if (!read_index(obj, "uv", obj->uvs.count / 2, &c->vt)) return false;
+    if (!read_index(obj, "uv", obj->uvs.count / 2, &c->vt))
+      return false;
     if (obj->at < obj->end && *obj->at == '/') {
       obj->at++;
-      if (!read_index(obj, "normal", obj->normals.count / 3, &c->vn)) return false;
+      if (!read_index(obj, "normal", obj->normals.count / 3, &c->vn))
+        return false;
     }
   }
-  if (fine && (obj->at >= obj->end || is_blank(*obj->at))) return true;
+  if (fine && (obj->at >= obj->end || is_blank(*obj->at)))
+    return true;
   const char *word;
   obj->at = start;
   size_t n = vl_obj_word(obj, &word);
   obj->at = start;
-  return vl_obj_fail(obj, "f: \"%s\" is no corner (v, v/vt, v//vn or v/vt/vn)", vl_short_text_of(word, n).text);
+  return vl_obj_fail(obj, "f: \"%s\" is no corner (v, v/vt, v//vn or v/vt/vn)",
+                     vl_short_text_of(word, n).text);
 }
 
-/* Starts a part for successive faces with the same material and object. From MAX_PARTS parts on, all faces of a
- * material form one part. */
+/* Starts a part for successive faces with the same material and object. From MAX_PARTS parts
+ * on, all faces of a material form one part. */
 static bool open_part(vlObj *obj) {
-  if (obj->part_open) return true;
+  if (obj->part_open)
+    return true;
   vlObjMaterial *m = &obj->materials.items[obj->material];
   obj->part_open = true;
   if (obj->parts.count >= MAX_PARTS && m->part) {
@@ -236,7 +287,8 @@ static bool open_part(vlObj *obj) {
     return true;
   }
   vlObjPart *part = VL_PUSH(obj->context, &obj->parts);
-  if (!part) return vl_obj_fail_memory(obj);
+  if (!part)
+    return vl_obj_fail_memory(obj);
   part->material = obj->material;
   part->object = (uint32_t)(obj->objects.count ? obj->objects.count - 1 : 0);
   part->line = obj->line;
@@ -249,17 +301,23 @@ static bool read_face(vlObj *obj) {
   obj->polygon.count = 0;
   for (;;) {
     skip_blanks(obj);
-    if (obj->at >= obj->end) break;
+    if (obj->at >= obj->end)
+      break;
     vlObjCorner *c = VL_PUSH(obj->context, &obj->polygon);
-    if (!c) return vl_obj_fail_memory(obj);
-    if (!read_corner(obj, c)) return false;
+    if (!c)
+      return vl_obj_fail_memory(obj);
+    if (!read_corner(obj, c))
+      return false;
   }
   size_t n = obj->polygon.count;
   uint32_t triangles;
-  if (n < 3) return vl_obj_fail(obj, "f: %zu corners, a face needs 3", n);
-  if (!open_part(obj) || !vl_obj_triangulate(obj, &triangles)) return false;
+  if (n < 3)
+    return vl_obj_fail(obj, "f: %zu corners, a face needs 3", n);
+  if (!open_part(obj) || !vl_obj_triangulate(obj, &triangles))
+    return false;
   vlObjPart *part = &obj->parts.items[obj->part];
-  if (obj->triangle_part.count + triangles > 0x3fffffffu) return vl_obj_fail(obj, "too many faces");
+  if (obj->triangle_part.count + triangles > 0x3fffffffu)
+    return vl_obj_fail(obj, "too many faces");
   if (!VL_RESERVE(obj->context, &obj->corners, 3 * (size_t)triangles) ||
       !VL_RESERVE(obj->context, &obj->triangle_part, triangles) ||
       !VL_RESERVE(obj->context, &obj->triangle_smooth, triangles))
@@ -278,20 +336,25 @@ static bool read_face(vlObj *obj) {
   return true;
 }
 
-/* ---- what faces are of ------------------------------------------------------------------------------------------- */
+/* ---- what faces are of
+ * -------------------------------------------------------------------------------------------
+ */
 
 uint32_t vl_obj_material(vlObj *obj, const char *name) {
   uint32_t hash = 2166136261u;
-  for (const char *p = name; *p; p++) hash = (hash ^ (uint8_t)*p) * 16777619u;
+  for (const char *p = name; *p; p++)
+    hash = (hash ^ (uint8_t)*p) * 16777619u;
   uint32_t *head = &obj->heads[(hash ^ hash >> 15) % VL_OBJ_HEADS];
   for (uint32_t i = *head; i; i = obj->materials.items[i - 1].next)
-    if (vl_text_is(obj->materials.items[i - 1].name, name)) return i - 1;
+    if (vl_text_is(obj->materials.items[i - 1].name, name))
+      return i - 1;
   const char *kept = name;
   if (obj->materials.count >= MAX_MATERIALS) {
     vl_obj_fail(obj, "too many materials");
     return UINT32_MAX;
   }
-  if (!vl_scene_copy_string(obj->scene, &kept)) return UINT32_MAX;
+  if (!vl_scene_copy_string(obj->scene, &kept))
+    return UINT32_MAX;
   vlObjMaterial *m = VL_PUSH(obj->context, &obj->materials);
   if (!m) {
     vl_obj_fail_memory(obj);
@@ -306,20 +369,25 @@ uint32_t vl_obj_material(vlObj *obj, const char *name) {
 
 static bool use_material(vlObj *obj) {
   uint32_t index = vl_obj_material(obj, vl_obj_rest(obj));
-  if (index == UINT32_MAX) return false;
+  if (index == UINT32_MAX)
+    return false;
   obj->part_open = obj->part_open && obj->material == index;
   obj->material = index;
-  if (!obj->materials.items[index].line) obj->materials.items[index].line = obj->line;
+  if (!obj->materials.items[index].line)
+    obj->materials.items[index].line = obj->line;
   return true;
 }
 
 static bool use_smoothing(vlObj *obj) {
   double value;
   uint32_t count;
-  obj->smooth = vl_obj_numbers(obj, 1, &value, &count) && count && value >= 1 && value < 4e9 ? (uint32_t)value : 0;
+  obj->smooth = vl_obj_numbers(obj, 1, &value, &count) && count && value >= 1 && value < 4e9
+                    ? (uint32_t)value
+                    : 0;
   const char *word;
   char *at = obj->at;
-  if (vl_obj_word(obj, &word) == 2 && memcmp(word, "on", 2) == 0) obj->smooth = 1;
+  if (vl_obj_word(obj, &word) == 2 && memcmp(word, "on", 2) == 0)
+    obj->smooth = 1;
   obj->at = at;
   return true;
 }
@@ -327,43 +395,61 @@ static bool use_smoothing(vlObj *obj) {
 static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
   static const char *const texts[2] = {"curves and surfaces are not drawn",
                                        "unknown statement, ignored (as others like it)"};
-  if (obj->reported & bit) return;
+  if (obj->reported & bit)
+    return;
   obj->reported |= bit;
-  vl_obj_warn(obj, VL_LOG_WARNING, "\"%s\": %s", vl_short_text_of(what, length).text, texts[bit >> 1]);
+  vl_obj_warn(obj, VL_LOG_WARNING, "\"%s\": %s", vl_short_text_of(what, length).text,
+              texts[bit >> 1]);
 }
 
 static bool read_statement(vlObj *obj) {
-  static const char *const curves[] = {"vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf", "parm",
-                                       "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech", "stech"};
+  static const char *const curves[] = {"vp",    "cstype", "deg",  "bmat",  "step", "curv",
+                                       "curv2", "surf",   "parm", "trim",  "hole", "scrv",
+                                       "sp",    "end",    "con",  "ctech", "stech"};
   static const char *const silent[] = {"mg",         "bevel",     "c_interp", "d_interp", "lod",
                                        "shadow_obj", "trace_obj", "maplib",   "usemap"};
   const char *word;
   size_t n = vl_obj_word(obj, &word);
-  if (n == 0) return true;
-  if (n == 1) switch (*word) {
-      case 'v': return read_vertex(obj);
-      case 'f': return read_face(obj);
-      case 's': return use_smoothing(obj);
+  if (n == 0)
+    return true;
+  if (n == 1)
+    switch (*word) {
+      case 'v':
+        return read_vertex(obj);
+      case 'f':
+        return read_face(obj);
+      case 's':
+        return use_smoothing(obj);
       case 'g':
-      case 'o': return vl_obj_open_object(obj, *word == 'g');
+      case 'o':
+        return vl_obj_open_object(obj, *word == 'g');
       case 'l':
-      case 'p': return vl_obj_read_marks(obj, *word == 'l');
-      default: break;
+      case 'p':
+        return vl_obj_read_marks(obj, *word == 'l');
+      default:
+        break;
     }
-  if (n == 2 && word[0] == 'v' && word[1] == 't') return read_uv(obj);
-  if (n == 2 && word[0] == 'v' && word[1] == 'n') return read_normal(obj);
-  if (n == 2 && word[0] == 'f' && word[1] == 'o') return read_face(obj); /* "fo": the obsolete form of "f" */
-  if (n == 6 && memcmp(word, "usemtl", 6) == 0) return use_material(obj);
-  if (n == 6 && memcmp(word, "mtllib", 6) == 0) return vl_obj_read_libraries(obj);
+  if (n == 2 && word[0] == 'v' && word[1] == 't')
+    return read_uv(obj);
+  if (n == 2 && word[0] == 'v' && word[1] == 'n')
+    return read_normal(obj);
+  if (n == 2 && word[0] == 'f' && word[1] == 'o')
+    return read_face(obj); /* "fo": the obsolete form of "f" */
+  if (n == 6 && memcmp(word, "usemtl", 6) == 0)
+    return use_material(obj);
+  if (n == 6 && memcmp(word, "mtllib", 6) == 0)
+    return vl_obj_read_libraries(obj);
   for (size_t i = 0; i < VL_LENGTH(silent); i++)
-    if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0) return true;
+    if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0)
+      return true;
   for (size_t i = 0; i < VL_LENGTH(curves); i++)
     if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) {
       once(obj, REPORTED_CURVES, word, n);
       return true;
     }
   for (size_t i = 0; i < n; i++)
-    if ((unsigned char)word[i] < 32) return vl_obj_fail(obj, "not an OBJ file: byte %d here", (unsigned char)word[i]);
+    if ((unsigned char)word[i] < 32)
+      return vl_obj_fail(obj, "not an OBJ file: byte %d here", (unsigned char)word[i]);
   once(obj, REPORTED_UNKNOWN, word, n);
   return true;
 }
@@ -417,15 +503,18 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
     obj->high[i] = -INFINITY;
   }
   bool fine = vl_obj_material(obj, "") == 0;
-  if (fine) obj->materials.items[0].defined = true;
+  if (fine)
+    obj->materials.items[0].defined = true;
   char *from = size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0 ? data + 3 : data;
   while (fine && vl_obj_statement(obj, &from, data + size))
-    fine = read_statement(obj) &&
-           !(obj->line % 1024 == 0 && vl_scene_stopped(scene, (double)(from - data) / (double)size));
+    fine =
+        read_statement(obj) && !(obj->line % 1024 == 0 &&
+                                 vl_scene_stopped(scene, (double)(from - data) / (double)size));
   if (fine) {
     obj->line = 0;
     fine = vl_obj_add_shapes(obj);
-    if (fine && obj->marks.count) fine = vl_obj_add_marks(obj);
+    if (fine && obj->marks.count)
+      fine = vl_obj_add_marks(obj);
   }
   vl_repairs_report(obj->context, &obj->repairs, path);
   if (fine && obj->parts.count + obj->marks.count == 0)

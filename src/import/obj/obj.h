@@ -1,6 +1,7 @@
 /* import/obj/obj.h: types and functions shared by the files of the OBJ importer.
- * Data flow: obj.c (statements to arrays of corners, polygons cut by obj_polygon.c) with mtl.c (material libraries) ->
- * obj_mesh.c (one shape per part) with mtl_material.c. Sources: "Object Files (.obj)" and "Material Library File
+ * Data flow: obj.c (statements to arrays of corners, polygons cut by obj_polygon.c) with mtl.c
+ * (material libraries) -> obj_mesh.c (one shape per part) with mtl_material.c. Sources: "Object
+ * Files (.obj)" and "Material Library File
  * (.mtl)", Alias/Wavefront; the PBR statements of MTL as published by Clara.io. */
 #ifndef IMPORT_OBJ_OBJ_H
 #define IMPORT_OBJ_OBJ_H
@@ -47,7 +48,8 @@ typedef struct vlObjMaterial {
   uint32_t next;    /* next material with the same hash, counted from 1; 0: none */
   uint32_t line;    /* first line that uses the material */
   bool defined, made;
-  uint32_t part; /* part for all faces of the material when there are too many parts, counted from 1 */
+  uint32_t part; /* part for all faces of the material when there are too many parts, counted
+                    from 1 */
   vlMtl mtl;
   vlMaterialId material;
   vlEmissionId emission;
@@ -83,9 +85,10 @@ typedef struct vlObj {
   bool permissive, strict;
   const char *search_path; /* further folders, separated by ':'; may be null */
   vlRepairs repairs;
-  uint32_t line, more_lines;     /* first line of the statement, and number of continued lines */
-  char nothing[1];               /* target of the pointers of an empty statement */
-  char *line_start, *at, *end;   /* start of the line, reading position and end of the current statement */
+  uint32_t line, more_lines; /* first line of the statement, and number of continued lines */
+  char nothing[1];           /* target of the pointers of an empty statement */
+  char *line_start, *at,
+      *end; /* start of the line, reading position and end of the current statement */
   VL_ARRAY(float) positions;     /* 3 per vertex */
   VL_ARRAY(float) colors;        /* 3 per vertex, linear; empty when no vertex has a colour */
   VL_ARRAY(float) uvs;           /* 2 each */
@@ -109,13 +112,14 @@ typedef struct vlObj {
 
 /* Report an error or a warning at the current statement. vl_obj_fail always returns false. */
 bool vl_obj_fail(vlObj *obj, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 bool vl_obj_fail_memory(vlObj *obj);
-/* Reads the next statement of [*from, end) with its continued lines and sets line, at and end. Returns false at the end
- * of the text. */
+/* Reads the next statement of [*from, end) with its continued lines and sets line, at and end.
+ * Returns false at the end of the text. */
 bool vl_obj_statement(vlObj *obj, char **from, char *end);
-/* Finds the statement's next word, which is not zero-terminated, and returns its length; 0 at the end of the
- * statement. */
+/* Finds the statement's next word, which is not zero-terminated, and returns its length; 0 at
+ * the end of the statement. */
 size_t vl_obj_word(vlObj *obj, const char **word);
 /* Reads up to `most` numbers; *count receives how many. False when a word is not a number. */
 bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count);

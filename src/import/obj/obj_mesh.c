@@ -1,5 +1,5 @@
-/* import/obj/obj_mesh.c: corners become meshes: smoothing groups get normals, equal corners become one vertex, and each
- * part becomes one shape. */
+/* import/obj/obj_mesh.c: corners become meshes: smoothing groups get normals, equal corners
+ * become one vertex, and each part becomes one shape. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,9 @@ static bool stopped(vlObj *obj, size_t done) {
   return done % 65536 == 0 && vl_scene_stopped(obj->scene, 1);
 }
 
-/* ---- normals ----------------------------------------------------------------------------------------------------- */
+/* ---- normals
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static const float *position(const vlObj *obj, uint32_t v) {
   return obj->positions.items + 3 * (size_t)(v - 1);
@@ -22,12 +24,14 @@ static const float *position(const vlObj *obj, uint32_t v) {
 
 /* Normal of a face, not normalised: its length is twice the area. */
 static void face_normal(const vlObj *obj, const vlObjCorner *c, double n[3]) {
-  const float *a = position(obj, c[0].v), *b = position(obj, c[1].v), *d = position(obj, c[2].v);
+  const float *a = position(obj, c[0].v), *b = position(obj, c[1].v),
+              *d = position(obj, c[2].v);
   vl_triangle_normal(a, b, d, n);
 }
 
 static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
-  const float *a = position(obj, c[i].v), *b = position(obj, c[(i + 1) % 3].v), *d = position(obj, c[(i + 2) % 3].v);
+  const float *a = position(obj, c[i].v), *b = position(obj, c[(i + 1) % 3].v),
+              *d = position(obj, c[(i + 2) % 3].v);
   double ee = 0, ff = 0, ef = 0;
   for (int k = 0; k < 3; k++) {
     double e = (double)b[k] - a[k], f = (double)d[k] - a[k];
@@ -40,9 +44,12 @@ static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
 }
 
 static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
-  if (obj->normals.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many normals");
-  if (!VL_RESERVE(obj->context, &obj->normals, 3)) return vl_obj_fail_memory(obj);
-  for (int i = 0; i < 3; i++) obj->normals.items[obj->normals.count++] = (float)n[i];
+  if (obj->normals.count / 3 >= 0x7ffffff0u)
+    return vl_obj_fail(obj, "too many normals");
+  if (!VL_RESERVE(obj->context, &obj->normals, 3))
+    return vl_obj_fail_memory(obj);
+  for (int i = 0; i < 3; i++)
+    obj->normals.items[obj->normals.count++] = (float)n[i];
   *number = (uint32_t)(obj->normals.count / 3);
   return true;
 }
@@ -50,7 +57,8 @@ static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
 static void unit(double n[3]) {
   double l = vl_norm3(n);
   if (l > 0 && isfinite(l)) {
-    for (int i = 0; i < 3; i++) n[i] /= l;
+    for (int i = 0; i < 3; i++)
+      n[i] /= l;
   } else {
     n[0] = n[1] = 0;
     n[2] = 1;
@@ -59,7 +67,8 @@ static void unit(double n[3]) {
 
 static size_t table_size(size_t items) {
   size_t size = 16;
-  while (size < 2 * items) size *= 2;
+  while (size < 2 * items)
+    size *= 2;
   return size;
 }
 
@@ -67,27 +76,33 @@ typedef struct Smooth {
   uint32_t v, group, normal;
 } Smooth;
 
-/* Gives normals to corners without one. In a smoothing group it is the sum of the normals of the group's faces at the
- * vertex, weighted by their angles. Otherwise, where other faces of the part have normals, it is the face normal. */
+/* Gives normals to corners without one. In a smoothing group it is the sum of the normals of
+ * the group's faces at the vertex, weighted by their angles. Otherwise, where other faces of
+ * the part have normals, it is the face normal. */
 static bool make_normals(vlObj *obj) {
   size_t triangles = obj->triangle_part.count, wanted = 0;
   for (size_t t = 0; t < triangles; t++)
-    for (size_t k = 0; k < 3; k++) wanted += obj->triangle_smooth.items[t] && !obj->corners.items[3 * t + k].vn;
+    for (size_t k = 0; k < 3; k++)
+      wanted += obj->triangle_smooth.items[t] && !obj->corners.items[3 * t + k].vn;
   size_t size = table_size(wanted), first = obj->normals.count;
   Smooth *table = vl_alloc_zero(obj->context, size, sizeof *table);
-  if (!table) return vl_obj_fail_memory(obj);
+  if (!table)
+    return vl_obj_fail_memory(obj);
   bool fine = true;
   for (size_t t = 0; fine && t < triangles; t++) {
     vlObjCorner *c = obj->corners.items + 3 * t;
     uint32_t group = obj->triangle_smooth.items[t], flat = 0;
     double n[3];
     fine = !stopped(obj, t);
-    if (!fine || (c[0].vn && c[1].vn && c[2].vn)) continue;
-    if (!group && !obj->parts.items[obj->triangle_part.items[t]].normals) continue;
+    if (!fine || (c[0].vn && c[1].vn && c[2].vn))
+      continue;
+    if (!group && !obj->parts.items[obj->triangle_part.items[t]].normals)
+      continue;
     face_normal(obj, c, n);
     unit(n);
     for (int k = 0; fine && k < 3; k++) {
-      if (c[k].vn) continue;
+      if (c[k].vn)
+        continue;
       if (!group) {
         fine = flat || push_normal(obj, n, &flat);
         c[k].vn = flat;
@@ -101,30 +116,36 @@ static bool make_normals(vlObj *obj) {
         table[slot].v = c[k].v;
         table[slot].group = group;
         fine = push_normal(obj, zero, &table[slot].normal);
-        if (!fine) break;
+        if (!fine)
+          break;
       }
       c[k].vn = table[slot].normal;
       double weight = angle_at(obj, c, k);
       float *sum = obj->normals.items + 3 * (size_t)(c[k].vn - 1);
-      for (int i = 0; i < 3; i++) sum[i] += (float)(weight * n[i]);
+      for (int i = 0; i < 3; i++)
+        sum[i] += (float)(weight * n[i]);
     }
   }
   vl_free(obj->context, table);
   for (size_t i = first; fine && i < obj->normals.count; i += 3) {
     double n[3] = {obj->normals.items[i], obj->normals.items[i + 1], obj->normals.items[i + 2]};
     unit(n);
-    for (size_t k = 0; k < 3; k++) obj->normals.items[i + k] = (float)n[k];
+    for (size_t k = 0; k < 3; k++)
+      obj->normals.items[i + k] = (float)n[k];
   }
   return fine;
 }
 
-/* ---- parts ------------------------------------------------------------------------------------------------------- */
+/* ---- parts
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 /* Triangle numbers sorted by part. */
 static bool sort_by_part(vlObj *obj, uint32_t **order) {
   size_t triangles = obj->triangle_part.count;
   *order = vl_alloc_array(obj->context, triangles + 1, sizeof **order);
-  if (!*order) return vl_obj_fail_memory(obj);
+  if (!*order)
+    return vl_obj_fail_memory(obj);
   uint32_t first = 0;
   for (size_t i = 0; i < obj->parts.count; i++) {
     obj->parts.items[i].first = first;
@@ -139,8 +160,8 @@ static bool sort_by_part(vlObj *obj, uint32_t **order) {
 }
 
 /* indices: 3 per triangle. kept: the corners that remain as vertices. Both are new blocks. */
-static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint32_t **indices, vlObjCorner **kept,
-                 uint32_t *vertices) {
+static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint32_t **indices,
+                 vlObjCorner **kept, uint32_t *vertices) {
   size_t count = 3 * (size_t)part->triangles, size = table_size(count), n = 0;
   *indices = vl_alloc_array(obj->context, count, sizeof **indices);
   *kept = vl_alloc_array(obj->context, count, sizeof **kept);
@@ -160,7 +181,8 @@ static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint3
         break;
       }
       const vlObjCorner *k = &(*kept)[table[slot] - 1];
-      if (k->v == c.v && k->vt == c.vt && k->vn == c.vn) break;
+      if (k->v == c.v && k->vt == c.vt && k->vn == c.vn)
+        break;
     }
     (*indices)[i] = table[slot] - 1;
     fine = !stopped(obj, i);
@@ -170,9 +192,11 @@ static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint3
   return fine;
 }
 
-static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, const vlLabel *label) {
+static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order,
+                     const vlLabel *label) {
   vlObjMaterial *m = &obj->materials.items[part->material];
-  if (!vl_obj_make_material(obj, m)) return false;
+  if (!vl_obj_make_material(obj, m))
+    return false;
   uint32_t *indices = NULL, n = 0;
   vlObjCorner *kept = NULL;
   float *arrays[4] = {NULL, NULL, NULL, NULL};
@@ -180,15 +204,18 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, c
   static const size_t sizes[4] = {3, 3, 2, 4};
   bool fine = weld(obj, part, order, &indices, &kept, &n);
   for (int k = 0; fine && k < 4; k++) {
-    if (!wanted[k]) continue;
+    if (!wanted[k])
+      continue;
     arrays[k] = vl_alloc_zero(obj->context, n, sizes[k] * sizeof(float));
     fine = arrays[k] || vl_obj_fail_memory(obj);
   }
   for (size_t i = 0; fine && i < n; i++) {
     vlObjCorner c = kept[i];
     memcpy(arrays[0] + 3 * i, obj->positions.items + 3 * (size_t)(c.v - 1), 3 * sizeof(float));
-    if (arrays[1]) memcpy(arrays[1] + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1), 3 * sizeof(float));
-    if (arrays[2] && c.vt) memcpy(arrays[2] + 2 * i, obj->uvs.items + 2 * (size_t)(c.vt - 1), 2 * sizeof(float));
+    if (arrays[1])
+      memcpy(arrays[1] + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1), 3 * sizeof(float));
+    if (arrays[2] && c.vt)
+      memcpy(arrays[2] + 2 * i, obj->uvs.items + 2 * (size_t)(c.vt - 1), 2 * sizeof(float));
     for (size_t k = 0; arrays[3] && k < 4; k++) {
       size_t at = 3 * (size_t)(c.v - 1) + k;
       arrays[3][4 * i + k] = k < 3 && at < obj->colors.count ? obj->colors.items[at] : 1.0f;
@@ -196,7 +223,8 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, c
   }
   vl_free(obj->context, kept);
   if (!fine) {
-    for (int k = 0; k < 4; k++) vl_free(obj->context, arrays[k]);
+    for (int k = 0; k < 4; k++)
+      vl_free(obj->context, arrays[k]);
     vl_free(obj->context, indices);
     return false;
   }
@@ -213,7 +241,8 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, c
   def.uvs = arrays[2];
   def.colors = arrays[3];
   def.indices = indices;
-  if (obj->permissive) vl_repair_mesh(obj->context, &obj->repairs, &def); /* out of memory: the scene checks it */
+  if (obj->permissive)
+    vl_repair_mesh(obj->context, &obj->repairs, &def); /* out of memory: the scene checks it */
   return vl_scene_adopt_shape(obj->scene, &def).index != 0;
 }
 
@@ -223,7 +252,8 @@ bool vl_obj_add_shapes(vlObj *obj) {
   vlLabel label;
   bool fine = make_normals(obj) && sort_by_part(obj, &order);
   for (size_t i = 0; fine && i < obj->parts.count; i++)
-    fine = vl_obj_label(obj, &names, i, &label) && add_part(obj, &obj->parts.items[i], order, &label);
+    fine = vl_obj_label(obj, &names, i, &label) &&
+           add_part(obj, &obj->parts.items[i], order, &label);
   vl_free(obj->context, names.slots);
   vl_free(obj->context, order);
   return fine;

@@ -1,6 +1,6 @@
-/* import/obj/obj_polygon.c: triangulation of polygons. Four corners are split along the diagonal that lies inside.
- * Larger polygons are cut by ear clipping (Meisters 1975) in the coordinate plane nearest to the polygon's. Very large
- * ones become fans. */
+/* import/obj/obj_polygon.c: triangulation of polygons. Four corners are split along the
+ * diagonal that lies inside. Larger polygons are cut by ear clipping (Meisters 1975) in the
+ * coordinate plane nearest to the polygon's. Very large ones become fans. */
 #include <math.h>
 
 #include "import/obj/obj.h"
@@ -36,7 +36,8 @@ static Plane find_plane(const vlObj *obj) {
     }
   }
   int k = fabs(n[0]) > fabs(n[1]) ? 0 : 1;
-  if (fabs(n[2]) > fabs(n[k])) k = 2;
+  if (fabs(n[2]) > fabs(n[k]))
+    k = 2;
   p.x = (k + 1) % 3;
   p.y = (k + 2) % 3;
   p.sign = n[k] < 0 ? -1 : 1;
@@ -45,25 +46,30 @@ static Plane find_plane(const vlObj *obj) {
 
 static bool is_ear(const Plane *p, const uint32_t *left, size_t n, size_t i) {
   uint32_t a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
-  if (!(turn(p, a, b, c) > 0)) return false;
+  if (!(turn(p, a, b, c) > 0))
+    return false;
   for (size_t k = 0; k < n; k++) {
     uint32_t q = left[k];
-    if (q == a || q == b || q == c) continue;
-    if (turn(p, a, b, q) >= 0 && turn(p, b, c, q) >= 0 && turn(p, c, a, q) >= 0) return false;
+    if (q == a || q == b || q == c)
+      continue;
+    if (turn(p, a, b, q) >= 0 && turn(p, b, c, q) >= 0 && turn(p, c, a, q) >= 0)
+      return false;
   }
   return true;
 }
 
 static void put(vlObj *obj, uint32_t a, uint32_t b, uint32_t c) {
   const uint32_t three[3] = {a, b, c};
-  for (int i = 0; i < 3; i++) obj->ears.items[obj->ears.count++] = three[i];
+  for (int i = 0; i < 3; i++)
+    obj->ears.items[obj->ears.count++] = three[i];
 }
 
 bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
   size_t n = obj->polygon.count;
   *triangles = (uint32_t)(n - 2);
   obj->ears.count = 0;
-  if (!VL_RESERVE(obj->context, &obj->ears, 3 * n)) return vl_obj_fail_memory(obj);
+  if (!VL_RESERVE(obj->context, &obj->ears, 3 * n))
+    return vl_obj_fail_memory(obj);
   if (n == 3) {
     put(obj, 0, 1, 2);
     return true;
@@ -84,17 +90,22 @@ bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
   uint32_t left[MOST_EARS];
   size_t count = n <= MOST_EARS ? n : 0, stuck = 0, i = 0;
   if (!count) {
-    for (uint32_t k = 2; k < n; k++) put(obj, 0, k - 1, k);
+    for (uint32_t k = 2; k < n; k++)
+      put(obj, 0, k - 1, k);
     return true;
   }
-  for (uint32_t k = 0; k < count; k++) left[k] = k;
+  for (uint32_t k = 0; k < count; k++)
+    left[k] = k;
   while (count > 3) {
-    if (is_ear(&p, left, count, i) || stuck >= count) { /* stuck: the polygon crosses itself or has no area */
+    if (is_ear(&p, left, count, i) ||
+        stuck >= count) { /* stuck: the polygon crosses itself or has no area */
       put(obj, left[(i + count - 1) % count], left[i], left[(i + 1) % count]);
-      for (size_t k = i; k + 1 < count; k++) left[k] = left[k + 1];
+      for (size_t k = i; k + 1 < count; k++)
+        left[k] = left[k + 1];
       count--;
       stuck = 0;
-      if (i >= count) i = 0;
+      if (i >= count)
+        i = 0;
     } else {
       i = (i + 1) % count;
       stuck++;

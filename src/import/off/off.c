@@ -1,5 +1,5 @@
-/* import/off/off.c: OFF files (text): vertices, with normals (N) and colours (C), and polygons, with colours. Format:
- * the manual of Geomview, "OFF Files". Comments begin with #. */
+/* import/off/off.c: OFF files (text): vertices, with normals (N) and colours (C), and polygons,
+ * with colours. Format: the manual of Geomview, "OFF Files". Comments begin with #. */
 #include <math.h>
 #include <string.h>
 
@@ -25,8 +25,8 @@ typedef struct Off {
 
 static bool fail(Off *s, const char *what, const char *word) {
   vlSource source = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
-  vl_scene_fail(s->scene, VL_ERROR_SCENE, source, "OFF: %s%s%s%s", what, word ? " \"" : "", word ? word : "",
-                word ? "\"" : "");
+  vl_scene_fail(s->scene, VL_ERROR_SCENE, source, "OFF: %s%s%s%s", what, word ? " \"" : "",
+                word ? word : "", word ? "\"" : "");
   return false;
 }
 
@@ -35,7 +35,9 @@ static bool fail_memory(Off *s) {
   return false;
 }
 
-/* ---- words ------------------------------------------------------------------------------------------------------- */
+/* ---- words
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
@@ -45,7 +47,8 @@ static bool is_blank(char c) {
 static bool skip_blanks(Off *s, bool lines) {
   while (s->at < s->end) {
     if (*s->at == '#')
-      while (s->at < s->end && *s->at != '\n') s->at++;
+      while (s->at < s->end && *s->at != '\n')
+        s->at++;
     else if (*s->at == '\n' ? !lines : !is_blank(*s->at))
       return *s->at != '\n';
     else
@@ -55,19 +58,25 @@ static bool skip_blanks(Off *s, bool lines) {
 }
 
 static bool number(Off *s, double *value) {
-  if (!skip_blanks(s, true)) return fail(s, "the file ends too early", NULL);
+  if (!skip_blanks(s, true))
+    return fail(s, "the file ends too early", NULL);
   const char *start = s->at, *p = start;
-  while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#') s->at++;
+  while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#')
+    s->at++;
   if (!vl_number_scan(&p, s->end, value) || p != s->at || !isfinite((float)*value))
-    return fail(s, "expected a number, found", vl_short_text_of(start, (size_t)(s->at - start)).text);
-  for (p = start; p < s->at; p++) s->integers = s->integers && *p != '.' && *p != 'e' && *p != 'E';
+    return fail(s, "expected a number, found",
+                vl_short_text_of(start, (size_t)(s->at - start)).text);
+  for (p = start; p < s->at; p++)
+    s->integers = s->integers && *p != '.' && *p != 'e' && *p != 'E';
   return true;
 }
 
 static bool count(Off *s, uint64_t bytes, uint32_t *n) {
   double value = 0;
-  if (!number(s, &value)) return false;
-  if (!(value >= 0 && value < 0x2aaaaaaa) || value != floor(value)) return fail(s, "a count makes no sense", NULL);
+  if (!number(s, &value))
+    return false;
+  if (!(value >= 0 && value < 0x2aaaaaaa) || value != floor(value))
+    return fail(s, "a count makes no sense", NULL);
   if (value * (double)bytes > (double)(s->end - s->at) + 1)
     return fail(s, "the file is too short for its counts", NULL);
   *n = (uint32_t)value;
@@ -89,19 +98,25 @@ static bool rest_of_line(Off *s, double values[8], int *n) {
   s->integers = true;
   while (skip_blanks(s, false)) {
     double value;
-    if (!number(s, &value)) return false;
-    if (*n < 8) values[(*n)++] = value;
+    if (!number(s, &value))
+      return false;
+    if (*n < 8)
+      values[(*n)++] = value;
   }
   return true;
 }
 
-/* ---- the parts --------------------------------------------------------------------------------------------------- */
+/* ---- the parts
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static bool read_header(Off *s) {
   s->line = 1;
-  if (!skip_blanks(s, true)) return fail(s, "the file is empty", NULL);
+  if (!skip_blanks(s, true))
+    return fail(s, "the file is empty", NULL);
   const char *start = s->at;
-  while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#') s->at++;
+  while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#')
+    s->at++;
   size_t length = (size_t)(s->at - start);
   vlShortText word = vl_short_text_of(start, length);
   if (length >= 2 && memcmp(start, "ST", 2) == 0) {
@@ -132,31 +147,41 @@ static bool read_vertices(Off *s) {
   vlPlainMesh *m = &s->mesh;
   vlContext *context = s->scene->context;
   m->positions = vl_alloc_array(context, m->vertices + 1u, 3 * sizeof(float));
-  if (s->normals) m->normals = vl_alloc_array(context, m->vertices + 1u, 3 * sizeof(float));
-  if (s->uvs) m->uvs = vl_alloc_array(context, m->vertices + 1u, 2 * sizeof(float));
-  if (s->colors) m->colors = vl_alloc_array(context, m->vertices + 1u, 4 * sizeof(float));
-  if (!m->positions || (s->normals && !m->normals) || (s->uvs && !m->uvs) || (s->colors && !m->colors))
+  if (s->normals)
+    m->normals = vl_alloc_array(context, m->vertices + 1u, 3 * sizeof(float));
+  if (s->uvs)
+    m->uvs = vl_alloc_array(context, m->vertices + 1u, 2 * sizeof(float));
+  if (s->colors)
+    m->colors = vl_alloc_array(context, m->vertices + 1u, 4 * sizeof(float));
+  if (!m->positions || (s->normals && !m->normals) || (s->uvs && !m->uvs) ||
+      (s->colors && !m->colors))
     return fail_memory(s);
   for (size_t i = 0; i < m->vertices; i++) {
     double v[3], rest[8] = {0}, color[4] = {0, 0, 0, 0};
     int n;
     for (int k = 0; k < 3; k++) {
-      if (!number(s, &v[k])) return false;
+      if (!number(s, &v[k]))
+        return false;
       m->positions[3 * i + (size_t)k] = (float)v[k];
     }
     for (int k = 0; s->normals && k < 3; k++) {
-      if (!number(s, &v[k])) return false;
+      if (!number(s, &v[k]))
+        return false;
       m->normals[3 * i + (size_t)k] = (float)v[k];
     }
-    if (!rest_of_line(s, rest, &n)) return false;
+    if (!rest_of_line(s, rest, &n))
+      return false;
     if (s->colors) {
-      if (n < 3) return fail(s, "a vertex has no colour", NULL);
+      if (n < 3)
+        return fail(s, "a vertex has no colour", NULL);
       bool alpha = n == 4 || n == 6;
-      for (int k = 0; k < 4; k++) color[k] = k < 3 ? rest[k] : alpha ? rest[3] : s->integers ? 255 : 1;
+      for (int k = 0; k < 4; k++)
+        color[k] = k < 3 ? rest[k] : alpha ? rest[3] : s->integers ? 255 : 1;
       to_linear(color, s->integers, m->colors + 4 * i);
     }
     for (int k = 0; s->uvs && k < 2; k++) {
-      if (n < 2) return fail(s, "a vertex has no texture coordinates", NULL);
+      if (n < 2)
+        return fail(s, "a vertex has no texture coordinates", NULL);
       m->uvs[2 * i + (size_t)k] = (float)rest[n - 2 + k];
     }
   }
@@ -164,7 +189,8 @@ static bool read_vertices(Off *s) {
 }
 
 static bool add_triangle(Off *s, uint32_t a, uint32_t b, uint32_t c, const float color[4]) {
-  if (!VL_RESERVE(s->scene->context, &s->indices, 3) || !VL_RESERVE(s->scene->context, &s->face_colors, 3))
+  if (!VL_RESERVE(s->scene->context, &s->indices, 3) ||
+      !VL_RESERVE(s->scene->context, &s->face_colors, 3))
     return fail_memory(s);
   uint32_t *t = s->indices.items + s->indices.count;
   t[0] = a;
@@ -181,21 +207,28 @@ static bool read_face(Off *s, bool *colored) {
   uint32_t n = 0;
   double rest[8] = {0}, value = 0;
   int more;
-  if (!count(s, 2, &n)) return false;
-  if (!VL_RESERVE(s->scene->context, &s->corners, (size_t)n + 1)) return fail_memory(s);
+  if (!count(s, 2, &n))
+    return false;
+  if (!VL_RESERVE(s->scene->context, &s->corners, (size_t)n + 1))
+    return fail_memory(s);
   for (uint32_t k = 0; k < n; k++) {
-    if (!number(s, &value)) return false;
+    if (!number(s, &value))
+      return false;
     if (!(value >= 0 && value < (double)s->mesh.vertices))
       return fail(s, "a face names a vertex that is not there", NULL);
     s->corners.items[k] = (uint32_t)value;
   }
-  if (!rest_of_line(s, rest, &more)) return false;
+  if (!rest_of_line(s, rest, &more))
+    return false;
   double color[4] = {rest[0], rest[1], rest[2], 1};
   float linear[4] = {0.6f, 0.6f, 0.6f, 1};
-  if (more >= 3) to_linear(color, s->integers, linear);
+  if (more >= 3)
+    to_linear(color, s->integers, linear);
   *colored = *colored || more >= 3;
   for (uint32_t k = 2; k < n; k++)
-    if (!add_triangle(s, s->corners.items[0], s->corners.items[k - 1], s->corners.items[k], linear)) return false;
+    if (!add_triangle(s, s->corners.items[0], s->corners.items[k - 1], s->corners.items[k],
+                      linear))
+      return false;
   return true;
 }
 
@@ -204,20 +237,27 @@ static bool read(Off *s) {
   bool colored = false;
   double rest[8];
   int n;
-  if (!read_header(s) || !count(s, 6, &s->mesh.vertices) || !count(s, 2, &faces)) return false;
-  if (!rest_of_line(s, rest, &n) || !read_vertices(s)) return false;
+  if (!read_header(s) || !count(s, 6, &s->mesh.vertices) || !count(s, 2, &faces))
+    return false;
+  if (!rest_of_line(s, rest, &n) || !read_vertices(s))
+    return false;
   for (uint32_t i = 0; i < faces; i++)
-    if (!read_face(s, &colored)) return false;
-  if (s->indices.count / 3 > 0x2aaaaaaa) return fail(s, "too many faces", NULL);
+    if (!read_face(s, &colored))
+      return false;
+  if (s->indices.count / 3 > 0x2aaaaaaa)
+    return fail(s, "too many faces", NULL);
   s->mesh.triangles = (uint32_t)(s->indices.count / 3);
   s->mesh.indices = s->indices.items;
   s->indices.items = NULL;
-  if (colored) s->mesh.face_colors = s->face_colors.items;
-  if (colored) s->face_colors.items = NULL;
+  if (colored)
+    s->mesh.face_colors = s->face_colors.items;
+  if (colored)
+    s->face_colors.items = NULL;
   return true;
 }
 
-vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
+vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load,
+                       vlError *error) {
   Off s = {.scene = scene, .path = path};
   vlContext *context = scene->context;
   char *data = NULL;
@@ -225,7 +265,8 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load, 
   vlError inside = {0};
   vl_import_plain_settings(scene);
   vlResult r = vl_file_read_given(context, path, true, &data, &size, &inside);
-  if (r != VL_OK) vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
+  if (r != VL_OK)
+    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
   s.at = data;
   s.end = data + size;
   bool ok = r == VL_OK && read(&s);
@@ -233,7 +274,8 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load, 
   VL_ARRAY_FREE(context, &s.indices);
   VL_ARRAY_FREE(context, &s.corners);
   VL_ARRAY_FREE(context, &s.face_colors);
-  if (ok) return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
+  if (ok)
+    return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
   VL_FREE(context, s.mesh.positions, s.mesh.normals, s.mesh.uvs, s.mesh.colors);
   return vl_scene_result(scene, error);
 }

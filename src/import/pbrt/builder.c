@@ -1,5 +1,5 @@
-/* import/pbrt/builder.c: executes the statements of a pbrt file: where each statement may stand and which function
- * handles it. Also imports a whole file. */
+/* import/pbrt/builder.c: executes the statements of a pbrt file: where each statement may stand
+ * and which function handles it. Also imports a whole file. */
 #include "import/pbrt/builder.h"
 #include "base/error.h"
 #include "import/pbrt/upgrade/detect.h"
@@ -7,7 +7,9 @@
 #include "base/text.h"
 #include "import/import.h"
 
-/* The part of a file where a directive may stand: options precede WorldBegin, the world follows it. */
+/* The part of a file where a directive may stand: options precede WorldBegin, the world follows
+ * it.
+ */
 typedef enum Part { ANYWHERE, OPTIONS, WORLD } Part;
 
 typedef struct Rule {
@@ -17,30 +19,54 @@ typedef struct Rule {
 
 static Rule rule_of(vlDirective d) {
   switch (d) {
-    case VL_DIR_WORLD_BEGIN: return (Rule){"WorldBegin", OPTIONS};
-    case VL_DIR_TRANSFORM_TIMES: return (Rule){"TransformTimes", OPTIONS};
-    case VL_DIR_FILM: return (Rule){"Film", OPTIONS};
-    case VL_DIR_SAMPLER: return (Rule){"Sampler", OPTIONS};
-    case VL_DIR_INTEGRATOR: return (Rule){"Integrator", OPTIONS};
-    case VL_DIR_PIXEL_FILTER: return (Rule){"PixelFilter", OPTIONS};
-    case VL_DIR_ACCELERATOR: return (Rule){"Accelerator", OPTIONS};
-    case VL_DIR_CAMERA: return (Rule){"Camera", OPTIONS};
-    case VL_DIR_ATTRIBUTE_BEGIN: return (Rule){"AttributeBegin", WORLD};
-    case VL_DIR_ATTRIBUTE_END: return (Rule){"AttributeEnd", WORLD};
-    case VL_DIR_TRANSFORM_BEGIN: return (Rule){"TransformBegin", WORLD};
-    case VL_DIR_TRANSFORM_END: return (Rule){"TransformEnd", WORLD};
-    case VL_DIR_REVERSE_ORIENTATION: return (Rule){"ReverseOrientation", WORLD};
-    case VL_DIR_OBJECT_END: return (Rule){"ObjectEnd", WORLD};
-    case VL_DIR_IMPORT_BEGIN: return (Rule){"Import", WORLD};
-    case VL_DIR_NAMED_MATERIAL: return (Rule){"NamedMaterial", WORLD};
-    case VL_DIR_OBJECT_BEGIN: return (Rule){"ObjectBegin", WORLD};
-    case VL_DIR_OBJECT_INSTANCE: return (Rule){"ObjectInstance", WORLD};
-    case VL_DIR_MATERIAL: return (Rule){"Material", WORLD};
-    case VL_DIR_MAKE_NAMED_MATERIAL: return (Rule){"MakeNamedMaterial", WORLD};
-    case VL_DIR_AREA_LIGHT_SOURCE: return (Rule){"AreaLightSource", WORLD};
-    case VL_DIR_LIGHT_SOURCE: return (Rule){"LightSource", WORLD};
-    case VL_DIR_SHAPE: return (Rule){"Shape", WORLD};
-    case VL_DIR_TEXTURE: return (Rule){"Texture", WORLD};
+    case VL_DIR_WORLD_BEGIN:
+      return (Rule){"WorldBegin", OPTIONS};
+    case VL_DIR_TRANSFORM_TIMES:
+      return (Rule){"TransformTimes", OPTIONS};
+    case VL_DIR_FILM:
+      return (Rule){"Film", OPTIONS};
+    case VL_DIR_SAMPLER:
+      return (Rule){"Sampler", OPTIONS};
+    case VL_DIR_INTEGRATOR:
+      return (Rule){"Integrator", OPTIONS};
+    case VL_DIR_PIXEL_FILTER:
+      return (Rule){"PixelFilter", OPTIONS};
+    case VL_DIR_ACCELERATOR:
+      return (Rule){"Accelerator", OPTIONS};
+    case VL_DIR_CAMERA:
+      return (Rule){"Camera", OPTIONS};
+    case VL_DIR_ATTRIBUTE_BEGIN:
+      return (Rule){"AttributeBegin", WORLD};
+    case VL_DIR_ATTRIBUTE_END:
+      return (Rule){"AttributeEnd", WORLD};
+    case VL_DIR_TRANSFORM_BEGIN:
+      return (Rule){"TransformBegin", WORLD};
+    case VL_DIR_TRANSFORM_END:
+      return (Rule){"TransformEnd", WORLD};
+    case VL_DIR_REVERSE_ORIENTATION:
+      return (Rule){"ReverseOrientation", WORLD};
+    case VL_DIR_OBJECT_END:
+      return (Rule){"ObjectEnd", WORLD};
+    case VL_DIR_IMPORT_BEGIN:
+      return (Rule){"Import", WORLD};
+    case VL_DIR_NAMED_MATERIAL:
+      return (Rule){"NamedMaterial", WORLD};
+    case VL_DIR_OBJECT_BEGIN:
+      return (Rule){"ObjectBegin", WORLD};
+    case VL_DIR_OBJECT_INSTANCE:
+      return (Rule){"ObjectInstance", WORLD};
+    case VL_DIR_MATERIAL:
+      return (Rule){"Material", WORLD};
+    case VL_DIR_MAKE_NAMED_MATERIAL:
+      return (Rule){"MakeNamedMaterial", WORLD};
+    case VL_DIR_AREA_LIGHT_SOURCE:
+      return (Rule){"AreaLightSource", WORLD};
+    case VL_DIR_LIGHT_SOURCE:
+      return (Rule){"LightSource", WORLD};
+    case VL_DIR_SHAPE:
+      return (Rule){"Shape", WORLD};
+    case VL_DIR_TEXTURE:
+      return (Rule){"Texture", WORLD};
     case VL_DIR_IDENTITY:
     case VL_DIR_ACTIVE_ALL:
     case VL_DIR_ACTIVE_START:
@@ -58,7 +84,8 @@ static Rule rule_of(vlDirective d) {
     case VL_DIR_MEDIUM_INTERFACE:
     case VL_DIR_OPTION:
     case VL_DIR_ATTRIBUTE:
-    case VL_DIR_MAKE_NAMED_MEDIUM: break;
+    case VL_DIR_MAKE_NAMED_MEDIUM:
+      break;
   }
   return (Rule){NULL, ANYWHERE};
 }
@@ -66,7 +93,8 @@ static Rule rule_of(vlDirective d) {
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   if (choice->given)
-    vl_import_remark(import, s->source, "%s a second time: this one counts", rule_of(s->directive).name);
+    vl_import_remark(import, s->source, "%s a second time: this one counts",
+                     rule_of(s->directive).name);
   vl_param_list_free(import->context, &choice->params);
   choice->given = true;
   choice->source = s->source;
@@ -78,17 +106,22 @@ static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
 
 static bool camera(vlImport *import, const vlStatement *s) {
   vlMat4 world_from_camera[2];
-  if (!choose(import, s, &import->camera)) return false;
+  if (!choose(import, s, &import->camera))
+    return false;
   memcpy(import->camera_from_world, import->state.ctm, sizeof import->state.ctm);
   if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
       !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Camera: the current transform is singular");
-  for (size_t i = 0; i < import->medium_links.count;) /* a later camera replaces the media of the earlier one */
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "Camera: the current transform is singular");
+  for (size_t i = 0;
+       i <
+       import->medium_links.count;) /* a later camera replaces the media of the earlier one */
     if (import->medium_links.items[i].target == 'c')
       import->medium_links.items[i] = import->medium_links.items[--import->medium_links.count];
     else
       i++;
-  if (!vl_import_note_media(import, 'c', 0, s->source)) return false;
+  if (!vl_import_note_media(import, 'c', 0, s->source))
+    return false;
   return vl_import_name_system(import, "camera", world_from_camera);
 }
 
@@ -99,10 +132,12 @@ static bool medium_interface(vlImport *import, const vlStatement *s) {
 }
 
 static bool color_space(vlImport *import, const vlStatement *s) {
-  if (vl_import_color_space(s->names[0], &import->state.space)) return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                        "unknown colour space \"%s\" (known: srgb, dci-p3, rec2020, aces2065-1)",
-                        vl_short_text(s->names[0]).text);
+  if (vl_import_color_space(s->names[0], &import->state.space))
+    return true;
+  return vl_import_fail(
+      import, VL_ERROR_SCENE, s->source,
+      "unknown colour space \"%s\" (known: srgb, dci-p3, rec2020, aces2065-1)",
+      vl_short_text(s->names[0]).text);
 }
 
 static bool world_begin(vlImport *import) {
@@ -114,23 +149,29 @@ static bool world_begin(vlImport *import) {
 }
 
 static void note_space(vlImport *import, const vlStatement *s) {
-  for (size_t i = 0; i < s->params->list.count; i++) s->params->list.items[i]->space = import->state.space;
+  for (size_t i = 0; i < s->params->list.count; i++)
+    s->params->list.items[i]->space = import->state.space;
 }
 
-/* ---- statements ------------------------------------------------------------------------------------------------- */
+/* ---- statements
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static bool in_right_part(vlImport *import, const vlStatement *s) {
   const Rule rule = rule_of(s->directive);
   switch (rule.part) {
-    case ANYWHERE: return true;
+    case ANYWHERE:
+      return true;
     case OPTIONS:
-      if (!import->in_world) return true;
+      if (!import->in_world)
+        return true;
       if (s->directive == VL_DIR_WORLD_BEGIN)
         return vl_import_fail(import, VL_ERROR_SCENE, s->source, "WorldBegin a second time");
-      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s must come before WorldBegin", rule.name);
+      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s must come before WorldBegin",
+                            rule.name);
     case WORLD:
-      return import->in_world ||
-             vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s must come after WorldBegin", rule.name);
+      return import->in_world || vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                                                "%s must come after WorldBegin", rule.name);
   }
   return true;
 }
@@ -140,10 +181,13 @@ static bool obey(vlImport *import, const vlStatement *s) {
   switch (s->directive) {
     case VL_DIR_ATTRIBUTE_BEGIN:
     case VL_DIR_TRANSFORM_BEGIN:
-      return vl_import_push(import, 'a', s->source); /* pbrt-v4: both save the whole graphics state */
+      return vl_import_push(import, 'a',
+                            s->source); /* pbrt-v4: both save the whole graphics state */
     case VL_DIR_ATTRIBUTE_END:
-    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', rule_of(s->directive).name, s->source);
-    case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->source);
+    case VL_DIR_TRANSFORM_END:
+      return vl_import_pop(import, 'a', rule_of(s->directive).name, s->source);
+    case VL_DIR_IMPORT_BEGIN:
+      return vl_import_push(import, 'i', s->source);
     case VL_DIR_IMPORT_END: {
       const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
       if (top->kind == 'i') {
@@ -153,63 +197,101 @@ static bool obey(vlImport *import, const vlStatement *s) {
       return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
                             top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
     }
-    case VL_DIR_ACTIVE_ALL: import->state.active = 3; return true;
-    case VL_DIR_ACTIVE_START: import->state.active = 1; return true;
-    case VL_DIR_ACTIVE_END: import->state.active = 2; return true;
+    case VL_DIR_ACTIVE_ALL:
+      import->state.active = 3;
+      return true;
+    case VL_DIR_ACTIVE_START:
+      import->state.active = 1;
+      return true;
+    case VL_DIR_ACTIVE_END:
+      import->state.active = 2;
+      return true;
     case VL_DIR_REVERSE_ORIENTATION:
       import->state.reverse_orientation = !import->state.reverse_orientation;
       return true;
-    case VL_DIR_WORLD_BEGIN: return world_begin(import);
-    case VL_DIR_OBJECT_BEGIN: return vl_import_object_begin(import, s);
-    case VL_DIR_OBJECT_END: return vl_import_object_end(import, s);
-    case VL_DIR_OBJECT_INSTANCE: return vl_import_object_instance(import, s);
+    case VL_DIR_WORLD_BEGIN:
+      return world_begin(import);
+    case VL_DIR_OBJECT_BEGIN:
+      return vl_import_object_begin(import, s);
+    case VL_DIR_OBJECT_END:
+      return vl_import_object_end(import, s);
+    case VL_DIR_OBJECT_INSTANCE:
+      return vl_import_object_instance(import, s);
     case VL_DIR_IDENTITY:
     case VL_DIR_TRANSLATE:
     case VL_DIR_SCALE:
     case VL_DIR_ROTATE:
     case VL_DIR_LOOK_AT:
     case VL_DIR_TRANSFORM:
-    case VL_DIR_CONCAT_TRANSFORM: return vl_import_transform(import, s);
-    case VL_DIR_TRANSFORM_TIMES: return vl_import_times(import, s);
-    case VL_DIR_COORDINATE_SYSTEM: return vl_import_name_system(import, s->names[0], import->state.ctm);
-    case VL_DIR_COORD_SYS_TRANSFORM: return vl_import_use_system(import, s);
-    case VL_DIR_COLOR_SPACE: return color_space(import, s);
-    case VL_DIR_NAMED_MATERIAL: return vl_import_named_material(import, s);
-    case VL_DIR_MEDIUM_INTERFACE: return medium_interface(import, s);
-    case VL_DIR_OPTION: return vl_import_option(import, s);
-    case VL_DIR_ATTRIBUTE: return vl_import_attribute(import, s);
-    case VL_DIR_FILM: return choose(import, s, &import->film);
-    case VL_DIR_SAMPLER: return choose(import, s, &import->sampler);
-    case VL_DIR_INTEGRATOR: return choose(import, s, &import->integrator);
-    case VL_DIR_PIXEL_FILTER: return choose(import, s, &import->filter);
-    case VL_DIR_ACCELERATOR: return choose(import, s, &import->accelerator);
-    case VL_DIR_CAMERA: return camera(import, s);
-    case VL_DIR_MAKE_NAMED_MEDIUM: return vl_import_medium(import, s);
-    case VL_DIR_MATERIAL: return vl_import_material(import, s);
-    case VL_DIR_MAKE_NAMED_MATERIAL: return vl_import_make_named_material(import, s);
-    case VL_DIR_AREA_LIGHT_SOURCE: return vl_import_area_light(import, s);
-    case VL_DIR_LIGHT_SOURCE: return vl_import_light(import, s);
-    case VL_DIR_SHAPE: return vl_import_shape(import, s);
-    case VL_DIR_TEXTURE: return vl_import_texture(import, s);
+    case VL_DIR_CONCAT_TRANSFORM:
+      return vl_import_transform(import, s);
+    case VL_DIR_TRANSFORM_TIMES:
+      return vl_import_times(import, s);
+    case VL_DIR_COORDINATE_SYSTEM:
+      return vl_import_name_system(import, s->names[0], import->state.ctm);
+    case VL_DIR_COORD_SYS_TRANSFORM:
+      return vl_import_use_system(import, s);
+    case VL_DIR_COLOR_SPACE:
+      return color_space(import, s);
+    case VL_DIR_NAMED_MATERIAL:
+      return vl_import_named_material(import, s);
+    case VL_DIR_MEDIUM_INTERFACE:
+      return medium_interface(import, s);
+    case VL_DIR_OPTION:
+      return vl_import_option(import, s);
+    case VL_DIR_ATTRIBUTE:
+      return vl_import_attribute(import, s);
+    case VL_DIR_FILM:
+      return choose(import, s, &import->film);
+    case VL_DIR_SAMPLER:
+      return choose(import, s, &import->sampler);
+    case VL_DIR_INTEGRATOR:
+      return choose(import, s, &import->integrator);
+    case VL_DIR_PIXEL_FILTER:
+      return choose(import, s, &import->filter);
+    case VL_DIR_ACCELERATOR:
+      return choose(import, s, &import->accelerator);
+    case VL_DIR_CAMERA:
+      return camera(import, s);
+    case VL_DIR_MAKE_NAMED_MEDIUM:
+      return vl_import_medium(import, s);
+    case VL_DIR_MATERIAL:
+      return vl_import_material(import, s);
+    case VL_DIR_MAKE_NAMED_MATERIAL:
+      return vl_import_make_named_material(import, s);
+    case VL_DIR_AREA_LIGHT_SOURCE:
+      return vl_import_area_light(import, s);
+    case VL_DIR_LIGHT_SOURCE:
+      return vl_import_light(import, s);
+    case VL_DIR_SHAPE:
+      return vl_import_shape(import, s);
+    case VL_DIR_TEXTURE:
+      return vl_import_texture(import, s);
   }
   return true;
 }
 
-/* While diagnosing, an invalid statement is skipped. The name of a medium that it defines stays known, so that later
- * uses are not reported, too. */
+/* While diagnosing, an invalid statement is skipped. The name of a medium that it defines stays
+ * known, so that later uses are not reported, too. */
 static bool statement(void *user, const vlStatement *s) {
   vlImport *import = user;
   bool misplaced = !in_right_part(import, s);
-  if (!misplaced && obey(import, s)) return true;
-  if (misplaced && !import->in_world) { /* a file without WorldBegin: every later statement would be an error, too */
+  if (!misplaced && obey(import, s))
+    return true;
+  if (misplaced && !import->in_world) { /* a file without WorldBegin: every later statement
+                                           would be an error, too */
     import->problems = VL_IMPORT_PROBLEMS;
     return false;
   }
-  if (!vl_import_recover(import)) return false;
+  if (!vl_import_recover(import))
+    return false;
   uint32_t index;
-  if (s->directive != VL_DIR_MAKE_NAMED_MEDIUM || vl_names_find(&import->media, s->names[0], &index)) return true;
+  if (s->directive != VL_DIR_MAKE_NAMED_MEDIUM ||
+      vl_names_find(&import->media, s->names[0], &index))
+    return true;
   const char *name = vl_import_keep(import, s->names[0]);
-  return name && (vl_names_add(import->context, &import->media, name, 0) || vl_import_fail_memory(import));
+  return name && (vl_names_add(import->context, &import->media, name, 0) ||
+                  vl_import_fail_memory(import));
 }
 
 static void parse_error(void *user, vlResult code, vlSource source, const char *message) {
@@ -223,21 +305,27 @@ static bool recover(void *user) {
 /* Permissive: a file beyond the limits is left out. */
 static bool skip_include(void *user, vlSource source) {
   vlImport *import = user;
-  if (!import->permissive) return false;
+  if (!import->permissive)
+    return false;
   if (!import->repairs.includes++)
-    vl_import_warn(import, VL_LOG_WARNING, source, "this file and others beyond the limits of Include are left out");
+    vl_import_warn(import, VL_LOG_WARNING, source,
+                   "this file and others beyond the limits of Include are left out");
   return true;
 }
 
 static bool go_on(void *user, double fraction) {
   vlImport *import = user;
-  return !vl_scene_stopped(import->scene, 0.5 * fraction); /* then the meshes of other files are read */
+  return !vl_scene_stopped(import->scene,
+                           0.5 * fraction); /* then the meshes of other files are read */
 }
 
-/* ---- a whole file ------------------------------------------------------------------------------------------------ */
+/* ---- a whole file
+ * ------------------------------------------------------------------------------------------------
+ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
-  for (size_t i = 0; i < count; i++) vl_param_list_free(context, &items[i].params);
+  for (size_t i = 0; i < count; i++)
+    vl_param_list_free(context, &items[i].params);
 }
 
 static void release(vlImport *import) {
@@ -248,12 +336,17 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->materials);
   vlChoice *choices[] = {&import->camera,     &import->film,   &import->sampler,
                          &import->integrator, &import->filter, &import->accelerator};
-  for (size_t i = 0; i < VL_LENGTH(choices); i++) vl_param_list_free(context, &choices[i]->params);
-  for (int t = 0; t < VL_ATTR_TARGETS; t++) vl_param_list_free(context, &import->attributes[t]);
-  vlNameTable *tables[] = {&import->coordinate_systems, &import->float_textures, &import->spectrum_textures,
-                           &import->named_materials,    &import->objects,        &import->media};
-  for (size_t i = 0; i < VL_LENGTH(tables); i++) vl_free(context, tables[i]->slots);
-  for (size_t i = 0; i < import->strings.count; i++) vl_free(context, import->strings.items[i]);
+  for (size_t i = 0; i < VL_LENGTH(choices); i++)
+    vl_param_list_free(context, &choices[i]->params);
+  for (int t = 0; t < VL_ATTR_TARGETS; t++)
+    vl_param_list_free(context, &import->attributes[t]);
+  vlNameTable *tables[] = {
+      &import->coordinate_systems, &import->float_textures, &import->spectrum_textures,
+      &import->named_materials,    &import->objects,        &import->media};
+  for (size_t i = 0; i < VL_LENGTH(tables); i++)
+    vl_free(context, tables[i]->slots);
+  for (size_t i = 0; i < import->strings.count; i++)
+    vl_free(context, import->strings.items[i]);
   VL_ARRAY_FREE(context, &import->strings);
   VL_ARRAY_FREE(context, &import->stack);
   VL_ARRAY_FREE(context, &import->matrices);
@@ -270,19 +363,24 @@ static void release(vlImport *import) {
 /* A scene of an older pbrt: the error names the command. */
 static bool fail_old(vlImport *import, const char *path) {
   vlOldScene old = vl_old_scene(import->context, path);
-  if (!old.version) return false;
+  if (!old.version)
+    return false;
   vl_error_clear(&import->scene->error);
   vl_import_fail(import, VL_ERROR_SCENE, (vlSource){path, old.line, old.column},
-                 "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 scene of it",
+                 "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a "
+                 "pbrt-v4 scene of it",
                  old.version, old.sign, path);
   return true;
 }
 
-static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const char *const *texts,
-                    size_t text_count, const vlLoadDef *def, vlError *error) {
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+static vlResult run(vlScene *scene, const char *path, const char *data, size_t size,
+                    const char *const *texts, size_t text_count, const vlLoadDef *def,
+                    vlError *error) {
+  if (scene->error.code != VL_OK)
+    return vl_scene_result(scene, error);
   vlImport *import = vl_alloc_zero(scene->context, 1, sizeof *import);
-  if (!import) return vl_fail_memory(error);
+  if (!import)
+    return vl_fail_memory(error);
   import->context = scene->context;
   import->scene = scene;
   import->permissive = def && def->permissive;
@@ -303,28 +401,33 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
                           .texts = texts,
                           .text_count = text_count,
                           .skip = skip_include};
-  bool is_old = !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
+  bool is_old =
+      !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
   bool fine = is_old ? false
               : data ? vl_parse_memory(import->context, data, size, path, &target)
                      : vl_parse_file(import->context, path, &target);
-  if (fine) vl_import_finish(import);
+  if (fine)
+    vl_import_finish(import);
   vl_repairs_report(import->context, &import->repairs, path);
-  if (!data && scene->error.code == VL_ERROR_SCENE) fail_old(import, path);
+  if (!data && scene->error.code == VL_ERROR_SCENE)
+    fail_old(import, path);
   release(import);
   vl_free(scene->context, import);
   return vl_scene_result(scene, error);
 }
 
-vlResult vl_import_pbrt(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+vlResult vl_import_pbrt(vlScene *scene, const char *path, const vlLoadDef *def,
+                        vlError *error) {
   return run(scene, path, NULL, 0, NULL, 0, def, error);
 }
 
-vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
-                               vlError *error) {
+vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name,
+                               const vlLoadDef *def, vlError *error) {
   return run(scene, name, data, size, NULL, 0, def, error);
 }
 
-vlResult vl_import_pbrt_texts(vlScene *scene, const char *path, const char *text, const char *const *texts,
-                              size_t count, const vlLoadDef *def, vlError *error) {
+vlResult vl_import_pbrt_texts(vlScene *scene, const char *path, const char *text,
+                              const char *const *texts, size_t count, const vlLoadDef *def,
+                              vlError *error) {
   return run(scene, path, text, strlen(text), texts, count, def, error);
 }

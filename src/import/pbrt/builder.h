@@ -1,6 +1,7 @@
-/* import/pbrt/builder.h: types and functions shared by the files that turn pbrt statements into a scene. Statements are
- * executed in file order. Camera, film and similar directives take effect at WorldBegin. Textures, materials and the
- * materials of shapes are resolved at the end, since pbrt allows a material to be named before it is defined. */
+/* import/pbrt/builder.h: types and functions shared by the files that turn pbrt statements into
+ * a scene. Statements are executed in file order. Camera, film and similar directives take
+ * effect at WorldBegin. Textures, materials and the materials of shapes are resolved at the
+ * end, since pbrt allows a material to be named before it is defined. */
 #ifndef IMPORT_PBRT_BUILDER_H
 #define IMPORT_PBRT_BUILDER_H
 
@@ -23,17 +24,19 @@ typedef enum vlAttributeTarget {
 } vlAttributeTarget;
 
 typedef struct vlGraphicsState {
-  vlMat4 ctm[2];   /* current transforms at the start and at the end time */
-  uint32_t active; /* bit mask of the transforms that directives change: bit 0 start, bit 1 end */
+  vlMat4 ctm[2]; /* current transforms at the start and at the end time */
+  uint32_t
+      active; /* bit mask of the transforms that directives change: bit 0 start, bit 1 end */
   bool reverse_orientation;
   vlColorSpace space;
-  uint32_t material;         /* 1 + index in import->materials; 0: material_name, or the default */
+  uint32_t material; /* 1 + index in import->materials; 0: material_name, or the default */
   const char *material_name; /* named material, resolved at the end; may be null */
   vlSource material_source;
   vlEmissionId emission;
   bool emission_given;
   const char *inside, *outside;       /* names of the media inside and outside of shapes */
-  size_t attributes[VL_ATTR_TARGETS]; /* number of parameters in import->attributes[target] that apply */
+  size_t attributes[VL_ATTR_TARGETS]; /* number of parameters in import->attributes[target] that
+                                         apply */
 } vlGraphicsState;
 
 typedef struct vlStackEntry {
@@ -89,7 +92,8 @@ typedef struct vlObject {
   vlSource source; /* of the first directive that uses the file */
 } vlObject;
 
-/* Media that are looked up at the end. target: 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
+/* Media that are looked up at the end. target: 's' shape (index in scene->shapes), 'l' light,
+ * 'c' camera. */
 typedef struct vlMediumLink {
   char target;
   uint32_t index;
@@ -121,7 +125,8 @@ typedef struct vlMeshRun {
   VL_ARRAY(uint32_t) indices;
 } vlMeshRun;
 
-/* Whole spheres that are gathered into one shape (sphere_run.c), from the VL_MESH_RUN_FROM-th shape on. */
+/* Whole spheres that are gathered into one shape (sphere_run.c), from the VL_MESH_RUN_FROM-th
+ * shape on. */
 typedef struct vlSphereRun {
   bool open;
   vlShapeDef def;
@@ -151,17 +156,17 @@ struct vlImport {
   vlContext *context;
   vlScene *scene;
   bool permissive;
-  bool image_missing;      /* set while a directive is read: its image was reported as missing */
-  const char *first;       /* path of the first file */
+  bool image_missing; /* set while a directive is read: its image was reported as missing */
+  const char *first;  /* path of the first file */
   const char *search_path; /* further folders, separated by ':'; may be null */
   vlRepairs repairs;
   uint32_t elsewhere; /* number of files that were found in the current folder only */
   bool in_world;
   vlGraphicsState state;
   VL_ARRAY(vlStackEntry) stack;
-  vlParamList
-      attributes[VL_ATTR_TARGETS]; /* a stack per target; restoring the graphics state removes the newer entries */
-  vlNameTable coordinate_systems;  /* to indices in matrices */
+  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack per target; restoring the graphics state
+                                              removes the newer entries */
+  vlNameTable coordinate_systems;          /* to indices in matrices */
   VL_ARRAY(vlTransforms) matrices;
   VL_ARRAY(vlPending) textures;
   VL_ARRAY(vlPending) materials;
@@ -190,40 +195,49 @@ struct vlImport {
 };
 enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 
-/* ---- errors, warnings, copies (report.c) ------------------------------------------------------------------------- */
+/* ---- errors, warnings, copies (report.c)
+ * ------------------------------------------------------------------------- */
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 bool vl_import_fail_memory(vlImport *import);
-void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-/* While diagnosing (vl_scene_diagnose): reports the scene's error and clears it. False when not diagnosing or when the
- * error is fatal. */
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format,
+                    ...) __attribute__((format(printf, 4, 5)));
+/* While diagnosing (vl_scene_diagnose): reports the scene's error and clears it. False when not
+ * diagnosing or when the error is fatal. */
 bool vl_import_recover(vlImport *import);
 /* While diagnosing: reports a note on valid input that is probably unintended. */
-void vl_import_remark(vlImport *import, vlSource source, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Reports valid pbrt that velo does not support: as an error, or, when permissive, as a warning; it then returns
- * true. */
+void vl_import_remark(vlImport *import, vlSource source, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Reports valid pbrt that velo does not support: as an error, or, when permissive, as a
+ * warning; it then returns true. */
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not support. */
-bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name, const char *const *known,
-                       size_t known_count, const char *const *later, size_t later_count);
+/* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not
+ * support.
+ */
+bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
+                       const char *const *known, size_t known_count, const char *const *later,
+                       size_t later_count);
 /* Like vl_import_unknown; the known names are the kinds of the family. */
 /* The name of a kind for messages. Names that velo does not know are shortened. */
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
-bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family, const char *name);
+bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family,
+                            const char *name);
 const char *vl_import_keep(vlImport *import,
-                           const char *text); /* copy that lives until the end of the import; null when out of memory */
-vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space, const vlParamList *own,
-                      const vlParamList *attributes);
-/* Looks for a file that the file `naming` names (find.h), and notes the first that is in the current folder only. */
-vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path, size_t size);
+                           const char *text); /* copy that lives until the end of the import;
+                                                 null when out of memory */
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
+                      const vlParamList *own, const vlParamList *attributes);
+/* Looks for a file that the file `naming` names (find.h), and notes the first that is in the
+ * current folder only. */
+vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path,
+                       size_t size);
 void vl_import_note_elsewhere(void *user, vlSource source, const char *path);
-/* Writes the path of the file that a string parameter names. Returns false after an error: the file is not readable or
- * the path too long. */
+/* Writes the path of the file that a string parameter names. Returns false after an error: the
+ * file is not readable or the path too long. */
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
-/* Like vl_import_path for an image. When permissive, a missing image is a warning, import->image_missing is set, and
- * the result is false without an error. */
+/* Like vl_import_path for an image. When permissive, a missing image is a warning,
+ * import->image_missing is set, and the result is false without an error. */
 bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, size_t size);
 bool vl_import_color_space(const char *name, vlColorSpace *space);
 
@@ -232,54 +246,68 @@ bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamLis
 /* The parameters of Attribute directives that currently apply to this kind of directive. */
 const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
 /* State (state.c). */
-bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
+bool vl_import_transform(vlImport *import,
+                         const vlStatement *s); /* Translate, LookAt, Transform, ... */
 bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]);
 bool vl_import_use_system(vlImport *import, const vlStatement *s);
 bool vl_import_push(vlImport *import, char kind, vlSource source);
 bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource source);
 void vl_import_restore(vlImport *import);
-/* Motion (motion.c). vl_import_ctm returns the current transform for something that cannot move and warns when the
- * start and end transforms differ. */
+/* Motion (motion.c). vl_import_ctm returns the current transform for something that cannot move
+ * and warns when the start and end transforms differ. */
 bool vl_import_ctm(vlImport *import, vlSource source, vlMat4 *ctm);
 bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
-bool vl_import_moves(const vlImport *import);                 /* whether the start and end transforms differ */
-/* The group for a shape under the current, animated transform. The shape's own transform becomes the identity. */
+bool vl_import_moves(const vlImport *import); /* whether the start and end transforms differ */
+/* The group for a shape under the current, animated transform. The shape's own transform
+ * becomes the identity. */
 bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group);
-bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource source);
-bool vl_import_finish_motion(vlImport *import); /* places moving groups inside objects, once all instances are known */
+bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2],
+                            vlSource source);
+bool vl_import_finish_motion(
+    vlImport *import); /* places moving groups inside objects, once all instances are known */
 
-/* ---- parts ------------------------------------------------------------------------------------------------------ */
-bool vl_import_camera(
-    vlImport *import); /* applies the directives before WorldBegin to the scene's defs; the camera follows the film */
+/* ---- parts
+ * ------------------------------------------------------------------------------------------------------
+ */
+bool vl_import_camera(vlImport *import); /* applies the directives before WorldBegin to the
+                                            scene's defs; the camera follows the film */
 bool vl_import_film(vlImport *import);
 bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
 bool vl_import_option(vlImport *import, const vlStatement *s);
 
-/* The spectrum of a parameter (rgb, spectrum, blackbody). Sampled values are kept with the import's strings. */
+/* The spectrum of a parameter (rgb, spectrum, blackbody). Sampled values are kept with the
+ * import's strings. */
 bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
-/* The first function reads a number or a float texture, the second a spectrum or a spectrum texture. given may be null.
- * Both return false after an error. */
+/* The first function reads a number or a float texture, the second a spectrum or a spectrum
+ * texture. given may be null. Both return false after an error. */
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
-bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);
+bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input,
+                              bool albedo, bool *given);
 
-/* Reads the parameters of the row into the members of def (parameters.c). A member whose parameter is not given is
- * unchanged. spectrum selects the spectrum or the float input of EITHER_INPUT. given receives, for each parameter of
- * the row, whether the file gives it; it may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the
- * caller. False after an error. */
-bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum, bool *given);
+/* Reads the parameters of the row into the members of def (parameters.c). A member whose
+ * parameter is not given is unchanged. spectrum selects the spectrum or the float input of
+ * EITHER_INPUT. given receives, for each parameter of the row, whether the file gives it; it
+ * may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the caller. False after
+ * an error. */
+bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum,
+                          bool *given);
 /* Whether the file gives the parameter. The name must be one of the row's parameters. */
 bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
 
-bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source, vlTextureId *id);
-bool vl_import_finish_texture(vlImport *import,
-                              uint32_t index); /* first resolves the textures that this one refers to */
+bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source,
+                          vlTextureId *id);
+bool vl_import_finish_texture(
+    vlImport *import, uint32_t index); /* first resolves the textures that this one refers to */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
-/* Absorption and scattering per millimetre of the substance named by parameter `name` (scattering.h). */
-bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
-                                 bool *given);
-bool vl_import_material_id(vlImport *import, const char *name, vlSource source, vlMaterialId *id, bool *is_interface);
+/* Absorption and scattering per millimetre of the substance named by parameter `name`
+ * (scattering.h). */
+bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption,
+                                 vlSpectrum *scattering, bool *given);
+bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
+                           vlMaterialId *id, bool *is_interface);
 
-/* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file names of their sources.
+/* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file
+ * names of their sources.
  */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
 bool vl_import_attribute(vlImport *import, const vlStatement *s);
@@ -295,30 +323,35 @@ bool vl_import_finish(vlImport *import); /* resolves everything after the last s
 bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);
 bool vl_import_shape(vlImport *import, const vlStatement *s);
-bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source, const vlShapeDef *def,
-                         const vlShapeLink *link);
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
+                         const vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_read_meshes(vlImport *import); /* reads all noted mesh files */
 /* Adds a shape. The scene takes ownership of the def's arrays. */
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
 /* The same between two media that are not those of the current state. */
-bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, const char *inside,
+bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,
+                                 const vlShapeLink *link, const char *inside,
                                  const char *outside);
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
-bool vl_import_flush_curves(vlImport *import); /* called before any other shape, and at the end */
+bool vl_import_flush_curves(
+    vlImport *import); /* called before any other shape, and at the end */
 void vl_import_free_curves(vlImport *import);
 /* Copies a small mesh into a run. *taken: whether the mesh was copied. */
-bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
+bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
+                           bool *taken);
 bool vl_import_flush_meshes(vlImport *import); /* called at the end */
 void vl_import_free_meshes(vlImport *import);
 /* Adds a sphere to a run. *taken is false when the sphere must become a shape of its own. */
-bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
+bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
+                             bool *taken);
 bool vl_import_flush_spheres(vlImport *import); /* at the end */
 void vl_import_free_spheres(vlImport *import);
 /* Whether shapes with these two links may become one shape. */
 bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b);
 bool vl_import_same_text(const char *a, const char *b); /* null equals the empty string */
 bool vl_import_medium(vlImport *import, const vlStatement *s);
-/* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c'). */
+/* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c').
+ */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source);
 bool vl_import_finish_media(vlImport *import);
 

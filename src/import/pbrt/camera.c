@@ -1,6 +1,6 @@
-/* import/pbrt/camera.c: converts the Camera directive to a vlCameraDef. The file reads pbrt's cameras, and velo's own
- * ones (pinhole, thin lens, other projections, calibrated lenses) with the parameters of the lecture
- * (docs/lecture.md). */
+/* import/pbrt/camera.c: converts the Camera directive to a vlCameraDef. The file reads pbrt's
+ * cameras, and velo's own ones (pinhole, thin lens, other projections, calibrated lenses) with
+ * the parameters of the lecture (docs/lecture.md). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,12 +11,14 @@
 
 static const double degrees = 0.017453292519943295;
 
-/* Camera space of velo has y down, that of pbrt y up; in both, x points right and z forward. World coordinates are not
- * changed. Since pbrt's world is left-handed and velo's is right-handed, pbrt's cameras mirror the image in velo. */
+/* Camera space of velo has y down, that of pbrt y up; in both, x points right and z forward.
+ * World coordinates are not changed. Since pbrt's world is left-handed and velo's is
+ * right-handed, pbrt's cameras mirror the image in velo. */
 static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
   vlMat4 m;
   if (!vl_mat4_inverse(*ctm, &m))
-    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source, "Camera: the current transform is singular");
+    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source,
+                          "Camera: the current transform is singular");
   for (int row = 0; row < 3; row++) {
     for (int column = 0; column < 4; column++)
       pose[4 * row + column] = m.m[4 * row + column] * (column == 1 ? -1.0 : 1.0);
@@ -27,15 +29,18 @@ static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
     pose[12 + column] = affine ? (column == 3 ? 1.0 : 0.0) : v;
   }
   double w = affine ? m.m[15] : 1.0; /* the last element of the matrix need not be 1 */
-  for (int i = 0; i < 12; i++) pose[i] /= w;
+  for (int i = 0; i < 12; i++)
+    pose[i] /= w;
   return true;
 }
 
 static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
   const vlMat4 *ctm = import->camera_from_world;
   def->has_matrix = true;
-  if (!pose_from(import, &ctm[0], def->world_from_camera)) return false;
-  if (memcmp(&ctm[0], &ctm[1], sizeof *ctm) == 0) return true;
+  if (!pose_from(import, &ctm[0], def->world_from_camera))
+    return false;
+  if (memcmp(&ctm[0], &ctm[1], sizeof *ctm) == 0)
+    return true;
   def->has_matrix_close = true;
   def->pose_times[0] = import->times[0];
   def->pose_times[1] = import->times[1];
@@ -45,21 +50,23 @@ static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
 /* A rolling shutter may expose each row for an instant. */
 static bool check_shutter(vlDict *dict, vlCameraDef *def) {
   bool instant = def->shutter_close == def->shutter_open && def->readout > 0.0;
-  if (instant || def->shutter_close > def->shutter_open || dict->import->scene->error.code != VL_OK)
+  if (instant || def->shutter_close > def->shutter_open ||
+      dict->import->scene->error.code != VL_OK)
     return dict->import->scene->error.code == VL_OK;
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                        "%s: the shutter does not open: it closes at %g, opens at %g", dict->what, def->shutter_close,
-                        def->shutter_open);
+                        "%s: the shutter does not open: it closes at %g, opens at %g",
+                        dict->what, def->shutter_close, def->shutter_open);
 }
 
-/* pbrt's cameras (book 5.2). Unless the file gives the screen window, it extends from -1 to 1 along the shorter side of
- * the image. */
+/* pbrt's cameras (book 5.2). Unless the file gives the screen window, it extends from -1 to 1
+ * along the shorter side of the image. */
 static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   vlImport *import = dict->import;
   double frame = (double)def->width / def->height, window[4], focus = 1e6;
   bool given = vl_dict_double(dict, "frameaspectratio", &frame);
   if (given && !(frame > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"frameaspectratio\" must be above 0", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: \"frameaspectratio\" must be above 0", dict->what);
   double x = frame > 1.0 ? frame : 1.0, y = frame > 1.0 ? 1.0 : 1.0 / frame;
   double standard[4] = {-x, x, -y, y};
   memcpy(window, standard, sizeof window);
@@ -70,17 +77,21 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
     def->screen_min_y = window[2];
     def->screen_max_y = window[3];
   }
-  if (flat) def->projection = VL_PROJECTION_ORTHOGRAPHIC;
-  if (vl_dict_double(dict, "focaldistance", &focus) || def->lens_radius != 0.0) def->focus_distance = focus;
+  if (flat)
+    def->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  if (vl_dict_double(dict, "focaldistance", &focus) || def->lens_radius != 0.0)
+    def->focus_distance = focus;
   return check_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
 }
 
-/* pbrt's spherical camera shows the whole sphere, whatever the aspect ratio. Its equirectangular image has the poles up
- * and down; its columns start at the right and turn left in pbrt's left-handed camera space. Its equal-area image has
- * the zenith at the centre. The centre of velo's maps is the forward direction, so the axes are exchanged. */
+/* pbrt's spherical camera shows the whole sphere, whatever the aspect ratio. Its
+ * equirectangular image has the poles up and down; its columns start at the right and turn left
+ * in pbrt's left-handed camera space. Its equal-area image has the zenith at the centre. The
+ * centre of velo's maps is the forward direction, so the axes are exchanged. */
 static bool read_spherical(vlDict *dict, vlCameraDef *def) {
   static const char *const mappings[] = {"equalarea", "equirectangular"};
-  static const double axes[2][9] = {{1, 0, 0, 0, 0, -1, 0, 1, 0}, {0, 0, -1, 0, 1, 0, -1, 0, 0}};
+  static const double axes[2][9] = {{1, 0, 0, 0, 0, -1, 0, 1, 0},
+                                    {0, 0, -1, 0, 1, 0, -1, 0, 0}};
   int mapping = 0;
   double unused;
   vl_dict_choice(dict, "mapping", mappings, 2, &mapping);
@@ -90,18 +101,22 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
   double window[4];
   vl_dict_floats(dict, "screenwindow", 4, window);
   def->projection = mapping ? VL_PROJECTION_EQUIRECTANGULAR : VL_PROJECTION_EQUAL_AREA;
-  if (!check_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def)) return false;
+  if (!check_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def))
+    return false;
   double *m = def->world_from_camera;
   for (int row = 0; row < 3; row++) {
     double old[3] = {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
     for (int column = 0; column < 3; column++)
-      m[4 * row + column] =
-          old[0] * axes[mapping][column] + old[1] * axes[mapping][3 + column] + old[2] * axes[mapping][6 + column];
+      m[4 * row + column] = old[0] * axes[mapping][column] +
+                            old[1] * axes[mapping][3 + column] +
+                            old[2] * axes[mapping][6 + column];
   }
   return true;
 }
 
-/* Reads velo's own parameters of the shutter curve: a name, or points (time, value, time, value, ...). */
+/* Reads velo's own parameters of the shutter curve: a name, or points (time, value, time,
+ * value,
+ * ...). */
 static bool read_curve(vlDict *dict, vlCameraDef *def) {
   static const char *const curves[] = {"box", "triangle", "trapezoid"};
   int curve = 0;
@@ -109,21 +124,25 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
   vl_dict_choice(dict, "shuttercurve", curves, 3, &curve);
   bool risen = vl_dict_double(dict, "shutterrise", &rise);
   vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
-  if (dict->import->scene->error.code != VL_OK) return false;
+  if (dict->import->scene->error.code != VL_OK)
+    return false;
   if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in which a trapezoid rises and "
+                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in which "
+                          "a trapezoid rises and "
                           "falls",
                           dict->what);
   if (points) {
     size_t n = vl_param_count(points);
     if (curve || n % 2 || n < 4 || n > 2 * VL_SHUTTER_POINTS)
       return vl_import_fail(dict->import, VL_ERROR_SCENE, points->source,
-                            "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how far open), instead of "
+                            "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how "
+                            "far open), instead of "
                             "\"shuttercurve\"",
                             dict->what, (int)VL_SHUTTER_POINTS);
     def->shutter_points = (uint32_t)(n / 2);
-    for (size_t i = 0; i < n; i++) (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = points->exact[i];
+    for (size_t i = 0; i < n; i++)
+      (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = points->exact[i];
   } else if (curve) {
     const double at[4] = {0.0, curve == 1 ? 0.5 : rise, curve == 1 ? 1.0 : 1.0 - rise, 1.0};
     const double value[4] = {0.0, 1.0, curve == 1 ? 0.0 : 1.0, 0.0};
@@ -137,12 +156,15 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
 /* Reads a list of coefficients of any length up to 14; vl_camera_make checks their number. */
 static bool read_coefficients(vlDict *dict, const char *name, double *values, uint32_t *count) {
   vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT);
-  if (!p) return false;
+  if (!p)
+    return false;
   size_t n = vl_param_count(p);
   if (n > 14)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                          "%s: \"%s\" has %zu numbers; at most 14 have a meaning", dict->what, name, n);
-  for (size_t i = 0; i < n; i++) values[i] = p->exact[i];
+                          "%s: \"%s\" has %zu numbers; at most 14 have a meaning", dict->what,
+                          name, n);
+  for (size_t i = 0; i < n; i++)
+    values[i] = p->exact[i];
   *count = (uint32_t)n;
   return true;
 }
@@ -152,7 +174,8 @@ static int read_choice(vlDict *dict, const vlKindRow *row, const char *name) {
   const vlParameter *p = vl_row_find(row, name);
   int choice = 0;
   size_t count = 0;
-  while (p->choices[count]) count++;
+  while (p->choices[count])
+    count++;
   vl_dict_choice(dict, name, p->choices, count, &choice);
   return choice;
 }
@@ -164,8 +187,10 @@ static bool read_colmap(vlDict *dict, vlCameraDef *def) {
   vlError error = {0};
   vl_dict_string(dict, "model", &model);
   read_coefficients(dict, "parameters", values, &count);
-  if (dict->import->scene->error.code != VL_OK) return false;
-  if (vl_camera_def_colmap(def, model, values, count, &error) == VL_OK) return true;
+  if (dict->import->scene->error.code != VL_OK)
+    return false;
+  if (vl_camera_def_colmap(def, model, values, count, &error) == VL_OK)
+    return true;
   vl_shorten_quoted(&error, model);
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s", dict->what,
                         error.message + strlen("camera: "));
@@ -176,7 +201,8 @@ static void read_limits(vlDict *dict, vlCameraDef *def) {
   double window[4] = {-180.0, 180.0, -90.0, 90.0};
   bool given = vl_dict_floats(dict, "longitude", 2, window);
   given = vl_dict_floats(dict, "latitude", 2, window + 2) || given;
-  if (!given) return;
+  if (!given)
+    return;
   def->screen_min_x = window[0] * degrees;
   def->screen_max_x = window[1] * degrees;
   def->screen_min_y = window[2] * degrees;
@@ -184,34 +210,49 @@ static void read_limits(vlDict *dict, vlCameraDef *def) {
 }
 
 /* Reads the parameters of projections and calibrated lenses that their rows do not describe. */
-static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
+static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind,
+                       const vlKindRow *row) {
   uint32_t *count = &def->distortion_count;
   bool given = kind != VL_CAMERA_COLMAP && vl_row_find(row, "coefficients") &&
                read_coefficients(dict, "coefficients", def->distortion_coefficients, count);
-  if (given) def->distortion = kind == VL_CAMERA_OPENCV_FISHEYE ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
-  if (kind == VL_CAMERA_COLMAP) return read_colmap(dict, def);
+  if (given)
+    def->distortion =
+        kind == VL_CAMERA_OPENCV_FISHEYE ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
+  if (kind == VL_CAMERA_COLMAP)
+    return read_colmap(dict, def);
   if (kind == VL_CAMERA_FISHEYE)
-    def->projection = (vlProjection)((int)VL_PROJECTION_EQUIDISTANT + read_choice(dict, row, "mapping"));
-  if (kind == VL_CAMERA_OPENCV_FISHEYE) def->projection = VL_PROJECTION_EQUIDISTANT;
-  if (kind >= VL_CAMERA_OF_PROJECTION) def->projection = (vlProjection)((int)kind - (int)VL_CAMERA_OF_PROJECTION);
-  if (vl_row_find(row, "longitude")) read_limits(dict, def);
-  if (vl_row_find(row, "layout")) def->shape[0] = read_choice(dict, row, "layout");
+    def->projection =
+        (vlProjection)((int)VL_PROJECTION_EQUIDISTANT + read_choice(dict, row, "mapping"));
+  if (kind == VL_CAMERA_OPENCV_FISHEYE)
+    def->projection = VL_PROJECTION_EQUIDISTANT;
+  if (kind >= VL_CAMERA_OF_PROJECTION)
+    def->projection = (vlProjection)((int)kind - (int)VL_CAMERA_OF_PROJECTION);
+  if (vl_row_find(row, "longitude"))
+    read_limits(dict, def);
+  if (vl_row_find(row, "layout"))
+    def->shape[0] = read_choice(dict, row, "layout");
   return dict->import->scene->error.code == VL_OK;
 }
 
-/* Reads the parameters common to velo's own cameras: eye, lookat, up, roll; d, zoom, s or a field of view; exposure
- * time. Their world is right-handed. */
-static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
+/* Reads the parameters common to velo's own cameras: eye, lookat, up, roll; d, zoom, s or a
+ * field of view; exposure time. Their world is right-handed. */
+static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind,
+                         const vlKindRow *row) {
   vlImport *import = dict->import;
-  if (!read_model(dict, def, kind, row)) return false;
-  if (kind != VL_CAMERA_PINHOLE && !vl_import_lens(dict, def)) return false;
-  if (!check_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict)) return false;
+  if (!read_model(dict, def, kind, row))
+    return false;
+  if (kind != VL_CAMERA_PINHOLE && !vl_import_lens(dict, def))
+    return false;
+  if (!check_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict))
+    return false;
   const vlMat4 identity = vl_mat4_identity();
   for (int i = 0; i < 16; i++)
-    if (import->camera_from_world[0].m[i] != identity.m[i] || import->camera_from_world[1].m[i] != identity.m[i])
-      return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                            "%s: its pose is given by eye, lookat and up; transforms before it have no meaning",
-                            dict->what);
+    if (import->camera_from_world[0].m[i] != identity.m[i] ||
+        import->camera_from_world[1].m[i] != identity.m[i])
+      return vl_import_fail(
+          import, VL_ERROR_SCENE, dict->source,
+          "%s: its pose is given by eye, lookat and up; transforms before it have no meaning",
+          dict->what);
   return true;
 }
 
@@ -221,13 +262,15 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
   vlError error = {0};
   const char *warning = NULL;
   if (vl_camera_make(def, &camera, &warning, &error) != VL_OK) {
-    const char *text = strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
+    const char *text =
+        strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
     return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source, "%s: %s", what, text);
   }
   if (warning && camera.outside > 0.0)
     vl_import_warn(import, VL_LOG_WARNING, import->camera.source,
-                   "%s: the lens folds or its model ends inside the image: %.2g %% of it sees nothing (alpha 0)", what,
-                   100.0 * camera.outside);
+                   "%s: the lens folds or its model ends inside the image: %.2g %% of it sees "
+                   "nothing (alpha 0)",
+                   what, 100.0 * camera.outside);
   else if (warning)
     vl_import_warn(import, VL_LOG_WARNING, import->camera.source, "%s", warning);
   return true;
@@ -242,7 +285,8 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
       !vl_names_find(&import->coordinate_systems, "camera", &index))
     return true;
   vlMat4 m = vl_mat4_load(camera.world_from_camera);
-  for (int row = 0; row < 3; row++) m.m[4 * row + 1] = -m.m[4 * row + 1];
+  for (int row = 0; row < 3; row++)
+    m.m[4 * row + 1] = -m.m[4 * row + 1];
   import->matrices.items[index].at[0] = import->matrices.items[index].at[1] = m;
   return true;
 }
@@ -251,19 +295,23 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
 static bool read_kind(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
   vlImport *import = dict->import;
   switch (kind) {
-    case VL_CAMERA_PBRT_PERSPECTIVE: return read_pbrt(dict, def, false);
-    case VL_CAMERA_PBRT_ORTHOGRAPHIC: return read_pbrt(dict, def, true);
-    case VL_CAMERA_SPHERICAL: return read_spherical(dict, def);
+    case VL_CAMERA_PBRT_PERSPECTIVE:
+      return read_pbrt(dict, def, false);
+    case VL_CAMERA_PBRT_ORTHOGRAPHIC:
+      return read_pbrt(dict, def, true);
+    case VL_CAMERA_SPHERICAL:
+      return read_spherical(dict, def);
     case VL_CAMERA_REALISTIC:
-      return vl_import_optics(dict, def, import->film_diagonal) && check_shutter(dict, def) && vl_dict_done(dict) &&
-             pose_from_ctm(import, def);
+      return vl_import_optics(dict, def, import->film_diagonal) && check_shutter(dict, def) &&
+             vl_dict_done(dict) && pose_from_ctm(import, def);
     case VL_CAMERA_PINHOLE:
     case VL_CAMERA_THIN_LENS:
     case VL_CAMERA_FISHEYE:
     case VL_CAMERA_OPENCV:
     case VL_CAMERA_OPENCV_FISHEYE:
     case VL_CAMERA_COLMAP:
-    case VL_CAMERA_OF_PROJECTION: break;
+    case VL_CAMERA_OF_PROJECTION:
+      break;
   }
   return read_lecture(dict, def, kind, row);
 }
@@ -273,29 +321,41 @@ bool vl_import_camera(vlImport *import) {
   const vlChoice *choice = &import->camera;
   char what[96];
   snprintf(what, sizeof what, "Camera \"%s\"",
-           vl_import_kind_text(&vl_camera_family, choice->given ? choice->kind : "perspective").text);
-  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+           vl_import_kind_text(&vl_camera_family, choice->given ? choice->kind : "perspective")
+               .text);
+  vlDict dict =
+      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
-  int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind) : (int)VL_CAMERA_PBRT_PERSPECTIVE;
+  int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind)
+                           : (int)VL_CAMERA_PBRT_PERSPECTIVE;
   const vlKindRow *row = vl_kind_row(&vl_camera_family, kind);
-  for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
+  for (int i = 0; i < 2 && !choice->given; i++)
+    import->camera_from_world[i] = vl_mat4_identity();
   defs->camera_source = choice->source;
   if (!row) { /* permissive: pbrt's perspective camera at the same pose replaces it */
-    if (!vl_import_unknown_kind(import, choice->source, &vl_camera_family, choice->kind)) return false;
+    if (!vl_import_unknown_kind(import, choice->source, &vl_camera_family, choice->kind))
+      return false;
     vl_dict_skip(&dict);
     def.fov = 90.0 * degrees;
-    if (!pose_from_ctm(import, &def)) return false;
+    if (!pose_from_ctm(import, &def))
+      return false;
   } else {
     vl_row_set_defaults(row, &def);
-    if (!vl_import_parameters(&dict, row, &def, false, NULL)) return false;
-    if (!read_kind(&dict, &def, (vlCameraKind)kind, row)) return false;
+    if (!vl_import_parameters(&dict, row, &def, false, NULL))
+      return false;
+    if (!read_kind(&dict, &def, (vlCameraKind)kind, row))
+      return false;
   }
-  if (!check(import, what, &def)) return false;
+  if (!check(import, what, &def))
+    return false;
   defs->camera = def;
-  /* in pbrt the exposure grows with the time that the shutter is open; velo's own cameras have a separate factor */
+  /* in pbrt the exposure grows with the time that the shutter is open; velo's own cameras have
+   * a separate factor */
   bool pbrts = row && kind <= (int)VL_CAMERA_REALISTIC;
-  if (pbrts) defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
+  if (pbrts)
+    defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
   /* pbrt limits the sensor's output, velo's film its input. */
-  if (defs->develop.exposure > 0.0f) defs->film.max_component /= defs->develop.exposure;
+  if (defs->develop.exposure > 0.0f)
+    defs->film.max_component /= defs->develop.exposure;
   return pbrts || !row || name_lecture_system(import, &def);
 }

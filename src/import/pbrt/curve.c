@@ -1,5 +1,6 @@
-/* import/pbrt/curve.c: Shape "curve". Every basis and degree becomes cubic Bezier segments. Successive curves that
- * differ only in their points become one shape, since hair is described by millions of directives. */
+/* import/pbrt/curve.c: Shape "curve". Every basis and degree becomes cubic Bezier segments.
+ * Successive curves that differ only in their points become one shape, since hair is described
+ * by millions of directives. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -15,24 +16,28 @@ static bool continues(const vlCurveRun *run, const vlShapeDef *def, const vlShap
                       const vlGraphicsState *state) {
   const vlShapeDef *d = &run->def;
   return run->open && d->curve == def->curve && d->split_depth == def->split_depth &&
-         d->group.index == def->group.index && d->reverse_orientation == def->reverse_orientation &&
+         d->group.index == def->group.index &&
+         d->reverse_orientation == def->reverse_orientation &&
          d->alpha.value == def->alpha.value &&
          memcmp(d->group_from_shape, def->group_from_shape, sizeof d->group_from_shape) == 0 &&
-         run->link.material == link->material && same_text(run->link.material_name, link->material_name) &&
+         run->link.material == link->material &&
+         same_text(run->link.material_name, link->material_name) &&
          same_text(run->link.alpha, link->alpha) && same_text(run->inside, state->inside) &&
          same_text(run->outside, state->outside);
 }
 
 bool vl_import_flush_curves(vlImport *import) {
   vlCurveRun *run = &import->curves;
-  if (!run->open) return true;
+  if (!run->open)
+    return true;
   run->open = false;
   run->def.faces = (uint32_t)(run->widths.count / 2);
   run->def.vertices = 4 * run->def.faces;
   run->def.positions = run->points.items;
   run->def.widths = run->widths.items;
   run->def.normals = run->normals.count ? run->normals.items : NULL;
-  if (!run->def.normals) vl_free(import->context, run->normals.items);
+  if (!run->def.normals)
+    vl_free(import->context, run->normals.items);
   memset(&run->points, 0, sizeof run->points);
   memset(&run->widths, 0, sizeof run->widths);
   memset(&run->normals, 0, sizeof run->normals);
@@ -40,7 +45,8 @@ bool vl_import_flush_curves(vlImport *import) {
   import->state.inside = run->inside;
   import->state.outside = run->outside;
   bool fine = vl_import_add_shape(import, &run->def, &run->link) &&
-              vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, run->def.source);
+              vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1,
+                                   run->def.source);
   import->state = now;
   return fine;
 }
@@ -51,9 +57,10 @@ void vl_import_free_curves(vlImport *import) {
   VL_ARRAY_FREE(import->context, &import->curves.normals);
 }
 
-/* Writes the Bezier control points of segment k of the curve with control points p. B-splines are converted by knot
- * insertion; degree 2 is raised to 3. */
-static void bezier_points(const float *p, size_t k, bool spline, uint32_t degree, float out[12]) {
+/* Writes the Bezier control points of segment k of the curve with control points p. B-splines
+ * are converted by knot insertion; degree 2 is raised to 3. */
+static void bezier_points(const float *p, size_t k, bool spline, uint32_t degree,
+                          float out[12]) {
   for (int i = 0; i < 3; i++) {
     const float *a = p + 3 * (spline ? k : k * degree) + i;
     double c[4] = {a[0], a[3], a[6], degree == 3 ? a[9] : 0}, q[4];
@@ -73,7 +80,8 @@ static void bezier_points(const float *p, size_t k, bool spline, uint32_t degree
       q[2] = (2 * c[1] + c[2]) / 3;
       q[3] = c[2];
     }
-    for (int j = 0; j < 4; j++) out[3 * j + i] = (float)q[j];
+    for (int j = 0; j < 4; j++)
+      out[3 * j + i] = (float)q[j];
   }
 }
 
@@ -89,19 +97,25 @@ static bool append(vlImport *import, const Curve *c) {
   vlCurveRun *run = &import->curves;
   size_t n = c->segments;
   if (run->widths.count / 2 + n > 0x1fffffff)
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source, "too many segments of curves");
-  if (!VL_RESERVE(import->context, &run->points, 12 * n) || !VL_RESERVE(import->context, &run->widths, 2 * n) ||
+    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
+                          "too many segments of curves");
+  if (!VL_RESERVE(import->context, &run->points, 12 * n) ||
+      !VL_RESERVE(import->context, &run->widths, 2 * n) ||
       (c->normals && !VL_RESERVE(import->context, &run->normals, 6 * n)))
     return vl_import_fail_memory(import);
   for (size_t k = 0; k < n; k++) {
-    bezier_points(c->points->floats.items, k, c->spline, c->degree, run->points.items + run->points.count);
+    bezier_points(c->points->floats.items, k, c->spline, c->degree,
+                  run->points.items + run->points.count);
     run->points.count += 12;
     for (size_t e = 0; e < 2; e++) {
       double at = (double)(k + e) / (double)n;
-      run->widths.items[run->widths.count++] = (float)((1 - at) * c->width[0] + at * c->width[1]);
+      run->widths.items[run->widths.count++] =
+          (float)((1 - at) * c->width[0] + at * c->width[1]);
     }
-    if (!c->normals) continue;
-    memcpy(run->normals.items + run->normals.count, c->normals->floats.items + 3 * k, 6 * sizeof(float));
+    if (!c->normals)
+      continue;
+    memcpy(run->normals.items + run->normals.count, c->normals->floats.items + 3 * k,
+           6 * sizeof(float));
     run->normals.count += 6;
   }
   return true;
@@ -109,49 +123,61 @@ static bool append(vlImport *import, const Curve *c) {
 
 static bool finite(const vlParam *p) {
   for (size_t i = 0; i < p->floats.count; i++)
-    if (!(p->floats.items[i] - p->floats.items[i] == 0.0f)) return false;
+    if (!(p->floats.items[i] - p->floats.items[i] == 0.0f))
+      return false;
   return true;
 }
 
 static bool read_points(vlDict *dict, Curve *c) {
   vlImport *import = dict->import;
   if (!(c->points = vl_dict_find(dict, "P", 1u << VL_PARAM_POINT3))) {
-    if (import->scene->error.code != VL_OK || !vl_dict_done(dict)) return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing", dict->what);
+    if (import->scene->error.code != VL_OK || !vl_dict_done(dict))
+      return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing",
+                          dict->what);
   }
   size_t numbers = c->points->floats.count, n = numbers / 3;
   if (numbers % 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source, "%s: \"P\" holds %zu numbers, not a multiple of 3",
-                          dict->what, numbers);
-  if (n < c->degree + 1 || (!c->spline && (n - 1) % c->degree))
     return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
-                          c->spline ? "%s: %zu points, but a B-spline of degree %u needs at least %u"
-                                    : "%s: %zu points, but Bezier curves of degree %u need %u, or that and a multiple "
-                                      "of the degree",
-                          dict->what, n, c->degree, c->degree + 1);
+                          "%s: \"P\" holds %zu numbers, not a multiple of 3", dict->what,
+                          numbers);
+  if (n < c->degree + 1 || (!c->spline && (n - 1) % c->degree))
+    return vl_import_fail(
+        import, VL_ERROR_SCENE, c->points->source,
+        c->spline
+            ? "%s: %zu points, but a B-spline of degree %u needs at least %u"
+            : "%s: %zu points, but Bezier curves of degree %u need %u, or that and a multiple "
+              "of the degree",
+        dict->what, n, c->degree, c->degree + 1);
   c->segments = c->spline ? n - c->degree : (n - 1) / c->degree;
   if (!finite(c->points))
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source, "%s: a point is not finite", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
+                          "%s: a point is not finite", dict->what);
   return true;
 }
 
 static bool read_normals(vlDict *dict, vlCurveKind kind, Curve *c) {
   vlImport *import = dict->import;
   c->normals = vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL);
-  if (import->scene->error.code != VL_OK) return false;
+  if (import->scene->error.code != VL_OK)
+    return false;
   if (kind != VL_CURVE_RIBBON) {
     if (c->normals)
-      vl_import_warn(import, VL_LOG_WARNING, c->normals->source, "%s: only ribbons have normals: they are ignored",
-                     dict->what);
+      vl_import_warn(import, VL_LOG_WARNING, c->normals->source,
+                     "%s: only ribbons have normals: they are ignored", dict->what);
     c->normals = NULL;
     return true;
   }
   if (!c->normals)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: ribbons need \"normal N\"", dict->what);
-  if (c->normals->floats.count == 3 * (c->segments + 1) && finite(c->normals)) return true;
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: ribbons need \"normal N\"",
+                          dict->what);
+  if (c->normals->floats.count == 3 * (c->segments + 1) && finite(c->normals))
+    return true;
   return vl_import_fail(import, VL_ERROR_SCENE, c->normals->source,
-                        "%s: \"N\" holds %zu numbers; %zu segments need %zu finite ones, 3 for each of their ends",
-                        dict->what, c->normals->floats.count, c->segments, 3 * (c->segments + 1));
+                        "%s: \"N\" holds %zu numbers; %zu segments need %zu finite ones, 3 for "
+                        "each of their ends",
+                        dict->what, c->normals->floats.count, c->segments,
+                        3 * (c->segments + 1));
 }
 
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
@@ -160,7 +186,9 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   Curve c = {.degree = 3};
   int basis = 0;
   float width = 1.0f;
-  if (!vl_import_parameters(dict, vl_kind_row(&vl_shape_family, VL_SHAPE_CURVES), def, false, NULL)) return false;
+  if (!vl_import_parameters(dict, vl_kind_row(&vl_shape_family, VL_SHAPE_CURVES), def, false,
+                            NULL))
+    return false;
   vl_dict_choice(dict, "basis", bases, 2, &basis);
   vl_dict_count(dict, "degree", 2, &c.degree);
   vl_dict_float(dict, "width", &width);
@@ -168,31 +196,38 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   vl_dict_float(dict, "width0", &c.width[0]);
   vl_dict_float(dict, "width1", &c.width[1]);
   vlParam *split = vl_dict_find(dict, "splitdepth", 1u << VL_PARAM_INTEGER | VL_BIT_FLOAT);
-  if (import->scene->error.code != VL_OK) return false;
+  if (import->scene->error.code != VL_OK)
+    return false;
   if (split && vl_param_count(split) == 1) {
-    double depth = split->type == VL_PARAM_INTEGER ? split->integers.items[0] : split->floats.items[0];
+    double depth =
+        split->type == VL_PARAM_INTEGER ? split->integers.items[0] : split->floats.items[0];
     def->split_depth = depth > 0 ? (uint32_t)(depth < 10 ? depth : 10) : 0;
   }
   c.spline = basis == 1;
   if (c.degree > 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: the degree must be 2 or 3, not %u", dict->what,
-                          c.degree);
-  if (!(c.width[0] >= 0.0f) || !(c.width[1] >= 0.0f) || c.width[0] > 1e30f || c.width[1] > 1e30f)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: a width must not be negative", dict->what);
-  if (!read_points(dict, &c) || !read_normals(dict, def->curve, &c) || !vl_dict_done(dict)) return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: the degree must be 2 or 3, not %u", dict->what, c.degree);
+  if (!(c.width[0] >= 0.0f) || !(c.width[1] >= 0.0f) || c.width[0] > 1e30f ||
+      c.width[1] > 1e30f)
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: a width must not be negative", dict->what);
+  if (!read_points(dict, &c) || !read_normals(dict, def->curve, &c) || !vl_dict_done(dict))
+    return false;
   if (def->emission.index) {
     vl_import_warn(import, VL_LOG_WARNING, dict->source,
                    "curves cannot be area lights (nor can pbrt's): it gives none");
     def->emission.index = 0;
   }
   if (!continues(&import->curves, def, link, &import->state)) {
-    if (!vl_import_flush_curves(import)) return false;
+    if (!vl_import_flush_curves(import))
+      return false;
     vlCurveRun *run = &import->curves;
     run->def = *def;
     run->link = *link;
     run->inside = import->state.inside;
     run->outside = import->state.outside;
-    if (!vl_scene_copy_source(import->scene, &run->def.source)) return false;
+    if (!vl_scene_copy_source(import->scene, &run->def.source))
+      return false;
     run->open = true;
   }
   return append(import, &c);

@@ -1,31 +1,37 @@
-/* import/pbrt/decimal.c: see decimal.h. Three methods are tried in turn, until the result is certain: one operation on
- * two exact doubles (Clinger 1990); a pair of doubles with a bound of its error (Ziv's test); integers of any size. */
+/* import/pbrt/decimal.c: see decimal.h. Three methods are tried in turn, until the result is
+ * certain: one operation on two exact doubles (Clinger 1990); a pair of doubles with a bound of
+ * its error (Ziv's test); integers of any size. */
 #include "import/pbrt/decimal.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-/* ---- doubles and pairs of them ----------------------------------------------------------------------------------- */
+/* ---- doubles and pairs of them
+ * ----------------------------------------------------------------------------------- */
 
-static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                       1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                       1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 enum { EXACT_POWER = 22 };
 
 /* The rounding error of a * b (Dekker 1971). */
 static double product_error(double a, double b, double product) {
   const double split = 134217729.0; /* 2^27 + 1 */
-  double ta = split * a, tb = split * b, ah = ta - (ta - a), al = a - ah, bh = tb - (tb - b), bl = b - bh;
+  double ta = split * a, tb = split * b, ah = ta - (ta - a), al = a - ah, bh = tb - (tb - b),
+         bl = b - bh;
   return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
 }
 
-/* Computes digits * 10^exponent with a pair of doubles. Returns false when the result is not certain, that is, another
- * double may be nearer. */
+/* Computes digits * 10^exponent with a pair of doubles. Returns false when the result is not
+ * certain, that is, another double may be nearer. */
 static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   int size = exponent < 0 ? -exponent : exponent;
-  if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62) return false;
+  if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62)
+    return false;
   double high = (double)mantissa, low = (double)((int64_t)mantissa - (int64_t)high);
-  double power = powers_of_ten[size > EXACT_POWER ? EXACT_POWER : size], rest = 0; /* power + rest is exact */
+  double power = powers_of_ten[size > EXACT_POWER ? EXACT_POWER : size],
+         rest = 0; /* power + rest is exact */
   if (size > EXACT_POWER) {
     double a = power, b = powers_of_ten[size - EXACT_POWER];
     power = a * b;
@@ -45,14 +51,16 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   return v + (left - error) == v + (left + error);
 }
 
-/* ---- whole numbers ----------------------------------------------------------------------------------------------- */
+/* ---- whole numbers
+ * -----------------------------------------------------------------------------------------------
+ */
 
-/* 767 digits decide on which side of the midpoint between two doubles a number lies. Of the digits beyond MOST_DIGITS
- * only one fact matters: whether any of them is not 0. */
+/* 767 digits decide on which side of the midpoint between two doubles a number lies. Of the
+ * digits beyond MOST_DIGITS only one fact matters: whether any of them is not 0. */
 enum { MOST_DIGITS = 800, LIMBS = 176 };
 
-/* A non-negative integer in limbs of 32 bits, the lowest limb first; the highest limb is not 0. 800 digits take 84
- * limbs, 5^1200 takes 88. */
+/* A non-negative integer in limbs of 32 bits, the lowest limb first; the highest limb is not 0.
+ * 800 digits take 84 limbs, 5^1200 takes 88. */
 typedef struct Whole {
   int count;
   uint32_t limb[LIMBS];
@@ -65,18 +73,23 @@ static void multiply_add(Whole *w, uint32_t factor, uint32_t more) {
     w->limb[i] = (uint32_t)carry;
     carry >>= 32;
   }
-  if (carry) w->limb[w->count++] = (uint32_t)carry;
+  if (carry)
+    w->limb[w->count++] = (uint32_t)carry;
 }
 
 static void multiply_power_of_five(Whole *w, int exponent) {
-  for (; exponent >= 13; exponent -= 13) multiply_add(w, 1220703125u, 0);
-  for (; exponent > 0; exponent--) multiply_add(w, 5, 0);
+  for (; exponent >= 13; exponent -= 13)
+    multiply_add(w, 1220703125u, 0);
+  for (; exponent > 0; exponent--)
+    multiply_add(w, 5, 0);
 }
 
 static int bit_length(const Whole *w) {
-  if (w->count == 0) return 0;
+  if (w->count == 0)
+    return 0;
   int bits = 32 * (w->count - 1);
-  for (uint32_t top = w->limb[w->count - 1]; top; top >>= 1) bits++;
+  for (uint32_t top = w->limb[w->count - 1]; top; top >>= 1)
+    bits++;
   return bits;
 }
 
@@ -90,10 +103,13 @@ static void shift_left(Whole *w, int bits) {
 
 /* Subtracts b from a if a >= b. Otherwise returns false and leaves a unchanged. */
 static bool subtract(Whole *a, const Whole *b) {
-  if (a->count < b->count) return false;
+  if (a->count < b->count)
+    return false;
   for (int i = a->count - 1; a->count == b->count && i >= 0; i--) {
-    if (a->limb[i] > b->limb[i]) break;
-    if (a->limb[i] < b->limb[i]) return false;
+    if (a->limb[i] > b->limb[i])
+      break;
+    if (a->limb[i] < b->limb[i])
+      return false;
   }
   uint64_t borrow = 0;
   for (int i = 0; i < a->count; i++) {
@@ -101,16 +117,20 @@ static bool subtract(Whole *a, const Whole *b) {
     borrow = a->limb[i] < take;
     a->limb[i] = (uint32_t)(a->limb[i] - take);
   }
-  while (a->count && a->limb[a->count - 1] == 0) a->count--;
+  while (a->count && a->limb[a->count - 1] == 0)
+    a->count--;
   return true;
 }
 
-/* q * 2^exponent, rounded. q has 55 or 56 bits; its lowest bit is also set if a lower bit would be (sticky bit). */
+/* q * 2^exponent, rounded. q has 55 or 56 bits; its lowest bit is also set if a lower bit would
+ * be (sticky bit). */
 static double round_to_double(uint64_t q, int exponent) {
   int bits = q >> 55 ? 56 : 55, drop = -1074 - exponent; /* doubles are multiples of 2^-1074 */
   if (drop > bits - 53) {
-    if (drop > bits) return 0.0;
-    uint64_t kept = q >> drop, rest = q & ((UINT64_C(1) << drop) - 1), half = UINT64_C(1) << (drop - 1);
+    if (drop > bits)
+      return 0.0;
+    uint64_t kept = q >> drop, rest = q & ((UINT64_C(1) << drop) - 1),
+             half = UINT64_C(1) << (drop - 1);
     kept += rest > half || (rest == half && (kept & 1));
     return ldexp((double)kept, -1074);
   }
@@ -133,13 +153,16 @@ static double by_whole_numbers(Whole *digits, int exponent) {
 
 double vl_decimal(uint64_t mantissa, int exponent) {
   double v;
-  if (mantissa == 0 || exponent < -400) return 0.0;
-  if (exponent > 400) return HUGE_VAL;
+  if (mantissa == 0 || exponent < -400)
+    return 0.0;
+  if (exponent > 400)
+    return HUGE_VAL;
   if (mantissa <= UINT64_C(1) << 53 && exponent >= -EXACT_POWER && exponent <= EXACT_POWER) {
     v = (double)mantissa;
     return exponent < 0 ? v / powers_of_ten[-exponent] : v * powers_of_ten[exponent];
   }
-  if (by_pair(mantissa, exponent, &v)) return v;
+  if (by_pair(mantissa, exponent, &v))
+    return v;
   Whole digits = {mantissa >> 32 ? 2 : 1, {(uint32_t)mantissa, (uint32_t)(mantissa >> 32)}};
   return by_whole_numbers(&digits, exponent);
 }
@@ -167,7 +190,9 @@ double vl_decimal_digits(const char *text, const char *end, int exponent) {
     count++;
     exponent--;
   }
-  if (count == 0 || count + exponent < -400) return 0.0;
-  if (count + exponent > 400) return HUGE_VAL;
+  if (count == 0 || count + exponent < -400)
+    return 0.0;
+  if (count + exponent > 400)
+    return HUGE_VAL;
   return by_whole_numbers(&digits, exponent);
 }

@@ -1,16 +1,19 @@
-/* import/pbrt/entity.c: statements whose parameters are kept: attributes, objects, and the textures and materials that
- * are resolved at the end. */
+/* import/pbrt/entity.c: statements whose parameters are kept: attributes, objects, and the
+ * textures and materials that are resolved at the end. */
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "velo/shape.h"
 
-/* ---- parameters that outlive their directive -------------------------------------------------------------------- */
+/* ---- parameters that outlive their directive
+ * -------------------------------------------------------------------- */
 
-/* Moves the statement's parameters to `to`. The scene keeps the file names of the parameters' sources. */
+/* Moves the statement's parameters to `to`. The scene keeps the file names of the parameters'
+ * sources. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
   for (size_t i = 0; i < s->params->list.count; i++)
-    if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->source)) return false;
+    if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->source))
+      return false;
   *to = *s->params;
   *s->params = (vlParamList){0};
   return true;
@@ -20,19 +23,24 @@ static bool keep_source(vlImport *import, vlSource *source) {
   return vl_scene_copy_source(import->scene, source);
 }
 
-/* ---- state ------------------------------------------------------------------------------------------------------ */
+/* ---- state
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
   int target = -1;
   for (int i = 0; i < VL_ATTR_TARGETS; i++)
-    if (vl_text_is(s->names[0], targets[i])) target = i;
+    if (vl_text_is(s->names[0], targets[i]))
+      target = i;
   if (target < 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
-                          vl_short_text(s->names[0]).text);
+    return vl_import_fail(
+        import, VL_ERROR_SCENE, s->source,
+        "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
+        vl_short_text(s->names[0]).text);
   vlParamList params = {0};
-  if (!vl_import_keep_params(import, s, &params)) return false;
+  if (!vl_import_keep_params(import, s, &params))
+    return false;
   bool fine = true;
   for (size_t i = 0; i < params.list.count; i++) {
     vlParam **slot = fine ? VL_PUSH(import->context, &import->attributes[target].list) : NULL;
@@ -49,18 +57,24 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   return fine || vl_import_fail_memory(import);
 }
 
-/* ---- objects ---------------------------------------------------------------------------------------------------- */
+/* ---- objects
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* An object may be instanced before it is defined: its group is made at the first use. */
 static vlObject *find_object(vlImport *import, const char *name, vlSource source) {
   uint32_t index;
-  if (vl_names_find(&import->objects, name, &index)) return &import->object_list.items[index];
+  if (vl_names_find(&import->objects, name, &index))
+    return &import->object_list.items[index];
   const char *kept = vl_import_keep(import, name);
-  if (!kept || !keep_source(import, &source)) return NULL;
+  if (!kept || !keep_source(import, &source))
+    return NULL;
   vlGroupId group = vl_scene_add_group(import->scene, kept);
-  if (!group.index) return NULL;
+  if (!group.index)
+    return NULL;
   vlObject *object = VL_PUSH(import->context, &import->object_list);
-  if (!object || !vl_names_add(import->context, &import->objects, kept, (uint32_t)import->object_list.count - 1)) {
+  if (!object || !vl_names_add(import->context, &import->objects, kept,
+                               (uint32_t)import->object_list.count - 1)) {
     vl_import_fail_memory(import);
     return NULL;
   }
@@ -70,11 +84,14 @@ static vlObject *find_object(vlImport *import, const char *name, vlSource source
 
 bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
   if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "ObjectBegin inside of an object: objects do not nest");
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "ObjectBegin inside of an object: objects do not nest");
   vlObject *object = find_object(import, s->names[0], s->source);
-  if (!object) return false;
+  if (!object)
+    return false;
   if (object->defined)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "object \"%s\" is defined a second time",
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "object \"%s\" is defined a second time",
                           vl_short_text(s->names[0]).text);
   object->defined = true;
   import->in_object = true;
@@ -83,7 +100,8 @@ bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_object_end(vlImport *import, const vlStatement *s) {
-  if (!vl_import_pop(import, 'o', "ObjectEnd", s->source)) return false;
+  if (!vl_import_pop(import, 'o', "ObjectEnd", s->source))
+    return false;
   import->in_object = false;
   import->object = (vlGroupId){0};
   return true;
@@ -91,16 +109,20 @@ bool vl_import_object_end(vlImport *import, const vlStatement *s) {
 
 bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
   if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "ObjectInstance inside of an object: objects do not nest");
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "ObjectInstance inside of an object: objects do not nest");
   const vlObject *object = find_object(import, s->names[0], s->source);
   return object && vl_import_add_instance(import, object->group, import->state.ctm, s->source);
 }
 
-/* ---- what waits ------------------------------------------------------------------------------------------------- */
+/* ---- what waits
+ * -------------------------------------------------------------------------------------------------
+ */
 
-static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target, bool is_texture) {
-  vlPending *p =
-      is_texture ? VL_PUSH(import->context, &import->textures) : VL_PUSH(import->context, &import->materials);
+static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target,
+                              bool is_texture) {
+  vlPending *p = is_texture ? VL_PUSH(import->context, &import->textures)
+                            : VL_PUSH(import->context, &import->materials);
   if (!p) {
     vl_import_fail_memory(import);
     return NULL;
@@ -109,11 +131,13 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
   p->source = s->source;
   p->space = import->state.space;
   p->ctm = import->state.ctm[0];
-  if (!keep_source(import, &p->source) || !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
+  if (!keep_source(import, &p->source) ||
+      !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
       !vl_import_keep_params(import, s, &own))
     return NULL;
   bool fine = true;
-  for (size_t i = 0; i < own.list.count; i++) { /* copied after the attributes, since the last one given counts */
+  for (size_t i = 0; i < own.list.count;
+       i++) { /* copied after the attributes, since the last one given counts */
     vlParam **slot = fine ? VL_PUSH(import->context, &p->params.list) : NULL;
     if (slot) {
       *slot = own.list.items[i];
@@ -123,13 +147,15 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
     }
   }
   VL_ARRAY_FREE(import->context, &own.list);
-  if (!fine) vl_import_fail_memory(import);
+  if (!fine)
+    vl_import_fail_memory(import);
   return fine ? p : NULL;
 }
 
 bool vl_import_material(vlImport *import, const vlStatement *s) {
   vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
-  if (!p || !(p->kind = vl_import_keep(import, s->names[0]))) return false;
+  if (!p || !(p->kind = vl_import_keep(import, s->names[0])))
+    return false;
   import->state.material = (uint32_t)import->materials.count;
   import->state.material_name = NULL;
   return true;
@@ -138,11 +164,15 @@ bool vl_import_material(vlImport *import, const vlStatement *s) {
 bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
   uint32_t index;
   if (vl_names_find(&import->named_materials, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "material \"%s\" is made a second time (first in line %u)",
-                          vl_short_text(s->names[0]).text, import->materials.items[index].source.line);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "material \"%s\" is made a second time (first in line %u)",
+                          vl_short_text(s->names[0]).text,
+                          import->materials.items[index].source.line);
   vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
-  if (!p || !(p->name = vl_import_keep(import, s->names[0]))) return false;
-  if (vl_names_add(import->context, &import->named_materials, p->name, (uint32_t)import->materials.count - 1))
+  if (!p || !(p->name = vl_import_keep(import, s->names[0])))
+    return false;
+  if (vl_names_add(import->context, &import->named_materials, p->name,
+                   (uint32_t)import->materials.count - 1))
     return true;
   return vl_import_fail_memory(import);
 }
@@ -162,21 +192,26 @@ bool vl_import_named_material(vlImport *import, const vlStatement *s) {
 bool vl_import_texture(vlImport *import, const vlStatement *s) {
   bool spectrum = vl_text_is(s->names[1], "spectrum") || vl_text_is(s->names[1], "color");
   if (!spectrum && !vl_text_is(s->names[1], "float"))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
-                          vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
+    return vl_import_fail(
+        import, VL_ERROR_SCENE, s->source,
+        "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
+        vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
   vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   uint32_t index;
   if (vl_names_find(table, s->names[0], &index))
     return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "%s texture \"%s\" is made a second time (first in line %u)", spectrum ? "spectrum" : "float",
-                          vl_short_text(s->names[0]).text, import->textures.items[index].source.line);
+                          "%s texture \"%s\" is made a second time (first in line %u)",
+                          spectrum ? "spectrum" : "float", vl_short_text(s->names[0]).text,
+                          import->textures.items[index].source.line);
   vlPending *p = add_pending(import, s, VL_ATTR_TEXTURE, true);
-  if (!p) return false;
+  if (!p)
+    return false;
   p->spectrum = spectrum;
-  if (!vl_import_ctm(import, s->source, &p->ctm) || !(p->name = vl_import_keep(import, s->names[0])) ||
+  if (!vl_import_ctm(import, s->source, &p->ctm) ||
+      !(p->name = vl_import_keep(import, s->names[0])) ||
       !(p->kind = vl_import_keep(import, s->names[2])))
     return false;
-  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1)) return true;
+  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1))
+    return true;
   return vl_import_fail_memory(import);
 }

@@ -7,8 +7,8 @@
 #include "import/pbrt/token.h"
 #include "velo/render.h"
 
-/* Reads the crop window. pbrt's "pixelbounds" are x0 x1 y0 y1 in pixels. "cropwindow" gives the same as fractions of
- * the image size, which are rounded up; it takes precedence. */
+/* Reads the crop window. pbrt's "pixelbounds" are x0 x1 y0 y1 in pixels. "cropwindow" gives the
+ * same as fractions of the image size, which are rounded up; it takes precedence. */
 static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
   double w = s->film.width, h = s->film.height, box[4] = {0, w, 0, h}, crop[4];
@@ -17,7 +17,8 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   if (pixels) {
     source = pixels->source;
     if (pixels->integers.count != 4)
-      return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
+      return vl_import_fail(import, VL_ERROR_SCENE, source,
+                            "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
                             dict->what, pixels->integers.count);
     for (int i = 0; i < 4; i++) {
       double v = pixels->integers.items[i], top = i < 2 ? w : h;
@@ -36,7 +37,8 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
     }
   }
   if (!(box[0] < box[1] && box[2] < box[3]))
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: the crop window holds no pixel", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: the crop window holds no pixel",
+                          dict->what);
   s->film.crop[0] = (uint32_t)box[0];
   s->film.crop[2] = (uint32_t)box[1];
   s->film.crop[1] = (uint32_t)box[2];
@@ -44,8 +46,8 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   return import->scene->error.code == VL_OK;
 }
 
-/* Reads the name of the sensor. The default white of a measured sensor is daylight of 6500 K. When permissive, the
- * standard observer with the same white replaces an unknown sensor. */
+/* Reads the name of the sensor. The default white of a measured sensor is daylight of 6500 K.
+ * When permissive, the standard observer with the same white replaces an unknown sensor. */
 static bool read_sensor_name(vlDict *dict, double *white) {
   enum { MOST = 64 };
   const char *names[MOST], *plain = vl_sensor_name(0), *name = plain;
@@ -56,7 +58,8 @@ static bool read_sensor_name(vlDict *dict, double *white) {
     count++;
   }
   vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
-  if (!vl_dict_string(dict, "sensor", &name) || vl_text_is(name, plain)) return true;
+  if (!vl_dict_string(dict, "sensor", &name) || vl_text_is(name, plain))
+    return true;
   *white = 6500.0;
   for (uint32_t i = 1; i < count; i++)
     if (vl_text_is(name, names[i])) {
@@ -70,21 +73,24 @@ static bool read_sensor_name(vlDict *dict, double *white) {
 static bool read_sensor(vlDict *dict) {
   vlImport *import = dict->import;
   double white = 0.0, usual = 0.0, top = INFINITY;
-  if (!read_sensor_name(dict, &usual)) return false;
-  if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 && !(white >= 1000.0 && white <= 1e5))
-    return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->source,
-                          "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
-                          white);
+  if (!read_sensor_name(dict, &usual))
+    return false;
+  if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 &&
+      !(white >= 1000.0 && white <= 1e5))
+    return vl_import_fail(
+        import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->source,
+        "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
+        white);
   vl_scene_defs(import->scene)->film.white_balance = white != 0.0 ? white : usual;
   if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"maxcomponentvalue\" must not be negative",
-                          dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: \"maxcomponentvalue\" must not be negative", dict->what);
   vl_scene_defs(import->scene)->film.max_component = top < 1e30 ? (float)top : INFINITY;
   return import->scene->error.code == VL_OK;
 }
 
-/* Reads the parameters that the rows do not describe: the file name, the factors of the exposure, the crop window, the
- * sensor. */
+/* Reads the parameters that the rows do not describe: the file name, the factors of the
+ * exposure, the crop window, the sensor. */
 static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
   double iso = 100.0, time = 1.0, ratio = 1.0;
@@ -94,23 +100,27 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vl_dict_string(dict, "filename", &output);
   import->film_diagonal = 35.0;
   vl_dict_double(dict, "diagonal", &import->film_diagonal); /* used by realistic cameras only */
-  vl_dict_bool(dict, "savefp16", &half);                    /* ignored: the program decides how the file is written */
+  vl_dict_bool(dict, "savefp16",
+               &half); /* ignored: the program decides how the file is written */
   vl_dict_double(dict, "iso", &iso);
   vl_dict_double(dict, "exposuretime", &time);
   vl_dict_double(dict, "imagingratio", &ratio);
-  if (import->scene->error.code != VL_OK) return false;
+  if (import->scene->error.code != VL_OK)
+    return false;
   if (strlen(output) >= sizeof s->output)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->source, "%s: the file name is too long", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, file->source, "%s: the file name is too long",
+                          dict->what);
   snprintf(s->output, sizeof s->output, "%s", output);
   s->develop.exposure = (float)(iso / 100.0 * time * ratio);
   if (!(s->develop.exposure >= 0.0f) || !isfinite(s->develop.exposure))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: the exposure is negative or not finite",
-                          dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: the exposure is negative or not finite", dict->what);
   return read_crop(dict, s) && read_sensor(dict);
 }
 
 static bool read_gbuffer(vlDict *dict, vlSceneDefs *s) {
-  const vlParameter *system = vl_row_find(vl_kind_row(&vl_film_family, VL_FILM_GBUFFER), "coordinatesystem");
+  const vlParameter *system =
+      vl_row_find(vl_kind_row(&vl_film_family, VL_FILM_GBUFFER), "coordinatesystem");
   int number = 0;
   vl_dict_choice(dict, system->name, system->choices, 2, &number);
   s->gbuffer = number ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
@@ -118,10 +128,11 @@ static bool read_gbuffer(vlDict *dict, vlSceneDefs *s) {
 }
 
 static bool check_wavelengths(vlDict *dict, vlSceneDefs *s) {
-  if (!s->film.buckets || s->film.lambda_min < s->film.lambda_max) return true;
+  if (!s->film.buckets || s->film.lambda_min < s->film.lambda_max)
+    return true;
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                        "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g", dict->what, s->film.lambda_min,
-                        s->film.lambda_max);
+                        "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g",
+                        dict->what, s->film.lambda_min, s->film.lambda_max);
 }
 
 /* Functions, by kind, for what the rows do not describe; null: none. */
@@ -135,27 +146,36 @@ bool vl_import_film(vlImport *import) {
   char what[96];
   snprintf(what, sizeof what, "Film \"%s\"",
            vl_import_kind_text(&vl_film_family, choice->given ? choice->kind : "rgb").text);
-  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  vlDict dict =
+      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind = choice->given ? vl_kind_find(&vl_film_family, choice->kind) : VL_FILM_RGB;
   bool known = kind >= 0;
-  if (!known && !vl_import_unknown_kind(import, choice->source, &vl_film_family, choice->kind)) return false;
-  if (!known) kind = VL_FILM_RGB;
+  if (!known && !vl_import_unknown_kind(import, choice->source, &vl_film_family, choice->kind))
+    return false;
+  if (!known)
+    kind = VL_FILM_RGB;
   const vlKindRow *row = vl_kind_row(&vl_film_family, kind);
   vl_row_set_defaults(row, s);
   s->film.space = choice->given ? choice->space : VL_SPACE_SRGB;
-  if (!vl_import_parameters(&dict, row, s, false, NULL) || !read_rest(&dict, s)) return false;
-  if ((rules[kind] && !rules[kind](&dict, s)) || !check_wavelengths(&dict, s)) return false;
-  if (!known) vl_dict_skip(&dict);
+  if (!vl_import_parameters(&dict, row, s, false, NULL) || !read_rest(&dict, s))
+    return false;
+  if ((rules[kind] && !rules[kind](&dict, s)) || !check_wavelengths(&dict, s))
+    return false;
+  if (!known)
+    vl_dict_skip(&dict);
   return vl_dict_done(&dict);
 }
 
-/* ---- options ---------------------------------------------------------------------------------------------------- */
+/* ---- options
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* pbrt compares option names without case, blanks, dashes and underscores. */
 static void normalise(const char *name, char *result, size_t size) {
   size_t n = 0;
   for (; *name && n + 1 < size; name++)
-    if (*name != '-' && *name != '_') result[n++] = *name >= 'A' && *name <= 'Z' ? (char)(*name - 'A' + 'a') : *name;
+    if (*name != '-' && *name != '_')
+      result[n++] = *name >= 'A' && *name <= 'Z' ? (char)(*name - 'A' + 'a') : *name;
   result[n] = 0;
 }
 
@@ -168,37 +188,46 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                   {"disabletexturefiltering", &defs->render.sharp_textures},
                   {"disablewavelengthjitter", &defs->render.same_wavelengths},
                   {"forcediffuse", NULL}};
-  static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats", "wavefront",
-                                         "rendercoordsys"};
+  static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats",
+                                         "wavefront", "rendercoordsys"};
   char name[64];
   const char *value = s->names[1];
   normalise(s->names[0], name, sizeof name);
   if (vl_text_is(name, "seed")) {
     double seed;
-    if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"seed\": \"%s\" is not an integer",
+    if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) ||
+        fabs(seed) > 4294967295.0)
+      return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                            "Option \"seed\": \"%s\" is not an integer",
                             vl_short_text(value).text);
     defs->render.seed = (uint32_t)(int64_t)seed;
     return true;
   }
   if (vl_text_is(name, "displacementedgescale")) {
-    if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"%s\": \"%s\" is not a number above 0", name,
+    if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0)
+      return true;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "Option \"%s\": \"%s\" is not a number above 0", name,
                           vl_short_text(value).text);
   }
   for (size_t i = 0; i < VL_LENGTH(switches); i++) {
-    if (!vl_text_is(name, switches[i].name)) continue;
+    if (!vl_text_is(name, switches[i].name))
+      continue;
     bool on = vl_text_is(value, "true");
     if (!on && !vl_text_is(value, "false"))
-      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"%s\": expected true or false, found \"%s\"",
+      return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                            "Option \"%s\": expected true or false, found \"%s\"",
                             switches[i].name, vl_short_text(value).text);
-    if (switches[i].value) *switches[i].value = on;
+    if (switches[i].value)
+      *switches[i].value = on;
     return switches[i].value || !on ||
-           vl_import_unsupported(import, s->source, "Option \"%s\": velo cannot; its materials stay what they are",
+           vl_import_unsupported(import, s->source,
+                                 "Option \"%s\": velo cannot; its materials stay what they are",
                                  name);
   }
   for (size_t i = 0; i < VL_LENGTH(harmless); i++)
-    if (vl_text_is(name, harmless[i])) return true;
+    if (vl_text_is(name, harmless[i]))
+      return true;
   static const char *const known[] = {"seed",
                                       "displacementedgescale",
                                       "disablepixeljitter",
@@ -210,5 +239,6 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                                       "pixelstats",
                                       "wavefront",
                                       "rendercoordsys"};
-  return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known), NULL, 0);
+  return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known),
+                           NULL, 0);
 }

@@ -1,5 +1,5 @@
-/* import/pbrt/light.c: LightSource and AreaLightSource of pbrt-v4. This file stores scale, power and illuminance; the
- * world applies them. */
+/* import/pbrt/light.c: LightSource and AreaLightSource of pbrt-v4. This file stores scale,
+ * power and illuminance; the world applies them. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +9,8 @@
 
 /* Ignores a power or illuminance that is not positive, as in pbrt. */
 static void drop_target(double *value) {
-  if (!(*value > 0.0)) *value = VL_UNSET;
+  if (!(*value > 0.0))
+    *value = VL_UNSET;
 }
 
 /* The portal is in world space whatever the current transform is, as in pbrt. */
@@ -17,51 +18,65 @@ static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   vlImport *import = dict->import;
   size_t count = portal->floats.count;
   if (count != 12)
-    return vl_import_fail(import, VL_ERROR_SCENE, portal->source, "%s: \"portal\" takes 4 points, found %zu numbers",
-                          dict->what, count);
+    return vl_import_fail(import, VL_ERROR_SCENE, portal->source,
+                          "%s: \"portal\" takes 4 points, found %zu numbers", dict->what,
+                          count);
   def->has_portal = true;
-  for (int i = 0; i < 12; i++) def->portal[i / 3][i % 3] = portal->floats.items[i];
+  for (int i = 0; i < 12; i++)
+    def->portal[i / 3][i % 3] = portal->floats.items[i];
   return true;
 }
 
 /* Checks that the radiance has one source. */
 static bool check_source(vlDict *dict, const vlKindRow *row) {
-  if (!vl_row_find(row, "L") || !vl_row_find(row, "filename")) return true;
+  if (!vl_row_find(row, "L") || !vl_row_find(row, "filename"))
+    return true;
   vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   if (color && file && file->strings.items[0][0])
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->source, "%s: give either \"L\" or \"filename\", not both",
-                          dict->what);
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->source,
+                          "%s: give either \"L\" or \"filename\", not both", dict->what);
   return dict->import->scene->error.code == VL_OK;
 }
 
 /* Rules that the row does not express. given: one entry per parameter of the row. */
-static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, vlLightDef *def) {
+static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given,
+                         vlLightDef *def) {
   vlImport *import = dict->import;
-  vlParam *portal = vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3) : NULL;
-  bool far = row->traits & VL_LIGHT_TRAIT_FAR, has_color = vl_row_find(row, far ? "L" : "I") != NULL;
+  vlParam *portal =
+      vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3) : NULL;
+  bool far = row->traits & VL_LIGHT_TRAIT_FAR,
+       has_color = vl_row_find(row, far ? "L" : "I") != NULL;
   bool color_given = has_color && vl_import_given(row, given, far ? "L" : "I");
-  if (has_color && !color_given) def->color.space = dict->space; /* default: the colour space's white */
+  if (has_color && !color_given)
+    def->color.space = dict->space; /* default: the colour space's white */
   drop_target(&def->power);
   drop_target(&def->illuminance);
-  if (portal && !read_portal(dict, def, portal)) return false;
+  if (portal && !read_portal(dict, def, portal))
+    return false;
   if (!has_color && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
     vl_import_warn(import, VL_LOG_WARNING, dict->source,
-                   "%s: \"I\" has no effect, as in pbrt: the image is the intensity", dict->what);
-  if (!vl_dict_done(dict)) return false;
+                   "%s: \"I\" has no effect, as in pbrt: the image is the intensity",
+                   dict->what);
+  if (!vl_dict_done(dict))
+    return false;
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path && !import->image_missing)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"string filename\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: \"string filename\" is missing", dict->what);
   return true;
 }
 
-/* Makes an image of one pixel for a constant environment with a portal, since a portal needs an image, as in pbrt. */
+/* Makes an image of one pixel for a constant environment with a portal, since a portal needs an
+ * image, as in pbrt. */
 static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   vlImageDef image = vl_default_image_def(1, 1, 3);
   vlError error = {0};
   float rgb[3];
   vlResult r = vl_spectrum_to_rgb(&def->color, VL_ROLE_ILLUMINANT, def->space, rgb, &error);
-  if (r == VL_OK) r = vl_image_create(import->context, &image, sky);
-  if (r != VL_OK) return vl_import_fail(import, r, def->source, "%s", error.message);
+  if (r == VL_OK)
+    r = vl_image_create(import->context, &image, sky);
+  if (r != VL_OK)
+    return vl_import_fail(import, r, def->source, "%s", error.message);
   memcpy(vl_image_pixels(*sky), rgb, sizeof rgb);
   return true;
 }
@@ -71,7 +86,8 @@ enum { MOST_PARAMETERS = 32 };
 bool vl_import_light(vlImport *import, const vlStatement *s) {
   char what[96];
   bool given[MOST_PARAMETERS];
-  snprintf(what, sizeof what, "LightSource \"%s\"", vl_import_kind_text(&vl_light_family, s->names[0]).text);
+  snprintf(what, sizeof what, "LightSource \"%s\"",
+           vl_import_kind_text(&vl_light_family, s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   int kind = vl_kind_find(&vl_light_family, s->names[0]);
@@ -84,38 +100,46 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   def.source = s->source;
   def.space = import->state.space;
   if (!vl_import_ctm(import, s->source, &ctm) || !check_source(&dict, row) ||
-      !vl_import_parameters(&dict, row, &def, true, given) || !finish_light(&dict, row, given, &def))
+      !vl_import_parameters(&dict, row, &def, true, given) ||
+      !finish_light(&dict, row, given, &def))
     return false;
-  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def.path) return true; /* permissive: skipped */
+  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def.path)
+    return true; /* permissive: skipped */
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
   if (def.path)
-    def.space = VL_SPACE_SRGB; /* as in pbrt, sRGB for an image without a colour space of its own, whatever the
-                                  directive ColorSpace names */
+    def.space = VL_SPACE_SRGB; /* as in pbrt, sRGB for an image without a colour space of its
+                                  own, whatever the directive ColorSpace names */
   vlImage *sky = NULL;
-  if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
+  if (def.has_portal && !def.path && !plain_sky(import, &def, &sky))
+    return false;
   def.image = sky;
   vlLightId id = vl_scene_add_light(import->scene, &def);
   vl_image_destroy(sky);
-  return id.index != 0 &&
-         ((row->traits & VL_LIGHT_TRAIT_FAR) || vl_import_note_media(import, 'l', id.index - 1, s->source));
+  return id.index != 0 && ((row->traits & VL_LIGHT_TRAIT_FAR) ||
+                           vl_import_note_media(import, 'l', id.index - 1, s->source));
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   char what[96];
   bool given[MOST_PARAMETERS];
-  snprintf(what, sizeof what, "AreaLightSource \"%s\"", vl_import_kind_text(&vl_emission_family, s->names[0]).text);
+  snprintf(what, sizeof what, "AreaLightSource \"%s\"",
+           vl_import_kind_text(&vl_emission_family, s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};
-  if (s->names[0][0] == 0) return true; /* as in pbrt, an empty name ends the current area light */
+  if (s->names[0][0] == 0)
+    return true; /* as in pbrt, an empty name ends the current area light */
   int kind = vl_kind_find(&vl_emission_family, s->names[0]);
-  if (kind < 0) return vl_import_unknown_kind(import, s->source, &vl_emission_family, s->names[0]);
+  if (kind < 0)
+    return vl_import_unknown_kind(import, s->source, &vl_emission_family, s->names[0]);
   const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);
   vlEmissionDef def = vl_default_emission_def();
   def.source = s->source;
-  if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) || !vl_dict_done(&dict))
+  if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) ||
+      !vl_dict_done(&dict))
     return false;
-  if (!vl_import_given(row, given, "L")) def.radiance.space = dict.space; /* default: the colour space's white */
+  if (!vl_import_given(row, given, "L"))
+    def.radiance.space = dict.space; /* default: the colour space's white */
   drop_target(&def.power);
   import->state.emission = vl_scene_add_emission(import->scene, &def);
   return import->state.emission.index != 0;

@@ -1,5 +1,6 @@
-/* import/pbrt/loop.h: Loop subdivision of a triangle mesh to its limit surface (Loop 1987; border rules and limit masks
- * as in "Physically Based Rendering", 3rd edition, 3.8): pbrt's shape "loopsubdiv". */
+/* import/pbrt/loop.h: Loop subdivision of a triangle mesh to its limit surface (Loop 1987;
+ * border rules and limit masks as in "Physically Based Rendering", 3rd edition, 3.8): pbrt's
+ * shape "loopsubdiv". */
 #ifndef IMPORT_PBRT_LOOP_H
 #define IMPORT_PBRT_LOOP_H
 
@@ -7,14 +8,16 @@
 
 typedef struct vlLoopMesh {
   uint32_t vertices, faces;
-  float *positions, *normals; /* 3 per vertex, on the limit surface. As in pbrt, normals are opposite to the winding and
-                                 not normalised */
+  float *positions, *normals; /* 3 per vertex, on the limit surface. As in pbrt, normals are
+                                 opposite to the winding and not normalised */
   uint32_t *indices;          /* 3 per face */
 } vlLoopMesh;
 
-/* Subdivides `levels` times. Indices must be in range. The result's arrays are blocks of the context. Errors: MEMORY;
- * SCENE, with a message in `error`, for a mesh that is not a surface or has too many faces. */
-vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *positions, uint32_t faces,
-                           const uint32_t *indices, uint32_t levels, vlLoopMesh *mesh, vlError *error);
+/* Subdivides `levels` times. Indices must be in range. The result's arrays are blocks of the
+ * context. Errors: MEMORY; SCENE, with a message in `error`, for a mesh that is not a surface
+ * or has too many faces. */
+vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *positions,
+                           uint32_t faces, const uint32_t *indices, uint32_t levels,
+                           vlLoopMesh *mesh, vlError *error);
 
 #endif

@@ -1,30 +1,36 @@
-/* import/pbrt/material.c: converts Material and MakeNamedMaterial to materials of the scene. The parts of a mix are
- * converted first. The rows describe the parameters (schema/materials.c). */
+/* import/pbrt/material.c: converts Material and MakeNamedMaterial to materials of the scene.
+ * The parts of a mix are converted first. The rows describe the parameters
+ * (schema/materials.c). */
 #include <assert.h>
 #include <stdio.h>
 
 #include "import/pbrt/builder.h"
 #include "velo/material.h"
 
-bool vl_import_material_id(vlImport *import, const char *name, vlSource source, vlMaterialId *id, bool *is_interface) {
+bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
+                           vlMaterialId *id, bool *is_interface) {
   uint32_t index;
   if (!vl_names_find(&import->named_materials, name, &index)) {
     const char *near = vl_names_nearest(&import->named_materials, name);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no material \"%s\" (did you mean \"%s\"?)",
+      return vl_import_fail(import, VL_ERROR_SCENE, source,
+                            "there is no material \"%s\" (did you mean \"%s\"?)",
                             vl_short_text(name).text, vl_short_text(near).text);
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no material \"%s\"", vl_short_text(name).text);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no material \"%s\"",
+                          vl_short_text(name).text);
   }
   if (import->materials.items[index].state == VL_IN_PROGRESS)
     return vl_import_fail(import, VL_ERROR_SCENE, source, "material \"%s\" is mixed of itself",
                           vl_short_text(name).text);
-  if (!vl_import_finish_material(import, index)) return false;
+  if (!vl_import_finish_material(import, index))
+    return false;
   id->index = import->materials.items[index].id;
   *is_interface = import->materials.items[index].is_interface;
   return true;
 }
 
-/* ---- what a table cannot say ------------------------------------------------------------------------------------- */
+/* ---- what a table cannot say
+ * ------------------------------------------------------------------------------------- */
 
 /* The parameters of one material: its row, and which of them the file gives. */
 typedef struct Reading {
@@ -34,7 +40,8 @@ typedef struct Reading {
 } Reading;
 
 static bool refuse(const Reading *r, const char *what) {
-  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source, "%s: %s", r->dict->what, what);
+  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source, "%s: %s",
+                        r->dict->what, what);
 }
 
 static bool given(const Reading *r, const char *name) {
@@ -43,9 +50,11 @@ static bool given(const Reading *r, const char *name) {
 
 static bool finish_metal(const Reading *r, vlMaterialDef *def, const char *eta, const char *k) {
   def->use_reflectance = given(r, "reflectance");
-  if (!def->use_reflectance || (!given(r, eta) && !given(r, k))) return true;
+  if (!def->use_reflectance || (!given(r, eta) && !given(r, k)))
+    return true;
   return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
-                        "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both", r->dict->what, eta, k);
+                        "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both",
+                        r->dict->what, eta, k);
 }
 
 static bool finish_conductor(const Reading *r, vlMaterialDef *def) {
@@ -59,26 +68,37 @@ static bool finish_coated_conductor(const Reading *r, vlMaterialDef *def) {
 static bool finish_mix(const Reading *r, vlMaterialDef *def) {
   vlImport *import = r->dict->import;
   vlParam *p = vl_dict_find(r->dict, "materials", 1u << VL_PARAM_STRING);
-  if (!p) return vl_dict_done(r->dict) && refuse(r, "\"string materials\" (two names) is missing");
+  if (!p)
+    return vl_dict_done(r->dict) && refuse(r, "\"string materials\" (two names) is missing");
   if (p->strings.count != 2)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"materials\" takes 2 values, found %zu",
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "%s: parameter \"materials\" takes 2 values, found %zu",
                           r->dict->what, p->strings.count);
   for (int i = 0; i < 2; i++) {
     bool is_interface;
-    if (!vl_import_material_id(import, p->strings.items[i], p->source, &def->materials[i], &is_interface)) return false;
+    if (!vl_import_material_id(import, p->strings.items[i], p->source, &def->materials[i],
+                               &is_interface))
+      return false;
   }
   return true;
 }
 
-/* As in pbrt, only the first of sigma_a, reflectance and the melanins that is given has an effect. */
+/* As in pbrt, only the first of sigma_a, reflectance and the melanins that is given has an
+ * effect.
+ */
 static bool finish_hair(const Reading *r, vlMaterialDef *def) {
-  bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"), pheomelanin = given(r, "pheomelanin");
+  bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"),
+       pheomelanin = given(r, "pheomelanin");
   bool melanin = given(r, "eumelanin") || pheomelanin;
-  if (pheomelanin && !given(r, "eumelanin")) def->hair.eumelanin = vl_float_input(0.0f);
-  def->hair.color = sigma ? VL_HAIR_SIGMA_A : reflectance ? VL_HAIR_REFLECTANCE : VL_HAIR_MELANIN;
+  if (pheomelanin && !given(r, "eumelanin"))
+    def->hair.eumelanin = vl_float_input(0.0f);
+  def->hair.color = sigma         ? VL_HAIR_SIGMA_A
+                    : reflectance ? VL_HAIR_REFLECTANCE
+                                  : VL_HAIR_MELANIN;
   if (sigma + reflectance + melanin > 1)
     vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->source,
-                   "%s: its colour is given in several ways; sigma_a comes before reflectance, that before melanin",
+                   "%s: its colour is given in several ways; sigma_a comes before reflectance, "
+                   "that before melanin",
                    r->dict->what);
   return true;
 }
@@ -89,19 +109,27 @@ static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
   bool a = given(r, "sigma_a"), s = given(r, "sigma_s"), mfp = given(r, "mfp"), named;
   vlSpectrum preset_a, preset_s;
   d->from_reflectance = given(r, "reflectance");
-  if (!vl_import_scattering_preset(r->dict, "name", &preset_a, &preset_s, &named)) return false;
+  if (!vl_import_scattering_preset(r->dict, "name", &preset_a, &preset_s, &named))
+    return false;
   if (named + (a || s) + (d->from_reflectance || mfp) > 1)
     return refuse(
-        r, "give only one of \"name\", \"sigma_a\" and \"sigma_s\", \"reflectance\" (and \"mfp\"): each says all");
+        r,
+        "give only one of \"name\", \"sigma_a\" and \"sigma_s\", \"reflectance\" (and "
+        "\"mfp\"): each says all");
   if (a != s)
-    return refuse(r, a ? "\"sigma_s\" is missing beside \"sigma_a\"" : "\"sigma_a\" is missing beside \"sigma_s\"");
-  if (mfp && !d->from_reflectance) return refuse(r, "\"reflectance\" is missing beside \"mfp\"");
-  if (!named) return true;
+    return refuse(r, a ? "\"sigma_s\" is missing beside \"sigma_a\""
+                       : "\"sigma_a\" is missing beside \"sigma_s\"");
+  if (mfp && !d->from_reflectance)
+    return refuse(r, "\"reflectance\" is missing beside \"mfp\"");
+  if (!named)
+    return true;
   d->sigma_a = vl_spectrum_input(preset_a);
   d->sigma_s = vl_spectrum_input(preset_s);
-  if (def->g.value == 0.0f) return true;
+  if (def->g.value == 0.0f)
+    return true;
   vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->source,
-                 "%s: \"g\" is ignored beside \"name\": measured scattering is that of g = 0", r->dict->what);
+                 "%s: \"g\" is ignored beside \"name\": measured scattering is that of g = 0",
+                 r->dict->what);
   def->g = vl_float_input(0.0f);
   return true;
 }
@@ -115,7 +143,9 @@ static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
     [VL_MATERIAL_HAIR] = finish_hair,
     [VL_MATERIAL_SUBSURFACE] = finish_subsurface};
 
-/* ---- materials --------------------------------------------------------------------------------------------------- */
+/* ---- materials
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static bool read_material(vlDict *dict, vlMaterialDef *def) {
   enum { MOST = 64 };
@@ -123,8 +153,8 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
   const Reading r = {dict, row, is_given};
   assert(row->parameter_count <= MOST);
-  return vl_import_parameters(dict, row, def, true, is_given) && (!rules[def->kind] || rules[def->kind](&r, def)) &&
-         vl_dict_done(dict);
+  return vl_import_parameters(dict, row, def, true, is_given) &&
+         (!rules[def->kind] || rules[def->kind](&r, def)) && vl_dict_done(dict);
 }
 
 /* Finds the kind; *kind is -1 for an unknown name. False after an error. */
@@ -133,13 +163,16 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *k
   vlSource source = pending->source;
   if (!type) { /* MakeNamedMaterial */
     if (!vl_dict_string(dict, "type", &type)) {
-      if (import->scene->error.code != VL_OK) return false;
-      return vl_import_fail(import, VL_ERROR_SCENE, source, "MakeNamedMaterial \"%s\": \"string type\" is missing",
+      if (import->scene->error.code != VL_OK)
+        return false;
+      return vl_import_fail(import, VL_ERROR_SCENE, source,
+                            "MakeNamedMaterial \"%s\": \"string type\" is missing",
                             vl_short_text(pending->name).text);
     }
     source = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->source;
   }
-  *kind = type[0] ? vl_kind_find(&vl_material_family, type) : VL_MATERIAL_INTERFACE; /* pbrt-v3's spelling */
+  *kind = type[0] ? vl_kind_find(&vl_material_family, type)
+                  : VL_MATERIAL_INTERFACE; /* pbrt-v3's spelling */
   return *kind >= 0 || vl_import_unknown_kind(import, source, &vl_material_family, type);
 }
 
@@ -147,16 +180,21 @@ static bool finish(vlImport *import, uint32_t index) {
   vlPending *pending = &import->materials.items[index]; /* the array no longer grows */
   char what[128];
   if (pending->kind)
-    snprintf(what, sizeof what, "Material \"%s\"", vl_import_kind_text(&vl_material_family, pending->kind).text);
+    snprintf(what, sizeof what, "Material \"%s\"",
+             vl_import_kind_text(&vl_material_family, pending->kind).text);
   else
     snprintf(what, sizeof what, "MakeNamedMaterial \"%s\"", vl_short_text(pending->name).text);
-  vlDict dict = vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
+  vlDict dict =
+      vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
   int kind = -1;
-  if (!find_kind(import, pending, &dict, &kind)) return false;
-  vlMaterialDef def = vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : (vlMaterialKind)kind);
+  if (!find_kind(import, pending, &dict, &kind))
+    return false;
+  vlMaterialDef def =
+      vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : (vlMaterialKind)kind);
   def.name = pending->name;
   def.source = pending->source;
-  if (kind >= 0 && !read_material(&dict, &def)) return false;
+  if (kind >= 0 && !read_material(&dict, &def))
+    return false;
   pending->is_interface = def.kind == VL_MATERIAL_INTERFACE;
   pending->id = vl_scene_add_material(import->scene, &def).index;
   return pending->id != 0;
@@ -164,12 +202,15 @@ static bool finish(vlImport *import, uint32_t index) {
 
 bool vl_import_finish_material(vlImport *import, uint32_t index) {
   vlPending *pending = &import->materials.items[index];
-  if (pending->state == VL_DONE) return true;
+  if (pending->state == VL_DONE)
+    return true;
   if (++import->depth > VL_IMPORT_DEPTH)
     return vl_import_fail(import, VL_ERROR_SCENE, pending->source,
-                          "materials are mixed of each other more than %d deep", VL_IMPORT_DEPTH);
+                          "materials are mixed of each other more than %d deep",
+                          VL_IMPORT_DEPTH);
   pending->state = VL_IN_PROGRESS;
-  if (!finish(import, index)) return false;
+  if (!finish(import, index))
+    return false;
   import->depth--;
   pending->state = VL_DONE;
   return true;

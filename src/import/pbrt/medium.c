@@ -1,5 +1,6 @@
-/* import/pbrt/medium.c: MakeNamedMedium, and the media of shapes, lights and the camera. Names are resolved at the end,
- * since pbrt allows a medium to be named before it is defined. Parameters and defaults are pbrt-v4's. */
+/* import/pbrt/medium.c: MakeNamedMedium, and the media of shapes, lights and the camera. Names
+ * are resolved at the end, since pbrt allows a medium to be named before it is defined.
+ * Parameters and defaults are pbrt-v4's. */
 #include <math.h>
 #include <stdio.h>
 
@@ -10,37 +11,45 @@
 #include "velo/medium.h"
 #include "velo/shape.h"
 
-/* ---- parameters ------------------------------------------------------------------------------------------------- */
+/* ---- parameters
+ * -------------------------------------------------------------------------------------------------
+ */
 
-bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption, vlSpectrum *scattering,
-                                 bool *given) {
+bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption,
+                                 vlSpectrum *scattering, bool *given) {
   const char *name = NULL, *names[64];
   size_t count = 0;
   *given = false;
-  if (!vl_dict_string(dict, parameter, &name)) return dict->import->scene->error.code == VL_OK;
+  if (!vl_dict_string(dict, parameter, &name))
+    return dict->import->scene->error.code == VL_OK;
   *given = name[0] != 0;
-  for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count)); count++) {
+  for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count));
+       count++) {
     names[count] = s->name;
-    if (!vl_text_is(s->name, name)) continue;
+    if (!vl_text_is(s->name, name))
+      continue;
     *absorption = vl_spectrum_rgb(s->absorption[0], s->absorption[1], s->absorption[2]);
     *scattering = vl_spectrum_rgb(s->scattering[0], s->scattering[1], s->scattering[2]);
     return true;
   }
-  if (!*given) return true;
+  if (!*given)
+    return true;
   vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->source;
   const char *near = vl_nearest_name(name, names, count);
   if (near)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\" (did you mean \"%s\"?)",
-                          dict->what, vl_short_text(name).text, near);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\"", dict->what,
-                        vl_short_text(name).text);
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, at,
+                          "%s: no preset is named \"%s\" (did you mean \"%s\"?)", dict->what,
+                          vl_short_text(name).text, near);
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\"",
+                        dict->what, vl_short_text(name).text);
 }
 
 /* A preset takes precedence over sigma_a and sigma_s, as in pbrt. */
 static bool read_preset(vlDict *dict, vlMediumDef *def) {
   vlSpectrum absorption, scattering;
   bool given;
-  if (!vl_import_scattering_preset(dict, "preset", &absorption, &scattering, &given)) return false;
+  if (!vl_import_scattering_preset(dict, "preset", &absorption, &scattering, &given))
+    return false;
   if (given) {
     def->sigma_a = absorption;
     def->sigma_s = scattering;
@@ -51,34 +60,43 @@ static bool read_preset(vlDict *dict, vlMediumDef *def) {
 /* As in pbrt, the corners of the box are sorted. */
 static void sort_box(vlMediumDef *def) {
   for (int i = 0; i < 3; i++) {
-    if (!(def->low[i] > def->high[i])) continue;
+    if (!(def->low[i] > def->high[i]))
+      continue;
     float t = def->low[i];
     def->low[i] = def->high[i];
     def->high[i] = t;
   }
 }
 
-/* Reads a grid with `per` numbers per cell. The result is null when the parameter is not given. */
-static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def, const float **values) {
+/* Reads a grid with `per` numbers per cell. The result is null when the parameter is not given.
+ */
+static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def,
+                       const float **values) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
-  if (!p) return dict->import->scene->error.code == VL_OK;
+  if (!p)
+    return dict->import->scene->error.code == VL_OK;
   size_t per = type == VL_PARAM_RGB ? 3 : 1, count = p->floats.count / per;
   double cells = (double)def->nx * def->ny * def->nz;
   if (p->floats.count % per || (double)count != cells)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                          "%s: \"%s\" holds %zu numbers, but nx * ny * nz = %u * %u * %u cells need %.0f", dict->what,
-                          name, p->floats.count, def->nx, def->ny, def->nz, cells * (double)per);
+    return vl_import_fail(
+        dict->import, VL_ERROR_SCENE, p->source,
+        "%s: \"%s\" holds %zu numbers, but nx * ny * nz = %u * %u * %u cells need %.0f",
+        dict->what, name, p->floats.count, def->nx, def->ny, def->nz, cells * (double)per);
   *values = p->floats.items;
   return true;
 }
 
 static bool missing(vlDict *dict, const char *what) {
-  if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s is missing", dict->what, what);
+  if (!vl_dict_done(dict))
+    return false; /* a misspelt parameter is reported first */
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s is missing",
+                        dict->what, what);
 }
 
-/* Rules that the rows do not express, by kind; null: none. given: one entry per parameter of the row. */
-typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def);
+/* Rules that the rows do not express, by kind; null: none. given: one entry per parameter of
+ * the row. */
+typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given,
+                        vlMediumDef *def);
 
 static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
   vlParam *scale = vl_dict_find(dict, "Lescale", 1u << VL_PARAM_FLOAT);
@@ -92,10 +110,12 @@ static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlM
   return def->density || missing(dict, "\"float density\"");
 }
 
-static bool read_rgb_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+static bool read_rgb_grid(vlDict *dict, const vlKindRow *row, const bool *given,
+                          vlMediumDef *def) {
   (void)row;
   (void)given;
-  return def->rgb_a || def->rgb_s || missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
+  return def->rgb_a || def->rgb_s ||
+         missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
 }
 
 static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
@@ -107,9 +127,12 @@ static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
 static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (p->type != VL_PARAMETER_BLOCK || !p->name) continue;
+    if (p->type != VL_PARAMETER_BLOCK || !p->name)
+      continue;
     vlParamType type = vl_text_is(p->text, "rgb array") ? VL_PARAM_RGB : VL_PARAM_FLOAT;
-    if (!read_cells(dict, p->name, type, def, (const float **)(void *)((char *)def + p->offset))) return false;
+    if (!read_cells(dict, p->name, type, def,
+                    (const float **)(void *)((char *)def + p->offset)))
+      return false;
   }
   return true;
 }
@@ -117,10 +140,14 @@ static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
 static bool read_medium(vlDict *dict, int kind, vlMediumDef *def) {
   const vlKindRow *row = vl_kind_row(&vl_medium_family, kind);
   bool given[32];
-  if (!vl_import_parameters(dict, row, def, true, given)) return false;
-  if (row->traits & VL_MEDIUM_TRAIT_BOX) sort_box(def);
-  if (vl_row_find(row, "preset") && !read_preset(dict, def)) return false;
-  if (!read_arrays(dict, row, def)) return false;
+  if (!vl_import_parameters(dict, row, def, true, given))
+    return false;
+  if (row->traits & VL_MEDIUM_TRAIT_BOX)
+    sort_box(def);
+  if (vl_row_find(row, "preset") && !read_preset(dict, def))
+    return false;
+  if (!read_arrays(dict, row, def))
+    return false;
   return (!rules[kind] || rules[kind](dict, row, given, def)) && vl_dict_done(dict);
 }
 
@@ -130,70 +157,89 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
   const char *type = NULL;
   snprintf(what, sizeof what, "MakeNamedMedium \"%s\"", vl_short_text(s->names[0]).text);
   if (vl_names_find(&import->media, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "medium \"%s\" is made a second time",
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "medium \"%s\" is made a second time",
                           vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_MEDIUM));
   if (!vl_dict_string(&dict, "type", &type)) {
-    if (import->scene->error.code != VL_OK) return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s: \"string type\" is missing", what);
+    if (import->scene->error.code != VL_OK)
+      return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s: \"string type\" is missing",
+                          what);
   }
   int kind = vl_kind_find(&vl_medium_family, type);
   const char *name = vl_import_keep(import, s->names[0]);
-  if (!name) return false;
+  if (!name)
+    return false;
   vlMediumId id = {0};
   if (kind < 0) { /* permissive: vacuum */
-    if (!vl_import_unknown_kind(import, s->source, &vl_medium_family, type)) return false;
+    if (!vl_import_unknown_kind(import, s->source, &vl_medium_family, type))
+      return false;
   } else {
     vlMediumDef def = vl_default_medium_def((vlMediumKind)kind);
     vlMat4 ctm;
     def.name = name;
     def.source = s->source;
     def.space = import->state.space;
-    if (!vl_import_ctm(import, s->source, &ctm) || !read_medium(&dict, kind, &def)) return false;
+    if (!vl_import_ctm(import, s->source, &ctm) || !read_medium(&dict, kind, &def))
+      return false;
     memcpy(def.world_from_medium, ctm.m, sizeof def.world_from_medium);
     id = vl_scene_add_medium(import->scene, &def);
-    if (!id.index) return false;
+    if (!id.index)
+      return false;
   }
-  return vl_names_add(import->context, &import->media, name, id.index) || vl_import_fail_memory(import);
+  return vl_names_add(import->context, &import->media, name, id.index) ||
+         vl_import_fail_memory(import);
 }
 
-/* ---- who lies in them ------------------------------------------------------------------------------------------- */
+/* ---- who lies in them
+ * -------------------------------------------------------------------------------------------
+ */
 
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source) {
   const char *inside = target == 's' && import->state.inside ? import->state.inside : "";
   const char *outside = import->state.outside ? import->state.outside : "";
-  if (!inside[0] && !outside[0]) return true;
+  if (!inside[0] && !outside[0])
+    return true;
   vlMediumLink *link = VL_PUSH(import->context, &import->medium_links);
-  if (!link) return vl_import_fail_memory(import);
+  if (!link)
+    return vl_import_fail_memory(import);
   *link = (vlMediumLink){target, index, inside, outside, source};
   return vl_scene_copy_source(import->scene, &link->source);
 }
 
 static bool find(vlImport *import, const char *name, vlSource source, vlMediumId *id) {
   id->index = 0;
-  if (!name[0] || vl_names_find(&import->media, name, &id->index)) return true;
+  if (!name[0] || vl_names_find(&import->media, name, &id->index))
+    return true;
   const char *near = vl_names_nearest(&import->media, name);
   if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no medium \"%s\" (did you mean \"%s\"?)",
+    return vl_import_fail(import, VL_ERROR_SCENE, source,
+                          "there is no medium \"%s\" (did you mean \"%s\"?)",
                           vl_short_text(name).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no medium \"%s\"", vl_short_text(name).text);
+  return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no medium \"%s\"",
+                        vl_short_text(name).text);
 }
 
-/* Warns when a scene with media names one of pbrt's surface integrators, which ignore media. Velo's light-tracing and
- * photon-mapping tracers do not ignore media; the message says which case applies. It says what the file means: the
- * command line may name another tracer. */
+/* Warns when a scene with media names one of pbrt's surface integrators, which ignore media.
+ * Velo's light-tracing and photon-mapping tracers do not ignore media; the message says which
+ * case applies. It says what the file means: the command line may name another tracer. */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
   vlTracer tracer = vl_scene_defs(import->scene)->render.tracer;
-  if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
-  bool through = !(vl_kind_row(&vl_tracer_family, (int)tracer)->traits & VL_TRACER_TRAIT_NO_MEDIA);
-  vl_import_warn(
-      import, VL_LOG_WARNING, link->source,
-      through ? "integrator \"%s\" of pbrt looks past participating media (here \"%s\"), velo's goes through"
-              : "integrator \"%s\" looks past participating media (here \"%s\"), as in pbrt; volpath goes through",
-      vl_import_kind_text(&vl_tracer_family, integrator->kind).text,
-      vl_short_text(link->inside[0] ? link->inside : link->outside).text);
+  if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given)
+    return;
+  bool through =
+      !(vl_kind_row(&vl_tracer_family, (int)tracer)->traits & VL_TRACER_TRAIT_NO_MEDIA);
+  vl_import_warn(import, VL_LOG_WARNING, link->source,
+                 through
+                     ? "integrator \"%s\" of pbrt looks past participating media (here "
+                       "\"%s\"), velo's goes through"
+                     : "integrator \"%s\" looks past participating media (here \"%s\"), as in "
+                       "pbrt; volpath goes through",
+                 vl_import_kind_text(&vl_tracer_family, integrator->kind).text,
+                 vl_short_text(link->inside[0] ? link->inside : link->outside).text);
 }
 
 bool vl_import_finish_media(vlImport *import) {
@@ -201,8 +247,10 @@ bool vl_import_finish_media(vlImport *import) {
   for (size_t i = 0; i < import->medium_links.count; i++) {
     const vlMediumLink *link = &import->medium_links.items[i];
     vlMediumId inside, outside;
-    if (!find(import, link->inside, link->source, &inside) || !find(import, link->outside, link->source, &outside)) {
-      if (!vl_import_recover(import)) return false;
+    if (!find(import, link->inside, link->source, &inside) ||
+        !find(import, link->outside, link->source, &outside)) {
+      if (!vl_import_recover(import))
+        return false;
       continue;
     }
     if (link->target == 's') {
@@ -214,6 +262,7 @@ bool vl_import_finish_media(vlImport *import) {
       vl_scene_defs(scene)->camera_medium = outside;
     }
   }
-  if (import->medium_links.count) warn_surface_integrator(import, &import->medium_links.items[0]);
+  if (import->medium_links.count)
+    warn_surface_integrator(import, &import->medium_links.items[0]);
   return true;
 }

@@ -1,6 +1,7 @@
-/* import/pbrt/meshes.c: mesh files. While statements are executed, only file names and placeholders for the shapes are
- * recorded. At the end all workers read the files, and the shapes replace their placeholders in the order of the
- * statements. Ids and the reported error do not depend on the number of workers. */
+/* import/pbrt/meshes.c: mesh files. While statements are executed, only file names and
+ * placeholders for the shapes are recorded. At the end all workers read the files, and the
+ * shapes replace their placeholders in the order of the statements. Ids and the reported error
+ * do not depend on the number of workers. */
 #include <string.h>
 
 #include "base/error.h"
@@ -20,17 +21,22 @@ typedef struct Work {
   uint32_t first; /* of import->mesh_files */
 } Work;
 
-bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source, const vlShapeDef *def,
-                         const vlShapeLink *link) {
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
+                         const vlShapeDef *def, const vlShapeLink *link) {
   vlScene *scene = import->scene;
   vlMeshFile *file = VL_PUSH(import->context, &import->mesh_files);
-  if (!file) return vl_import_fail_memory(import);
-  *file = (vlMeshFile){.source = source, .def = *def, .link = *link, .shape = (uint32_t)scene->shapes.count};
-  if (!(file->path = vl_import_keep(import, path)) || !vl_scene_copy_source(scene, &file->source) ||
+  if (!file)
+    return vl_import_fail_memory(import);
+  *file = (vlMeshFile){
+      .source = source, .def = *def, .link = *link, .shape = (uint32_t)scene->shapes.count};
+  if (!(file->path = vl_import_keep(import, path)) ||
+      !vl_scene_copy_source(scene, &file->source) ||
       !vl_scene_copy_source(scene, &file->def.source))
     return false;
-  vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
-  if (!slot) return vl_import_fail_memory(import);
+  vlShapeDef *slot =
+      scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
+  if (!slot)
+    return vl_import_fail_memory(import);
   *slot = file->def; /* a placeholder without faces */
   return true;
 }
@@ -44,17 +50,22 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
     job->result = vl_fail(&job->error, VL_CANCELLED, "stopped");
     return;
   }
-  job->result = vl_ply_read(import->context, import->scene->task, import->mesh_files.items[work->first + index].path,
+  job->result = vl_ply_read(import->context, import->scene->task,
+                            import->mesh_files.items[work->first + index].path,
                             import->permissive, &job->mesh, &job->error);
 }
 
 /* Splits patches into triangles, since only triangles can be displaced. */
 static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
-  if (!mesh->quads) return true;
+  if (!mesh->quads)
+    return true;
   size_t old = 3 * (size_t)mesh->triangles, quads = mesh->quads;
-  if (old / 3 + 2 * quads > 0x7fffffff) return vl_import_fail_memory(import);
-  uint32_t *indices = vl_realloc_array(import->context, mesh->triangle_indices, old + 6 * quads, sizeof *indices);
-  if (!indices) return vl_import_fail_memory(import);
+  if (old / 3 + 2 * quads > 0x7fffffff)
+    return vl_import_fail_memory(import);
+  uint32_t *indices = vl_realloc_array(import->context, mesh->triangle_indices, old + 6 * quads,
+                                       sizeof *indices);
+  if (!indices)
+    return vl_import_fail_memory(import);
   for (size_t i = 0; i < quads; i++) {
     const uint32_t *q = mesh->quad_indices + 4 * i, t[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
     memcpy(indices + old + 6 * i, t, sizeof t);
@@ -75,15 +86,18 @@ static bool repair(vlImport *import, const vlMeshFile *file, const vlShapeDef *d
          vl_import_fail_memory(import);
 }
 
-/* A file with triangles and patches becomes two shapes without shared arrays: the patches come first and are copied. */
+/* A file with triangles and patches becomes two shapes without shared arrays: the patches come
+ * first and are copied. */
 static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
   vlPlyMesh *mesh = &job->mesh;
   if (job->result != VL_OK) {
     vlSource inside = {job->error.file, job->error.line, job->error.column};
-    return vl_import_fail(import, job->result, job->error.file[0] ? inside : file->source, "%s", job->error.message);
+    return vl_import_fail(import, job->result, job->error.file[0] ? inside : file->source, "%s",
+                          job->error.message);
   }
   vlShapeDef def = file->def;
-  if (file->link.displacement && !only_triangles(import, mesh)) return false;
+  if (file->link.displacement && !only_triangles(import, mesh))
+    return false;
   def.vertices = mesh->vertices;
   def.positions = mesh->positions;
   def.normals = mesh->normals;
@@ -93,45 +107,54 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
     copy.kind = VL_SHAPE_BILINEAR;
     copy.faces = mesh->quads;
     copy.indices = mesh->quad_indices;
-    if (!repair(import, file, &copy)) return false;
-    if (!vl_scene_add_shape(import->scene, &copy).index) return false;
+    if (!repair(import, file, &copy))
+      return false;
+    if (!vl_scene_add_shape(import->scene, &copy).index)
+      return false;
     vl_free(import->context, mesh->quad_indices);
     mesh->quad_indices = NULL;
   }
   def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
   def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
   def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
-  if (!repair(import, file, &def)) return false;
+  if (!repair(import, file, &def))
+    return false;
   *mesh = (vlPlyMesh){0}; /* the arrays have moved, also on failure */
   return vl_scene_adopt_shape(import->scene, &def).index != 0;
 }
 
-/* Moves the links of placeholder shapes to the shapes that replaced them: placeholder i became shapes first[i] to
- * first[i + 1] - 1. */
+/* Moves the links of placeholder shapes to the shapes that replaced them: placeholder i became
+ * shapes first[i] to first[i + 1] - 1. */
 static bool move_links(vlImport *import, const uint32_t *first) {
   size_t n = import->medium_links.count;
   for (size_t i = 0; i < n; i++) {
     vlMediumLink link = import->medium_links.items[i];
-    if (link.target != 's') continue;
+    if (link.target != 's')
+      continue;
     uint32_t old = link.index, count = first[old + 1] - first[old];
     import->medium_links.items[i].index = first[old];
-    if (!count) import->medium_links.items[i].target = 0; /* the shape was skipped */
+    if (!count)
+      import->medium_links.items[i].target = 0; /* the shape was skipped */
     for (uint32_t k = 1; k < count; k++) {
       vlMediumLink *more = VL_PUSH(import->context, &import->medium_links);
-      if (!more) return vl_import_fail_memory(import);
+      if (!more)
+        return vl_import_fail_memory(import);
       *more = link;
       more->index = first[old] + k;
     }
   }
   size_t links = import->links.count;
-  for (size_t i = 0; i < links; i++) import->links.items[i].shape = first[import->links.items[i].shape];
+  for (size_t i = 0; i < links; i++)
+    import->links.items[i].shape = first[import->links.items[i].shape];
   for (size_t i = 0; i < import->mesh_files.count; i++) {
     const vlMeshFile *file = &import->mesh_files.items[i];
     const vlShapeLink *l = &file->link;
-    if (!l->material && !l->material_name && !l->alpha && !l->displacement) continue;
+    if (!l->material && !l->material_name && !l->alpha && !l->displacement)
+      continue;
     for (uint32_t k = first[file->shape]; k < first[file->shape + 1]; k++) {
       vlShapeLink *more = VL_PUSH(import->context, &import->links);
-      if (!more) return vl_import_fail_memory(import);
+      if (!more)
+        return vl_import_fail_memory(import);
       *more = *l;
       more->shape = k;
     }
@@ -139,18 +162,23 @@ static bool move_links(vlImport *import, const uint32_t *first) {
   return true;
 }
 
-/* Files are read in batches, so that the arrays not yet moved stay small compared with the scene. */
+/* Files are read in batches, so that the arrays not yet moved stay small compared with the
+ * scene.
+ */
 enum { RUN = 256 };
 
-static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count, uint32_t *first) {
+static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count,
+                         uint32_t *first) {
   vlScene *scene = import->scene;
   Job *jobs = vl_alloc_array(import->context, RUN, sizeof *jobs);
-  if (!jobs) return vl_import_fail_memory(import);
+  if (!jobs)
+    return vl_import_fail_memory(import);
   uint32_t next = 0, read = 0, from = 0;
   bool fine = true;
   for (size_t i = 0; i < count && fine; i++) {
     first[i] = (uint32_t)scene->shapes.count;
-    if (vl_scene_stopped(scene, 0.5 + 0.5 * (double)i / (double)count)) fine = false;
+    if (vl_scene_stopped(scene, 0.5 + 0.5 * (double)i / (double)count))
+      fine = false;
     if (next < import->mesh_files.count && import->mesh_files.items[next].shape == i) {
       if (next == read) {
         Work work = {import, jobs, next};
@@ -160,7 +188,8 @@ static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count, 
         memset(jobs, 0, RUN * sizeof *jobs);
         vl_parallel_for(import->context, read - from, read_one, &work);
       }
-      fine = add_mesh(import, &import->mesh_files.items[next], &jobs[next - from]) || vl_import_recover(import);
+      fine = add_mesh(import, &import->mesh_files.items[next], &jobs[next - from]) ||
+             vl_import_recover(import);
       next++;
     } else {
       vlShapeDef *slot = VL_PUSH(scene->context, &scene->shapes);
@@ -171,18 +200,21 @@ static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count, 
     }
   }
   first[count] = (uint32_t)scene->shapes.count;
-  for (uint32_t k = from; k < read; k++) vl_ply_free(import->context, &jobs[k - from].mesh);
+  for (uint32_t k = from; k < read; k++)
+    vl_ply_free(import->context, &jobs[k - from].mesh);
   vl_free(import->context, jobs);
   return fine;
 }
 
 bool vl_import_read_meshes(vlImport *import) {
   vlScene *scene = import->scene;
-  if (!import->mesh_files.count) return true;
+  if (!import->mesh_files.count)
+    return true;
   size_t count = scene->shapes.count;
   vlShapeDef *old = scene->shapes.items;
   uint32_t *first = vl_alloc_array(import->context, count + 1, sizeof *first);
-  if (!first) return vl_import_fail_memory(import);
+  if (!first)
+    return vl_import_fail_memory(import);
   scene->shapes.items = NULL;
   scene->shapes.count = scene->shapes.capacity = 0;
   bool fine = place_shapes(import, old, count, first) && move_links(import, first);

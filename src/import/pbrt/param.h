@@ -1,5 +1,6 @@
-/* import/pbrt/param.h: the parsed parameters of a directive and typed access to them. A parameter that nothing reads,
- * or that has the wrong type or count, is an error at its source; the message names the nearest accepted parameter. */
+/* import/pbrt/param.h: the parsed parameters of a directive and typed access to them. A
+ * parameter that nothing reads, or that has the wrong type or count, is an error at its source;
+ * the message names the nearest accepted parameter. */
 #ifndef IMPORT_PBRT_PARAM_H
 #define IMPORT_PBRT_PARAM_H
 
@@ -24,8 +25,8 @@ typedef enum vlParamType {
   VL_PARAM_TYPES
 } vlParamType;
 
-/* Conversions between types and their names, such as "point3". The old spellings point, vector and color mean point3,
- * vector3 and rgb. */
+/* Conversions between types and their names, such as "point3". The old spellings point, vector
+ * and color mean point3, vector3 and rgb. */
 const char *vl_param_type_name(vlParamType type);
 bool vl_param_type_find(const char *text, size_t length, vlParamType *type);
 /* The nearest type name for an error message, or null. */
@@ -54,12 +55,14 @@ void vl_param_free(vlContext *context, vlParam *param);
 void vl_param_list_free(vlContext *context, vlParamList *params);
 size_t vl_param_count(const vlParam *param); /* number of values of any type */
 
-/* ---- questions -------------------------------------------------------------------------------------------------- */
+/* ---- questions
+ * --------------------------------------------------------------------------------------------------
+ */
 
 typedef struct vlImport vlImport;
 
-/* The parameters of one directive and the attributes that apply; the last one given counts. A vlDict lives on the
- * stack. Names passed to its functions are string literals. */
+/* The parameters of one directive and the attributes that apply; the last one given counts. A
+ * vlDict lives on the stack. Names passed to its functions are string literals. */
 typedef struct vlDict {
   vlImport *import;
   const char *what; /* 'Shape "sphere"', for errors */
@@ -71,23 +74,28 @@ typedef struct vlDict {
 } vlDict;
 
 enum { VL_BIT_FLOAT = 1 << VL_PARAM_FLOAT, VL_BIT_TEXTURE = 1 << VL_PARAM_TEXTURE };
-enum { VL_BITS_SPECTRUM = 1 << VL_PARAM_RGB | 1 << VL_PARAM_SPECTRUM | 1 << VL_PARAM_BLACKBODY };
+enum {
+  VL_BITS_SPECTRUM = 1 << VL_PARAM_RGB | 1 << VL_PARAM_SPECTRUM | 1 << VL_PARAM_BLACKBODY
+};
 
-/* The parameter `name` with one of the types of the bit mask. Null when it is not given. A parameter of another type is
- * an error. */
+/* The parameter `name` with one of the types of the bit mask. Null when it is not given. A
+ * parameter of another type is an error. */
 vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t type_bits);
-/* These functions read a value. They return whether the parameter was given; otherwise *value is unchanged. */
+/* These functions read a value. They return whether the parameter was given; otherwise *value
+ * is unchanged. */
 bool vl_dict_float(vlDict *dict, const char *name, float *value);
 bool vl_dict_double(vlDict *dict, const char *name, double *value);
 bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value);
-bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value); /* integer >= least */
+bool vl_dict_count(vlDict *dict, const char *name, int32_t least,
+                   uint32_t *value); /* integer >= least */
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value);
 bool vl_dict_string(vlDict *dict, const char *name, const char **value);
 bool vl_dict_vector(vlDict *dict, const char *name, vlParamType type, double value[3]);
 bool vl_dict_floats(vlDict *dict, const char *name, size_t count,
                     double *value); /* exactly count numbers, at most 16 */
 /* *value becomes the index of the string among the names. */
-bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count, int *value);
+bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count,
+                    int *value);
 
 /* Reports every parameter that was not read as an error. Returns false after an error. */
 bool vl_dict_done(vlDict *dict);

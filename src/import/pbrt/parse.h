@@ -1,6 +1,7 @@
-/* import/pbrt/parse.h: the grammar of the pbrt language. It turns tokens into directives and passes them to a target of
- * callbacks; it does not depend on scenes. The parser itself reads the files of Include, within limits of depth and
- * size. It also reads the files of Import; their directives stand between IMPORT_BEGIN and IMPORT_END. */
+/* import/pbrt/parse.h: the grammar of the pbrt language. It turns tokens into directives and
+ * passes them to a target of callbacks; it does not depend on scenes. The parser itself reads
+ * the files of Include, within limits of depth and size. It also reads the files of Import;
+ * their directives stand between IMPORT_BEGIN and IMPORT_END. */
 #ifndef IMPORT_PBRT_PARSE_H
 #define IMPORT_PBRT_PARSE_H
 
@@ -60,8 +61,8 @@ typedef struct vlStatement {
   vlSource source;
   double numbers[16];
   const char *names[3]; /* valid during the call */
-  vlParamList *params;  /* parameters of a directive that has them; the callee may take the contents and zero the list,
-                           otherwise they are freed */
+  vlParamList *params;  /* parameters of a directive that has them; the callee may take the
+                           contents  and zero the list,  otherwise they are freed */
 } vlStatement;
 
 typedef struct vlParseTarget {
@@ -69,7 +70,8 @@ typedef struct vlParseTarget {
   /* Handles a statement. Returns false to stop the parser, after it has reported an error. */
   bool (*statement)(void *user, const vlStatement *statement);
   void (*error)(void *user, vlResult code, vlSource source, const char *message);
-  /* Called after an error. Returns true to continue after the directive or file. May be null. */
+  /* Called after an error. Returns true to continue after the directive or file. May be null.
+   */
   bool (*recover)(void *user);
   /* Folders separated by ':' in which included files are looked for, too; null: none. */
   const char *search_path;
@@ -79,16 +81,18 @@ typedef struct vlParseTarget {
    * inside included files. False: the parser stops; the
    * callee has reported why. May be null. */
   bool (*go_on)(void *user, double fraction);
-  /* Included files that are not read from the disk: pairs of the name in Include, and the text. May be null. */
+  /* Included files that are not read from the disk: pairs of the name in Include, and the text.
+   * May be null. */
   const char *const *texts;
   size_t text_count;
   /* Called for a file beyond the limits. Returns true to leave the file out. May be null. */
   bool (*skip)(void *user, vlSource source);
 } vlParseTarget;
 
-/* Both functions return false after an error. vl_parse_memory parses a copy of data and uses name as the file's
- * name. */
+/* Both functions return false after an error. vl_parse_memory parses a copy of data and uses
+ * name as the file's name. */
 bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *target);
-bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name, const vlParseTarget *target);
+bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name,
+                     const vlParseTarget *target);
 
 #endif

@@ -1,6 +1,6 @@
-/* import/pbrt/parser.h: declarations shared by the files of the parser: the file being read, its next token, errors
- * with their lines. parse_params.c reads parameters; directives.c
- * reads directives, files.c files. */
+/* import/pbrt/parser.h: declarations shared by the files of the parser: the file being read,
+ * its next token, errors with their lines. parse_params.c reads parameters; directives.c reads
+ * directives, files.c files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
 
@@ -22,7 +22,8 @@ typedef struct vlParser {
 typedef struct vlParserFile {
   vlParser *parser;
   struct vlParserFile *parent;
-  bool included; /* the file was read by Include: a parameter list may continue in the parent file */
+  bool included; /* the file was read by Include: a parameter list may continue in the parent
+                    file */
   const char *path;
   dev_t device;
   ino_t inode;
@@ -49,7 +50,8 @@ bool vl_parse_is_word(const vlToken *token, const char *word);
 bool vl_parse_block(vlParserFile *file, char *data, size_t size);
 /* Reads the file that the token `at` names (files.c). */
 bool vl_parse_follow(vlParserFile *file, const vlToken *at, const char *name, bool included);
-/* Reads all parameters that follow a directive. At the end of an included file the list continues after its Include. */
+/* Reads all parameters that follow a directive. At the end of an included file the list
+ * continues after its Include. */
 bool vl_parse_params(vlParserFile *file, vlParamList *params);
 
 #endif

@@ -1,12 +1,14 @@
-/* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept strings, paths, copies of
- * parameters. */
+/* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept
+ * strings, paths, copies of parameters. */
 #include <unistd.h>
 
 #include "base/file.h"
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 
-/* ---- errors ----------------------------------------------------------------------------------------------------- */
+/* ---- errors
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...) {
   char text[512];
@@ -25,7 +27,8 @@ static void log_text(vlImport *import, vlLogLevel level, vlSource source, const 
   vl_log(import->context, level, &where, "%s", text);
 }
 
-void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format, ...) {
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format,
+                    ...) {
   char text[512];
   VL_FORMAT(text, format);
   log_text(import, level, source, text);
@@ -33,8 +36,10 @@ void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const c
 
 bool vl_import_recover(vlImport *import) {
   vlScene *scene = import->scene;
-  if (!scene->problem || scene->error.code == VL_ERROR_MEMORY || scene->error.code == VL_OK) return false;
-  if (++import->problems > VL_IMPORT_PROBLEMS) return false;
+  if (!scene->problem || scene->error.code == VL_ERROR_MEMORY || scene->error.code == VL_OK)
+    return false;
+  if (++import->problems > VL_IMPORT_PROBLEMS)
+    return false;
   vlError problem = scene->error;
   vl_error_clear(&scene->error);
   scene->problem(scene->problem_user, &problem);
@@ -42,7 +47,8 @@ bool vl_import_recover(vlImport *import) {
 }
 
 void vl_import_remark(vlImport *import, vlSource source, const char *format, ...) {
-  if (!import->scene->problem) return;
+  if (!import->scene->problem)
+    return;
   char text[400];
   VL_FORMAT(text, format);
   vlError remark = {0};
@@ -53,31 +59,38 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...) {
   char text[400];
   VL_FORMAT(text, format);
-  if (!import->permissive) return vl_import_fail(import, VL_ERROR_SCENE, source, "%s", text);
+  if (!import->permissive)
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s", text);
   log_text(import, VL_LOG_WARNING, source, text);
   return true;
 }
 
-bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name, const char *const *known,
-                       size_t known_count, const char *const *later, size_t later_count) {
+bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
+                       const char *const *known, size_t known_count, const char *const *later,
+                       size_t later_count) {
   for (size_t i = 0; i < later_count; i++)
     if (vl_text_is(name, later[i]))
-      return vl_import_unsupported(import, source, "%s \"%s\" is not understood yet", thing, vl_short_text(name).text);
+      return vl_import_unsupported(import, source, "%s \"%s\" is not understood yet", thing,
+                                   vl_short_text(name).text);
   const char *near = vl_nearest_name(name, known, known_count);
-  if (!near) near = vl_nearest_name(name, later, later_count);
+  if (!near)
+    near = vl_nearest_name(name, later, later_count);
   if (near)
-    return vl_import_unsupported(import, source, "unknown %s \"%s\" (did you mean \"%s\"?)", thing,
-                                 vl_short_text(name).text, near);
-  return vl_import_unsupported(import, source, "unknown %s \"%s\"", thing, vl_short_text(name).text);
+    return vl_import_unsupported(import, source, "unknown %s \"%s\" (did you mean \"%s\"?)",
+                                 thing, vl_short_text(name).text, near);
+  return vl_import_unsupported(import, source, "unknown %s \"%s\"", thing,
+                               vl_short_text(name).text);
 }
 
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
   vlShortText text = vl_short_text(name);
-  if (vl_kind_find(family, name) >= 0) snprintf(text.text, sizeof text.text, "%s", name);
+  if (vl_kind_find(family, name) >= 0)
+    snprintf(text.text, sizeof text.text, "%s", name);
   return text;
 }
 
-bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family, const char *name) {
+bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family,
+                            const char *name) {
   const char *names[64];
   size_t count = vl_kind_names(family, names, VL_LENGTH(names));
   return vl_import_unknown(import, source, family->thing, name, names, count, NULL, 0);
@@ -85,47 +98,63 @@ bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamil
 
 const char *vl_import_keep(vlImport *import, const char *text) {
   char **slot = VL_PUSH(import->context, &import->strings);
-  if (slot) *slot = vl_strdup(import->context, text);
-  if (slot && *slot) return *slot;
+  if (slot)
+    *slot = vl_strdup(import->context, text);
+  if (slot && *slot)
+    return *slot;
   vl_import_fail_memory(import);
   return NULL;
 }
 
-vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space, const vlParamList *own,
-                      const vlParamList *attributes) {
-  return (vlDict){
-      .import = import, .what = what, .source = source, .space = space, .own = own, .attributes = attributes};
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
+                      const vlParamList *own, const vlParamList *attributes) {
+  return (vlDict){.import = import,
+                  .what = what,
+                  .source = source,
+                  .space = space,
+                  .own = own,
+                  .attributes = attributes};
 }
 
 void vl_import_note_elsewhere(void *user, vlSource source, const char *path) {
   vlImport *import = user;
   if (!import->elsewhere++)
-    vl_import_warn(import, VL_LOG_INFO, source, "%s: taken from the current folder; it is not beside the scene's files",
+    vl_import_warn(import, VL_LOG_INFO, source,
+                   "%s: taken from the current folder; it is not beside the scene's files",
                    path);
 }
 
-vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path, size_t size) {
-  vlFound found = vl_find_file(import->context, source.file, import->first, import->search_path, name, path, size);
-  if (found == VL_FOUND_CURRENT) vl_import_note_elsewhere(import, source, path);
+vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path,
+                       size_t size) {
+  vlFound found = vl_find_file(import->context, source.file, import->first, import->search_path,
+                               name, path, size);
+  if (found == VL_FOUND_CURRENT)
+    vl_import_note_elsewhere(import, source, path);
   return found;
 }
 
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size) {
   if (param->strings.count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\" takes one file name, found %zu", param->name,
+    return vl_import_fail(import, VL_ERROR_SCENE, param->source,
+                          "\"%s\" takes one file name, found %zu", param->name,
                           param->strings.count);
   if (param->strings.items[0][0] == 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\" is an empty file name", param->name);
-  if (vl_import_find(import, param->source, param->strings.items[0], path, size) == VL_FOUND_TOO_LONG)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\": file name too long", param->name);
-  if (vl_context_allows(import->context, path) && access(path, R_OK) == 0) return true;
+    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\" is an empty file name",
+                          param->name);
+  if (vl_import_find(import, param->source, param->strings.items[0], path, size) ==
+      VL_FOUND_TOO_LONG)
+    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\": file name too long",
+                          param->name);
+  if (vl_context_allows(import->context, path) && access(path, R_OK) == 0)
+    return true;
   char *data;
   size_t count;
   vlError error = {0};
-  vlResult result =
-      vl_file_read(import->context, path, false, &data, &count, &error); /* opened for its error message */
+  vlResult result = vl_file_read(import->context, path, false, &data, &count,
+                                 &error); /* opened for its error message */
   vl_free(import->context, data);
-  if (result != VL_OK) return vl_import_fail(import, result, param->source, "%s", error.message);
+  if (result != VL_OK)
+    return vl_import_fail(import, result, param->source, "%s", error.message);
   return vl_import_fail(import, VL_ERROR_IO, param->source, "cannot read %s", path);
 }
 
@@ -158,14 +187,16 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
   return false;
 }
 
-/* ---- copies of parameters --------------------------------------------------------------------------------------- */
+/* ---- copies of parameters
+ * --------------------------------------------------------------------------------------- */
 
-static bool copy_bytes(vlContext *context, const void *from, size_t count, size_t size, void *items, size_t *n,
-                       size_t *capacity) {
+static bool copy_bytes(vlContext *context, const void *from, size_t count, size_t size,
+                       void *items, size_t *n, size_t *capacity) {
   void *copy = NULL;
   if (count) {
     copy = vl_alloc_array(context, count, size);
-    if (!copy) return false;
+    if (!copy)
+      return false;
     memcpy(copy, from, count * size);
   }
   memcpy(items, &copy, sizeof copy);
@@ -181,12 +212,12 @@ static bool copy_param(vlContext *context, const vlParam *from, vlParam *to) {
   memcpy(to->exact, from->exact, sizeof to->exact);
   to->name = vl_strdup(context, from->name);
   bool fine = to->name &&
-              copy_bytes(context, from->floats.items, from->floats.count, sizeof(float), &to->floats.items,
-                         &to->floats.count, &to->floats.capacity) &&
-              copy_bytes(context, from->integers.items, from->integers.count, sizeof(int32_t), &to->integers.items,
-                         &to->integers.count, &to->integers.capacity) &&
-              copy_bytes(context, from->bools.items, from->bools.count, 1, &to->bools.items, &to->bools.count,
-                         &to->bools.capacity);
+              copy_bytes(context, from->floats.items, from->floats.count, sizeof(float),
+                         &to->floats.items, &to->floats.count, &to->floats.capacity) &&
+              copy_bytes(context, from->integers.items, from->integers.count, sizeof(int32_t),
+                         &to->integers.items, &to->integers.count, &to->integers.capacity) &&
+              copy_bytes(context, from->bools.items, from->bools.count, 1, &to->bools.items,
+                         &to->bools.count, &to->bools.capacity);
   for (size_t i = 0; i < from->strings.count && fine; i++) {
     char **slot = VL_PUSH(context, &to->strings);
     fine = slot && (*slot = vl_strdup(context, from->strings.items[i]));
@@ -202,7 +233,8 @@ bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamLis
       *slot = param;
     else
       vl_free(import->context, param);
-    if (!slot || !copy_param(import->context, from->list.items[i], param)) return vl_import_fail_memory(import);
+    if (!slot || !copy_param(import->context, from->list.items[i], param))
+      return vl_import_fail_memory(import);
   }
   return true;
 }

@@ -1,17 +1,18 @@
-/* import/pbrt/sampling.c: converts the directives Sampler, PixelFilter, Integrator and Accelerator to the scene's defs.
- * Defaults are pbrt-v4's. */
+/* import/pbrt/sampling.c: converts the directives Sampler, PixelFilter, Integrator and
+ * Accelerator to the scene's defs. Defaults are pbrt-v4's. */
 #include <stdio.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 
-/* Finds the row of the kind that the file names. Null for an unknown kind; *good then says whether the import
- * continues. */
-static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family, const vlChoice *choice, int *kind,
-                                 bool *good) {
+/* Finds the row of the kind that the file names. Null for an unknown kind; *good then says
+ * whether the import continues. */
+static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family,
+                                 const vlChoice *choice, int *kind, bool *good) {
   *good = true;
   *kind = vl_kind_find(family, choice->kind);
-  if (*kind < 0) *good = vl_import_unknown_kind(import, choice->source, family, choice->kind);
+  if (*kind < 0)
+    *good = vl_import_unknown_kind(import, choice->source, family, choice->kind);
   return vl_kind_row(family, *kind);
 }
 
@@ -25,14 +26,20 @@ static void skip_ignored(vlDict *dict, const vlKindRow *row) {
   float number;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (p->member[0]) continue;
-    if (p->type == VL_PARAMETER_BOOL) vl_dict_bool(dict, p->name, &yes);
-    if (p->type == VL_PARAMETER_FLOAT) vl_dict_float(dict, p->name, &number);
-    if (p->type == VL_PARAMETER_COUNT) vl_dict_find(dict, p->name, 1u << VL_PARAM_INTEGER);
+    if (p->member[0])
+      continue;
+    if (p->type == VL_PARAMETER_BOOL)
+      vl_dict_bool(dict, p->name, &yes);
+    if (p->type == VL_PARAMETER_FLOAT)
+      vl_dict_float(dict, p->name, &number);
+    if (p->type == VL_PARAMETER_COUNT)
+      vl_dict_find(dict, p->name, 1u << VL_PARAM_INTEGER);
   }
 }
 
-/* ---- sampler ---------------------------------------------------------------------------------------------------- */
+/* ---- sampler
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   uint32_t x = 4, y = 4;
@@ -41,69 +48,94 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   given = vl_dict_count(dict, "ysamples", 1, &y) || given;
   vl_dict_bool(dict, "jitter", &jitter);
   if ((uint64_t)x * y > 0x7fffffff)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: too many samples", dict->what);
-  if (!jitter) s->render.sampler = VL_SAMPLER_REGULAR;
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: too many samples",
+                          dict->what);
+  if (!jitter)
+    s->render.sampler = VL_SAMPLER_REGULAR;
   if (given || !spp_given)
-    s->render.spp = x * y; /* pbrt's stratified sampler has no pixelsamples; velo accepts it for all samplers */
+    s->render.spp =
+        x *
+        y; /* pbrt's stratified sampler has no pixelsamples; velo accepts it for all samplers */
   return true;
 }
 
 static void read_randomization(vlDict *dict, const vlParameter *p) {
   int randomization = 2;
   if (p && vl_dict_choice(dict, p->name, p->choices, 4, &randomization) && randomization == 0)
-    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
-                   "%s: randomization \"none\": samples are scrambled all the same", dict->what);
+    vl_import_warn(
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
+        "%s: randomization \"none\": samples are scrambled all the same", dict->what);
 }
 
 static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   const vlChoice *choice = &import->sampler;
   s->render.sampler = VL_SAMPLER_ZSOBOL;
   s->render.spp = 16;
-  if (!choice->given) return true;
+  if (!choice->given)
+    return true;
   char what[96];
-  snprintf(what, sizeof what, "Sampler \"%s\"", vl_import_kind_text(&vl_sampler_family, choice->kind).text);
-  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  snprintf(what, sizeof what, "Sampler \"%s\"",
+           vl_import_kind_text(&vl_sampler_family, choice->kind).text);
+  vlDict dict =
+      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind;
   bool good, given[16];
   const vlKindRow *row = find_row(import, &vl_sampler_family, choice, &kind, &good);
-  if (!row) return good;
+  if (!row)
+    return good;
   s->render.sampler = (vlSamplerKind)kind;
   vl_row_set_defaults(row, s);
   if (is_alias(row, choice) && (kind == VL_SAMPLER_SOBOL || kind == VL_SAMPLER_ZSOBOL))
-    vl_import_warn(import, VL_LOG_INFO, choice->source, "sampler \"%s\": \"%s\" is taken in its place", row->alias,
-                   row->name);
+    vl_import_warn(import, VL_LOG_INFO, choice->source,
+                   "sampler \"%s\": \"%s\" is taken in its place", row->alias, row->name);
   int32_t seed;
-  if (vl_dict_integer(&dict, "seed", &seed)) s->render.seed = (uint32_t)seed;
-  if (!vl_import_parameters(&dict, row, s, false, given)) return false;
-  if (kind == VL_SAMPLER_STRATIFIED && !read_grid(&dict, s, vl_import_given(row, given, "pixelsamples"))) return false;
+  if (vl_dict_integer(&dict, "seed", &seed))
+    s->render.seed = (uint32_t)seed;
+  if (!vl_import_parameters(&dict, row, s, false, given))
+    return false;
+  if (kind == VL_SAMPLER_STRATIFIED &&
+      !read_grid(&dict, s, vl_import_given(row, given, "pixelsamples")))
+    return false;
   read_randomization(&dict, vl_row_find(row, "randomization"));
   return vl_dict_done(&dict);
 }
 
-/* ---- pixel filter ----------------------------------------------------------------------------------------------- */
+/* ---- pixel filter
+ * -----------------------------------------------------------------------------------------------
+ */
 
 static bool read_filter(vlImport *import, vlSceneDefs *s) {
   const vlChoice *choice = &import->filter;
   s->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
-  if (!choice->given) return true;
+  if (!choice->given)
+    return true;
   char what[96];
-  snprintf(what, sizeof what, "PixelFilter \"%s\"", vl_import_kind_text(&vl_pixel_filter_family, choice->kind).text);
-  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  snprintf(what, sizeof what, "PixelFilter \"%s\"",
+           vl_import_kind_text(&vl_pixel_filter_family, choice->kind).text);
+  vlDict dict =
+      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_pixel_filter_family, choice->kind);
-  if (kind < 0) return vl_import_unknown_kind(import, choice->source, &vl_pixel_filter_family, choice->kind);
+  if (kind < 0)
+    return vl_import_unknown_kind(import, choice->source, &vl_pixel_filter_family,
+                                  choice->kind);
   s->film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
   const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, kind);
   return vl_import_parameters(&dict, row, &s->film.filter, false, NULL) && vl_dict_done(&dict);
 }
 
-/* ---- integrator ------------------------------------------------------------------------------------------------- */
+/* ---- integrator
+ * -------------------------------------------------------------------------------------------------
+ */
 
-/* Reads the maximal path length and limits it to MOST. Longer paths do not contribute visibly. */
+/* Reads the maximal path length and limits it to MOST. Longer paths do not contribute visibly.
+ */
 static void read_depth(vlDict *dict, vlSceneDefs *s) {
   enum { MOST = 4096 };
   vl_dict_count(dict, "maxdepth", 0, &s->render.max_depth);
-  if (s->render.max_depth <= MOST) return;
-  vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->source,
+  if (s->render.max_depth <= MOST)
+    return;
+  vl_import_warn(dict->import, VL_LOG_INFO,
+                 vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->source,
                  "%s: \"maxdepth\" %u: %d is taken", dict->what, s->render.max_depth, MOST);
   s->render.max_depth = MOST;
 }
@@ -111,16 +143,19 @@ static void read_depth(vlDict *dict, vlSceneDefs *s) {
 static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
   const vlParameter *p = vl_row_find(row, "lightsampler");
   int sampler = 0;
-  if (!p || !vl_dict_choice(dict, p->name, p->choices, 4, &sampler)) return;
+  if (!p || !vl_dict_choice(dict, p->name, p->choices, 4, &sampler))
+    return;
   if (sampler == 3)
-    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
-                   "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
+    vl_import_warn(
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
+        "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
   s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
 }
 
 static void read_photons(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
   int32_t photons = -1; /* -1: as many photons as pixels */
-  if (vl_row_find(row, "photonsperiteration") && vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
+  if (vl_row_find(row, "photonsperiteration") &&
+      vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
     s->render.light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
 }
 
@@ -129,21 +164,24 @@ static const char *stand_in(const char *name) {
   return vl_text_is(name, "mlt") ? "bdpt" : name;
 }
 
-/* Reports that one of velo's tracers replaces pbrt's bidirectional integrator. Of pbrt's parameters, radius and photons
- * have an effect. */
+/* Reports that one of velo's tracers replaces pbrt's bidirectional integrator. Of pbrt's
+ * parameters, radius and photons have an effect. */
 static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) {
   bool pbrts = vl_text_is(kind, "bdpt") || vl_text_is(kind, "mlt") || vl_text_is(kind, "sppm");
   if (pbrts)
-    vl_import_warn(import, VL_LOG_INFO, import->integrator.source, "integrator \"%s\": rendered by velo's %s",
-                   vl_short_text(kind).text, tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
+    vl_import_warn(import, VL_LOG_INFO, import->integrator.source,
+                   "integrator \"%s\": rendered by velo's %s", vl_short_text(kind).text,
+                   tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
 }
 
 /* Reports that the tracer does not regularize. */
 static void remark_regularize(vlDict *dict, const vlSceneDefs *s) {
   bool asked = false;
   if (vl_dict_bool(dict, "regularize", &asked) && asked && !s->build.regularize)
-    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->source,
-                   "%s: \"regularize\" is ignored: only \"path\" and \"volpath\" have it", dict->what);
+    vl_import_warn(dict->import, VL_LOG_INFO,
+                   vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->source,
+                   "%s: \"regularize\" is ignored: only \"path\" and \"volpath\" have it",
+                   dict->what);
 }
 
 static bool read_integrator(vlImport *import, vlSceneDefs *s) {
@@ -151,23 +189,30 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   s->render.tracer = VL_TRACER_VOLPATH;
   s->render.max_depth = 5;
   s->tracer_missing = !choice->given;
-  if (!choice->given) return true;
+  if (!choice->given)
+    return true;
   char what[96];
-  snprintf(what, sizeof what, "Integrator \"%s\"", vl_import_kind_text(&vl_tracer_family, choice->kind).text);
-  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  snprintf(what, sizeof what, "Integrator \"%s\"",
+           vl_import_kind_text(&vl_tracer_family, choice->kind).text);
+  vlDict dict =
+      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
   const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
   if (!row) { /* permissive: a path tracer of the same depth replaces it */
     static const char *const later[] = {"function"};
     const char *names[32];
     size_t count = vl_kind_names(&vl_tracer_family, names, VL_LENGTH(names));
-    if (!vl_import_unknown(import, choice->source, "integrator", choice->kind, names, count, later, 1)) return false;
+    if (!vl_import_unknown(import, choice->source, "integrator", choice->kind, names, count,
+                           later, 1))
+      return false;
     read_depth(&dict, s);
     return import->scene->error.code == VL_OK;
   }
   s->render.tracer = (vlTracer)kind;
-  if (!vl_import_parameters(&dict, row, s, false, NULL)) return false;
-  if (vl_row_find(row, "maxdepth")) read_depth(&dict, s);
+  if (!vl_import_parameters(&dict, row, s, false, NULL))
+    return false;
+  if (vl_row_find(row, "maxdepth"))
+    read_depth(&dict, s);
   read_light_sampler(&dict, row, s);
   read_photons(&dict, row, s);
   skip_ignored(&dict, row);
@@ -180,11 +225,15 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
 static bool check_accelerator(vlImport *import) {
   static const char *const names[] = {"bvh", "kdtree"};
   const vlChoice *choice = &import->accelerator;
-  if (!choice->given || vl_text_is(choice->kind, names[0]) || vl_text_is(choice->kind, names[1])) return true;
-  return vl_import_unknown(import, choice->source, "accelerator", choice->kind, names, 2, NULL, 0);
+  if (!choice->given || vl_text_is(choice->kind, names[0]) ||
+      vl_text_is(choice->kind, names[1]))
+    return true;
+  return vl_import_unknown(import, choice->source, "accelerator", choice->kind, names, 2, NULL,
+                           0);
 }
 
 bool vl_import_sampling(vlImport *import) {
   vlSceneDefs *s = vl_scene_defs(import->scene);
-  return read_sampler(import, s) && read_filter(import, s) && read_integrator(import, s) && check_accelerator(import);
+  return read_sampler(import, s) && read_filter(import, s) && read_integrator(import, s) &&
+         check_accelerator(import);
 }

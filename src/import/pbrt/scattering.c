@@ -1,6 +1,7 @@
-/* import/pbrt/scattering.c: the table of measured scattering. Sources: Jensen, Marschner, Levoy, Hanrahan 2001, "A
- * Practical Model for Subsurface Light Transport", figure 5; Narasimhan, Gupta, Donner, Ramamoorthi, Nayar, Jensen
- * 2006, "Acquiring Scattering Properties of Participating Media by Dilution", table 3. */
+/* import/pbrt/scattering.c: the table of measured scattering. Sources: Jensen, Marschner,
+ * Levoy, Hanrahan 2001, "A Practical Model for Subsurface Light Transport", figure 5;
+ * Narasimhan, Gupta, Donner, Ramamoorthi, Nayar, Jensen 2006, "Acquiring Scattering Properties
+ * of Participating Media by Dilution", table 3. */
 #include "import/pbrt/scattering.h"
 #include "base/text.h"
 
@@ -33,27 +34,45 @@ static const vlScattering presets[] = {
     {"Sprite", {6.0306e-06f, 6.4139e-06f, 6.5504e-06f}, {0.001886f, 0.0018308f, 0.0020025f}},
     {"Gatorade", {0.0024574f, 0.003007f, 0.0037325f}, {0.024794f, 0.019289f, 0.008878f}},
     {"Chardonnay", {1.7982e-05f, 1.3758e-05f, 1.2023e-05f}, {0.010782f, 0.011855f, 0.023997f}},
-    {"White Zinfandel", {1.7501e-05f, 1.9069e-05f, 1.288e-05f}, {0.012072f, 0.016184f, 0.019843f}},
+    {"White Zinfandel",
+     {1.7501e-05f, 1.9069e-05f, 1.288e-05f},
+     {0.012072f, 0.016184f, 0.019843f}},
     {"Merlot", {2.1129e-05f, 0.0f, 0.0f}, {0.11632f, 0.25191f, 0.29434f}},
-    {"Budweiser Beer", {2.4356e-05f, 2.4079e-05f, 1.0564e-05f}, {0.011492f, 0.024911f, 0.057786f}},
+    {"Budweiser Beer",
+     {2.4356e-05f, 2.4079e-05f, 1.0564e-05f},
+     {0.011492f, 0.024911f, 0.057786f}},
     {"Coors Light Beer", {5.0922e-05f, 4.301e-05f, 0.0f}, {0.006164f, 0.013984f, 0.034983f}},
     {"Clorox", {0.0024035f, 0.0031373f, 0.003991f}, {0.0033542f, 0.014892f, 0.026297f}},
     {"Apple Juice", {0.00013612f, 0.00015836f, 0.000227f}, {0.012957f, 0.023741f, 0.052184f}},
-    {"Cranberry Juice", {0.00010402f, 0.00011646f, 7.8139e-05f}, {0.039437f, 0.094223f, 0.12426f}},
+    {"Cranberry Juice",
+     {0.00010402f, 0.00011646f, 7.8139e-05f},
+     {0.039437f, 0.094223f, 0.12426f}},
     {"Grape Juice", {5.382e-05f, 0.0f, 0.0f}, {0.10404f, 0.23958f, 0.29325f}},
-    {"Ruby Grapefruit Juice", {0.011002f, 0.010927f, 0.011036f}, {0.085867f, 0.18314f, 0.25262f}},
+    {"Ruby Grapefruit Juice",
+     {0.011002f, 0.010927f, 0.011036f},
+     {0.085867f, 0.18314f, 0.25262f}},
     {"White Grapefruit Juice", {0.22826f, 0.23998f, 0.32748f}, {0.0138f, 0.018831f, 0.056781f}},
     {"Shampoo", {0.0007176f, 0.0008303f, 0.0009016f}, {0.014107f, 0.045693f, 0.061717f}},
-    {"Strawberry Shampoo", {0.00015671f, 0.00015947f, 1.518e-05f}, {0.01449f, 0.05796f, 0.075823f}},
-    {"Head & Shoulders Shampoo", {0.023805f, 0.028804f, 0.034306f}, {0.084621f, 0.15688f, 0.20365f}},
+    {"Strawberry Shampoo",
+     {0.00015671f, 0.00015947f, 1.518e-05f},
+     {0.01449f, 0.05796f, 0.075823f}},
+    {"Head & Shoulders Shampoo",
+     {0.023805f, 0.028804f, 0.034306f},
+     {0.084621f, 0.15688f, 0.20365f}},
     {"Lemon Tea Powder", {0.040224f, 0.045264f, 0.051081f}, {2.4288f, 4.5757f, 7.2127f}},
-    {"Orange Powder", {0.00015617f, 0.00017482f, 0.0001762f}, {0.001449f, 0.003441f, 0.007863f}},
-    {"Pink Lemonade Powder", {0.00012103f, 0.00013073f, 0.00012528f}, {0.001165f, 0.002366f, 0.003195f}},
+    {"Orange Powder",
+     {0.00015617f, 0.00017482f, 0.0001762f},
+     {0.001449f, 0.003441f, 0.007863f}},
+    {"Pink Lemonade Powder",
+     {0.00012103f, 0.00013073f, 0.00012528f},
+     {0.001165f, 0.002366f, 0.003195f}},
     {"Cappuccino Powder", {1.8436f, 2.5851f, 2.1662f}, {35.844f, 49.547f, 61.084f}},
     {"Salt Powder", {0.027333f, 0.032451f, 0.031979f}, {0.28415f, 0.3257f, 0.34148f}},
     {"Sugar Powder", {0.00022272f, 0.00025513f, 0.000271f}, {0.012638f, 0.031051f, 0.050124f}},
     {"Suisse Mocha Powder", {2.7979f, 3.5452f, 4.3365f}, {17.502f, 27.004f, 35.433f}},
-    {"Pacific Ocean Surface Water", {0.0001764f, 0.00032095f, 0.00019617f}, {0.031845f, 0.031324f, 0.030147f}},
+    {"Pacific Ocean Surface Water",
+     {0.0001764f, 0.00032095f, 0.00019617f},
+     {0.031845f, 0.031324f, 0.030147f}},
 };
 
 const vlScattering *vl_scattering_preset(size_t index) {

@@ -1,11 +1,12 @@
-/* import/pbrt/scattering.h: measured scattering coefficients of liquids and solids, with pbrt's names. */
+/* import/pbrt/scattering.h: measured scattering coefficients of liquids and solids, with pbrt's
+ * names. */
 #ifndef IMPORT_PBRT_SCATTERING_H
 #define IMPORT_PBRT_SCATTERING_H
 
 #include <stddef.h>
 
-/* Coefficients per millimetre for the channels of linear sRGB. The scattering coefficient is the reduced one, used with
- * g = 0. */
+/* Coefficients per millimetre for the channels of linear sRGB. The scattering coefficient is
+ * the reduced one, used with g = 0. */
 typedef struct vlScattering {
   const char *name;
   float scattering[3], absorption[3];

@@ -1,4 +1,5 @@
-/* import/pbrt/shape.c: Shape directives. The arrays of a mesh move to the scene without a copy. */
+/* import/pbrt/shape.c: Shape directives. The arrays of a mesh move to the scene without a copy.
+ */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -11,14 +12,16 @@ static bool take_floats(vlImport *import, vlParam *p, const float **result) {
   float *items = p->floats.items;
   if (p->optional) { /* an attribute's array is copied: other shapes read it, too */
     float *copy = vl_alloc_array(import->context, p->floats.count, sizeof *copy);
-    if (!copy) return vl_import_fail_memory(import);
+    if (!copy)
+      return vl_import_fail_memory(import);
     memcpy(copy, items, p->floats.count * sizeof *copy);
     *result = copy;
     return true;
   }
   if (p->floats.capacity > p->floats.count) {
     items = vl_realloc_array(import->context, items, p->floats.count, sizeof *items);
-    if (!items) return vl_import_fail_memory(import);
+    if (!items)
+      return vl_import_fail_memory(import);
   }
   *result = items;
   p->floats.items = NULL;
@@ -27,41 +30,49 @@ static bool take_floats(vlImport *import, vlParam *p, const float **result) {
 }
 
 /* Takes the values of a parameter that must have an integer number of values per vertex. */
-static bool take_vertex_floats(vlDict *dict, const char *name, vlParamType type, size_t per, uint32_t vertices,
-                               const float **result) {
+static bool take_vertex_floats(vlDict *dict, const char *name, vlParamType type, size_t per,
+                               uint32_t vertices, const float **result) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
-  if (!p) return dict->import->scene->error.code == VL_OK;
+  if (!p)
+    return dict->import->scene->error.code == VL_OK;
   size_t count = p->floats.count;
   if (count != per * vertices)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                          "%s: \"%s\" holds %zu numbers, but %u vertices need %zu", dict->what, name, count, vertices,
-                          per * vertices);
+                          "%s: \"%s\" holds %zu numbers, but %u vertices need %zu", dict->what,
+                          name, count, vertices, per * vertices);
   return take_floats(dict->import, p, result);
 }
 
 static bool take_indices(vlDict *dict, vlShapeDef *def, size_t per) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER);
-  if (!p && import->scene->error.code != VL_OK) return false;
+  if (!p && import->scene->error.code != VL_OK)
+    return false;
   size_t count = p ? p->integers.count : per;
   if (!p && def->vertices != per)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"integer indices\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: \"integer indices\" is missing", dict->what);
   if (count % per)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: \"indices\" holds %zu numbers, not a multiple of %zu",
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "%s: \"indices\" holds %zu numbers, not a multiple of %zu",
                           dict->what, count, per);
   if (count / per > 0x7fffffffu)
     return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many faces", dict->what);
   for (size_t i = 0; p && i < count; i++)
     if (p->integers.items[i] < 0 || (uint32_t)p->integers.items[i] >= def->vertices)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                            "%s: \"indices\": number %zu names vertex %d, but there are %u vertices (0 to %u)",
-                            dict->what, i, p->integers.items[i], def->vertices, def->vertices - 1);
+      return vl_import_fail(
+          import, VL_ERROR_SCENE, p->source,
+          "%s: \"indices\": number %zu names vertex %d, but there are %u vertices (0 to %u)",
+          dict->what, i, p->integers.items[i], def->vertices, def->vertices - 1);
   uint32_t *indices = vl_alloc_array(import->context, count, sizeof *indices);
-  if (!indices) return vl_import_fail_memory(import);
-  for (size_t i = 0; i < count; i++) indices[i] = p ? (uint32_t)p->integers.items[i] : (uint32_t)i;
+  if (!indices)
+    return vl_import_fail_memory(import);
+  for (size_t i = 0; i < count; i++)
+    indices[i] = p ? (uint32_t)p->integers.items[i] : (uint32_t)i;
   def->indices = indices;
   def->faces = (uint32_t)(count / per);
-  if (p && !p->optional) VL_ARRAY_FREE(import->context, &p->integers);
+  if (p && !p->optional)
+    VL_ARRAY_FREE(import->context, &p->integers);
   return true;
 }
 
@@ -69,32 +80,41 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "P", 1u << VL_PARAM_POINT3);
   if (!p) {
-    if (import->scene->error.code != VL_OK) return false;
+    if (import->scene->error.code != VL_OK)
+      return false;
     vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER);
     vl_dict_find(dict, "uv", 1u << VL_PARAM_POINT2);
     vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL);
     vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER);
-    if (per == 3) vl_dict_find(dict, "S", 1u << VL_PARAM_VECTOR3);
-    if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing", dict->what);
+    if (per == 3)
+      vl_dict_find(dict, "S", 1u << VL_PARAM_VECTOR3);
+    if (!vl_dict_done(dict))
+      return false; /* a misspelt parameter is reported first */
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing",
+                          dict->what);
   }
   size_t count = p->floats.count;
   if (count % 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: \"P\" holds %zu numbers, not a multiple of 3",
-                          dict->what, count);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "%s: \"P\" holds %zu numbers, not a multiple of 3", dict->what,
+                          count);
   if (count / 3 > 0x7fffffffu)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many vertices", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many vertices",
+                          dict->what);
   def->vertices = (uint32_t)(count / 3);
-  vl_dict_find(dict, "faceIndices",
-               1u << VL_PARAM_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
+  vl_dict_find(
+      dict, "faceIndices",
+      1u << VL_PARAM_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
   if (!take_floats(import, p, &def->positions) || !take_indices(dict, def, per) ||
       !take_vertex_floats(dict, "uv", VL_PARAM_POINT2, 2, def->vertices, &def->uvs) ||
       !take_vertex_floats(dict, "N", VL_PARAM_NORMAL, 3, def->vertices, &def->normals) ||
-      (per == 3 && !take_vertex_floats(dict, "S", VL_PARAM_VECTOR3, 3, def->vertices, &def->tangents)))
+      (per == 3 &&
+       !take_vertex_floats(dict, "S", VL_PARAM_VECTOR3, 3, def->vertices, &def->tangents)))
     return false;
   if (per == 4)
-    vl_dict_find(dict, "emissionfilename",
-                 1u << VL_PARAM_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
+    vl_dict_find(
+        dict, "emissionfilename",
+        1u << VL_PARAM_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
   if (import->permissive && !vl_repair_mesh(import->context, &import->repairs, def))
     return vl_import_fail_memory(import);
   return import->scene->error.code == VL_OK;
@@ -116,12 +136,14 @@ static bool read_loop(vlDict *dict, vlShapeDef *def) {
   const char *scheme = "loop";
   vl_dict_count(dict, "levels", 0, &levels);
   vl_dict_string(dict, "scheme", &scheme); /* accepted: pbrt knows one scheme only */
-  if (!read_mesh(dict, def, 3)) return false;
+  if (!read_mesh(dict, def, 3))
+    return false;
   vlLoopMesh mesh;
   vlError error = {0};
-  vlResult result = vl_loop_subdivide(import->context, def->vertices, def->positions, def->faces, def->indices, levels,
-                                      &mesh, &error);
-  if (result != VL_OK) return vl_import_fail(import, result, dict->source, "%s: %s", dict->what, error.message);
+  vlResult result = vl_loop_subdivide(import->context, def->vertices, def->positions,
+                                      def->faces, def->indices, levels, &mesh, &error);
+  if (result != VL_OK)
+    return vl_import_fail(import, result, dict->source, "%s: %s", dict->what, error.message);
   free_arrays(import, def);
   def->uvs = def->tangents = NULL;
   def->vertices = mesh.vertices;
@@ -136,11 +158,15 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
   const float whole = vl_default_shape_def(def->kind).phi_max;
   bool given[32];
-  if (!vl_import_parameters(dict, row, def, false, given)) return false;
-  if (def->phi_max > whole) def->phi_max = whole;
+  if (!vl_import_parameters(dict, row, def, false, given))
+    return false;
+  if (def->phi_max > whole)
+    def->phi_max = whole;
   if (def->kind == VL_SHAPE_SPHERE) {
-    if (!vl_import_given(row, given, "zmin")) def->z_min = -def->radius;
-    if (!vl_import_given(row, given, "zmax")) def->z_max = def->radius;
+    if (!vl_import_given(row, given, "zmin"))
+      def->z_min = -def->radius;
+    if (!vl_import_given(row, given, "zmax"))
+      def->z_max = def->radius;
   }
   if (def->z_min > def->z_max) { /* as in pbrt, sorted */
     float t = def->z_min;
@@ -148,32 +174,41 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def) {
     def->z_max = t;
   }
   if (def->kind == VL_SHAPE_SPHERE) { /* as in pbrt, clamped */
-    if (def->z_min < -def->radius) def->z_min = -def->radius;
-    if (def->z_max > def->radius) def->z_max = def->radius;
+    if (def->z_min < -def->radius)
+      def->z_min = -def->radius;
+    if (def->z_max > def->radius)
+      def->z_max = def->radius;
   }
   return true;
 }
 
-/* ---- shapes enter ----------------------------------------------------------------------------------------------- */
+/* ---- shapes enter
+ * -----------------------------------------------------------------------------------------------
+ */
 
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
   vlShapeId id = vl_scene_adopt_shape(import->scene, def);
-  if (!id.index) return false;
-  if (!link->material && !link->material_name && !link->alpha && !link->displacement) return true;
+  if (!id.index)
+    return false;
+  if (!link->material && !link->material_name && !link->alpha && !link->displacement)
+    return true;
   vlShapeLink *slot = VL_PUSH(import->context, &import->links);
-  if (!slot) return vl_import_fail_memory(import);
+  if (!slot)
+    return vl_import_fail_memory(import);
   *slot = *link;
   slot->shape = id.index - 1;
   return true;
 }
 
-bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, const char *inside,
+bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,
+                                 const vlShapeLink *link, const char *inside,
                                  const char *outside) {
   vlGraphicsState now = import->state;
   import->state.inside = inside;
   import->state.outside = outside;
-  bool fine = vl_import_add_shape(import, def, link) &&
-              vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, def->source);
+  bool fine =
+      vl_import_add_shape(import, def, link) &&
+      vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, def->source);
   import->state = now;
   return fine;
 }
@@ -184,11 +219,14 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
   const char *const lengths[] = {"displacement.edgelength", "edgelength"};
   for (int i = 0; i < 2; i++)
     if (vl_dict_float(dict, lengths[i], &def->edge_length) && !(def->edge_length > 0.0f))
-      return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"%s\" must be above 0", dict->what, lengths[i]);
+      return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"%s\" must be above 0",
+                            dict->what, lengths[i]);
   def->edge_length *= (float)import->edge_scale;
-  if (!p) return import->scene->error.code == VL_OK;
+  if (!p)
+    return import->scene->error.code == VL_OK;
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: \"displacement\" takes one texture", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "%s: \"displacement\" takes one texture", dict->what);
   link->displacement = vl_import_keep(import, p->strings.items[0]);
   link->displacement_source = p->source;
   return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_source);
@@ -198,11 +236,14 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
 static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  if (!read_displacement(dict, def, link) || !vl_dict_done(dict)) return false;
+  if (!read_displacement(dict, def, link) || !vl_dict_done(dict))
+    return false;
   if (!file)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"string filename\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
+                          "%s: \"string filename\" is missing", dict->what);
   char path[4096];
-  if (!vl_import_path(import, file, path, sizeof path)) return false;
+  if (!vl_import_path(import, file, path, sizeof path))
+    return false;
   return vl_import_note_mesh(import, path, file->source, def, link);
 }
 
@@ -210,10 +251,12 @@ static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
 static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE);
-  if (!p) return import->scene->error.code == VL_OK;
+  if (!p)
+    return import->scene->error.code == VL_OK;
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"alpha\" takes 1 value, found %zu",
-                          dict->what, vl_param_count(p));
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "%s: parameter \"alpha\" takes 1 value, found %zu", dict->what,
+                          vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     def->alpha.value = p->floats.items[0];
     return true;
@@ -226,7 +269,8 @@ static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
 /* Records the media of the shapes from index first on. */
 static bool note_media(vlImport *import, size_t first, vlSource source) {
   for (size_t i = first; i < import->scene->shapes.count; i++)
-    if (!vl_import_note_media(import, 's', (uint32_t)i, source)) return false;
+    if (!vl_import_note_media(import, 's', (uint32_t)i, source))
+      return false;
   return true;
 }
 
@@ -234,27 +278,35 @@ static bool note_media(vlImport *import, size_t first, vlSource source) {
 typedef bool EnterShape(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken);
 
 static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  if (!vl_dict_done(dict)) return false;
+  if (!vl_dict_done(dict))
+    return false;
   *taken = true;
   size_t before = dict->import->scene->shapes.count;
-  return vl_import_add_shape(dict->import, def, link) && note_media(dict->import, before, dict->source);
+  return vl_import_add_shape(dict->import, def, link) &&
+         note_media(dict->import, before, dict->source);
 }
 
-static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
+                            bool *taken) {
   bool gathered = false;
-  if (!read_mesh(dict, def, 3) || !vl_dict_done(dict)) return false;
-  if (!vl_import_gather_mesh(dict->import, def, link, &gathered)) return false;
+  if (!read_mesh(dict, def, 3) || !vl_dict_done(dict))
+    return false;
+  if (!vl_import_gather_mesh(dict->import, def, link, &gathered))
+    return false;
   return gathered || enter(dict, def, link, taken);
 }
 
-static bool enter_bilinear(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+static bool enter_bilinear(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
+                           bool *taken) {
   return read_mesh(dict, def, 4) && enter(dict, def, link, taken);
 }
 
 static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   bool gathered = false;
-  if (!read_quadric(dict, def) || !vl_dict_done(dict)) return false;
-  if (!vl_import_gather_sphere(dict->import, def, link, &gathered)) return false;
+  if (!read_quadric(dict, def) || !vl_dict_done(dict))
+    return false;
+  if (!vl_import_gather_sphere(dict->import, def, link, &gathered))
+    return false;
   return gathered || enter(dict, def, link, taken);
 }
 
@@ -262,7 +314,8 @@ static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
 static bool enter_row(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
   bool quadric = row->traits & VL_SHAPE_TRAIT_QUADRIC;
-  if (!(quadric ? read_quadric(dict, def) : vl_import_parameters(dict, row, def, false, NULL))) return false;
+  if (!(quadric ? read_quadric(dict, def) : vl_import_parameters(dict, row, def, false, NULL)))
+    return false;
   return enter(dict, def, link, taken);
 }
 
@@ -301,26 +354,33 @@ enum { MESHES = VL_LENGTH(meshes) };
 static EnterShape *find_shape(const char *name, vlShapeKind *kind) {
   int own = vl_kind_find(&vl_shape_family, name);
   *kind = own < 0 ? VL_SHAPE_TRIANGLES : (vlShapeKind)own;
-  if (own >= 0) return rules[own] ? rules[own] : enter_row;
+  if (own >= 0)
+    return rules[own] ? rules[own] : enter_row;
   for (size_t i = 0; i < MESHES; i++)
-    if (vl_text_is(meshes[i].name, name)) return meshes[i].enter;
+    if (vl_text_is(meshes[i].name, name))
+      return meshes[i].enter;
   return NULL;
 }
 
 static bool unknown_shape(vlImport *import, const vlStatement *s) {
   const char *names[64];
   size_t count = vl_kind_names(&vl_shape_family, names, 64 - MESHES);
-  for (size_t i = 0; i < MESHES; i++) names[count++] = meshes[i].name;
-  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count, NULL, 0); /* permissive: skipped */
+  for (size_t i = 0; i < MESHES; i++)
+    names[count++] = meshes[i].name;
+  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count, NULL,
+                           0); /* permissive: skipped */
 }
 
 /* Removes the emission of shapes that cannot emit light, with a warning. */
 static void drop_emission(vlImport *import, vlSource source, bool moves, vlShapeDef *def) {
-  if (!def->emission.index) return;
+  if (!def->emission.index)
+    return;
   if (import->in_object)
-    vl_import_warn(import, VL_LOG_WARNING, source, "area lights inside of objects give no light (as in pbrt)");
+    vl_import_warn(import, VL_LOG_WARNING, source,
+                   "area lights inside of objects give no light (as in pbrt)");
   else if (moves)
-    vl_import_warn(import, VL_LOG_WARNING, source, "an area light that moves (ActiveTransform) gives no light");
+    vl_import_warn(import, VL_LOG_WARNING, source,
+                   "an area light that moves (ActiveTransform) gives no light");
   else
     return;
   def->emission.index = 0;
@@ -333,7 +393,8 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
                                vl_import_attributes(import, VL_ATTR_SHAPE));
   vlShapeKind kind;
   EnterShape *function = find_shape(s->names[0], &kind);
-  if (!function) return unknown_shape(import, s);
+  if (!function)
+    return unknown_shape(import, s);
   vlShapeDef def = vl_default_shape_def(kind);
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,
@@ -343,13 +404,17 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   def.source = s->source;
   def.group = import->object;
   def.reverse_orientation = import->state.reverse_orientation;
-  if (moves && !vl_import_moving_group(import, s->source, &def.group)) return false;
-  if ((!moves && !vl_import_ctm(import, s->source, &ctm)) || !read_alpha(&dict, &def, &link)) return false;
+  if (moves && !vl_import_moving_group(import, s->source, &def.group))
+    return false;
+  if ((!moves && !vl_import_ctm(import, s->source, &ctm)) || !read_alpha(&dict, &def, &link))
+    return false;
   memcpy(def.group_from_shape, ctm.m, sizeof def.group_from_shape);
   def.emission = import->state.emission;
   drop_emission(import, s->source, moves, &def);
-  if (kind != VL_SHAPE_CURVES && !vl_import_flush_curves(import)) return false;
+  if (kind != VL_SHAPE_CURVES && !vl_import_flush_curves(import))
+    return false;
   bool fine = function(&dict, &def, &link, &taken);
-  if (!taken) free_arrays(import, &def);
+  if (!taken)
+    free_arrays(import, &def);
   return fine;
 }

@@ -1,5 +1,6 @@
-/* import/pbrt/spectrum.c: colours and numbers of parameters become inputs of the scene: rgb, named spectra, spectrum
- * files (two columns: wavelength in nm, value), sampled spectra, blackbodies, textures by name. */
+/* import/pbrt/spectrum.c: colours and numbers of parameters become inputs of the scene: rgb,
+ * named spectra, spectrum files (two columns: wavelength in nm, value), sampled spectra,
+ * blackbodies, textures by name. */
 
 #include "base/file.h"
 #include "base/text.h"
@@ -10,40 +11,51 @@
 /* The block lives until the end of the import, like the strings. */
 static float *keep_floats(vlImport *import, size_t count) {
   char **slot = VL_PUSH(import->context, &import->strings);
-  float *block = slot ? vl_alloc_array(import->context, count ? count : 1, sizeof *block) : NULL;
-  if (slot) *slot = (char *)block;
-  if (!block) vl_import_fail_memory(import);
+  float *block =
+      slot ? vl_alloc_array(import->context, count ? count : 1, sizeof *block) : NULL;
+  if (slot)
+    *slot = (char *)block;
+  if (!block)
+    vl_import_fail_memory(import);
   return block;
 }
 
-static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSource source, vlSpectrum *spectrum) {
+static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSource source,
+                       vlSpectrum *spectrum) {
   if (values % 2)
     return vl_import_fail(import, VL_ERROR_SCENE, source,
-                          "a spectrum holds pairs of wavelength and value; found %zu numbers", values);
+                          "a spectrum holds pairs of wavelength and value; found %zu numbers",
+                          values);
   size_t n = values / 2;
   float *block = keep_floats(import, values);
-  if (!block) return false;
+  if (!block)
+    return false;
   for (size_t i = 0; i < n; i++) {
     block[i] = pairs[2 * i];
     block[n + i] = pairs[2 * i + 1];
     if (i && !(block[i] > block[i - 1]))
       return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "wavelengths of a spectrum must increase: %g comes after %g", (double)block[i],
-                            (double)block[i - 1]);
+                            "wavelengths of a spectrum must increase: %g comes after %g",
+                            (double)block[i], (double)block[i - 1]);
   }
-  *spectrum = (vlSpectrum){
-      .kind = VL_SPECTRUM_SAMPLED, .scale = 1.0f, .count = (uint32_t)n, .wavelengths = block, .values = block + n};
+  *spectrum = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
+                           .scale = 1.0f,
+                           .count = (uint32_t)n,
+                           .wavelengths = block,
+                           .values = block + n};
   return true;
 }
 
-static bool parse_file(vlImport *import, const char *path, char *data, size_t size, vlSpectrum *spectrum) {
+static bool parse_file(vlImport *import, const char *path, char *data, size_t size,
+                       vlSpectrum *spectrum) {
   VL_ARRAY(float) pairs = {0};
   vlTokenizer tokens;
   vl_tokenizer_start(&tokens, data, size);
   bool fine = true;
   while (fine) {
     vlToken token = vl_token_next(&tokens);
-    if (token.kind == VL_TOKEN_END) break;
+    if (token.kind == VL_TOKEN_END)
+      break;
     double value;
     vlSource at = {path, token.line, token.column};
     if (token.kind != VL_TOKEN_WORD || !vl_number_parse(token.text, token.length, &value)) {
@@ -57,7 +69,8 @@ static bool parse_file(vlImport *import, const char *path, char *data, size_t si
       fine = vl_import_fail_memory(import);
   }
   vlSource whole = {path, 1, 1};
-  if (fine && pairs.count == 0) fine = vl_import_fail(import, VL_ERROR_SCENE, whole, "spectrum file: holds no numbers");
+  if (fine && pairs.count == 0)
+    fine = vl_import_fail(import, VL_ERROR_SCENE, whole, "spectrum file: holds no numbers");
   fine = fine && take_pairs(import, pairs.items, pairs.count, whole, spectrum);
   VL_ARRAY_FREE(import->context, &pairs);
   return fine;
@@ -68,9 +81,11 @@ static bool read_file(vlImport *import, const vlParam *param, vlSpectrum *spectr
   char *data;
   size_t size;
   vlError error = {0};
-  if (!vl_import_path(import, param, path, sizeof path)) return false;
+  if (!vl_import_path(import, param, path, sizeof path))
+    return false;
   vlResult result = vl_file_read(import->context, path, true, &data, &size, &error);
-  if (result != VL_OK) return vl_import_fail(import, result, param->source, "%s", error.message);
+  if (result != VL_OK)
+    return vl_import_fail(import, result, param->source, "%s", error.message);
   bool fine = parse_file(import, path, data, size, spectrum);
   vl_free(import->context, data);
   return fine;
@@ -86,12 +101,15 @@ static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spect
     }
     names[count] = known;
   }
-  if (strchr(text, '/') || strchr(text, '.')) return read_file(import, param, spectrum);
+  if (strchr(text, '/') || strchr(text, '.'))
+    return read_file(import, param, spectrum);
   const char *near = vl_nearest_name(text, names, count);
   char path[4096];
-  if (!near && vl_import_find(import, param->source, text, path, sizeof path) != VL_FOUND_TOO_LONG)
+  if (!near &&
+      vl_import_find(import, param->source, text, path, sizeof path) != VL_FOUND_TOO_LONG)
     return read_file(import, param, spectrum);
-  return vl_import_fail(import, VL_ERROR_SCENE, param->source, "no spectrum is named \"%s\" (did you mean \"%s\"?)",
+  return vl_import_fail(import, VL_ERROR_SCENE, param->source,
+                        "no spectrum is named \"%s\" (did you mean \"%s\"?)",
                         vl_short_text(text).text, near ? near : "");
 }
 
@@ -99,37 +117,46 @@ bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {
   size_t count = vl_param_count(p);
   if (p->type == VL_PARAM_RGB) {
     if (count != 3)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"rgb %s\" takes 3 values, found %zu", p->name, count);
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                            "\"rgb %s\" takes 3 values, found %zu", p->name, count);
     *spectrum = vl_spectrum_rgb(p->floats.items[0], p->floats.items[1], p->floats.items[2]);
     spectrum->space = p->space;
     for (int i = 0; i < 3; i++)
       if (spectrum->rgb[i] < 0.0f)
-        return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"rgb %s\" has a negative value", p->name);
+        return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                              "\"rgb %s\" has a negative value", p->name);
     return true;
   }
   if (p->type == VL_PARAM_BLACKBODY) {
     if (count != 1)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"blackbody %s\" takes 1 value (kelvin), found %zu",
-                            p->name, count);
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                            "\"blackbody %s\" takes 1 value (kelvin), found %zu", p->name,
+                            count);
     *spectrum = vl_spectrum_blackbody(p->floats.items[0]);
-    if (p->floats.items[0] > 0.0f) return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"blackbody %s\" must be above 0 kelvin", p->name);
+    if (p->floats.items[0] > 0.0f)
+      return true;
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "\"blackbody %s\" must be above 0 kelvin", p->name);
   }
-  if (p->strings.count == 0) return take_pairs(import, p->floats.items, p->floats.count, p->source, spectrum);
+  if (p->strings.count == 0)
+    return take_pairs(import, p->floats.items, p->floats.count, p->source, spectrum);
   if (count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"spectrum %s\" takes one name, found %zu", p->name,
-                          count);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "\"spectrum %s\" takes one name, found %zu", p->name, count);
   return read_named(import, p, spectrum);
 }
 
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT | VL_BIT_TEXTURE);
-  if (given) *given = p != NULL;
-  if (!p) return import->scene->error.code == VL_OK;
+  if (given)
+    *given = p != NULL;
+  if (!p)
+    return import->scene->error.code == VL_OK;
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" takes 1 value, found %zu",
-                          dict->what, name, vl_param_count(p));
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                          "%s: parameter \"%s\" takes 1 value, found %zu", dict->what, name,
+                          vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     *input = vl_float_input(p->floats.items[0]);
     return true;
@@ -137,24 +164,30 @@ bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, 
   return vl_import_texture_id(import, p->strings.items[0], false, p->source, &input->texture);
 }
 
-bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given) {
+bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input,
+                              bool albedo, bool *given) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, name, VL_BITS_SPECTRUM | VL_BIT_TEXTURE);
-  if (given) *given = p != NULL;
-  if (!p) return import->scene->error.code == VL_OK;
+  if (given)
+    *given = p != NULL;
+  if (!p)
+    return import->scene->error.code == VL_OK;
   if (p->type == VL_PARAM_TEXTURE) {
     if (vl_param_count(p) != 1)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" takes 1 texture, found %zu",
-                            dict->what, name, vl_param_count(p));
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                            "%s: parameter \"%s\" takes 1 texture, found %zu", dict->what, name,
+                            vl_param_count(p));
     return vl_import_texture_id(import, p->strings.items[0], true, p->source, &input->texture);
   }
   *input = (vlSpectrumInput){0};
-  if (!vl_import_spectrum(import, p, &input->value)) return false;
+  if (!vl_import_spectrum(import, p, &input->value))
+    return false;
   if (albedo && p->type == VL_PARAM_RGB)
     for (int i = 0; i < 3; i++)
       if (p->floats.items[i] > 1.0f)
-        return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                              "%s: \"rgb %s\" is a reflectance and must not be above 1, it is %g", dict->what, name,
-                              (double)p->floats.items[i]);
+        return vl_import_fail(
+            import, VL_ERROR_SCENE, p->source,
+            "%s: \"rgb %s\" is a reflectance and must not be above 1, it is %g", dict->what,
+            name, (double)p->floats.items[i]);
   return true;
 }

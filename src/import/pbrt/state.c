@@ -1,20 +1,25 @@
-/* import/pbrt/state.c: pbrt's graphics state: current transforms, named coordinate systems, the stack. */
+/* import/pbrt/state.c: pbrt's graphics state: current transforms, named coordinate systems, the
+ * stack. */
 #include <math.h>
 #include <string.h>
 
 #include "import/pbrt/builder.h"
 #include "math/double3.h"
 
-/* ---- transforms ------------------------------------------------------------------------------------------------- */
+/* ---- transforms
+ * -------------------------------------------------------------------------------------------------
+ */
 
 static void set_ctm(vlImport *import, vlMat4 m) {
   for (int i = 0; i < 2; i++)
-    if (import->state.active & 1u << i) import->state.ctm[i] = m;
+    if (import->state.active & 1u << i)
+      import->state.ctm[i] = m;
 }
 
 static void apply(vlImport *import, vlMat4 m) {
   for (int i = 0; i < 2; i++)
-    if (import->state.active & 1u << i) import->state.ctm[i] = vl_mat4_multiply(import->state.ctm[i], m);
+    if (import->state.active & 1u << i)
+      import->state.ctm[i] = vl_mat4_multiply(import->state.ctm[i], m);
 }
 
 /* pbrt's LookAt (book, 3.9.2): camera_from_world with x right, y up, z forward. */
@@ -23,18 +28,25 @@ static bool look_at(vlImport *import, const vlStatement *s) {
   double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
   double length = vl_norm3(d);
   if (!(length > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the eye and the point it looks at are the same");
-  for (int i = 0; i < 3; i++) d[i] /= length;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "LookAt: the eye and the point it looks at are the same");
+  for (int i = 0; i < 3; i++)
+    d[i] /= length;
   double r[3], n[3];
   vl_cross3(u, d, r);
   double size = vl_norm3(r);
   double up = vl_norm3(u);
-  if (!(up > 0.0)) return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is zero");
+  if (!(up > 0.0))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is zero");
   if (!(size > 1e-12 * up))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is parallel to the view direction");
-  for (int i = 0; i < 3; i++) r[i] /= size;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "LookAt: the up vector is parallel to the view direction");
+  for (int i = 0; i < 3; i++)
+    r[i] /= size;
   vl_cross3(d, r, n);
-  vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2], e[2], 0, 0, 0, 1}}, m;
+  vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2],
+                               e[2], 0, 0, 0, 1}},
+         m;
   vl_mat4_inverse(world_from_camera, &m);
   apply(import, m);
   return true;
@@ -43,7 +55,8 @@ static bool look_at(vlImport *import, const vlStatement *s) {
 bool vl_import_transform(vlImport *import, const vlStatement *s) {
   const double *v = s->numbers;
   vlMat4 m = vl_mat4_identity();
-  if (s->directive == VL_DIR_LOOK_AT) return look_at(import, s);
+  if (s->directive == VL_DIR_LOOK_AT)
+    return look_at(import, s);
   if (s->directive == VL_DIR_ROTATE && v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
     return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Rotate: the axis is zero");
   if (s->directive == VL_DIR_IDENTITY)
@@ -54,9 +67,11 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
     apply(import, vl_mat4_scale(v[0], v[1], v[2]));
   else if (s->directive == VL_DIR_ROTATE)
     apply(import, vl_mat4_rotate(v[0] * 0.017453292519943295, v[1], v[2], v[3]));
-  if (s->directive != VL_DIR_TRANSFORM && s->directive != VL_DIR_CONCAT_TRANSFORM) return true;
+  if (s->directive != VL_DIR_TRANSFORM && s->directive != VL_DIR_CONCAT_TRANSFORM)
+    return true;
   for (int i = 0; i < 4; i++) /* files store matrices column by column */
-    for (int j = 0; j < 4; j++) m.m[4 * i + j] = v[4 * j + i];
+    for (int j = 0; j < 4; j++)
+      m.m[4 * i + j] = v[4 * j + i];
   if (s->directive == VL_DIR_TRANSFORM)
     set_ctm(import, m);
   else
@@ -67,10 +82,12 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
 bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]) {
   const char *kept = vl_import_keep(import, name);
   vlTransforms *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
-  if (!slot) return vl_import_fail_memory(import);
+  if (!slot)
+    return vl_import_fail_memory(import);
   slot->at[0] = m[0];
   slot->at[1] = m[1];
-  if (vl_names_add(import->context, &import->coordinate_systems, kept, (uint32_t)import->matrices.count - 1))
+  if (vl_names_add(import->context, &import->coordinate_systems, kept,
+                   (uint32_t)import->matrices.count - 1))
     return true;
   return vl_import_fail_memory(import);
 }
@@ -78,7 +95,8 @@ bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]
 bool vl_import_use_system(vlImport *import, const vlStatement *s) {
   uint32_t index;
   if (vl_names_find(&import->coordinate_systems, s->names[0], &index)) {
-    for (int i = 0; i < 2; i++) import->state.ctm[i] = import->matrices.items[index].at[i];
+    for (int i = 0; i < 2; i++)
+      import->state.ctm[i] = import->matrices.items[index].at[i];
     return true;
   }
   const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);
@@ -86,17 +104,22 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
     return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "there is no coordinate system \"%s\" (did you mean \"%s\"?)",
                           vl_short_text(s->names[0]).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, s->source, "there is no coordinate system \"%s\"",
+  return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                        "there is no coordinate system \"%s\"",
                         vl_short_text(s->names[0]).text);
 }
 
-/* ---- the stack -------------------------------------------------------------------------------------------------- */
+/* ---- the stack
+ * --------------------------------------------------------------------------------------------------
+ */
 
 bool vl_import_push(vlImport *import, char kind, vlSource source) {
   if (import->stack.count > 100000)
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "attributes are nested more than 100000 deep");
+    return vl_import_fail(import, VL_ERROR_SCENE, source,
+                          "attributes are nested more than 100000 deep");
   vlStackEntry *entry = VL_PUSH(import->context, &import->stack);
-  if (!entry) return vl_import_fail_memory(import);
+  if (!entry)
+    return vl_import_fail_memory(import);
   *entry = (vlStackEntry){kind, source, import->state};
   return vl_scene_copy_source(import->scene, &entry->source);
 }
@@ -115,14 +138,18 @@ bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource 
     char kind;
     const char *name;
   } openers[] = {{'a', "AttributeBegin"}, {'o', "ObjectBegin"}, {'i', "Import"}};
-  const vlStackEntry *top = import->stack.count ? &import->stack.items[import->stack.count - 1] : NULL;
+  const vlStackEntry *top =
+      import->stack.count ? &import->stack.items[import->stack.count - 1] : NULL;
   if (!top || (top->kind != kind && top->kind == 'i'))
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s without its beginning", directive);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s without its beginning",
+                          directive);
   if (top->kind != kind) {
     const char *open = "";
     for (size_t i = 0; i < 3; i++)
-      if (openers[i].kind == top->kind) open = openers[i].name;
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: the %s of line %u must be closed first", directive, open,
+      if (openers[i].kind == top->kind)
+        open = openers[i].name;
+    return vl_import_fail(import, VL_ERROR_SCENE, source,
+                          "%s: the %s of line %u must be closed first", directive, open,
                           top->source.line);
   }
   vl_import_restore(import);

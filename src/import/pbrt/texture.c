@@ -1,4 +1,5 @@
-/* import/pbrt/texture.c: Texture directives become textures of the scene, each after the textures that it refers to. */
+/* import/pbrt/texture.c: Texture directives become textures of the scene, each after the
+ * textures that it refers to. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +8,8 @@
 #include "import/pbrt/builder.h"
 #include "velo/texture.h"
 
-bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source, vlTextureId *id) {
+bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source,
+                          vlTextureId *id) {
   const vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   const vlNameTable *other = spectrum ? &import->float_textures : &import->spectrum_textures;
   const char *type = spectrum ? "spectrum" : "float";
@@ -15,23 +17,27 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
   if (!vl_names_find(table, name, &index)) {
     if (vl_names_find(other, name, &index))
       return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "texture \"%s\" is a %s texture; a %s texture is needed here", vl_short_text(name).text,
-                            spectrum ? "float" : "spectrum", type);
+                            "texture \"%s\" is a %s texture; a %s texture is needed here",
+                            vl_short_text(name).text, spectrum ? "float" : "spectrum", type);
     const char *near = vl_names_nearest(table, name);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no %s texture \"%s\" (did you mean \"%s\"?)",
-                            type, vl_short_text(name).text, vl_short_text(near).text);
+      return vl_import_fail(import, VL_ERROR_SCENE, source,
+                            "there is no %s texture \"%s\" (did you mean \"%s\"?)", type,
+                            vl_short_text(name).text, vl_short_text(near).text);
     return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no %s texture \"%s\"", type,
                           vl_short_text(name).text);
   }
   if (import->textures.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "texture \"%s\" refers to itself", vl_short_text(name).text);
-  if (!vl_import_finish_texture(import, index)) return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "texture \"%s\" refers to itself",
+                          vl_short_text(name).text);
+  if (!vl_import_finish_texture(import, index))
+    return false;
   id->index = import->textures.items[index].id;
   return true;
 }
 
-/* ---- what a table cannot say ------------------------------------------------------------------------------------- */
+/* ---- what a table cannot say
+ * ------------------------------------------------------------------------------------- */
 
 /* The parameters of one texture: its row, and which of them the file gives. */
 typedef struct Reading {
@@ -46,9 +52,10 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
   static const struct {
     const char *name;
     bool in[4]; /* per mapping: whether it has the parameter */
-  } parameters[] = {{"uscale", {true, false, false, false}}, {"vscale", {true, false, false, false}},
-                    {"udelta", {true, false, false, true}},  {"vdelta", {true, false, false, true}},
-                    {"v1", {false, false, false, true}},     {"v2", {false, false, false, true}}};
+  } parameters[] = {
+      {"uscale", {true, false, false, false}}, {"vscale", {true, false, false, false}},
+      {"udelta", {true, false, false, true}},  {"vdelta", {true, false, false, true}},
+      {"v1", {false, false, false, true}},     {"v2", {false, false, false, true}}};
   bool solid = def->kind == VL_TEXTURE_CHECKERBOARD && def->dimension == 3;
   const vlParam *mapping = solid ? vl_dict_find(r->dict, "mapping", ~0u) : NULL;
   if (mapping && !mapping->optional)
@@ -56,11 +63,13 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
                           "%s: \"mapping\" has no effect with \"dimension\" 3", r->dict->what);
   for (size_t i = 0; i < VL_LENGTH(parameters); i++) {
     const char *name = parameters[i].name;
-    if (parameters[i].in[def->mapping] && !solid) continue;
-    const vlParam *p = vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
+    if (parameters[i].in[def->mapping] && !solid)
+      continue;
+    const vlParam *p =
+        vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
     if (p && !p->optional) /* attributes may stay unused */
-      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->source, "%s: \"%s\" has no effect with this mapping",
-                            r->dict->what, name);
+      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->source,
+                            "%s: \"%s\" has no effect with this mapping", r->dict->what, name);
   }
   return true;
 }
@@ -68,43 +77,52 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
 /* Encodings: "sRGB", "linear", "gamma 2.2". */
 static bool read_encoding(vlDict *dict, vlTextureDef *def) {
   vlParam *p = vl_dict_find(dict, "encoding", 1u << VL_PARAM_STRING);
-  if (!p) return true;
+  if (!p)
+    return true;
   const char *text = p->strings.items[0];
   def->encoding_given = true;
   if (vl_text_is(text, "sRGB") || vl_text_is(text, "srgb")) {
     def->encoding = VL_ENCODING_SRGB;
   } else if (vl_text_is(text, "linear")) {
     def->encoding = VL_ENCODING_LINEAR;
-  } else if (sscanf(text, "gamma %f", &def->gamma) == 1 && def->gamma > 0.0f && isfinite(def->gamma)) {
+  } else if (sscanf(text, "gamma %f", &def->gamma) == 1 && def->gamma > 0.0f &&
+             isfinite(def->gamma)) {
     def->encoding = VL_ENCODING_GAMMA;
   } else {
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                          "%s: unknown encoding \"%s\" (known: sRGB, linear, gamma followed by a number)", dict->what,
-                          vl_short_text(text).text);
+    return vl_import_fail(
+        dict->import, VL_ERROR_SCENE, p->source,
+        "%s: unknown encoding \"%s\" (known: sRGB, linear, gamma followed by a number)",
+        dict->what, vl_short_text(text).text);
   }
   return true;
 }
 
 static bool finish_image(const Reading *r, vlTextureDef *def) {
   float anisotropy = 8.0f;
-  vl_dict_float(r->dict, "maxanisotropy", &anisotropy); /* accepted and ignored: limit of pbrt's EWA filter */
+  vl_dict_float(r->dict, "maxanisotropy",
+                &anisotropy); /* accepted and ignored: limit of pbrt's EWA filter */
   if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict))
     return false; /* a misspelt "filename" is reported first */
-  if (r->dict->import->image_missing) return true;
+  if (r->dict->import->image_missing)
+    return true;
   return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
                                      "%s: \"string filename\" is missing", r->dict->what);
 }
 
 static bool finish_direction_mix(const Reading *r, vlTextureDef *def) {
   double d[3], world[3];
-  for (int i = 0; i < 3; i++) d[i] = (double)def->direction[i];
+  for (int i = 0; i < 3; i++)
+    d[i] = (double)def->direction[i];
   vlParam *p = vl_dict_find(r->dict, "dir", ~0u);
-  for (int i = 0; p && i < 3; i++) d[i] = p->exact[i];
+  for (int i = 0; p && i < 3; i++)
+    d[i] = p->exact[i];
   vl_mat4_vector(r->world_from_texture, d, world);
   double length = sqrt(world[0] * world[0] + world[1] * world[1] + world[2] * world[2]);
   if (!(length > 0.0))
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source, "%s: \"dir\" is zero", r->dict->what);
-  for (int i = 0; i < 3; i++) def->direction[i] = (float)(world[i] / length);
+    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
+                          "%s: \"dir\" is zero", r->dict->what);
+  for (int i = 0; i < 3; i++)
+    def->direction[i] = (float)(world[i] / length);
   return true;
 }
 
@@ -113,7 +131,9 @@ typedef bool Rule(const Reading *r, vlTextureDef *def);
 static Rule *const rules[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
     [VL_TEXTURE_IMAGE] = finish_image, [VL_TEXTURE_DIRECTION_MIX] = finish_direction_mix};
 
-/* ---- textures ---------------------------------------------------------------------------------------------------- */
+/* ---- textures
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pending) {
   enum { MOST = 64 };
@@ -123,15 +143,16 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
   vlMat4 texture_from_world;
   assert(row->parameter_count <= MOST);
   if (!vl_mat4_inverse(pending->ctm, &texture_from_world))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->source, "%s: the current transform is singular",
-                          dict->what);
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->source,
+                          "%s: the current transform is singular", dict->what);
   memcpy(def->texture_from_world, texture_from_world.m, sizeof def->texture_from_world);
   if (row->traits & (def->spectrum ? VL_TEXTURE_FLOAT_ONLY : VL_TEXTURE_COLOR_ONLY))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: this is a %s texture only", dict->what,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
+                          "%s: this is a %s texture only", dict->what,
                           def->spectrum ? "float" : "spectrum");
   return vl_import_parameters(dict, row, def, def->spectrum, is_given) &&
-         (!vl_row_find(row, "mapping") || check_mapping(&r, def)) && (!rules[def->kind] || rules[def->kind](&r, def)) &&
-         vl_dict_done(dict);
+         (!vl_row_find(row, "mapping") || check_mapping(&r, def)) &&
+         (!rules[def->kind] || rules[def->kind](&r, def)) && vl_dict_done(dict);
 }
 
 /* The texture in place of an image that is missing: middle grey, or the number 1. */
@@ -148,28 +169,35 @@ static bool finish(vlImport *import, uint32_t index) {
   char what[160];
   snprintf(what, sizeof what, "Texture \"%s\" (%s)", vl_short_text(pending->name).text,
            vl_import_kind_text(&vl_texture_family, pending->kind).text);
-  vlDict dict = vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
+  vlDict dict =
+      vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
   int kind = vl_kind_find(&vl_texture_family, pending->kind);
-  vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);
+  vlTextureDef def = vl_default_texture_def(
+      kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);
   def.name = pending->name;
   def.source = pending->source;
-  def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB
-                                           : pending->space; /* images have their own colour space or are sRGB */
-  if (kind < 0) {                                            /* permissive: a constant replaces it: middle grey, or 1 */
+  def.space = def.kind == VL_TEXTURE_IMAGE
+                  ? VL_SPACE_SRGB
+                  : pending->space; /* images have their own colour space or are sRGB */
+  if (kind < 0) {                   /* permissive: a constant replaces it: middle grey, or 1 */
     if (vl_text_is(pending->kind, "ptex")) {
       if (!vl_import_unsupported(
               import, pending->source,
-              "texture \"ptex\": Ptex files are not supported (to convert: bake it into an image over uv, "
+              "texture \"ptex\": Ptex files are not supported (to convert: bake "
+              "it into an image over uv, "
               "and name that by \"imagemap\")"))
         return false;
-    } else if (!vl_import_unknown_kind(import, pending->source, &vl_texture_family, pending->kind)) {
+    } else if (!vl_import_unknown_kind(import, pending->source, &vl_texture_family,
+                                       pending->kind)) {
       return false;
     }
     def.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.5f));
   } else {
     import->image_missing = false;
-    if (!read_texture(&dict, &def, pending)) return false;
-    if (import->image_missing) def = stand_in(&def);
+    if (!read_texture(&dict, &def, pending))
+      return false;
+    if (import->image_missing)
+      def = stand_in(&def);
   }
   pending->id = vl_scene_add_texture(import->scene, &def).index;
   return pending->id != 0;
@@ -177,12 +205,14 @@ static bool finish(vlImport *import, uint32_t index) {
 
 bool vl_import_finish_texture(vlImport *import, uint32_t index) {
   vlPending *pending = &import->textures.items[index];
-  if (pending->state == VL_DONE) return true;
+  if (pending->state == VL_DONE)
+    return true;
   if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_fail(import, VL_ERROR_SCENE, pending->source, "textures refer to each other more than %d deep",
-                          VL_IMPORT_DEPTH);
+    return vl_import_fail(import, VL_ERROR_SCENE, pending->source,
+                          "textures refer to each other more than %d deep", VL_IMPORT_DEPTH);
   pending->state = VL_IN_PROGRESS;
-  if (!finish(import, index)) return false;
+  if (!finish(import, index))
+    return false;
   import->depth--;
   pending->state = VL_DONE;
   return true;

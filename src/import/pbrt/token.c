@@ -42,15 +42,22 @@ static void skip_blank(vlTokenizer *t) {
 
 static char unescape(char c) {
   switch (c) {
-    case 'b': return '\b';
-    case 'f': return '\f';
-    case 'n': return '\n';
-    case 'r': return '\r';
-    case 't': return '\t';
+    case 'b':
+      return '\b';
+    case 'f':
+      return '\f';
+    case 'n':
+      return '\n';
+    case 'r':
+      return '\r';
+    case 't':
+      return '\t';
     case '\\':
     case '\'':
-    case '"': return c;
-    default: return 0;
+    case '"':
+      return c;
+    default:
+      return 0;
   }
 }
 
@@ -65,7 +72,8 @@ static vlToken read_string(vlTokenizer *t, vlToken token) {
       return token;
     }
     char c = *t->at++;
-    if (c == '"') break;
+    if (c == '"')
+      break;
     if (c == 0) {
       token.kind = VL_TOKEN_BAD;
       token.message = "zero byte in a string: this is not a text file";
@@ -90,30 +98,38 @@ static vlToken read_string(vlTokenizer *t, vlToken token) {
 
 vlToken vl_token_next(vlTokenizer *t) {
   skip_blank(t);
-  vlToken token = {
-      .kind = VL_TOKEN_END, .line = t->line, .column = (uint32_t)(t->at - t->line_start) + 1, .text = t->at};
-  if (t->at >= t->end) return token;
+  vlToken token = {.kind = VL_TOKEN_END,
+                   .line = t->line,
+                   .column = (uint32_t)(t->at - t->line_start) + 1,
+                   .text = t->at};
+  if (t->at >= t->end)
+    return token;
   char c = *t->at;
-  if (c == '"') return read_string(t, token);
+  if (c == '"')
+    return read_string(t, token);
   if (c == '[' || c == ']') {
     t->at++;
     token.kind = c == '[' ? VL_TOKEN_OPEN : VL_TOKEN_CLOSE;
     token.length = 1;
     return token;
   }
-  while (t->at < t->end && !ends_word(*t->at)) t->at++;
+  while (t->at < t->end && !ends_word(*t->at))
+    t->at++;
   token.kind = VL_TOKEN_WORD;
   token.length = (size_t)(t->at - token.text);
   return token;
 }
 
-/* ---- numbers ---------------------------------------------------------------------------------------------------- */
+/* ---- numbers
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-static bool scan_hex(const char **text, const char *p, const char *end, bool negative, double *value) {
+static bool scan_hex(const char **text, const char *p, const char *end, bool negative,
+                     double *value) {
   double v = 0;
   const char *start = p;
   for (; p < end; p++) {
@@ -121,7 +137,8 @@ static bool scan_hex(const char **text, const char *p, const char *end, bool neg
             : *p >= 'a' && *p <= 'f' ? *p - 'a' + 10
             : *p >= 'A' && *p <= 'F' ? *p - 'A' + 10
                                      : -1;
-    if (d < 0) break;
+    if (d < 0)
+      break;
     v = v * 16 + d;
   }
   *text = p;
@@ -132,11 +149,14 @@ static bool scan_hex(const char **text, const char *p, const char *end, bool neg
 bool vl_number_scan(const char **text, const char *end, double *value) {
   const char *start = *text, *p = start;
   bool negative = p < end && *p == '-';
-  if (p < end && (*p == '-' || *p == '+')) p++;
-  if (end - p > 2 && p[0] == '0' && (p[1] == 'x' || p[1] == 'X')) return scan_hex(text, p + 2, end, negative, value);
+  if (p < end && (*p == '-' || *p == '+'))
+    p++;
+  if (end - p > 2 && p[0] == '0' && (p[1] == 'x' || p[1] == 'X'))
+    return scan_hex(text, p + 2, end, negative, value);
   const char *digits_start = p;
   uint64_t mantissa = 0;
-  int digits = 0, exponent = 0, written = 0; /* 10^exponent times the mantissa; the exponent that is written */
+  int digits = 0, exponent = 0,
+      written = 0; /* 10^exponent times the mantissa; the exponent that is written */
   bool exact = true, any = false;
   for (; p < end && is_digit(*p); p++) {
     any = true;
@@ -160,22 +180,26 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
       }
     }
   }
-  if (!any) return false;
+  if (!any)
+    return false;
   const char *digits_end = p;
   if (p < end && (*p == 'e' || *p == 'E')) {
     const char *q = p + 1;
     bool minus = q < end && *q == '-';
-    if (q < end && (*q == '-' || *q == '+')) q++;
+    if (q < end && (*q == '-' || *q == '+'))
+      q++;
     if (q < end && is_digit(*q)) {
       int e = 0;
       for (; q < end && is_digit(*q); q++)
-        if (e < 100000) e = e * 10 + (*q - '0');
+        if (e < 100000)
+          e = e * 10 + (*q - '0');
       written = minus ? -e : e;
       p = q;
     }
   }
   *text = p;
-  double v = exact ? vl_decimal(mantissa, exponent + written) : vl_decimal_digits(digits_start, digits_end, written);
+  double v = exact ? vl_decimal(mantissa, exponent + written)
+                   : vl_decimal_digits(digits_start, digits_end, written);
   *value = negative ? -v : v;
   return isfinite(v);
 }
@@ -183,7 +207,8 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
 bool vl_token_number(vlTokenizer *t, double *value) {
   skip_blank(t);
   const char *p = t->at;
-  if (p >= t->end || !vl_number_scan(&p, t->end, value) || (p < t->end && !ends_word(*p))) return false;
+  if (p >= t->end || !vl_number_scan(&p, t->end, value) || (p < t->end && !ends_word(*p)))
+    return false;
   t->at += p - t->at;
   return true;
 }

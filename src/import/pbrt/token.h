@@ -1,6 +1,6 @@
-/* import/pbrt/token.h: splits text of the pbrt language into tokens. The text is modified: strings are unescaped and
- * terminated in place. The file also converts text to numbers, independently of the locale; the PLY reader uses these
- * functions, too. */
+/* import/pbrt/token.h: splits text of the pbrt language into tokens. The text is modified:
+ * strings are unescaped and terminated in place. The file also converts text to numbers,
+ * independently of the locale; the PLY reader uses these functions, too. */
 #ifndef IMPORT_PBRT_TOKEN_H
 #define IMPORT_PBRT_TOKEN_H
 
@@ -32,11 +32,12 @@ typedef struct vlTokenizer {
 /* data[size] must be a zero byte. */
 void vl_tokenizer_start(vlTokenizer *tokenizer, char *data, size_t size);
 vlToken vl_token_next(vlTokenizer *tokenizer);
-/* Takes the next token if it is a number; otherwise changes nothing. This is the fast path for long lists. */
+/* Takes the next token if it is a number; otherwise changes nothing. This is the fast path for
+ * long lists. */
 bool vl_token_number(vlTokenizer *tokenizer, double *value);
 
-/* Converts text[0, length) to a number: integers, decimals, exponents, hexadecimal. Returns false for other text,
- * infinities and values too large for a double. */
+/* Converts text[0, length) to a number: integers, decimals, exponents, hexadecimal. Returns
+ * false for other text, infinities and values too large for a double. */
 bool vl_number_parse(const char *text, size_t length, double *value);
 /* Reads the number at the start of [*text, end) and moves *text past it. */
 bool vl_number_scan(const char **text, const char *end, double *value);

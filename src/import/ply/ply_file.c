@@ -1,4 +1,5 @@
-/* import/ply/ply_file.c: see ply.h. The data is read once, as the table made from the header describes it. */
+/* import/ply/ply_file.c: see ply.h. The data is read once, as the table made from the header
+ * describes it. */
 #include "import/ply/ply.h"
 
 #include <math.h>
@@ -10,7 +11,9 @@
 #include "import/pbrt/token.h"
 #include "import/ply/ply_reader.h"
 
-/* ---- data ------------------------------------------------------------------------------------------------------- */
+/* ---- data
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_space(char c) {
   return c == ' ' || c == '\n' || c == '\r' || c == '\t';
@@ -18,25 +21,29 @@ static bool is_space(char c) {
 
 /* The next number of a text file. "nan" and "inf" are read; the caller checks them. */
 static bool read_text(vlPlyReader *r, double *value) {
-  while (r->at < r->end && is_space(*r->at)) r->line += *r->at++ == '\n';
+  while (r->at < r->end && is_space(*r->at))
+    r->line += *r->at++ == '\n';
   const char *start = r->at, *p = start;
   if (vl_number_scan(&p, r->end, value) && (p == r->end || is_space(*p))) {
     r->at = p;
     return true;
   }
-  if (r->at >= r->end) return vl_ply_fail(r, "the file ends too early");
+  if (r->at >= r->end)
+    return vl_ply_fail(r, "the file ends too early");
   const char *stop = start;
-  while (stop < r->end && !is_space(*stop)) stop++;
+  while (stop < r->end && !is_space(*stop))
+    stop++;
   const char *word = start + (*start == '-' || *start == '+');
   size_t length = (size_t)(stop - word);
   if (length >= 3 && length <= 8 &&
-      (strncmp(word, "nan", 3) == 0 || strncmp(word, "NaN", 3) == 0 || strncmp(word, "inf", 3) == 0 ||
-       strncmp(word, "Inf", 3) == 0)) {
+      (strncmp(word, "nan", 3) == 0 || strncmp(word, "NaN", 3) == 0 ||
+       strncmp(word, "inf", 3) == 0 || strncmp(word, "Inf", 3) == 0)) {
     *value = word[0] == 'i' || word[0] == 'I' ? INFINITY : NAN;
     r->at = stop;
     return true;
   }
-  return vl_ply_fail(r, "expected a number, found \"%s\"", vl_short_text_of(start, (size_t)(stop - start)).text);
+  return vl_ply_fail(r, "expected a number, found \"%s\"",
+                     vl_short_text_of(start, (size_t)(stop - start)).text);
 }
 
 /* A binary value; the caller has checked that its bytes exist. */
@@ -53,24 +60,35 @@ static double load(const char *at, vlPlyType type, vlPlyFormat format) {
     double f64;
   } v;
   uint32_t n = vl_ply_type_size(type);
-  for (uint32_t i = 0; i < n; i++) v.bytes[i] = (unsigned char)at[format == VL_PLY_BIG ? n - 1 - i : i];
+  for (uint32_t i = 0; i < n; i++)
+    v.bytes[i] = (unsigned char)at[format == VL_PLY_BIG ? n - 1 - i : i];
   switch (type) {
-    case VL_PLY_I8: return v.i8;
-    case VL_PLY_U8: return v.u8;
-    case VL_PLY_I16: return v.i16;
-    case VL_PLY_U16: return v.u16;
-    case VL_PLY_I32: return v.i32;
-    case VL_PLY_U32: return v.u32;
-    case VL_PLY_F32: return (double)v.f32;
+    case VL_PLY_I8:
+      return v.i8;
+    case VL_PLY_U8:
+      return v.u8;
+    case VL_PLY_I16:
+      return v.i16;
+    case VL_PLY_U16:
+      return v.u16;
+    case VL_PLY_I32:
+      return v.i32;
+    case VL_PLY_U32:
+      return v.u32;
+    case VL_PLY_F32:
+      return (double)v.f32;
     case VL_PLY_F64:
-    case VL_PLY_TYPES: break;
+    case VL_PLY_TYPES:
+      break;
   }
   return v.f64;
 }
 
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {
-  if (r->format == VL_PLY_ASCII) return read_text(r, value);
-  if ((size_t)(r->end - r->at) < vl_ply_type_size(type)) return vl_ply_fail(r, "the file ends too early");
+  if (r->format == VL_PLY_ASCII)
+    return read_text(r, value);
+  if ((size_t)(r->end - r->at) < vl_ply_type_size(type))
+    return vl_ply_fail(r, "the file ends too early");
   *value = load(r->at, type, r->format);
   r->at += vl_ply_type_size(type);
   return true;
@@ -79,11 +97,15 @@ bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {
 /* Reads the length of a list and checks that the file has enough bytes for its items. */
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length) {
   double value;
-  if (!vl_ply_read_value(r, p->count_type, &value)) return false;
-  if (!(value >= 0.0) || value != floor(value)) return vl_ply_fail(r, "%g is not the length of a list", value);
-  uint64_t left = (uint64_t)(r->end - r->at), item = r->format == VL_PLY_ASCII ? 2 : vl_ply_type_size(p->type);
+  if (!vl_ply_read_value(r, p->count_type, &value))
+    return false;
+  if (!(value >= 0.0) || value != floor(value))
+    return vl_ply_fail(r, "%g is not the length of a list", value);
+  uint64_t left = (uint64_t)(r->end - r->at),
+           item = r->format == VL_PLY_ASCII ? 2 : vl_ply_type_size(p->type);
   if (value > (double)(left / item + 1))
-    return vl_ply_fail(r, "a list promises %.0f values, but only %llu bytes follow", value, (unsigned long long)left);
+    return vl_ply_fail(r, "a list promises %.0f values, but only %llu bytes follow", value,
+                       (unsigned long long)left);
   *length = (uint64_t)value;
   return true;
 }
@@ -94,14 +116,17 @@ static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
     r->at += e->count * e->row_size;
     return true;
   }
-  if (e->property_count == 0) return true;
+  if (e->property_count == 0)
+    return true;
   for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
       uint64_t n = 1;
-      if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
+      if (p->is_list && !vl_ply_read_length(r, p, &n))
+        return false;
       for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &ignored)) return false;
+        if (!vl_ply_read_value(r, p->type, &ignored))
+          return false;
     }
   return true;
 }
@@ -116,13 +141,15 @@ static bool read_body(vlPlyReader *r) {
     uint64_t left = (uint64_t)(r->end - r->at);
     /* The last value of a text file needs no blank after it. */
     if (e->row_size && e->count > (left + 1) / e->row_size)
-      return vl_ply_fail(r, "the header promises %llu of element %s, but only %llu bytes follow",
+      return vl_ply_fail(r,
+                         "the header promises %llu of element %s, but only %llu bytes follow",
                          (unsigned long long)e->count, e->name, (unsigned long long)left);
     bool fine = e->kind == VL_PLY_VERTEX   ? vl_ply_read_vertices(r, e)
                 : e->kind == VL_PLY_FACE   ? vl_ply_read_faces(r, e)
                 : e->kind == VL_PLY_STRIPS ? vl_ply_read_strips(r, e)
                                            : skip_rows(r, e);
-    if (!fine) return false;
+    if (!fine)
+      return false;
   }
   return true;
 }
@@ -131,14 +158,18 @@ static bool read_body(vlPlyReader *r) {
 static bool check(vlPlyReader *r) {
   const vlPlyMesh *m = r->mesh;
   r->line = 0;
-  if (!r->has_vertices || m->vertices == 0) return vl_ply_fail(r, "the mesh has no vertices");
-  if (m->triangles == 0 && m->quads == 0 && !r->alone) return vl_ply_fail(r, "the mesh has no faces");
+  if (!r->has_vertices || m->vertices == 0)
+    return vl_ply_fail(r, "the mesh has no vertices");
+  if (m->triangles == 0 && m->quads == 0 && !r->alone)
+    return vl_ply_fail(r, "the mesh has no faces");
   for (size_t i = 0; i < 3 * (size_t)m->triangles; i++)
     if (m->triangle_indices[i] >= m->vertices)
-      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", m->triangle_indices[i], m->vertices);
+      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices",
+                         m->triangle_indices[i], m->vertices);
   for (size_t i = 0; i < 4 * (size_t)m->quads; i++)
     if (m->quad_indices[i] >= m->vertices)
-      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", m->quad_indices[i], m->vertices);
+      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices",
+                         m->quad_indices[i], m->vertices);
   return true;
 }
 
@@ -149,23 +180,26 @@ static bool fit(vlPlyReader *r, uint32_t **items, size_t capacity, size_t count)
     *items = NULL;
     return true;
   }
-  if (count == capacity) return true;
+  if (count == capacity)
+    return true;
   uint32_t *fresh = vl_realloc_array(r->context, *items, count, sizeof *fresh);
-  if (!fresh) return vl_ply_fail_memory(r);
+  if (!fresh)
+    return vl_ply_fail_memory(r);
   *items = fresh;
   return true;
 }
 
 void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
-  VL_FREE(context, mesh->positions, mesh->normals, mesh->uvs, mesh->colors, mesh->face_colors, mesh->triangle_indices,
-          mesh->quad_indices);
+  VL_FREE(context, mesh->positions, mesh->normals, mesh->uvs, mesh->colors, mesh->face_colors,
+          mesh->triangle_indices, mesh->quad_indices);
   *mesh = (vlPlyMesh){0};
 }
 
-static vlResult parse(vlContext *context, vlTask *task, const char *name, const char *data, size_t size, bool alone,
-                      bool broken, vlPlyMesh *mesh, vlError *error) {
+static vlResult parse(vlContext *context, vlTask *task, const char *name, const char *data,
+                      size_t size, bool alone, bool broken, vlPlyMesh *mesh, vlError *error) {
   vlError local;
-  if (!error) error = &local;
+  if (!error)
+    error = &local;
   vl_error_clear(error);
   *mesh = (vlPlyMesh){0};
   vlPlyReader r = {.context = context,
@@ -184,34 +218,37 @@ static vlResult parse(vlContext *context, vlTask *task, const char *name, const 
          fit(&r, &mesh->quad_indices, r.quad_capacity, 4 * (size_t)mesh->quads);
   vl_free(context, r.elements);
   VL_ARRAY_FREE(context, &r.face);
-  if (!fine) vl_ply_free(context, mesh);
+  if (!fine)
+    vl_ply_free(context, mesh);
   return fine ? VL_OK : error->code;
 }
 
-vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
-                      vlError *error) {
+vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
+                      vlPlyMesh *mesh, vlError *error) {
   return parse(context, NULL, name, data, size, false, false, mesh, error);
 }
 
-static vlResult read_file(vlContext *context, vlTask *task, const char *path, bool given, bool broken, vlPlyMesh *mesh,
-                          vlError *error) {
+static vlResult read_file(vlContext *context, vlTask *task, const char *path, bool given,
+                          bool broken, vlPlyMesh *mesh, vlError *error) {
   char *data;
   size_t size;
   *mesh = (vlPlyMesh){0};
   vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
                           : vl_file_read(context, path, true, &data, &size, error);
-  if (result != VL_OK) return result;
+  if (result != VL_OK)
+    return result;
   result = parse(context, task, path, data, size, given, broken, mesh, error);
   vl_free(context, data);
   return result;
 }
 
-vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken, vlPlyMesh *mesh,
-                           vlError *error) {
+vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken,
+                           vlPlyMesh *mesh, vlError *error) {
   return read_file(context, task, path, true, broken, mesh, error);
 }
 
-vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken, vlPlyMesh *mesh, vlError *error) {
+vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken,
+                     vlPlyMesh *mesh, vlError *error) {
   vlResult result = read_file(context, task, path, false, broken, mesh, error);
   vl_free(context, mesh->colors);
   mesh->colors = NULL;

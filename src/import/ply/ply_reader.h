@@ -1,6 +1,6 @@
-/* import/ply/ply_reader.h: types and functions shared by the files that read PLY: the header as a table of elements and
- * properties, and the position in the file. ply_header.c fills the table, ply_rows.c reads vertices and faces,
- * ply_file.c the whole file. */
+/* import/ply/ply_reader.h: types and functions shared by the files that read PLY: the header as
+ * a table of elements and properties, and the position in the file. ply_header.c fills the
+ * table, ply_rows.c reads vertices and faces, ply_file.c the whole file. */
 #ifndef IMPORT_PLY_PLY_READER_H
 #define IMPORT_PLY_PLY_READER_H
 
@@ -49,7 +49,12 @@ typedef struct vlPlyProperty {
   vlPlyRole role;
 } vlPlyProperty;
 
-typedef enum vlPlyElementKind { VL_PLY_OTHER, VL_PLY_VERTEX, VL_PLY_FACE, VL_PLY_STRIPS } vlPlyElementKind;
+typedef enum vlPlyElementKind {
+  VL_PLY_OTHER,
+  VL_PLY_VERTEX,
+  VL_PLY_FACE,
+  VL_PLY_STRIPS
+} vlPlyElementKind;
 
 typedef struct vlPlyElement {
   vlPlyElementKind kind;
@@ -58,7 +63,8 @@ typedef struct vlPlyElement {
   vlPlyProperty properties[VL_PLY_MAX_PROPERTIES];
   uint32_t property_count;
   bool has_list;
-  uint64_t row_size; /* bytes of a row: exact for a binary file without lists, otherwise a lower bound */
+  uint64_t row_size; /* bytes of a row: exact for a binary file without lists, otherwise a lower
+                        bound */
 } vlPlyElement;
 
 typedef struct vlPlyReader {
@@ -73,7 +79,7 @@ typedef struct vlPlyReader {
   vlPlyMesh *mesh;
   bool has_vertices;
   bool broken; /* normals and uvs may be not finite */
-  bool alone;  /* the file is a scene: colours of faces are read, and it may have points alone */
+  bool alone; /* the file is a scene: colours of faces are read, and it may have points alone */
   size_t triangle_capacity, quad_capacity; /* numbers of indices */
   size_t color_capacity;                   /* number of triangles with colours */
   VL_ARRAY(uint32_t) face;
@@ -87,7 +93,8 @@ static inline uint32_t vl_ply_type_size(vlPlyType type) {
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool vl_ply_fail_memory(vlPlyReader *r);
-/* False, with the error CANCELLED: the load must stop. row: number of the row that is read next. */
+/* False, with the error CANCELLED: the load must stop. row: number of the row that is read
+ * next. */
 bool vl_ply_goes_on(vlPlyReader *r, uint64_t row);
 bool vl_ply_read_header(vlPlyReader *r); /* stops at the first byte of the data */
 /* Reads the next value of that type from text or binary data. */

@@ -1,6 +1,6 @@
-/* import/ply/ply_rows.c: vertices and faces of a PLY file. Any layout is read value by value. The layout of nearly all
- * binary files (rows of floats, triangles of 32-bit indices) has a fast path; it falls back to the general path on
- * anything else. */
+/* import/ply/ply_rows.c: vertices and faces of a PLY file. Any layout is read value by value.
+ * The layout of nearly all binary files (rows of floats, triangles of 32-bit indices) has a
+ * fast path; it falls back to the general path on anything else. */
 #include <math.h>
 #include <string.h>
 
@@ -11,22 +11,26 @@
 static bool has_roles(const vlPlyElement *e, vlPlyRole first, int count) {
   for (int i = 0; i < count; i++) {
     bool found = false;
-    for (uint32_t j = 0; j < e->property_count; j++) found = found || e->properties[j].role == first + (vlPlyRole)i;
-    if (!found) return false;
+    for (uint32_t j = 0; j < e->property_count; j++)
+      found = found || e->properties[j].role == first + (vlPlyRole)i;
+    if (!found)
+      return false;
   }
   return true;
 }
 
 static bool not_finite(vlPlyReader *r, uint64_t vertex, vlPlyRole role, double value) {
-  static const char *const names[VL_PLY_ROLES] = {"",  "x", "y",   "z",     "nx",   "ny",    "nz",
-                                                  "u", "v", "red", "green", "blue", "alpha", ""};
-  return vl_ply_fail(r, "vertex %llu: %s is not finite (%g)", (unsigned long long)vertex, names[role], value);
+  static const char *const names[VL_PLY_ROLES] = {
+      "", "x", "y", "z", "nx", "ny", "nz", "u", "v", "red", "green", "blue", "alpha", ""};
+  return vl_ply_fail(r, "vertex %llu: %s is not finite (%g)", (unsigned long long)vertex,
+                     names[role], value);
 }
 
 /* Unsigned integers map from [0, largest value]; colours are sRGB, as programs write them. */
 static float color_value(vlPlyType type, bool alpha, double value) {
   double x = type == VL_PLY_U8 ? value / 255 : type == VL_PLY_U16 ? value / 65535 : value;
-  if (!isfinite(x)) return (float)x;
+  if (!isfinite(x))
+    return (float)x;
   x = x < 0 ? 0 : x > 1 ? 1 : x;
   return (float)(alpha ? x : vl_srgb_to_linear(x));
 }
@@ -48,76 +52,101 @@ static bool all_finite(const float *v, size_t count) {
   return !wrong;
 }
 
-/* Fast path: rows without lists whose coordinates are floats in native byte order. False when the layout is another or
- * a value is not finite: the general path then reports it. */
+/* Fast path: rows without lists whose coordinates are floats in native byte order. False when
+ * the layout is another or a value is not finite: the general path then reports it. */
 static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
   vlPlyMesh *m = r->mesh;
   size_t offsets[8] = {0}, at = 0, row = (size_t)e->row_size;
-  if (r->format != VL_PLY_LITTLE || !is_little_endian() || e->has_list || m->colors) return false;
+  if (r->format != VL_PLY_LITTLE || !is_little_endian() || e->has_list || m->colors)
+    return false;
   for (uint32_t j = 0; j < e->property_count; j++) {
     const vlPlyProperty *p = &e->properties[j];
     if (p->role >= VL_PLY_X && p->role <= VL_PLY_V) {
-      if (p->type != VL_PLY_F32) return false;
+      if (p->type != VL_PLY_F32)
+        return false;
       offsets[p->role - VL_PLY_X] = at;
     }
     at += vl_ply_type_size(p->type);
   }
   const char *from = r->at;
   for (size_t i = 0; i < m->vertices; i++, from += row) {
-    for (int k = 0; k < 3; k++) memcpy(&m->positions[3 * i + (size_t)k], from + offsets[k], 4);
-    for (int k = 0; m->normals && k < 3; k++) memcpy(&m->normals[3 * i + (size_t)k], from + offsets[3 + k], 4);
-    for (int k = 0; m->uvs && k < 2; k++) memcpy(&m->uvs[2 * i + (size_t)k], from + offsets[6 + k], 4);
+    for (int k = 0; k < 3; k++)
+      memcpy(&m->positions[3 * i + (size_t)k], from + offsets[k], 4);
+    for (int k = 0; m->normals && k < 3; k++)
+      memcpy(&m->normals[3 * i + (size_t)k], from + offsets[3 + k], 4);
+    for (int k = 0; m->uvs && k < 2; k++)
+      memcpy(&m->uvs[2 * i + (size_t)k], from + offsets[6 + k], 4);
   }
   size_t n = m->vertices;
-  if (!all_finite(m->positions, 3 * n)) return false;
-  if (!r->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs, 2 * n))) return false;
+  if (!all_finite(m->positions, 3 * n))
+    return false;
+  if (!r->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs, 2 * n)))
+    return false;
   r->at = from;
   return true;
 }
 
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
   vlPlyMesh *m = r->mesh;
-  if (!has_roles(e, VL_PLY_X, 3)) return vl_ply_fail(r, "vertices have no x, y and z");
-  if (e->count > 0x7fffffff) return vl_ply_fail(r, "too many vertices");
-  bool normals = has_roles(e, VL_PLY_NX, 3), uvs = has_roles(e, VL_PLY_U, 2), colors = has_roles(e, VL_PLY_RED, 3);
+  if (!has_roles(e, VL_PLY_X, 3))
+    return vl_ply_fail(r, "vertices have no x, y and z");
+  if (e->count > 0x7fffffff)
+    return vl_ply_fail(r, "too many vertices");
+  bool normals = has_roles(e, VL_PLY_NX, 3), uvs = has_roles(e, VL_PLY_U, 2),
+       colors = has_roles(e, VL_PLY_RED, 3);
   m->vertices = (uint32_t)e->count;
   m->positions = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
-  if (normals) m->normals = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
-  if (uvs) m->uvs = vl_alloc_array(r->context, e->count, 2 * sizeof(float));
-  if (colors) m->colors = vl_alloc_array(r->context, e->count, 4 * sizeof(float));
+  if (normals)
+    m->normals = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
+  if (uvs)
+    m->uvs = vl_alloc_array(r->context, e->count, 2 * sizeof(float));
+  if (colors)
+    m->colors = vl_alloc_array(r->context, e->count, 4 * sizeof(float));
   if (!m->positions || (normals && !m->normals) || (uvs && !m->uvs) || (colors && !m->colors))
     return vl_ply_fail_memory(r);
-  for (uint64_t i = 0; colors && i < e->count; i++) m->colors[4 * i + 3] = 1.0f;
+  for (uint64_t i = 0; colors && i < e->count; i++)
+    m->colors[4 * i + 3] = 1.0f;
   r->has_vertices = true;
-  if (copy_float_rows(r, e)) return true;
+  if (copy_float_rows(r, e))
+    return true;
   for (uint64_t i = 0; i < e->count; i++) {
-    if (!vl_ply_goes_on(r, i)) return false;
+    if (!vl_ply_goes_on(r, i))
+      return false;
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
       double value = 0;
       uint64_t n = 1;
-      if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
+      if (p->is_list && !vl_ply_read_length(r, p, &n))
+        return false;
       for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &value)) return false;
-      if (p->role == VL_PLY_NOTHING) continue;
-      float *to = p->role <= VL_PLY_Z    ? &m->positions[3 * i + (p->role - VL_PLY_X)]
-                  : p->role <= VL_PLY_NZ ? (normals ? &m->normals[3 * i + (p->role - VL_PLY_NX)] : NULL)
-                  : p->role <= VL_PLY_V  ? (uvs ? &m->uvs[2 * i + (p->role - VL_PLY_U)] : NULL)
-                                         : (colors ? &m->colors[4 * i + (p->role - VL_PLY_RED)] : NULL);
-      if (!to) continue;
-      *to = p->role >= VL_PLY_RED ? color_value(p->type, p->role == VL_PLY_ALPHA, value) : (float)value;
+        if (!vl_ply_read_value(r, p->type, &value))
+          return false;
+      if (p->role == VL_PLY_NOTHING)
+        continue;
+      float *to =
+          p->role <= VL_PLY_Z    ? &m->positions[3 * i + (p->role - VL_PLY_X)]
+          : p->role <= VL_PLY_NZ ? (normals ? &m->normals[3 * i + (p->role - VL_PLY_NX)] : NULL)
+          : p->role <= VL_PLY_V  ? (uvs ? &m->uvs[2 * i + (p->role - VL_PLY_U)] : NULL)
+                                 : (colors ? &m->colors[4 * i + (p->role - VL_PLY_RED)] : NULL);
+      if (!to)
+        continue;
+      *to = p->role >= VL_PLY_RED ? color_value(p->type, p->role == VL_PLY_ALPHA, value)
+                                  : (float)value;
       bool may_break = r->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
-      if (!isfinite(*to) && !may_break) return not_finite(r, i, p->role, value);
+      if (!isfinite(*to) && !may_break)
+        return not_finite(r, i, p->role, value);
     }
   }
   return true;
 }
 
 static bool grow(vlPlyReader *r, uint32_t **items, size_t *capacity, size_t count) {
-  if (count <= *capacity) return true;
+  if (count <= *capacity)
+    return true;
   size_t wanted = *capacity + *capacity / 2 + 1024;
   uint32_t *fresh = vl_realloc_array(r->context, *items, wanted, sizeof *fresh);
-  if (!fresh) return vl_ply_fail_memory(r);
+  if (!fresh)
+    return vl_ply_fail_memory(r);
   *items = fresh;
   *capacity = wanted;
   return true;
@@ -125,8 +154,10 @@ static bool grow(vlPlyReader *r, uint32_t **items, size_t *capacity, size_t coun
 
 static bool add_triangle(vlPlyReader *r, uint32_t a, uint32_t b, uint32_t c) {
   vlPlyMesh *m = r->mesh;
-  if (m->triangles == 0x3fffffff) return vl_ply_fail(r, "too many faces");
-  if (!grow(r, &m->triangle_indices, &r->triangle_capacity, 3 * ((size_t)m->triangles + 1))) return false;
+  if (m->triangles == 0x3fffffff)
+    return vl_ply_fail(r, "too many faces");
+  if (!grow(r, &m->triangle_indices, &r->triangle_capacity, 3 * ((size_t)m->triangles + 1)))
+    return false;
   uint32_t *t = m->triangle_indices + 3 * (size_t)m->triangles++;
   t[0] = a;
   t[1] = b;
@@ -136,10 +167,13 @@ static bool add_triangle(vlPlyReader *r, uint32_t a, uint32_t b, uint32_t c) {
 
 static bool add_face(vlPlyReader *r, const uint32_t *v, uint64_t n) {
   vlPlyMesh *m = r->mesh;
-  if (n < 3) return true; /* points and lines have no area */
+  if (n < 3)
+    return true; /* points and lines have no area */
   if (n == 4 && !m->face_colors) {
-    if (m->quads == 0x3fffffff) return vl_ply_fail(r, "too many faces");
-    if (!grow(r, &m->quad_indices, &r->quad_capacity, 4 * ((size_t)m->quads + 1))) return false;
+    if (m->quads == 0x3fffffff)
+      return vl_ply_fail(r, "too many faces");
+    if (!grow(r, &m->quad_indices, &r->quad_capacity, 4 * ((size_t)m->quads + 1)))
+      return false;
     uint32_t *q = m->quad_indices + 4 * (size_t)m->quads++;
     q[0] = v[0];
     q[1] = v[1];
@@ -148,7 +182,8 @@ static bool add_face(vlPlyReader *r, const uint32_t *v, uint64_t n) {
     return true;
   }
   for (uint64_t i = 2; i < n; i++)
-    if (!add_triangle(r, v[0], v[i - 1], v[i])) return false;
+    if (!add_triangle(r, v[0], v[i - 1], v[i]))
+      return false;
   return true;
 }
 
@@ -158,44 +193,54 @@ static bool add_colors(vlPlyReader *r, uint32_t first, const float color[3]) {
   if (m->triangles > r->color_capacity) {
     size_t wanted = (size_t)m->triangles + m->triangles / 2 + 1024;
     float *fresh = vl_realloc_array(r->context, m->face_colors, wanted, 3 * sizeof *fresh);
-    if (!fresh) return vl_ply_fail_memory(r);
+    if (!fresh)
+      return vl_ply_fail_memory(r);
     m->face_colors = fresh;
     r->color_capacity = wanted;
   }
-  for (size_t i = first; i < m->triangles; i++) memcpy(m->face_colors + 3 * i, color, 3 * sizeof *color);
+  for (size_t i = first; i < m->triangles; i++)
+    memcpy(m->face_colors + 3 * i, color, 3 * sizeof *color);
   return true;
 }
 
 static bool read_corners(vlPlyReader *r, const vlPlyProperty *p, uint64_t face) {
   uint64_t n;
-  if (!vl_ply_read_length(r, p, &n)) return false;
+  if (!vl_ply_read_length(r, p, &n))
+    return false;
   r->face.count = 0;
-  if (n > r->face.capacity && !VL_RESERVE(r->context, &r->face, n)) return vl_ply_fail_memory(r);
+  if (n > r->face.capacity && !VL_RESERVE(r->context, &r->face, n))
+    return vl_ply_fail_memory(r);
   for (uint64_t k = 0; k < n; k++) {
     double value;
-    if (!vl_ply_read_value(r, p->type, &value)) return false;
-    if (!(value >= 0.0 && value < 4294967296.0) || (r->has_vertices && value >= (double)r->mesh->vertices))
-      return vl_ply_fail(r, "face %llu names vertex %.0f, but there are %u vertices", (unsigned long long)face, value,
-                         r->mesh->vertices);
+    if (!vl_ply_read_value(r, p->type, &value))
+      return false;
+    if (!(value >= 0.0 && value < 4294967296.0) ||
+        (r->has_vertices && value >= (double)r->mesh->vertices))
+      return vl_ply_fail(r, "face %llu names vertex %.0f, but there are %u vertices",
+                         (unsigned long long)face, value, r->mesh->vertices);
     r->face.items[k] = (uint32_t)value;
   }
   return add_face(r, r->face.items, n);
 }
 
-static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProperty *indices, uint64_t face,
-                          float color[4]) {
+static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProperty *indices,
+                          uint64_t face, float color[4]) {
   double value;
   for (uint32_t j = 0; j < e->property_count; j++) {
     const vlPlyProperty *p = &e->properties[j];
     uint64_t n = 1;
     if (p == indices) {
-      if (!read_corners(r, p, face)) return false;
+      if (!read_corners(r, p, face))
+        return false;
       continue;
     }
-    if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
+    if (p->is_list && !vl_ply_read_length(r, p, &n))
+      return false;
     for (uint64_t k = 0; k < n; k++)
-      if (!vl_ply_read_value(r, p->type, &value)) return false;
-    if (p->role < VL_PLY_RED || p->role > VL_PLY_ALPHA) continue;
+      if (!vl_ply_read_value(r, p->type, &value))
+        return false;
+    if (p->role < VL_PLY_RED || p->role > VL_PLY_ALPHA)
+      continue;
     color[p->role - VL_PLY_RED] = color_value(p->type, p->role == VL_PLY_ALPHA, value);
     if (!isfinite(color[p->role - VL_PLY_RED]))
       return vl_ply_fail(r, "face %llu: its colour is not finite", (unsigned long long)face);
@@ -203,13 +248,13 @@ static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProp
   return true;
 }
 
-/* Fast path: rows that hold only a triangle: a byte 3 and three 32-bit indices. Reads as many as follow each other and
- * returns the first face of another form. */
+/* Fast path: rows that hold only a triangle: a byte 3 and three 32-bit indices. Reads as many
+ * as follow each other and returns the first face of another form. */
 static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
   vlPlyMesh *m = r->mesh;
   const vlPlyProperty *p = &e->properties[0];
-  bool plain = r->format == VL_PLY_LITTLE && is_little_endian() && e->property_count == 1 && p->is_list &&
-               r->has_vertices && vl_ply_type_size(p->count_type) == 1 &&
+  bool plain = r->format == VL_PLY_LITTLE && is_little_endian() && e->property_count == 1 &&
+               p->is_list && r->has_vertices && vl_ply_type_size(p->count_type) == 1 &&
                (p->type == VL_PLY_I32 || p->type == VL_PLY_U32);
   uint64_t room = r->triangle_capacity / 3, left = (uint64_t)(r->end - r->at) / 13, i = 0;
   uint64_t most = e->count < room ? e->count : room;
@@ -218,7 +263,8 @@ static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
   for (; plain && i < most && *r->at == 3; i++) {
     uint32_t *to = m->triangle_indices + 3 * i;
     memcpy(to, r->at + 1, 12);
-    if (to[0] >= m->vertices || to[1] >= m->vertices || to[2] >= m->vertices) break;
+    if (to[0] >= m->vertices || to[1] >= m->vertices || to[2] >= m->vertices)
+      break;
     r->at += 13;
   }
   m->triangles = (uint32_t)i;
@@ -228,50 +274,66 @@ static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
 bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
   const vlPlyProperty *indices = NULL;
   for (uint32_t j = 0; j < e->property_count; j++)
-    if (e->properties[j].role == VL_PLY_INDICES) indices = &e->properties[j];
-  if (!indices) return vl_ply_fail(r, "faces have no vertex_indices");
+    if (e->properties[j].role == VL_PLY_INDICES)
+      indices = &e->properties[j];
+  if (!indices)
+    return vl_ply_fail(r, "faces have no vertex_indices");
   /* Reserves room for all faces as triangles when the file's bytes could hold that many. */
-  uint64_t row = r->format == VL_PLY_ASCII ? e->row_size + 6 : e->row_size + 3 * vl_ply_type_size(indices->type);
+  uint64_t row = r->format == VL_PLY_ASCII ? e->row_size + 6
+                                           : e->row_size + 3 * vl_ply_type_size(indices->type);
   uint64_t likely = (uint64_t)(r->end - r->at) / row;
-  if (likely > e->count) likely = e->count;
-  if (!grow(r, &r->mesh->triangle_indices, &r->triangle_capacity, 1)) return false;
+  if (likely > e->count)
+    likely = e->count;
+  if (!grow(r, &r->mesh->triangle_indices, &r->triangle_capacity, 1))
+    return false;
   if (likely * 3 > r->triangle_capacity) {
     r->triangle_capacity = likely * 3;
     vl_free(r->context, r->mesh->triangle_indices);
-    r->mesh->triangle_indices = vl_alloc_array(r->context, r->triangle_capacity, sizeof(uint32_t));
-    if (!r->mesh->triangle_indices) return vl_ply_fail_memory(r);
+    r->mesh->triangle_indices =
+        vl_alloc_array(r->context, r->triangle_capacity, sizeof(uint32_t));
+    if (!r->mesh->triangle_indices)
+      return vl_ply_fail_memory(r);
   }
   bool colors = has_roles(e, VL_PLY_RED, 3);
   if (colors && r->mesh->triangles)
     return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
   if (colors && !(r->mesh->face_colors = vl_alloc_array(r->context, 1024, 3 * sizeof(float))))
     return vl_ply_fail_memory(r);
-  if (colors) r->color_capacity = 1024;
+  if (colors)
+    r->color_capacity = 1024;
   for (uint64_t i = copy_triangles(r, e); i < e->count; i++) {
     float color[4] = {0, 0, 0, 1};
     uint32_t first = r->mesh->triangles;
-    if (!vl_ply_goes_on(r, i)) return false;
-    if (!read_face_row(r, e, indices, i, color) || (colors && !add_colors(r, first, color))) return false;
+    if (!vl_ply_goes_on(r, i))
+      return false;
+    if (!read_face_row(r, e, indices, i, color) || (colors && !add_colors(r, first, color)))
+      return false;
   }
   return true;
 }
 
-/* A strip names a vertex after another; -1 ends a strip. Every second triangle is turned over. */
+/* A strip names a vertex after another; -1 ends a strip. Every second triangle is turned over.
+ */
 static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
   uint64_t n, run = 0;
   uint32_t last[2] = {0, 0};
-  if (!vl_ply_read_length(r, p, &n)) return false;
+  if (!vl_ply_read_length(r, p, &n))
+    return false;
   for (uint64_t k = 0; k < n; k++) {
     double value;
-    if (!vl_ply_read_value(r, p->type, &value)) return false;
+    if (!vl_ply_read_value(r, p->type, &value))
+      return false;
     if (value == -1 || value == 4294967295.0) {
       run = 0;
       continue;
     }
-    if (!(value >= 0 && value < 4294967295.0) || (r->has_vertices && value >= (double)r->mesh->vertices))
-      return vl_ply_fail(r, "a strip names vertex %.0f, but there are %u vertices", value, r->mesh->vertices);
+    if (!(value >= 0 && value < 4294967295.0) ||
+        (r->has_vertices && value >= (double)r->mesh->vertices))
+      return vl_ply_fail(r, "a strip names vertex %.0f, but there are %u vertices", value,
+                         r->mesh->vertices);
     uint32_t v = (uint32_t)value;
-    if (run >= 2 && !(run & 1 ? add_triangle(r, last[1], last[0], v) : add_triangle(r, last[0], last[1], v)))
+    if (run >= 2 && !(run & 1 ? add_triangle(r, last[1], last[0], v)
+                              : add_triangle(r, last[0], last[1], v)))
       return false;
     last[0] = last[1];
     last[1] = v;
@@ -282,18 +344,22 @@ static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
 
 bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e) {
   double ignored;
-  if (r->mesh->face_colors) return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
+  if (r->mesh->face_colors)
+    return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
   for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
       uint64_t n = 1;
       if (p->role == VL_PLY_INDICES) {
-        if (!read_strip(r, p)) return false;
+        if (!read_strip(r, p))
+          return false;
         continue;
       }
-      if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
+      if (p->is_list && !vl_ply_read_length(r, p, &n))
+        return false;
       for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &ignored)) return false;
+        if (!vl_ply_read_value(r, p->type, &ignored))
+          return false;
     }
   return true;
 }

@@ -1,5 +1,6 @@
-/* import/stl/stl.c: STL files, text and binary: triangles without anything else. The normals in the file are not read:
- * the order of the corners gives them. Format: 3D Systems, "StereoLithography Interface Specification", 1988. */
+/* import/stl/stl.c: STL files, text and binary: triangles without anything else. The normals in
+ * the file are not read: the order of the corners gives them. Format: 3D Systems,
+ * "StereoLithography Interface Specification", 1988. */
 #include <math.h>
 #include <string.h>
 
@@ -21,11 +22,14 @@ typedef struct Stl {
 
 static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
   vlSource source = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
-  vl_scene_fail(s->scene, code, source, "STL: %s%s%s%s", what, word ? " \"" : "", word ? word : "", word ? "\"" : "");
+  vl_scene_fail(s->scene, code, source, "STL: %s%s%s%s", what, word ? " \"" : "",
+                word ? word : "", word ? "\"" : "");
   return false;
 }
 
-/* ---- binary ------------------------------------------------------------------------------------------------------ */
+/* ---- binary
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static uint32_t little32(const char *at) {
   const unsigned char *b = (const unsigned char *)at;
@@ -33,20 +37,25 @@ static uint32_t little32(const char *at) {
 }
 
 static bool read_binary(Stl *s, uint64_t count) {
-  if (count > 0x2aaaaaaa) return fail(s, VL_ERROR_SCENE, "too many facets", NULL);
-  if (!VL_RESERVE(s->scene->context, &s->positions, 9 * count)) return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
+  if (count > 0x2aaaaaaa)
+    return fail(s, VL_ERROR_SCENE, "too many facets", NULL);
+  if (!VL_RESERVE(s->scene->context, &s->positions, 9 * count))
+    return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
   for (uint64_t i = 0; i < count; i++)
     for (int k = 0; k < 9; k++) {
       uint32_t bits = little32(s->at + HEADER + FACET * i + 12 + 4 * k);
       float v;
       memcpy(&v, &bits, sizeof v);
-      if (!isfinite(v)) return fail(s, VL_ERROR_SCENE, "a vertex is not finite", NULL);
+      if (!isfinite(v))
+        return fail(s, VL_ERROR_SCENE, "a vertex is not finite", NULL);
       s->positions.items[s->positions.count++] = v;
     }
   return true;
 }
 
-/* ---- text -------------------------------------------------------------------------------------------------------- */
+/* ---- text
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
@@ -54,85 +63,106 @@ static bool is_space(char c) {
 
 /* The next word; its length is 0 at the end. */
 static const char *next_word(Stl *s, size_t *length) {
-  while (s->at < s->end && is_space(*s->at)) s->line += *s->at++ == '\n';
+  while (s->at < s->end && is_space(*s->at))
+    s->line += *s->at++ == '\n';
   const char *start = s->at;
-  while (s->at < s->end && !is_space(*s->at)) s->at++;
+  while (s->at < s->end && !is_space(*s->at))
+    s->at++;
   *length = (size_t)(s->at - start);
   return start;
 }
 
 static bool is(const char *word, size_t length, const char *wanted) {
-  if (length != strlen(wanted)) return false;
+  if (length != strlen(wanted))
+    return false;
   for (size_t i = 0; i < length; i++)
-    if ((word[i] >= 'A' && word[i] <= 'Z' ? word[i] + 32 : word[i]) != wanted[i]) return false;
+    if ((word[i] >= 'A' && word[i] <= 'Z' ? word[i] + 32 : word[i]) != wanted[i])
+      return false;
   return true;
 }
 
 static bool read_vertex(Stl *s) {
-  if (!VL_RESERVE(s->scene->context, &s->positions, 3)) return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
+  if (!VL_RESERVE(s->scene->context, &s->positions, 3))
+    return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
   for (int k = 0; k < 3; k++) {
     size_t length;
     const char *word = next_word(s, &length), *p = word;
     double value;
     if (!vl_number_scan(&p, s->end, &value) || p != s->at || !isfinite((float)value))
-      return fail(s, VL_ERROR_SCENE, "expected a coordinate, found", vl_short_text_of(word, length).text);
+      return fail(s, VL_ERROR_SCENE, "expected a coordinate, found",
+                  vl_short_text_of(word, length).text);
     s->positions.items[s->positions.count++] = (float)value;
   }
   return true;
 }
 
-/* Words other than "vertex" and "endloop" do not matter. A name after "solid" may be any text up to the line's end. */
+/* Words other than "vertex" and "endloop" do not matter. A name after "solid" may be any text
+ * up to the line's end. */
 static bool read_text(Stl *s) {
   s->line = 1;
   size_t length, first = 0;
   const char *word;
   while (word = next_word(s, &length), length) {
     if (is(word, length, "solid") || is(word, length, "endsolid"))
-      while (s->at < s->end && *s->at != '\n') s->at++;
-    if (is(word, length, "vertex") && !read_vertex(s)) return false;
-    if (!is(word, length, "endloop") && !is(word, length, "endsolid")) continue;
+      while (s->at < s->end && *s->at != '\n')
+        s->at++;
+    if (is(word, length, "vertex") && !read_vertex(s))
+      return false;
+    if (!is(word, length, "endloop") && !is(word, length, "endsolid"))
+      continue;
     if (is(word, length, "endloop") && s->positions.count != first + 9)
       return fail(s, VL_ERROR_SCENE, "a facet must have 3 vertices", NULL);
     first = s->positions.count;
   }
-  if (s->positions.count % 9) return fail(s, VL_ERROR_SCENE, "the file ends too early", NULL);
-  return s->positions.count / 9 <= 0x2aaaaaaa || fail(s, VL_ERROR_SCENE, "too many facets", NULL);
+  if (s->positions.count % 9)
+    return fail(s, VL_ERROR_SCENE, "the file ends too early", NULL);
+  return s->positions.count / 9 <= 0x2aaaaaaa ||
+         fail(s, VL_ERROR_SCENE, "too many facets", NULL);
 }
 
 /* Binary files may begin with "solid", too: their length tells. */
 static bool read(Stl *s) {
   size_t size = (size_t)(s->end - s->at);
   uint64_t count = size >= HEADER ? little32(s->at + HEADER - 4) : 0;
-  if (size >= HEADER && size == HEADER + FACET * count) return read_binary(s, count);
+  if (size >= HEADER && size == HEADER + FACET * count)
+    return read_binary(s, count);
   const char *p = s->at;
-  while (p < s->end && is_space(*p)) p++;
-  if (s->end - p >= 5 && is(p, 5, "solid")) return read_text(s);
+  while (p < s->end && is_space(*p))
+    p++;
+  if (s->end - p >= 5 && is(p, 5, "solid"))
+    return read_text(s);
   if (size < HEADER)
-    return fail(s, VL_ERROR_SCENE, "neither a text that begins with \"solid\" nor a binary file", NULL);
-  if ((size - HEADER) / FACET < count) return fail(s, VL_ERROR_SCENE, "the file ends too early", NULL);
+    return fail(s, VL_ERROR_SCENE,
+                "neither a text that begins with \"solid\" nor a binary file", NULL);
+  if ((size - HEADER) / FACET < count)
+    return fail(s, VL_ERROR_SCENE, "the file ends too early", NULL);
   return read_binary(s, count); /* with something after the facets */
 }
 
-vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
+vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
+                       vlError *error) {
   Stl s = {.scene = scene, .path = path};
   char *data = NULL;
   size_t size = 0;
   vlError inside = {0};
   vl_import_plain_settings(scene);
   vlResult r = vl_file_read_given(scene->context, path, true, &data, &size, &inside);
-  if (r != VL_OK) vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
+  if (r != VL_OK)
+    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
   s.at = data;
   s.end = data + size;
   bool ok = r == VL_OK && read(&s);
   vl_free(scene->context, data);
   size_t vertices = s.positions.count / 3;
   uint32_t *indices = ok ? vl_alloc_array(scene->context, vertices + 1, sizeof *indices) : NULL;
-  if (ok && !indices) ok = fail(&s, VL_ERROR_MEMORY, "out of memory", NULL);
+  if (ok && !indices)
+    ok = fail(&s, VL_ERROR_MEMORY, "out of memory", NULL);
   if (!ok) {
     VL_ARRAY_FREE(scene->context, &s.positions);
     return vl_scene_result(scene, error);
   }
-  for (size_t i = 0; i < vertices; i++) indices[i] = (uint32_t)i;
+  for (size_t i = 0; i < vertices; i++)
+    indices[i] = (uint32_t)i;
   vlPlainMesh mesh = {.vertices = (uint32_t)vertices,
                       .triangles = (uint32_t)(vertices / 3),
                       .positions = s.positions.items,

@@ -1,11 +1,13 @@
-/* trace/bsdf/bsdf.h: evaluates and samples BSDFs over batches of one kind. All directions are in the local shading
- * frame, whose z axis is the shading normal; wo and wi point away from the surface. There are 4 channels: 4
- * wavelengths, or R, G, B and an unused channel. The code is the same for both.
+/* trace/bsdf/bsdf.h: evaluates and samples BSDFs over batches of one kind. All directions are
+ * in the local shading frame, whose z axis is the shading normal; wo and wi point away from the
+ * surface. There are 4 channels: 4 wavelengths, or R, G, B and an unused channel. The code is
+ * the same for both.
  *
- *   eval:   value[c] = f(wo, wi) |cos wi|, pdf = density of sampling wi (solid angle); specular (delta) parts are 0
- *   sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete probability, flag set); flags
- * The BSDFs transport radiance, as on camera paths, so transmission has the factor 1/eta^2 (pbrt book 9.5.2).
- * References: pbrt-v4 book chapter 9; Walter et al. 2007; Heitz 2018 / Dupuy and Benyoub 2023 (visible normals). */
+ *   eval:   value[c] = f(wo, wi) |cos wi|, pdf = density of sampling wi (solid angle); specular
+ * (delta) parts are 0 sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete
+ * probability, flag set); flags The BSDFs transport radiance, as on camera paths, so
+ * transmission has the factor 1/eta^2 (pbrt book 9.5.2). References: pbrt-v4 book chapter 9;
+ * Walter et al. 2007; Heitz 2018 / Dupuy and Benyoub 2023 (visible normals). */
 #ifndef TRACE_BSDF_BSDF_H
 #define TRACE_BSDF_BSDF_H
 
@@ -15,19 +17,22 @@
 #include "world/material/coat.h"
 #include "world/material/measured.h"
 
-/* Number of parameter rows whose meaning depends on the kind. The enums below name the rows of each kind, such as
- * VL_P_* for the principled kind. A kind that only one file uses may number its rows in that file. */
+/* Number of parameter rows whose meaning depends on the kind. The enums below name the rows of
+ * each kind, such as VL_P_* for the principled kind. A kind that only one file uses may number
+ * its rows in that file. */
 enum { VL_BSDF_ROWS = 26 };
 
-/* Rows of the principled material. The base colour is in `reflectance`, the roughness in alpha_x and alpha_y (at least
- * 1e-3). F0 is the reflectance of the dielectric at normal incidence. COAT_X, COAT_Y and COAT_Z are the coat's unit
- * normal, with z > 0. */
+/* Rows of the principled material. The base colour is in `reflectance`, the roughness in
+ * alpha_x and alpha_y (at least 1e-3). F0 is the reflectance of the dielectric at normal
+ * incidence. COAT_X, COAT_Y and COAT_Z are the coat's unit normal, with z > 0. */
 enum {
   VL_P_METALLIC,
   VL_P_F0,
   VL_P_F90 = VL_P_F0 + 4,
   VL_P_TRANSMISSION,
-  VL_P_THIN, /* 1: a thin sheet, or opaque; 0: a transmissive solid with index of refraction eta_s */
+  VL_P_THIN, /* 1: a thin sheet, or opaque; 0: a transmissive solid with index of refraction
+              * eta_s
+              */
   VL_P_DIFFUSE_TRANSMISSION,
   VL_P_THROUGH, /* 4 rows: colour of the diffuse transmission */
   VL_P_COAT = VL_P_THROUGH + 4,
@@ -43,11 +48,13 @@ enum {
 };
 _Static_assert((int)VL_P_FILM_NM < (int)VL_BSDF_ROWS, "enough rows");
 
-/* Rows of the other kinds: VL_T_ diffuse transmission, VL_L_ layered, VL_H_ hair, VL_S_ subsurface. */
+/* Rows of the other kinds: VL_T_ diffuse transmission, VL_L_ layered, VL_H_ hair, VL_S_
+ * subsurface.
+ */
 enum { VL_T_TRANSMITTANCE /* 4 */ };
 enum {
-  VL_L_METAL, /* 1: the base is a metal with eta and k, relative to the coat's index; 0: the base is diffuse with
-                 `reflectance` */
+  VL_L_METAL, /* 1: the base is a metal with eta and k, relative to the coat's index; 0: the
+                 base is diffuse with `reflectance` */
   VL_L_BASE_X,
   VL_L_BASE_Y, /* BASE_X, BASE_Y: alpha of the metal; the coat has alpha_x, alpha_y */
   VL_L_THICKNESS,
@@ -72,10 +79,12 @@ enum {
   VL_SAMPLED_NONE = 4          /* no direction: the path ends; weight is 0 */
 };
 
-/* Parameters of a batch, one array of VL_PAD(n) lanes each. A kind reads only the arrays whose comment names it. */
+/* Parameters of a batch, one array of VL_PAD(n) lanes each. A kind reads only the arrays whose
+ * comment names it. */
 typedef struct vlBsdfParams {
-  float *reflectance[4];    /* diffuse, coated diffuse: albedo of the base, in [0, 1] */
-  const float *tint[4];     /* principled: factor on the light that it transmits; null: the reflectance */
+  float *reflectance[4]; /* diffuse, coated diffuse: albedo of the base, in [0, 1] */
+  const float
+      *tint[4]; /* principled: factor on the light that it transmits; null: the reflectance */
   float *eta[4], *k[4];     /* conductor */
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
   float *eta_s;             /* dielectric, thin, coat */
@@ -92,12 +101,12 @@ typedef struct vlBsdfDirections {
 
 typedef struct vlBsdfKernels {
   /* Each function calls the implementation for `kind`. */
-  void (*eval)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-               float *const value[4], float *pdf);
-  void (*sample)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                 const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
-                 uint32_t *flags,
-                 float *eta_scale /* for Russian roulette: the squared relative eta of a transmission, else 1 */);
+  void (*eval)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+               vlBsdfDirections wi, float *const value[4], float *pdf);
+  void (*sample)(
+      vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+      const float *u_lobe, const float *u, const float *v,
+      vlBsdfDirections wi, float *const weight[4], float *pdf, uint32_t *flags, float *eta_scale /* for Russian roulette: the squared relative eta of a transmission, else 1 */);
 } vlBsdfKernels;
 VL_KERNEL_TABLE(vlBsdfKernels, vl_bsdf)
 

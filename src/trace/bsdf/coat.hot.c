@@ -1,18 +1,19 @@
-/* trace/bsdf/coat.hot.c: the BSDF of a Lambertian base under a dielectric coat. It has the closed form of
- * world/material/coat.h, without random walks and their noise, and two lobes: the coat's reflection (a delta if the
- * coat is smooth) and the base under the coat.
+/* trace/bsdf/coat.hot.c: the BSDF of a Lambertian base under a dielectric coat. It has the
+ * closed form of world/material/coat.h, without random walks and their noise, and two lobes:
+ * the coat's reflection (a delta if the coat is smooth) and the base under the coat.
  *
- * Lanes are processed in chunks, in a few passes over small arrays, because the lookup of T(w) does not vectorise (gcc
- * makes no gathers for generic x86-64, and lanes may have different tables): a scalar pass copies the four nodes of
- * each lane side by side, vector passes do the rest. */
+ * Lanes are processed in chunks, in a few passes over small arrays, because the lookup of T(w)
+ * does not vectorise (gcc makes no gathers for generic x86-64, and lanes may have different
+ * tables): a scalar pass copies the four nodes of each lane side by side, vector passes do the
+ * rest. */
 #include <string.h>
 
 #include "trace/bsdf/local.h"
 
 enum { CHUNK = 64 };
 
-/* The passes must not be inlined. Where gcc sees the local arrays, it moves their loads into the selects, which become
- * branches. */
+/* The passes must not be inlined. Where gcc sees the local arrays, it moves their loads into
+ * the selects, which become branches. */
 #define PASS static __attribute__((noinline)) void
 
 /* Data between the passes, for a chunk of lanes. */
@@ -29,7 +30,8 @@ typedef struct {
 typedef struct {
   const float *r0, *r1, *r2, *r3, *ax, *ay, *eta;
   const vlCoatTable *const *coat;
-  uint32_t count, live; /* number of lanes with padding (a multiple of VL_LANES), and without (padding has no table) */
+  uint32_t count, live; /* number of lanes with padding (a multiple of VL_LANES), and without
+                           (padding has no table) */
 } Slice;
 
 static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
@@ -73,22 +75,28 @@ static inline Row row_at(float row, uint32_t rows) {
   return (Row){low, low + 1, t < 1.0f ? t : 1.0f};
 }
 
-static inline Row row_of(const vlCoatTable *table, float alpha_x, float alpha_y, float x, float y) {
-  if (table->rows == 1) return (Row){0, 0, 0.0f};
+static inline Row row_of(const vlCoatTable *table, float alpha_x, float alpha_y, float x,
+                         float y) {
+  if (table->rows == 1)
+    return (Row){0, 0, 0.0f};
   if (table->anisotropic) { /* by azimuth; along the normal all rows are the same */
     float across = x * x + y * y, rough = vl_abs(table->rough_y ? y : x);
     float share = across > VL_MIN_POSITIVE ? rough / __builtin_sqrtf(across) : 0.0f;
     return row_at(__builtin_sqrtf(share) * (float)(VL_COAT_AZIMUTHS - 1), VL_COAT_AZIMUTHS);
   }
-  float alpha = __builtin_sqrtf(vl_ggx_alpha(alpha_x) * vl_ggx_alpha(alpha_y)); /* textured roughness */
+  float alpha =
+      __builtin_sqrtf(vl_ggx_alpha(alpha_x) * vl_ggx_alpha(alpha_y)); /* textured roughness */
   return row_at((__builtin_sqrtf(alpha) - table->row_start) * table->row_scale, VL_COAT_ALPHA);
 }
 
 /* One table with one row for the whole slice, the usual case. */
-static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, Nodes *nodes, int of) {
+static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, Nodes *nodes,
+                      int of) {
   const float *row = rows_of(table, of)[0];
-  for (uint32_t i = 0; i < count; i++) memcpy(nodes->value[i], row + nodes->first[i], sizeof nodes->value[i]);
-  if (of != OF_WO) return;
+  for (uint32_t i = 0; i < count; i++)
+    memcpy(nodes->value[i], row + nodes->first[i], sizeof nodes->value[i]);
+  if (of != OF_WO)
+    return;
   float back = table->back[0], escape = table->escape[0];
   int32_t bounces = (int32_t)table->bounces;
   for (uint32_t i = 0; i < count; i++) {
@@ -98,9 +106,10 @@ static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, No
   }
 }
 
-/* Each lane has its own table, or interpolates between two rows. Without interpolation, results are the same as
- * fetch_row's, bit for bit. */
-static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *lanes, Nodes *nodes, int of) {
+/* Each lane has its own table, or interpolates between two rows. Without interpolation, results
+ * are the same as fetch_row's, bit for bit. */
+static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *lanes,
+                       Nodes *nodes, int of) {
   for (uint32_t i = 0; i < s->count; i++) {
     const vlCoatTable *table = s->coat[i < s->live ? i : 0];
     Row r = row_of(table, s->ax[i], s->ay[i], x[i], y[i]);
@@ -108,7 +117,8 @@ static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *la
     float t = r.t;
     const float(*rows)[VL_COAT_COS] = rows_of(table, of);
     const float *a = rows[low] + nodes->first[i], *b = rows[high] + nodes->first[i];
-    for (int k = 0; k < 4; k++) nodes->value[i][k] = a[k] + t * (b[k] - a[k]);
+    for (int k = 0; k < 4; k++)
+      nodes->value[i][k] = a[k] + t * (b[k] - a[k]);
     if (of == OF_WO) {
       lanes->back[i] = table->back[low] + t * (table->back[high] - table->back[low]);
       lanes->escape[i] = table->escape[low] + t * (table->escape[high] - table->escape[low]);
@@ -118,7 +128,8 @@ static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *la
 }
 
 /* Looks up T at directions from `at` on, and for wo also the constants of the tables. */
-PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, float *through, int of) {
+PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, float *through,
+             int of) {
   Nodes nodes;
   const float *x = w.x + at, *y = w.y + at, *z = w.z + at;
   uint32_t count = VL_WHOLE(s->count);
@@ -130,7 +141,8 @@ PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, floa
   }
   const vlCoatTable *table = s->coat[0];
   uintptr_t differ = 0;
-  for (uint32_t i = 0; i < s->live; i++) differ |= (uintptr_t)s->coat[i] ^ (uintptr_t)table;
+  for (uint32_t i = 0; i < s->live; i++)
+    differ |= (uintptr_t)s->coat[i] ^ (uintptr_t)table;
   if (differ == 0 && table->rows == 1)
     fetch_row(table, count, lanes, &nodes, of);
   else
@@ -143,8 +155,8 @@ PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, floa
   }
 }
 
-/* The sum 1 + x + ... + x^(k-1) = (1 - x^k) / (1 - x), for x in [0, 1) and k < 2^bits. The power is computed from the
- * bits of k. */
+/* The sum 1 + x + ... + x^(k-1) = (1 - x^k) / (1 - x), for x in [0, 1) and k < 2^bits. The
+ * power is computed from the bits of k. */
 static inline float series(float x, int32_t k, const int bits) {
   float power = 1.0f, square = x;
   for (int b = 0; b < bits; b++) {
@@ -155,10 +167,11 @@ static inline float series(float x, int32_t k, const int bits) {
   return (1.0f - power) / (down > VL_MIN_FRACTION ? down : VL_MIN_FRACTION);
 }
 
-/* Computes from T(wo) the base's f in each channel and the probabilities of the lobes, which are proportional to the
- * energy that each lobe reflects. The energy of a rough coat is approximated by that of a smooth coat. */
-static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz, Lanes *lanes,
-                                                             const int bits) {
+/* Computes from T(wo) the base's f in each channel and the probabilities of the lobes, which
+ * are proportional to the energy that each lobe reflects. The energy of a rough coat is
+ * approximated by that of a smooth coat. */
+static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz,
+                                                             Lanes *lanes, const int bits) {
   const float *r0 = s->r0, *r1 = s->r1, *r2 = s->r2, *r3 = s->r3, *eta = s->eta;
   const float *through = lanes->transmittance_o, *back = lanes->back, *escape = lanes->escape;
   const int32_t *bounces = lanes->bounces;
@@ -189,7 +202,8 @@ PASS weigh(const Slice *s, vlBsdfDirections wo, uint32_t first, Lanes *lanes) {
   const float *oz = wo.z + first;
   look_up(s, wo, first, lanes, lanes->transmittance_o, OF_WO);
   int32_t all = 0;
-  for (uint32_t i = 0; i < s->live; i++) all |= lanes->bounces[i];
+  for (uint32_t i = 0; i < s->live; i++)
+    all |= lanes->bounces[i];
   if (all < 8)
     weigh_loop(s, oz, lanes, 3);
   else
@@ -201,7 +215,8 @@ typedef struct {
   float coat;     /* f |cos| of the coat's reflection, 0 when smooth */
   float coat_pdf; /* density of sampling w by this lobe */
 } CoatLobe;
-static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3 w, float alpha_x, float alpha_y,
+static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3 w,
+                                                                float alpha_x, float alpha_y,
                                                                 float eta) {
   float rx = vl_ggx_alpha(alpha_x), ry = vl_ggx_alpha(alpha_y);
   int rough = (vl_ggx_is_smooth(alpha_x, alpha_y) | (eta == 1.0f)) == 0;
@@ -213,28 +228,34 @@ static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3
   return (CoatLobe){f * p * vl_ggx_shadowing(o.z, lo, w.z, li), p};
 }
 
-PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDirections wi, float *const value[4],
-             float *density, uint32_t first) {
+PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDirections wi,
+             float *const value[4], float *density, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
   const float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *transmittance_i = lanes->transmittance_i,
-              *share = lanes->coat_share;
-  const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
-  float *v0 = value[0] + first, *v1 = value[1] + first, *v2 = value[2] + first, *v3 = value[3] + first;
+  const float *ax = s->ax, *ay = s->ay, *eta = s->eta,
+              *transmittance_i = lanes->transmittance_i, *share = lanes->coat_share;
+  const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2],
+              *b3 = lanes->base[3];
+  float *v0 = value[0] + first, *v1 = value[1] + first, *v2 = value[2] + first,
+        *v3 = value[3] + first;
   float *pdf = density + first;
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     int valid = ((oz[i] > 0.0f) & (iz[i] > 0.0f)) | ((oz[i] < 0.0f) & (iz[i] < 0.0f));
-    /* Products with 0 or 1 instead of selects: compilers would put the loads into branches. The factor of 0 must be
-     * finite, so pairs that are not valid are replaced by directions along the normal. */
+    /* Products with 0 or 1 instead of selects: compilers would put the loads into branches. The
+     * factor of 0 must be finite, so pairs that are not valid are replaced by directions along
+     * the normal. */
     float on = valid ? 1.0f : 0.0f, off = 1.0f - on;
-    float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = vl_abs(iz[i]);
-    vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off), w = vl_vec3(xi * on, yi * on, zi * on + off);
+    float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i],
+          zi = vl_abs(iz[i]);
+    vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off),
+           w = vl_vec3(xi * on, yi * on, zi * on + off);
     CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
     float t = transmittance_i[i] * w.z;
     float p = share[i];
-    float f0 = c.coat + b0[i] * t, f1 = c.coat + b1[i] * t, f2 = c.coat + b2[i] * t, f3 = c.coat + b3[i] * t;
+    float f0 = c.coat + b0[i] * t, f1 = c.coat + b1[i] * t, f2 = c.coat + b2[i] * t,
+          f3 = c.coat + b3[i] * t;
     float d = p * c.coat_pdf + (1.0f - p) * (w.z * VL_INV_PI);
     v0[i] = f0 * on;
     v1[i] = f1 * on;
@@ -244,8 +265,8 @@ PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDire
   }
 }
 
-void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                       float *const value[4], float *pdf) {
+void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                       vlBsdfDirections wi, float *const value[4], float *pdf) {
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
@@ -255,9 +276,10 @@ void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
   }
 }
 
-/* First half of sampling: chooses the lobe and samples the direction. wi.z is positive on the side of wo. */
-PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe, const float *u,
-            const float *v, vlBsdfDirections wi, uint32_t first) {
+/* First half of sampling: chooses the lobe and samples the direction. wi.z is positive on the
+ * side of wo. */
+PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe,
+            const float *u, const float *v, vlBsdfDirections wi, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
   const float *lobe = u_lobe + first, *uu = u + first, *vv = v + first;
   float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
@@ -279,15 +301,21 @@ PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   }
 }
 
-/* Second half of sampling: computes the weight of the direction, with the density of both lobes. */
-PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe, vlBsdfDirections wi,
-            float *const weight[4], float *density, uint32_t *flags, uint32_t first) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first, *lobe = u_lobe + first;
+/* Second half of sampling: computes the weight of the direction, with the density of both
+ * lobes. */
+PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe,
+            vlBsdfDirections wi, float *const weight[4], float *density, uint32_t *flags,
+            uint32_t first) {
+  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first,
+              *lobe = u_lobe + first;
   float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *transmittance_i = lanes->transmittance_i;
+  const float *ax = s->ax, *ay = s->ay, *eta = s->eta,
+              *transmittance_i = lanes->transmittance_i;
   const float *share = lanes->coat_share, *fresnel = lanes->fresnel;
-  const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
-  float *w0 = weight[0] + first, *w1 = weight[1] + first, *w2 = weight[2] + first, *w3 = weight[3] + first;
+  const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2],
+              *b3 = lanes->base[3];
+  float *w0 = weight[0] + first, *w1 = weight[1] + first, *w2 = weight[2] + first,
+        *w3 = weight[3] + first;
   float *pdf = density + first;
   uint32_t *flag = flags + first;
   uint32_t count = VL_WHOLE(s->count);
@@ -296,9 +324,11 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
     float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = iz[i];
     int valid = (zo > 0.0f) & (zi > 0.0f);
     float on = valid ? 1.0f : 0.0f, off = 1.0f - on; /* products instead of selects, as above */
-    vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off), w = vl_vec3(xi * on, yi * on, zi * on + off);
+    vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off),
+           w = vl_vec3(xi * on, yi * on, zi * on + off);
     float p = share[i];
-    int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f), mirror = (lobe[i] < p) & smooth;
+    int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f),
+        mirror = (lobe[i] < p) & smooth;
     CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
     float t = transmittance_i[i] * w.z;
     float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* c is 0 for a smooth coat */
@@ -318,8 +348,9 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   }
 }
 
-void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                         const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                         const float *u_lobe, const float *u, const float *v,
+                         vlBsdfDirections wi, float *const weight[4], float *pdf,
                          uint32_t *flags, float *eta_scale) {
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
@@ -328,6 +359,7 @@ void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     choose(&s, &lanes, wo, u_lobe, u, v, wi, first);
     look_up(&s, wi, first, &lanes, lanes.transmittance_i, OF_WI);
     settle(&s, &lanes, wo, u_lobe, wi, weight, pdf, flags, first);
-    for (uint32_t i = 0; i < s.count; i++) eta_scale[first + i] = 1.0f;
+    for (uint32_t i = 0; i < s.count; i++)
+      eta_scale[first + i] = 1.0f;
   }
 }

@@ -1,12 +1,13 @@
-/* trace/bsdf/conductor.hot.c: the BSDF of metals, smooth or with GGX microfacets, with single scattering (pbrt book
- * 9.3.6, 9.6.5). */
+/* trace/bsdf/conductor.hot.c: the BSDF of metals, smooth or with GGX microfacets, with single
+ * scattering (pbrt book 9.3.6, 9.6.5). */
 #include "trace/bsdf/local.h"
 
-void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                            float *const value[4], float *pdf) {
+void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                            vlBsdfDirections wi, float *const value[4], float *pdf) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ix = wi.x, *iy = wi.y, *iz = wi.z;
   const float *ax = params->alpha_x, *ay = params->alpha_y;
-  const float *e0 = params->eta[0], *e1 = params->eta[1], *e2 = params->eta[2], *e3 = params->eta[3];
+  const float *e0 = params->eta[0], *e1 = params->eta[1], *e2 = params->eta[2],
+              *e3 = params->eta[3];
   const float *k0 = params->k[0], *k1 = params->k[1], *k2 = params->k[2], *k3 = params->k[3];
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
   uint32_t count = VL_PAD(n);
@@ -21,8 +22,10 @@ void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
     float p = 0.25f * vl_ggx_visible(h, rx, ry, o.z, lo);
     float g = p * vl_ggx_shadowing(o.z, lo, w.z, li);
-    float f0 = vl_fresnel_conductor(c, e0[i], k0[i]), f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
-    float f2 = vl_fresnel_conductor(c, e2[i], k2[i]), f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
+    float f0 = vl_fresnel_conductor(c, e0[i], k0[i]),
+          f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
+    float f2 = vl_fresnel_conductor(c, e2[i], k2[i]),
+          f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
     v0[i] = valid ? f0 * g : 0.0f;
     v1[i] = valid ? f1 * g : 0.0f;
     v2[i] = valid ? f2 * g : 0.0f;
@@ -31,12 +34,14 @@ void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
   }
 }
 
-void vl_bsdf_conductor_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                              const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+void vl_bsdf_conductor_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                              const float *u_lobe, const float *u, const float *v,
+                              vlBsdfDirections wi, float *const weight[4], float *pdf,
                               uint32_t *flags, float *eta_scale) {
   (void)u_lobe;
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ax = params->alpha_x, *ay = params->alpha_y;
-  const float *e0 = params->eta[0], *e1 = params->eta[1], *e2 = params->eta[2], *e3 = params->eta[3];
+  const float *e0 = params->eta[0], *e1 = params->eta[1], *e2 = params->eta[2],
+              *e3 = params->eta[3];
   const float *k0 = params->k[0], *k1 = params->k[1], *k2 = params->k[2], *k3 = params->k[3];
   float *ix = wi.x, *iy = wi.y, *iz = wi.z;
   float *w0 = weight[0], *w1 = weight[1], *w2 = weight[2], *w3 = weight[3];
@@ -60,14 +65,17 @@ void vl_bsdf_conductor_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDire
     ix[i] = w.x;
     iy[i] = w.y;
     iz[i] = oz[i] < 0.0f ? -w.z : w.z;
-    float f0 = vl_fresnel_conductor(c, e0[i], k0[i]), f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
-    float f2 = vl_fresnel_conductor(c, e2[i], k2[i]), f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
+    float f0 = vl_fresnel_conductor(c, e0[i], k0[i]),
+          f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
+    float f2 = vl_fresnel_conductor(c, e2[i], k2[i]),
+          f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
     w0[i] = valid ? f0 * g : 0.0f;
     w1[i] = valid ? f1 * g : 0.0f;
     w2[i] = valid ? f2 * g : 0.0f;
     w3[i] = valid ? f3 * g : 0.0f;
     pdf[i] = valid ? (smooth ? 1.0f : p) : 0.0f;
-    flags[i] = valid ? (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) : (uint32_t)VL_SAMPLED_NONE;
+    flags[i] =
+        valid ? (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = 1.0f;
   }
 }

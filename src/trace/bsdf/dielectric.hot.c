@@ -1,11 +1,12 @@
-/* trace/bsdf/dielectric.hot.c: the BSDF of glass and water, smooth or with GGX microfacets, with single scattering
- * (pbrt book 9.5, 9.7; Walter et al. 2007). A sample chooses reflection or transmission in proportion to the Fresnel
- * terms at the sampled microfacet. The sample's weight is therefore G/G1 in both cases. For transmission it is also
- * divided by eta^2, because refraction compresses the solid angle. */
+/* trace/bsdf/dielectric.hot.c: the BSDF of glass and water, smooth or with GGX microfacets,
+ * with single scattering (pbrt book 9.5, 9.7; Walter et al. 2007). A sample chooses reflection
+ * or transmission in proportion to the Fresnel terms at the sampled microfacet. The sample's
+ * weight is therefore G/G1 in both cases. For transmission it is also divided by eta^2, because
+ * refraction compresses the solid angle. */
 #include "trace/bsdf/local.h"
 
-void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                             float *const value[4], float *pdf) {
+void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                             vlBsdfDirections wi, float *const value[4], float *pdf) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ix = wi.x, *iy = wi.y, *iz = wi.z;
   const float *ax = params->alpha_x, *ay = params->alpha_y, *index = params->eta_s;
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
@@ -16,7 +17,8 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     int below = oz[i] < 0.0f;
     float forth = index[i], back = 1.0f / forth;
     float eta = below ? back : forth, inverse = below ? forth : back;
-    vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i])), w = vl_vec3(ix[i], iy[i], below ? -iz[i] : iz[i]);
+    vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i])),
+           w = vl_vec3(ix[i], iy[i], below ? -iz[i] : iz[i]);
     int reflect = w.z > 0.0f;
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
     int valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f) & (smooth == 0);
@@ -30,7 +32,9 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     valid = valid & (oh > 0.0f) & (reflect | (ih < 0.0f));
     float fr = vl_fresnel_dielectric(oh, eta).reflected;
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-    /* D_wo(h) / wo.h = 2 D / (Lo + zo). jacobian: the Jacobian of h with respect to wi, times wo.h */
+    /* D_wo(h) / wo.h = 2 D / (Lo + zo). jacobian: the Jacobian of h with respect to wi, times
+     * wo.h
+     */
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     float t = ih + oh * inverse;
     float t2 = t * t;
@@ -47,8 +51,9 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
   }
 }
 
-void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                               const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                               const float *u_lobe, const float *u, const float *v,
+                               vlBsdfDirections wi, float *const weight[4], float *pdf,
                                uint32_t *flags, float *eta_scale) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z;
   const float *ax = params->alpha_x, *ay = params->alpha_y, *index = params->eta_s;
@@ -87,7 +92,8 @@ void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     float g = smooth ? 1.0f : vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);
     g = g * (reflect ? 1.0f : inverse * inverse);
     g = valid ? g : 0.0f;
-    uint32_t flag = (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) | (reflect ? 0u : (uint32_t)VL_SAMPLED_TRANSMISSION);
+    uint32_t flag = (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) |
+                    (reflect ? 0u : (uint32_t)VL_SAMPLED_TRANSMISSION);
     ix[i] = w.x;
     iy[i] = w.y;
     iz[i] = below ? -w.z : w.z;

@@ -1,9 +1,9 @@
-/* trace/bsdf/diffuse.hot.c: Lambertian reflection (pbrt book 9.2), and the thin dielectric, a pane that includes all
- * internal reflections (9.5.1). */
+/* trace/bsdf/diffuse.hot.c: Lambertian reflection (pbrt book 9.2), and the thin dielectric, a
+ * pane that includes all internal reflections (9.5.1). */
 #include "trace/bsdf/local.h"
 
-void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                          float *const value[4], float *pdf) {
+void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                          vlBsdfDirections wi, float *const value[4], float *pdf) {
   const float *oz = wo.z, *iz = wi.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
   const float *r2 = params->reflectance[2], *r3 = params->reflectance[3];
@@ -22,8 +22,9 @@ void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirectio
   }
 }
 
-void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                            const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                            const float *u_lobe, const float *u, const float *v,
+                            vlBsdfDirections wi, float *const weight[4], float *pdf,
                             uint32_t *flags, float *eta_scale) {
   (void)u_lobe;
   const float *oz = wo.z;
@@ -40,7 +41,9 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     ix[i] = d.x;
     iy[i] = d.y;
     iz[i] = zo < 0.0f ? -d.z : d.z;
-    float on = valid ? 1.0f : 0.0f; /* a product, because gcc turns a select between loads into a branch */
+    float on =
+        valid ? 1.0f
+              : 0.0f; /* a product, because gcc turns a select between loads into a branch */
     w0[i] = r0[i] * on;
     w1[i] = r1[i] * on;
     w2[i] = r2[i] * on;
@@ -52,18 +55,20 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
 }
 
 /* Reflection and transmission of a pane are deltas. */
-void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                       float *const value[4], float *pdf) {
+void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                       vlBsdfDirections wi, float *const value[4], float *pdf) {
   (void)params;
   (void)wo;
   (void)wi;
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
   uint32_t count = VL_PAD(n);
-  for (uint32_t i = 0; i < count; i++) v0[i] = v1[i] = v2[i] = v3[i] = pdf[i] = 0.0f;
+  for (uint32_t i = 0; i < count; i++)
+    v0[i] = v1[i] = v2[i] = v3[i] = pdf[i] = 0.0f;
 }
 
-void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                         const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                         const float *u_lobe, const float *u, const float *v,
+                         vlBsdfDirections wi, float *const weight[4], float *pdf,
                          uint32_t *flags, float *eta_scale) {
   (void)u;
   (void)v;
@@ -77,7 +82,8 @@ void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     float r = vl_fresnel_slab(vl_fresnel_dielectric(c, eta[i]).reflected);
     int reflect = (u_lobe[i] < r), valid = (c > 0.0f);
     float p = reflect ? r : 1.0f - r, w = valid ? 1.0f : 0.0f;
-    uint32_t f = reflect ? (uint32_t)VL_SAMPLED_SPECULAR : (uint32_t)(VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
+    uint32_t f = reflect ? (uint32_t)VL_SAMPLED_SPECULAR
+                         : (uint32_t)(VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
     ix[i] = -ox[i];
     iy[i] = -oy[i];
     iz[i] = reflect ? zo : -zo;

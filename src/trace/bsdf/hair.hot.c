@@ -1,10 +1,12 @@
-/* trace/bsdf/hair.hot.c: the BSDF of a hair, an absorbing dielectric cylinder with a rough surface of tilted scales
- * (Chiang, Bitterli, Tappan, Burley 2016; pbrt book 9.9). Its four lobes are reflection, transmission, one internal
- * reflection, and all paths with more. Each lobe is a product of a longitudinal part M (von Mises-Fisher), an
- * attenuation A and an azimuthal part N (trimmed logistic).
+/* trace/bsdf/hair.hot.c: the BSDF of a hair, an absorbing dielectric cylinder with a rough
+ * surface of tilted scales (Chiang, Bitterli, Tappan, Burley 2016; pbrt book 9.9). Its four
+ * lobes are reflection, transmission, one internal reflection, and all paths with more. Each
+ * lobe is a product of a longitudinal part M (von Mises-Fisher), an attenuation A and an
+ * azimuthal part N (trimmed logistic).
  *
- * The x axis runs along the hair; h in [-1, 1] is the offset from the hair's axis. In this far-field model of curves, f
- * is not symmetric in the two directions, and transmission does not depend on the side of the surface. */
+ * The x axis runs along the hair; h in [-1, 1] is the offset from the hair's axis. In this
+ * far-field model of curves, f is not symmetric in the two directions, and transmission does
+ * not depend on the side of the surface. */
 #include "trace/bsdf/local.h"
 
 enum { LOBES = 4 }; /* p = 0, 1, 2 internal segments, and all larger p */
@@ -13,7 +15,8 @@ enum { LOBES = 4 }; /* p = 0, 1, 2 internal segments, and all larger p */
 typedef struct Hair {
   float sin_o, cos_o, phi_o;
   float gamma_o, gamma_t;
-  float s, norm, low; /* of the logistic distribution: scale, 1 / (its mass in one turn), cumulative value at -pi */
+  float s, norm, low; /* of the logistic distribution: scale, 1 / (its mass in one turn),
+                         cumulative value at -pi */
   float v[LOBES];     /* variances */
   float sin_p[LOBES], cos_p[LOBES]; /* wo tilted by the cuticle scales */
   float a[LOBES][4];                /* attenuations */
@@ -28,15 +31,20 @@ static inline float square(float x) {
 static inline float ln_bessel(float x) {
   float t = x * (1.0f / 3.75f);
   t = t * t;
-  float near = 1.0f + t * (3.5156229f +
-                           t * (3.0899424f + t * (1.2067492f + t * (0.2659732f + t * (0.0360768f + t * 0.0045813f)))));
+  float near =
+      1.0f +
+      t * (3.5156229f +
+           t * (3.0899424f +
+                t * (1.2067492f + t * (0.2659732f + t * (0.0360768f + t * 0.0045813f)))));
   float y = 3.75f / (x > 3.75f ? x : 3.75f);
-  float far = 0.39894228f +
-              y * (0.01328592f +
-                   y * (0.00225319f +
-                        y * (-0.00157565f +
-                             y * (0.00916281f +
-                                  y * (-0.02057706f + y * (0.02635537f + y * (-0.01647633f + y * 0.00392377f)))))));
+  float far =
+      0.39894228f +
+      y * (0.01328592f +
+           y * (0.00225319f +
+                y * (-0.00157565f +
+                     y * (0.00916281f +
+                          y * (-0.02057706f +
+                               y * (0.02635537f + y * (-0.01647633f + y * 0.00392377f)))))));
   float large = x > 3.75f ? x : 3.75f;
   float a = vl_ln(x > 3.75f ? 1.0f : near), b = large - 0.5f * vl_ln(large) + vl_ln(far);
   return x > 3.75f ? b : a;
@@ -61,11 +69,11 @@ static inline float logistic(const Hair *h, float x) {
   return e * h->norm / (h->s * (1.0f + e) * (1.0f + e));
 }
 
-/* Lower bound of both roughnesses. At 0.01 the variance v is 5e-5, and exponents of size 1 / v have a rounding error of
- * 1e-3. */
+/* Lower bound of both roughnesses. At 0.01 the variance v is 5e-5, and exponents of size 1 / v
+ * have a rounding error of 1e-3. */
 #define MIN_BETA 1e-2f
-/* Lower bound of the cosine between a direction and the fibre's cross-section. It is reached 0.006 degrees from the
- * fibre's direction. */
+/* Lower bound of the cosine between a direction and the fibre's cross-section. It is reached
+ * 0.006 degrees from the fibre's direction. */
 #define ALONG 1e-4f
 
 static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
@@ -87,15 +95,19 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   r.low = 1.0f / (1.0f + vl_exp(edge < 80.0f ? edge : 80.0f));
   r.norm = 1.0f / (1.0f - 2.0f * r.low);
   /* the refracted direction */
-  float sin_t = r.sin_o / eta, cos_t = __builtin_sqrtf(vl_max(1.0f - sin_t * sin_t, VL_MIN_FRACTION));
-  float etap = __builtin_sqrtf(vl_max(eta * eta - r.sin_o * r.sin_o, 0.0f)) / vl_max(r.cos_o, ALONG);
+  float sin_t = r.sin_o / eta,
+        cos_t = __builtin_sqrtf(vl_max(1.0f - sin_t * sin_t, VL_MIN_FRACTION));
+  float etap =
+      __builtin_sqrtf(vl_max(eta * eta - r.sin_o * r.sin_o, 0.0f)) / vl_max(r.cos_o, ALONG);
   float sin_gt = vl_clamp(h / vl_max(etap, ALONG), -1.0f, 1.0f);
   float cos_gt = __builtin_sqrtf((1.0f - sin_gt) * (1.0f + sin_gt));
   r.gamma_o = vl_asin(h);
   r.gamma_t = vl_asin(sin_gt);
-  float f = vl_fresnel_dielectric(r.cos_o * __builtin_sqrtf((1.0f - h) * (1.0f + h)), eta).reflected;
+  float f =
+      vl_fresnel_dielectric(r.cos_o * __builtin_sqrtf((1.0f - h) * (1.0f + h)), eta).reflected;
   float way = 2.0f * cos_gt / cos_t, total = 0.0f;
-  for (int p = 0; p < LOBES; p++) r.share[p] = 0.0f;
+  for (int p = 0; p < LOBES; p++)
+    r.share[p] = 0.0f;
   for (int c = 0; c < 4; c++) {
     float t = vl_exp(-vl_min(vl_max(q->own[VL_H_SIGMA_A + c][i], 0.0f) * way, 80.0f));
     r.a[0][c] = f;
@@ -108,7 +120,8 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
     }
   }
   total = total > 0.0f ? 1.0f / total : 0.0f;
-  for (int p = 0; p < LOBES; p++) r.share[p] *= total;
+  for (int p = 0; p < LOBES; p++)
+    r.share[p] *= total;
   /* cuticle scales tilt each lobe by a multiple of alpha: -2, 1, 4 */
   vlSinCos tilt = vl_sincos(q->own[VL_H_ALPHA][i]);
   float s2 = 2.0f * tilt.cos * tilt.sin, c2 = square(tilt.cos) - square(tilt.sin);
@@ -126,47 +139,57 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
 
 /* f cos and the density of wi. */
 static inline float hair_value(const Hair *h, vlVec3 wi, float value[4]) {
-  float sin_i = vl_clamp(wi.x, -1.0f, 1.0f), cos_i = __builtin_sqrtf((1.0f - sin_i) * (1.0f + sin_i));
+  float sin_i = vl_clamp(wi.x, -1.0f, 1.0f),
+        cos_i = __builtin_sqrtf((1.0f - sin_i) * (1.0f + sin_i));
   float phi = vl_atan2(wi.z, wi.y) - h->phi_o, pdf = 0.0f;
-  for (int c = 0; c < 4; c++) value[c] = 0.0f;
+  for (int c = 0; c < 4; c++)
+    value[c] = 0.0f;
   for (int p = 0; p < LOBES; p++) {
     float m = longitudinal(cos_i, h->cos_p[p], sin_i, h->sin_p[p], h->v[p]);
     m *= p < 3 ? logistic(h, turned(phi - azimuth(p, h))) : 0.5f * VL_INV_PI;
     pdf += m * h->share[p];
-    for (int c = 0; c < 4; c++) value[c] += m * h->a[p][c];
+    for (int c = 0; c < 4; c++)
+      value[c] += m * h->a[p][c];
   }
   return pdf;
 }
 
-void vl_bsdf_hair_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                       float *const value[4], float *pdf) {
+void vl_bsdf_hair_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                       vlBsdfDirections wi, float *const value[4], float *pdf) {
   for (uint32_t i = 0; i < n; i++) {
     Hair h = hair_of(params, i, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
     float f[4], p = hair_value(&h, vl_vec3(wi.x[i], wi.y[i], wi.z[i]), f);
     float on = (wo.z[i] != 0.0f) & (wi.z[i] != 0.0f) ? 1.0f : 0.0f;
-    for (int c = 0; c < 4; c++) value[c][i] = f[c] * on;
+    for (int c = 0; c < 4; c++)
+      value[c][i] = f[c] * on;
     pdf[i] = p * on;
   }
 }
 
-void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                         const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                         const float *u_lobe, const float *u, const float *v,
+                         vlBsdfDirections wi, float *const weight[4], float *pdf,
                          uint32_t *flags, float *eta_scale) {
   for (uint32_t i = 0; i < n; i++) {
     Hair h = hair_of(params, i, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
     int p = 0;
     float lobe = u_lobe[i];
-    for (; p < LOBES - 1 && !(lobe < h.share[p]); p++) lobe -= h.share[p];
-    lobe = vl_clamp(lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f,
-                    VL_ONE_MINUS_EPSILON); /* the rest of the random number, uniform in [0, 1) again */
+    for (; p < LOBES - 1 && !(lobe < h.share[p]); p++)
+      lobe -= h.share[p];
+    lobe = vl_clamp(
+        lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f,
+        VL_ONE_MINUS_EPSILON); /* the rest of the random number, uniform in [0, 1) again */
     float e = vl_exp(-2.0f / h.v[p]);
-    float cosine = vl_clamp(1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, VL_MIN_POSITIVE)), -1.0f, 1.0f);
+    float cosine = vl_clamp(
+        1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, VL_MIN_POSITIVE)), -1.0f, 1.0f);
     float sine = __builtin_sqrtf((1.0f - cosine) * (1.0f + cosine));
     float sin_i = -cosine * h.sin_p[p] + sine * vl_sincos_turn(v[i]).cos * h.cos_p[p];
     sin_i = vl_clamp(sin_i, -1.0f, 1.0f);
     float cos_i = __builtin_sqrtf((1.0f - sin_i) * (1.0f + sin_i));
-    float x = vl_clamp(lobe * (1.0f - 2.0f * h.low) + h.low, VL_MIN_POSITIVE, VL_ONE_MINUS_EPSILON);
-    float phi = p < 3 ? azimuth(p, &h) + vl_clamp(-h.s * vl_ln(1.0f / x - 1.0f), -VL_PI, VL_PI) : 2.0f * VL_PI * lobe;
+    float x =
+        vl_clamp(lobe * (1.0f - 2.0f * h.low) + h.low, VL_MIN_POSITIVE, VL_ONE_MINUS_EPSILON);
+    float phi = p < 3 ? azimuth(p, &h) + vl_clamp(-h.s * vl_ln(1.0f / x - 1.0f), -VL_PI, VL_PI)
+                      : 2.0f * VL_PI * lobe;
     vlSinCos at = vl_sincos(turned(h.phi_o + phi));
     vlVec3 w = vl_normalize(vl_vec3(sin_i, cos_i * at.cos, cos_i * at.sin));
     float f[4], d = hair_value(&h, w, f);
@@ -174,9 +197,12 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     wi.x[i] = w.x;
     wi.y[i] = w.y;
     wi.z[i] = w.z;
-    for (int c = 0; c < 4; c++) weight[c][i] = valid ? f[c] / d : 0.0f;
+    for (int c = 0; c < 4; c++)
+      weight[c][i] = valid ? f[c] / d : 0.0f;
     pdf[i] = valid ? d : 0.0f;
-    flags[i] = !valid ? (uint32_t)VL_SAMPLED_NONE : w.z * wo.z[i] < 0.0f ? (uint32_t)VL_SAMPLED_TRANSMISSION : 0u;
+    flags[i] = !valid                 ? (uint32_t)VL_SAMPLED_NONE
+               : w.z * wo.z[i] < 0.0f ? (uint32_t)VL_SAMPLED_TRANSMISSION
+                                      : 0u;
     eta_scale[i] = 1.0f;
   }
 }

@@ -1,10 +1,13 @@
-/* trace/ground_truth/channels.hot.c: ground truth for a batch of rays: ids, distance in double, normals, albedo.
+/* trace/ground_truth/channels.hot.c: ground truth for a batch of rays: ids, distance in double,
+ * normals, albedo.
  *
- *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray and the surface itself
- *                                                  -> the tracers' stages: normals, uv, textures (64 wavelengths)
+ *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray
+ * and the surface itself
+ *                                                  -> the tracers' stages: normals, uv,
+ * textures (64 wavelengths)
  *
- * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the ray decides mixed
- * materials. */
+ * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the
+ * ray decides mixed materials. */
 #include "trace/ground_truth/scratch.h"
 #include "velo/material.h"
 #include "velo/shape.h"
@@ -13,7 +16,8 @@
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 
-/* ---- distance, in double ----------------------------------------------------------------------------------------- */
+/* ---- distance, in double
+ * ----------------------------------------------------------------------------------------- */
 
 typedef struct Exact {
   double x, y, z;
@@ -28,10 +32,12 @@ static inline double exact_dot(Exact a, Exact b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t vertex) {
+static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float time,
+                          uint32_t vertex) {
   float room[3];
   const float *x = vl_vertex_at(s, vertex, time, room);
-  if (!q) return (Exact){x[0], x[1], x[2]};
+  if (!q)
+    return (Exact){x[0], x[1], x[2]};
   double r[3];
   for (int i = 0; i < 3; i++) {
     const float *m = q->from_group + 4 * i;
@@ -40,17 +46,19 @@ static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float
   return (Exact){r[0], r[1], r[2]};
 }
 
-/* Distance to the triangle's plane, clamped to the range of the distances of its corners. At grazing angles the
- * float ray that found the triangle and the exact ray may differ so much that the exact ray meets the plane far
- * outside the triangle. */
-static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t prim, Exact o,
-                                Exact d, double otherwise) {
+/* Distance to the triangle's plane, clamped to the range of the distances of its corners. At
+ * grazing angles the float ray that found the triangle and the exact ray may differ so much
+ * that the exact ray meets the plane far outside the triangle. */
+static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, float time,
+                                uint32_t prim, Exact o, Exact d, double otherwise) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
-  Exact a = exact_sub(exact_corner(s, q, time, f[0]), o), b = exact_sub(exact_corner(s, q, time, f[1]), o),
+  Exact a = exact_sub(exact_corner(s, q, time, f[0]), o),
+        b = exact_sub(exact_corner(s, q, time, f[1]), o),
         c = exact_sub(exact_corner(s, q, time, f[2]), o);
   Exact n = exact_cross(exact_sub(b, a), exact_sub(c, a));
   double along = exact_dot(d, n), t = exact_dot(a, n) / along;
-  if (!(along != 0.0) || !(t - t == 0.0)) return otherwise;
+  if (!(along != 0.0) || !(t - t == 0.0))
+    return otherwise;
   double ta = exact_dot(a, d), tb = exact_dot(b, d), tc = exact_dot(c, d);
   double low = ta < tb ? ta : tb, high = ta < tb ? tb : ta;
   low = low < tc ? low : tc;
@@ -59,32 +67,41 @@ static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q,
   return t > high ? high : t;
 }
 
-/* Distance at which the exact ray meets a curved shape, near the distance t that the float ray found. */
-static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
-                              double t) {
+/* Distance at which the exact ray meets a curved shape, near the distance t that the float ray
+ * found. */
+static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim,
+                              Exact o, Exact d, double t) {
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
-  if (q) vl_ray_to_group(q, go, gd);
+  if (q)
+    vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
-  /* At grazing angles rounding moves the intersection further, so the search interval grows in four steps up to 1 /
-   * 64. */
+  /* At grazing angles rounding moves the intersection further, so the search interval grows in
+   * four steps up to 1 / 64. */
   for (double reach = VL_REFIND; reach < 0.01; reach *= 32.0)
-    if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + VL_REFIND_LEAST, &hit)) return hit.t;
+    if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach),
+                           t * (1.0 + reach) + VL_REFIND_LEAST, &hit))
+      return hit.t;
   return t;
 }
 
-static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, const vlHits *h,
-                             uint32_t i, double t) {
+static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *batch,
+                             uint32_t lane, const vlHits *h, uint32_t i, double t) {
   const vlWorldShape *s = &world->shapes.items[h->shape[i]];
   vlWorldInstance room;
   const vlWorldInstance *q =
-      h->instance[i] == VL_NONE ? NULL : vl_instance_at(&world->instances.items[h->instance[i]], batch->time, &room);
+      h->instance[i] == VL_NONE
+          ? NULL
+          : vl_instance_at(&world->instances.items[h->instance[i]], batch->time, &room);
   Exact o = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]};
   Exact d = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
-  return s->kind == VL_SHAPE_TRIANGLES ? triangle_distance(s, q, batch->time, h->prim[i], o, d, t)
-                                       : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
+  return s->kind == VL_SHAPE_TRIANGLES
+             ? triangle_distance(s, q, batch->time, h->prim[i], o, d, t)
+             : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
 }
 
-/* ---- albedo ------------------------------------------------------------------------------------------------------ */
+/* ---- albedo
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.at.surface;
@@ -96,38 +113,45 @@ static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
     }
 }
 
-/* Albedo of one lane at channel c. For conductors and measured materials it is the reflectance at normal incidence,
- * for subsurface materials the diffuse reflectance, and for materials with specular transmission 1. */
-static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c, uint32_t i) {
-  if (m->reflectance >= 0) return sh->reflectance[c][i];
-  if (m->measured) return vl_measured_albedo(m->measured, c, lambda);
+/* Albedo of one lane at channel c. For conductors and measured materials it is the reflectance
+ * at normal incidence, for subsurface materials the diffuse reflectance, and for materials with
+ * specular transmission 1. */
+static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c,
+                              uint32_t i) {
+  if (m->reflectance >= 0)
+    return sh->reflectance[c][i];
+  if (m->measured)
+    return vl_measured_albedo(m->measured, c, lambda);
   if (m->subsurface) {
     vlSpline albedo = vl_bssrdf_albedo(m->subsurface->table, sh->own[VL_S_ALBEDO + c][i]);
     return vl_bssrdf_effective(m->subsurface->table, &albedo);
   }
-  if (!(m->traits & VL_MATERIAL_METAL)) return 1.0f;
+  if (!(m->traits & VL_MATERIAL_METAL))
+    return 1.0f;
   float n = sh->eta[c][i], k = sh->k[c][i];
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
 }
 
-static void add_albedo(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set, uint32_t n, vlTraceScratch *s,
-                       vlGroundTruthBatch *batch) {
+static void add_albedo(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set,
+                       uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
   for (uint32_t i = 0; i < n; i++) {
     const vlWorldMaterial *m = &world->materials.items[s->at.hits.material[i]];
     uint32_t lane = s->at.paths.lane[i];
     for (int c = 0; c < 4; c++) {
       float a = albedo_at(m, &s->at.shade, s->at.paths.lambda[c][i], c, i);
-      for (int k = 0; k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
+      for (int k = 0; k < 3; k++)
+        batch->albedo[k][lane] += a * def->weight[set][c][k];
     }
   }
 }
 
-static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n, vlGroundTruthScratch *scratch,
-                  vlGroundTruthBatch *batch) {
+static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
+                  vlGroundTruthScratch *scratch, vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
   keep_frames(scratch, n, false);
   for (uint32_t set = 0; set < def->sets; set++) {
-    if (set) keep_frames(scratch, n, true);
+    if (set)
+      keep_frames(scratch, n, true);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = 0; i < n; i++) {
         s->at.paths.lambda[c][i] = def->lambda[set][c];
@@ -135,14 +159,18 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
       }
     for (uint32_t first = 0, last; first < n; first = last) {
       uint32_t material = s->at.hits.material[first];
-      for (last = first + 1; last < n && s->at.hits.material[last] == material;) last++;
+      for (last = first + 1; last < n && s->at.hits.material[last] == material;)
+        last++;
       vl_stage_material(world, first, last, material, &s->at, s);
     }
-    if (def->albedo) add_albedo(world, def, set, n, s, batch);
+    if (def->albedo)
+      add_albedo(world, def, set, n, s, batch);
   }
 }
 
-/* ---- the batch --------------------------------------------------------------------------------------------------- */
+/* ---- the batch
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
   for (uint32_t i = 0; i < batch->n; i++) {
@@ -161,20 +189,23 @@ static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPath
       p->beta[c][i] = 0.0f;
     }
     batch->distance[i] = VL_INFINITY;
-    for (int k = 0; k < 3; k++) batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
+    for (int k = 0; k < 3; k++)
+      batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
     batch->uv[0][i] = batch->uv[1][i] = 0.0f;
     batch->object[i] = batch->material[i] = batch->instance[i] = batch->primitive[i] = 0;
   }
 }
 
 /* Copies those lanes of a that have a hit to b, without gaps. */
-static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
+static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
+                            vlGroundTruthBatch *batch) {
   const vlPaths *a = &s->rays;
   vlPaths *b = &s->at.paths;
   vlHits *h = &s->hits, *g = &s->at.hits;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (h->shape[i] == VL_NONE) continue;
+    if (h->shape[i] == VL_NONE)
+      continue;
     uint32_t k = count++;
     vl_path_copy(a, i, b, k);
     g->shape[k] = h->shape[i];
@@ -190,27 +221,34 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
   return count;
 }
 
-static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
-                  vlGroundTruthBatch *batch) {
+static void trace(const vlWorld *world, const vlGroundTruthDef *def,
+                  vlGroundTruthScratch *scratch, vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
   start(def, batch, &s->rays);
   s->rays.time = s->at.paths.time = world->moves ? scratch->time : NULL;
-  for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++) scratch->time[i] = batch->time;
-  if (batch->n == 0) return;
+  for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++)
+    scratch->time[i] = batch->time;
+  if (batch->n == 0)
+    return;
   /* The radiance of the rays is not used. */
   vlTraceBatch rays = {.n = batch->n, .t_min = batch->t_min, .t_max = batch->t_max};
-  for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
-  vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  for (int c = 0; c < 4; c++)
+    rays.radiance[c] = scratch->light[c];
+  vlTraceDef trace_def = {
+      .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
   vl_stage_hits(&tracing, batch->n, true, &s->rays, &s->hits);
   uint32_t n = gather_hits(world, batch->n, s, batch);
-  if (n == 0) return;
+  if (n == 0)
+    return;
   vl_stage_surface(world, n, &s->at.paths, &s->at.hits, &s->corners, &s->at.surface);
-  if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
+  if (def->shading || def->albedo)
+    shade(world, def, n, scratch, batch);
   const vlSurface *f = &s->at.surface;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = s->at.paths.lane[i];
-    batch->distance[lane] = def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->at.hits, i, f->t[i]);
+    batch->distance[lane] =
+        def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->at.hits, i, f->t[i]);
     batch->n_shading[0][lane] = f->nx[i];
     batch->n_shading[1][lane] = f->ny[i];
     batch->n_shading[2][lane] = f->nz[i];
@@ -222,14 +260,17 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
   }
 }
 
-/* ---- ids only ---------------------------------------------------------------------------------------------------- */
+/* ---- ids only
+ * ----------------------------------------------------------------------------------------------------
+ */
 
-static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
-                 const vlGroundTruthHits *to) {
+static void hits(const vlWorld *world, const vlGroundTruthDef *def,
+                 vlGroundTruthScratch *scratch, const vlGroundTruthHits *to) {
   vlTraceScratch *s = &scratch->trace;
   vlPaths *p = &s->rays;
   uint32_t n = to->n;
-  if (n == 0) return;
+  if (n == 0)
+    return;
   for (uint32_t i = 0; i < n; i++) {
     p->ox[i] = to->ox[i];
     p->oy[i] = to->oy[i];
@@ -248,8 +289,10 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
   }
   p->time = to->time;
   vlTraceBatch rays = {.n = n, .t_min = to->t_min, .t_max = to->t_max};
-  for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
-  vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  for (int c = 0; c < 4; c++)
+    rays.radiance[c] = scratch->light[c];
+  vlTraceDef trace_def = {
+      .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
   vl_stage_hits(&tracing, n, true, &s->rays, &s->hits);
   const vlHits *h = &s->hits;
@@ -258,17 +301,23 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
     to->object[i] = hit ? h->shape[i] + 1 : 0;
     to->material[i] = hit ? world->shapes.items[h->shape[i]].material + 1 : 0;
     to->instance[i] = hit && h->instance[i] != VL_NONE ? h->instance[i] + 1 : 0;
-    if (!to->distance) continue;
+    if (!to->distance)
+      continue;
     to->distance[i] = VL_INFINITY;
-    if (!hit) continue;
+    if (!hit)
+      continue;
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
     float time = vl_path_time(p, i);
-    to->distance[i] = vl_point_at_time(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
+    to->distance[i] =
+        vl_point_at_time(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
   }
 }
 
-/* Advances past each surface by the error bound of the hit point, as hits.hot.c does at interfaces. */
-static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *to) {
+/* Advances past each surface by the error bound of the hit point, as hits.hot.c does at
+ * interfaces.
+ */
+static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane,
+                   vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];
   for (int k = 0; k < 3; k++) {
     o[k] = (float)batch->o[k][lane];
@@ -288,12 +337,15 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
                   .t_max = batch->t_max + lane,
                   .time = &batch->time};
     vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
-    if (shape == VL_NONE) return;
+    if (shape == VL_NONE)
+      return;
     vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
     vlPoint at = vl_point_at_time(world, batch->time, from, along, shape, prim, instance, t);
     uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
-    while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
-    bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
+    while (k < to->count && (to->object[k] != object || to->instance[k] != placed))
+      k++;
+    bool seen = world->materials.items[world->shapes.items[shape].material].kind !=
+                VL_MATERIAL_INTERFACE;
     if (k == to->count && seen) {
       to->object[k] = object;
       to->instance[k] = placed;

@@ -1,19 +1,22 @@
-/* trace/light/coverage.h: the alpha of an area light at a sampled point; private to the hot files of trace/light. */
+/* trace/light/coverage.h: the alpha of an area light at a sampled point; private to the hot
+ * files of trace/light. */
 #ifndef TRACE_LIGHT_COVERAGE_H
 #define TRACE_LIGHT_COVERAGE_H
 
 #include "math/vec.h"
 #include "texture/lookup.h"
 
-/* The light's alpha at p, in [0, 1]. It is the share of the radiance that leaves the shape at p, and the probability
- * that a ray hits the shape at p. n: geometric normal; u, v: surface parameters, not used for triangles; weights:
- * barycentric coordinates, used for triangles only. */
-static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *light, vlVec3 p, vlVec3 n, float u,
-                                      float v, const float weights[3]) {
+/* The light's alpha at p, in [0, 1]. It is the share of the radiance that leaves the shape at
+ * p, and the probability that a ray hits the shape at p. n: geometric normal; u, v: surface
+ * parameters, not used for triangles; weights: barycentric coordinates, used for triangles
+ * only. */
+static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *light, vlVec3 p,
+                                      vlVec3 n, float u, float v, const float weights[3]) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlTextureCorner corner = {s, light->prim, {weights[0], weights[1], weights[2]}};
   vlTextureQuery at = {u, v, p, n, &corner};
-  if (s->kind == VL_SHAPE_TRIANGLES) { /* for triangles, the arguments u and v belong to the emission's image */
+  if (s->kind == VL_SHAPE_TRIANGLES) { /* for triangles, the arguments u and v belong to the
+                                          emission's image */
     static const float unit[6] = {0, 0, 1, 0, 1, 1};
     const uint32_t *f = s->indices + 3 * (size_t)light->prim;
     at.u = at.v = 0;

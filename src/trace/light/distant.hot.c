@@ -1,4 +1,5 @@
-/* trace/light/distant.hot.c: lights at an infinite distance in one direction (pbrt book 12.3). */
+/* trace/light/distant.hot.c: lights at an infinite distance in one direction (pbrt book 12.3).
+ */
 #include "trace/light/kinds.h"
 
 void vl_light_sample_distant(const vlLightQuery *q, vlLightSample *out) {
@@ -11,13 +12,14 @@ void vl_light_sample_distant(const vlLightQuery *q, vlLightSample *out) {
 void vl_light_emit_distant(const vlEmissionQuery *q, vlEmission *out) {
   vl_light_emit_from_afar(q->world, vl_light_axis(q->light), q->u, q->v, out);
   vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++) out->flux[c] *= vl_light_disk(q->world);
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= vl_light_disk(q->world);
   out->density = 1.0f / vl_light_disk(q->world);
   out->delta = true;
 }
 
-float vl_light_emit_pdf_distant(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
-                                const vlPoint *at) {
+float vl_light_emit_pdf_distant(const vlWorld *world, const vlWorldLight *light, float p,
+                                vlVec3 w, float distance, const vlPoint *at) {
   (void)light;
   (void)w;
   (void)distance;

@@ -1,5 +1,6 @@
-/* trace/light/emission_sample.hot.c: samples rays that leave infinite lights and area lights, and computes their
- * densities (pbrt book 12; 3rd edition 16.1.2). The code is scalar because each lane has its own light. */
+/* trace/light/emission_sample.hot.c: samples rays that leave infinite lights and area lights,
+ * and computes their densities (pbrt book 12; 3rd edition 16.1.2). The code is scalar because
+ * each lane has its own light. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "texture/lookup.h"
@@ -16,7 +17,8 @@ static float choice_of(const vlTwoWay *way, uint32_t light) {
 /* Density of an area light's points, per area. */
 static float point_density(const vlWorld *world, const vlWorldLight *light, vlVec3 p) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  if (s->kind == VL_SHAPE_TRIANGLES) return light->area > 0.0f ? 1.0f / light->area : 0.0f;
+  if (s->kind == VL_SHAPE_TRIANGLES)
+    return light->area > 0.0f ? 1.0f / light->area : 0.0f;
   vlSurfacePoint point;
   point.p[0] = p.x;
   point.p[1] = p.y;
@@ -24,20 +26,22 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
-/* Density per solid angle of the directions of light paths from an infinite light. The environment map's own density
- * excludes dim directions, so half of the light paths use that density, and the other half are uniform over the
- * sphere. */
+/* Density per solid angle of the directions of light paths from an infinite light. The
+ * environment map's own density excludes dim directions, so half of the light paths use that
+ * density, and the other half are uniform over the sphere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
-  if (light->environment == VL_NONE) return VL_INV_4PI;
+  if (light->environment == VL_NONE)
+    return VL_INV_4PI;
   return 0.5f * (vl_infinite_pdf(world, light, vl_vec3(0, 0, 0), w) + VL_INV_4PI);
 }
 
 static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light) {
-  return light->environment == VL_NONE ? NULL : world->environments.items[light->environment].portal;
+  return light->environment == VL_NONE ? NULL
+                                       : world->environments.items[light->environment].portal;
 }
 
-/* Density of light paths through a portal, whose directions are sampled in proportion to radiance. The density is per
- * area perpendicular to w and per solid angle. */
+/* Density of light paths through a portal, whose directions are sampled in proportion to
+ * radiance. The density is per area perpendicular to w and per solid angle. */
 static float portal_density(const vlPortal *portal, vlVec3 w) {
   vlPortalWindow whole = vl_portal_whole(portal);
   float across = portal->width * portal->height * vl_portal_local(portal, w).z;
@@ -46,48 +50,58 @@ static float portal_density(const vlPortal *portal, vlVec3 w) {
 
 /* Whether the outside of a whole sphere emits. */
 static bool emits_outwards(const vlWorld *world, const vlWorldLight *light) {
-  return world->emitted.items[light->emitted].two_sided || !world->shapes.items[light->shape].flip;
+  return world->emitted.items[light->emitted].two_sided ||
+         !world->shapes.items[light->shape].flip;
 }
 
 /* The share of an area light's paths that start on the side visible from direction w. */
 static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 p, vlVec3 w) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  if (!light->outer_side) return world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f;
-  vlVec3 center = vl_vec3((float)s->from_shape[3], (float)s->from_shape[7], (float)s->from_shape[11]);
+  if (!light->outer_side)
+    return world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f;
+  vlVec3 center =
+      vl_vec3((float)s->from_shape[3], (float)s->from_shape[7], (float)s->from_shape[11]);
   return emits_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
 }
 
-float vl_light_emit_pdf_infinite(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
-                                 const vlPoint *at) {
+float vl_light_emit_pdf_infinite(const vlWorld *world, const vlWorldLight *light, float p,
+                                 vlVec3 w, float distance, const vlPoint *at) {
   (void)distance;
   (void)at;
-  if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
+  if (portal_of(world, light))
+    return p * portal_density(portal_of(world, light), w);
   return p * sky_density(world, light, w) / vl_light_disk(world);
 }
 
-float vl_light_emit_pdf_area(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
-                             const vlPoint *at) {
+float vl_light_emit_pdf_area(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
+                             float distance, const vlPoint *at) {
   (void)distance;
-  return p * VL_INV_PI * point_density(world, light, at->p) * side_share(world, light, at->p, w);
+  return p * VL_INV_PI * point_density(world, light, at->p) *
+         side_share(world, light, at->p, w);
 }
 
-float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
-                          const vlPoint *at) {
+float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w,
+                          float distance, const vlPoint *at) {
   const vlWorldLight *light = &world->lights.items[index];
   float p = choice_of(way, index);
-  if (!(p > 0.0f)) return 0.0f;
+  if (!(p > 0.0f))
+    return 0.0f;
 #define DENSITY(K, k) \
-  case VL_WL_##K: return vl_light_emit_pdf_##k(world, light, p, w, distance, at);
+  case VL_WL_##K:     \
+    return vl_light_emit_pdf_##k(world, light, p, w, distance, at);
   switch ((vlWorldLightKind)light->kind) { VL_WORLD_LIGHT_KINDS(DENSITY) }
 #undef DENSITY
   return 0.0f;
 }
 
-float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 at) {
+float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light,
+                           vlVec3 at) {
   return choice_of(way, light) * point_density(world, &world->lights.items[light], at);
 }
 
-/* ---- area lights ------------------------------------------------------------------------------------------------- */
+/* ---- area lights
+ * -------------------------------------------------------------------------------------------------
+ */
 
 typedef struct Spot {
   vlVec3 p, n;
@@ -102,7 +116,8 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   vlVec3 corner[3];
-  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]), .weights = {b[0], b[1], b[2]}};
+  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]),
+            .weights = {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
   const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {
@@ -111,12 +126,15 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
     const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
     r.u += b[k] * t[0];
     r.v += b[k] * t[1];
-    if (light->one_sided_normals) continue;
+    if (light->one_sided_normals)
+      continue;
     const float *x = s->normals + 3 * (size_t)f[k];
     ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
   }
-  if (vl_dot(r.n, ns) < 0.0f) r.n = vl_neg(r.n);
-  r.offset = vl_triangle_offset(r.n, r.p, corner[0], corner[1], corner[2], b[0], b[1], b[2], 0.0f);
+  if (vl_dot(r.n, ns) < 0.0f)
+    r.n = vl_neg(r.n);
+  r.offset =
+      vl_triangle_offset(r.n, r.p, corner[0], corner[1], corner[2], b[0], b[1], b[2], 0.0f);
   r.pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f;
   return r;
 }
@@ -140,19 +158,22 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   const vlEmitted *e = q->emitted;
   float s = q->s, t = q->t;
   const vlWorldShape *shape = &world->shapes.items[light->shape];
-  Spot at =
-      shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v) : on_shape(light, shape, q->u, q->v);
-  if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light))) return;
+  Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v)
+                                              : on_shape(light, shape, q->u, q->v);
+  if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light)))
+    return;
   float sides = 1.0f;
   vlVec3 side = light->outer_side && shape->flip ? vl_neg(at.n) : at.n;
   if (e->two_sided && !light->outer_side) {
     sides = 2.0f;
     bool back = s >= 0.5f;
     s = vl_min(2.0f * (back ? s - 0.5f : s), VL_ONE_MINUS_EPSILON);
-    if (back) side = vl_neg(side);
+    if (back)
+      side = vl_neg(side);
   }
   vlVec3 local = vl_warp_cosine_hemisphere(s, t);
-  if (!(local.z > 0.0f)) return;
+  if (!(local.z > 0.0f))
+    return;
   out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
   out->o = vl_offset_origin(at.p, side, at.offset, out->d);
   out->at = at.p;
@@ -161,7 +182,8 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   float scale = VL_PI * sides / at.pdf;
   if (shape->alpha >= 0 && !light->invisible)
     scale *= vl_light_coverage(world, light, at.p, at.n, at.u, at.v, at.weights);
-  for (int c = 0; c < 4; c++) out->flux[c] *= scale;
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= scale;
   out->density = VL_INV_PI * at.pdf / sides;
   out->delta = light->invisible;
   out->area_pdf = light->invisible ? 0.0f : at.pdf;
@@ -170,11 +192,14 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   out->valid = true;
 }
 
-/* ---- infinite lights --------------------------------------------------------------------------------------------- */
+/* ---- infinite lights
+ * ---------------------------------------------------------------------------------------------
+ */
 
 /* Samples a direction of an infinite light with the density vl_infinite_pdf. */
-static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v,
-                            float *pdf, float radiance[4]) {
+static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light,
+                            const float lambda[4], float u, float v, float *pdf,
+                            float radiance[4]) {
   const vlEmitted *e = &world->emitted.items[light->emitted];
   if (light->environment == VL_NONE) {
     *pdf = VL_INV_4PI;
@@ -197,7 +222,8 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   return vl_environment_direction(env, s, t);
 }
 
-void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out) {
+void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v,
+                             vlEmission *out) {
   vlDiskPoint disk = vl_warp_disk(u, v);
   vlFrame frame = vl_frame_from_z(w);
   float r = world->radius;
@@ -210,12 +236,14 @@ void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, v
 }
 
 /* Samples a ray through the portal, from outside the world. */
-static void through_portal(const vlWorld *world, const vlWorldLight *light, const vlPortal *portal,
-                           const float lambda[4], float u, float v, float s, float t, vlEmission *out) {
+static void through_portal(const vlWorld *world, const vlWorldLight *light,
+                           const vlPortal *portal, const float lambda[4], float u, float v,
+                           float s, float t, vlEmission *out) {
   vlPortalWindow whole = vl_portal_whole(portal);
   vlVec3 w = vl_portal_sample(portal, &whole, s, t);
   float density = portal_density(portal, w);
-  if (!(density > 0.0f)) return;
+  if (!(density > 0.0f))
+    return;
   vlVec3 at = vl_vec3(portal->corner[0], portal->corner[1], portal->corner[2]);
   at = vl_add(at, vl_portal_world(portal, vl_vec3(u * portal->width, v * portal->height, 0)));
   vlVec3 away = vl_sub(at, vl_vec3(world->center[0], world->center[1], world->center[2]));
@@ -223,7 +251,8 @@ static void through_portal(const vlWorld *world, const vlWorldLight *light, cons
   out->d = vl_neg(w);
   out->at = w;
   vl_infinite_at(world, light, vl_sub(at, w), w, lambda, out->flux);
-  for (int c = 0; c < 4; c++) out->flux[c] /= density;
+  for (int c = 0; c < 4; c++)
+    out->flux[c] /= density;
   out->density = density;
   out->valid = true;
 }
@@ -236,29 +265,36 @@ void vl_light_emit_infinite(const vlEmissionQuery *q, vlEmission *out) {
     return;
   }
   float pdf;
-  vl_light_emit_from_afar(world, sky_direction(world, q->light, q->lambda, q->s, q->t, &pdf, out->flux), q->u, q->v,
-                          out);
+  vl_light_emit_from_afar(
+      world, sky_direction(world, q->light, q->lambda, q->s, q->t, &pdf, out->flux), q->u, q->v,
+      out);
   out->valid = pdf > 0.0f;
-  if (!out->valid) return;
-  for (int c = 0; c < 4; c++) out->flux[c] *= vl_light_disk(world) / pdf;
+  if (!out->valid)
+    return;
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= vl_light_disk(world) / pdf;
   out->density = pdf / vl_light_disk(world);
 }
 
-vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
-                              float v, float s, float t) {
+vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4],
+                              float u_choice, float u, float v, float s, float t) {
   vlEmission r;
   __builtin_memset(&r, 0, sizeof r);
   float within;
   r.light = vl_find_cell(way->choice, (uint32_t)world->lights.count, u_choice, &within);
   float p = choice_of(way, r.light);
-  if (!(p > 0.0f)) return r;
+  if (!(p > 0.0f))
+    return r;
   const vlWorldLight *light = &world->lights.items[r.light];
   vlEmissionQuery q = {world, light, &world->emitted.items[light->emitted], lambda, u, v, s, t};
-#define EMIT(K, k) \
-  case VL_WL_##K: vl_light_emit_##k(&q, &r); break;
+#define EMIT(K, k)             \
+  case VL_WL_##K:              \
+    vl_light_emit_##k(&q, &r); \
+    break;
   switch ((vlWorldLightKind)light->kind) { VL_WORLD_LIGHT_KINDS(EMIT) }
 #undef EMIT
-  for (int c = 0; c < 4; c++) r.flux[c] /= p;
+  for (int c = 0; c < 4; c++)
+    r.flux[c] /= p;
   r.density *= p;
   r.area_pdf *= p;
   return r;

@@ -1,13 +1,16 @@
-/* trace/light/environment.hot.c: environment maps, for many lanes at once: light samples, and radiance and density for
- * rays that hit nothing. Each lane reads a few cache lines of large tables, so the work is divided into loops, and
- * each loop prefetches the memory that the next loop reads. */
+/* trace/light/environment.hot.c: environment maps, for many lanes at once: light samples, and
+ * radiance and density for rays that hit nothing. Each lane reads a few cache lines of large
+ * tables, so the work is divided into loops, and each loop prefetches the memory that the next
+ * loop reads. */
 #include "math/octahedral.h"
 #include "texture/lookup.h"
 #include "trace/light/kinds.h"
 
 enum { BLOCK = VL_SKY_BLOCK };
 
-/* A block of lanes. The arrays are filled to a multiple of VL_LANES with copies of the last lane. */
+/* A block of lanes. The arrays are filled to a multiple of VL_LANES with copies of the last
+ * lane.
+ */
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK], y[BLOCK], cell[BLOCK];
   VL_ROW float u[BLOCK], dx[BLOCK], dy[BLOCK];
@@ -21,11 +24,14 @@ static inline __attribute__((always_inline)) void request(const void *address) {
   __builtin_prefetch(address, 0, 3);
 }
 
-static inline __attribute__((always_inline)) void request_texel(const vlEnvironment *env, const vlMipmap *mip, float s,
+static inline __attribute__((always_inline)) void request_texel(const vlEnvironment *env,
+                                                                const vlMipmap *mip, float s,
                                                                 float t) {
-  if (env->cells_are_texels) return; /* the colour is in the cell */
+  if (env->cells_are_texels)
+    return; /* the colour is in the cell */
   const vlMipLevel *l = &mip->levels[0];
-  uint32_t x = (uint32_t)(int32_t)(s * (float)l->width), y = (uint32_t)(int32_t)(t * (float)l->height);
+  uint32_t x = (uint32_t)(int32_t)(s * (float)l->width),
+           y = (uint32_t)(int32_t)(t * (float)l->height);
   x = x < l->width ? x : l->width - 1;
   y = y < l->height ? y : l->height - 1;
   size_t at = ((size_t)y * l->width + x) * mip->channels;
@@ -34,11 +40,14 @@ static inline __attribute__((always_inline)) void request_texel(const vlEnvironm
 
 static uint32_t fill_lanes(Block *b, const uint32_t *lanes, uint32_t count) {
   uint32_t padded = VL_PAD(count);
-  for (uint32_t k = 0; k < padded; k++) b->lane[k] = lanes[k < count ? k : count - 1];
+  for (uint32_t k = 0; k < padded; k++)
+    b->lane[k] = lanes[k < count ? k : count - 1];
   return padded;
 }
 
-/* ---- radiance ---------------------------------------------------------------------------------------------------- */
+/* ---- radiance
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static inline float scaled(float scale, float value) {
   float y = scale * value;
@@ -46,15 +55,18 @@ static inline float scaled(float scale, float value) {
 }
 
 /* Looks up the image's colours at s, t, in b->cell. */
-static void read_colors(const vlEnvironment *env, const vlMipmap *mip, float scale, uint32_t padded, Block *b) {
+static void read_colors(const vlEnvironment *env, const vlMipmap *mip, float scale,
+                        uint32_t padded, Block *b) {
   if (env->cells_are_texels) {
     for (uint32_t k = 0; k < padded; k++)
-      for (int c = 0; c < 3; c++) b->rgb[c][k] = scaled(scale, env->cells[b->cell[k]].color[c]);
+      for (int c = 0; c < 3; c++)
+        b->rgb[c][k] = scaled(scale, env->cells[b->cell[k]].color[c]);
     return;
   }
   for (uint32_t k = 0; k < padded; k++) {
     vlTexel x = vl_nearest(mip, 0, b->s[k], b->t[k], VL_WRAP_OCTAHEDRAL);
-    for (int c = 0; c < 3; c++) b->rgb[c][k] = scaled(scale, x.c[mip->channels < 3 ? 0 : c]);
+    for (int c = 0; c < 3; c++)
+      b->rgb[c][k] = scaled(scale, x.c[mip->channels < 3 ? 0 : c]);
   }
 }
 
@@ -73,21 +85,25 @@ static void illuminate(const vlSpectral *illuminant, uint32_t padded, Block *res
 }
 
 /* With the same operations as vl_emitted_at. */
-static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmitted *e, const vlPaths *paths,
-                     uint32_t padded, Block *b) {
+static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmitted *e,
+                     const vlPaths *paths, uint32_t padded, Block *b) {
   read_colors(env, world->images.items[e->image].mipmap, e->image_scale, padded, b);
   if (world->def.color == VL_COLOR_RGB) {
     for (uint32_t k = 0; k < padded; k++)
-      for (int c = 0; c < 4; c++) b->radiance[c][k] = c < 3 ? b->rgb[c][k] * e->spectrum.scale : 0.0f;
+      for (int c = 0; c < 4; c++)
+        b->radiance[c][k] = c < 3 ? b->rgb[c][k] * e->spectrum.scale : 0.0f;
     return;
   }
   for (int c = 0; c < 4; c++)
-    for (uint32_t k = 0; k < padded; k++) b->lambda[c][k] = paths->lambda[c][b->lane[k]];
+    for (uint32_t k = 0; k < padded; k++)
+      b->lambda[c][k] = paths->lambda[c][b->lane[k]];
   vl_upsample_rows(vl_rgb_table(e->space), false, padded, b->rgb, b->lambda, b->radiance);
   illuminate(&e->spectrum, padded, b);
 }
 
-/* ---- light samples ----------------------------------------------------------------------------------------------- */
+/* ---- light samples
+ * -----------------------------------------------------------------------------------------------
+ */
 
 /* Converts positions s, t to directions. */
 static void directions(const vlEnvironment *env, uint32_t padded, Block *restrict b) {
@@ -101,8 +117,8 @@ static void directions(const vlEnvironment *env, uint32_t padded, Block *restric
   }
 }
 
-static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const float *u, const float *v, uint32_t padded,
-                         Block *b) {
+static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const float *u,
+                         const float *v, uint32_t padded, Block *b) {
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k], y = vl_environment_row(env, v[i], &b->dy[k]);
     b->y[k] = y;
@@ -122,8 +138,9 @@ static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const fl
   }
 }
 
-void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
-                           uint32_t count, const float *u, const float *v, vlLightSamples *out) {
+void vl_sample_environment(const vlWorld *world, const vlWorldLight *light,
+                           const vlPaths *paths, const uint32_t *lanes, uint32_t count,
+                           const float *u, const float *v, vlLightSamples *out) {
   const vlEnvironment *env = &world->environments.items[light->environment];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   Block b;
@@ -136,20 +153,24 @@ void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, cons
     out->delta[i] = false;
     out->distant[i] = true;
     float pdf = env->cells[b.cell[k]].pdf * (0.25f * VL_INV_PI);
-    if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) continue;
+    if (!(pdf > 0.0f) || !(pdf < VL_INFINITY))
+      continue;
     float total = pdf * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
     out->wx[i] = out->tx[i] = b.wx[k];
     out->wy[i] = out->ty[i] = b.wy[k];
     out->wz[i] = out->tz[i] = b.wz[k];
-    for (int c = 0; c < 4; c++) out->radiance[c][i] = b.radiance[c][k] * inv;
+    for (int c = 0; c < 4; c++)
+      out->radiance[c][i] = b.radiance[c][k] * inv;
   }
 }
 
-/* ---- rays that hit nothing --------------------------------------------------------------------------------------- */
+/* ---- rays that hit nothing
+ * --------------------------------------------------------------------------------------- */
 
 /* Converts the rays' directions to positions s, t. */
-static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t padded, Block *restrict b) {
+static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t padded,
+                    Block *restrict b) {
   const float *m = env->light_from_world;
   const float turn[9] = {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]};
   for (uint32_t k = 0; k < padded; k++) {
@@ -168,8 +189,8 @@ static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t pad
   }
 }
 
-void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
-                        uint32_t count, vlSkyHits *out) {
+void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths,
+                        const uint32_t *lanes, uint32_t count, vlSkyHits *out) {
   const vlEnvironment *env = &world->environments.items[light->environment];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   const vlMipmap *mip = world->images.items[e->image].mipmap;
@@ -183,7 +204,9 @@ void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const v
   }
   radiance(world, env, e, paths, padded, &b);
   for (uint32_t k = 0; k < count; k++) {
-    for (int c = 0; c < 4; c++) out->radiance[c][k] = b.radiance[c][k];
-    out->pdf[k] = paths->specular[b.lane[k]] ? 0.0f : env->cells[b.cell[k]].pdf * (0.25f * VL_INV_PI);
+    for (int c = 0; c < 4; c++)
+      out->radiance[c][k] = b.radiance[c][k];
+    out->pdf[k] =
+        paths->specular[b.lane[k]] ? 0.0f : env->cells[b.cell[k]].pdf * (0.25f * VL_INV_PI);
   }
 }

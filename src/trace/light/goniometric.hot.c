@@ -1,5 +1,5 @@
-/* trace/light/goniometric.hot.c: goniometric lights: point lights whose intensity is multiplied by an image over
- * directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3). */
+/* trace/light/goniometric.hot.c: goniometric lights: point lights whose intensity is multiplied
+ * by an image over directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3). */
 #include "math/octahedral.h"
 #include "texture/lookup.h"
 #include "trace/light/kinds.h"
@@ -17,7 +17,8 @@ void vl_light_sample_goniometric(const vlLightQuery *q, vlLightSample *out) {
   float factor = vl_light_towards_point(q, out);
   factor *= image_factor(q->world, q->light, vl_neg(out->w));
   vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->radiance);
-  for (int c = 0; c < 4; c++) out->radiance[c] *= factor;
+  for (int c = 0; c < 4; c++)
+    out->radiance[c] *= factor;
 }
 
 void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
@@ -25,11 +26,12 @@ void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
   vl_light_emit_from_point(q, span, out);
   float factor = 2.0f * VL_PI * span * image_factor(q->world, q->light, out->d);
   vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++) out->flux[c] *= factor;
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= factor;
 }
 
-float vl_light_emit_pdf_goniometric(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
-                                    const vlPoint *at) {
+float vl_light_emit_pdf_goniometric(const vlWorld *world, const vlWorldLight *light, float p,
+                                    vlVec3 w, float distance, const vlPoint *at) {
   (void)world;
   (void)at;
   return vl_light_emit_pdf_from_point(light, 2.0f, p, w, distance);

@@ -1,8 +1,9 @@
-/* trace/light/kinds.h: the functions of each kind of light. Each kind in the list of world/world.h has three functions:
+/* trace/light/kinds.h: the functions of each kind of light. Each kind in the list of
+ * world/world.h has three functions:
  *
- *   vl_light_sample_KIND     a direction from a point towards the light, and the radiance that arrives (pbrt book 12)
- *   vl_light_emit_KIND       a ray that leaves the light, for the two-way tracers
- *   vl_light_emit_pdf_KIND   the density of those rays
+ *   vl_light_sample_KIND     a direction from a point towards the light, and the radiance that
+ * arrives (pbrt book 12) vl_light_emit_KIND       a ray that leaves the light, for the two-way
+ * tracers vl_light_emit_pdf_KIND   the density of those rays
  *
  * A kind that lacks one of them is a link error. */
 #ifndef TRACE_LIGHT_KINDS_H
@@ -23,9 +24,9 @@ typedef struct vlLightQuery {
 } vlLightQuery;
 
 typedef struct vlLightSample {
-  vlVec3 w;          /* unit, towards the light */
-  vlVec3 target;     /* the point that must be visible from p; for a distant light, the same as w */
-  float pdf;         /* per solid angle; 1 for a delta light; 0: no sample (the initial value) */
+  vlVec3 w;      /* unit, towards the light */
+  vlVec3 target; /* the point that must be visible from p; for a distant light, the same as w */
+  float pdf;     /* per solid angle; 1 for a delta light; 0: no sample (the initial value) */
   float radiance[4]; /* radiance that arrives from direction w */
   bool delta;        /* no ray can hit the light; initially false */
   bool distant;      /* the light is infinitely far; initially false */
@@ -37,43 +38,56 @@ typedef struct vlEmissionQuery {
   const vlWorldLight *light;
   const vlEmitted *emitted;
   const float *lambda;
-  float u, v, s, t; /* random numbers in [0, 1): u, v for the position, s, t for the direction */
+  float u, v, s,
+      t; /* random numbers in [0, 1): u, v for the position, s, t for the direction */
 } vlEmissionQuery;
 
-/* emit fills *out, which is all zero on entry. *out stays invalid if the light emits nothing. Its flux is divided by
- * the density of the sampled position and direction, but not by the probability of choosing the light. emit_pdf: as
- * vl_emission_density; p: probability of choosing the light, a factor of the result. */
-#define VL_LIGHT_KIND_FUNCTIONS(K, k)                                                                             \
-  void vl_light_sample_##k(const vlLightQuery *q, vlLightSample *out);                                            \
-  void vl_light_emit_##k(const vlEmissionQuery *q, vlEmission *out);                                              \
-  float vl_light_emit_pdf_##k(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance, \
-                              const vlPoint *at);
+/* emit fills *out, which is all zero on entry. *out stays invalid if the light emits nothing.
+ * Its flux is divided by the density of the sampled position and direction, but not by the
+ * probability of choosing the light. emit_pdf: as vl_emission_density; p: probability of
+ * choosing the light, a factor of the result. */
+#define VL_LIGHT_KIND_FUNCTIONS(K, k)                                                   \
+  void vl_light_sample_##k(const vlLightQuery *q, vlLightSample *out);                  \
+  void vl_light_emit_##k(const vlEmissionQuery *q, vlEmission *out);                    \
+  float vl_light_emit_pdf_##k(const vlWorld *world, const vlWorldLight *light, float p, \
+                              vlVec3 w, float distance, const vlPoint *at);
 VL_WORLD_LIGHT_KINDS(VL_LIGHT_KIND_FUNCTIONS)
 #undef VL_LIGHT_KIND_FUNCTIONS
 
-/* ---- many lanes at once ------------------------------------------------------------------------------------------ */
+/* ---- many lanes at once
+ * ------------------------------------------------------------------------------------------ */
 
-/* Largest number of lanes for the functions below. With it, their data stays in the L1 cache. */
+/* Largest number of lanes for the functions below. With it, their data stays in the L1 cache.
+ */
 enum { VL_AREA_BLOCK = 64 };
 
-/* Whether a light is an environment map without portal. vl_sample_environment samples such lights. */
+/* Whether a light is an environment map without portal. vl_sample_environment samples such
+ * lights.
+ */
 static inline bool vl_light_is_environment(const vlWorld *world, const vlWorldLight *light) {
   return light->environment != VL_NONE && !world->environments.items[light->environment].portal;
 }
-/* Samples an environment map for the given lanes, which have chosen this light. u, v: by lane. */
-void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
-                           uint32_t count, const float *u, const float *v, vlLightSamples *out);
-/* Sample the lights that the given lanes have chosen: plain triangles, or plain spheres seen from outside. */
-void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
-                         uint32_t count, const float *u, const float *v, vlLightSamples *out);
-void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
-                       uint32_t count, const float *u, const float *v, vlLightSamples *out);
-/* Radiance and density of an environment map for the given rays, as in vl_hit_sky, but without the probability of
- * choosing the light. */
-void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
-                        uint32_t count, vlSkyHits *out);
+/* Samples an environment map for the given lanes, which have chosen this light. u, v: by lane.
+ */
+void vl_sample_environment(const vlWorld *world, const vlWorldLight *light,
+                           const vlPaths *paths, const uint32_t *lanes, uint32_t count,
+                           const float *u, const float *v, vlLightSamples *out);
+/* Sample the lights that the given lanes have chosen: plain triangles, or plain spheres seen
+ * from outside. */
+void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSurface *f,
+                         const uint32_t *lanes, uint32_t count, const float *u, const float *v,
+                         vlLightSamples *out);
+void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f,
+                       const uint32_t *lanes, uint32_t count, const float *u, const float *v,
+                       vlLightSamples *out);
+/* Radiance and density of an environment map for the given rays, as in vl_hit_sky, but without
+ * the probability of choosing the light. */
+void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths,
+                        const uint32_t *lanes, uint32_t count, vlSkyHits *out);
 
-/* ---- lights at a point ------------------------------------------------------------------------------------------- */
+/* ---- lights at a point
+ * -------------------------------------------------------------------------------------------
+ */
 
 static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
   return vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
@@ -97,10 +111,11 @@ static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample 
   return d2 > 0.0f ? 1.0f / d2 : 0.0f;
 }
 
-/* Samples a ray from a point light, uniformly in a cone around the light's axis. span: 1 - cosine of the cone's half
- * angle; 2 for the whole sphere. For a cone, returns the cosine between ray and axis. The ray's flux is the intensity
- * times 2 pi span. */
-static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float span, vlEmission *out) {
+/* Samples a ray from a point light, uniformly in a cone around the light's axis. span: 1 -
+ * cosine of the cone's half angle; 2 for the whole sphere. For a cone, returns the cosine
+ * between ray and axis. The ray's flux is the intensity times 2 pi span. */
+static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float span,
+                                             vlEmission *out) {
   float c = 1.0f;
   if (span == 2.0f) {
     out->d = vl_warp_sphere(q->s, q->t);
@@ -109,27 +124,31 @@ static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float spa
     out->d = vl_normalize(vl_from_local(vl_frame_from_z(vl_light_axis(q->light)), local));
     c = local.z;
   }
-  out->o = out->at = vl_vec3(q->light->position[0], q->light->position[1], q->light->position[2]);
+  out->o = out->at =
+      vl_vec3(q->light->position[0], q->light->position[1], q->light->position[2]);
   out->density = 1.0f / (2.0f * VL_PI * span);
   out->delta = out->valid = true;
   return c;
 }
 
-/* Density of the rays of vl_light_emit_from_point, for a ray that arrives from direction w after `distance`. */
-static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, float span, float p, vlVec3 w,
-                                                 float distance) {
+/* Density of the rays of vl_light_emit_from_point, for a ray that arrives from direction w
+ * after `distance`. */
+static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, float span, float p,
+                                                 vlVec3 w, float distance) {
   float c = -vl_dot(w, vl_light_axis(light));
-  return span == 2.0f || c >= 1.0f - span ? p * VL_INV_2PI / (span * distance * distance) : 0.0f;
+  return span == 2.0f || c >= 1.0f - span ? p * VL_INV_2PI / (span * distance * distance)
+                                          : 0.0f;
 }
 
-/* ---- lights infinitely far away ---------------------------------------------------------------------------------- */
+/* ---- lights infinitely far away
+ * ---------------------------------------------------------------------------------- */
 
 /* Area of a disk that covers the world. */
 static inline float vl_light_disk(const vlWorld *world) {
   return VL_PI * world->radius * world->radius;
 }
-/* Samples a ray that arrives from direction w (unit, towards the light) through a disk of this area, which is
- * perpendicular to w. Sets origin, direction and `at` of the emission. */
+/* Samples a ray that arrives from direction w (unit, towards the light) through a disk of this
+ * area, which is perpendicular to w. Sets origin, direction and `at` of the emission. */
 void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out);
 
 #endif

@@ -1,7 +1,7 @@
-/* trace/light/light_choice.hot.c: chooses a light for each lane of a batch. The lanes at one node of the light tree
- * descend together: the numbers of its children need not be gathered by lane, and a node costs nothing for lanes that
- * are elsewhere. The lanes make the same decisions as vl_light_choose (world/light/light_tree.h), which explains
- * them. */
+/* trace/light/light_choice.hot.c: chooses a light for each lane of a batch. The lanes at one
+ * node of the light tree descend together: the numbers of its children need not be gathered by
+ * lane, and a node costs nothing for lanes that are elsewhere. The lanes make the same
+ * decisions as vl_light_choose (world/light/light_tree.h), which explains them. */
 #include <stddef.h>
 
 #include "trace/stages.h"
@@ -10,7 +10,8 @@ enum { LIGHT_FIELD = 12, LEFT_FIELD = 13 };
 _Static_assert(offsetof(vlLightNode, light) == LIGHT_FIELD * sizeof(float), "layout of a node");
 _Static_assert(offsetof(vlLightNode, left) == LEFT_FIELD * sizeof(float), "layout of a node");
 
-/* Lanes on their way down the tree: remaining random number, and probability of the way so far. */
+/* Lanes on their way down the tree: remaining random number, and probability of the way so far.
+ */
 typedef struct Walk {
   uint32_t count;
   VL_ROW uint32_t lane[VL_ROW_SIZE], node[VL_ROW_SIZE];
@@ -24,7 +25,8 @@ typedef struct Segment {
 
 enum { FEW = 8, SEGMENTS = VL_ROW_SIZE / FEW };
 
-/* The lanes of `together` are a stack of segments of FEW lanes or more. `apart` has the lanes at all other nodes. */
+/* The lanes of `together` are a stack of segments of FEW lanes or more. `apart` has the lanes
+ * at all other nodes. */
 typedef struct Descent {
   const vlLightTree *tree;
   const vlSurface *f;
@@ -46,15 +48,18 @@ static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, flo
   d->by_light->lane[d->by_light->count++] = i;
 }
 
-/* ---- one level --------------------------------------------------------------------------------------------------- */
+/* ---- one level
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-/* One level of one lane's descent, from the node whose children are a and b. *second: 1 if the lane goes to the second
- * child. If neither child has importance, pmf becomes 0. */
+/* One level of one lane's descent, from the node whose children are a and b. *second: 1 if the
+ * lane goes to the second child. If neither child has importance, pmf becomes 0. */
 typedef struct Step {
   float u, pmf;
 } Step;
-static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vlLightCluster b, vlReceiver at, float u0,
-                                                            float pmf0, uint32_t *second) {
+static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vlLightCluster b,
+                                                            vlReceiver at, float u0, float pmf0,
+                                                            uint32_t *second) {
   float ia = vl_light_importance(a, at), ib = vl_light_importance(b, at);
   float sum = ia + ib, some = sum > 0.0f ? sum : 1.0f;
   float pa = ia / some, pb = 1.0f - pa;
@@ -64,11 +69,14 @@ static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vl
   return (Step){vl_min(used / divisor, VL_ONE_MINUS_EPSILON), pmf0 * chance};
 }
 
-/* One level from the node whose children are at `left`, for `count` lanes of the walk from `first` on. */
+/* One level from the node whose children are at `left`, for `count` lanes of the walk from
+ * `first` on. */
 static void step_together(const float *nodes, uint32_t left, uint32_t first, uint32_t count,
-                          const vlSurface *restrict f, Walk *restrict w, uint32_t *restrict side) {
+                          const vlSurface *restrict f, Walk *restrict w,
+                          uint32_t *restrict side) {
   uint32_t at = left * VL_LIGHT_NODE_FLOATS, padded = VL_PAD(count);
-  vlLightCluster a = vl_light_cluster(nodes, at), b = vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS);
+  vlLightCluster a = vl_light_cluster(nodes, at),
+                 b = vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS);
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = first; k < first + padded; k++) {
@@ -80,7 +88,8 @@ static void step_together(const float *nodes, uint32_t left, uint32_t first, uin
 }
 
 /* One level for all lanes of a walk, each from its own node. */
-static void step_apart(const float *restrict nodes, const vlSurface *restrict f, Walk *restrict w) {
+static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
+                       Walk *restrict w) {
   uint32_t padded = VL_PAD(w->count);
   /* must vectorise */
   VL_SIMD
@@ -88,28 +97,34 @@ static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
     uint32_t i = w->lane[k], second;
     uint32_t left = vl_float_bits(nodes[w->node[k] * VL_LIGHT_NODE_FLOATS + LEFT_FIELD]);
     uint32_t at = left * VL_LIGHT_NODE_FLOATS;
-    Step s = step_down(vl_light_cluster(nodes, at), vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS),
-                       vl_receiver(f, i), w->u[k], w->pmf[k], &second);
+    Step s = step_down(vl_light_cluster(nodes, at),
+                       vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS), vl_receiver(f, i),
+                       w->u[k], w->pmf[k], &second);
     w->node[k] = left + second;
     w->u[k] = s.u;
     w->pmf[k] = s.pmf;
   }
 }
 
-/* ---- the descent ------------------------------------------------------------------------------------------------- */
+/* ---- the descent
+ * -------------------------------------------------------------------------------------------------
+ */
 
-/* Starts the descent. Lanes that choose a light without bounds are done; the others start at the root. */
+/* Starts the descent. Lanes that choose a light without bounds are done; the others start at
+ * the root. */
 static void start(Descent *d, uint32_t n, const float *u) {
   const vlLightTree *tree = d->tree;
   uint32_t count = 0;
   Walk *w = &d->together;
   for (uint32_t i = 0; i < n; i++) {
     vlLightChoice c = {VL_INNER, 1.0f, u[i]};
-    if (tree->unbounded_count) c = vl_light_choose_slot(tree, vl_receiver(d->f, i), u[i]);
+    if (tree->unbounded_count)
+      c = vl_light_choose_slot(tree, vl_receiver(d->f, i), u[i]);
     bool beside = c.light != VL_INNER, none = !(c.pmf > 0.0f);
     d->out->light[i] = 0;
     d->out->pmf[i] = 0.0f; /* for lanes that no light reaches */
-    if (beside) choose(d, i, c.light, c.pmf, c.rest);
+    if (beside)
+      choose(d, i, c.light, c.pmf, c.rest);
     w->lane[count] = i;
     w->u[count] = c.rest;
     w->pmf[count] = c.pmf;
@@ -118,11 +133,13 @@ static void start(Descent *d, uint32_t n, const float *u) {
   w->count = count;
 }
 
-/* The last `count` lanes of the walk have arrived at a node, and leave the walk if it is a leaf or they are few. */
+/* The last `count` lanes of the walk have arrived at a node, and leave the walk if it is a leaf
+ * or they are few. */
 static void arrive(Descent *d, uint32_t node, Walk *w, uint32_t count) {
   uint32_t light = d->tree->nodes[node].light, first = w->count - count;
   if (light != VL_INNER) {
-    for (uint32_t k = first; k < w->count; k++) choose(d, w->lane[k], light, w->pmf[k], w->u[k]);
+    for (uint32_t k = first; k < w->count; k++)
+      choose(d, w->lane[k], light, w->pmf[k], w->u[k]);
     w->count = first;
   } else if (count < FEW) {
     Walk *a = &d->apart;
@@ -142,7 +159,8 @@ static void arrive(Descent *d, uint32_t node, Walk *w, uint32_t count) {
 static void descend_together(Descent *d) {
   Segment s = d->segments[--d->segment_count];
   Walk *w = &d->together, *other = &d->second;
-  uint32_t left = d->tree->nodes[s.node].left, last = w->count, first = last - s.count, a = first, b = 0;
+  uint32_t left = d->tree->nodes[s.node].left, last = w->count, first = last - s.count,
+           a = first, b = 0;
   for (uint32_t k = last; k < first + VL_PAD(s.count); k++) {
     w->lane[k] = 0;
     w->u[k] = 0.0f;
@@ -180,8 +198,10 @@ static void descend_apart(Descent *d) {
   step_apart((const float *)d->tree->nodes, d->f, w);
   for (uint32_t k = 0; k < w->count; k++) {
     uint32_t i = w->lane[k], light = d->tree->nodes[w->node[k]].light;
-    if (!(w->pmf[k] > 0.0f)) continue;
-    if (light != VL_INNER) choose(d, i, light, w->pmf[k], w->u[k]);
+    if (!(w->pmf[k] > 0.0f))
+      continue;
+    if (light != VL_INNER)
+      choose(d, i, light, w->pmf[k], w->u[k]);
     w->lane[count] = i;
     w->node[count] = w->node[k];
     w->u[count] = w->u[k];
@@ -191,8 +211,9 @@ static void descend_apart(Descent *d) {
   w->count = count;
 }
 
-void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u, vlLightSamples *out,
-                           float *rest, vlLanesByLight *by_light) {
+void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f,
+                           const float *u, vlLightSamples *out, float *rest,
+                           vlLanesByLight *by_light) {
   by_light->count = 0;
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* no tree to descend */
     for (uint32_t i = 0; i < n; i++) {
@@ -200,7 +221,8 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
       out->light[i] = c.light;
       out->pmf[i] = c.pmf;
       rest[i] = c.rest;
-      if (c.pmf > 0.0f) by_light->lane[by_light->count++] = i;
+      if (c.pmf > 0.0f)
+        by_light->lane[by_light->count++] = i;
     }
     return;
   }
@@ -213,12 +235,16 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
   d.segment_count = d.apart.count = 0;
   start(&d, n, u);
   arrive(&d, 0, &d.together, d.together.count);
-  while (d.segment_count) descend_together(&d);
-  while (d.apart.count >= FEW) descend_apart(&d);
+  while (d.segment_count)
+    descend_together(&d);
+  while (d.apart.count >= FEW)
+    descend_apart(&d);
   for (uint32_t k = 0; k < d.apart.count; k++) { /* the last few lanes one by one */
     const Walk *w = &d.apart;
     uint32_t i = w->lane[k];
-    vlLightChoice c = vl_light_walk(tree, tree->nodes + w->node[k], vl_receiver(f, i), w->u[k], w->pmf[k]);
-    if (c.pmf > 0.0f) choose(&d, i, c.light, c.pmf, c.rest);
+    vlLightChoice c =
+        vl_light_walk(tree, tree->nodes + w->node[k], vl_receiver(f, i), w->u[k], w->pmf[k]);
+    if (c.pmf > 0.0f)
+      choose(&d, i, c.light, c.pmf, c.rest);
   }
 }

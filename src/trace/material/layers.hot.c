@@ -1,5 +1,5 @@
-/* trace/material/layers.hot.c: parameters, over a run of lanes, of the layered materials (random walks) and of diffuse
- * transmission. */
+/* trace/material/layers.hot.c: parameters, over a run of lanes, of the layered materials
+ * (random walks) and of diffuse transmission. */
 #include "math/hash.h"
 #include "trace/material/rows.h"
 
@@ -8,7 +8,8 @@ static void seeds(vlTextureRun *r) {
   const vlPaths *p = &r->at->paths;
   for (uint32_t i = r->first; i < r->last; i++) {
     uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
-    uint32_t ray = vl_hash3(vl_float_bits(p->dx[i]), vl_float_bits(p->dy[i]), vl_float_bits(p->dz[i]));
+    uint32_t ray =
+        vl_hash3(vl_float_bits(p->dx[i]), vl_float_bits(p->dy[i]), vl_float_bits(p->dz[i]));
     r->at->shade.seed[i] = vl_hash3(pixel, ray, vl_float_bits(p->ox[i]));
   }
 }
@@ -22,7 +23,8 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_L_METAL][i] = l->metal ? 1.0f : 0.0f;
-    rows[VL_L_THICKNESS][i] = vl_max(rows[VL_L_THICKNESS][i], 0x1p-126f); /* the smallest normal float, as pbrt */
+    rows[VL_L_THICKNESS][i] =
+        vl_max(rows[VL_L_THICKNESS][i], 0x1p-126f); /* the smallest normal float, as pbrt */
     rows[VL_L_G][i] = vl_clamp(rows[VL_L_G][i], -0.999f, 0.999f);
     rows[VL_L_DEPTH][i] = (float)l->depth;
     rows[VL_L_WALKS][i] = (float)l->walks;

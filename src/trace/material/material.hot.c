@@ -1,24 +1,28 @@
-/* trace/material/material.hot.c: shading of a run of lanes with one material: bump and normal maps, BSDF parameters
- * from textures; then shading frames for all lanes. */
+/* trace/material/material.hot.c: shading of a run of lanes with one material: bump and normal
+ * maps, BSDF parameters from textures; then shading frames for all lanes. */
 #include "velo/material.h"
 #include "trace/material/rows.h"
 #include "velo/shape.h"
 
-/* Shifts of uv for bump maps. Those below MIN_STEP are a few roundings of a uv near 1 (6e-8): the difference of heights
- * would be noise. DEFAULT_STEP is pbrt's for surfaces without a footprint. */
+/* Shifts of uv for bump maps. Those below MIN_STEP are a few roundings of a uv near 1 (6e-8):
+ * the difference of heights would be noise. DEFAULT_STEP is pbrt's for surfaces without a
+ * footprint. */
 #define MIN_STEP 1e-6f
 #define DEFAULT_STEP 0.0005f
-/* Squared sine (1e-6 squared) of the angle between a tangent and the normal. Below it, the tangent is mostly rounding
- * error. */
+/* Squared sine (1e-6 squared) of the angle between a tangent and the normal. Below it, the
+ * tangent is mostly rounding error. */
 #define PARALLEL 1e-12f
 
-/* ---- bump and normal maps: both change the shading normal and dpdu ----------------------------------------------- */
+/* ---- bump and normal maps: both change the shading normal and dpdu
+ * ----------------------------------------------- */
 
 static vlVec3 facing(vlVec3 n, vlVec3 side) {
   return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
 }
 
-/* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or uv. */
+/* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or
+ * uv.
+ */
 static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i) {
   vlVec3 p[3], n[3];
   for (int k = 0; k < 3; k++) {
@@ -26,12 +30,14 @@ static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i)
     n[k] = vl_lane3(c->n[3 * k], c->n[3 * k + 1], c->n[3 * k + 2], i);
   }
   vlVec3 e1 = vl_sub(p[1], p[0]), e2 = vl_sub(p[2], p[0]), g = vl_cross(e1, e2);
-  vlVec3 way = vl_sub(vl_lane3(f->px, f->py, f->pz, i), p[0]), m1 = vl_sub(n[1], n[0]), m2 = vl_sub(n[2], n[0]);
+  vlVec3 way = vl_sub(vl_lane3(f->px, f->py, f->pz, i), p[0]), m1 = vl_sub(n[1], n[0]),
+         m2 = vl_sub(n[2], n[0]);
   float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
   float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
   float length = vl_length(vl_add(n[0], vl_add(vl_mul(m1, b1), vl_mul(m2, b2))));
   float u1 = c->uv[2][i] - c->uv[0][i], v1 = c->uv[3][i] - c->uv[1][i];
-  float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i], det = (u1 * v2 - v1 * u2) * length;
+  float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i],
+        det = (u1 * v2 - v1 * u2) * length;
   float scale = f->uv_scale[i] > 0.0f && vl_abs(det) > 0.0f ? 1.0f / det : 0.0f;
   vlVec3 ns = vl_lane3(f->nx, f->ny, f->nz, i);
   vlVec3 du = vl_mul(vl_sub(vl_mul(m1, v2), vl_mul(m2, v1)), scale);
@@ -46,13 +52,14 @@ static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i)
   f->dn[5][i] = dv.z;
 }
 
-/* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in v; h' by finite
- * differences (pbrt book 10.5.3). */
+/* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in
+ * v; h' by finite differences (pbrt book 10.5.3). */
 static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   vlSurface *f = &r->at->surface;
-  float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
-  float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r), *y = vl_texture_row(r),
-        *z = vl_texture_row(r);
+  float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r),
+        *step = vl_texture_row(r);
+  float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r),
+        *y = vl_texture_row(r), *z = vl_texture_row(r);
   vl_texture_float(r, node, h);
   for (uint32_t i = r->first; i < r->last; i++) {
     float w = 0.5f * f->width[i] * f->uv_scale[i];
@@ -84,12 +91,15 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
     if (r->world->shapes.items[r->at->hits.shape[i]].kind == VL_SHAPE_TRIANGLES)
       triangle_normal_slopes(&r->s->corners, f, i);
     vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
-    vlVec3 du = vl_add(vl_vec3(f->ux[i], f->uy[i], f->uz[i]), vl_mul(n, (hu[i] - h[i]) / step[i]));
-    vlVec3 dv = vl_add(vl_vec3(f->vx[i], f->vy[i], f->vz[i]), vl_mul(n, (hv[i] - h[i]) / step[i]));
+    vlVec3 du =
+        vl_add(vl_vec3(f->ux[i], f->uy[i], f->uz[i]), vl_mul(n, (hu[i] - h[i]) / step[i]));
+    vlVec3 dv =
+        vl_add(vl_vec3(f->vx[i], f->vy[i], f->vz[i]), vl_mul(n, (hv[i] - h[i]) / step[i]));
     du = vl_add(du, vl_mul(vl_vec3(f->dn[0][i], f->dn[1][i], f->dn[2][i]), h[i]));
     dv = vl_add(dv, vl_mul(vl_vec3(f->dn[3][i], f->dn[4][i], f->dn[5][i]), h[i]));
     vlVec3 m = vl_cross(du, dv);
-    if (!(vl_length2(m) > 0.0f)) continue;
+    if (!(vl_length2(m) > 0.0f))
+      continue;
     m = facing(vl_normalize(m), n);
     vl_set_lane3(f->nx, f->ny, f->nz, i, m);
     vl_set_lane3(f->ux, f->uy, f->uz, i, du);
@@ -99,7 +109,8 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
 static void normal_map(vlTextureRun *r, int32_t image) {
   vlSurface *f = &r->at->surface;
   const vlMipmap *mip = r->world->images.items[image].mipmap;
-  if (mip->channels < 3) return;
+  if (mip->channels < 3)
+    return;
   for (uint32_t i = r->first; i < r->last; i++) {
     vlTexel t = vl_bilinear(mip, 0, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
     vlVec3 local = vl_normalize(vl_vec3(2 * t.c[0] - 1, 2 * t.c[1] - 1, 2 * t.c[2] - 1));
@@ -107,16 +118,20 @@ static void normal_map(vlTextureRun *r, int32_t image) {
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n))));
     vlFrame frame = {x, vl_cross(n, x), n};
     vlVec3 m = vl_normalize(vl_from_local(frame, local));
-    if (!(vl_length2(m) > 0.0f)) continue;
+    if (!(vl_length2(m) > 0.0f))
+      continue;
     vl_set_lane3(f->nx, f->ny, f->nz, i, m);
   }
 }
 
-/* ---- parameters -------------------------------------------------------------------------------------------------- */
+/* ---- parameters
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static void reflectance(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
-  if (m->reflectance < 0) return;
+  if (m->reflectance < 0)
+    return;
   vl_rows_albedo(r, m->reflectance, 1.0f, shade->reflectance);
 }
 
@@ -127,7 +142,8 @@ static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
     vl_rows_spectrum(r, m->k, shade->k);
     return;
   }
-  /* eta = 1, k = 2 sqrt(R / (1 - R)) gives reflectance R at normal incidence (pbrt book 9.3.6's conductor material). */
+  /* eta = 1, k = 2 sqrt(R / (1 - R)) gives reflectance R at normal incidence (pbrt book 9.3.6's
+   * conductor material). */
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) {
       float x = vl_clamp(shade->reflectance[c][i], 0.0f, 0.9999f);
@@ -143,8 +159,10 @@ static void alphas(vlTextureRun *r, const vlWorldMaterial *m) {
 
 static void index_of_refraction(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
-  if (m->dispersive) vl_rows_spectrum(r, m->eta, shade->eta);
-  for (uint32_t i = r->first; i < r->last; i++) shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
+  if (m->dispersive)
+    vl_rows_spectrum(r, m->eta, shade->eta);
+  for (uint32_t i = r->first; i < r->last; i++)
+    shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
 }
 
 void vl_parameters_diffuse(vlTextureRun *r, const vlWorldMaterial *m) {
@@ -160,7 +178,8 @@ void vl_parameters_conductor(vlTextureRun *r, const vlWorldMaterial *m) {
 void vl_parameters_dielectric(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
   alphas(r, m);
-  if (m->subsurface) vl_stage_subsurface_inputs(r, m);
+  if (m->subsurface)
+    vl_stage_subsurface_inputs(r, m);
   index_of_refraction(r, m);
 }
 
@@ -172,12 +191,14 @@ void vl_parameters_coat(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
   alphas(r, m);
   index_of_refraction(r, m);
-  for (uint32_t i = r->first; i < r->last; i++) r->at->shade.coat[i] = m->coat;
+  for (uint32_t i = r->first; i < r->last; i++)
+    r->at->shade.coat[i] = m->coat;
 }
 
 void vl_parameters_layered(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
-  if (m->traits & VL_MATERIAL_METAL) metal(r, m);
+  if (m->traits & VL_MATERIAL_METAL)
+    metal(r, m);
   alphas(r, m);
   vl_stage_layers(r, m);
   index_of_refraction(r, m);
@@ -194,7 +215,8 @@ void vl_parameters_hair(vlTextureRun *r, const vlWorldMaterial *m) {
 }
 
 void vl_parameters_measured(vlTextureRun *r, const vlWorldMaterial *m) {
-  for (uint32_t i = r->first; i < r->last; i++) r->at->shade.measured[i] = m->measured;
+  for (uint32_t i = r->first; i < r->last; i++)
+    r->at->shade.measured[i] = m->measured;
 }
 
 void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
@@ -202,9 +224,10 @@ void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
 }
 
-/* The factor on the light that crosses the surface. White light has the colour of passed_i before and of passed_i
- * tint_i after it, for all that the path has crossed so far. At a wavelength the factor is the ratio of the two, so
- * that the product over a path is the transmittance of the whole path. */
+/* The factor on the light that crosses the surface. White light has the colour of passed_i
+ * before and of passed_i tint_i after it, for all that the path has crossed so far. At a
+ * wavelength the factor is the ratio of the two, so that the product over a path is the
+ * transmittance of the whole path. */
 static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
   if (!m->principled || !m->principled->by_channel) {
@@ -226,7 +249,8 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
     }
     for (int c = 0; c < 4; c++) {
       float whole = vl_channels_at(before, r->at->paths.lambda[c][i]);
-      shade->tint[c][i] = whole > 0.0f ? vl_channels_at(after, r->at->paths.lambda[c][i]) / whole : 0.0f;
+      shade->tint[c][i] =
+          whole > 0.0f ? vl_channels_at(after, r->at->paths.lambda[c][i]) / whole : 0.0f;
     }
   }
 }
@@ -234,11 +258,13 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
 #define PARAMETERS(NAME, name) [VL_BSDF_##NAME] = vl_parameters_##name,
 static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
 
-/* Dispersion: directions depend on the wavelength, so the path keeps only the hero wavelength, with the weight of all
- * four. */
+/* Dispersion: directions depend on the wavelength, so the path keeps only the hero wavelength,
+ * with the weight of all four. */
 static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
   for (uint32_t i = first; i < last; i++) {
-    /* Equal wavelengths mark a path with only the hero left: weights may be zero for other reasons. */
+    /* Equal wavelengths mark a path with only the hero left: weights may be zero for other
+     * reasons.
+     */
     bool alone = p->lambda[1][i] == p->lambda[0][i];
     p->beta[0][i] *= alone ? 1.0f : 4.0f;
     p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;
@@ -248,25 +274,31 @@ static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
 
 static void evaluate(vlTextureRun *r, const vlWorldMaterial *m) {
   r->top = 0;
-  if (m->displacement >= 0) bump(r, m->displacement);
-  if (m->normal_map >= 0) normal_map(r, m->normal_map);
+  if (m->displacement >= 0)
+    bump(r, m->displacement);
+  if (m->normal_map >= 0)
+    normal_map(r, m->normal_map);
   r->top = 0;
   parameters[m->bsdf](r, m);
-  if (r->world->by_channel) tints(r, m);
+  if (r->world->by_channel)
+    tints(r, m);
 }
 
-void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlVertices *at,
-                       vlTraceScratch *s) {
+void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
+                       vlVertices *at, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  for (uint32_t i = first; m->no_cosine && i < last; i++) at->surface.no_cosine[i] = 1.0f;
-  for (uint32_t i = first; m->one_sided && i < last; i++) at->surface.side[i] = 1.0f;
+  for (uint32_t i = first; m->no_cosine && i < last; i++)
+    at->surface.no_cosine[i] = 1.0f;
+  for (uint32_t i = first; m->one_sided && i < last; i++)
+    at->surface.side[i] = 1.0f;
   vlTextureRun r = {.world = world, .at = at, .s = s, .last = first};
   while (r.last < last) {
     r.first = r.last;
     r.last = last - r.first < VL_MATERIAL_LANES ? last : r.first + VL_MATERIAL_LANES;
     evaluate(&r, m);
   }
-  if (m->dispersive) follow_hero(&at->paths, first, last);
+  if (m->dispersive)
+    follow_hero(&at->paths, first, last);
 }
 
 void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *shade) {
@@ -274,7 +306,8 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *sh
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 nn = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
+    vlVec3 nn = vl_vec3(f->nx[i], f->ny[i], f->nz[i]),
+           u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
     vlVec3 t = vl_sub(u, vl_mul(nn, vl_dot(u, nn)));
     float ok = vl_length2(t) > PARALLEL * vl_length2(u) ? 1.0f : 0.0f;
     vlFrame any = vl_frame_from_z(nn);

@@ -1,24 +1,32 @@
-/* trace/material/principled.hot.c: the principled material's parameters over a run of lanes: textures, normal maps,
- * tangent. */
+/* trace/material/principled.hot.c: the principled material's parameters over a run of lanes:
+ * textures, normal maps, tangent. */
 #include "world/material/principled.h"
 #include "trace/material/rows.h"
 
 static void fill(float *row, uint32_t first, uint32_t last, float x) {
-  for (uint32_t i = first; i < last; i++) row[i] = x;
+  for (uint32_t i = first; i < last; i++)
+    row[i] = x;
 }
 
 static void share(vlTextureRun *r, int32_t node, float *row) {
   vl_texture_float(r, node, row);
-  for (uint32_t i = r->first; i < r->last; i++) row[i] = vl_clamp(row[i], 0.0f, 1.0f);
+  for (uint32_t i = r->first; i < r->last; i++)
+    row[i] = vl_clamp(row[i], 0.0f, 1.0f);
 }
 
-/* ---- normals ----------------------------------------------------------------------------------------------------- */
+/* ---- normals
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-/* The normal of a tangent-space normal map. Its green axis is along dpdv, as in glTF (up in the image). */
-static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale, uint32_t i) {
+/* The normal of a tangent-space normal map. Its green axis is along dpdv, as in glTF (up in the
+ * image). */
+static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale,
+                     uint32_t i) {
   const vlSurface *f = &r->at->surface;
-  vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap, vl_texture_point_of(r, node, i));
-  vlVec3 local = vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
+  vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap,
+                               vl_texture_point_of(r, node, i));
+  vlVec3 local =
+      vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
   vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]),
          v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);
   vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
@@ -32,22 +40,24 @@ static bool is_map(const vlTextureRun *r, int32_t node) {
          r->world->images.items[r->world->nodes.items[node].image].mipmap->channels >= 3;
 }
 
-/* The normals of base and coat. The coat has the interpolated vertex normal unless it has its own map; it stays in
- * world space until the frames are computed. */
+/* The normals of base and coat. The coat has the interpolated vertex normal unless it has its
+ * own map; it stays in world space until the frames are computed. */
 static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   vlSurface *f = &r->at->surface;
   float(*rows)[VL_ROW_SIZE] = r->at->shade.own;
   if (p->has_coat) {
     bool map = is_map(r, p->coat_normal);
     for (uint32_t i = r->first; i < r->last; i++) {
-      vlVec3 c = map ? mapped(r, &r->world->nodes.items[p->coat_normal], p->coat_normal_scale, i)
-                     : vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
+      vlVec3 c =
+          map ? mapped(r, &r->world->nodes.items[p->coat_normal], p->coat_normal_scale, i)
+              : vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
       rows[VL_P_COAT_X][i] = c.x;
       rows[VL_P_COAT_Y][i] = c.y;
       rows[VL_P_COAT_Z][i] = c.z;
     }
   }
-  if (!is_map(r, p->normal)) return;
+  if (!is_map(r, p->normal))
+    return;
   const vlTextureNode *node = &r->world->nodes.items[p->normal];
   for (uint32_t i = r->first; i < r->last; i++) {
     vlVec3 m = mapped(r, node, p->normal_scale, i);
@@ -68,13 +78,16 @@ static void turn_tangent(vlTextureRun *r, const float *angle) {
   }
 }
 
-/* ---- parameters -------------------------------------------------------------------------------------------------- */
+/* ---- parameters
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL_ROW_SIZE]) {
   uint32_t first = r->first, last = r->last;
   fill(rows[VL_P_COAT], first, last, 0.0f);
   fill(rows[VL_P_FILM], first, last, 0.0f);
-  for (int c = 0; c < 4; c++) fill(rows[VL_P_SHEEN + c], first, last, 0.0f);
+  for (int c = 0; c < 4; c++)
+    fill(rows[VL_P_SHEEN + c], first, last, 0.0f);
   if (p->has_coat) {
     share(r, p->clearcoat, rows[VL_P_COAT]);
     share(r, p->clearcoat_roughness, rows[VL_P_COAT_ALPHA]);
@@ -95,7 +108,8 @@ static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL
     share(r, p->iridescence, rows[VL_P_FILM]);
     vl_texture_float(r, p->iridescence_thickness, rows[VL_P_FILM_NM]);
     fill(rows[VL_P_FILM_INDEX], first, last, p->film_index);
-    for (uint32_t i = first; i < last; i++) rows[VL_P_FILM_NM][i] = vl_max(rows[VL_P_FILM_NM][i], 0.0f);
+    for (uint32_t i = first; i < last; i++)
+      rows[VL_P_FILM_NM][i] = vl_max(rows[VL_P_FILM_NM][i], 0.0f);
   }
 }
 
@@ -114,12 +128,14 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
     share(r, p->diffuse_transmission, rows[VL_P_DIFFUSE_TRANSMISSION]);
     vl_rows_albedo(r, p->through, 1.0f, rows + VL_P_THROUGH);
   } else {
-    for (int c = 0; c < 4; c++) fill(rows[VL_P_THROUGH + c], first, last, 0.0f);
+    for (int c = 0; c < 4; c++)
+      fill(rows[VL_P_THROUGH + c], first, last, 0.0f);
   }
   float *const f0[4] = {rows[VL_P_F0], rows[VL_P_F0 + 1], rows[VL_P_F0 + 2], rows[VL_P_F0 + 3]};
   vl_texture_spectrum(r, p->specular_color, f0);
   for (int c = 0; c < 4; c++)
-    for (uint32_t i = first; i < last; i++) f0[c][i] = vl_clamp(p->f0 * f0[c][i], 0.0f, 1.0f) * rows[VL_P_F90][i];
+    for (uint32_t i = first; i < last; i++)
+      f0[c][i] = vl_clamp(p->f0 * f0[c][i], 0.0f, 1.0f) * rows[VL_P_F90][i];
   layers(r, p, rows);
   share(r, p->roughness, shade->alpha_x);
   for (uint32_t i = first; i < last; i++) {
@@ -136,7 +152,8 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   }
   for (uint32_t i = first; i < last; i++) {
     float lambda = r->at->paths.lambda[0][i];
-    shade->eta_s[i] = m->dispersive ? vl_max(p->cauchy_a + p->cauchy_b / (lambda * lambda), 1.0f) : m->eta_s;
+    shade->eta_s[i] =
+        m->dispersive ? vl_max(p->cauchy_a + p->cauchy_b / (lambda * lambda), 1.0f) : m->eta_s;
   }
 }
 
@@ -145,7 +162,8 @@ void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, ui
   float(*rows)[VL_ROW_SIZE] = shade->own;
   for (uint32_t i = first; i < last; i++) {
     vlVec3 c = vl_vec3(rows[VL_P_COAT_X][i], rows[VL_P_COAT_Y][i], rows[VL_P_COAT_Z][i]);
-    if (!(rows[VL_P_COAT][i] > 0.0f)) c = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
+    if (!(rows[VL_P_COAT][i] > 0.0f))
+      c = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
     rows[VL_P_COAT_X][i] = vl_dot(c, vl_vec3(shade->tx[i], shade->ty[i], shade->tz[i]));
     rows[VL_P_COAT_Y][i] = vl_dot(c, vl_vec3(shade->bx[i], shade->by[i], shade->bz[i]));
     rows[VL_P_COAT_Z][i] = vl_dot(c, vl_vec3(f->nx[i], f->ny[i], f->nz[i]));

@@ -1,10 +1,12 @@
-/* trace/medium/delta_tracking.hot.c: flights in media that are not uniform (trace/medium/medium.h): delta tracking for
- * flights and ratio tracking for transmittance, with majorants (pbrt book 11.2, 11.4, 14.2) and null scattering
- * (Miller, Georgiev and Jarosz 2019). Absorption without scattering ends no path. The code is scalar because flights
+/* trace/medium/delta_tracking.hot.c: flights in media that are not uniform
+ * (trace/medium/medium.h): delta tracking for flights and ratio tracking for transmittance,
+ * with majorants (pbrt book 11.2, 11.4, 14.2) and null scattering (Miller, Georgiev and Jarosz
+ * 2019). Absorption without scattering ends no path. The code is scalar because flights
  * diverge. */
 #include "trace/medium/medium.h"
 
-/* The largest number of collisions of a flight; a bound for media whose majorants are far too large. */
+/* The largest number of collisions of a flight; a bound for media whose majorants are far too
+ * large. */
 enum { MOST_COLLISIONS = 1 << 16 };
 
 static inline float exponential(float u) {
@@ -13,7 +15,8 @@ static inline float exponential(float u) {
 
 /* exp(-(sigma_c - sigma_hero) length): transmittance relative to the hero. */
 static inline void shift(const float sigma[4], int hero, float length, float factor[4]) {
-  for (int c = 0; c < 4; c++) factor[c] = vl_exp(-(sigma[c] - sigma[hero]) * length);
+  for (int c = 0; c < 4; c++)
+    factor[c] = vl_exp(-(sigma[c] - sigma[hero]) * length);
 }
 
 static inline float largest(const float v[4]) {
@@ -24,13 +27,15 @@ static inline float largest(const float v[4]) {
 typedef struct Tracking {
   vlMajorantWalk walk;
   float unit[4];       /* majorant coefficients for a majorant of 1 */
-  float t, end, depth; /* position, end of this cell, optical depth of the hero channel to the next collision */
+  float t, end, depth; /* position, end of this cell, optical depth of the hero channel to the
+                          next collision */
   float majorant[4];   /* majorants in this cell */
   uint32_t collisions;
 } Tracking;
 
 static void pass(const vlWorldMedium *m, const float majorant[4], float length, vlFlight *f) {
-  if (m->grey) return;
+  if (m->grey)
+    return;
   float factor[4];
   shift(majorant, f->hero, length, factor);
   for (int c = 0; c < 4; c++) {
@@ -40,16 +45,18 @@ static void pass(const vlWorldMedium *m, const float majorant[4], float length, 
   }
 }
 
-/* Factor of the odds at a null collision. The null probability is the same for all channels except in RGB grids, where
- * it is left out of the odds. */
+/* Factor of the odds at a null collision. The null probability is the same for all channels
+ * except in RGB grids, where it is left out of the odds. */
 static inline float null_odds(const vlWorldMedium *m, float none, float majorant) {
   return m->own_sigma ? 1.0f : none / majorant;
 }
 
-static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, vlVec3 o, vlVec3 d, float t0, float t1,
-                           vlFlight *f, Tracking *k) {
-  if (!vl_majorant_start(m, o, d, t0, t1, &k->walk)) return false;
-  for (int c = 0; c < 4; c++) k->unit[c] = m->own_sigma ? 1.0f : whole->a[c] + whole->s[c];
+static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, vlVec3 o,
+                           vlVec3 d, float t0, float t1, vlFlight *f, Tracking *k) {
+  if (!vl_majorant_start(m, o, d, t0, t1, &k->walk))
+    return false;
+  for (int c = 0; c < 4; c++)
+    k->unit[c] = m->own_sigma ? 1.0f : whole->a[c] + whole->s[c];
   k->t = k->end = t0;
   k->collisions = 0;
   k->depth = exponential(vl_flight_random(f));
@@ -73,29 +80,36 @@ static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
       k->depth -= most * length;
     }
     float majorant;
-    if (!vl_majorant_next(&k->walk, &k->t, &k->end, &majorant)) return false;
-    for (int c = 0; c < 4; c++) k->majorant[c] = majorant * k->unit[c];
+    if (!vl_majorant_next(&k->walk, &k->t, &k->end, &majorant))
+      return false;
+    for (int c = 0; c < 4; c++)
+      k->majorant[c] = majorant * k->unit[c];
   }
 }
 
-vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
-                     float radiance[4], float *t) {
+vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1,
+                     bool emission, vlFlight *f, float radiance[4], float *t) {
   vlMediumLight whole = vl_medium_coefficients(m, f->lambda);
   Tracking k = {0};
   int h = f->hero;
-  if (!start_tracking(m, &whole, o, d, t0, t1, f, &k)) return VL_FLIGHT_PASSED;
+  if (!start_tracking(m, &whole, o, d, t0, t1, f, &k))
+    return VL_FLIGHT_PASSED;
   while (next_collision(m, f, &k)) {
-    if (k.collisions > MOST_COLLISIONS) return VL_FLIGHT_ENDED;
+    if (k.collisions > MOST_COLLISIONS)
+      return VL_FLIGHT_ENDED;
     bool gives = emission && m->emits;
     vlMediumLight at = vl_medium_at(m, &whole, f->lambda, vl_add(o, vl_mul(d, k.t)), gives);
     if (gives) {
       float density[4];
-      for (int c = 0; c < 4; c++) density[c] = f->u[c] * k.majorant[c];
+      for (int c = 0; c < 4; c++)
+        density[c] = f->u[c] * k.majorant[c];
       float inv = 1.0f / vl_flight_mean(density, f->channels);
-      for (int c = 0; c < 4; c++) radiance[c] += f->beta[c] * at.a[c] * at.le[c] * inv;
+      for (int c = 0; c < 4; c++)
+        radiance[c] += f->beta[c] * at.a[c] * at.le[c] * inv;
     }
     float none[4]; /* coefficients of null collisions */
-    for (int c = 0; c < 4; c++) none[c] = vl_max(0.0f, k.majorant[c] - at.a[c] - at.s[c]);
+    for (int c = 0; c < 4; c++)
+      none[c] = vl_max(0.0f, k.majorant[c] - at.a[c] - at.s[c]);
     if (!m->scatters) {
       for (int c = 0; c < 4; c++) {
         f->beta[c] *= none[c] / k.majorant[h];
@@ -103,10 +117,13 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
         f->l[c] *= k.majorant[c] / k.majorant[h];
       }
       float carried = largest(f->beta) / vl_flight_mean(f->u, f->channels);
-      if (!(carried > 0.0f)) return VL_FLIGHT_ENDED;
+      if (!(carried > 0.0f))
+        return VL_FLIGHT_ENDED;
       if (carried < 0.05f) {
-        if (vl_flight_random(f) < 0.75f) return VL_FLIGHT_ENDED;
-        for (int c = 0; c < 4; c++) f->beta[c] *= 4.0f;
+        if (vl_flight_random(f) < 0.75f)
+          return VL_FLIGHT_ENDED;
+        for (int c = 0; c < 4; c++)
+          f->beta[c] *= 4.0f;
       }
       k.depth = exponential(vl_flight_random(f));
       continue;
@@ -120,7 +137,8 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
       *t = k.t;
       return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
     }
-    if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* happens only by rounding */
+    if (!(none[h] > 0.0f))
+      return VL_FLIGHT_ENDED; /* happens only by rounding */
     f->odds *= null_odds(m, none[h], k.majorant[h]);
     for (int c = 0; c < 4; c++) {
       f->beta[c] *= none[c] / none[h];
@@ -132,15 +150,18 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
   return VL_FLIGHT_PASSED;
 }
 
-void vl_track_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
+void vl_track_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1,
+                      vlFlight *f) {
   vlMediumLight whole = vl_medium_coefficients(m, f->lambda);
   Tracking k = {0};
   int h = f->hero;
-  if (!start_tracking(m, &whole, o, d, t0, t1, f, &k)) return;
+  if (!start_tracking(m, &whole, o, d, t0, t1, f, &k))
+    return;
   while (next_collision(m, f, &k)) {
     vlMediumLight at = vl_medium_at(m, &whole, f->lambda, vl_add(o, vl_mul(d, k.t)), false);
     float both[4];
-    if (m->scatters) f->odds *= null_odds(m, vl_max(0.0f, k.majorant[h] - at.a[h] - at.s[h]), k.majorant[h]);
+    if (m->scatters)
+      f->odds *= null_odds(m, vl_max(0.0f, k.majorant[h] - at.a[h] - at.s[h]), k.majorant[h]);
     for (int c = 0; c < 4; c++) {
       float none = vl_max(0.0f, k.majorant[c] - at.a[c] - at.s[c]) / k.majorant[h];
       float any = k.majorant[c] / k.majorant[h];
@@ -151,9 +172,12 @@ void vl_track_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, floa
     }
     float carried = largest(f->beta) / vl_flight_mean(both, f->channels);
     if (carried < 0.05f) {
-      bool ends = !(carried > 0.0f) || k.collisions > MOST_COLLISIONS || vl_flight_random(f) < 0.75f;
-      for (int c = 0; c < 4; c++) f->beta[c] *= ends ? 0.0f : 4.0f;
-      if (ends) return;
+      bool ends =
+          !(carried > 0.0f) || k.collisions > MOST_COLLISIONS || vl_flight_random(f) < 0.75f;
+      for (int c = 0; c < 4; c++)
+        f->beta[c] *= ends ? 0.0f : 4.0f;
+      if (ends)
+        return;
     }
     k.depth = exponential(vl_flight_random(f));
   }

@@ -1,18 +1,22 @@
-/* trace/medium/fit.hot.c: whether the media of a world fit together: every segment of a path has the same medium from
- * both of its ends. Camera paths take the medium from the surfaces that they cross, so in a world whose media do not
- * fit, light paths would find other media than camera paths do. Each border of media (a shape that names two) tells the
- * medium on the side from which a path arrives, and so does each light; vlTraceDef.fit records where the path's medium
- * is another. */
+/* trace/medium/fit.hot.c: whether the media of a world fit together: every segment of a path
+ * has the same medium from both of its ends. Camera paths take the medium from the surfaces
+ * that they cross, so in a world whose media do not fit, light paths would find other media
+ * than camera paths do. Each border of media (a shape that names two) tells the medium on the
+ * side from which a path arrives, and so does each light; vlTraceDef.fit records where the
+ * path's medium is another. */
 #include "trace/medium/volume.h"
 
 static void note(const vlTracing *t, uint32_t lane, uint32_t expected, uint32_t medium) {
   vlMediaFit *fit = t->def->fit;
-  if (expected == medium || fit->wrong[lane]) return;
+  if (expected == medium || fit->wrong[lane])
+    return;
   fit->wrong[lane] = 1;
-  for (int c = 0; c < 4; c++) fit->before[c][lane] = t->batch->radiance[c][lane];
+  for (int c = 0; c < 4; c++)
+    fit->before[c][lane] = t->batch->radiance[c][lane];
 }
 
-void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d, uint32_t medium) {
+void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d,
+                   uint32_t medium) {
   note(t, lane, vl_medium_beyond(&t->world->shapes.items[shape], g, vl_neg(d), medium), medium);
 }
 
@@ -25,15 +29,18 @@ void vl_fit_surfaces(const vlTracing *t, uint32_t n) {
                   vl_lane3(p->dx, p->dy, p->dz, i), s->volume->b.medium[i]);
 }
 
-/* The medium from which shadow ray k meets the shape of its area light. `here`: if the shape is no border. */
-static uint32_t before_light(const vlTracing *t, uint32_t k, uint32_t light_shape, uint32_t here) {
+/* The medium from which shadow ray k meets the shape of its area light. `here`: if the shape is
+ * no border. */
+static uint32_t before_light(const vlTracing *t, uint32_t k, uint32_t light_shape,
+                             uint32_t here) {
   const vlShadowRays *q = &t->s->shadow;
   vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
   float from = 0.999f * q->t_max[k], to = 1.001f * q->t_max[k], hit, time = q->time[k];
   uint32_t shape, prim, instance;
   vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &from, &to, t->world->moves ? &time : NULL};
   vl_accel_closest(t->world, 1, &ray, false, &shape, &prim, &instance, &hit);
-  if (shape != light_shape) return here;
+  if (shape != light_shape)
+    return here;
   vlPoint at = vl_point_at_time(t->world, time, o, d, shape, prim, instance, hit);
   return vl_medium_beyond(&t->world->shapes.items[shape], at.g, vl_neg(d), here);
 }
@@ -42,14 +49,18 @@ void vl_fit_shadows(const vlTracing *t, uint32_t count) {
   const vlVolumeScratch *v = t->s->volume;
   const vlShadowRays *q = &t->s->shadow;
   for (uint32_t k = 0; k < count; k++) {
-    float passes =
-        vl_max(vl_max(v->shadow_beta[0][k], v->shadow_beta[1][k]), vl_max(v->shadow_beta[2][k], v->shadow_beta[3][k]));
-    if (q->occluded[k] || !(passes > 0.0f)) continue; /* without transmittance, it ended on the way */
+    float passes = vl_max(vl_max(v->shadow_beta[0][k], v->shadow_beta[1][k]),
+                          vl_max(v->shadow_beta[2][k], v->shadow_beta[3][k]));
+    if (q->occluded[k] || !(passes > 0.0f))
+      continue; /* without transmittance, it ended on the way */
     uint32_t number = t->s->light.light[v->from[k]], medium = v->shadow_medium[k];
     const vlWorldShape *shape = NULL;
     const vlWorldLight *light = &t->world->lights.items[number];
-    if (light->shape != VL_NONE) shape = &t->world->shapes.items[light->shape];
+    if (light->shape != VL_NONE)
+      shape = &t->world->shapes.items[light->shape];
     bool border = shape && shape->inside != shape->outside;
-    note(t, q->lane[k], border ? before_light(t, k, light->shape, medium) : t->def->fit->light_medium[number], medium);
+    note(t, q->lane[k],
+         border ? before_light(t, k, light->shape, medium) : t->def->fit->light_medium[number],
+         medium);
   }
 }

@@ -1,13 +1,16 @@
-/* trace/medium/medium.hot.c: flights in media, for a block of lanes (trace/medium/medium.h). Uniform media have closed
- * forms, which are computed for all lanes in the same medium at once; other media track their lanes one by one
- * (delta_tracking.hot.c). Absorption without scattering is deterministic. */
+/* trace/medium/medium.hot.c: flights in media, for a block of lanes (trace/medium/medium.h).
+ * Uniform media have closed forms, which are computed for all lanes in the same medium at once;
+ * other media track their lanes one by one (delta_tracking.hot.c). Absorption without
+ * scattering is deterministic. */
 #include "trace/medium/medium.h"
 
-/* ---- absorption by channel --------------------------------------------------------------------------------------- */
+/* ---- absorption by channel
+ * --------------------------------------------------------------------------------------- */
 
-/* Applies absorption by channel of linear sRGB over a length to lane i. The transmittance of a wavelength over the
- * whole path so far is T = sum_i share_i(lambda) passed_i. Each call multiplies by the ratio of the new T to the old T,
- * so the product over parts of a path is the T of the whole. */
+/* Applies absorption by channel of linear sRGB over a length to lane i. The transmittance of a
+ * wavelength over the whole path so far is T = sum_i share_i(lambda) passed_i. Each call
+ * multiplies by the ratio of the new T to the old T, so the product over parts of a path is the
+ * T of the whole. */
 static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlights *f, uint32_t i) {
   float passed[3], left[3];
   for (int k = 0; k < 3; k++) {
@@ -15,13 +18,17 @@ static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlights *f
     left[k] = passed[k] * vl_exp(-m->sigma_rgb[k] * length);
   }
   for (int c = 0; c < 4; c++) {
-    float before = vl_channels_at(passed, f->lambda[c][i]), after = vl_channels_at(left, f->lambda[c][i]);
+    float before = vl_channels_at(passed, f->lambda[c][i]),
+          after = vl_channels_at(left, f->lambda[c][i]);
     f->beta[c][i] *= before > 0.0f ? after / before : 0.0f;
   }
-  for (int k = 0; k < 3; k++) f->passed[k][i] = left[k];
+  for (int k = 0; k < 3; k++)
+    f->passed[k][i] = left[k];
 }
 
-/* ---- uniform media ----------------------------------------------------------------------------------------------- */
+/* ---- uniform media
+ * -----------------------------------------------------------------------------------------------
+ */
 
 /* The lanes of a block that fly through one uniform medium. */
 typedef struct Segments {
@@ -35,7 +42,8 @@ typedef struct Segments {
   VL_ROW float distance[VL_FLIGHTS];               /* at this distance; otherwise the length */
 } Segments;
 
-static void spectrum_row(const vlSpectral *s, int channel, uint32_t n, const float *lambda, float *value) {
+static void spectrum_row(const vlSpectral *s, int channel, uint32_t n, const float *lambda,
+                         float *value) {
   if (s->kind == VL_SPECTRAL_SIGMOID) {
     float scale = s->scale;
     vlSigmoid sigmoid = s->sigmoid;
@@ -44,10 +52,12 @@ static void spectrum_row(const vlSpectral *s, int channel, uint32_t n, const flo
       value[i] = scale * vl_sigmoid(sigmoid, lambda[i]);
     }
   } else if (s->kind == VL_SPECTRAL_DENSE) {
-    for (uint32_t i = 0; i < n; i++) value[i] = s->scale * vl_dense_at(s->dense, lambda[i]);
+    for (uint32_t i = 0; i < n; i++)
+      value[i] = s->scale * vl_dense_at(s->dense, lambda[i]);
   } else {
     float constant = vl_spectral_at(s, channel, 0.0f);
-    for (uint32_t i = 0; i < n; i++) value[i] = constant;
+    for (uint32_t i = 0; i < n; i++)
+      value[i] = constant;
   }
 }
 
@@ -81,17 +91,20 @@ static void find_heroes(const vlTracing *t, const vlFlights *f, Segments *k) {
   }
 }
 
-/* Adds the emission of the whole segments, whether or not the flights scatter before their ends. */
+/* Adds the emission of the whole segments, whether or not the flights scatter before their
+ * ends. */
 static void emit(const vlTracing *t, vlFlights *f, const Segments *k) {
   const vlWorldMedium *m = k->medium;
   for (uint32_t i = 0; i < f->n; i++) {
-    if (!k->flies[i]) continue;
+    if (!k->flies[i])
+      continue;
     const float u[4] = {f->u[0][i], f->u[1][i], f->u[2][i], f->u[3][i]};
     float inv = 1.0f / vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
     for (int c = 0; c < 4; c++) {
       float sigma = k->a[c][i] + k->s[c][i], passes = vl_exp(-sigma * k->length[i]);
       float le = vl_spectral_at(&m->emission, c, f->lambda[c][i]);
-      if (sigma > 0.0f) f->given[c][i] += f->beta[c][i] * le * k->a[c][i] / sigma * (1.0f - passes) * inv;
+      if (sigma > 0.0f)
+        f->given[c][i] += f->beta[c][i] * le * k->a[c][i] / sigma * (1.0f - passes) * inv;
     }
   }
 }
@@ -100,7 +113,8 @@ static void emit(const vlTracing *t, vlFlights *f, const Segments *k) {
 static void draw(const vlTracing *t, vlFlights *f, const Segments *k, float *random) {
   for (uint32_t i = 0; i < f->n; i++) {
     random[i] = f->first[i];
-    if (!k->flies[i]) continue;
+    if (!k->flies[i])
+      continue;
     if (f->first[i] < 0.0f) {
       uint32_t key = vl_volume_key(t, f->paths, f->path[i], f->depth, f->purpose);
       random[i] = vl_unit_float(vl_hash2(key, f->count[i]++));
@@ -127,7 +141,8 @@ static void sample_distances(const vlTracing *t, vlFlights *f, Segments *k) {
   }
 }
 
-/* Weighs channel c of the flights. exp(-(sigma - hero) distance) is the transmittance relative to the hero. */
+/* Weighs channel c of the flights. exp(-(sigma - hero) distance) is the transmittance relative
+ * to the hero. */
 static void weigh_channel(vlFlights *f, const Segments *k, int c) {
   float *beta = f->beta[c], *u = f->u[c], *l = f->l[c];
   const float *a = k->a[c], *s = k->s[c];
@@ -136,7 +151,8 @@ static void weigh_channel(vlFlights *f, const Segments *k, int c) {
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float hero = k->hero[i], sigma = a[i] + s[i];
     float factor = vl_exp(-(sigma - hero) * k->distance[i]);
-    float seen = vl_exp(-hero * k->length[i]); /* light sampling uses the expected transmittance */
+    float seen =
+        vl_exp(-hero * k->length[i]); /* light sampling uses the expected transmittance */
     int flies = k->flies[i] != 0, scatters = k->scatters[i] != 0;
     float of_beta = scatters ? factor * s[i] / hero : factor;
     float of_u = scatters ? factor * sigma / hero : factor;
@@ -150,7 +166,8 @@ static void weigh_channel(vlFlights *f, const Segments *k, int c) {
 static void attenuate_channel(vlFlights *f, const Segments *k, int c) {
   float *beta = f->beta[c], *u = f->u[c];
   const float *a = k->a[c], *s = k->s[c];
-  uint32_t padded = k->padded, chosen = k->medium->scatters; /* whether flights pass by chance */
+  uint32_t padded = k->padded,
+           chosen = k->medium->scatters; /* whether flights pass by chance */
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float passes = vl_exp(-(a[i] + s[i]) * k->length[i]);
@@ -162,10 +179,13 @@ static void attenuate_channel(vlFlights *f, const Segments *k, int c) {
 
 static void attenuate_uniform(vlFlights *f, Segments *k) {
   const vlWorldMedium *m = k->medium;
-  for (int c = 0; c < 4; c++) attenuate_channel(f, k, c);
+  for (int c = 0; c < 4; c++)
+    attenuate_channel(f, k, c);
   for (uint32_t i = 0; m->by_channel && i < f->n; i++)
-    if (k->flies[i]) absorb_by_channel(m, k->length[i], f, i);
-  if (!m->scatters) return;
+    if (k->flies[i])
+      absorb_by_channel(m, k->length[i], f, i);
+  if (!m->scatters)
+    return;
   float extinction = m->extinction;
   uint32_t padded = k->padded;
   /* must vectorise */
@@ -179,28 +199,37 @@ static void scatter_uniform(const vlTracing *t, vlFlights *f, Segments *k) {
   find_heroes(t, f, k);
   sample_distances(t, f, k);
   for (uint32_t i = 0; m->by_channel && i < f->n; i++)
-    if (k->flies[i]) absorb_by_channel(m, k->distance[i], f, i);
-  for (int c = 0; c < 4; c++) weigh_channel(f, k, c);
+    if (k->flies[i])
+      absorb_by_channel(m, k->distance[i], f, i);
+  for (int c = 0; c < 4; c++)
+    weigh_channel(f, k, c);
 }
 
 static void fly_uniform(const vlTracing *t, uint32_t medium, vlFlights *f, bool emission) {
   Segments k;
   find_segments(t->world, medium, f, &k);
   const vlWorldMedium *m = k.medium;
-  if (emission && m->emits) emit(t, f, &k);
+  if (emission && m->emits)
+    emit(t, f, &k);
   if (m->scatters)
     scatter_uniform(t, f, &k);
   else
     attenuate_uniform(f, &k);
   for (uint32_t i = 0; i < f->n; i++) {
-    if (!k.flies[i]) continue;
-    float most = vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
+    if (!k.flies[i])
+      continue;
+    float most =
+        vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
     uint32_t ends = m->scatters && k.scatters[i] ? VL_FLIGHT_SCATTERED : VL_FLIGHT_PASSED;
-    f->end[i] = (ends == VL_FLIGHT_SCATTERED || !m->scatters) && !(most > 0.0f) ? VL_FLIGHT_ENDED : ends;
+    f->end[i] = (ends == VL_FLIGHT_SCATTERED || !m->scatters) && !(most > 0.0f)
+                    ? VL_FLIGHT_ENDED
+                    : ends;
   }
 }
 
-/* ---- any medium -------------------------------------------------------------------------------------------------- */
+/* ---- any medium
+ * --------------------------------------------------------------------------------------------------
+ */
 
 static vlFlight take(const vlTracing *t, const vlFlights *f, uint32_t i) {
   vlFlight r = {.hero = vl_volume_hero(t, f->paths, f->path[i]),
@@ -237,21 +266,26 @@ static inline vlVec3 direction(const vlFlights *f, uint32_t i) {
 }
 
 void vl_fly(const vlTracing *t, vlFlights *f, bool emission) {
-  for (uint32_t i = 0; i < f->n; i++) f->end[i] = VL_FLIGHT_PASSED;
+  for (uint32_t i = 0; i < f->n; i++)
+    f->end[i] = VL_FLIGHT_PASSED;
   for (uint32_t i = 0; i < f->n; i++) {
     uint32_t medium = f->medium[i];
-    if (medium == VL_NONE) continue;
+    if (medium == VL_NONE)
+      continue;
     const vlWorldMedium *m = &t->world->media.items[medium];
     if (m->uniform) { /* with all other lanes in it */
       fly_uniform(t, medium, f, emission);
       continue;
     }
     f->medium[i] = VL_NONE;
-    if (!(f->to[i] > f->from[i])) continue;
+    if (!(f->to[i] > f->from[i]))
+      continue;
     vlFlight one = take(t, f, i);
     float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
-    f->end[i] = vl_track(m, origin(f, i), direction(f, i), f->from[i], f->to[i], emission, &one, given, &f->t[i]);
-    for (int c = 0; c < 4; c++) f->given[c][i] = given[c];
+    f->end[i] = vl_track(m, origin(f, i), direction(f, i), f->from[i], f->to[i], emission, &one,
+                         given, &f->t[i]);
+    for (int c = 0; c < 4; c++)
+      f->given[c][i] = given[c];
     put(f, i, &one);
   }
 }
@@ -259,7 +293,8 @@ void vl_fly(const vlTracing *t, vlFlights *f, bool emission) {
 void vl_attenuate(const vlTracing *t, vlFlights *f) {
   for (uint32_t i = 0; i < f->n; i++) {
     uint32_t medium = f->medium[i];
-    if (medium == VL_NONE) continue;
+    if (medium == VL_NONE)
+      continue;
     const vlWorldMedium *m = &t->world->media.items[medium];
     if (m->uniform) {
       Segments k;
@@ -268,7 +303,8 @@ void vl_attenuate(const vlTracing *t, vlFlights *f) {
       continue;
     }
     f->medium[i] = VL_NONE;
-    if (!(f->to[i] > f->from[i])) continue;
+    if (!(f->to[i] > f->from[i]))
+      continue;
     vlFlight one = take(t, f, i);
     vl_track_through(m, origin(f, i), direction(f, i), f->from[i], f->to[i], &one);
     put(f, i, &one);

@@ -1,4 +1,5 @@
-/* trace/medium/volume.h: declarations shared by the files of the volumetric path tracer and the two-way tracers. */
+/* trace/medium/volume.h: declarations shared by the files of the volumetric path tracer and the
+ * two-way tracers. */
 #ifndef TRACE_MEDIUM_VOLUME_H
 #define TRACE_MEDIUM_VOLUME_H
 
@@ -7,24 +8,30 @@
 
 /* A shadow ray ends at this share of the way to its light. */
 #define VL_SHADOW_END (1.0f - 0x1p-21f)
-/* Keeps odds above 0, so that a weight of at most 1e20 times a radiance of up to 1e18 is finite. */
+/* Keeps odds above 0, so that a weight of at most 1e20 times a radiance of up to 1e18 is
+ * finite. */
 static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
 }
 
-/* Sets vlVolumeScratch.shadow_passed of shadow ray k, which leaves a vertex in a medium, or surface lane i in a
- * direction with cosine wi_z to the normal. */
+/* Sets vlVolumeScratch.shadow_passed of shadow ray k, which leaves a vertex in a medium, or
+ * surface lane i in a direction with cosine wi_z to the normal. */
 static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t k, uint32_t lane) {
-  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->volume->shadow_passed[c][k] = t->s->passed[c][lane];
+  for (int c = 0; t->world->by_channel && c < 3; c++)
+    t->s->volume->shadow_passed[c][k] = t->s->passed[c][lane];
 }
-static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32_t i, float wi_z) {
+static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32_t i,
+                                          float wi_z) {
   float passed[3];
-  if (!t->world->by_channel) return;
+  if (!t->world->by_channel)
+    return;
   vl_passed_on(t, &t->s->at, i, wi_z, passed);
-  for (int c = 0; c < 3; c++) t->s->volume->shadow_passed[c][k] = passed[c];
+  for (int c = 0; c < 3; c++)
+    t->s->volume->shadow_passed[c][k] = passed[c];
 }
 
-static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b, uint32_t k) {
+static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b,
+                                  uint32_t k) {
   for (int c = 0; c < 4; c++) {
     b->u[c][k] = a->u[c][i];
     b->l[c][k] = a->l[c][i];
@@ -33,8 +40,10 @@ static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRow
 }
 
 /* The medium on the side of the surface to which w points. */
-static inline uint32_t vl_medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w, uint32_t here) {
-  if (s->inside == s->outside) return here;
+static inline uint32_t vl_medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w,
+                                        uint32_t here) {
+  if (s->inside == s->outside)
+    return here;
   return vl_dot(w, g) > 0.0f ? s->outside : s->inside;
 }
 
@@ -42,8 +51,8 @@ static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
   return world->shapes.items[shape].pass_shadow;
 }
 
-/* A block of rays on their way through media and interfaces: the n rays of rows from the block's first lane on. The
- * lanes `open` have not arrived yet. */
+/* A block of rays on their way through media and interfaces: the n rays of rows from the
+ * block's first lane on. The lanes `open` have not arrived yet. */
 typedef struct vlTravel {
   vlFlights f;
   vlCrossings x; /* the next surface */
@@ -56,67 +65,77 @@ static inline bool vl_meets_interface(const vlWorld *world, const vlCrossings *x
 void vl_travel_start(vlTravel *k);
 /* The surfaces that the open rays meet beyond f.from. */
 void vl_travel_closest(const vlTracing *t, vlTravel *k);
-/* Lane i passes the interface that it has met: f.from moves past it. Returns the medium that follows. */
+/* Lane i passes the interface that it has met: f.from moves past it. Returns the medium that
+ * follows. */
 uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t medium);
 
-/* With vlTraceDef.fit: compare the medium of a path that arrives in direction d at a border, of the n shaded lanes, and
- * of the `count` shadow rays that have passed media, with the medium that border or light names (fit.hot.c). */
-void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d, uint32_t medium);
+/* With vlTraceDef.fit: compare the medium of a path that arrives in direction d at a border, of
+ * the n shaded lanes, and of the `count` shadow rays that have passed media, with the medium
+ * that border or light names (fit.hot.c). */
+void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d,
+                   uint32_t medium);
 void vl_fit_surfaces(const vlTracing *t, uint32_t n);
 void vl_fit_shadows(const vlTracing *t, uint32_t count);
 
-/* Traces the n rays of vlTraceScratch.rays through media and interfaces to their events. depth: number of the bounce;
- * emission: add the emission of the media that the rays cross. Densities go to volume.a. Ray origins stay at the last
- * scattering. */
+/* Traces the n rays of vlTraceScratch.rays through media and interfaces to their events. depth:
+ * number of the bounce; emission: add the emission of the media that the rays cross. Densities
+ * go to volume.a. Ray origins stay at the last scattering. */
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
-void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
+void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order,
+                       uint32_t n);
 /* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
-void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t n); /* paths [0, n) */
-/* Copies the rays that scatter in media to volume.scattered and volume.c. The copies are normalised and start at the
- * scattering points, which are also written to s->at.surface for light sampling. s->order gets the rays' indices.
- * Returns the number of copies. */
+void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v,
+                             uint32_t n); /* paths [0, n) */
+/* Copies the rays that scatter in media to volume.scattered and volume.c. The copies are
+ * normalised and start at the scattering points, which are also written to s->at.surface for
+ * light sampling. s->order gets the rays' indices. Returns the number of copies. */
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
-/* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns the number of paths that
- * go on; volume.kept lists them. */
+/* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns
+ * the number of paths that go on; volume.kept lists them. */
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* Sets the initial media of the n rays. medium: by lane; null: all paths start in the camera's medium. */
+/* Sets the initial media of the n rays. medium: by lane; null: all paths start in the camera's
+ * medium. */
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
-/* After scattering on surfaces: copies volume.b of the `count` vertices in s->order to volume.a. */
+/* After scattering on surfaces: copies volume.b of the `count` vertices in s->order to
+ * volume.a. */
 void vl_volume_go_on(vlTracing *t, uint32_t count);
 /* Appends the first `count` paths of volume.kept to the n rays. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n);
-/* The flights of the `count` shadow rays that are not occluded, to volume.shadow_*. beta is the transmittance; the
- * path's densities are relative to the density of light sampling. */
+/* The flights of the `count` shadow rays that are not occluded, to volume.shadow_*. beta is the
+ * transmittance; the path's densities are relative to the density of light sampling. */
 void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
-/* Adds the light sample of lane i as shadow ray number `count`, which starts at o. value, pdf: of the BSDF or phase
- * function. Returns the new count. */
-uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
-                               const float value[4], float pdf, uint32_t medium, uint32_t count);
+/* Adds the light sample of lane i as shadow ray number `count`, which starts at o. value, pdf:
+ * of the BSDF or phase function. Returns the new count. */
+uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                               uint32_t i, vlVec3 o, const float value[4], float pdf,
+                               uint32_t medium, uint32_t count);
 /* Traces the shadow rays added by vl_volume_push_shadow and adds the radiance that arrives. */
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
 
-/* The inverse of the mean density of ray i over the techniques that could have made it. light_pdf: density of
- * light sampling; 0 if light sampling could not make this path. */
+/* The inverse of the mean density of ray i over the techniques that could have made it.
+ * light_pdf: density of light sampling; 0 if light sampling could not make this path. */
 static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, float light_pdf) {
   const vlVolumeRows *v = &t->s->volume->a;
   float density[4];
-  for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
+  for (int c = 0; c < 4; c++)
+    density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
   return 1.0f / vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
 }
 
-/* The mean density of shadow ray k over the channels and over light sampling and BSDF or phase sampling (pdf; 0: light
- * sampling alone). */
+/* The mean density of shadow ray k over the channels and over light sampling and BSDF or phase
+ * sampling (pdf; 0: light sampling alone). */
 static inline float vl_volume_shadow_density(const vlTracing *t, uint32_t k, float pdf) {
   const vlVolumeScratch *v = t->s->volume;
   float density[4];
   for (int c = 0; c < 4; c++)
-    density[c] = v->density[c][k] * (v->shadow_l[c][k] * v->light_pdf[k] + v->shadow_u[c][k] * pdf);
+    density[c] =
+        v->density[c][k] * (v->shadow_l[c][k] * v->light_pdf[k] + v->shadow_u[c][k] * pdf);
   return vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
 }
 
-/* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the n rays; and the
- * `count` shadow rays, after they were traced. */
+/* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the
+ * n rays; and the `count` shadow rays, after they were traced. */
 void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_volume_record_shadows(vlTracing *t, uint32_t count);
 

@@ -1,9 +1,10 @@
-/* trace/medium/volume_record.hot.c: records paths through media for vl_trace_paths (tracer/record.h). It computes again
- * what the tracer added. */
+/* trace/medium/volume_record.hot.c: records paths through media for vl_trace_paths
+ * (tracer/record.h). It computes again what the tracer added. */
 #include "trace/medium/volume.h"
 #include "trace/tracer/record.h"
 
-static void record_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
+static void record_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met,
+                       bool sky) {
   float inv = vl_volume_inverse_density(t, i, met->pdf);
   vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
                           .light_pdf = met->pdf,
@@ -16,7 +17,8 @@ static void record_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLi
     c.target[2] = met->at.p.z;
   }
   vl_record_name_light(t->world, met->light, &c);
-  for (int k = 0; k < 4; k++) c.radiance[k] = p->beta[k][i] * met->radiance[k] * inv;
+  for (int k = 0; k < 4; k++)
+    c.radiance[k] = p->beta[k][i] * met->radiance[k] * inv;
   vl_record_light(t, p->lane[i], &c);
 }
 
@@ -24,11 +26,15 @@ static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth) {
   const vlPaths *p = &t->s->rays;
   const vlVolumeScratch *x = t->s->volume;
   vlPathVertex *v = vl_record_arrival(t, p, i, depth);
-  if (!v) return;
+  if (!v)
+    return;
   float inv = vl_volume_inverse_density(t, i, 0.0f);
-  for (int c = 0; c < 4; c++) v->throughput[c] *= inv;
-  if (x->event[i] == VL_ON_SURFACE) vl_record_surface(t, p, &t->s->hits, i, v);
-  if (x->event[i] != VL_IN_MEDIUM && x->event[i] != VL_AT_END) return;
+  for (int c = 0; c < 4; c++)
+    v->throughput[c] *= inv;
+  if (x->event[i] == VL_ON_SURFACE)
+    vl_record_surface(t, p, &t->s->hits, i, v);
+  if (x->event[i] != VL_IN_MEDIUM && x->event[i] != VL_AT_END)
+    return;
   v->event = VL_PATH_MEDIUM;
   v->fate = VL_PATH_ABSORBED;
   v->medium = x->a.medium[i] == VL_NONE ? 0 : x->a.medium[i] + 1;
@@ -44,13 +50,17 @@ void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlVolumeScratch *v = t->s->volume;
   for (uint32_t i = 0; i < n; i++) {
     record_arrival(t, i, depth);
-    vlPathContribution from_medium = {.event = VL_PATH_LIGHT_MEDIUM, .type = "medium", .weight = 1.0f};
+    vlPathContribution from_medium = {
+        .event = VL_PATH_LIGHT_MEDIUM, .type = "medium", .weight = 1.0f};
     float sum = 0.0f;
-    for (int c = 0; c < 4; c++) sum += from_medium.radiance[c] = v->given[c][i];
-    if (sum != 0.0f) vl_record_light(t, p->lane[i], &from_medium);
+    for (int c = 0; c < 4; c++)
+      sum += from_medium.radiance[c] = v->given[c][i];
+    if (sum != 0.0f)
+      vl_record_light(t, p->lane[i], &from_medium);
   }
   vl_stage_lights_hit(t, n, p, h, v->event, record_met);
-  if (depth >= t->def->max_depth) vl_record_depth(t, n, p);
+  if (depth >= t->def->max_depth)
+    vl_record_depth(t, n, p);
 }
 
 void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
@@ -73,7 +83,8 @@ void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
     }
     float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
     c.weight = vl_volume_shadow_density(t, k, 0.0f) * inv;
-    for (int m = 0; m < 4; m++) c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * v->shadow_beta[m][k] * inv;
+    for (int m = 0; m < 4; m++)
+      c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * v->shadow_beta[m][k] * inv;
     vl_record_light(t, q->lane[k], &c);
   }
 }

@@ -1,9 +1,11 @@
-/* trace/medium/volume_shadow.hot.c: shadow rays through participating media and interfaces: the radiance of light
- * samples, with MIS weights against BSDF and phase-function sampling (pbrt book 14.2.3). */
+/* trace/medium/volume_shadow.hot.c: shadow rays through participating media and interfaces: the
+ * radiance of light samples, with MIS weights against BSDF and phase-function sampling (pbrt
+ * book 14.2.3). */
 #include "trace/medium/volume.h"
 
-uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
-                               const float value[4], float pdf, uint32_t medium, uint32_t count) {
+uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                               uint32_t i, vlVec3 o, const float value[4], float pdf,
+                               uint32_t medium, uint32_t count) {
   vlShadowRays *q = &t->s->shadow;
   const vlLightSamples *l = &t->s->light;
   vlVolumeScratch *v = t->s->volume;
@@ -31,9 +33,10 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
   return count + 1;
 }
 
-/* The block of `n` shadow rays from `first` on. Those that are not occluded and do not leave the world through vacuum
- * are open. */
-static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t first, uint32_t n, float *lambda[4]) {
+/* The block of `n` shadow rays from `first` on. Those that are not occluded and do not leave
+ * the world through vacuum are open. */
+static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t first, uint32_t n,
+                        float *lambda[4]) {
   const vlShadowRays *q = &t->s->shadow;
   vlVolumeScratch *v = t->s->volume;
   vlFlights *f = &k->f;
@@ -47,16 +50,21 @@ static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t fi
     f->lambda[c] = lambda[c];
     f->u[c] = v->shadow_u[c] + first;
     f->l[c] = v->shadow_l[c] + first;
-    for (uint32_t i = 0; i < n; i++) f->beta[c][i] = f->u[c][i] = f->l[c][i] = 1.0f;
+    for (uint32_t i = 0; i < n; i++)
+      f->beta[c][i] = f->u[c][i] = f->l[c][i] = 1.0f;
   }
   k->count = 0;
   for (uint32_t i = 0; i < n; i++) {
     f->odds[i] = 1.0f;
-    if (q->occluded[first + i] || (v->shadow_medium[first + i] == VL_NONE && !t->world->has_interfaces)) continue;
+    if (q->occluded[first + i] ||
+        (v->shadow_medium[first + i] == VL_NONE && !t->world->has_interfaces))
+      continue;
     k->open[k->count++] = i;
     uint32_t path = f->path[i] = v->from[first + i];
-    for (int c = 0; c < 4; c++) lambda[c][i] = p->lambda[c][path];
-    for (int c = 0; t->world->by_channel && c < 3; c++) f->passed[c][i] = v->shadow_passed[c][first + i];
+    for (int c = 0; c < 4; c++)
+      lambda[c][i] = p->lambda[c][path];
+    for (int c = 0; t->world->by_channel && c < 3; c++)
+      f->passed[c][i] = v->shadow_passed[c][first + i];
     f->from[i] = 0.0f;
     f->first[i] = -1.0f;
     f->count[i] = 0;
@@ -71,10 +79,13 @@ static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium)
     uint32_t i = k->open[j];
     f->medium[i] = medium[i];
     f->to[i] = f->rays.t_max[i];
-    if (k->x.shape[i] != VL_NONE) lanes[count++] = i;
+    if (k->x.shape[i] != VL_NONE)
+      lanes[count++] = i;
   }
-  if (count) vl_stage_crossings(t->world, f->n, &f->rays, lanes, count, &k->x);
-  for (uint32_t j = 0; j < count; j++) f->to[lanes[j]] = k->x.t[lanes[j]];
+  if (count)
+    vl_stage_crossings(t->world, f->n, &f->rays, lanes, count, &k->x);
+  for (uint32_t j = 0; j < count; j++)
+    f->to[lanes[j]] = k->x.t[lanes[j]];
 }
 
 static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
@@ -89,19 +100,23 @@ static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
     vl_attenuate(t, f);
     for (uint32_t j = 0; j < k->count; j++) {
       uint32_t i = k->open[j];
-      float most = vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
-      if (k->x.shape[i] == VL_NONE || !(most > 0.0f)) continue;
+      float most =
+          vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
+      if (k->x.shape[i] == VL_NONE || !(most > 0.0f))
+        continue;
       if (vl_meets_interface(t->world, &k->x, i)) {
         medium[i] = vl_travel_pass(t, k, i, medium[i]);
         k->open[on++] = i;
       } else { /* cannot happen: the ray is not occluded */
-        for (int c = 0; c < 4; c++) f->beta[c][i] = 0.0f;
+        for (int c = 0; c < 4; c++)
+          f->beta[c][i] = 0.0f;
       }
     }
     k->count = on;
   }
   for (uint32_t j = 0; j < k->count; j++)
-    for (int c = 0; c < 4; c++) f->beta[c][k->open[j]] = 0.0f;
+    for (int c = 0; c < 4; c++)
+      f->beta[c][k->open[j]] = 0.0f;
 }
 
 void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
@@ -118,12 +133,14 @@ void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32
   k.x.prim = ids[1];
   k.x.instance = ids[2];
   k.x.hit = hit;
-  for (uint32_t i = 0; i < VL_FLIGHTS; i++) ids[0][i] = VL_NONE;
+  for (uint32_t i = 0; i < VL_FLIGHTS; i++)
+    ids[0][i] = VL_NONE;
   for (uint32_t first = 0; first < count; first += VL_FLIGHTS) {
     begin_block(t, p, &k, first, count - first < VL_FLIGHTS ? count - first : VL_FLIGHTS, rows);
     pass_block(t, &k, t->s->volume->shadow_medium + first);
   }
-  for (uint32_t i = 0; i < count; i++) t->s->volume->shadow_odds[i] = vl_some_odds(t->s->volume->shadow_odds[i]);
+  for (uint32_t i = 0; i < count; i++)
+    t->s->volume->shadow_odds[i] = vl_some_odds(t->s->volume->shadow_odds[i]);
 }
 
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
@@ -132,11 +149,15 @@ void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t 
   vl_stage_occluded(t, count, p, q);
   t->batch->shadow_rays += count;
   vl_volume_pass_media(t, p, count, depth);
-  if (t->def->fit) vl_fit_shadows(t, count);
-  if (t->batch->recorder) vl_volume_record_shadows(t, count);
+  if (t->def->fit)
+    vl_fit_shadows(t, count);
+  if (t->batch->recorder)
+    vl_volume_record_shadows(t, count);
   for (uint32_t k = 0; k < count; k++) {
-    if (q->occluded[k]) continue;
+    if (q->occluded[k])
+      continue;
     float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
-    for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * v->shadow_beta[c][k] * inv;
+    for (int c = 0; c < 4; c++)
+      t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * v->shadow_beta[c][k] * inv;
   }
 }

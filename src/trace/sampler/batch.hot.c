@@ -1,12 +1,13 @@
-/* trace/sampler/batch.hot.c: fills batches of random numbers for all kinds of samplers. The kind is selected once per
- * batch; kinds with several loops work in chunks. n is a multiple of VL_LANES. */
+/* trace/sampler/batch.hot.c: fills batches of random numbers for all kinds of samplers. The
+ * kind is selected once per batch; kinds with several loops work in chunks. n is a multiple of
+ * VL_LANES. */
 #include "trace/sampler/cells.h"
 #include "trace/sampler/halton.h"
 #include "trace/sampler/sobol.h"
 #include "velo/sampler.h"
 
-static void independent_1d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
-                           uint32_t dimension, float *u) {
+static void independent_1d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py,
+                           const uint32_t *index, uint32_t dimension, float *u) {
   uint32_t seed = vl_dimension_seed(s, dimension, 0);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
@@ -14,8 +15,8 @@ static void independent_1d(const vlSampler *s, uint32_t n, const int32_t *px, co
   }
 }
 
-static void independent_2d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
-                           uint32_t dimension, float *u, float *v) {
+static void independent_2d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py,
+                           const uint32_t *index, uint32_t dimension, float *u, float *v) {
   uint32_t seed = vl_dimension_seed(s, dimension, 0);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
@@ -25,10 +26,12 @@ static void independent_2d(const vlSampler *s, uint32_t n, const int32_t *px, co
   }
 }
 
-/* ---- the kinds: functions of one and of two dimensions ----------------------------------------------------------- */
+/* ---- the kinds: functions of one and of two dimensions
+ * ----------------------------------------------------------- */
 
-#define INPUT \
-  const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index, uint32_t dimension
+#define INPUT                                                                                  \
+  const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index, \
+      uint32_t dimension
 
 static void sobol_1d(INPUT, float *u) {
   vl_sobol_pixel(0, s, n, px, py, index, dimension, u, u);
@@ -83,8 +86,10 @@ static void get_1d(INPUT, float *u) {
     return;
   }
   uint32_t count = VL_PAD(n);
-#define CASE(K, k) \
-  case VL_SAMPLER_##K: k##_1d(s, count, px, py, index, dimension, u); return;
+#define CASE(K, k)                                 \
+  case VL_SAMPLER_##K:                             \
+    k##_1d(s, count, px, py, index, dimension, u); \
+    return;
   switch ((vlSamplerKind)s->kind) { VL_SAMPLER_KINDS(CASE) }
 #undef CASE
 }
@@ -95,8 +100,10 @@ static void get_2d(INPUT, float *u, float *v) {
     return;
   }
   uint32_t count = VL_PAD(n);
-#define CASE(K, k) \
-  case VL_SAMPLER_##K: k##_2d(s, count, px, py, index, dimension, u, v); return;
+#define CASE(K, k)                                    \
+  case VL_SAMPLER_##K:                                \
+    k##_2d(s, count, px, py, index, dimension, u, v); \
+    return;
   switch ((vlSamplerKind)s->kind) { VL_SAMPLER_KINDS(CASE) }
 #undef CASE
 }

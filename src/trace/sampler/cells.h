@@ -1,13 +1,16 @@
-/* trace/sampler/cells.h: the samplers that divide the unit square into cells: regular, stratified, n-rooks,
- * multi-jittered, Hammersley. Each assigns cells to samples by a random permutation per pixel and dimension, so that
- * dimensions are independent. Source: Suffern, "Ray Tracing from the Ground Up", chapter 5. */
+/* trace/sampler/cells.h: the samplers that divide the unit square into cells: regular,
+ * stratified, n-rooks, multi-jittered, Hammersley. Each assigns cells to samples by a random
+ * permutation per pixel and dimension, so that dimensions are independent. Source: Suffern,
+ * "Ray Tracing from the Ground Up", chapter 5. */
 #ifndef TRACE_SAMPLER_CELLS_H
 #define TRACE_SAMPLER_CELLS_H
 
 #include "trace/sampler/chunk.h"
 
-/* 1-D points: sample `index` is in cell permute(index) of s->set cells, jittered or at the cell's centre. */
-VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s, const vlSamplerChunk *c, float *u) {
+/* 1-D points: sample `index` is in cell permute(index) of s->set cells, jittered or at the
+ * cell's centre. */
+VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s,
+                                   const vlSamplerChunk *c, float *u) {
   _Alignas(64) uint32_t cell[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, cell);
   uint32_t bits = s->jitter_bits, down = 32 - bits, half = 1u << (bits - 1);
@@ -19,14 +22,16 @@ VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s, const
   }
 }
 
-/* Regular and stratified points. A row has grid_x or grid_x - 1 cells, and its height is proportional to their number,
- * so that all cells have the same area for any spp. */
-VL_SAMPLER_INLINE void vl_grid_2d(const int jittered, const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
+/* Regular and stratified points. A row has grid_x or grid_x - 1 cells, and its height is
+ * proportional to their number, so that all cells have the same area for any spp. */
+VL_SAMPLER_INLINE void vl_grid_2d(const int jittered, const vlSampler *s,
+                                  const vlSamplerChunk *c, float *u, float *v) {
   _Alignas(64) uint32_t cell[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, cell);
   uint32_t bits = s->jitter_bits, down = 32 - bits, half = 1u << (bits - 1);
   uint32_t columns = s->grid_x, fewer = columns > 1 ? columns - 1 : 1, edge = s->wide * columns;
-  float inverse = 1.0f / (float)columns, inverse_fewer = 1.0f / (float)fewer, unit = 1.0f / (float)(1u << bits);
+  float inverse = 1.0f / (float)columns, inverse_fewer = 1.0f / (float)fewer,
+        unit = 1.0f / (float)(1u << bits);
   float scale_y = unit / (float)s->set;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < c->n; i++) {
@@ -42,7 +47,8 @@ VL_SAMPLER_INLINE void vl_grid_2d(const int jittered, const vlSampler *s, const 
   }
 }
 
-VL_SAMPLER_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
+VL_SAMPLER_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c, float *u,
+                                    float *v) {
   _Alignas(64) uint32_t row[VL_SAMPLER_CHUNK], column[VL_SAMPLER_CHUNK];
   vlPermutation p = vl_permutation(s->set);
   vl_permute_lanes(c->n, p, c->index, c->key, 0, column);
@@ -57,10 +63,11 @@ VL_SAMPLER_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c,
   }
 }
 
-/* Correlated multi-jittered points (Kensler 2013, "Correlated Multi-Jittered Sampling", the form for any number of
- * samples). m and n are the numbers of columns and rows. Sample k = row m + column has y = (k + jitter) / set, x =
- * (px(column) + (py(row) + jitter) / n) / m. */
-VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
+/* Correlated multi-jittered points (Kensler 2013, "Correlated Multi-Jittered Sampling", the
+ * form for any number of samples). m and n are the numbers of columns and rows. Sample k = row
+ * m + column has y = (k + jitter) / set, x = (px(column) + (py(row) + jitter) / n) / m. */
+VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerChunk *c,
+                                            float *u, float *v) {
   _Alignas(64) uint32_t k[VL_SAMPLER_CHUNK], row[VL_SAMPLER_CHUNK], column[VL_SAMPLER_CHUNK];
   uint32_t m = s->grid_x, n = (s->set + m - 1) / m;
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, k);
@@ -74,7 +81,8 @@ VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerC
   vl_permute_lanes(c->n, vl_permutation(m), column, c->key, 0x68e31da4u, column);
   vl_permute_lanes(c->n, vl_permutation(n), row, c->key, 0xb5297a4du, row);
   uint32_t bits = s->jitter_bits, down = 32 - bits;
-  float unit = 1.0f / (float)(1u << bits), scale_x = unit / ((float)m * (float)n), scale_y = unit / (float)s->set;
+  float unit = 1.0f / (float)(1u << bits), scale_x = unit / ((float)m * (float)n),
+        scale_y = unit / (float)s->set;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < c->n; i++) {
     uint32_t h = vl_hash2(c->key[i], k[i]);
@@ -83,9 +91,10 @@ VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerC
   }
 }
 
-/* Hammersley points: point i of n is (i / n, radical inverse of i). Its x is jittered within the column, and the
- * binary digits of its y are flipped at random. */
-VL_SAMPLER_INLINE void vl_hammersley_2d(const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
+/* Hammersley points: point i of n is (i / n, radical inverse of i). Its x is jittered within
+ * the column, and the binary digits of its y are flipped at random. */
+VL_SAMPLER_INLINE void vl_hammersley_2d(const vlSampler *s, const vlSamplerChunk *c, float *u,
+                                        float *v) {
   _Alignas(64) uint32_t k[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, k);
   uint32_t bits = s->jitter_bits, down = 32 - bits;

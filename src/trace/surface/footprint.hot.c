@@ -1,6 +1,7 @@
-/* trace/surface/footprint.hot.c: the footprint of a pixel on a surface. The cone around a ray intersects the surface in
- * an ellipse, as wide as the cone across the plane of incidence and longer along it at grazing angles. Its two axes in
- * uv select the filtering of images (texture/lookup.h). */
+/* trace/surface/footprint.hot.c: the footprint of a pixel on a surface. The cone around a ray
+ * intersects the surface in an ellipse, as wide as the cone across the plane of incidence and
+ * longer along it at grazing angles. Its two axes in uv select the filtering of images
+ * (texture/lookup.h). */
 #include "trace/stages.h"
 
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {
@@ -8,13 +9,17 @@ void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]), g = vl_vec3(f->gx[i], f->gy[i], f->gz[i]);
+    vlVec3 d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]),
+           g = vl_vec3(f->gx[i], f->gy[i], f->gz[i]);
     vlVec3 u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]), v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);
     vlFootprint r = vl_footprint_of(d, g, f->width[i]);
-    /* Solves X = a u + b v by least squares, because u and v lie only approximately in the surface. */
+    /* Solves X = a u + b v by least squares, because u and v lie only approximately in the
+     * surface.
+     */
     float uu = vl_dot(u, u), uv = vl_dot(u, v), vv = vl_dot(v, v), det = uu * vv - uv * uv;
     float inv = det > 0.0f && f->uv_scale[i] > 0.0f ? 1.0f / det : 0.0f;
-    float au = vl_dot(r.across, u), av = vl_dot(r.across, v), bu = vl_dot(r.along, u), bv = vl_dot(r.along, v);
+    float au = vl_dot(r.across, u), av = vl_dot(r.across, v), bu = vl_dot(r.along, u),
+          bv = vl_dot(r.along, v);
     f->across_u[i] = (vv * au - uv * av) * inv;
     f->across_v[i] = (uu * av - uv * au) * inv;
     f->along_u[i] = (vv * bu - uv * bv) * inv;

@@ -1,38 +1,48 @@
-/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and the choice of mixed
- * materials; and adds the radiance of lights that rays hit, with MIS weights against light sampling (pbrt book
- * 13.4). */
+/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and the
+ * choice of mixed materials; and adds the radiance of lights that rays hit, with MIS weights
+ * against light sampling (pbrt book 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
 #include "velo/material.h"
 #include "velo/shape.h"
 #include "world/accel/local_ray.h"
 
-/* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
+/* ---- lights that rays hit
+ * ---------------------------------------------------------------------------------------- */
 
 /* Adds the light's radiance with the weight of multiple importance sampling. */
-static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
+static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met,
+                          bool sky) {
   (void)sky;
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
-  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
+  for (int c = 0; c < 4; c++)
+    t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
 }
 
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+  return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i],
+                          h->instance[i], h->t[i]);
 }
 
 void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
   vl_stage_lights_hit(t, n, rays, hits, NULL, add_hit_light);
 }
 
-/* ---- hits -------------------------------------------------------------------------------------------------------- */
+/* ---- hits
+ * --------------------------------------------------------------------------------------------------------
+ */
 
-/* Vertex attributes (uv sets, colours) at the hit of a path's ray; not used for other shapes than triangles. */
-static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+/* Vertex attributes (uv sets, colours) at the hit of a path's ray; not used for other shapes
+ * than triangles. */
+static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const vlHits *h,
+                                  uint32_t i) {
   vlTextureCorner corner = {&world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
-  if (corner.shape->kind != VL_SHAPE_TRIANGLES) return corner;
+  if (corner.shape->kind != VL_SHAPE_TRIANGLES)
+    return corner;
   float time = vl_path_time(p, i);
-  vlRays rays = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, NULL, NULL, &time};
+  vlRays rays = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i,
+                 p->dz + i, NULL,      NULL,      &time};
   vlLocalRay ray = vl_local_ray(world, &rays, 0, h->instance[i]);
   vlTextureQuery at;
   vl_local_triangle(corner.shape, corner.prim, &ray, &at, corner.weights);
@@ -42,14 +52,18 @@ static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const 
 /* The share of a material that is not interface. */
 static float presence_of(const vlWorld *world, uint32_t material, const vlTextureQuery *at) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  return m->nothing ? 0.0f : m->presence >= 0 ? vl_texture_float_at(world, m->presence, at) : 1.0f;
+  return m->nothing         ? 0.0f
+         : m->presence >= 0 ? vl_texture_float_at(world, m->presence, at)
+                            : 1.0f;
 }
 
-/* A hash of the ray chooses one of a mixed material's materials, so that the choice needs no sampler dimension. */
+/* A hash of the ray chooses one of a mixed material's materials, so that the choice needs no
+ * sampler dimension. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
   while (world->materials.items[material].kind ==
-         VL_MATERIAL_MIX) { /* the materials of a mix have smaller indices than the mix, so the loop ends */
+         VL_MATERIAL_MIX) { /* the materials of a mix have smaller indices than the mix, so the
+                               loop ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
@@ -59,7 +73,8 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
     if (m->presence >= 0) { /* the ray has hit what is not interface */
       float first = (1.0f - amount) * presence_of(world, m->mix[0], &query);
       float second = amount * presence_of(world, m->mix[1], &query);
-      if (first + second > 0.0f) amount = second / (first + second);
+      if (first + second > 0.0f)
+        amount = second / (first + second);
     }
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
     hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
@@ -70,13 +85,16 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
 }
 
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
-  const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
+  const float *t_min = camera ? t->batch->t_min : NULL,
+              *t_max = camera ? t->batch->t_max : NULL;
   VL_ROW float time[VL_ROW_SIZE];
-  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time)};
+  vlRays rays = {
+      p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time)};
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
 }
 
-void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max) {
+void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min,
+                       const float *t_max) {
   float time = vl_path_time(p, i);
   vlRays ray = {p->ox + i,
                 p->oy + i,
@@ -87,21 +105,28 @@ void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, fl
                 &t_min,
                 t_max ? t_max + i : NULL,
                 p->time ? &time : NULL};
-  vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
+  vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i,
+                   h->t + i);
   t->batch->bounce_rays++;
 }
 
-/* Passes interface surfaces, which do not change the ray's direction. The ray keeps its origin, which multiple
- * importance sampling needs, and its end. */
-static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
+/* Passes interface surfaces, which do not change the ray's direction. The ray keeps its origin,
+ * which multiple importance sampling needs, and its end. */
+static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i,
+                            const float *t_max) {
   const vlWorld *world = t->world;
   float t_min = 0;
   for (int step = 0; h->shape[i] != VL_NONE; step++) {
-    if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
-    if (step == 1024) h->shape[i] = VL_NONE; /* a bound; no ray crosses so many interfaces */
-    if (h->shape[i] == VL_NONE) return;
+    if (world->materials.items[world->shapes.items[h->shape[i]].material].kind !=
+        VL_MATERIAL_INTERFACE)
+      return;
+    if (step == 1024)
+      h->shape[i] = VL_NONE; /* a bound; no ray crosses so many interfaces */
+    if (h->shape[i] == VL_NONE)
+      return;
     vlHitLight met;
-    if (world->shapes.items[h->shape[i]].first_light != VL_NONE && vl_hit_emission(world, p, h, i, &met))
+    if (world->shapes.items[h->shape[i]].first_light != VL_NONE &&
+        vl_hit_emission(world, p, h, i, &met))
       add_hit_light(t, p, i, &met, false);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
@@ -112,16 +137,21 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
 
 void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
   vl_closest_hits(t, n, camera, p, h);
-  if (!camera) t->batch->bounce_rays += n;
+  if (!camera)
+    t->batch->bounce_rays += n;
   const vlWorldShape *shapes = t->world->shapes.items;
   if (!t->world->has_interfaces && !t->world->has_mixtures) {
-    for (uint32_t i = 0; i < n; i++) h->material[i] = h->shape[i] == VL_NONE ? 0 : shapes[h->shape[i]].material;
+    for (uint32_t i = 0; i < n; i++)
+      h->material[i] = h->shape[i] == VL_NONE ? 0 : shapes[h->shape[i]].material;
     return;
   }
   for (uint32_t i = 0; i < n; i++) {
-    if (h->shape[i] == VL_NONE) continue;
-    if (t->world->has_interfaces) pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);
-    if (h->shape[i] != VL_NONE) h->material[i] = vl_hit_material(t->world, p, h, i);
+    if (h->shape[i] == VL_NONE)
+      continue;
+    if (t->world->has_interfaces)
+      pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);
+    if (h->shape[i] != VL_NONE)
+      h->material[i] = vl_hit_material(t->world, p, h, i);
   }
 }
 
@@ -129,6 +159,7 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHi
 void vl_stage_alpha(const vlTracing *t, const vlHits *hits) {
   for (uint32_t i = 0; i < t->batch->n; i++) {
     uint32_t shape = hits->shape[i];
-    t->batch->alpha[i] = shape == VL_NONE || t->world->shapes.items[shape].backdrop ? 0.0f : 1.0f;
+    t->batch->alpha[i] =
+        shape == VL_NONE || t->world->shapes.items[shape].backdrop ? 0.0f : 1.0f;
   }
 }

@@ -1,6 +1,6 @@
-/* trace/surface/surface.hot.c: computes surface points from ids. It does not use Embree's t, u, v, which differ
- * between instruction sets. For triangles, it gathers the corners and then runs one vector loop. Other shapes are
- * computed one by one by world/shape/surface_point.c. */
+/* trace/surface/surface.hot.c: computes surface points from ids. It does not use Embree's t, u,
+ * v, which differ between instruction sets. For triangles, it gathers the corners and then runs
+ * one vector loop. Other shapes are computed one by one by world/shape/surface_point.c. */
 #include "math/transform.h"
 #include "trace/stages.h"
 #include "velo/shape.h"
@@ -8,20 +8,25 @@
 #include "world/shape/surface_point.h"
 
 static inline vlVec3 move_corner(const float m[12], const float *x) {
-  return vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3], m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
+  return vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3],
+                 m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
                  m[8] * x[0] + m[9] * x[1] + m[10] * x[2] + m[11]);
 }
 static inline float placing_error(const vlWorldInstance *q, const float *x) {
-  return q->error[0] * vl_abs(x[0]) + q->error[1] * vl_abs(x[1]) + q->error[2] * vl_abs(x[2]) + q->error[3];
+  return q->error[0] * vl_abs(x[0]) + q->error[1] * vl_abs(x[1]) + q->error[2] * vl_abs(x[2]) +
+         q->error[3];
 }
-/* Transforms a normal by the inverse transpose: the rows of the inverse matrix are used as columns. */
+/* Transforms a normal by the inverse transpose: the rows of the inverse matrix are used as
+ * columns.
+ */
 static inline vlVec3 move_normal(const float inverse[12], const float *n) {
   return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
                  inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
                  inverse[2] * n[0] + inverse[6] * n[1] + inverse[10] * n[2]);
 }
 
-static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uint32_t i, vlCorners *c) {
+static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uint32_t i,
+                                   vlCorners *c) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   uint32_t instance = hits->instance[i];
@@ -31,14 +36,18 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
     const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    for (int j = 0; j < 3; j++) c->p[3 * k + j][i] = x[j];
+    for (int j = 0; j < 3; j++)
+      c->p[3 * k + j][i] = x[j];
     c->uv[2 * k][i] = t[0];
     c->uv[2 * k + 1][i] = t[1];
-    for (int j = 0; j < 3; j++) c->n[3 * k + j][i] = s->normals ? s->normals[3 * (size_t)f[k] + j] : 0.0f;
+    for (int j = 0; j < 3; j++)
+      c->n[3 * k + j][i] = s->normals ? s->normals[3 * (size_t)f[k] + j] : 0.0f;
   }
-  if (instance == VL_NONE) return;
+  if (instance == VL_NONE)
+    return;
   const vlWorldInstance *q = &world->instances.items[instance];
-  if (q->keys || s->steps > 1) return;
+  if (q->keys || s->steps > 1)
+    return;
   c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
@@ -56,26 +65,32 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   }
 }
 
-/* Large meshes are not in the cache: what gather_triangle reads of later lanes is prefetched, first the indices, then
- * the vertices. */
+/* Large meshes are not in the cache: what gather_triangle reads of later lanes is prefetched,
+ * first the indices, then the vertices. */
 enum { AHEAD = 8, LARGE_MESH = 4096 };
 static inline bool in_large_mesh(const vlWorldShape *s) {
   return s->kind == VL_SHAPE_TRIANGLES && s->faces >= LARGE_MESH;
 }
-static inline __attribute__((always_inline)) void prefetch_indices(const vlWorld *world, const vlHits *hits,
+static inline __attribute__((always_inline)) void prefetch_indices(const vlWorld *world,
+                                                                   const vlHits *hits,
                                                                    uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-  if (in_large_mesh(s)) __builtin_prefetch(s->indices + 3 * (size_t)hits->prim[i]);
+  if (in_large_mesh(s))
+    __builtin_prefetch(s->indices + 3 * (size_t)hits->prim[i]);
 }
-static inline __attribute__((always_inline)) void prefetch_vertices(const vlWorld *world, const vlHits *hits,
+static inline __attribute__((always_inline)) void prefetch_vertices(const vlWorld *world,
+                                                                    const vlHits *hits,
                                                                     uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-  if (!in_large_mesh(s)) return;
+  if (!in_large_mesh(s))
+    return;
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   for (int k = 0; k < 3; k++) {
     __builtin_prefetch(s->positions + 3 * (size_t)f[k]);
-    if (s->normals) __builtin_prefetch(s->normals + 3 * (size_t)f[k]);
-    if (s->uvs) __builtin_prefetch(s->uvs + 2 * (size_t)f[k]);
+    if (s->normals)
+      __builtin_prefetch(s->normals + 3 * (size_t)f[k]);
+    if (s->uvs)
+      __builtin_prefetch(s->uvs + 2 * (size_t)f[k]);
   }
 }
 
@@ -86,7 +101,8 @@ typedef struct MovedTriangle {
   bool mirrored;
 } MovedTriangle;
 
-static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance *instance, uint32_t prim, float time) {
+static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance *instance,
+                                   uint32_t prim, float time) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlWorldInstance room;
   const vlWorldInstance *q = instance ? vl_instance_at(instance, time, &room) : NULL;
@@ -102,10 +118,12 @@ static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance 
     r.n[k] = y ? vl_vec3(y[0], y[1], y[2]) : vl_vec3(0, 0, 0);
     if (q) {
       float size = 0;
-      for (int i = 0; i < 9; i++) size = vl_max(size, vl_abs(q->from_group[i + i / 3]));
+      for (int i = 0; i < 9; i++)
+        size = vl_max(size, vl_abs(q->from_group[i + i / 3]));
       r.p[k] = move_corner(q->from_group, x);
       error = placing_error(q, x) + 3.0f * size * error;
-      if (y) r.n[k] = move_normal(q->to_group, y);
+      if (y)
+        r.n[k] = move_normal(q->to_group, y);
     }
     r.error = vl_max(r.error, error);
   }
@@ -113,13 +131,16 @@ static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance 
 }
 
 static inline bool triangle_moves(const vlWorld *world, uint32_t shape, uint32_t instance) {
-  return world->shapes.items[shape].steps > 1 || (instance != VL_NONE && world->instances.items[instance].keys);
+  return world->shapes.items[shape].steps > 1 ||
+         (instance != VL_NONE && world->instances.items[instance].keys);
 }
 
 /* gather_triangle for moving shapes. */
-static void gather_moving(const vlWorld *world, const vlHits *hits, float time, uint32_t i, vlCorners *c) {
+static void gather_moving(const vlWorld *world, const vlHits *hits, float time, uint32_t i,
+                          vlCorners *c) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-  const vlWorldInstance *q = hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
+  const vlWorldInstance *q =
+      hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
   MovedTriangle r = move_triangle(s, q, hits->prim[i], time);
   for (int k = 0; k < 3; k++) {
     c->p[3 * k][i] = r.p[k].x;
@@ -147,8 +168,10 @@ static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
   return vl_vec3(which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z);
 }
 
-/* Scales v by the power of two that brings its largest component into [1, 2). Without this, squares of cross products
- * of tiny or huge triangles would leave the range of float. The scaling is exact. */
+/* Scales v by the power of two that brings its largest component into [1, 2). Without this,
+ * squares of cross products of tiny or huge triangles would leave the range of float. The
+ * scaling is exact.
+ */
 static inline vlVec3 near_one(vlVec3 v) {
   float largest = vl_max(vl_max(vl_abs(v.x), vl_abs(v.y)), vl_abs(v.z));
   uint32_t exponent = vl_float_bits(largest) & 0x7f800000u;
@@ -156,13 +179,16 @@ static inline vlVec3 near_one(vlVec3 v) {
   return vl_mul(v, scale);
 }
 
-/* The point at which a ray hits a triangle. Barycentric coordinates are ratios of volumes spanned with the ray (signs
- * as in Woop et al. 2013); points outside by rounding are clamped to the edge. */
-static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1,
-                                                                     vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
-                                                                     TriangleUv uv, float corner_error, float flip) {
+/* The point at which a ray hits a triangle. Barycentric coordinates are ratios of volumes
+ * spanned with the ray (signs as in Woop et al. 2013); points outside by rounding are clamped
+ * to the edge.
+ */
+static inline __attribute__((always_inline)) Triangle triangle_point(
+    vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
+    TriangleUv uv, float corner_error, float flip) {
   vlVec3 a = vl_sub(p0, o), b = vl_sub(p1, o), c = vl_sub(p2, o);
-  float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)), b2 = vl_dot(d, vl_cross(a, b));
+  float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)),
+        b2 = vl_dot(d, vl_cross(a, b));
   float sum = b0 + b1 + b2;
   float sign = sum < 0.0f ? -1.0f : 1.0f;
   b0 = vl_max(b0 * sign, 0.0f);
@@ -179,8 +205,8 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   vlVec3 cross = vl_cross(e02, e12);
   vlVec3 g = vl_normalize(near_one(cross));
   r.offset = vl_triangle_offset(g, r.p, p0, p1, p2, b0, b1, b2, corner_error);
-  /* The distance to the triangle's plane. It does not depend on where in the plane p is, which is uncertain in
-   * triangles that are thin and far away. */
+  /* The distance to the triangle's plane. It does not depend on where in the plane p is, which
+   * is uncertain in triangles that are thin and far away. */
   vlVec3 way = vl_sub(r.p, o);
   float along = vl_dot(way, d), steep = vl_dot(g, d), height = vl_dot(g, way);
   r.dist = vl_abs(steep) > 0.01f ? height / steep : along;
@@ -193,7 +219,8 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), VL_MIN_NORMAL);
   r.curvature = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
   ns = vl_normalize(ns);
-  /* The geometric normal is on the side of the vertex normals. Without vertex normals, vertex order and flip decide. */
+  /* The geometric normal is on the side of the vertex normals. Without vertex normals, vertex
+   * order and flip decide. */
   float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
   float side = has_n > 0.0f ? towards : flip;
   r.g = vl_mul(g, side);
@@ -206,8 +233,8 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float inv_det = vl_abs(det) > VL_MIN_POSITIVE ? 1.0f / det : 0.0f;
   vlVec3 du = vl_mul(vl_sub(vl_mul(e02, v12), vl_mul(e12, v02)), inv_det);
   vlVec3 dv = vl_mul(vl_sub(vl_mul(e12, u02), vl_mul(e02, u12)), inv_det);
-  /* Where the coordinates span no area, the tangent is the edge from the first corner to the second: it turns with the
-   * triangle, as one made from the normal alone would not. */
+  /* Where the coordinates span no area, the tangent is the edge from the first corner to the
+   * second: it turns with the triangle, as one made from the normal alone would not. */
   vlVec3 edge = vl_normalize(near_one(vl_sub(p1, p0)));
   float ok = vl_length2(du) > 0.0f ? 1.0f : 0.0f;
   r.u = select3(ok > 0.0f, du, edge);
@@ -219,9 +246,11 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
 /* Mean curvature from the derivatives of point and normal (Weingarten's equations). */
 static float mean_curvature(const vlSurfacePoint *q) {
   const double *u = q->dpdu, *v = q->dpdv, *a = q->dndu, *b = q->dndv;
-  double e = u[0] * u[0] + u[1] * u[1] + u[2] * u[2], f = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  double e = u[0] * u[0] + u[1] * u[1] + u[2] * u[2],
+         f = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
   double g = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  double l = a[0] * u[0] + a[1] * u[1] + a[2] * u[2], n = b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
+  double l = a[0] * u[0] + a[1] * u[1] + a[2] * u[2],
+         n = b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
   double m = a[0] * v[0] + a[1] * v[1] + a[2] * v[2], det = e * g - f * f;
   return det > 0 ? (float)(0.5 * (l * g - 2 * m * f + n * e) / det) : 0.0f;
 }
@@ -251,51 +280,63 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, flo
   out->v[i] = q->uv[1];
   out->t[i] = t;
   out->offset[i] = vl_point_offset(q);
-  float area = vl_length(vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
+  float area = vl_length(
+      vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
   out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
 }
 
-/* Computes the surface point of a sphere, disk, cylinder, patch or curve: intersects the shape again in group space and
- * transforms the point to world space. The same arithmetic computed *t, which identifies the crossing. */
-static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                                  uint32_t instance, float *t) {
+/* Computes the surface point of a sphere, disk, cylinder, patch or curve: intersects the shape
+ * again in group space and transforms the point to world space. The same arithmetic computed
+ * *t, which identifies the crossing. */
+static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d,
+                                  uint32_t shape, uint32_t prim, uint32_t instance, float *t) {
   const vlWorldShape *s = &world->shapes.items[shape];
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
   vlWorldInstance room;
   const vlWorldInstance *q =
-      instance == VL_NONE ? NULL : vl_instance_at(&world->instances.items[instance], time, &room);
-  if (q) vl_ray_to_group(q, go, gd);
+      instance == VL_NONE ? NULL
+                          : vl_instance_at(&world->instances.items[instance], time, &room);
+  if (q)
+    vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
   vlSurfacePoint point;
-  if (vl_shape_intersect(s, prim, go, gd, *t * (1 - VL_REFIND), *t * (1 + VL_REFIND) + VL_REFIND_LEAST, &hit)) {
+  if (vl_shape_intersect(s, prim, go, gd, *t * (1 - VL_REFIND),
+                         *t * (1 + VL_REFIND) + VL_REFIND_LEAST, &hit)) {
     *t = (float)hit.t;
     vl_shape_point(s, prim, &hit, &point);
   } else { /* cannot happen: the same ray hit it with the same arithmetic */
     double pdf;
     vl_shape_sample(s, prim, 0.5f, 0.5f, &point, &pdf);
   }
-  if (!q) return point;
+  if (!q)
+    return point;
   const float *m = q->from_group, *w = q->to_group;
   const float x[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
   vlSurfacePoint r = point;
   for (int i = 0; i < 3; i++) {
-    r.p[i] = (double)m[4 * i] * point.p[0] + (double)m[4 * i + 1] * point.p[1] + (double)m[4 * i + 2] * point.p[2] +
-             m[4 * i + 3];
-    r.dpdu[i] =
-        (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] + (double)m[4 * i + 2] * point.dpdu[2];
-    r.dpdv[i] =
-        (double)m[4 * i] * point.dpdv[0] + (double)m[4 * i + 1] * point.dpdv[1] + (double)m[4 * i + 2] * point.dpdv[2];
-    r.dndu[i] = (double)w[i] * point.dndu[0] + (double)w[4 + i] * point.dndu[1] + (double)w[8 + i] * point.dndu[2];
-    r.dndv[i] = (double)w[i] * point.dndv[0] + (double)w[4 + i] * point.dndv[1] + (double)w[8 + i] * point.dndv[2];
-    r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] + (double)w[8 + i] * point.n[2];
+    r.p[i] = (double)m[4 * i] * point.p[0] + (double)m[4 * i + 1] * point.p[1] +
+             (double)m[4 * i + 2] * point.p[2] + m[4 * i + 3];
+    r.dpdu[i] = (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] +
+                (double)m[4 * i + 2] * point.dpdu[2];
+    r.dpdv[i] = (double)m[4 * i] * point.dpdv[0] + (double)m[4 * i + 1] * point.dpdv[1] +
+                (double)m[4 * i + 2] * point.dpdv[2];
+    r.dndu[i] = (double)w[i] * point.dndu[0] + (double)w[4 + i] * point.dndu[1] +
+                (double)w[8 + i] * point.dndu[2];
+    r.dndv[i] = (double)w[i] * point.dndv[0] + (double)w[4 + i] * point.dndv[1] +
+                (double)w[8 + i] * point.dndv[2];
+    r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] +
+             (double)w[8 + i] * point.n[2];
     r.error[i] = __builtin_fabs((double)m[4 * i]) * point.error[0] +
                  __builtin_fabs((double)m[4 * i + 1]) * point.error[1] +
-                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2] + (double)placing_error(q, x);
-    r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] + (double)w[8 + i] * point.ns[2];
+                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2] +
+                 (double)placing_error(q, x);
+    r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] +
+              (double)w[8 + i] * point.ns[2];
   }
   double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
   double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
-  r.off /= ln > 0 ? ln : 1; /* planes perpendicular to n that are off apart are off / ln apart when transformed */
+  r.off /= ln > 0 ? ln : 1; /* planes perpendicular to n that are off apart are off / ln apart
+                               when transformed */
   for (int i = 0; i < 3; i++) {
     r.n[i] /= ln > 0 ? ln : 1;
     r.ns[i] /= ls > 0 ? ls : 1;
@@ -306,15 +347,17 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
 }
 
 /* Vertex tangents (pbrt's S), interpolated. */
-static void apply_tangents(const vlWorld *world, const vlHits *hits, float time, uint32_t i, const vlCorners *c,
-                           vlSurface *out) {
+static void apply_tangents(const vlWorld *world, const vlHits *hits, float time, uint32_t i,
+                           const vlCorners *c, vlSurface *out) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]), k[3];
-  for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  for (int j = 0; j < 3; j++)
+    k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
   vlVec3 g = vl_cross(vl_sub(k[1], k[0]), vl_sub(k[2], k[0]));
   float total = vl_length2(g);
-  if (!(total > 0.0f)) return;
+  if (!(total > 0.0f))
+    return;
   float b1 = vl_dot(vl_cross(vl_sub(p, k[0]), vl_sub(k[2], k[0])), g) / total;
   float b2 = vl_dot(vl_cross(vl_sub(k[1], k[0]), vl_sub(p, k[0])), g) / total;
   float w[3] = {1.0f - b1 - b2, b1, b2};
@@ -326,15 +369,18 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   bool mirrored = false;
   if (hits->instance[i] != VL_NONE) {
     vlWorldInstance room;
-    const vlWorldInstance *q = vl_instance_at(&world->instances.items[hits->instance[i]], time, &room);
+    const vlWorldInstance *q =
+        vl_instance_at(&world->instances.items[hits->instance[i]], time, &room);
     const float *m = q->from_group;
     mirrored = q->mirrored;
     t = vl_vec3(m[0] * t.x + m[1] * t.y + m[2] * t.z, m[4] * t.x + m[5] * t.y + m[6] * t.z,
                 m[8] * t.x + m[9] * t.y + m[10] * t.z);
   }
-  if (!(vl_length2(t) > 0.0f)) return;
+  if (!(vl_length2(t) > 0.0f))
+    return;
   vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), t);
-  if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored) v = vl_neg(v);
+  if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored)
+    v = vl_neg(v);
   out->ux[i] = t.x;
   out->uy[i] = t.y;
   out->uz[i] = t.z;
@@ -343,15 +389,19 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   out->vz[i] = v.z;
 }
 
-void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
-                      vlSurface *out) {
+void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
+                      const vlHits *hits, vlCorners *c, vlSurface *out) {
   bool others = false;
   for (uint32_t i = 0; i < n; i++) {
-    if (i + 2 * AHEAD < n) prefetch_indices(world, hits, i + 2 * AHEAD); /* must prefetch */
-    if (i + AHEAD < n) prefetch_vertices(world, hits, i + AHEAD);        /* must prefetch */
+    if (i + 2 * AHEAD < n)
+      prefetch_indices(world, hits, i + 2 * AHEAD); /* must prefetch */
+    if (i + AHEAD < n)
+      prefetch_vertices(world, hits, i + AHEAD); /* must prefetch */
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    if (s->kind == VL_SHAPE_TRIANGLES) gather_triangle(world, hits, i, c);
-    if (world->moves && s->kind == VL_SHAPE_TRIANGLES && triangle_moves(world, hits->shape[i], hits->instance[i]))
+    if (s->kind == VL_SHAPE_TRIANGLES)
+      gather_triangle(world, hits, i, c);
+    if (world->moves && s->kind == VL_SHAPE_TRIANGLES &&
+        triangle_moves(world, hits->shape[i], hits->instance[i]))
       gather_moving(world, hits, vl_path_time(paths, i), i, c);
     others = others || s->kind != VL_SHAPE_TRIANGLES || s->tangents;
   }
@@ -359,13 +409,17 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
-    TriangleUv uv = {c->uv[0][i], c->uv[1][i], c->uv[2][i], c->uv[3][i], c->uv[4][i], c->uv[5][i]};
-    Triangle r =
-        triangle_point(o, d, vl_vec3(c->p[0][i], c->p[1][i], c->p[2][i]), vl_vec3(c->p[3][i], c->p[4][i], c->p[5][i]),
-                       vl_vec3(c->p[6][i], c->p[7][i], c->p[8][i]), vl_vec3(c->n[0][i], c->n[1][i], c->n[2][i]),
-                       vl_vec3(c->n[3][i], c->n[4][i], c->n[5][i]), vl_vec3(c->n[6][i], c->n[7][i], c->n[8][i]), uv,
-                       c->error[i], c->flip[i]);
+    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]),
+           d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    TriangleUv uv = {c->uv[0][i], c->uv[1][i], c->uv[2][i],
+                     c->uv[3][i], c->uv[4][i], c->uv[5][i]};
+    Triangle r = triangle_point(o, d, vl_vec3(c->p[0][i], c->p[1][i], c->p[2][i]),
+                                vl_vec3(c->p[3][i], c->p[4][i], c->p[5][i]),
+                                vl_vec3(c->p[6][i], c->p[7][i], c->p[8][i]),
+                                vl_vec3(c->n[0][i], c->n[1][i], c->n[2][i]),
+                                vl_vec3(c->n[3][i], c->n[4][i], c->n[5][i]),
+                                vl_vec3(c->n[6][i], c->n[7][i], c->n[8][i]), uv, c->error[i],
+                                c->flip[i]);
     out->px[i] = r.p.x;
     out->py[i] = r.p.y;
     out->pz[i] = r.p.z;
@@ -390,11 +444,12 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
   }
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]),
+           d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
     if (s->kind != VL_SHAPE_TRIANGLES) {
       float t = hits->t[i];
-      vlSurfacePoint q =
-          other_point(world, vl_path_time(paths, i), o, d, hits->shape[i], hits->prim[i], hits->instance[i], &t);
+      vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i],
+                                     hits->prim[i], hits->instance[i], &t);
       store_point(out, i, &q, t);
     }
   }
@@ -403,11 +458,14 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
     out->no_cosine[i] = 0.0f;
     out->side[i] = 0.0f;
   }
-  if (world->images.count) vl_stage_footprints(n, paths, out);
-  /* This runs after the footprints, which need the point's derivatives; tangents have another length. */
+  if (world->images.count)
+    vl_stage_footprints(n, paths, out);
+  /* This runs after the footprints, which need the point's derivatives; tangents have another
+   * length. */
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    if (s->kind == VL_SHAPE_TRIANGLES && s->tangents) apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
+    if (s->kind == VL_SHAPE_TRIANGLES && s->tangents)
+      apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
   }
 }
 
@@ -418,8 +476,8 @@ typedef struct OneTriangle {
   float error, flip;
 } OneTriangle;
 
-static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_t shape, uint32_t prim,
-                                       uint32_t instance) {
+static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_t shape,
+                                       uint32_t prim, uint32_t instance) {
   static const float unit[6] = {0, 0, 1, 0, 1, 1};
   const vlWorldShape *s = &world->shapes.items[shape];
   const uint32_t *f = s->indices + 3 * (size_t)prim;
@@ -439,7 +497,8 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
       const float *y = s->normals + 3 * (size_t)f[k];
       r.n[k] = q ? move_normal(q->to_group, y) : vl_vec3(y[0], y[1], y[2]);
     }
-    for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+    for (int j = 0; j < 2; j++)
+      uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
   }
   if (world->moves && triangle_moves(world, shape, instance)) {
     MovedTriangle moving = move_triangle(s, q, prim, time);
@@ -466,25 +525,28 @@ static vlPoint point_of(const vlSurfacePoint *q, float t) {
   return r;
 }
 
-vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                         uint32_t instance, float t_hit) {
+vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape,
+                         uint32_t prim, uint32_t instance, float t_hit) {
   if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES) {
     OneTriangle c = one_triangle(world, time, shape, prim, instance);
-    Triangle t = triangle_point(o, d, c.p[0], c.p[1], c.p[2], c.n[0], c.n[1], c.n[2], c.uv, c.error, c.flip);
+    Triangle t = triangle_point(o, d, c.p[0], c.p[1], c.p[2], c.n[0], c.n[1], c.n[2], c.uv,
+                                c.error, c.flip);
     return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
   }
   vlSurfacePoint q = other_point(world, time, o, d, shape, prim, instance, &t_hit);
   return point_of(&q, t_hit);
 }
 
-/* Gathers the corners of triangles; the points of other shapes are complete. Returns the number of triangles. */
-static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays, const uint32_t *lanes, uint32_t count,
-                                 vlCrossings *x) {
+/* Gathers the corners of triangles; the points of other shapes are complete. Returns the number
+ * of triangles. */
+static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays,
+                                 const uint32_t *lanes, uint32_t count, vlCrossings *x) {
   uint32_t triangles = 0;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = lanes[k];
     float time = rays->time ? rays->time[i] : 0.0f;
-    if (world->shapes.items[x->shape[i]].kind != VL_SHAPE_TRIANGLES) continue;
+    if (world->shapes.items[x->shape[i]].kind != VL_SHAPE_TRIANGLES)
+      continue;
     triangles++;
     OneTriangle c = one_triangle(world, time, x->shape[i], x->prim[i], x->instance[i]);
     for (int j = 0; j < 3; j++) {
@@ -501,21 +563,23 @@ static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays, const
   return triangles;
 }
 
-void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, const uint32_t *lanes, uint32_t count,
-                        vlCrossings *x) {
+void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays,
+                        const uint32_t *lanes, uint32_t count, vlCrossings *x) {
   uint32_t padded = VL_PAD(n), triangles = gather_crossings(world, rays, lanes, count, x);
   const TriangleUv no_uv = {0, 0, 1, 0, 1, 1};
   if (triangles) {
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-      vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]), d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
-      Triangle r = triangle_point(o, d, vl_vec3(x->corner[0][0][i], x->corner[0][1][i], x->corner[0][2][i]),
-                                  vl_vec3(x->corner[1][0][i], x->corner[1][1][i], x->corner[1][2][i]),
-                                  vl_vec3(x->corner[2][0][i], x->corner[2][1][i], x->corner[2][2][i]),
-                                  vl_vec3(x->normal[0][0][i], x->normal[0][1][i], x->normal[0][2][i]),
-                                  vl_vec3(x->normal[1][0][i], x->normal[1][1][i], x->normal[1][2][i]),
-                                  vl_vec3(x->normal[2][0][i], x->normal[2][1][i], x->normal[2][2][i]), no_uv,
-                                  x->error[i], x->flip[i]);
+      vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]),
+             d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
+      Triangle r = triangle_point(
+          o, d, vl_vec3(x->corner[0][0][i], x->corner[0][1][i], x->corner[0][2][i]),
+          vl_vec3(x->corner[1][0][i], x->corner[1][1][i], x->corner[1][2][i]),
+          vl_vec3(x->corner[2][0][i], x->corner[2][1][i], x->corner[2][2][i]),
+          vl_vec3(x->normal[0][0][i], x->normal[0][1][i], x->normal[0][2][i]),
+          vl_vec3(x->normal[1][0][i], x->normal[1][1][i], x->normal[1][2][i]),
+          vl_vec3(x->normal[2][0][i], x->normal[2][1][i], x->normal[2][2][i]), no_uv,
+          x->error[i], x->flip[i]);
       x->t[i] = r.dist;
       x->gx[i] = r.g.x;
       x->gy[i] = r.g.y;
@@ -525,11 +589,13 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, co
   }
   for (uint32_t k = 0; triangles < count && k < count; k++) {
     uint32_t i = lanes[k];
-    if (world->shapes.items[x->shape[i]].kind == VL_SHAPE_TRIANGLES) continue;
-    vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]), d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
+    if (world->shapes.items[x->shape[i]].kind == VL_SHAPE_TRIANGLES)
+      continue;
+    vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]),
+           d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
     float t = x->hit[i];
-    vlSurfacePoint q =
-        other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i], x->prim[i], x->instance[i], &t);
+    vlSurfacePoint q = other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i],
+                                   x->prim[i], x->instance[i], &t);
     vlPoint at = point_of(&q, t);
     x->t[i] = at.t;
     x->gx[i] = at.g.x;

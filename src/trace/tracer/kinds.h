@@ -5,7 +5,8 @@
 #include "trace/stages.h"
 #include "velo/tracer.h"
 
-/* Each kind of tracer has one function, vl_trace_ and its name; tracer/tracers.hot.c calls it. */
+/* Each kind of tracer has one function, vl_trace_ and its name; tracer/tracers.hot.c calls it.
+ */
 #define VL_TRACER_FUNCTION(K, k) void vl_trace_##k(vlTracing *t);
 VL_TRACER_KINDS(VL_TRACER_FUNCTION)
 #undef VL_TRACER_FUNCTION

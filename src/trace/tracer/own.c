@@ -6,16 +6,22 @@
   void function parameters {                       \
     trace->queries->member names;                  \
   }
-QUERY(vl_world_trace, hits, (vlTrace * trace, const vlTraceRays *rays, vlTraceHits *hits), (trace, rays, hits))
-QUERY(vl_world_occluded, occluded, (vlTrace * trace, const vlTraceRays *rays, uint8_t occluded[VL_OWN_BATCH]),
+QUERY(vl_world_trace, hits, (vlTrace * trace, const vlTraceRays *rays, vlTraceHits *hits),
+      (trace, rays, hits))
+QUERY(vl_world_occluded, occluded,
+      (vlTrace * trace, const vlTraceRays *rays, uint8_t occluded[VL_OWN_BATCH]),
       (trace, rays, occluded))
-QUERY(vl_trace_leave, leave, (vlTrace * trace, float (*direction)[VL_OWN_BATCH], vlTraceRays *rays),
+QUERY(vl_trace_leave, leave,
+      (vlTrace * trace, float (*direction)[VL_OWN_BATCH], vlTraceRays *rays),
       (trace, direction, rays))
-QUERY(vl_trace_lights, lights, (vlTrace * trace, uint32_t bounce, vlTraceLights *lights), (trace, bounce, lights))
+QUERY(vl_trace_lights, lights, (vlTrace * trace, uint32_t bounce, vlTraceLights *lights),
+      (trace, bounce, lights))
 QUERY(vl_trace_bsdf, bsdf,
-      (vlTrace * trace, float (*direction)[VL_OWN_BATCH], float (*value)[VL_OWN_BATCH], float *pdf),
+      (vlTrace * trace, float (*direction)[VL_OWN_BATCH], float (*value)[VL_OWN_BATCH],
+       float *pdf),
       (trace, direction, value, pdf))
-QUERY(vl_trace_bounce, bounce, (vlTrace * trace, uint32_t bounce, vlTraceBounce *next), (trace, bounce, next))
+QUERY(vl_trace_bounce, bounce, (vlTrace * trace, uint32_t bounce, vlTraceBounce *next),
+      (trace, bounce, next))
 
 /* Dimensions of the sampler behind those of all bounces. */
 enum { PURPOSES = 1 << 21 };

@@ -1,5 +1,6 @@
-/* trace/tracer/own.h: a tracer of one's own (velo/trace.h): a batch that it traces, and the functions that answer its
- * questions. own.hot.c has these once per instruction set, own.c the public functions that call them. */
+/* trace/tracer/own.h: a tracer of one's own (velo/trace.h): a batch that it traces, and the
+ * functions that answer its questions. own.hot.c has these once per instruction set, own.c the
+ * public functions that call them. */
 #ifndef TRACE_TRACER_OWN_H
 #define TRACE_TRACER_OWN_H
 
@@ -11,7 +12,8 @@ typedef struct vlTraceQueries {
   void (*occluded)(vlTrace *trace, const vlTraceRays *rays, uint8_t *occluded);
   void (*leave)(vlTrace *trace, float (*direction)[VL_OWN_BATCH], vlTraceRays *rays);
   void (*lights)(vlTrace *trace, uint32_t bounce, vlTraceLights *lights);
-  void (*bsdf)(vlTrace *trace, float (*direction)[VL_OWN_BATCH], float (*value)[VL_OWN_BATCH], float *pdf);
+  void (*bsdf)(vlTrace *trace, float (*direction)[VL_OWN_BATCH], float (*value)[VL_OWN_BATCH],
+               float *pdf);
   void (*bounce)(vlTrace *trace, uint32_t bounce, vlTraceBounce *next);
 } vlTraceQueries;
 
@@ -19,7 +21,8 @@ struct vlTrace {
   const vlTraceQueries *queries;
   vlTracing t;        /* its batch is the one below */
   vlTraceBatch batch; /* the render's; only the outputs differ */
-  uint32_t hits;      /* how many of the last rays hit something: elements of s->at.paths, s->at.surface, s->at.shade */
+  uint32_t hits;      /* how many of the last rays hit something: elements of s->at.paths,
+                         s->at.surface,      s->at.shade */
   uint32_t lanes;     /* of the last rays */
   bool begun;
   VL_ROW float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];

@@ -1,5 +1,6 @@
-/* trace/tracer/tracers.hot.c: calls the tracer, and defines the bounces of all tracers, and the tracers that end at the
- * first hit: raycast and ambient occlusion. The path tracer is in path.hot.c. */
+/* trace/tracer/tracers.hot.c: calls the tracer, and defines the bounces of all tracers, and the
+ * tracers that end at the first hit: raycast and ambient occlusion. The path tracer is in
+ * path.hot.c. */
 #include "math/warp.h"
 #include "trace/tracer/kinds.h"
 #include "trace/tracer/own.h"
@@ -12,21 +13,27 @@ static void start_paths(vlTracing *t) {
   bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
   t->s->rays.time = t->s->at.paths.time = b->time;
-  if (t->s->volume) t->s->volume->scattered.time = b->time;
+  if (t->s->volume)
+    t->s->volume->scattered.time = b->time;
   if (b->lambda[0]) {
-    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->numbers.u0);
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH,
+                       t->s->numbers.u0);
     float shared = way ? way->shared : -1.0f;
-    if (t->def->same_wavelengths && shared < 0.0f) shared = 0.5f;
-    for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->numbers.u0[i] = shared;
-    if (connects) vl_stage_groups(t, padded, t->s->numbers.u0);
+    if (t->def->same_wavelengths && shared < 0.0f)
+      shared = 0.5f;
+    for (uint32_t i = 0; shared >= 0.0f && i < padded; i++)
+      t->s->numbers.u0[i] = shared;
+    if (connects)
+      vl_stage_groups(t, padded, t->s->numbers.u0);
     const vlColorKernels *color = vl_color_kernels(t->def->isa);
     if (t->def->lambda_span > 0.0f)
-      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->numbers.u0, b->lambda,
-                                 b->inv_pdf);
+      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n,
+                                 t->s->numbers.u0, b->lambda, b->inv_pdf);
     else
       color->visible_wavelengths(b->n, t->s->numbers.u0, b->lambda, b->inv_pdf);
   } else if (connects && way->inner.groups > 1) {
-    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->numbers.u0);
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH,
+                       t->s->numbers.u0);
     vl_stage_groups(t, padded, t->s->numbers.u0);
   }
   for (uint32_t i = 0; i < padded; i++) {
@@ -57,7 +64,8 @@ static void start_paths(vlTracing *t) {
     }
 }
 
-/* Raycast: the emission at the camera ray's first hit, else reflectance times the cosine to the ray. */
+/* Raycast: the emission at the camera ray's first hit, else reflectance times the cosine to the
+ * ray. */
 void vl_trace_raycast(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
@@ -70,19 +78,22 @@ void vl_trace_raycast(vlTracing *t) {
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = s->at.paths.lane[i];
     const vlWorldMaterial *m = &world->materials.items[s->at.hits.material[i]];
-    if (vl_shape_light(&world->shapes.items[s->at.hits.shape[i]], s->at.hits.prim[i]) != VL_NONE) continue;
+    if (vl_shape_light(&world->shapes.items[s->at.hits.shape[i]], s->at.hits.prim[i]) !=
+        VL_NONE)
+      continue;
     float lambda[4];
     vl_path_lambda(&s->at.paths, i, lambda);
     for (int c = 0; c < 4; c++) {
       float reflectance = m->reflectance >= 0 ? s->at.shade.reflectance[c][i] : 0.8f;
       float cosine = vl_abs(s->at.shade.wo[2][i]);
-      t->batch->radiance[c][lane] += reflectance * cosine * vl_spectral_at(&world->white, c, lambda[c]);
+      t->batch->radiance[c][lane] +=
+          reflectance * cosine * vl_spectral_at(&world->white, c, lambda[c]);
     }
   }
 }
 
-/* Ambient occlusion as in pbrt: one ray per sample from the first hit. The sample is white if the ray is not
- * occluded. */
+/* Ambient occlusion as in pbrt: one ray per sample from the first hit. The sample is white if
+ * the ray is not occluded. */
 void vl_trace_ambient_occlusion(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
@@ -96,16 +107,19 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
                      VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u->u1, u->u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 nn =
-        vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i], s->at.surface.gz[i]); /* geometric normal, as in pbrt */
+    vlVec3 nn = vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i],
+                        s->at.surface.gz[i]); /* geometric normal, as in pbrt */
     vlVec3 d = vl_vec3(s->at.paths.dx[i], s->at.paths.dy[i], s->at.paths.dz[i]);
-    if (vl_dot(nn, d) > 0.0f) nn = vl_neg(nn);
+    if (vl_dot(nn, d) > 0.0f)
+      nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;
-    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(u->u1[i], u->u2[i]) : vl_warp_hemisphere(u->u1[i], u->u2[i]);
+    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(u->u1[i], u->u2[i])
+                          : vl_warp_hemisphere(u->u1[i], u->u2[i]);
     vlVec3 w = vl_from_local(vl_frame_from_z(nn), local);
-    vlVec3 o = vl_offset_origin(vl_vec3(s->at.surface.px[i], s->at.surface.py[i], s->at.surface.pz[i]),
-                                vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i], s->at.surface.gz[i]),
-                                s->at.surface.offset[i], w);
+    vlVec3 o =
+        vl_offset_origin(vl_vec3(s->at.surface.px[i], s->at.surface.py[i], s->at.surface.pz[i]),
+                         vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i], s->at.surface.gz[i]),
+                         s->at.surface.offset[i], w);
     float lambda[4];
     vl_path_lambda(&s->at.paths, i, lambda);
     vl_set_lane3(q->ox, q->oy, q->oz, i, o);
@@ -113,17 +127,22 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
     q->t_max[i] = t->def->ao_distance;
     /* Uniform sampling: cos / pi over the density 1 / (2 pi). */
     for (int c = 0; c < 4; c++)
-      q->radiance[c][i] = (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
+      q->radiance[c][i] =
+          (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
   }
-  for (uint32_t i = 0; s->at.paths.time && i < n; i++) q->time[i] = vl_path_time(&s->at.paths, i);
+  for (uint32_t i = 0; s->at.paths.time && i < n; i++)
+    q->time[i] = vl_path_time(&s->at.paths, i);
   vl_stage_occluded(t, n, &s->at.paths, q);
   t->batch->shadow_rays += n;
   for (uint32_t i = 0; i < n; i++)
     if (!q->occluded[i])
-      for (int c = 0; c < 4; c++) t->batch->radiance[c][s->at.paths.lane[i]] += q->radiance[c][i];
+      for (int c = 0; c < 4; c++)
+        t->batch->radiance[c][s->at.paths.lane[i]] += q->radiance[c][i];
 }
 
-/* ---- bounces ----------------------------------------------------------------------------------------------------- */
+/* ---- bounces
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps) {
   vlTraceScratch *s = t->s;
@@ -134,22 +153,29 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
       vl_volume_travel(t, n, depth, depth < most && !t->light);
     } else {
       vl_stage_hits(t, n, camera, &s->rays, &s->hits);
-      if (camera) vl_stage_alpha(t, &s->hits);
+      if (camera)
+        vl_stage_alpha(t, &s->hits);
     }
-    if (steps->arrive && !steps->arrive(t, n, depth)) break;
-    if (depth >= most) break;
+    if (steps->arrive && !steps->arrive(t, n, depth))
+      break;
+    if (depth >= most)
+      break;
     uint32_t inside = media ? steps->in_media(t, n, depth) : 0;
     n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
     if (n) {
-      if (media) vl_volume_permute(&media->a, &media->b, s->order, n);
+      if (media)
+        vl_volume_permute(&media->a, &media->b, s->order, n);
       vl_stage_shade(t, n, &s->at);
       n = steps->on_surfaces(t, n, depth);
     }
-    if (media) n = vl_volume_append(t, inside, n);
+    if (media)
+      n = vl_volume_append(t, inside, n);
   }
 }
 
-/* ---- the others -------------------------------------------------------------------------------------------------- */
+/* ---- the others
+ * --------------------------------------------------------------------------------------------------
+ */
 
 void vl_trace_volpath(vlTracing *t) {
   if (t->world->media.count > 0 || t->world->has_subsurface)
@@ -181,23 +207,44 @@ void vl_trace_light_path(vlTracing *t) {
   vl_trace_path(t);
 }
 
-static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
-  vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), NULL};
+static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch,
+                  vlTraceBatch *batch) {
+  vlTracing t = {
+      world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa),
+      NULL};
   start_paths(&t);
   if (def->own) {
     vl_own_tracer(&t);
     return;
   }
   switch ((vlTracer)def->tracer) {
-    case VL_TRACER_PATH: vl_trace_path(&t); break;
-    case VL_TRACER_RAYCAST: vl_trace_raycast(&t); break;
-    case VL_TRACER_AMBIENT_OCCLUSION: vl_trace_ambient_occlusion(&t); break;
-    case VL_TRACER_VOLPATH: vl_trace_volpath(&t); break;
-    case VL_TRACER_BIDIRECTIONAL: vl_trace_bidirectional(&t); break;
-    case VL_TRACER_MERGING: vl_trace_merging(&t); break;
-    case VL_TRACER_SPPM: vl_trace_sppm(&t); break;
-    case VL_TRACER_LIGHT_PATH: vl_trace_light_path(&t); break;
-    case VL_TRACER_RANDOM_WALK: vl_trace_random_walk(&t); break;
+    case VL_TRACER_PATH:
+      vl_trace_path(&t);
+      break;
+    case VL_TRACER_RAYCAST:
+      vl_trace_raycast(&t);
+      break;
+    case VL_TRACER_AMBIENT_OCCLUSION:
+      vl_trace_ambient_occlusion(&t);
+      break;
+    case VL_TRACER_VOLPATH:
+      vl_trace_volpath(&t);
+      break;
+    case VL_TRACER_BIDIRECTIONAL:
+      vl_trace_bidirectional(&t);
+      break;
+    case VL_TRACER_MERGING:
+      vl_trace_merging(&t);
+      break;
+    case VL_TRACER_SPPM:
+      vl_trace_sppm(&t);
+      break;
+    case VL_TRACER_LIGHT_PATH:
+      vl_trace_light_path(&t);
+      break;
+    case VL_TRACER_RANDOM_WALK:
+      vl_trace_random_walk(&t);
+      break;
   }
 }
 

@@ -1,11 +1,13 @@
-/* trace/two_way/connect.hot.c: connections of inner vertices: a vertex of the camera path to one of a light path in a
- * medium or on a diffuse surface (Veach 1997, chapter 10; two_way.h has the weights; connect_media.hot.c has what only
- * worlds with media need).
+/* trace/two_way/connect.hot.c: connections of inner vertices: a vertex of the camera path to
+ * one of a light path in a medium or on a diffuse surface (Veach 1997, chapter 10; two_way.h
+ * has the weights; connect_media.hot.c has what only worlds with media need).
  *
- * Each vertex of a camera path looks at a few vertices of the pass's light paths, evenly distributed over them, and
- * keeps one with a probability in proportion to what it would contribute if it were visible (resampled importance
- * sampling: Talbot et al. 2005; Nabata et al. 2020 for bidirectional tracers). Only that one costs a shadow ray. The
- * estimate is unbiased for any such probability above 0. On diffuse surfaces it is exact up to visibility. */
+ * Each vertex of a camera path looks at a few vertices of the pass's light paths, evenly
+ * distributed over them, and keeps one with a probability in proportion to what it would
+ * contribute if it were visible (resampled importance sampling: Talbot et al. 2005; Nabata et
+ * al. 2020 for bidirectional tracers). Only that one costs a shadow ray. The estimate is
+ * unbiased for any such probability above 0. On diffuse surfaces it is exact up to visibility.
+ */
 #include "math/hash.h"
 #include "trace/two_way/stages.h"
 
@@ -32,7 +34,8 @@ static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
              .diffuse = vl_is_inner_end(t, i),
              .room = t->def->max_depth - depth - 1,
              .air = vl_has_media(t) ? vl_air(t->world, s->volume->b.medium[i]) : 0};
-  for (int c = 0; c < 4; c++) e.tint[c] = s->at.paths.beta[c][i] * (e.diffuse ? s->at.shade.reflectance[c][i] : 1.0f);
+  for (int c = 0; c < 4; c++)
+    e.tint[c] = s->at.paths.beta[c][i] * (e.diffuse ? s->at.shade.reflectance[c][i] : 1.0f);
   return e;
 }
 
@@ -54,13 +57,14 @@ static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth) {
   return e;
 }
 
-/* Draws candidates for a lane, one from each of CANDIDATES equal parts of its group's vertices, and prefetches them.
- * False: there are none. */
+/* Draws candidates for a lane, one from each of CANDIDATES equal parts of its group's vertices,
+ * and prefetches them. False: there are none. */
 static bool draw(const vlTracing *t, uint32_t lane, uint32_t seed, uint32_t at[CANDIDATES]) {
   const vlLightVertices *inner = &t->def->two_way->inner;
   uint32_t group = t->batch->two_way->group[lane], first = inner->start[group];
   uint32_t count = inner->start[group + 1] - first;
-  if (count == 0) return false;
+  if (count == 0)
+    return false;
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     float u = ((float)k + vl_unit_float(vl_hash(seed + 1 + k))) * (1.0f / CANDIDATES);
     uint32_t place = (uint32_t)(u * (float)count);
@@ -70,8 +74,10 @@ static bool draw(const vlTracing *t, uint32_t lane, uint32_t seed, uint32_t at[C
   return true;
 }
 
-/* What the connections to the candidates would contribute if they were visible, up to a common factor. */
-static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CANDIDATES], float worth[CANDIDATES]) {
+/* What the connections to the candidates would contribute if they were visible, up to a common
+ * factor. */
+static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CANDIDATES],
+                      float worth[CANDIDATES]) {
   _Alignas(64) float p[3][CANDIDATES], g[3][CANDIDATES], n[3][CANDIDATES], power[4][CANDIDATES];
   _Alignas(64) float back[CANDIDATES], near[CANDIDATES];
   for (uint32_t k = 0; k < CANDIDATES; k++) {
@@ -81,7 +87,8 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
       g[j][k] = x->g[j];
       n[j][k] = x->n[j];
     }
-    for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
+    for (int c = 0; c < 4; c++)
+      power[c][k] = x->power[c];
     back[k] = x->back;
     near[k] = x->bounce > e->room ? 0.0f : 1.0f;
   }
@@ -92,7 +99,8 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     vlVec3 to = vl_vec3(p[0][k] - e->p.x, p[1][k] - e->p.y, p[2][k] - e->p.z);
     float d2 = vl_length2(to), inv2 = 1.0f / d2, inv = __builtin_sqrtf(inv2);
-    float here = vl_dot(e->n, to) * inv, there = -vl_dot(vl_vec3(n[0][k], n[1][k], n[2][k]), to) * inv;
+    float here = vl_dot(e->n, to) * inv,
+          there = -vl_dot(vl_vec3(n[0][k], n[1][k], n[2][k]), to) * inv;
     float flat_here = vl_abs(vl_dot(e->g, to)) * inv;
     float flat_there = vl_abs(vl_dot(vl_vec3(g[0][k], g[1][k], g[2][k]), to)) * inv;
     float bent = vl_max(vl_abs(here), 0.01f);
@@ -101,15 +109,16 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
     sum += e->tint[3] * power[3][k];
     float others = (e->ways * there * flat_here + back[k] * here * flat_there) * VL_INV_PI;
     float w = sum * here * flat_there / (way->connect * d2 + others);
-    int good = (near[k] > 0.0f) & (d2 > 0.0f) & (here > 0.0f) & (there > 0.0f) & (w > 0.0f) & (w < VL_INFINITY);
+    int good = (near[k] > 0.0f) & (d2 > 0.0f) & (here > 0.0f) & (there > 0.0f) & (w > 0.0f) &
+               (w < VL_INFINITY);
     worth[k] = good ? w : 0.0f;
   }
 }
 
-/* Chooses one of the candidates for an end. Returns its index, or VL_NONE. *factor: 1 / (its probability * light
- * paths). */
-static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32_t seed, const uint32_t at[CANDIDATES],
-                       float *factor) {
+/* Chooses one of the candidates for an end. Returns its index, or VL_NONE. *factor: 1 / (its
+ * probability * light paths). */
+static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32_t seed,
+                       const uint32_t at[CANDIDATES], float *factor) {
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertices *inner = &way->inner;
   float worth[CANDIDATES], u = vl_unit_float(vl_hash(seed)), sum = 0.0f, kept = 0.0f;
@@ -119,7 +128,8 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
   else
     worths_of(way, e, at, worth);
   for (uint32_t k = 0; k < CANDIDATES; k++) {
-    if (!(worth[k] > 0.0f)) continue;
+    if (!(worth[k] > 0.0f))
+      continue;
     sum += worth[k];
     float share = worth[k] / sum;
     bool take = u < share;
@@ -129,17 +139,23 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
       kept = worth[k];
     }
   }
-  float paths = (float)(inner->paths / inner->groups), count = (float)(inner->start[group + 1] - inner->start[group]);
-  if (chosen == VL_NONE) return VL_NONE;
+  float paths = (float)(inner->paths / inner->groups),
+        count = (float)(inner->start[group + 1] - inner->start[group]);
+  if (chosen == VL_NONE)
+    return VL_NONE;
   *factor = sum / (kept * CANDIDATES) * count / paths;
-  if (!vl_has_media(t)) return chosen;
-  float survive = vl_connection_survival(t, lane, way->connect * sum / CANDIDATES * count / paths);
+  if (!vl_has_media(t))
+    return chosen;
+  float survive =
+      vl_connection_survival(t, lane, way->connect * sum / CANDIDATES * count / paths);
   *factor /= survive;
   return vl_unit_float(vl_hash(seed + 1 + CANDIDATES)) < survive ? chosen : VL_NONE;
 }
 
-/* Candidates are drawn some lanes ahead of their use, since most of them are not in the cache. */
-void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen, float *factor) {
+/* Candidates are drawn some lanes ahead of their use, since most of them are not in the cache.
+ */
+void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen,
+                        float *factor) {
   enum { AHEAD = 8 };
   uint32_t at[AHEAD][CANDIDATES], seed[AHEAD];
   bool drawn[AHEAD];
@@ -152,25 +168,35 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
     } else if (k >= AHEAD) {
       chosen[i] = VL_NONE;
     }
-    if (k >= n) continue;
-    seed[slot] = vl_hash3((uint32_t)p->px[k] ^ t->def->sampler->seed, (uint32_t)p->py[k], p->index[k]);
+    if (k >= n)
+      continue;
+    seed[slot] =
+        vl_hash3((uint32_t)p->px[k] ^ t->def->sampler->seed, (uint32_t)p->py[k], p->index[k]);
     seed[slot] = vl_hash2(seed[slot], depth);
-    drawn[slot] = (inside || !vl_all_specular(t->world, &t->s->at, k)) && draw(t, p->lane[k], seed[slot], at[slot]);
+    drawn[slot] = (inside || !vl_all_specular(t->world, &t->s->at, k)) &&
+                  draw(t, p->lane[k], seed[slot], at[slot]);
   }
 }
 
-void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3], uint32_t light, uint32_t count) {
+void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3],
+                      uint32_t light, uint32_t count) {
   float far[3];
   vl_unpack_passed(light, far);
-  for (int k = 0; t->s->volume && k < 3; k++) t->s->volume->shadow_passed[k][count] = far[k] * eye[k];
-  for (int c = 0; c < 4; c++) t->s->shadow.radiance[c][count] *= vl_joined_factor(far, eye, p->lambda[c][i]);
+  for (int k = 0; t->s->volume && k < 3; k++)
+    t->s->volume->shadow_passed[k][count] = far[k] * eye[k];
+  for (int c = 0; c < 4; c++)
+    t->s->shadow.radiance[c][count] *= vl_joined_factor(far, eye, p->lambda[c][i]);
 }
 
-/* The same for surface lane i. The surface may attenuate light that crosses it towards the vertex. */
-static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float wi_z, uint32_t count) {
+/* The same for surface lane i. The surface may attenuate light that crosses it towards the
+ * vertex.
+ */
+static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float wi_z,
+                              uint32_t count) {
   const vlTraceScratch *s = t->s;
   float eye[3];
-  if (!t->world->by_channel) return;
+  if (!t->world->by_channel)
+    return;
   vl_passed_on(t, &s->at, i, wi_z, eye);
   vl_join_channels(t, &s->at.paths, i, eye, t->def->two_way->inner.passed[vertex], count);
 }
@@ -184,18 +210,23 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
   const vlSurface *f = &s->at.surface;
   vlShadowRays *q = &s->shadow;
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-  vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i), xg = vl_vec3(x->g[0], x->g[1], x->g[2]);
+  vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i),
+         xg = vl_vec3(x->g[0], x->g[1], x->g[2]);
   vlVec3 xp = vl_vec3(x->p[0], x->p[1], x->p[2]);
   float inv2 = 1.0f / vl_length2(vl_sub(xp, at)), there = vl_abs(vl_dot(xg, w));
   float back = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), w) * VL_INV_PI;
   r->own[count] = way->connect;
-  r->others[count] = inv2 * ((r->a[i] * r->back.pdf[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) +
-                             x->back * s->values.pdf[i] * there);
+  r->others[count] =
+      inv2 * ((r->a[i] * r->back.pdf[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) +
+              x->back * s->values.pdf[i] * there);
   float factor = r->factor[i];
-  factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->at.paths, i) ? 0.25f : 1.0f);
+  factor *=
+      way->connect * there * inv2 * (x->alone && vl_hero_only(&s->at.paths, i) ? 0.25f : 1.0f);
   for (int c = 0; c < 4; c++)
-    q->radiance[c][count] = s->at.paths.beta[c][i] * s->values.value[c][i] * x->power[c] * factor;
-  vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
+    q->radiance[c][count] =
+        s->at.paths.beta[c][i] * s->values.value[c][i] * x->power[c] * factor;
+  vlVec3 o = vl_offset_origin(at, g, f->offset[i], w),
+         d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
   vl_set_lane3(q->ox, q->oy, q->oz, count, o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = VL_ONE_MINUS_EPSILON;
@@ -230,7 +261,8 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->at.surface;
   const vlLightVertices *inner = &t->def->two_way->inner;
-  if (depth + 2 > t->def->max_depth) return;
+  if (depth + 2 > t->def->max_depth)
+    return;
   uint32_t found = 0;
   vl_choose_vertices(t, n, depth, false, r->first, r->factor);
   for (uint32_t i = 0; i < n; i++) {
@@ -242,14 +274,18 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
     }
     vl_set_lane3(r->toward[0], r->toward[1], r->toward[2], i, w);
   }
-  if (!found) return;
-  vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values, &r->back);
+  if (!found)
+    return;
+  vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values,
+                          &r->back);
   const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])s->values.value;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (r->first[i] == VL_NONE) continue;
+    if (r->first[i] == VL_NONE)
+      continue;
     float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
-    if (!(sum > 0.0f) && sum == sum) continue;
+    if (!(sum > 0.0f) && sum == sum)
+      continue;
     if (vl_has_media(t))
       push_in_media(t, i, r->first[i], count);
     else

@@ -1,18 +1,19 @@
-/* trace/two_way/merge.hot.c: merging: adds the radiance of photons near the vertices of camera paths. The flux of N
- * light paths through a disk of radius r around the vertex estimates the flux at the vertex (two_way.h). The estimate
- * is biased if flux or surface change over the disk. The bias vanishes as r shrinks from pass to pass.
+/* trace/two_way/merge.hot.c: merging: adds the radiance of photons near the vertices of camera
+ * paths. The flux of N light paths through a disk of radius r around the vertex estimates the
+ * flux at the vertex (two_way.h). The estimate is biased if flux or surface change over the
+ * disk. The bias vanishes as r shrinks from pass to pass.
  *
- * Photons on diffuse surfaces are the most frequent and are summed directly. For other BSDF kinds, each lane lists its
- * photons, and a batch evaluates the BSDFs for the next photon of every lane. In media a ball of radius r replaces the
- * disk. */
+ * Photons on diffuse surfaces are the most frequent and are summed directly. For other BSDF
+ * kinds, each lane lists its photons, and a batch evaluates the BSDFs for the next photon of
+ * every lane. In media a ball of radius r replaces the disk. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 #include "velo/material.h"
 
 enum { LISTED_WORK = 32 }; /* a photon with a BSDF takes as long as so many visited ones */
 
-/* An iterator over the photons of one medium (vlPhoton.medium) within the radius around p. It visits cell by cell; a
- * cell is as wide as the ball. */
+/* An iterator over the photons of one medium (vlPhoton.medium) within the radius around p. It
+ * visits cell by cell; a cell is as wide as the ball. */
 typedef struct Near {
   vlVec3 p;
   uint32_t medium, most; /* most: largest number of bounces of a photon */
@@ -26,13 +27,15 @@ static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32
   return (Near){.p = p,
                 .medium = medium,
                 .most = most,
-                .corner = {vl_photon_cell(p.x - radius, map->inv_cell), vl_photon_cell(p.y - radius, map->inv_cell),
+                .corner = {vl_photon_cell(p.x - radius, map->inv_cell),
+                           vl_photon_cell(p.y - radius, map->inv_cell),
                            vl_photon_cell(p.z - radius, map->inv_cell)}};
 }
 
 static bool near_fits(const vlPhotonMap *map, const Near *near, const vlPhoton *x) {
   vlVec3 to = vl_vec3(x->p[0] - near->p.x, x->p[1] - near->p.y, x->p[2] - near->p.z);
-  if (!(vl_length2(to) < map->radius2) || x->bounce > near->most || x->medium != near->medium) return false;
+  if (!(vl_length2(to) < map->radius2) || x->bounce > near->most || x->medium != near->medium)
+    return false;
   for (int k = 0; k < 3; k++)
     if (vl_photon_cell(x->p[k], map->inv_cell) != near->cell[k])
       return false; /* a photon of another cell in the same bucket */
@@ -44,11 +47,15 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
   for (;;) {
     while (near->next < near->end) {
       uint32_t j = near->next++;
-      if (near_fits(map, near, &map->photons[j])) return j;
+      if (near_fits(map, near, &map->photons[j]))
+        return j;
     }
-    if (near->k == 8) return VL_NONE;
-    for (int i = 0; i < 3; i++) near->cell[i] = near->corner[i] + (near->k >> i & 1);
-    uint32_t bucket = vl_photon_bucket(near->cell[0], near->cell[1], near->cell[2], map->buckets);
+    if (near->k == 8)
+      return VL_NONE;
+    for (int i = 0; i < 3; i++)
+      near->cell[i] = near->corner[i] + (near->k >> i & 1);
+    uint32_t bucket =
+        vl_photon_bucket(near->cell[0], near->cell[1], near->cell[2], map->buckets);
     near->next = map->start[bucket];
     near->end = map->start[bucket + 1];
     near->seen += near->end - near->next;
@@ -56,43 +63,53 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
   }
 }
 
-/* The weight of lane i's photon. If both paths have only the hero wavelength left, it includes a factor 1/4, because
- * each path carries the weight of all four wavelengths. */
-static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, float forth, float back) {
+/* The weight of lane i's photon. If both paths have only the hero wavelength left, it includes
+ * a factor 1/4, because each path carries the weight of all four wavelengths. */
+static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, float forth,
+                         float back) {
   const vlTwoWay *way = t->def->two_way;
   const vlTwoWayRows *r = t->batch->two_way;
   float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
   /* the weight H / (H + others), divided by H */
   float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
-  return x->alone && vl_hero_only(x->medium ? &t->s->volume->scattered : &t->s->at.paths, i) ? 0.25f * weight : weight;
+  return x->alone && vl_hero_only(x->medium ? &t->s->volume->scattered : &t->s->at.paths, i)
+             ? 0.25f * weight
+             : weight;
 }
 
-/* The photon's power for camera path i. With attenuation by RGB channel, the transmittance of the whole path is not the
- * product of those of its two parts, so it is computed again. wi_z: cosine of the photon's direction to the normal; not
- * read in media. */
-static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float wi_z, float power[4]) {
-  for (int c = 0; c < 4; c++) power[c] = x->power[c];
-  if (!t->world->by_channel) return;
+/* The photon's power for camera path i. With attenuation by RGB channel, the transmittance of
+ * the whole path is not the product of those of its two parts, so it is computed again. wi_z:
+ * cosine of the photon's direction to the normal; not read in media. */
+static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float wi_z,
+                         float power[4]) {
+  for (int c = 0; c < 4; c++)
+    power[c] = x->power[c];
+  if (!t->world->by_channel)
+    return;
   const vlTraceScratch *s = t->s;
   const vlPaths *p = x->medium ? &s->volume->scattered : &s->at.paths;
   uint32_t lane = p->lane[i];
   float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
-  if (!x->medium) vl_passed_on(t, &s->at, i, wi_z, eye);
+  if (!x->medium)
+    vl_passed_on(t, &s->at, i, wi_z, eye);
   vl_unpack_passed(x->passed, light);
-  for (int c = 0; c < 4; c++) power[c] *= vl_joined_factor(light, eye, p->lambda[c][i]);
+  for (int c = 0; c < 4; c++)
+    power[c] *= vl_joined_factor(light, eye, p->lambda[c][i]);
 }
 
 static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4]) {
   const vlTraceScratch *s = t->s;
   const vlShade *sh = &s->at.shade;
-  float zo = sh->wo[2][i],
-        zi = x->w[0] * s->at.surface.nx[i] + x->w[1] * s->at.surface.ny[i] + x->w[2] * s->at.surface.nz[i];
-  if (!(zo * zi > 0.0f)) return;
+  float zo = sh->wo[2][i], zi = x->w[0] * s->at.surface.nx[i] + x->w[1] * s->at.surface.ny[i] +
+                                x->w[2] * s->at.surface.nz[i];
+  if (!(zo * zi > 0.0f))
+    return;
   float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
   float weight = pair_weight(t, i, x, forth, back) * forth;
   float power[4];
   joined_power(t, i, x, zi, power);
-  for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * power[c] * weight;
+  for (int c = 0; c < 4; c++)
+    sum[c] += sh->reflectance[c][i] * power[c] * weight;
 }
 
 /* Adds the listed photons, one photon of every lane at a time. */
@@ -102,7 +119,8 @@ static void add_listed(vlTracing *t, uint32_t n) {
   const vlPaths *p = &s->at.paths;
   const vlPhoton *photons = t->def->two_way->map.photons;
   uint32_t most = 0;
-  for (uint32_t i = 0; i < n; i++) most = r->count[i] > most ? r->count[i] : most;
+  for (uint32_t i = 0; i < n; i++)
+    most = r->count[i] > most ? r->count[i] : most;
   for (uint32_t round = 0; round < most; round++) {
     for (uint32_t i = 0; i < n; i++) {
       bool has = round < r->count[i];
@@ -111,17 +129,21 @@ static void add_listed(vlTracing *t, uint32_t n) {
       r->toward[1][i] = has ? w[1] : s->at.surface.ny[i];
       r->toward[2][i] = has ? w[2] : s->at.surface.nz[i];
     }
-    vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values, &r->back);
+    vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values,
+                            &r->back);
     for (uint32_t i = 0; i < n; i++) {
-      if (round >= r->count[i]) continue;
+      if (round >= r->count[i])
+        continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
       float weight = pair_weight(t, i, x, s->values.pdf[i], r->back.pdf[i]), power[4];
       joined_power(t, i, x, s->values.wi[2][i], power);
       for (int c = 0; c < 4; c++)
-        t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * s->values.value[c][i] * power[c] * weight;
+        t->batch->radiance[c][p->lane[i]] +=
+            p->beta[c][i] * s->values.value[c][i] * power[c] * weight;
     }
   }
-  for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
+  for (uint32_t i = 0; i < n; i++)
+    r->count[i] = 0;
 }
 
 static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) {
@@ -136,13 +158,18 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPaths *p = &s->at.paths;
   vlTwoWayRows *r = t->batch->two_way;
   uint32_t listed = 0;
-  if (!map->buckets) return;
-  for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
+  if (!map->buckets)
+    return;
+  for (uint32_t i = 0; i < n; i++)
+    r->count[i] = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (vl_all_specular(t->world, &s->at, i)) continue;
-    bool diffuse = t->world->materials.items[s->at.hits.material[i]].kind == VL_MATERIAL_DIFFUSE;
+    if (vl_all_specular(t->world, &s->at, i))
+      continue;
+    bool diffuse =
+        t->world->materials.items[s->at.hits.material[i]].kind == VL_MATERIAL_DIFFUSE;
     float sum[4] = {0, 0, 0, 0};
-    Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0, most_bounces(t, p->lane[i], depth));
+    Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0,
+                           most_bounces(t, p->lane[i], depth));
     r->first[i] = listed;
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       if (diffuse) {
@@ -158,29 +185,35 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
       t->batch->merge_work += LISTED_WORK;
     }
     t->batch->merge_work += near.seen;
-    for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * sum[c];
+    for (int c = 0; c < 4; c++)
+      t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * sum[c];
   }
-  if (listed) add_listed(t, n);
+  if (listed)
+    add_listed(t, n);
 }
 
 void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPhotonMap *map = &t->def->two_way->map;
   const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
-  if (!map->buckets) return;
+  if (!map->buckets)
+    return;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i], medium = v->c.medium[i];
     float sum[4] = {0, 0, 0, 0}, g = t->world->media.items[medium].g;
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    Near near = near_start(map, vl_lane3(p->ox, p->oy, p->oz, i), 1 + medium, most_bounces(t, lane, depth));
+    Near near = near_start(map, vl_lane3(p->ox, p->oy, p->oz, i), 1 + medium,
+                           most_bounces(t, lane, depth));
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       const vlPhoton *x = &map->photons[j];
       float phase = vl_phase(g, vl_dot(d, vl_vec3(x->w[0], x->w[1], x->w[2])));
       float weight = pair_weight(t, i, x, phase, phase) * phase, power[4];
       joined_power(t, i, x, 0.0f, power);
-      for (int c = 0; c < 4; c++) sum[c] += power[c] * weight;
+      for (int c = 0; c < 4; c++)
+        sum[c] += power[c] * weight;
     }
     t->batch->merge_work += near.seen;
-    for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];
+    for (int c = 0; c < 4; c++)
+      t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];
   }
 }

@@ -1,4 +1,5 @@
-/* trace/two_way/stages.h: declarations that the hot files of the two-way tracers share; private to them. */
+/* trace/two_way/stages.h: declarations that the hot files of the two-way tracers share; private
+ * to them. */
 #ifndef TRACE_TWO_WAY_STAGES_H
 #define TRACE_TWO_WAY_STAGES_H
 
@@ -9,45 +10,54 @@
 
 enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
 
-/* Working memory of the two-way tracers. The first rows are indexed by lane, the path's element of the batch, which
- * sorting does not change. */
+/* Working memory of the two-way tracers. The first rows are indexed by lane, the path's element
+ * of the batch, which sorting does not change. */
 typedef struct vlTwoWayRows {
   VL_ROW float carry[VL_ROW_SIZE];   /* (S + H) cos / fwd of the previous vertex; two_way.h */
   VL_ROW float flux[4][VL_ROW_SIZE]; /* initial flux of a light path; its beta starts from 1 */
-  VL_ROW float
-      link[VL_ROW_SIZE]; /* C / fwd of the previous vertex, or 0 if the edge from there cannot be a connection */
+  VL_ROW float link[VL_ROW_SIZE]; /* C / fwd of the previous vertex, or 0 if the edge from there
+                                     cannot be a connection */
   VL_ROW uint32_t group[VL_ROW_SIZE];  /* of a camera path: its group; vlLightVertices */
   VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices not counted as bounces: vlTwoWay.apart */
-  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray; its light is in `light` */
+  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray; its
+                                          light   is in `light` */
   VL_ROW uint32_t light[VL_ROW_SIZE];
   VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE],
       lz[VL_ROW_SIZE]; /* point on the light, or direction of an infinite light */
-  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* the light's normal at this point */
-  VL_ROW float area[3][VL_ROW_SIZE]; /* of a camera path of one's own camera: vlCameraSample.area; 0: not connected */
+  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE],
+      lnz[VL_ROW_SIZE];              /* the light's normal at this point */
+  VL_ROW float area[3][VL_ROW_SIZE]; /* of a camera path of one's own camera:
+                                        vlCameraSample.area; 0: not connected */
   /* The following rows are indexed by element of the sorted batch. */
   VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
-  VL_ROW float cosine[VL_ROW_SIZE]; /* cosine between incoming ray and geometric normal; in media: the extinction */
+  VL_ROW float cosine[VL_ROW_SIZE]; /* cosine between incoming ray and geometric normal; in
+                                       media: the extinction */
   vlBsdfValues back;                /* vl_stage_reverse */
   union {
     struct {                               /* camera paths */
-      VL_ROW float toward[3][VL_ROW_SIZE]; /* world: towards the vertex of a connection, or where a photon came from */
+      VL_ROW float toward[3][VL_ROW_SIZE]; /* world: towards the vertex of a connection, or
+                                              where a photon came from */
       VL_ROW float factor[VL_ROW_SIZE];    /* vl_choose_vertices */
-      /* by light sample: its density by the BSDF; the density of light paths that arrive from there */
+      /* by light sample: its density by the BSDF; the density of light paths that arrive from
+       * there
+       */
       VL_ROW float light_pdf[VL_ROW_SIZE], light_ways[VL_ROW_SIZE];
     };
     struct {                             /* light paths */
       VL_ROW float lens[2][VL_ROW_SIZE]; /* while they start: random numbers */
-      /* of connections to the camera: local direction; density of camera rays' first vertex; end of the ray; point on
-       * the lens */
-      VL_ROW float wi[3][VL_ROW_SIZE], per_square[VL_ROW_SIZE], end[VL_ROW_SIZE], weight[VL_ROW_SIZE],
-          eye[3][VL_ROW_SIZE];
+      /* of connections to the camera: local direction; density of camera rays' first vertex;
+       * end of the ray; point on the lens */
+      VL_ROW float wi[3][VL_ROW_SIZE], per_square[VL_ROW_SIZE], end[VL_ROW_SIZE],
+          weight[VL_ROW_SIZE], eye[3][VL_ROW_SIZE];
       VL_ROW float splat_lambda[4][VL_ROW_SIZE], splat_inv_pdf[4][VL_ROW_SIZE];
     };
   };
-  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points: first of lanes, later of splats */
-  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* by shadow ray: density of this strategy and of the others */
-  VL_ROW float
-      rows[12][VL_ROW_SIZE]; /* value, wavelength and 1 / PDF of splats, 4 rows each; also wavelengths of the batch */
+  VL_ROW float x[VL_ROW_SIZE],
+      y[VL_ROW_SIZE]; /* film points: first of lanes, later of splats */
+  VL_ROW float own[VL_ROW_SIZE],
+      others[VL_ROW_SIZE]; /* by shadow ray: density of this strategy and of the others */
+  VL_ROW float rows[12][VL_ROW_SIZE]; /* value, wavelength and 1 / PDF of splats, 4 rows each;
+                                         also wavelengths of the batch */
   VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
   vlCameraSample views[VL_BATCH]; /* vl_look_from */
   uint32_t pair[VL_MERGE_PAIRS];  /* photon indices, grouped by lane */
@@ -58,24 +68,27 @@ typedef struct vlTwoWayRows {
 } vlTwoWayRows;
 
 void vl_bidirectional_tracer(vlTracing *t);
-void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
-                     vlLightBatch *batch);
-/* Adds the radiance of the photons near the n shaded lanes. depth: bounces of the camera path so far. */
+void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch,
+                     vlTwoWayRows *rows, vlLightBatch *batch);
+/* Adds the radiance of the photons near the n shaded lanes. depth: bounces of the camera path
+ * so far. */
 void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
-/* Assigns camera paths to groups by the numbers u that sample their wavelengths, and replaces u by the group's. */
+/* Assigns camera paths to groups by the numbers u that sample their wavelengths, and replaces u
+ * by the group's. */
 void vl_stage_groups(vlTracing *t, uint32_t n, float *u);
 /* Connects each of the n shaded lanes to a vertex of a light path. */
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth);
 /* The same for n camera paths that scatter in media. */
 void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth);
 
-/* The end of a connection on the camera path: lane i of the shaded surfaces, or of the paths that scatter in media. */
+/* The end of a connection on the camera path: lane i of the shaded surfaces, or of the paths
+ * that scatter in media. */
 typedef struct vlEnd {
   vlVec3 p, g, n; /* n: shading normal on the side of wo; in media, the direction of flight */
   float tint[4];  /* throughput; on diffuse surfaces times the reflectance */
-  float ways; /* the strategies on the camera's side, with merging; an estimate for surfaces that are not diffuse; in
-                 media without a times the phase function */
+  float ways;     /* the strategies on the camera's side, with merging; an estimate for surfaces
+                     that     are not diffuse; in media without a times the phase function */
   bool diffuse;
   uint32_t room;             /* largest number of bounces that a light path may have */
   bool inside;               /* in a medium; then: */
@@ -95,65 +108,83 @@ typedef struct vlConnection {
   uint32_t medium; /* the medium in which the ray starts */
 } vlConnection;
 
-/* Chooses a vertex for each of n lanes, or VL_NONE. inside: the lanes scatter in media. factor: 1 / (the vertex's
- * probability * light paths). */
-void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen, float *factor);
-enum { VL_CANDIDATES = 8, VL_CONNECTION_KEY = 1 << 20 }; /* the key: its random numbers differ from light samples' */
-/* In worlds with media: what the connections to the candidates would contribute if they were visible. */
+/* Chooses a vertex for each of n lanes, or VL_NONE. inside: the lanes scatter in media. factor:
+ * 1 / (the vertex's probability * light paths). */
+void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen,
+                        float *factor);
+enum {
+  VL_CANDIDATES = 8,
+  VL_CONNECTION_KEY = 1 << 20
+}; /* the key: its random numbers differ from light samples' */
+/* In worlds with media: what the connections to the candidates would contribute if they were
+ * visible. */
 void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL_CANDIDATES],
                         float worth[VL_CANDIDATES]);
-/* The probability that the path of a lane traces a connection that is expected to contribute this much. */
+/* The probability that the path of a lane traces a connection that is expected to contribute
+ * this much. */
 float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected);
 /* Adds the connection to a vertex as shadow ray `count`. */
-void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
-                        uint32_t vertex, uint32_t count);
-/* With attenuation by RGB channel, multiplies shadow ray `count` of camera path i so that the transmittance is that of
- * the whole path. eye: vlTraceScratch.passed up to the connection; light: that of the light path, packed. Starts the
- * ray's own passed. */
-void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3], uint32_t light, uint32_t count);
+void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                        const vlConnection *c, uint32_t vertex, uint32_t count);
+/* With attenuation by RGB channel, multiplies shadow ray `count` of camera path i so that the
+ * transmittance is that of the whole path. eye: vlTraceScratch.passed up to the connection;
+ * light: that of the light path, packed. Starts the ray's own passed. */
+void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3],
+                      uint32_t light, uint32_t count);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
-/* Light paths have at most so many bounces: longer ones carry almost nothing, and would need memory for their
- * photons. */
+/* Light paths have at most so many bounces: longer ones carry almost nothing, and would need
+ * memory for their photons. */
 static inline uint32_t vl_light_bounces(const vlTraceDef *def) {
   return def->max_depth < 255 ? def->max_depth : 255;
 }
-/* vlBounceSteps.in_media. vl_eye_in_media is for camera paths, which sample lights and merge. vl_light_in_media is for
- * light paths, which store photons and connect to the camera. */
+/* vlBounceSteps.in_media. vl_eye_in_media is for camera paths, which sample lights and merge.
+ * vl_light_in_media is for light paths, which store photons and connect to the camera. */
 uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth);
 uint32_t vl_light_in_media(vlTracing *t, uint32_t n, uint32_t depth);
-/* Traces the `count` shadow rays of light samples and adds the radiance that arrives, with weight own / (own + odds *
- * others). */
+/* Traces the `count` shadow rays of light samples and adds the radiance that arrives, with
+ * weight own / (own + odds * others). */
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
 /* Connects the n shaded lanes to the camera. Visible vertices become splats. */
-void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
-                          uint32_t dimension);
-/* Traces the shadow rays towards the camera. Those that arrive become splats with weight own / (own + odds *
- * others). */
-void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, uint32_t count,
-                       uint32_t depth);
-/* Density with which next-event estimation would have sampled the light that this lane's path came from. */
-float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlReceiver to, vlVec3 w);
+void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
+                          uint32_t depth, uint32_t dimension);
+/* Traces the shadow rays towards the camera. Those that arrive become splats with weight own /
+ * (own
+ * + odds * others). */
+void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
+                       uint32_t count, uint32_t depth);
+/* Density with which next-event estimation would have sampled the light that this lane's path
+ * came from. */
+float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane,
+                          vlReceiver to, vlVec3 w);
 
 /* For perspective cameras. */
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
-/* For cameras of one's own: fills rows->views, by lane of the n points. For others it does nothing. */
-void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float *x, const float *y, const float *z);
-/* For cameras of one's own: fills rows->area, by which the n camera paths of the batch weigh light paths. */
+/* For cameras of one's own: fills rows->views, by lane of the n points. For others it does
+ * nothing.
+ */
+void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float *x,
+                  const float *y, const float *z);
+/* For cameras of one's own: fills rows->area, by which the n camera paths of the batch weigh
+ * light paths. */
 void vl_measure_camera_rays(const vlTracing *t);
 
-/* The BSDFs of n vertices for paths that come from wi (local) and leave in direction wo: back->pdf is the density of
- * sampling wo, back->value is f(wi, wo) |cos wo|. */
-void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at, const float wi[3][VL_ROW_SIZE],
-                      vlBsdfValues *back);
-/* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way back. */
-void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float (*toward)[VL_ROW_SIZE],
-                             vlBsdfValues *there, vlBsdfValues *back);
+/* The BSDFs of n vertices for paths that come from wi (local) and leave in direction wo:
+ * back->pdf is the density of sampling wo, back->value is f(wi, wo) |cos wo|. */
+void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at,
+                      const float wi[3][VL_ROW_SIZE], vlBsdfValues *back);
+/* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way back.
+ */
+void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at,
+                             const float (*toward)[VL_ROW_SIZE], vlBsdfValues *there,
+                             vlBsdfValues *back);
 
-/* (S + H) cos / fwd of vertex i (two_way.h), from which a path goes on with this density and cosine. */
-static inline float vl_carried(const vlTwoWayRows *r, uint32_t i, bool specular, float pdf, float merged,
-                               float cosine) {
-  if (specular) return r->a[i] * cosine;
+/* (S + H) cos / fwd of vertex i (two_way.h), from which a path goes on with this density and
+ * cosine. */
+static inline float vl_carried(const vlTwoWayRows *r, uint32_t i, bool specular, float pdf,
+                               float merged, float cosine) {
+  if (specular)
+    return r->a[i] * cosine;
   return pdf > 0.0f ? (r->a[i] * r->back.pdf[i] + r->b[i] + merged) * cosine / pdf : 0.0f;
 }
 
@@ -161,29 +192,35 @@ static inline float vl_carried(const vlTwoWayRows *r, uint32_t i, bool specular,
 typedef struct vlEmission {
   bool valid;
   vlVec3 o, d;
-  vlVec3 at, n; /* point and normal on an area light; for other lights, `at` is the argument of vl_emission_density */
+  vlVec3 at, n; /* point and normal on an area light; for other lights, `at` is the argument of
+                   vl_emission_density */
   float flux[4];
   float density; /* as vl_emission_density, but for point lights without 1 / distance^2 */
   bool delta;    /* no ray can hit the light */
-  /* Of area lights that rays can hit: density of the point per area; as vlSurface.offset; the side that emits: along n
-   * (1), against it (-1), or both (0). */
+  /* Of area lights that rays can hit: density of the point per area; as vlSurface.offset; the
+   * side that emits: along n (1), against it (-1), or both (0). */
   float area_pdf, offset, side;
   uint32_t light;
 } vlEmission;
-vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
-                              float v, float s, float t);
-/* Density of the light paths that arrive at a point from direction w (unit, towards the light) after `distance`: per
- * area perpendicular to w and solid angle of w; for delta lights, per area only. The caller multiplies it by the
- * cosine at the point. */
-float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
-                          const vlPoint *at);
+vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4],
+                              float u_choice, float u, float v, float s, float t);
+/* Density of the light paths that arrive at a point from direction w (unit, towards the light)
+ * after `distance`: per area perpendicular to w and solid angle of w; for delta lights, per
+ * area only. The caller multiplies it by the cosine at the point. */
+float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w,
+                          float distance, const vlPoint *at);
 
 /* vlEmission.area_pdf at a point of an area light. */
-float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 at);
-/* The number of light paths by which a point of an area light is shown to the camera itself (two_way.h), relative to
- * the camera rays that hit it: both are densities per film area. per_square: vlCameraSample; cosine: at the light. */
-static inline float vl_shown(const vlTwoWay *way, uint32_t light, float area_pdf, float per_square, float cosine) {
-  return way->extent[light] * per_square < way->pixel ? way->paths * area_pdf / (per_square * cosine) : 0.0f;
+float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light,
+                           vlVec3 at);
+/* The number of light paths by which a point of an area light is shown to the camera itself
+ * (two_way.h), relative to the camera rays that hit it: both are densities per film area.
+ * per_square: vlCameraSample; cosine: at the light. */
+static inline float vl_shown(const vlTwoWay *way, uint32_t light, float area_pdf,
+                             float per_square, float cosine) {
+  return way->extent[light] * per_square < way->pixel
+             ? way->paths * area_pdf / (per_square * cosine)
+             : 0.0f;
 }
 /* Shows the points at which the n light paths start to the camera. */
 void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n);
@@ -192,10 +229,14 @@ void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n);
 static inline bool vl_all_specular(const vlWorld *world, const vlVertices *at, uint32_t i) {
   const float *x = at->shade.alpha_x, *y = at->shade.alpha_y;
   switch (world->materials.items[at->hits.material[i]].smooth) {
-    case VL_SMOOTH_NEVER: return false;
-    case VL_SMOOTH_BY_ALPHA: return vl_ggx_is_smooth(x[i], y[i]);
-    case VL_SMOOTH_BY_ALPHA_OR_INDEX: return vl_ggx_is_smooth(x[i], y[i]) || at->shade.eta_s[i] == 1.0f;
-    case VL_SMOOTH_ALWAYS: return true;
+    case VL_SMOOTH_NEVER:
+      return false;
+    case VL_SMOOTH_BY_ALPHA:
+      return vl_ggx_is_smooth(x[i], y[i]);
+    case VL_SMOOTH_BY_ALPHA_OR_INDEX:
+      return vl_ggx_is_smooth(x[i], y[i]) || at->shade.eta_s[i] == 1.0f;
+    case VL_SMOOTH_ALWAYS:
+      return true;
   }
   return false;
 }
@@ -215,40 +256,48 @@ static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
 static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
 }
-/* What connections over the path's last flight add to S (two_way.h). inv: 1 / cosine, or 1 / extinction. Bounded, so
- * that products with it are finite. */
-static inline float vl_linked(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance, float inv) {
+/* What connections over the path's last flight add to S (two_way.h). inv: 1 / cosine, or 1 /
+ * extinction. Bounded, so that products with it are finite. */
+static inline float vl_linked(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane,
+                              float distance, float inv) {
   float linked = r->link[lane] * distance * distance * inv;
   return vl_has_media(t) ? vl_min(linked / t->s->volume->odds[lane], 1e25f) : linked;
 }
-/* 1 + a uniform medium, if this is below 16; else 0. It tells whether the ends of a connection are in the same air. */
+/* 1 + a uniform medium, if this is below 16; else 0. It tells whether the ends of a connection
+ * are in the same air. */
 static inline uint32_t vl_air(const vlWorld *world, uint32_t medium) {
   return medium < 15 && world->media.items[medium].uniform ? medium + 1 : 0;
 }
 /* vl_emission_density of a light path's first ray, after `distance`. */
-static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {
-  return t->world->lights.items[r->light[lane]].at_point ? r->density[lane] / (distance * distance) : r->density[lane];
+static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane,
+                                     float distance) {
+  return t->world->lights.items[r->light[lane]].at_point
+             ? r->density[lane] / (distance * distance)
+             : r->density[lane];
 }
 
-/* The sample of point i (of vl_look_from), which belongs to a path's lane. u, v: random numbers for the lens. */
-static inline vlCameraSample vl_view_of(const vlTracing *t, const vlTwoWayRows *r, uint32_t i, uint32_t lane, vlVec3 at,
-                                        float u, float v) {
+/* The sample of point i (of vl_look_from), which belongs to a path's lane. u, v: random numbers
+ * for the lens. */
+static inline vlCameraSample vl_view_of(const vlTracing *t, const vlTwoWayRows *r, uint32_t i,
+                                        uint32_t lane, vlVec3 at, float u, float v) {
   const vlCameraView *eye = vl_eye_of(t, lane);
   return eye->look ? r->views[i] : vl_sample_camera(eye, at, u, v);
 }
 
-/* Solid angle of a pixel in a direction whose cosine with the camera's axis is c. At depth 1 the pixel's sides are 1 /
- * fx and 1 / fy. */
+/* Solid angle of a pixel in a direction whose cosine with the camera's axis is c. At depth 1
+ * the pixel's sides are 1 / fx and 1 / fy. */
 static inline float vl_camera_view_pixel_area(const vlCameraView *eye, float c) {
   return c * c * c / (eye->fx * eye->fy);
 }
-/* The same for the camera ray d of a lane; of a camera of one's own, a pixel's area at a distance, divided by the
- * distance squared. 0: no light path is connected there. */
+/* The same for the camera ray d of a lane; of a camera of one's own, a pixel's area at a
+ * distance, divided by the distance squared. 0: no light path is connected there. */
 static inline float vl_eye_pixel(const vlTracing *t, uint32_t lane, vlVec3 d, float distance) {
   const vlCameraView *eye = vl_eye_of(t, lane);
-  if (!eye->look) return vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
+  if (!eye->look)
+    return vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
   const float(*area)[VL_ROW_SIZE] = t->batch->two_way->area;
-  float at = vl_abs(area[0][lane] + distance * (area[1][lane] + distance * area[2][lane])) / (distance * distance);
+  float at = vl_abs(area[0][lane] + distance * (area[1][lane] + distance * area[2][lane])) /
+             (distance * distance);
   return at < VL_INFINITY ? at : 0.0f; /* not for NaN */
 }
 
@@ -264,16 +313,21 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
   return h & (buckets - 1);
 }
 
-/* What of shadow ray k arrives, after vl_volume_pass_media if there are media. passes: one factor per wavelength;
- * scale: a common factor, which includes the MIS weight. Returns false if nothing arrives. */
-bool vl_two_way_arrives(const vlTracing *t, vlTwoWayRows *r, uint32_t k, float passes[4], float *scale);
+/* What of shadow ray k arrives, after vl_volume_pass_media if there are media. passes: one
+ * factor per wavelength; scale: a common factor, which includes the MIS weight. Returns false
+ * if nothing arrives. */
+bool vl_two_way_arrives(const vlTracing *t, vlTwoWayRows *r, uint32_t k, float passes[4],
+                        float *scale);
 
-/* Packs vlTraceScratch.passed of a light path into 32 bits, for a photon. Only ratios matter, so the largest value
- * counts as 1, and 2 bits give its index. The other two are stored as -512 ln(ratio) in 15 bits each, which is exact
- * to 0.1 % down to e^-64. */
+/* Packs vlTraceScratch.passed of a light path into 32 bits, for a photon. Only ratios matter,
+ * so the largest value counts as 1, and 2 bits give its index. The other two are stored as -512
+ * ln(ratio) in 15 bits each, which is exact to 0.1 % down to e^-64. */
 static inline uint32_t vl_pack_passed(const vlTraceScratch *s, uint32_t lane) {
   const float p[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
-  uint32_t largest = p[0] >= p[1] ? (p[0] >= p[2] ? 0 : 2) : p[1] >= p[2] ? 1 : 2, packed = largest;
+  uint32_t largest = p[0] >= p[1]   ? (p[0] >= p[2] ? 0 : 2)
+                     : p[1] >= p[2] ? 1
+                                    : 2,
+           packed = largest;
   for (uint32_t k = 1; k < 3; k++) {
     float ratio = p[(largest + k) % 3] / vl_max(p[largest], VL_MIN_NORMAL);
     float steps = ratio > 1e-27f ? -512.0f * vl_ln(ratio) + 0.5f : 32767.0f;
@@ -285,17 +339,20 @@ static inline void vl_unpack_passed(uint32_t packed, float p[3]) {
   uint32_t largest = packed & 3;
   p[largest] = 1.0f;
   for (uint32_t k = 1; k < 3; k++)
-    p[(largest + k) % 3] = vl_exp((float)(packed >> (2 + 15 * (k - 1)) & 32767u) * (-1.0f / 512.0f));
+    p[(largest + k) % 3] =
+        vl_exp((float)(packed >> (2 + 15 * (k - 1)) & 32767u) * (-1.0f / 512.0f));
 }
-/* The factor on two joined paths that attenuate by RGB channel, a and b as vlTraceScratch.passed: the transmittance at
- * a wavelength of the whole path over the product of those of its parts. */
+/* The factor on two joined paths that attenuate by RGB channel, a and b as
+ * vlTraceScratch.passed: the transmittance at a wavelength of the whole path over the product
+ * of those of its parts. */
 static inline float vl_joined_factor(const float a[3], const float b[3], float lambda) {
   float both[3] = {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
   float apart = vl_channels_at(a, lambda) * vl_channels_at(b, lambda);
   return apart > 0.0f ? vl_channels_at(both, lambda) / apart : 0.0f;
 }
 
-/* Whether path i has only its hero wavelength left. material.hot.c marks such paths by equal wavelengths. */
+/* Whether path i has only its hero wavelength left. material.hot.c marks such paths by equal
+ * wavelengths. */
 static inline bool vl_hero_only(const vlPaths *p, uint32_t i) {
   return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;
 }

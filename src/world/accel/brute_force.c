@@ -1,4 +1,5 @@
-/* world/accel/brute_force.c: finds the primitives of a small world and computes their constants. */
+/* world/accel/brute_force.c: finds the primitives of a small world and computes their
+ * constants. */
 #include "world/accel/brute_force.h"
 
 #include <math.h>
@@ -11,19 +12,24 @@
 /* Within these limits no product of the kernels overflows or underflows. */
 static bool has_usual_size(const vlWorld *world) {
   float largest = 0;
-  for (int i = 0; i < 3; i++) largest = fmaxf(largest, fmaxf(fabsf(world->bounds_min[i]), fabsf(world->bounds_max[i])));
+  for (int i = 0; i < 3; i++)
+    largest = fmaxf(largest, fmaxf(fabsf(world->bounds_min[i]), fabsf(world->bounds_max[i])));
   return world->radius > 1e-6f && largest < 1e6f;
 }
 
 static bool is_eligible(const vlWorld *world) {
-  if (world->instances.count > 0 || world->moves || world->has_one_sided || !has_usual_size(world)) return false;
+  if (world->instances.count > 0 || world->moves || world->has_one_sided ||
+      !has_usual_size(world))
+    return false;
   const vlWorldGroup *group = &world->groups.items[0];
   uint32_t triangles = 0, others = 0;
   for (uint32_t k = 0; k < group->count; k++) {
     const vlWorldShape *s = &world->shapes.items[group->shapes[k]];
-    if (s->alpha >= 0) return false;
+    if (s->alpha >= 0)
+      return false;
     *(s->kind == VL_SHAPE_TRIANGLES ? &triangles : &others) += s->faces;
-    if (triangles > 2 * VL_BRUTE_FACES || others > VL_BRUTE_OTHERS) return false;
+    if (triangles > 2 * VL_BRUTE_FACES || others > VL_BRUTE_OTHERS)
+      return false;
   }
   return true;
 }
@@ -44,14 +50,15 @@ typedef struct Face {
   double corner[4][3];
   double normal[3]; /* of the first triangle, unit length, or 0 */
   int corners;
-  double diagonal[2][3]; /* of a quadrilateral: ends of the edge between its triangles, in the order in which the second
-                            triangle has them */
+  double diagonal[2][3]; /* of a quadrilateral: ends of the edge between its triangles, in the
+                            order in which the second triangle has them */
 } Face;
 
 static void corners_of(const vlWorldShape *s, uint32_t prim, double corner[3][3]) {
   for (int k = 0; k < 3; k++)
     for (int i = 0; i < 3; i++)
-      corner[k][i] = s->positions[3 * (size_t)s->indices[3 * (size_t)prim + (size_t)k] + (size_t)i];
+      corner[k][i] =
+          s->positions[3 * (size_t)s->indices[3 * (size_t)prim + (size_t)k] + (size_t)i];
 }
 
 static Face triangle_face(const vlWorldShape *s, uint32_t prim) {
@@ -71,26 +78,34 @@ static bool same_point(const double a[3], const double b[3]) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Whether the quadrilateral is plane, but for the rounding of its corners to floats, and convex. */
+/* Whether the quadrilateral is plane, but for the rounding of its corners to floats, and
+ * convex. */
 static bool is_good_quadrilateral(const Face *f) {
   double size = 0, height = 0;
   for (int k = 0; k < 4; k++) {
     double from[3];
-    for (int i = 0; i < 3; i++) from[i] = f->corner[k][i] - f->corner[0][i];
+    for (int i = 0; i < 3; i++)
+      from[i] = f->corner[k][i] - f->corner[0][i];
     height = fmax(height, fabs(vl_dot3(from, f->normal)));
-    for (int i = 0; i < 3; i++) size = fmax(size, fabs(f->corner[k][i]));
-    if (!(turn(f->corner[k], f->corner[(k + 1) % 4], f->corner[(k + 2) % 4], f->normal) > 0)) return false;
+    for (int i = 0; i < 3; i++)
+      size = fmax(size, fabs(f->corner[k][i]));
+    if (!(turn(f->corner[k], f->corner[(k + 1) % 4], f->corner[(k + 2) % 4], f->normal) > 0))
+      return false;
   }
   return height <= 0x1p-24 * size;
 }
 
-/* Adds the next triangle to a triangle, if both have an edge in common and make up a good quadrilateral. */
+/* Adds the next triangle to a triangle, if both have an edge in common and make up a good
+ * quadrilateral. */
 static void extend(Face *f, const vlWorldShape *s, uint32_t prim) {
   double next[3][3];
   corners_of(s, prim, next);
   for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 3; j++) { /* edge k of the first is edge j of the second, in the other direction */
-      if (!same_point(f->corner[k], next[(j + 1) % 3]) || !same_point(f->corner[(k + 1) % 3], next[j])) continue;
+    for (int j = 0; j < 3;
+         j++) { /* edge k of the first is edge j of the second, in the other direction */
+      if (!same_point(f->corner[k], next[(j + 1) % 3]) ||
+          !same_point(f->corner[(k + 1) % 3], next[j]))
+        continue;
       Face q = {.corners = 4};
       memcpy(q.normal, f->normal, sizeof q.normal);
       memcpy(q.corner[0], f->corner[k], sizeof q.corner[0]);
@@ -106,8 +121,10 @@ static void extend(Face *f, const vlWorldShape *s, uint32_t prim) {
     }
 }
 
-/* Swapping the ends changes nothing but signs: differences and products of doubles are rounded alike. */
-static void make_edge(const vlBruteForce *b, const double from[3], const double to[3], float edge[3], float moment[3]) {
+/* Swapping the ends changes nothing but signs: differences and products of doubles are rounded
+ * alike. */
+static void make_edge(const vlBruteForce *b, const double from[3], const double to[3],
+                      float edge[3], float moment[3]) {
   double p[3], q[3], across[3];
   for (int i = 0; i < 3; i++) {
     p[i] = from[i] - (double)b->center[i];
@@ -132,7 +149,8 @@ static void add_face(vlBruteForce *b, const Face *f, float extent) {
       b->edge[k][i][at] = edge[i];
       b->moment[k][i][at] = moment[i];
     }
-    for (int i = 0; i < 3; i++) longest = fmaxf(longest, fabsf(edge[i]));
+    for (int i = 0; i < 3; i++)
+      longest = fmaxf(longest, fabsf(edge[i]));
   }
   b->tolerance[at] = 0x1p-23f * extent * longest;
   for (int i = 0; i < 3; i++) {
@@ -140,21 +158,25 @@ static void add_face(vlBruteForce *b, const Face *f, float extent) {
     b->corner[i][at] = (float)f->corner[0][i];
   }
   b->pair[at] = f->corners == 4;
-  if (b->pair[at]) make_edge(b, f->diagonal[0], f->diagonal[1], b->diagonal_edge[at], b->diagonal_moment[at]);
+  if (b->pair[at])
+    make_edge(b, f->diagonal[0], f->diagonal[1], b->diagonal_edge[at], b->diagonal_moment[at]);
 }
 
 /* Adds the triangles of a shape. False: there are too many. */
 static bool add_triangles(vlBruteForce *b, const vlWorld *world, uint32_t shape) {
   const vlWorldShape *s = &world->shapes.items[shape];
   for (uint32_t prim = 0; prim < s->faces; prim++) {
-    if (b->faces == VL_BRUTE_FACES) return false;
+    if (b->faces == VL_BRUTE_FACES)
+      return false;
     b->shape[b->faces] = shape;
     b->prim[b->faces] = prim;
     b->pass_shadow[b->faces] = s->pass_shadow;
     Face f = triangle_face(s, prim);
-    if (prim + 1 < s->faces) extend(&f, s, prim + 1);
+    if (prim + 1 < s->faces)
+      extend(&f, s, prim + 1);
     add_face(b, &f, world->radius);
-    if (f.corners == 4) prim++;
+    if (f.corners == 4)
+      prim++;
   }
   return true;
 }
@@ -186,20 +208,25 @@ static bool add_shapes(vlBruteForce *b, const vlWorld *world) {
   const vlWorldGroup *group = &world->groups.items[0];
   for (uint32_t k = 0; k < group->count; k++) {
     uint32_t shape = group->shapes[k];
-    if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES && !add_triangles(b, world, shape)) return false;
+    if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES &&
+        !add_triangles(b, world, shape))
+      return false;
   }
   for (uint32_t k = 0; k < group->count; k++) {
     const vlWorldShape *s = &world->shapes.items[group->shapes[k]];
-    if (s->kind != VL_SHAPE_TRIANGLES) add_others(b, group->shapes[k], s);
+    if (s->kind != VL_SHAPE_TRIANGLES)
+      add_others(b, group->shapes[k], s);
   }
   return b->faces + VL_BRUTE_OTHER_COST * b->others <= VL_BRUTE_FACES;
 }
 
 vlResult vl_brute_force_make(const vlWorld *world, vlBruteForce **result) {
   *result = NULL;
-  if (!is_eligible(world)) return VL_OK;
+  if (!is_eligible(world))
+    return VL_OK;
   vlBruteForce *b = vl_alloc_zero(world->context, 1, sizeof *b);
-  if (!b) return VL_ERROR_MEMORY;
+  if (!b)
+    return VL_ERROR_MEMORY;
   memcpy(b->center, world->center, sizeof b->center);
   if (add_shapes(b, world))
     *result = b;

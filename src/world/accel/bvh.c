@@ -1,5 +1,5 @@
-/* world/accel/bvh.c: the trees of a world: one for each group, and one for all instances (vlAccel.scene). Those of the
- * previous world are shared. */
+/* world/accel/bvh.c: the trees of a world: one for each group, and one for all instances
+ * (vlAccel.scene). Those of the previous world are shared. */
 #include "world/accel/bvh.h"
 
 #include <string.h>
@@ -18,13 +18,15 @@ void vl_bvh_map(const float m[12], float w[12]) {
   float volume = (x[0] * w[0] + x[1] * w[1]) + x[2] * w[2];
   for (int i = 0; i < 3; i++) {
     float *row = w + 4 * i;
-    for (int j = 0; j < 3; j++) row[j] = row[j] / volume;
+    for (int j = 0; j < 3; j++)
+      row[j] = row[j] / volume;
     row[3] = -(m[3] * row[0] + (m[7] * row[1] + m[11] * row[2]));
   }
 }
 
 void vl_bvh_release(vlContext *context, vlBvh *tree) {
-  if (!tree || atomic_fetch_sub(&tree->users, 1) > 1) return;
+  if (!tree || atomic_fetch_sub(&tree->users, 1) > 1)
+    return;
   for (vlBvhBlock *block = tree->blocks, *next; block; block = next) {
     next = block->next;
     vl_free(context, block);
@@ -43,9 +45,11 @@ vlResult vl_bvh_build(vlWorld *world, vlError *error) {
     else
       r = vl_bvh_make(world, k, &tree, error);
     a->groups[k] = tree;
-    if (r == VL_OK) r = vl_world_step(world, "accelerator", 0.5 + 0.5 / (k + 1), error);
+    if (r == VL_OK)
+      r = vl_world_step(world, "accelerator", 0.5 + 0.5 / (k + 1), error);
   }
-  if (r != VL_OK || world->instances.count == 0) return r;
+  if (r != VL_OK || world->instances.count == 0)
+    return r;
   a->split = true;
   vlBvh *tree = vl_accel_same_whole(world) ? world->previous->accel.scene : NULL;
   if (tree)
@@ -57,6 +61,7 @@ vlResult vl_bvh_build(vlWorld *world, vlError *error) {
 }
 
 void vl_bvh_destroy(vlContext *context, vlAccel *a) {
-  for (uint32_t k = 0; k < a->group_count; k++) vl_bvh_release(context, a->groups[k]);
+  for (uint32_t k = 0; k < a->group_count; k++)
+    vl_bvh_release(context, a->groups[k]);
   vl_bvh_release(context, a->scene);
 }

@@ -1,8 +1,9 @@
-/* world/accel/bvh_build.c: builds trees (bvh.h) by the surface area heuristic: a range of primitives is split where the
- * sum of area times number of tests is least, among planes between bins of centres (Wald 2007, "On fast construction
- * of SAH-based bounding volume hierarchies"). A node's children are made by splitting the largest range until there are
- * eight. Large ranges are split one after the other, the others are built in parallel; the tree does not depend on the
- * number of threads. */
+/* world/accel/bvh_build.c: builds trees (bvh.h) by the surface area heuristic: a range of
+ * primitives is split where the sum of area times number of tests is least, among planes
+ * between bins of centres (Wald 2007, "On fast construction of SAH-based bounding volume
+ * hierarchies"). A node's children are made by splitting the largest range until there are
+ * eight. Large ranges are split one after the other, the others are built in parallel; the tree
+ * does not depend on the number of threads. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +14,8 @@
 
 enum { BINS = 16, CHUNK = 4096 };
 
-/* The fourth lane of a box fills a vector. That of a primitive's box has its numbers instead. */
+/* The fourth lane of a box fills a vector. That of a primitive's box has its numbers instead.
+ */
 typedef struct Box {
   float low[4], high[4];
 } Box;
@@ -74,9 +76,11 @@ static void *take(Builder *b, Arena *arena, size_t size) {
   if ((size_t)(arena->end - arena->at) < size) {
     size_t room = b->count < BLOCK / 256 ? 1024 + 128 * (size_t)b->count : BLOCK;
     vlBvhBlock *block = vl_alloc(b->world->context, sizeof *block + VL_BVH_ALIGN + room);
-    if (!block) return NULL;
+    if (!block)
+      return NULL;
     block->next = atomic_load(&b->tree->blocks);
-    while (!atomic_compare_exchange_weak(&b->tree->blocks, &block->next, block)) continue;
+    while (!atomic_compare_exchange_weak(&b->tree->blocks, &block->next, block))
+      continue;
     arena->at = (char *)(block + 1);
     arena->at += VL_BVH_ALIGN - (uintptr_t)arena->at % VL_BVH_ALIGN;
     arena->end = arena->at + room;
@@ -92,8 +96,10 @@ static Box empty_box(void) {
 }
 
 static inline void extend(Box *b, const Box *other) {
-  for (int i = 0; i < 4; i++) b->low[i] = other->low[i] < b->low[i] ? other->low[i] : b->low[i];
-  for (int i = 0; i < 4; i++) b->high[i] = other->high[i] > b->high[i] ? other->high[i] : b->high[i];
+  for (int i = 0; i < 4; i++)
+    b->low[i] = other->low[i] < b->low[i] ? other->low[i] : b->low[i];
+  for (int i = 0; i < 4; i++)
+    b->high[i] = other->high[i] > b->high[i] ? other->high[i] : b->high[i];
 }
 
 static inline void extend_point(Box *b, const float p[3]) {
@@ -110,14 +116,18 @@ static float area(const Box *b) {
 
 /* The shape of a primitive, whose number becomes that in the shape. */
 static const vlWorldShape *shape_of(const Builder *b, vlBvhItem *item) {
-  return vl_accel_group_shape(b->world, b->group, item->geometry & ~VL_BVH_ASKS, &item->primitive);
+  return vl_accel_group_shape(b->world, b->group, item->geometry & ~VL_BVH_ASKS,
+                              &item->primitive);
 }
 
-/* Box of an instance with a pose. A ray in the group's space may be off by the instance's error. */
-static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const float pose[12]) {
+/* Box of an instance with a pose. A ray in the group's space may be off by the instance's
+ * error. */
+static Box placed_box(const vlWorldInstance *instance, const vlBvh *group,
+                      const float pose[12]) {
   Box b = empty_box();
   float error = instance->error[3];
-  for (int i = 0; i < 3; i++) error += instance->error[i] * fmaxf(fabsf(group->low[i]), fabsf(group->high[i]));
+  for (int i = 0; i < 3; i++)
+    error += instance->error[i] * fmaxf(fabsf(group->low[i]), fabsf(group->high[i]));
   for (int i = 0; i < 3; i++) {
     double low = (double)pose[4 * i + 3], high = low;
     for (int j = 0; j < 3; j++) {
@@ -134,24 +144,30 @@ static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const
 
 /* Box of a primitive at one of its steps or keys. */
 static Box item_box(const Builder *b, vlBvhItem item, uint32_t step) {
-  const vlWorldInstance *q = b->group == VL_NONE ? &b->world->instances.items[item.geometry] : NULL;
-  if (q) return placed_box(q, b->world->accel.groups[q->group], q->keys ? q->path + 12 * (size_t)step : q->from_group);
+  const vlWorldInstance *q =
+      b->group == VL_NONE ? &b->world->instances.items[item.geometry] : NULL;
+  if (q)
+    return placed_box(q, b->world->accel.groups[q->group],
+                      q->keys ? q->path + 12 * (size_t)step : q->from_group);
   const vlWorldShape *s = shape_of(b, &item);
   Box box = empty_box();
   for (size_t k = 0; k < 3 && s->kind == VL_SHAPE_TRIANGLES; k++) {
     size_t vertex = (size_t)step * s->vertices + s->indices[3 * (size_t)item.primitive + k];
     extend_point(&box, s->positions + 3 * vertex);
   }
-  if (s->kind != VL_SHAPE_TRIANGLES) vl_world_prim_bounds(s, item.primitive, box.low, box.high);
+  if (s->kind != VL_SHAPE_TRIANGLES)
+    vl_world_prim_bounds(s, item.primitive, box.low, box.high);
   return box;
 }
 
-/* Boxes of a primitive at times 0 and 1. They are so wide that a box between them contains the primitive at its time,
- * and by several rounding errors wider: of the sums here, and of positions and boxes between two times. */
+/* Boxes of a primitive at times 0 and 1. They are so wide that a box between them contains the
+ * primitive at its time, and by several rounding errors wider: of the sums here, and of
+ * positions and boxes between two times. */
 static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
   vlBvhItem own = item;
   bool placed = b->group == VL_NONE;
-  uint32_t keys = placed ? b->world->instances.items[item.geometry].keys : shape_of(b, &own)->steps;
+  uint32_t keys =
+      placed ? b->world->instances.items[item.geometry].keys : shape_of(b, &own)->steps;
   float beside[3] = {0};
   box[0] = item_box(b, item, 0);
   box[1] = keys > 1 ? item_box(b, item, keys - 1) : box[0];
@@ -165,7 +181,8 @@ static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
     }
   }
   for (int i = 0; i < 3 && (placed || keys > 1); i++) {
-    float most = fmaxf(fmaxf(-box[0].low[i], box[0].high[i]), fmaxf(-box[1].low[i], box[1].high[i]));
+    float most =
+        fmaxf(fmaxf(-box[0].low[i], box[0].high[i]), fmaxf(-box[1].low[i], box[1].high[i]));
     float wide = beside[i] + 0x1p-20f * (beside[i] + most);
     for (int k = 0; k < 2; k++) {
       box[k].low[i] -= wide;
@@ -180,12 +197,19 @@ static void list_primitives(Builder *b) {
   const vlWorldGroup *group = b->group == VL_NONE ? NULL : &b->world->groups.items[b->group];
   for (size_t g = 0; g < (group ? group->count : b->count); g++) {
     const vlWorldShape *s = group ? &b->world->shapes.items[group->shapes[g]] : NULL;
-    const vlAccelBundle *bundle = s && vl_accel_bundled(s) ? &b->world->accel.bundles[b->group] : NULL;
-    uint32_t n = !s ? 1 : !bundle || !bundle->members ? s->faces : g == bundle->geometry ? bundle->count : 0;
+    const vlAccelBundle *bundle =
+        s && vl_accel_bundled(s) ? &b->world->accel.bundles[b->group] : NULL;
+    uint32_t n = !s                            ? 1
+                 : !bundle || !bundle->members ? s->faces
+                 : g == bundle->geometry       ? bundle->count
+                                               : 0;
     bool triangles = s && s->kind == VL_SHAPE_TRIANGLES;
     bool asks = triangles && (s->alpha >= 0 || s->one_sided || s->pass_shadow);
-    vlBvhKind kind = !triangles ? VL_BVH_OTHER : s->steps > 1 ? VL_BVH_FOUR_MOVING : VL_BVH_FOUR_STILL;
-    b->tree->moves |= kind == VL_BVH_FOUR_MOVING || (!s && b->world->instances.items[g].keys > 0);
+    vlBvhKind kind = !triangles     ? VL_BVH_OTHER
+                     : s->steps > 1 ? VL_BVH_FOUR_MOVING
+                                    : VL_BVH_FOUR_STILL;
+    b->tree->moves |=
+        kind == VL_BVH_FOUR_MOVING || (!s && b->world->instances.items[g].keys > 0);
     for (uint32_t i = 0; i < n; i++, to++) {
       to->geometry = (uint32_t)g | (uint32_t)kind << KIND | (asks ? VL_BVH_ASKS : 0);
       to->primitive = i;
@@ -194,10 +218,12 @@ static void list_primitives(Builder *b) {
 }
 
 static bool is_stopped(const Builder *b) {
-  return atomic_load_explicit(&b->failed, memory_order_relaxed) || vl_task_stopped(b->world->task, NULL, 0);
+  return atomic_load_explicit(&b->failed, memory_order_relaxed) ||
+         vl_task_stopped(b->world->task, NULL, 0);
 }
 
-/* Finds the boxes of some primitives. One that is not in Embree's range, nor in that of rays, has an empty box. */
+/* Finds the boxes of some primitives. One that is not in Embree's range, nor in that of rays,
+ * has an empty box. */
 static void find_boxes(void *user, uint32_t index, uint32_t worker) {
   Builder *b = user;
   (void)worker;
@@ -210,11 +236,14 @@ static void find_boxes(void *user, uint32_t index, uint32_t worker) {
     memcpy(p->low, box[0].low, sizeof p->low);
     memcpy(p->high, box[0].high, sizeof p->high);
     for (int k = 0; k < 3; k++)
-      if (!(p->low[k] > -1.8e18f) || !(p->high[k] < 1.8e18f)) p->low[0] = INFINITY;
+      if (!(p->low[k] > -1.8e18f) || !(p->high[k] < 1.8e18f))
+        p->low[0] = INFINITY;
   }
 }
 
-/* ---- splits ------------------------------------------------------------------------------------------------------ */
+/* ---- splits
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static inline int bin_at(const Primitive *p, int axis, float low, float scale) {
   int bin = (int)((p->low[axis] + p->high[axis] - low) * scale);
@@ -230,31 +259,38 @@ typedef struct Bin {
 static float add_bin(Bin *sum, const Bin *bin) {
   extend(&sum->box, &bin->box);
   sum->count += bin->count;
-  return sum->count ? area(&sum->box) * (float)((sum->count + VL_BVH_FOUR - 1) / VL_BVH_FOUR) : INFINITY;
+  return sum->count ? area(&sum->box) * (float)((sum->count + VL_BVH_FOUR - 1) / VL_BVH_FOUR)
+                    : INFINITY;
 }
 
-/* Decides whether a range becomes a leaf, and otherwise how it is split: along the axis along which centres differ
- * most. */
+/* Decides whether a range becomes a leaf, and otherwise how it is split: along the axis along
+ * which centres differ most. */
 static void decide(const Builder *b, Range *r) {
   bool faces = r->kinds == 1 << VL_BVH_FOUR_STILL || r->kinds == 1 << VL_BVH_FOUR_MOVING;
   int axis = 0;
   for (int i = 1; i < 3; i++)
-    if (r->centers.high[i] - r->centers.low[i] > r->centers.high[axis] - r->centers.low[axis]) axis = i;
+    if (r->centers.high[i] - r->centers.low[i] > r->centers.high[axis] - r->centers.low[axis])
+      axis = i;
   float extent = r->centers.high[axis] - r->centers.low[axis], right[BINS], least = INFINITY;
   r->axis = -1;
   r->leaf = r->end - r->begin <= (faces ? VL_BVH_FOUR : 1);
-  if (r->leaf || r->depth >= VL_BVH_DEPTH || !(extent >= 0x1p-100f)) return;
+  if (r->leaf || r->depth >= VL_BVH_DEPTH || !(extent >= 0x1p-100f))
+    return;
   Bin bins[BINS + 1], sum = {empty_box(), 0};
-  for (int k = 0; k <= BINS; k++) bins[k] = sum;
+  for (int k = 0; k <= BINS; k++)
+    bins[k] = sum;
   r->low = r->centers.low[axis];
   r->scale = 0.9999f * BINS / extent;
   for (uint32_t i = r->begin; i < r->end; i++)
-    add_bin(&bins[bin_at(&b->primitives[i], axis, r->low, r->scale)], &(Bin){b->primitives[i].box, 1});
-  for (int k = BINS - 1; k > 0; k--) right[k] = add_bin(&sum, &bins[k]);
+    add_bin(&bins[bin_at(&b->primitives[i], axis, r->low, r->scale)],
+            &(Bin){b->primitives[i].box, 1});
+  for (int k = BINS - 1; k > 0; k--)
+    right[k] = add_bin(&sum, &bins[k]);
   sum = bins[BINS];
   for (int k = 1; k < BINS; k++) {
     float cost = add_bin(&sum, &bins[k - 1]) + right[k];
-    if (!(cost < least)) continue;
+    if (!(cost < least))
+      continue;
     least = cost;
     r->bin = k;
     r->axis = axis;
@@ -263,7 +299,8 @@ static void decide(const Builder *b, Range *r) {
 
 static void add(Range *r, const Primitive *p) {
   Box center;
-  for (int i = 0; i < 4; i++) center.low[i] = center.high[i] = p->box.low[i] + p->box.high[i];
+  for (int i = 0; i < 4; i++)
+    center.low[i] = center.high[i] = p->box.low[i] + p->box.high[i];
   extend(&r->box, &p->box);
   extend(&r->centers, &center);
   r->kinds |= 1u << kind_of(p);
@@ -272,7 +309,8 @@ static void add(Range *r, const Primitive *p) {
 static void split(const Builder *b, const Range *r, Range half[2]) {
   Primitive *p = b->primitives;
   uint32_t i = r->begin, j = r->end, middle = i + (j - i) / 2;
-  for (int k = 0; k < 2; k++) half[k] = (Range){.depth = r->depth + 1, .box = empty_box(), .centers = empty_box()};
+  for (int k = 0; k < 2; k++)
+    half[k] = (Range){.depth = r->depth + 1, .box = empty_box(), .centers = empty_box()};
   while (i < j) {
     bool left = r->axis < 0 ? i < middle : bin_at(&p[i], r->axis, r->low, r->scale) < r->bin;
     Primitive next = p[i];
@@ -292,14 +330,18 @@ static void split(const Builder *b, const Range *r, Range half[2]) {
 }
 
 /* Splits a range into up to eight. Those of at most `small` primitives stay whole. */
-static uint32_t split_often(const Builder *b, const Range *range, uint32_t small, Range to[VL_BVH_WIDTH]) {
+static uint32_t split_often(const Builder *b, const Range *range, uint32_t small,
+                            Range to[VL_BVH_WIDTH]) {
   uint32_t count = 1;
   to[0] = *range;
   while (count < VL_BVH_WIDTH) {
     Range *largest = NULL, half[2];
     for (Range *r = to; r < to + count; r++)
-      if (!r->leaf && r->end - r->begin > small && (!largest || area(&r->box) > area(&largest->box))) largest = r;
-    if (!largest) break;
+      if (!r->leaf && r->end - r->begin > small &&
+          (!largest || area(&r->box) > area(&largest->box)))
+        largest = r;
+    if (!largest)
+      break;
     split(b, largest, half);
     *largest = half[0];
     to[count++] = half[1];
@@ -307,16 +349,20 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
   return count;
 }
 
-/* ---- nodes ------------------------------------------------------------------------------------------------------- */
+/* ---- nodes
+ * -------------------------------------------------------------------------------------------------------
+ */
 
-/* Sets the boxes of child k. No ray meets the box of a null range; it is finite, for products with 0. */
+/* Sets the boxes of child k. No ray meets the box of a null range; it is finite, for products
+ * with 0. */
 static void set_boxes(const Builder *b, vlBvhNode *node, uint32_t k, const Range *r) {
   bool moves = b->tree->moves;
   Box box[2] = {moves || !r ? empty_box() : r->box, empty_box()};
   for (uint32_t i = r ? r->begin : 0; moves && r && i < r->end; i++) {
     Box at[2];
     item_boxes(b, item_of(&b->primitives[i]), at);
-    for (int time = 0; time < 2; time++) extend(&box[time], &at[time]);
+    for (int time = 0; time < 2; time++)
+      extend(&box[time], &at[time]);
   }
   for (int time = 0; time <= moves; time++) {
     vlBvhBoxes *boxes = time ? node->later : &node->boxes;
@@ -331,9 +377,11 @@ static bool make_leaf(Builder *b, Arena *arena, const Range *r, uintptr_t *child
   const Primitive *p = b->primitives + r->begin;
   vlBvhKind kind = kind_of(p);
   void *leaf = take(b, arena, kind == VL_BVH_OTHER ? sizeof(vlBvhItem) : sizeof(vlBvhFour));
-  if (!leaf) return false;
+  if (!leaf)
+    return false;
   *child = (uintptr_t)leaf | kind;
-  if (kind == VL_BVH_OTHER) *(vlBvhItem *)leaf = item_of(p);
+  if (kind == VL_BVH_OTHER)
+    *(vlBvhItem *)leaf = item_of(p);
   for (uint32_t k = 0; k < VL_BVH_FOUR && kind != VL_BVH_OTHER; k++) {
     vlBvhFour *four = leaf;
     vlBvhItem item = item_of(r->begin + k < r->end ? p + k : p);
@@ -345,23 +393,29 @@ static bool make_leaf(Builder *b, Arena *arena, const Range *r, uintptr_t *child
   return true;
 }
 
-/* Makes the tree of a range. apart: its small ranges become parts, whose trees are made later. */
-static bool make_tree(Builder *b, Arena *arena, const Range *range, bool apart, uintptr_t *child) {
-  if (apart && (is_stopped(b) || !VL_RESERVE(b->world->context, &b->parts, 1))) return false;
+/* Makes the tree of a range. apart: its small ranges become parts, whose trees are made later.
+ */
+static bool make_tree(Builder *b, Arena *arena, const Range *range, bool apart,
+                      uintptr_t *child) {
+  if (apart && (is_stopped(b) || !VL_RESERVE(b->world->context, &b->parts, 1)))
+    return false;
   if (apart && (range->leaf || range->end - range->begin <= b->part_size)) {
     b->parts.items[b->parts.count++] = (Part){*range, child};
     return true;
   }
-  if (range->leaf) return make_leaf(b, arena, range, child);
+  if (range->leaf)
+    return make_leaf(b, arena, range, child);
   Range ranges[VL_BVH_WIDTH];
   uint32_t count = split_often(b, range, apart ? b->part_size : 1, ranges);
   vlBvhNode *node = take(b, arena, sizeof *node + (b->tree->moves ? sizeof node->later[0] : 0));
-  if (!node) return false;
+  if (!node)
+    return false;
   *child = (uintptr_t)node;
   for (uint32_t k = 0; k < VL_BVH_WIDTH; k++) {
     node->child[k] = 0;
     set_boxes(b, node, k, k < count ? &ranges[k] : NULL);
-    if (k < count && !make_tree(b, arena, &ranges[k], apart, &node->child[k])) return false;
+    if (k < count && !make_tree(b, arena, &ranges[k], apart, &node->child[k]))
+      return false;
   }
   return true;
 }
@@ -378,25 +432,30 @@ static bool build(Builder *b) {
   vlContext *c = b->world->context;
   b->primitives = vl_alloc_array(c, (size_t)b->count + 1, sizeof *b->primitives);
   b->arenas = vl_alloc_zero(c, vl_context_threads(c), sizeof *b->arenas);
-  if (!b->primitives || !b->arenas) return false;
+  if (!b->primitives || !b->arenas)
+    return false;
   vlLoopDef loop = vl_loop_def(0, b->world->task->cancel);
   list_primitives(b);
   vl_parallel_for_at(c, &loop, (b->count + CHUNK - 1) / CHUNK, find_boxes, b);
-  if (is_stopped(b)) return false;
+  if (is_stopped(b))
+    return false;
   Range all = {.box = empty_box(), .centers = empty_box()};
   for (uint32_t i = 0; i < b->count; i++) {
-    if (!(b->primitives[i].low[0] <= b->primitives[i].high[0])) continue;
+    if (!(b->primitives[i].low[0] <= b->primitives[i].high[0]))
+      continue;
     b->primitives[all.end] = b->primitives[i];
     add(&all, &b->primitives[all.end++]);
   }
-  if (all.end == 0) return true;
+  if (all.end == 0)
+    return true;
   decide(b, &all);
   b->part_size = all.end / 256 < CHUNK ? CHUNK : all.end / 256;
   for (int i = 0; i < 3; i++) {
     float low = b->tree->low[i] = all.box.low[i], high = b->tree->high[i] = all.box.high[i];
     b->tree->reach = fmaxf(b->tree->reach, fmaxf(-low, high));
   }
-  if (!make_tree(b, &b->arenas[0], &all, true, &b->tree->root)) return false;
+  if (!make_tree(b, &b->arenas[0], &all, true, &b->tree->root))
+    return false;
   vl_parallel_for_at(c, &loop, (uint32_t)b->parts.count, make_part, b);
   return !is_stopped(b);
 }
@@ -404,20 +463,25 @@ static bool build(Builder *b) {
 vlResult vl_bvh_make(const vlWorld *world, uint32_t group, vlBvh **tree, vlError *error) {
   vlContext *c = world->context;
   vlBvh *made = *tree = vl_alloc_zero(c, 1, sizeof *made);
-  if (!made) return vl_fail_memory(error);
+  if (!made)
+    return vl_fail_memory(error);
   atomic_init(&made->users, 1);
   Builder b = {.world = world, .group = group, .tree = made};
   uint64_t count = group == VL_NONE ? world->instances.count : 0;
   const vlWorldGroup *shapes = group == VL_NONE ? NULL : &world->groups.items[group];
-  for (uint32_t i = 0; shapes && i < shapes->count; i++) count += world->shapes.items[shapes->shapes[i]].faces;
-  if (!shapes) made->maps = vl_alloc_array(c, (size_t)count, sizeof *made->maps);
-  for (uint64_t i = 0; made->maps && i < count; i++) vl_bvh_map(world->instances.items[i].from_group, made->maps[i]);
+  for (uint32_t i = 0; shapes && i < shapes->count; i++)
+    count += world->shapes.items[shapes->shapes[i]].faces;
+  if (!shapes)
+    made->maps = vl_alloc_array(c, (size_t)count, sizeof *made->maps);
+  for (uint64_t i = 0; made->maps && i < count; i++)
+    vl_bvh_map(world->instances.items[i].from_group, made->maps[i]);
   b.count = (uint32_t)count;
   bool built = count < UINT32_MAX && (shapes || made->maps) && build(&b);
   vl_free(c, b.arenas);
   vl_free(c, b.primitives);
   VL_ARRAY_FREE(c, &b.parts);
-  if (built) return VL_OK;
+  if (built)
+    return VL_OK;
   vl_bvh_release(c, made);
   *tree = NULL;
   vlResult r = vl_world_step(world, NULL, 0, error);

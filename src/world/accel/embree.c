@@ -1,11 +1,14 @@
-/* world/accel/embree.c: the one file that calls Embree (3.13 or 4). Triangles are Embree's own geometry; other shapes
- * are user geometry, intersected by surface_point.c. Filters decide by a hash of ray and primitive whether a ray passes
- * because of alpha, so that the result does not depend on the order of traversal. Shadow rays pass interface surfaces.
- * Inside instances Embree gives callbacks the ray in the group's space. Embree's transformation of the ray differs
- * between instruction sets; the callbacks therefore read the world-space ray by its id and transform it themselves.
+/* world/accel/embree.c: the one file that calls Embree (3.13 or 4). Triangles are Embree's own
+ * geometry; other shapes are user geometry, intersected by surface_point.c. Filters decide by a
+ * hash of ray and primitive whether a ray passes because of alpha, so that the result does not
+ * depend on the order of traversal. Shadow rays pass interface surfaces. Inside instances
+ * Embree gives callbacks the ray in the group's space. Embree's transformation of the ray
+ * differs between instruction sets; the callbacks therefore read the world-space ray by its id
+ * and transform it themselves.
  *
- * For reproducible results (docs/decisions/0013-the-bits-of-embree.md): Embree runs with an instruction set without
- * fused multiply-add, and a filter decides which of several hits is the nearest (nearest.h). */
+ * For reproducible results (docs/decisions/0013-the-bits-of-embree.md): Embree runs with an
+ * instruction set without fused multiply-add, and a filter decides which of several hits is the
+ * nearest (nearest.h). */
 #include "world/accel/embree.h"
 
 #include <math.h>
@@ -33,8 +36,8 @@
 #include <embree3/rtcore.h>
 #endif
 
-/* Embree's accessors for packets of any size exist in C++ only. These are the rows of a packet of N rays in the layout
- * of Embree's manual: row k holds N values. */
+/* Embree's accessors for packets of any size exist in C++ only. These are the rows of a packet
+ * of N rays in the layout of Embree's manual: row k holds N values. */
 enum {
   ORIGIN = 0,
   TNEAR = 3,
@@ -55,8 +58,8 @@ static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
   return (unsigned *)hit + (size_t)row * n + i;
 }
 
-/* What user_bounds reads; needed only while a scene is built. During queries the world of the query gives the shape,
- * because worlds share Embree's scenes. */
+/* What user_bounds reads; needed only while a scene is built. During queries the world of the
+ * query gives the shape, because worlds share Embree's scenes. */
 typedef struct AccelGeometry {
   const vlWorld *world;
   const vlWorldShape *shape;
@@ -89,26 +92,32 @@ static inline uint32_t index_of(const vlWorld *world, uint32_t inst) {
   return inst == VL_NONE ? VL_NONE : inst - world->groups.items[0].count;
 }
 
-/* ---- filters ----------------------------------------------------------------------------------------------------- */
+/* ---- filters
+ * -----------------------------------------------------------------------------------------------------
+ */
 
-static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsigned i, bool shadow) {
+static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsigned i,
+                           bool shadow) {
   const vlEmbreeQuery *q = query_of(args->context);
   uint32_t inst = instance_of(q->world, *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
-  const vlWorldShape *shape = vl_accel_shape(q->world, inst, *hit_row(args->hit, args->N, GEOM, i), &prim);
-  return vl_triangle_lets_pass(q->world, q->rays, *hit_row(args->ray, args->N, ID, i), index_of(q->world, inst), shape,
-                               prim, shadow);
+  const vlWorldShape *shape =
+      vl_accel_shape(q->world, inst, *hit_row(args->hit, args->N, GEOM, i), &prim);
+  return vl_triangle_lets_pass(q->world, q->rays, *hit_row(args->ray, args->N, ID, i),
+                               index_of(q->world, inst), shape, prim, shadow);
 }
 
-/* Reads the hit of ray i of n as Embree passes it to a filter; the t of the ray is then the t of the hit. */
-static inline __attribute__((always_inline)) void read_hit(const struct RTCFilterFunctionNArguments *args, unsigned n,
-                                                           unsigned i, vlNearest *hit) {
+/* Reads the hit of ray i of n as Embree passes it to a filter; the t of the ray is then the t
+ * of the hit. */
+static inline __attribute__((always_inline)) void read_hit(
+    const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i, vlNearest *hit) {
   hit->world = query_of(args->context)->world;
   hit->t = *ray_row(args->ray, n, TFAR, i);
   hit->instance = instance_of(hit->world, *hit_row(args->hit, n, INST, i));
   hit->geometry = *hit_row(args->hit, n, GEOM, i);
   hit->primitive = *hit_row(args->hit, n, PRIM, i);
-  for (int k = 0; k < 3; k++) hit->normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
+  for (int k = 0; k < 3; k++)
+    hit->normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
   if (n == 1) { /* the members lie one after the other, as in RTCRay */
     memcpy(hit->o, args->ray, (TIME + 1) * sizeof(float));
     return;
@@ -123,17 +132,17 @@ _Static_assert(offsetof(vlNearest, time) - offsetof(vlNearest, o) == TIME * size
                    offsetof(vlNearest, d) - offsetof(vlNearest, o) == DIRECTION * sizeof(float),
                "the layout of a single ray");
 
-static __attribute__((noinline)) bool compare_hits(const struct RTCFilterFunctionNArguments *args, unsigned n,
-                                                   unsigned i, vlNearest *known) {
+static __attribute__((noinline)) bool compare_hits(
+    const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i, vlNearest *known) {
   vlNearest hit;
   read_hit(args, n, i, &hit);
   return vl_nearest_offer(known, &hit);
 }
 
-/* Whether the hit of ray i of n is the nearest so far. Sets the ray's largest t, beyond which further hits do not
- * matter. */
-static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned n,
-                                                             unsigned i) {
+/* Whether the hit of ray i of n is the nearest so far. Sets the ray's largest t, beyond which
+ * further hits do not matter. */
+static inline __attribute__((always_inline)) bool is_nearest(
+    const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i) {
   const vlEmbreeQuery *q = query_of(args->context);
   vlNearest *known = q->nearest + (*hit_row(args->ray, n, ID, i) - q->first);
   float t = *ray_row(args->ray, n, TFAR, i);
@@ -147,43 +156,53 @@ static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFil
 
 /* The filter for VL_BITS_PORTABLE, for triangles that need no other filter. */
 static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
-  if (!query_of(args->context)->nearest) return;
+  if (!query_of(args->context)->nearest)
+    return;
   if (args->N == 1) { /* single rays, as constants: the compiler then knows all offsets */
-    if (args->valid[0] == -1 && !is_nearest(args, 1, 0)) args->valid[0] = 0;
+    if (args->valid[0] == -1 && !is_nearest(args, 1, 0))
+      args->valid[0] = 0;
     return;
   }
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && !is_nearest(args, args->N, i)) args->valid[i] = 0;
+    if (args->valid[i] == -1 && !is_nearest(args, args->N, i))
+      args->valid[i] = 0;
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
   bool any = !query_of(args->context)->nearest;
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && (filter_rejects(args, i, false) || !(any || is_nearest(args, args->N, i))))
+    if (args->valid[i] == -1 &&
+        (filter_rejects(args, i, false) || !(any || is_nearest(args, args->N, i))))
       args->valid[i] = 0;
 }
 
 static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && filter_rejects(args, i, true)) args->valid[i] = 0;
+    if (args->valid[i] == -1 && filter_rejects(args, i, true))
+      args->valid[i] = 0;
 }
 
 /* For shadow rays and opaque triangles that stay in place. */
 static void learn_occluder(const struct RTCFilterFunctionNArguments *args) {
   const vlEmbreeQuery *q = query_of(args->context);
   for (unsigned i = 0; q->occluders && i < args->N; i++)
-    if (args->valid[i] == -1 && instance_of(q->world, *hit_row(args->hit, args->N, INST, i)) == VL_NONE)
-      vl_occluders_learn(q->occluders, *hit_row(args->hit, args->N, GEOM, i), *hit_row(args->hit, args->N, PRIM, i));
+    if (args->valid[i] == -1 &&
+        instance_of(q->world, *hit_row(args->hit, args->N, INST, i)) == VL_NONE)
+      vl_occluders_learn(q->occluders, *hit_row(args->hit, args->N, GEOM, i),
+                         *hit_row(args->hit, args->N, PRIM, i));
 }
 
-/* ---- user geometry ----------------------------------------------------------------------------------------------- */
+/* ---- user geometry
+ * -----------------------------------------------------------------------------------------------
+ */
 
 static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   const AccelGeometry *g = args->geometryUserPtr;
   float low[3], high[3];
   uint32_t prim = args->primID;
   const vlWorldShape *shape = g->members ? &g->world->shapes.items[g->members[prim]] : g->shape;
-  if (g->members) prim = 0;
+  if (g->members)
+    prim = 0;
   vl_world_prim_bounds(shape, prim, low, high);
   args->bounds_o->lower_x = low[0];
   args->bounds_o->lower_y = low[1];
@@ -193,20 +212,22 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   args->bounds_o->upper_z = high[2];
 }
 
-static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i, uint32_t geometry, uint32_t prim,
-                     bool shadow, double *t) {
+static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i,
+                     uint32_t geometry, uint32_t prim, bool shadow, double *t) {
   const vlEmbreeQuery *q = query_of(context);
   uint32_t inst = instance_of(q->world, context->instID[0]);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, geometry, &prim);
-  return vl_ray_meets_shape(q->world, q->rays, *hit_row(ray, n, ID, i), index_of(q->world, inst), shape, prim, shadow,
-                            (double)*ray_row(ray, n, TNEAR, i), (double)*ray_row(ray, n, TFAR, i), t);
+  return vl_ray_meets_shape(
+      q->world, q->rays, *hit_row(ray, n, ID, i), index_of(q->world, inst), shape, prim, shadow,
+      (double)*ray_row(ray, n, TNEAR, i), (double)*ray_row(ray, n, TFAR, i), t);
 }
 
 static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
   void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] != -1 || !user_hit(args->context, ray, args->N, i, args->geomID, args->primID, false, &t))
+    if (args->valid[i] != -1 ||
+        !user_hit(args->context, ray, args->N, i, args->geomID, args->primID, false, &t))
       continue;
     const vlEmbreeQuery *q = query_of(args->context);
     float limit = (float)t;
@@ -215,7 +236,8 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
                        .instance = instance_of(q->world, args->context->instID[0]),
                        .geometry = args->geomID,
                        .primitive = args->primID};
-      if (!vl_nearest_offer(q->nearest + (*hit_row(ray, args->N, ID, i) - q->first), &met)) continue;
+      if (!vl_nearest_offer(q->nearest + (*hit_row(ray, args->N, ID, i) - q->first), &met))
+        continue;
       limit = met.t * VL_NEAREST_WINDOW;
     }
     *ray_row(ray, args->N, TFAR, i) = limit;
@@ -228,12 +250,15 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
 static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] == -1 && user_hit(args->context, args->ray, args->N, i, args->geomID, args->primID, true, &t))
+    if (args->valid[i] == -1 &&
+        user_hit(args->context, args->ray, args->N, i, args->geomID, args->primID, true, &t))
       *ray_row(args->ray, args->N, TFAR, i) = -INFINITY;
   }
 }
 
-/* ---- building ---------------------------------------------------------------------------------------------------- */
+/* ---- building
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
   rtcSetGeometryUserPrimitiveCount(geometry, count);
@@ -243,19 +268,22 @@ static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
 }
 
 /* Adds a shape or a bundle to a scene. count: number of shapes in the bundle. */
-static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, uint32_t count,
-                             vlError *error) {
+static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g,
+                             uint32_t count, vlError *error) {
   const vlWorldShape *s = g->shape;
   bool triangles = s->kind == VL_SHAPE_TRIANGLES;
-  RTCGeometry geometry = rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
-  if (!geometry) return vl_fail_memory(error);
+  RTCGeometry geometry =
+      rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
+  if (!geometry)
+    return vl_fail_memory(error);
   rtcSetGeometryUserData(geometry, g);
   if (triangles) {
     rtcSetGeometryTimeStepCount(geometry, s->steps);
     for (uint32_t k = 0; k < s->steps; k++)
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, s->positions,
-                                 12 * (size_t)k * s->vertices, 12, s->vertices);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3,
+                                 s->positions, 12 * (size_t)k * s->vertices, 12, s->vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices,
+                               0, 12, s->faces);
     if (s->alpha >= 0 || s->one_sided)
       rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
     else if (g->world->def.bits == VL_BITS_PORTABLE)
@@ -276,11 +304,13 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
 static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene target, unsigned id,
                                 const vlWorldInstance *q, vlError *error) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  if (!geometry) return vl_fail_memory(error);
+  if (!geometry)
+    return vl_fail_memory(error);
   rtcSetGeometryInstancedScene(geometry, target);
   uint32_t steps = q->keys ? q->keys : 1;
   rtcSetGeometryTimeStepCount(geometry, steps);
-  for (uint32_t k = 0; k < steps; k++) /* matrices are interpolated linearly between keys, as in moving.c */
+  for (uint32_t k = 0; k < steps;
+       k++) /* matrices are interpolated linearly between keys, as in moving.c */
     rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
                             q->keys ? q->path + 12 * (size_t)k : q->from_group);
   rtcCommitGeometry(geometry);
@@ -297,14 +327,17 @@ static bool go_on(void *user, double n) {
 
 static RTCScene new_scene(const vlWorld *world) {
   RTCScene scene = rtcNewScene(world->accel.device);
-  if (!scene) return NULL;
+  if (!scene)
+    return NULL;
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  if (world->task->cancel || world->task->progress) rtcSetSceneProgressMonitorFunction(scene, go_on, world->task);
+  if (world->task->cancel || world->task->progress)
+    rtcSetSceneProgressMonitorFunction(scene, go_on, world->task);
   return scene;
 }
 
 #if defined(__x86_64__)
-/* Embree's instruction sets. fused: uses fused multiply-add; its hits at edges differ from those of the other sets. */
+/* Embree's instruction sets. fused: uses fused multiply-add; its hits at edges differ from
+ * those of the other sets. */
 typedef struct EmbreeSet {
   const char *name;
   bool there, fused;
@@ -319,27 +352,33 @@ static void list_sets(EmbreeSet sets[SETS]) {
   sets[3] = (EmbreeSet){"avx512", vl_isa_best() >= VL_ISA_V4, true};
 }
 
-/* Chooses the instruction set that Embree must use; null: Embree's own choice. For VL_BITS_PORTABLE it is the widest
- * set without fused multiply-add. The environment variable VELO_EMBREE overrides both. */
+/* Chooses the instruction set that Embree must use; null: Embree's own choice. For
+ * VL_BITS_PORTABLE it is the widest set without fused multiply-add. The environment variable
+ * VELO_EMBREE overrides both. */
 static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   EmbreeSet sets[SETS];
   list_sets(sets);
   const char *wish = getenv("VELO_EMBREE");
   *name = NULL;
   if (!wish || !*wish) {
-    if (bits == VL_BITS_PORTABLE) *name = sets[sets[1].there ? 1 : 0].name;
+    if (bits == VL_BITS_PORTABLE)
+      *name = sets[sets[1].there ? 1 : 0].name;
     return VL_OK;
   }
   for (size_t k = 0; k < SETS; k++) {
-    if (strcmp(wish, sets[k].name) != 0) continue;
+    if (strcmp(wish, sets[k].name) != 0)
+      continue;
     if (!sets[k].there)
-      return vl_fail(error, VL_ERROR_UNSUPPORTED, "VELO_EMBREE=%s: this machine does not have it", wish);
+      return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                     "VELO_EMBREE=%s: this machine does not have it", wish);
     if (sets[k].fused && bits == VL_BITS_PORTABLE)
-      return vl_fail(error, VL_ERROR_UNSUPPORTED, "VELO_EMBREE=%s: portable bits need sse4.2 or avx", wish);
+      return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                     "VELO_EMBREE=%s: portable bits need sse4.2 or avx", wish);
     *name = sets[k].name;
     return VL_OK;
   }
-  return vl_fail(error, VL_ERROR_ARGUMENT, "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
+  return vl_fail(error, VL_ERROR_ARGUMENT,
+                 "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
 }
 
 const char *vl_embree_fast_set(void) {
@@ -347,8 +386,10 @@ const char *vl_embree_fast_set(void) {
   EmbreeSet sets[SETS];
   list_sets(sets);
   for (size_t k = 0; k < SETS; k++) {
-    if (wish && strcmp(wish, sets[k].name) == 0) return sets[k].name;
-    if (sets[k].there) widest = sets[k].name;
+    if (wish && strcmp(wish, sets[k].name) == 0)
+      return sets[k].name;
+    if (sets[k].there)
+      widest = sets[k].name;
   }
   return widest;
 }
@@ -365,14 +406,16 @@ const char *vl_embree_fast_set(void) {
 }
 #endif
 
-/* Whether the address space has room for Embree's threads (their stacks and heaps). Embree's threads end the process
- * when they run out of memory during a build. The test reserves that much address space, which takes no memory, and
- * releases it again. */
+/* Whether the address space has room for Embree's threads (their stacks and heaps). Embree's
+ * threads end the process when they run out of memory during a build. The test reserves that
+ * much address space, which takes no memory, and releases it again. */
 static bool has_room(const vlWorld *world) {
   size_t primitives = 0;
   for (size_t i = 0; i < world->shapes.count; i++)
-    if (world->shape_from[i] == VL_NONE) primitives += (size_t)world->shapes.items[i].faces + 1;
-  size_t bytes = ((size_t)64 << 20) + ((size_t)72 << 20) * vl_context_threads(world->context) + 256 * primitives;
+    if (world->shape_from[i] == VL_NONE)
+      primitives += (size_t)world->shapes.items[i].faces + 1;
+  size_t bytes = ((size_t)64 << 20) + ((size_t)72 << 20) * vl_context_threads(world->context) +
+                 256 * primitives;
   return vl_machine_has_addresses(bytes);
 }
 
@@ -396,25 +439,32 @@ static vlResult open_device(vlWorld *world, RTCDevice *device, vlError *error) {
     return VL_OK;
   }
   vlResult startable = vl_try_threads(world->context, error);
-  if (startable != VL_OK) return startable;
+  if (startable != VL_OK)
+    return startable;
   const char *set;
   vlResult chosen = choose_set(world->def.bits, &set, error);
-  if (chosen != VL_OK) return chosen;
-  snprintf(config, sizeof config, "threads=%u,hugepages=1%s%s", vl_context_threads(world->context), set ? ",isa=" : "",
-           set ? set : "");
+  if (chosen != VL_OK)
+    return chosen;
+  snprintf(config, sizeof config, "threads=%u,hugepages=1%s%s",
+           vl_context_threads(world->context), set ? ",isa=" : "", set ? set : "");
   *device = rtcNewDevice(config);
   if (!*device)
-    return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
+    return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)",
+                   (int)rtcGetDeviceError(NULL));
   rtcSetDeviceMemoryMonitorFunction(*device, on_memory, world->context);
   return VL_OK;
 }
 
 static vlResult device_error(RTCDevice device, vlError *error) {
   enum RTCError code = rtcGetDeviceError(device);
-  if (code == RTC_ERROR_OUT_OF_MEMORY) return vl_fail_memory(error);
-  if (code == RTC_ERROR_UNKNOWN) /* Embree's scheduler reports this error when memory is short */
-    return vl_fail(error, VL_ERROR_MEMORY, "Embree cannot build the scene (error %d)", (int)code);
-  if (code != RTC_ERROR_NONE) return vl_fail(error, VL_ERROR_SCENE, "Embree refuses the scene (error %d)", (int)code);
+  if (code == RTC_ERROR_OUT_OF_MEMORY)
+    return vl_fail_memory(error);
+  if (code ==
+      RTC_ERROR_UNKNOWN) /* Embree's scheduler reports this error when memory is short */
+    return vl_fail(error, VL_ERROR_MEMORY, "Embree cannot build the scene (error %d)",
+                   (int)code);
+  if (code != RTC_ERROR_NONE)
+    return vl_fail(error, VL_ERROR_SCENE, "Embree refuses the scene (error %d)", (int)code);
   return VL_OK;
 }
 
@@ -432,8 +482,10 @@ static vlResult attach_group(const Builder *b, RTCScene scene, uint32_t k, vlErr
   vlResult r = VL_OK;
   for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
     AccelGeometry *g = &b->geometries[group->shapes[i]];
-    if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* is in the bundle */
-    if (bundle->members && i == bundle->geometry) g->members = bundle->members;
+    if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape))
+      continue; /* is in the bundle */
+    if (bundle->members && i == bundle->geometry)
+      g->members = bundle->members;
     r = attach_shape(b->device, scene, i, g, bundle->count, error);
   }
   return r;
@@ -450,14 +502,16 @@ static vlResult make_group(const Builder *b, uint32_t k, vlError *error) {
     return VL_OK;
   }
   RTCScene scene = new_scene(world);
-  if (!scene) return vl_fail_memory(error);
+  if (!scene)
+    return vl_fail_memory(error);
   a->groups[k] = scene;
   vlResult r = attach_group(b, scene, k, error);
   return r == VL_OK ? commit(world, scene, 1.0 / (k + 1), error) : r;
 }
 
-/* The scene of the whole world, in one of three ways: that of group 0, if there are no instances; one that contains the
- * shapes of group 0 and the instances; or, split, one of instances alone. */
+/* The scene of the whole world, in one of three ways: that of group 0, if there are no
+ * instances; one that contains the shapes of group 0 and the instances; or, split, one of
+ * instances alone. */
 static vlResult make_whole(const Builder *b, vlError *error) {
   vlWorld *world = b->world;
   vlAccel *a = &world->accel;
@@ -468,72 +522,92 @@ static vlResult make_whole(const Builder *b, vlError *error) {
     a->split = world->previous->accel.split;
     rtcRetainScene(a->scene);
     a->groups[0] = world->previous->accel.groups[0];
-    if (a->groups[0]) rtcRetainScene(a->groups[0]);
+    if (a->groups[0])
+      rtcRetainScene(a->groups[0]);
     return VL_OK;
   }
   if (world->instances.count == 0) {
     r = make_group(b, 0, error);
     a->scene = a->groups[0];
-    if (a->scene) rtcRetainScene(a->scene);
+    if (a->scene)
+      rtcRetainScene(a->scene);
     return r;
   }
   bool split = vl_accel_must_split(world);
-  if (split) r = make_group(b, 0, error);
-  if (r != VL_OK) return r;
+  if (split)
+    r = make_group(b, 0, error);
+  if (r != VL_OK)
+    return r;
   a->split = split;
   RTCScene scene = a->scene = new_scene(world);
-  if (!scene) return vl_fail_memory(error);
+  if (!scene)
+    return vl_fail_memory(error);
   static const vlWorldInstance still = {.from_group = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
-  r = split ? attach_instance(b->device, scene, a->groups[0], 0, &still, error) : attach_group(b, scene, 0, error);
+  r = split ? attach_instance(b->device, scene, a->groups[0], 0, &still, error)
+            : attach_group(b, scene, 0, error);
   for (size_t i = 0; r == VL_OK && i < world->instances.count; i++) {
     const vlWorldInstance *instance = &world->instances.items[i];
-    r = attach_instance(b->device, scene, a->groups[instance->group], own + (unsigned)i, instance, error);
+    r = attach_instance(b->device, scene, a->groups[instance->group], own + (unsigned)i,
+                        instance, error);
   }
   return r == VL_OK ? commit(world, scene, 1, error) : r;
 }
 
 vlResult vl_embree_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
-  if (!has_room(world)) return vl_fail_memory(error);
+  if (!has_room(world))
+    return vl_fail_memory(error);
   RTCDevice device;
   vlResult r = open_device(world, &device, error);
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   a->device = device;
-  Builder b = {world, device, vl_alloc_array(world->context, world->shapes.count + 1, sizeof *b.geometries)};
-  if (!b.geometries) return vl_fail_memory(error);
+  Builder b = {world, device,
+               vl_alloc_array(world->context, world->shapes.count + 1, sizeof *b.geometries)};
+  if (!b.geometries)
+    return vl_fail_memory(error);
   for (size_t i = 0; i < world->shapes.count; i++)
     b.geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
-  for (size_t k = world->groups.count; r == VL_OK && k-- > 1;) r = make_group(&b, (uint32_t)k, error);
-  if (r == VL_OK) r = make_whole(&b, error);
+  for (size_t k = world->groups.count; r == VL_OK && k-- > 1;)
+    r = make_group(&b, (uint32_t)k, error);
+  if (r == VL_OK)
+    r = make_whole(&b, error);
   vl_free(world->context, b.geometries);
   return r == VL_OK ? device_error(device, error) : r;
 }
 
 void vl_embree_destroy(vlAccel *a) {
   for (uint32_t k = 0; k < a->group_count; k++)
-    if (a->groups[k]) rtcReleaseScene(a->groups[k]);
-  if (a->scene) rtcReleaseScene(a->scene);
-  if (a->device) rtcReleaseDevice(a->device);
+    if (a->groups[k])
+      rtcReleaseScene(a->groups[k]);
+  if (a->scene)
+    rtcReleaseScene(a->scene);
+  if (a->device)
+    rtcReleaseDevice(a->device);
 }
 
-/* ---- tracing ----------------------------------------------------------------------------------------------------- */
+/* ---- tracing
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 /* Macros that hide the difference between the queries of Embree 3 and 4. */
-/* Camera rays in a packet: as many as fit into the vectors of the widest set without fused multiply-add. */
+/* Camera rays in a packet: as many as fit into the vectors of the widest set without fused
+ * multiply-add. */
 enum { PACKET = 8 };
 
 #if VELO_EMBREE_MAJOR >= 4
-#define BEGIN_QUERY(query, r, coherent)                                                               \
-  Query query;                                                                                        \
-  rtcInitRayQueryContext(&query.context);                                                             \
-  query.q = (vlEmbreeQuery){.world = world, .rays = (r)};                                             \
-  struct RTCIntersectArguments closest_arguments;                                                     \
-  rtcInitIntersectArguments(&closest_arguments);                                                      \
-  closest_arguments.context = &query.context;                                                         \
-  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT; \
-  struct RTCOccludedArguments any_arguments;                                                          \
-  rtcInitOccludedArguments(&any_arguments);                                                           \
-  any_arguments.context = &query.context;                                                             \
+#define BEGIN_QUERY(query, r, coherent)                                         \
+  Query query;                                                                  \
+  rtcInitRayQueryContext(&query.context);                                       \
+  query.q = (vlEmbreeQuery){.world = world, .rays = (r)};                       \
+  struct RTCIntersectArguments closest_arguments;                               \
+  rtcInitIntersectArguments(&closest_arguments);                                \
+  closest_arguments.context = &query.context;                                   \
+  closest_arguments.flags =                                                     \
+      (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT; \
+  struct RTCOccludedArguments any_arguments;                                    \
+  rtcInitOccludedArguments(&any_arguments);                                     \
+  any_arguments.context = &query.context;                                       \
   (void)closest_arguments, (void)any_arguments
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
@@ -543,14 +617,15 @@ enum { PACKET = 8 };
   Query query;                                            \
   rtcInitIntersectContext(&query.context);                \
   query.q = (vlEmbreeQuery){.world = world, .rays = (r)}; \
-  query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
+  query.context.flags =                                   \
+      (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
 #define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), &query.context, (ray))
 #endif
 
-static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst, uint32_t *shape,
-                      uint32_t *prim_out, uint32_t *instance) {
+static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst,
+                      uint32_t *shape, uint32_t *prim_out, uint32_t *instance) {
   if (geom == RTC_INVALID_GEOMETRY_ID) {
     *shape = *prim_out = *instance = VL_NONE;
     return;
@@ -561,16 +636,20 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
   *shape = (uint32_t)(vl_accel_shape(world, number, geom, prim_out) - world->shapes.items);
 }
 
-/* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only cameras, and media around
- * them, can be that far away, because the extent of the world is limited (shapes.c). */
+/* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only
+ * cameras, and media around them, can be that far away, because the extent of the world is
+ * limited (shapes.c). */
 static bool is_near(const vlRays *r, uint32_t i) {
   return fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
 }
 
-/* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays too far away, are not valid. */
-static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r, uint32_t first, uint32_t n) {
+/* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays too far away,
+ * are not valid. */
+static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r,
+                        uint32_t first, uint32_t n) {
   uint32_t at[PACKET];
-  for (uint32_t k = 0; k < PACKET; k++) at[k] = first + k < n ? first + k : n - 1;
+  for (uint32_t k = 0; k < PACKET; k++)
+    at[k] = first + k < n ? first + k : n - 1;
   for (uint32_t k = 0; k < PACKET; k++) {
     uint32_t i = at[k];
     valid[k] = first + k < n ? -1 : 0;
@@ -596,14 +675,16 @@ static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r
   }
 }
 
-static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
-                            uint32_t *instance, float *t) {
+static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape,
+                            uint32_t *prim, uint32_t *instance, float *t) {
   BEGIN_QUERY(query, r, true);
   vlNearest nearest[PACKET];
-  if (world->def.bits == VL_BITS_PORTABLE) query.q.nearest = nearest;
+  if (world->def.bits == VL_BITS_PORTABLE)
+    query.q.nearest = nearest;
   for (uint32_t first = 0; first < n; first += PACKET) {
     query.q.first = first;
-    for (uint32_t k = 0; k < PACKET; k++) nearest[k].t = INFINITY;
+    for (uint32_t k = 0; k < PACKET; k++)
+      nearest[k].t = INFINITY;
     struct RTCRayHit8 q;
     int valid[PACKET] __attribute__((aligned(32)));
     fill_packet(&q, valid, r, first, n);
@@ -611,15 +692,16 @@ static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, u
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
       t[first + k] = query.q.nearest ? nearest[k].t : q.ray.tfar[k];
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
-      store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
-                &instance[first + k]);
+      store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k],
+                &prim[first + k], &instance[first + k]);
   }
 }
 
-/* Embree loads origin and direction as vectors of four. Stores of the same size reach these loads without waiting for
- * the cache. */
+/* Embree loads origin and direction as vectors of four. Stores of the same size reach these
+ * loads without waiting for the cache. */
 typedef float Four __attribute__((vector_size(16)));
-_Static_assert(offsetof(struct RTCRay, dir_x) == sizeof(Four) && offsetof(struct RTCRay, tfar) == 2 * sizeof(Four),
+_Static_assert(offsetof(struct RTCRay, dir_x) == sizeof(Four) &&
+                   offsetof(struct RTCRay, tfar) == 2 * sizeof(Four),
                "a ray begins with two vectors of four");
 static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
   Four origin = {r->ox[i], r->oy[i], r->oz[i], r->t_min ? r->t_min[i] : 0.0f};
@@ -632,15 +714,16 @@ static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
   q->flags = 0;
 }
 
-void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
-                       uint32_t *prim, uint32_t *instance, float *t) {
+void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent,
+                       uint32_t *shape, uint32_t *prim, uint32_t *instance, float *t) {
   if (coherent) {
     closest_packets(world, n, rays, shape, prim, instance, t);
     return;
   }
   BEGIN_QUERY(query, rays, false);
   vlNearest nearest;
-  if (world->def.bits == VL_BITS_PORTABLE) query.q.nearest = &nearest;
+  if (world->def.bits == VL_BITS_PORTABLE)
+    query.q.nearest = &nearest;
   for (uint32_t i = 0; i < n; i++) {
     query.q.first = i;
     nearest.t = INFINITY;
@@ -648,21 +731,25 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (is_near(rays, i)) INTERSECT1(world->accel.scene, &q);
+    if (is_near(rays, i))
+      INTERSECT1(world->accel.scene, &q);
     t[i] = query.q.nearest ? nearest.t : q.ray.tfar;
-    store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
+    store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i],
+              &instance[i]);
   }
 }
 
-void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
-                        uint8_t *occluded) {
+void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays,
+                        vlOccluders *occluders, uint8_t *occluded) {
   BEGIN_QUERY(query, rays, false);
   query.q.occluders = occluders;
   for (uint32_t i = 0; i < n; i++) {
-    if (occluded[i]) continue;
+    if (occluded[i])
+      continue;
     struct RTCRay q;
     fill_ray(&q, rays, i);
-    if (is_near(rays, i)) OCCLUDED1(world->accel.scene, &q);
+    if (is_near(rays, i))
+      OCCLUDED1(world->accel.scene, &q);
     occluded[i] = q.tfar < 0;
   }
 }

@@ -4,11 +4,13 @@
 
 #include "world/accel/accel.h"
 
-/* What the callbacks of Embree's scenes read. It lies behind Embree's context, with which a query begins. */
+/* What the callbacks of Embree's scenes read. It lies behind Embree's context, with which a
+ * query begins. */
 typedef struct vlEmbreeQuery {
   const struct vlWorld *world;
   const vlRays *rays;
-  struct vlNearest *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
+  struct vlNearest
+      *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
   uint32_t first;
   vlOccluders *occluders; /* learns the triangles that block the rays; null: nothing does */
 } vlEmbreeQuery;
@@ -18,11 +20,13 @@ vlResult vl_embree_build(struct vlWorld *world, vlError *error);
 void vl_embree_destroy(vlAccel *accel);
 /* The instruction set for VL_BITS_FAST (vl_accel_fast_set). */
 const char *vl_embree_fast_set(void);
-void vl_embree_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
-                       uint32_t *prim, uint32_t *instance, float *t);
-/* Rays whose occluded[i] is already 1 are left out. occluders: learns which triangles block rays; null: nothing does.
+void vl_embree_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays,
+                       bool coherent, uint32_t *shape, uint32_t *prim, uint32_t *instance,
+                       float *t);
+/* Rays whose occluded[i] is already 1 are left out. occluders: learns which triangles block
+ * rays; null: nothing does.
  */
-void vl_embree_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
-                        uint8_t *occluded);
+void vl_embree_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays,
+                        vlOccluders *occluders, uint8_t *occluded);
 
 #endif

@@ -15,7 +15,8 @@ vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *r, uint32_t i, uint3
                   {r->dx[i], r->dy[i], r->dz[i]}};
   if (instance != VL_NONE) {
     vlWorldInstance moved;
-    vl_ray_to_group(vl_instance_at(&world->instances.items[instance], q.time, &moved), q.o, q.d);
+    vl_ray_to_group(vl_instance_at(&world->instances.items[instance], q.time, &moved), q.o,
+                    q.d);
   }
   return q;
 }
@@ -30,11 +31,14 @@ static float ray_hash(const vlLocalRay *r, uint32_t shape, uint32_t prim, float 
 }
 
 /* Textures are placed in the world (vlTextureDef.texture_from_world). */
-static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r, const vlTextureQuery *at) {
+static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r,
+                                  const vlTextureQuery *at) {
   vlTextureQuery q = *at;
   vlWorldInstance moved;
-  if (r->instance == VL_NONE) return q;
-  const vlWorldInstance *instance = vl_instance_at(&world->instances.items[r->instance], r->time, &moved);
+  if (r->instance == VL_NONE)
+    return q;
+  const vlWorldInstance *instance =
+      vl_instance_at(&world->instances.items[r->instance], r->time, &moved);
   const float *m = instance->from_group, *w = instance->to_group;
   const float p[3] = {at->p.x, at->p.y, at->p.z}, n[3] = {at->n.x, at->n.y, at->n.z};
   float placed[3], turned[3];
@@ -47,14 +51,15 @@ static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r, con
   return q;
 }
 
-bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r, uint32_t prim, float t,
-                     const vlTextureQuery *at) {
+bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r,
+                     uint32_t prim, float t, const vlTextureQuery *at) {
   const vlTextureQuery q = world_query(world, r, at);
   const float alpha = vl_texture_float_at(world, shape->alpha, &q);
   return ray_hash(r, (uint32_t)(shape - world->shapes.items), prim, t) >= alpha;
 }
 
-bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, vlTextureQuery *at, float b[3]) {
+bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r,
+                       vlTextureQuery *at, float b[3]) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
   vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
@@ -81,40 +86,51 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
     at->v += b[k] * t[1];
   }
   float p[3];
-  for (int i = 0; i < 3; i++) p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
+  for (int i = 0; i < 3; i++)
+    p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
   at->p = vl_vec3(p[0], p[1], p[2]);
   at->n = vl_cross(vl_sub(c[1], c[0]), vl_sub(c[2], c[0]));
-  return s->flip ? sum < 0 : sum > 0; /* sum is the direction times the normal of the face order */
+  return s->flip ? sum < 0
+                 : sum > 0; /* sum is the direction times the normal of the face order */
 }
 
-bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
-                           const vlWorldShape *shape, uint32_t prim, bool shadow) {
-  if (shadow && shape->pass_shadow) return true;
-  if (shape->alpha < 0 && !shape->one_sided) return false;
+bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i,
+                           uint32_t instance, const vlWorldShape *shape, uint32_t prim,
+                           bool shadow) {
+  if (shadow && shape->pass_shadow)
+    return true;
+  if (shape->alpha < 0 && !shape->one_sided)
+    return false;
   vlTextureCorner corner = {.shape = shape, .prim = prim};
   vlTextureQuery at = {.corner = &corner};
   vlLocalRay r = vl_local_ray(world, rays, i, instance);
   bool behind = vl_local_triangle(shape, prim, &r, &at, corner.weights);
-  if (behind && shape->one_sided) return true;
+  if (behind && shape->one_sided)
+    return true;
   return shape->alpha >= 0 && vl_alpha_passes(world, shape, &r, prim, 0, &at);
 }
 
 /* Whether the shape's texture lets ray i pass at a hit. */
-static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const vlRays *rays, uint32_t i,
-                                                     uint32_t instance, const vlWorldShape *shape, uint32_t prim,
+static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const vlRays *rays,
+                                                     uint32_t i, uint32_t instance,
+                                                     const vlWorldShape *shape, uint32_t prim,
                                                      const vlShapeHit *hit) {
   vlLocalRay r = vl_local_ray(world, rays, i, instance);
   vlSurfacePoint point;
   vl_shape_point(shape, prim, hit, &point);
-  vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+  vlTextureQuery at = {point.uv[0], point.uv[1],
+                       vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                        vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
   return vl_alpha_passes(world, shape, &r, prim, (float)hit->t, &at);
 }
 
 bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
-                        const vlWorldShape *shape, uint32_t prim, bool shadow, double t_min, double t_max, double *t) {
-  if (shadow && shape->pass_shadow) return false;
-  double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]}, d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
+                        const vlWorldShape *shape, uint32_t prim, bool shadow, double t_min,
+                        double t_max, double *t) {
+  if (shadow && shape->pass_shadow)
+    return false;
+  double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]},
+         d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
   if (instance != VL_NONE) {
     vlLocalRay r = vl_local_ray(world, rays, i, instance);
     memcpy(o, r.o, sizeof o);
@@ -123,7 +139,8 @@ bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, ui
   vlShapeHit hit;
   while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
     if (shape->alpha >= 0 && texture_passes(world, rays, i, instance, shape, prim, &hit)) {
-      t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
+      t_min = hit.t *
+              (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
       continue;
     }
     *t = hit.t;

@@ -9,11 +9,11 @@
 #include "math/hash.h"
 #include "world/world.h"
 
-/* Rays for which a worker learns, and then uses what it has learned, before it learns anew: other parts of the image
- * have other occluders. */
+/* Rays for which a worker learns, and then uses what it has learned, before it learns anew:
+ * other parts of the image have other occluders. */
 enum { LEARNING = 8192, USING = 16 * LEARNING };
-/* A triangle is tested if it blocks at least one ray of so many: Embree needs about this many times as long for a ray
- * as the test of one triangle takes. */
+/* A triangle is tested if it blocks at least one ray of so many: Embree needs about this many
+ * times as long for a ray as the test of one triangle takes. */
 enum { WORTH = 256 };
 
 /* Geometry whose triangles Embree reports: opaque, and always in the same place (embree.c). */
@@ -22,23 +22,29 @@ static const vlWorldShape *shape_of(const vlWorld *world, uint32_t geometry) {
 }
 
 static void difference(const float *a, const float *b, double to[3]) {
-  for (int i = 0; i < 3; i++) to[i] = (double)a[i] - (double)b[i];
+  for (int i = 0; i < 3; i++)
+    to[i] = (double)a[i] - (double)b[i];
 }
 
-/* False: the triangle is too small, or too thin, to be tested with certainty. The barycentric coordinates of the point
- * where a ray meets it are wrong by at most about 2^-16 distance / height, here and in Embree, if the ray is as steep
- * as the test demands (occluders.hot.c). */
-static bool make_occluder(const vlOccluders *o, const vlWorldShape *s, uint32_t prim, vlOccluder *to) {
+/* False: the triangle is too small, or too thin, to be tested with certainty. The barycentric
+ * coordinates of the point where a ray meets it are wrong by at most about 2^-16 distance /
+ * height, here and in Embree, if the ray is as steep as the test demands (occluders.hot.c). */
+static bool make_occluder(const vlOccluders *o, const vlWorldShape *s, uint32_t prim,
+                          vlOccluder *to) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   const float *corner[3];
-  for (int k = 0; k < 3; k++) corner[k] = s->positions + 3 * (size_t)f[k];
+  for (int k = 0; k < 3; k++)
+    corner[k] = s->positions + 3 * (size_t)f[k];
   double edge[3][3], normal[3];
-  for (int k = 0; k < 3; k++) difference(corner[(k + 1) % 3], corner[k], edge[k]);
+  for (int k = 0; k < 3; k++)
+    difference(corner[(k + 1) % 3], corner[k], edge[k]);
   vl_cross3(edge[0], edge[1], normal);
   double twice_area = sqrt(vl_dot3(normal, normal)), longest = 0;
-  for (int k = 0; k < 3; k++) longest = fmax(longest, sqrt(vl_dot3(edge[k], edge[k])));
+  for (int k = 0; k < 3; k++)
+    longest = fmax(longest, sqrt(vl_dot3(edge[k], edge[k])));
   double inside = 0x1p-12 + 0x1p-14 * (double)o->reach * longest / twice_area;
-  if (!(inside < 0x1p-3)) return false;
+  if (!(inside < 0x1p-3))
+    return false;
   to->inside = (float)inside;
   for (int i = 0; i < 3; i++) {
     to->corner[i] = corner[0][i];
@@ -63,8 +69,10 @@ static void begin_learning(vlOccluders *o) {
 /* Sorts the table: the largest counts first. */
 static int by_count(const void *a, const void *b) {
   const vlOccluderCount *x = a, *y = b;
-  if (x->count != y->count) return x->count < y->count ? 1 : -1;
-  if (x->geometry != y->geometry) return x->geometry < y->geometry ? -1 : 1;
+  if (x->count != y->count)
+    return x->count < y->count ? 1 : -1;
+  if (x->geometry != y->geometry)
+    return x->geometry < y->geometry ? -1 : 1;
   return x->prim < y->prim ? -1 : x->prim > y->prim;
 }
 
@@ -72,7 +80,8 @@ static void end_learning(vlOccluders *o, const vlWorld *world) {
   qsort(o->table, VL_OCCLUDER_TABLE, sizeof *o->table, by_count);
   for (uint32_t k = 0; k < VL_OCCLUDER_TABLE && o->count < VL_OCCLUDERS; k++) {
     const vlOccluderCount *c = &o->table[k];
-    if ((uint64_t)c->count * WORTH < o->rays) break;
+    if ((uint64_t)c->count * WORTH < o->rays)
+      break;
     o->count += make_occluder(o, shape_of(world, c->geometry), c->prim, &o->faces[o->count]);
   }
   o->learns = false;
@@ -98,8 +107,10 @@ void vl_occluders_learn(vlOccluders *o, uint32_t geometry, uint32_t prim) {
   uint32_t at = vl_hash3(geometry, prim, 0);
   for (uint32_t k = 0; k < TRIES; k++) {
     vlOccluderCount *c = &o->table[(at + k) & (VL_OCCLUDER_TABLE - 1)];
-    if (c->count == 0) *c = (vlOccluderCount){geometry, prim, 0};
-    if (c->geometry != geometry || c->prim != prim) continue;
+    if (c->count == 0)
+      *c = (vlOccluderCount){geometry, prim, 0};
+    if (c->geometry != geometry || c->prim != prim)
+      continue;
     c->count++;
     return;
   }

@@ -1,5 +1,6 @@
-/* world/accel/occluders.hot.c: tests blocks of shadow rays against single triangles (Moeller and Trumbore 1997, "Fast,
- * minimum storage ray/triangle intersection", without its division). */
+/* world/accel/occluders.hot.c: tests blocks of shadow rays against single triangles (Moeller
+ * and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", without its division).
+ */
 #include "world/accel/occluders.h"
 #include "math/vec.h"
 
@@ -14,8 +15,9 @@ typedef struct Block {
   _Alignas(64) int32_t blocked[BLOCK];
 } Block;
 
-/* A ray is steep enough if |d . normal| is at least STEEP |d|. Then the distance of a ray's ends from the triangle's
- * plane is wrong by at most about 2^-21 of the reach, here and in Embree; it must be CLEAR times the reach. */
+/* A ray is steep enough if |d . normal| is at least STEEP |d|. Then the distance of a ray's
+ * ends from the triangle's plane is wrong by at most about 2^-21 of the reach, here and in
+ * Embree; it must be CLEAR times the reach. */
 static const float STEEP = 0x1p-5f, CLEAR = 0x1p-17f;
 
 /* Rays first to first + n - 1. A ray that begins too far away has no part that counts. */
@@ -36,14 +38,16 @@ static void load(Block *k, const vlOccluders *o, const vlRays *r, uint32_t first
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]), from = vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), center);
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           from = vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), center);
     k->steep[i] = STEEP * __builtin_sqrtf(vl_length2(d));
     k->high[i] = vl_length2(from) < reach2 ? k->high[i] : -1.0f;
     k->blocked[i] = 0;
   }
 }
 
-/* Marks the rays that a triangle blocks. clear: the least distance of a ray's ends from the triangle's plane. */
+/* Marks the rays that a triangle blocks. clear: the least distance of a ray's ends from the
+ * triangle's plane. */
 static void test_face(Block *k, const vlOccluder *f, float clear) {
   vlVec3 corner = vl_vec3(f->corner[0], f->corner[1], f->corner[2]);
   vlVec3 normal = vl_vec3(f->normal[0], f->normal[1], f->normal[2]);
@@ -53,10 +57,13 @@ static void test_face(Block *k, const vlOccluder *f, float clear) {
   uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]), from = vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), corner);
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           from = vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), corner);
     vlVec3 q = vl_cross(from, d);
-    float facing = vl_dot(normal, d), sign = facing < 0.0f ? -1.0f : 1.0f, speed = sign * facing;
-    float u = -sign * vl_dot(e2, q), v = sign * vl_dot(e1, q), height = -sign * vl_dot(normal, from);
+    float facing = vl_dot(normal, d), sign = facing < 0.0f ? -1.0f : 1.0f,
+          speed = sign * facing;
+    float u = -sign * vl_dot(e2, q), v = sign * vl_dot(e1, q),
+          height = -sign * vl_dot(normal, from);
     float least = inside * speed;
     int hit = (speed > k->steep[i]) & (u > least) & (v > least) & (u + v < speed - least) &
               (height > k->low[i] * speed + clear) & (height + clear < k->high[i] * speed);
@@ -69,8 +76,10 @@ static void test(const vlOccluders *o, uint32_t n, const vlRays *rays, uint8_t *
   for (uint32_t first = 0; first < n; first += BLOCK) {
     uint32_t count = n - first < BLOCK ? n - first : BLOCK;
     load(&k, o, rays, first, count);
-    for (uint32_t j = 0; j < o->count; j++) test_face(&k, &o->faces[j], CLEAR * o->reach);
-    for (uint32_t i = 0; i < count; i++) blocked[first + i] = k.blocked[i] != 0;
+    for (uint32_t j = 0; j < o->count; j++)
+      test_face(&k, &o->faces[j], CLEAR * o->reach);
+    for (uint32_t i = 0; i < count; i++)
+      blocked[first + i] = k.blocked[i] != 0;
   }
 }
 

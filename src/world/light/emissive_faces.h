@@ -1,5 +1,6 @@
-/* world/light/emissive_faces.h: finds the faces of a mesh that emit light if the emission is given by an image. A face
- * emits if a texel of its part of the image is not black. Only emitting faces become lights. */
+/* world/light/emissive_faces.h: finds the faces of a mesh that emit light if the emission is
+ * given by an image. A face emits if a texel of its part of the image is not black. Only
+ * emitting faces become lights. */
 #ifndef WORLD_LIGHT_EMISSIVE_FACES_H
 #define WORLD_LIGHT_EMISSIVE_FACES_H
 
@@ -18,8 +19,9 @@ typedef struct vlEmissiveFaces {
 bool vl_emissive_faces_make(const vlWorld *world, const vlEmitted *e, vlEmissiveFaces *s);
 void vl_emissive_faces_free(const vlWorld *world, vlEmissiveFaces *s);
 
-/* Whether a face of a mesh (triangles or patches) emits light anywhere. Returns true if this cannot be determined. It
- * never returns false for a face on which a lookup of the emission exceeds 0. */
+/* Whether a face of a mesh (triangles or patches) emits light anywhere. Returns true if this
+ * cannot be determined. It never returns false for a face on which a lookup of the emission
+ * exceeds 0. */
 bool vl_face_emits(const vlEmissiveFaces *s, const vlWorldShape *shape, uint32_t prim);
 
 #endif

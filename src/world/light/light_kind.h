@@ -4,7 +4,8 @@
 
 #include "velo/light.h"
 
-/* The kinds of light of the scene, with the same numbers, and AREA: a face of an emissive shape. X(NAME, name). */
+/* The kinds of light of the scene, with the same numbers, and AREA: a face of an emissive
+ * shape. X(NAME, name). */
 #define VL_WORLD_LIGHT_KINDS(X) VL_LIGHT_KINDS(X) X(AREA, area)
 #define VL_WORLD_LIGHT_KIND(K, k) VL_WL_##K,
 typedef enum vlWorldLightKind { VL_WORLD_LIGHT_KINDS(VL_WORLD_LIGHT_KIND) } vlWorldLightKind;

@@ -1,5 +1,5 @@
-/* world/light/light_tree_build.c: builds the light tree top down by the surface-area-orientation cost (pbrt
- * book 12.6.3). */
+/* world/light/light_tree_build.c: builds the light tree top down by the
+ * surface-area-orientation cost (pbrt book 12.6.3). */
 #include "world/light/light_tree.h"
 
 #include <math.h>
@@ -35,21 +35,31 @@ static float cosine(float x) {
 }
 
 static Cone cone_union(Cone a, Cone b) {
-  if (a.empty) return b;
-  if (b.empty) return a;
-  /* Frequent, cheap cases with the same results as below: one cone is the whole sphere, or b's direction lies in a. */
-  if (a.cos_o <= -1) return a;
-  if (b.cos_o <= -1) return b;
-  if (b.cos_o >= 1 && vl_dot(a.axis, b.axis) >= a.cos_o) return a;
+  if (a.empty)
+    return b;
+  if (b.empty)
+    return a;
+  /* Frequent, cheap cases with the same results as below: one cone is the whole sphere, or b's
+   * direction lies in a. */
+  if (a.cos_o <= -1)
+    return a;
+  if (b.cos_o <= -1)
+    return b;
+  if (b.cos_o >= 1 && vl_dot(a.axis, b.axis) >= a.cos_o)
+    return a;
   float ta = arccos(vl_clamp(a.cos_o, -1, 1)), tb = arccos(vl_clamp(b.cos_o, -1, 1));
   float td = arccos(vl_clamp(vl_dot(a.axis, b.axis), -1, 1));
-  if (fminf(td + tb, VL_PI) <= ta) return a;
-  if (fminf(td + ta, VL_PI) <= tb) return b;
+  if (fminf(td + tb, VL_PI) <= ta)
+    return a;
+  if (fminf(td + ta, VL_PI) <= tb)
+    return b;
   float to = (ta + td + tb) / 2;
   Cone all = {a.axis, -1, false};
-  if (to >= VL_PI) return all;
+  if (to >= VL_PI)
+    return all;
   vlVec3 axis = vl_cross(a.axis, b.axis);
-  if (!(vl_length2(axis) > 0)) return all;
+  if (!(vl_length2(axis) > 0))
+    return all;
   axis = vl_normalize(axis);
   float turn = to - ta, s = (float)vl_sincos_double(turn).sin,
         c = cosine(turn); /* rotate a's axis towards b's (Rodrigues; axis is normal to it) */
@@ -57,10 +67,11 @@ static Cone cone_union(Cone a, Cone b) {
   return (Cone){vl_normalize(w), cosine(to), false};
 }
 
-/* Extends a to bound both a and b. It works in place and by comparisons, because most of the build's time is spent
- * here. */
+/* Extends a to bound both a and b. It works in place and by comparisons, because most of the
+ * build's time is spent here. */
 static void absorb(vlLightBounds *a, const vlLightBounds *b) {
-  if (b->power == 0) return;
+  if (b->power == 0)
+    return;
   if (a->power == 0) {
     *a = *b;
     return;
@@ -83,12 +94,15 @@ static void absorb(vlLightBounds *a, const vlLightBounds *b) {
   a->two_sided = a->two_sided || b->two_sided;
 }
 
-static float cost_of(const vlLightBounds *b, const float parent_low[3], const float parent_high[3], int dimension) {
-  if (b->power == 0) return 0;
+static float cost_of(const vlLightBounds *b, const float parent_low[3],
+                     const float parent_high[3], int dimension) {
+  if (b->power == 0)
+    return 0;
   float to = arccos(vl_clamp(b->cos_o, -1, 1)), te = arccos(vl_clamp(b->cos_e, -1, 1));
   float tw = fminf(to + te, VL_PI), sin_o = sqrtf(fmaxf(0, 1 - b->cos_o * b->cos_o));
   float orientation =
-      2 * VL_PI * (1 - b->cos_o) + VL_PI / 2 * (2 * tw * sin_o - cosine(to - 2 * tw) - 2 * to * sin_o + b->cos_o);
+      2 * VL_PI * (1 - b->cos_o) +
+      VL_PI / 2 * (2 * tw * sin_o - cosine(to - 2 * tw) - 2 * to * sin_o + b->cos_o);
   float d[3], longest = 0;
   for (int i = 0; i < 3; i++) {
     d[i] = b->high[i] - b->low[i];
@@ -140,7 +154,8 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
   float best = INFINITY;
   int best_dimension = -1, best_bucket = 0;
   for (int k = 0; k < 3; k++) {
-    if (!(chigh[k] > clow[k])) continue;
+    if (!(chigh[k] > clow[k]))
+      continue;
     vlLightBounds buckets[BUCKETS];
     memset(buckets, 0, sizeof buckets);
     for (uint32_t i = 0; i < count; i++) {
@@ -148,15 +163,20 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
       absorb(&buckets[b], &items[i].bounds);
     }
-    int filled[BUCKETS] = {0}, fill_count = 0; /* most nodes are small and fill two or three buckets */
+    int filled[BUCKETS] = {0},
+        fill_count = 0; /* most nodes are small and fill two or three buckets */
     for (int b = 0; b < BUCKETS; b++)
-      if (buckets[b].power != 0) filled[fill_count++] = b;
+      if (buckets[b].power != 0)
+        filled[fill_count++] = b;
     vlLightBounds left = buckets[fill_count ? filled[0] : 0];
     for (int s = 0; s + 1 < fill_count; s++) {
-      if (s > 0) absorb(&left, &buckets[filled[s]]);
+      if (s > 0)
+        absorb(&left, &buckets[filled[s]]);
       vlLightBounds right = buckets[filled[s + 1]];
-      for (int b = s + 2; b < fill_count; b++) absorb(&right, &buckets[filled[b]]);
-      float cost = cost_of(&left, all->low, all->high, k) + cost_of(&right, all->low, all->high, k);
+      for (int b = s + 2; b < fill_count; b++)
+        absorb(&right, &buckets[filled[b]]);
+      float cost =
+          cost_of(&left, all->low, all->high, k) + cost_of(&right, all->low, all->high, k);
       if (cost < best) {
         best = cost;
         best_dimension = k;
@@ -164,13 +184,15 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       }
     }
   }
-  if (best_dimension < 0) return count / 2;
+  if (best_dimension < 0)
+    return count / 2;
   uint32_t middle = 0;
   for (uint32_t i = 0; i < count; i++) {
     int b = (int)(BUCKETS * (centroid(&items[i], best_dimension) - clow[best_dimension]) /
                   (chigh[best_dimension] - clow[best_dimension]));
     b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
-    if (b > best_bucket) continue;
+    if (b > best_bucket)
+      continue;
     Item t = items[i];
     items[i] = items[middle];
     items[middle++] = t;
@@ -178,7 +200,8 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
   return middle == 0 || middle == count ? count / 2 : middle;
 }
 
-static vlLightBounds build_node(Builder *b, uint32_t at, Item *items, uint32_t count, uint64_t trail, uint32_t depth) {
+static vlLightBounds build_node(Builder *b, uint32_t at, Item *items, uint32_t count,
+                                uint64_t trail, uint32_t depth) {
   vlLightNode *node = &b->tree->nodes[at];
   if (count == 1) {
     node_from_bounds(&items[0].bounds, node);
@@ -187,8 +210,10 @@ static vlLightBounds build_node(Builder *b, uint32_t at, Item *items, uint32_t c
     return items[0].bounds;
   }
   vlLightBounds all = items[0].bounds;
-  for (uint32_t i = 1; i < count; i++) absorb(&all, &items[i].bounds);
-  /* Trails have 64 bits. Beyond a certain depth nodes are split at the median, which bounds the depth. */
+  for (uint32_t i = 1; i < count; i++)
+    absorb(&all, &items[i].bounds);
+  /* Trails have 64 bits. Beyond a certain depth nodes are split at the median, which bounds the
+   * depth. */
   uint32_t middle = depth > MAX_DEPTH - 34 ? count / 2 : split_items(items, count, &all);
   uint32_t left = b->next;
   b->next += 2;
@@ -210,10 +235,12 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
   b->cos_o = -1; /* point lights emit in all directions */
   b->cos_e = 0;
   if (light->has_cone) {
-    for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
+    for (int i = 0; i < 3; i++)
+      b->axis[i] = light->direction[i];
     float to = arccos(light->cos_start), te = arccos(light->cos_end);
     b->cos_o = light->cos_start;
-    b->cos_e = fminf(cosine(te - to), 0.999f); /* 0.999 gives a hard edge some width, for rounding */
+    b->cos_e =
+        fminf(cosine(te - to), 0.999f); /* 0.999 gives a hard edge some width, for rounding */
   }
   if (light->shape != VL_NONE) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];
@@ -223,20 +250,24 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
     b->cos_o = -1;
     if (shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_DISK) {
       b->cos_o = 1;
-      for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
+      for (int i = 0; i < 3; i++)
+        b->axis[i] = light->direction[i];
     }
   }
 }
 
 static vlResult build_cdf(vlWorld *world, vlLightTree *tree, vlError *error) {
-  if (!(tree->cdf = vl_world_block(world, tree->light_count + 1, sizeof(float)))) return vl_fail_memory(error);
+  if (!(tree->cdf = vl_world_block(world, tree->light_count + 1, sizeof(float))))
+    return vl_fail_memory(error);
   double total = 0, sum = 0;
   for (uint32_t i = 0; i < tree->light_count; i++)
     total += tree->kind == VL_LIGHT_SAMPLER_POWER ? world->lights.items[i].power : 1;
   tree->cdf[0] = 0;
   for (uint32_t i = 0; i < tree->light_count; i++) {
-    sum += total > 0 ? (tree->kind == VL_LIGHT_SAMPLER_POWER ? world->lights.items[i].power : 1) / total
-                     : 1.0 / tree->light_count;
+    sum +=
+        total > 0
+            ? (tree->kind == VL_LIGHT_SAMPLER_POWER ? world->lights.items[i].power : 1) / total
+            : 1.0 / tree->light_count;
     tree->cdf[i + 1] = (float)sum;
   }
   tree->cdf[tree->light_count] = 1;
@@ -248,8 +279,10 @@ vlResult vl_light_tree_build(vlWorld *world, vlError *error) {
   memset(tree, 0, sizeof *tree);
   tree->kind = world->def.light_sampler;
   tree->light_count = (uint32_t)world->lights.count;
-  if (tree->light_count == 0) return VL_OK;
-  if (tree->kind != VL_LIGHT_SAMPLER_BVH) return build_cdf(world, tree, error);
+  if (tree->light_count == 0)
+    return VL_OK;
+  if (tree->kind != VL_LIGHT_SAMPLER_BVH)
+    return build_cdf(world, tree, error);
   uint32_t n = tree->light_count;
   tree->trails = vl_world_block(world, n, sizeof(uint64_t));
   tree->unbounded = vl_world_block(world, n, sizeof(uint32_t));
@@ -268,7 +301,8 @@ vlResult vl_light_tree_build(vlWorld *world, vlError *error) {
     if (light->far) {
       tree->slot[i] = tree->unbounded_count;
       bool one_way = light->kind == VL_WL_DISTANT;
-      for (int k = 0; k < 3; k++) tree->towards[tree->unbounded_count][k] = one_way ? light->direction[k] : 0;
+      for (int k = 0; k < 3; k++)
+        tree->towards[tree->unbounded_count][k] = one_way ? light->direction[k] : 0;
       tree->unbounded[tree->unbounded_count++] = i;
     } else {
       light_bounds(world, light, &items[bounded].bounds);

@@ -1,6 +1,6 @@
-/* world/light/lights.c: compiles the lights and emissive shapes of a scene, with the sampling distributions of
- * environment images. Scales are pbrt-v4's (lights.cpp; book 12): spectra are divided by their own luminance, times
- * scale, or set by power or illuminance. */
+/* world/light/lights.c: compiles the lights and emissive shapes of a scene, with the sampling
+ * distributions of environment images. Scales are pbrt-v4's (lights.cpp; book 12): spectra are
+ * divided by their own luminance, times scale, or set by power or illuminance. */
 #include <math.h>
 #include <string.h>
 
@@ -17,13 +17,16 @@
 #include "world/light/lights.h"
 #include "world/shape/surface_point.h"
 
-vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error) {
+vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e,
+                        vlError *error) {
   vlResult r = vl_spectral_compile(world, color, VL_ROLE_ILLUMINANT, &e->spectrum, error);
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   e->spectrum.scale *= factor;
   e->image = -1;
   e->image_scale = 1;
-  if (world->def.color == VL_COLOR_RGB) return VL_OK;
+  if (world->def.color == VL_COLOR_RGB)
+    return VL_OK;
   double photometric = vl_spectrum_photometric(color, error);
   if (!(photometric > 0))
     e->spectrum.scale = 0;
@@ -39,14 +42,16 @@ void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmi
   e->spectrum.scale = 1;
   if (world->def.color == VL_COLOR_RGB) {
     e->spectrum.kind = VL_SPECTRAL_RGB;
-    for (int i = 0; i < 3; i++) e->spectrum.rgb[i] = 1;
+    for (int i = 0; i < 3; i++)
+      e->spectrum.rgb[i] = 1;
     return;
   }
   e->spectrum.kind = VL_SPECTRAL_DENSE;
   e->spectrum.dense = vl_space_illuminant(space);
   const float *y = vl_cie_y();
   double sum = 0;
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)y[i] * e->spectrum.dense[i];
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    sum += (double)y[i] * e->spectrum.dense[i];
   e->spectrum.scale = (float)(1 / sum);
 }
 
@@ -56,13 +61,15 @@ vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSp
 }
 
 float vl_light_luminance(const vlSpectral *s) {
-  if (s->kind == VL_SPECTRAL_RGB) return s->scale * (0.2126f * s->rgb[0] + 0.7152f * s->rgb[1] + 0.0722f * s->rgb[2]);
+  if (s->kind == VL_SPECTRAL_RGB)
+    return s->scale * (0.2126f * s->rgb[0] + 0.7152f * s->rgb[1] + 0.0722f * s->rgb[2]);
   const float *y = vl_cie_y();
   double sum = 0;
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    float v = s->kind == VL_SPECTRAL_DENSE      ? s->dense[i]
-              : s->kind == VL_SPECTRAL_CONSTANT ? 1
-                                                : vl_sigmoid(s->sigmoid, (float)(VL_LAMBDA_MIN + i));
+    float v = s->kind == VL_SPECTRAL_DENSE ? s->dense[i]
+              : s->kind == VL_SPECTRAL_CONSTANT
+                  ? 1
+                  : vl_sigmoid(s->sigmoid, (float)(VL_LAMBDA_MIN + i));
     sum += (double)y[i] * v;
   }
   return (float)(sum * s->scale);
@@ -72,19 +79,25 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
-/* ---- infinite lights --------------------------------------------------------------------------------------------- */
+/* ---- infinite lights
+ * ---------------------------------------------------------------------------------------------
+ */
 
 /* Makes the distribution over the cells, or shares that of the previous world. */
-static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean, double *illuminance, vlError *error) {
+static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean,
+                                double *illuminance, vlError *error) {
   const vlWorld *previous = world->previous;
   vlPart *image = world->images.items[env->image].part;
   vlWorldEnvironmentPart *kept = VL_PUSH(world->context, &world->environment_parts);
-  if (!kept) return vl_fail_memory(error);
+  if (!kept)
+    return vl_fail_memory(error);
   for (size_t i = 0; previous && i < previous->environments.count; i++) {
     const vlWorldEnvironmentPart *known = &previous->environment_parts.items[i];
     const vlEnvironment *from = &previous->environments.items[i];
-    if (known->image != image) continue;
-    if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
+    if (known->image != image)
+      continue;
+    if (!vl_part_share(world, known->part))
+      return vl_fail_memory(error);
     *kept = *known;
     env->size = from->size;
     env->cells_are_texels = from->cells_are_texels;
@@ -97,7 +110,8 @@ static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean
     *illuminance = known->illuminance;
     return VL_OK;
   }
-  if (!(kept->part = vl_part_add(world))) return vl_fail_memory(error);
+  if (!(kept->part = vl_part_add(world)))
+    return vl_fail_memory(error);
   world->part = kept->part;
   vlResult r = vl_world_build_environment(world, env, &kept->mean, &kept->illuminance, error);
   world->part = NULL;
@@ -107,29 +121,35 @@ static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean
   return r;
 }
 
-vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
-                                   vlError *error) {
+vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
+                                   vlEmitted *e, vlError *error) {
   light->environment = VL_NONE;
   float area = VL_PI * world->radius * world->radius;
   if (!def->path && !def->image) {
     float factor = def->scale;
-    if (def->illuminance == def->illuminance) factor *= (float)(def->illuminance / M_PI);
+    if (def->illuminance == def->illuminance)
+      factor *= (float)(def->illuminance / M_PI);
     vlResult r = vl_light_color(world, &def->color, factor, e, error);
     light->power = 4 * VL_PI * area * vl_light_luminance(&e->spectrum);
     return r;
   }
   e->image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
-  if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
+  if (e->image < 0)
+    return error && error->code ? error->code : VL_ERROR_SCENE;
   vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), def->scale, e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   if (mip->levels[0].width != mip->levels[0].height)
-    return vl_fail(error, VL_ERROR_SCENE, "%s: %u x %u: an image of the sky must be square (equal-area octahedral map)",
-                   def->path ? def->path : "image", mip->levels[0].width, mip->levels[0].height);
+    return vl_fail(
+        error, VL_ERROR_SCENE,
+        "%s: %u x %u: an image of the sky must be square (equal-area octahedral map)",
+        def->path ? def->path : "image", mip->levels[0].width, mip->levels[0].height);
   vlEnvironment *env = VL_PUSH(world->context, &world->environments);
-  if (!env) return vl_fail_memory(error);
+  if (!env)
+    return vl_fail_memory(error);
   env->image = e->image;
   vlMat4 m = vl_mat4_load(def->world_from_light), inverse;
-  if (!vl_mat4_inverse(m, &inverse)) return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  if (!vl_mat4_inverse(m, &inverse))
+    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       env->world_from_light[3 * i + j] = (float)m.m[4 * i + j];
@@ -141,14 +161,17 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
     e->image_scale *= (float)(def->illuminance / illuminance);
   light->environment = (uint32_t)world->environments.count - 1;
   light->power = (float)(4 * M_PI * area * mean * e->image_scale);
-  if (r != VL_OK || !def->has_portal) return r;
+  if (r != VL_OK || !def->has_portal)
+    return r;
   double passes = 0;
-  r = vl_world_add_portal(world, def, &world->environments.items[light->environment], &passes, error);
+  r = vl_world_add_portal(world, def, &world->environments.items[light->environment], &passes,
+                          error);
   light->power = (float)(passes * e->image_scale);
   return r;
 }
 
-typedef vlResult CompileLight(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
+typedef vlResult CompileLight(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
+                              vlEmitted *e, vlError *error);
 #define COMPILE(K, k) [VL_LIGHT_##K] = vl_compile_light_##k,
 static CompileLight *const compile[] = {VL_LIGHT_KINDS(COMPILE)};
 #undef COMPILE
@@ -157,19 +180,25 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   vlWorldLight *light = VL_PUSH(world->context, &world->lights);
   vlEmitted *e = VL_PUSH(world->context, &world->emitted);
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
-  if (!light || !e) return vl_fail_memory(error);
+  if (!light || !e)
+    return vl_fail_memory(error);
   e->image = -1;
   light->emitted = (uint32_t)world->emitted.count - 1;
   light->shape = light->environment = VL_NONE;
   vlMat4 m = vl_mat4_load(def->world_from_light);
-  double from[3] = {def->from[0], def->from[1], def->from[2]}, to[3] = {def->to[0], def->to[1], def->to[2]}, a[3], b[3];
+  double from[3] = {def->from[0], def->from[1], def->from[2]},
+         to[3] = {def->to[0], def->to[1], def->to[2]}, a[3], b[3];
   vl_mat4_point(&m, from, a);
   vl_mat4_point(&m, to, b);
-  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR ? -1 : 1; /* if far, the direction is to the light */
-  for (int i = 0; i < 3; i++) l += (b[i] - a[i]) * (b[i] - a[i]);
+  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR
+                           ? -1
+                           : 1; /* if far, the direction is to the light */
+  for (int i = 0; i < 3; i++)
+    l += (b[i] - a[i]) * (b[i] - a[i]);
   l = sqrt(l);
   if (!(l > 0) && (row->traits & VL_LIGHT_TRAIT_AIMS))
-    return vl_fail(error, VL_ERROR_SCENE, "the light has no direction: \"from\" and \"to\" are the same point");
+    return vl_fail(error, VL_ERROR_SCENE,
+                   "the light has no direction: \"from\" and \"to\" are the same point");
   for (int i = 0; i < 3; i++) {
     light->position[i] = (float)a[i];
     light->direction[i] = l > 0 ? (float)(sign * (b[i] - a[i]) / l) : 0;
@@ -180,7 +209,8 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   light->delta = (row->traits & VL_LIGHT_TRAIT_DELTA) != 0;
   if (!light->delta) { /* rays that miss all surfaces hit the light */
     uint32_t *slot = VL_PUSH(world->context, &world->infinite_lights);
-    if (!slot) return vl_fail_memory(error);
+    if (!slot)
+      return vl_fail_memory(error);
     *slot = (uint32_t)world->lights.count - 1;
   }
   vlResult r = compile[def->kind](world, def, light, e, error);
@@ -195,19 +225,26 @@ vlResult vl_world_add_lights(vlWorld *world, const vlScene *scene, vlError *erro
   world->white = white.spectrum;
   for (size_t i = 0; r == VL_OK && i < scene->lights.count; i++) {
     r = vl_world_step(world, "lights", 0.5, error);
-    if (vl_scene_mark(&scene->light_marks, i).hidden) continue;
-    if (r == VL_OK) r = add_light(world, &scene->lights.items[i], error);
+    if (vl_scene_mark(&scene->light_marks, i).hidden)
+      continue;
+    if (r == VL_OK)
+      r = add_light(world, &scene->lights.items[i], error);
   }
-  uint32_t *compiled = vl_alloc_array(world->context, scene->emissions.count + 1, sizeof *compiled);
-  if (!compiled && r == VL_OK) r = vl_fail_memory(error);
-  for (size_t i = 0; compiled && i < scene->emissions.count; i++) compiled[i] = VL_NONE;
+  uint32_t *compiled =
+      vl_alloc_array(world->context, scene->emissions.count + 1, sizeof *compiled);
+  if (!compiled && r == VL_OK)
+    r = vl_fail_memory(error);
+  for (size_t i = 0; compiled && i < scene->emissions.count; i++)
+    compiled[i] = VL_NONE;
   for (size_t i = 0; r == VL_OK && i < scene->shapes.count; i++)
     if (scene->shapes.items[i].emission.index && world->shapes.items[i].faces > 0 &&
         !vl_scene_mark(&scene->shape_marks, i).hidden)
       r = vl_world_add_shape_lights(world, scene, (uint32_t)i, compiled, error);
   vl_free(world->context, compiled);
-  if (r == VL_OK) r = vl_world_step(world, "lights", 0.5, error);
-  if (r == VL_OK) r = vl_light_tree_build(world, error);
+  if (r == VL_OK)
+    r = vl_world_step(world, "lights", 0.5, error);
+  if (r == VL_OK)
+    r = vl_light_tree_build(world, error);
   world->info.lights = world->lights.count;
   return r;
 }

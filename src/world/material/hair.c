@@ -3,15 +3,20 @@
 
 static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {
   const vlHairDef *d = &b->def->hair;
-  /* absorption of each pigment per unit of concentration (d'Eon, Francois, Hill, Letteri, Aubry 2011) */
+  /* absorption of each pigment per unit of concentration (d'Eon, Francois, Hill, Letteri, Aubry
+   * 2011) */
   const vlSpectrumInput eu = vl_spectrum_input(vl_spectrum_rgb(0.419f, 0.697f, 1.37f));
   const vlSpectrumInput pheo = vl_spectrum_input(vl_spectrum_rgb(0.187f, 0.4f, 1.05f));
   switch (d->color) {
-    case VL_HAIR_SIGMA_A: return vl_material_spectrum(b, &d->sigma_a, &h->sigma_a);
-    case VL_HAIR_REFLECTANCE: return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
+    case VL_HAIR_SIGMA_A:
+      return vl_material_spectrum(b, &d->sigma_a, &h->sigma_a);
+    case VL_HAIR_REFLECTANCE:
+      return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
     case VL_HAIR_MELANIN: {
-      vlResult r = vl_world_spectrum_node(b->world, b->scene, eu, VL_ROLE_UNBOUNDED, &h->eumelanin, b->error);
-      return r == VL_OK ? vl_world_spectrum_node(b->world, b->scene, pheo, VL_ROLE_UNBOUNDED, &h->pheomelanin, b->error)
+      vlResult r = vl_world_spectrum_node(b->world, b->scene, eu, VL_ROLE_UNBOUNDED,
+                                          &h->eumelanin, b->error);
+      return r == VL_OK ? vl_world_spectrum_node(b->world, b->scene, pheo, VL_ROLE_UNBOUNDED,
+                                                 &h->pheomelanin, b->error)
                         : r;
     }
   }
@@ -21,7 +26,8 @@ static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {
 vlResult vl_compile_hair_material(const vlMaterialBuild *b) {
   const vlHairDef *d = &b->def->hair;
   vlWorldHair *h = vl_world_block(b->world, 1, sizeof *h);
-  if (!h) return vl_fail_memory(b->error);
+  if (!h)
+    return vl_fail_memory(b->error);
   b->m->bsdf = VL_BSDF_HAIR;
   b->m->own = h;
   b->m->no_cosine = true;

@@ -16,9 +16,12 @@ typedef struct Reader {
 
 static uint64_t take(Reader *r, size_t bytes) {
   uint64_t value = 0;
-  if ((size_t)(r->end - r->at) < bytes) r->taken = false;
-  if (!r->taken) return 0;
-  for (size_t i = 0; i < bytes; i++) value |= (uint64_t)(unsigned char)r->at[i] << (8 * i);
+  if ((size_t)(r->end - r->at) < bytes)
+    r->taken = false;
+  if (!r->taken)
+    return 0;
+  for (size_t i = 0; i < bytes; i++)
+    value |= (uint64_t)(unsigned char)r->at[i] << (8 * i);
   r->at += bytes;
   return value;
 }
@@ -29,36 +32,45 @@ static size_t type_size(uint32_t type) { /* u8, i8, u16, i16, ..., u64, i64, f16
 }
 
 static vlResult cut(const char *path, vlError *error) {
-  return vl_fail(error, VL_ERROR_SCENE, "%s: the tensor file is damaged: it ends before what it announces", path);
+  return vl_fail(error, VL_ERROR_SCENE,
+                 "%s: the tensor file is damaged: it ends before what it announces", path);
 }
 
-static vlResult read_field(const vlTensor *t, const char *path, Reader *r, vlTensorField *f, vlError *error) {
+static vlResult read_field(const vlTensor *t, const char *path, Reader *r, vlTensorField *f,
+                           vlError *error) {
   f->name_size = (size_t)take(r, 2);
-  if ((size_t)(r->end - r->at) < f->name_size) return cut(path, error);
+  if ((size_t)(r->end - r->at) < f->name_size)
+    return cut(path, error);
   f->name = r->at;
   r->at += f->name_size;
   f->rank = (uint32_t)take(r, 2);
   f->type = (uint32_t)take(r, 1);
   uint64_t offset = take(r, 8);
-  if (!r->taken) return cut(path, error);
+  if (!r->taken)
+    return cut(path, error);
   size_t size = type_size(f->type);
   if (size == 0)
-    return vl_fail(error, VL_ERROR_SCENE, "%s: the tensor file is damaged: a field is of the unknown type %u", path,
+    return vl_fail(error, VL_ERROR_SCENE,
+                   "%s: the tensor file is damaged: a field is of the unknown type %u", path,
                    f->type);
   if (f->rank > VL_TENSOR_RANK)
-    return vl_fail(error, VL_ERROR_SCENE, "%s: the tensor file is damaged: a field has %u dimensions", path, f->rank);
+    return vl_fail(error, VL_ERROR_SCENE,
+                   "%s: the tensor file is damaged: a field has %u dimensions", path, f->rank);
   f->count = 1;
   for (uint32_t i = 0; i < f->rank; i++) {
     f->shape[i] = take(r, 8);
-    if (f->shape[i] != 0 && f->count > UINT64_MAX / f->shape[i]) return cut(path, error);
+    if (f->shape[i] != 0 && f->count > UINT64_MAX / f->shape[i])
+      return cut(path, error);
     f->count *= f->shape[i];
   }
-  if (!r->taken || offset > t->size || f->count > (t->size - offset) / size) return cut(path, error);
+  if (!r->taken || offset > t->size || f->count > (t->size - offset) / size)
+    return cut(path, error);
   f->values = t->data + offset;
   return VL_OK;
 }
 
-vlResult vl_tensor_read(vlContext *context, const char *path, vlTensor *tensor, vlError *error) {
+vlResult vl_tensor_read(vlContext *context, const char *path, vlTensor *tensor,
+                        vlError *error) {
   memset(tensor, 0, sizeof *tensor);
   vlResult result = vl_file_read(context, path, false, &tensor->data, &tensor->size, error);
   if (result != VL_OK) {
@@ -68,7 +80,8 @@ vlResult vl_tensor_read(vlContext *context, const char *path, vlTensor *tensor, 
   Reader r = {tensor->data, tensor->data + tensor->size, true};
   uint32_t count = 0;
   if (tensor->size < sizeof magic || memcmp(tensor->data, magic, sizeof magic) != 0) {
-    result = vl_fail(error, VL_ERROR_SCENE, "%s: this is no tensor file (of the RGL material database)", path);
+    result = vl_fail(error, VL_ERROR_SCENE,
+                     "%s: this is no tensor file (of the RGL material database)", path);
   } else {
     r.at += sizeof magic;
     uint32_t major = (uint32_t)take(&r, 1), minor = (uint32_t)take(&r, 1);
@@ -76,20 +89,25 @@ vlResult vl_tensor_read(vlContext *context, const char *path, vlTensor *tensor, 
     if (!r.taken)
       result = cut(path, error);
     else if (major != 1 || minor != 0)
-      result = vl_fail(error, VL_ERROR_SCENE, "%s: tensor files of version %u.%u are not understood (known: 1.0)", path,
-                       major, minor);
+      result = vl_fail(error, VL_ERROR_SCENE,
+                       "%s: tensor files of version %u.%u are not understood (known: 1.0)",
+                       path, major, minor);
     else if (count > VL_TENSOR_FIELDS)
-      result = vl_fail(error, VL_ERROR_SCENE, "%s: the tensor file is damaged: it announces %u fields", path, count);
+      result = vl_fail(error, VL_ERROR_SCENE,
+                       "%s: the tensor file is damaged: it announces %u fields", path, count);
   }
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     vlTensorField *f = &tensor->fields[i];
     result = read_field(tensor, path, &r, f, error);
     for (uint32_t k = 0; result == VL_OK && k < i; k++)
-      if (tensor->fields[k].name_size == f->name_size && memcmp(tensor->fields[k].name, f->name, f->name_size) == 0)
-        result = vl_fail(error, VL_ERROR_SCENE, "%s: the tensor file is damaged: it has the same field twice", path);
+      if (tensor->fields[k].name_size == f->name_size &&
+          memcmp(tensor->fields[k].name, f->name, f->name_size) == 0)
+        result = vl_fail(error, VL_ERROR_SCENE,
+                         "%s: the tensor file is damaged: it has the same field twice", path);
     tensor->count++;
   }
-  if (result != VL_OK) vl_tensor_free(context, tensor);
+  if (result != VL_OK)
+    vl_tensor_free(context, tensor);
   return result;
 }
 

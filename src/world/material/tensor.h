@@ -1,9 +1,10 @@
-/* world/material/tensor.h: reads files of named arrays ("tensor_file", version 1.0), the format in which the RGL
- * material database (Dupuy and Jakob 2018) stores its measurements. Little-endian: 12 bytes "tensor_file\0", two bytes
- * of version, a 32-bit count of fields; then for each field the 16-bit length of its name, the name, a 16-bit rank, an
- * 8-bit type, a 64-bit offset of the values from the file's start, and a 64-bit size for each dimension. The last
- * dimension is contiguous. The values may lie anywhere in the file. All sizes and offsets are checked against the
- * file's size. */
+/* world/material/tensor.h: reads files of named arrays ("tensor_file", version 1.0), the format
+ * in which the RGL material database (Dupuy and Jakob 2018) stores its measurements.
+ * Little-endian: 12 bytes "tensor_file\0", two bytes of version, a 32-bit count of fields; then
+ * for each field the 16-bit length of its name, the name, a 16-bit rank, an 8-bit type, a
+ * 64-bit offset of the values from the file's start, and a 64-bit size for each dimension. The
+ * last dimension is contiguous. The values may lie anywhere in the file. All sizes and offsets
+ * are checked against the file's size. */
 #ifndef WORLD_MATERIAL_TENSOR_H
 #define WORLD_MATERIAL_TENSOR_H
 
@@ -30,8 +31,8 @@ typedef struct vlTensor {
   vlTensorField fields[VL_TENSOR_FIELDS];
 } vlTensor;
 
-/* Reads a file. Errors: MISSING, IO, MEMORY; SCENE if the file is damaged (the message names the file). On error tensor
- * is empty. */
+/* Reads a file. Errors: MISSING, IO, MEMORY; SCENE if the file is damaged (the message names
+ * the file). On error tensor is empty. */
 vlResult vl_tensor_read(vlContext *context, const char *path, vlTensor *tensor, vlError *error);
 void vl_tensor_free(vlContext *context, vlTensor *tensor);
 /* Finds a field by its name. Null if there is none. */

@@ -6,9 +6,11 @@
 #include "velo/medium.h"
 #include "world/medium/kinds.h"
 
-/* Cloud density changes with height: one majorant per slab. The absolute value of noise is at most 1.04, that of the
- * sum of its five octaves at most 1.01. Above y = 1 the factor of the noise is negative, and grows again. */
-vlResult vl_compile_medium_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+/* Cloud density changes with height: one majorant per slab. The absolute value of noise is at
+ * most 1.04, that of the sum of its five octaves at most 1.01. Above y = 1 the factor of the
+ * noise is negative, and grows again. */
+vlResult vl_compile_medium_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
+                                 vlError *error) {
   enum { SLABS = 16 };
   memcpy(m->low, def->low, sizeof m->low);
   memcpy(m->high, def->high, sizeof m->high);
@@ -17,7 +19,8 @@ vlResult vl_compile_medium_cloud(vlWorld *world, const vlMediumDef *def, vlWorld
   m->own[1] = def->wispiness;
   m->own[2] = def->frequency;
   float *majorants = vl_medium_majorants(world, m, 1, SLABS, 1);
-  if (!majorants) return vl_fail_memory(error);
+  if (!majorants)
+    return vl_fail_memory(error);
   for (int i = 0; i < SLABS; i++) {
     const float margin = 1e-5f; /* lookups round y */
     float y = m->low[1] + (m->high[1] - m->low[1]) * (float)i / SLABS - margin;

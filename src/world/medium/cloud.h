@@ -1,13 +1,13 @@
-/* world/medium/cloud.h: the density of a cloud. vlWorldMedium.own holds its parameters: a factor of the noise,
- * wispiness, frequency. */
+/* world/medium/cloud.h: the density of a cloud. vlWorldMedium.own holds its parameters: a
+ * factor of the noise, wispiness, frequency. */
 #ifndef WORLD_MEDIUM_CLOUD_H
 #define WORLD_MEDIUM_CLOUD_H
 
 #include "math/noise.h"
 #include "world/medium/medium.h"
 
-/* pbrt-v4's procedural cloud (the last medium of book 11.4.2): fractal noise, distorted by wisps, thinner with
- * height. */
+/* pbrt-v4's procedural cloud (the last medium of book 11.4.2): fractal noise, distorted by
+ * wisps, thinner with height. */
 static inline float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vlVec3 unit) {
   (void)unit;
   const float density = m->own[0], wispiness = m->own[1];
@@ -17,9 +17,9 @@ static inline float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vl
     vlVec3 at = vl_mul(q, frequency);
     const float delta = 0.01f;
     float n = vl_noise(at.x, at.y, at.z);
-    vlVec3 slope =
-        vl_vec3((vl_noise(at.x + delta, at.y, at.z) - n) / delta, (vl_noise(at.x, at.y + delta, at.z) - n) / delta,
-                (vl_noise(at.x, at.y, at.z + delta) - n) / delta);
+    vlVec3 slope = vl_vec3((vl_noise(at.x + delta, at.y, at.z) - n) / delta,
+                           (vl_noise(at.x, at.y + delta, at.z) - n) / delta,
+                           (vl_noise(at.x, at.y, at.z + delta) - n) / delta);
     q = vl_add(q, vl_mul(slope, omega));
     omega *= 0.5f;
     frequency *= 1.99f;

@@ -1,5 +1,5 @@
-/* world/medium/grid.c: media on dense grids: converts the values to the layout for lookups, and computes majorants
- * (pbrt book 11.4). */
+/* world/medium/grid.c: media on dense grids: converts the values to the layout for lookups, and
+ * computes majorants (pbrt book 11.4). */
 #include <math.h>
 #include <string.h>
 
@@ -8,27 +8,34 @@
 #include "velo/medium.h"
 #include "world/medium/kinds.h"
 
-static bool copy_grid(vlWorld *world, const vlMediumDef *def, const float *from, vlDenseGrid *to) {
-  if (!from) return true;
+static bool copy_grid(vlWorld *world, const vlMediumDef *def, const float *from,
+                      vlDenseGrid *to) {
+  if (!from)
+    return true;
   size_t cells = (size_t)def->nx * def->ny * def->nz;
   float *values = vl_world_block(world, cells, sizeof *values);
-  if (!values) return false;
+  if (!values)
+    return false;
   memcpy(values, from, cells * sizeof *values);
   *to = (vlDenseGrid){def->nx, def->ny, def->nz, values};
   return true;
 }
 
-static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *from, vlDenseGrid *to) {
-  if (!from) return true;
+static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *from,
+                          vlDenseGrid *to) {
+  if (!from)
+    return true;
   size_t cells = (size_t)def->nx * def->ny * def->nz;
   float *values = vl_world_block(world, cells, 4 * sizeof *values);
-  if (!values) return false;
+  if (!values)
+    return false;
   const vlRgbTable *table = vl_rgb_table(def->space);
   for (size_t i = 0; i < cells; i++) {
     const float *rgb = from + 3 * i;
     float *v = values + 4 * i, high = vl_max(rgb[0], vl_max(rgb[1], rgb[2]));
     if (world->def.color == VL_COLOR_RGB) {
-      for (int c = 0; c < 3; c++) v[c] = rgb[c];
+      for (int c = 0; c < 3; c++)
+        v[c] = rgb[c];
       v[3] = 0;
       continue;
     }
@@ -43,8 +50,9 @@ static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *f
   return true;
 }
 
-/* Gives the first and last cell of a grid, along one axis, that a lookup in [low, high] of the unit interval may read.
- * Lookups compute in float: their rounding, 6e-8 of up to 1000 cells, is within 1e-4 of a cell. */
+/* Gives the first and last cell of a grid, along one axis, that a lookup in [low, high] of the
+ * unit interval may read. Lookups compute in float: their rounding, 6e-8 of up to 1000 cells,
+ * is within 1e-4 of a cell. */
 static void reach(double low, double high, uint32_t n, uint32_t *first, uint32_t *last) {
   double a = floor(low * n - 0.5 - 1e-4), b = floor(high * n - 0.5 + 1e-4) + 1;
   *first = a > 0 ? (uint32_t)a : 0;
@@ -52,22 +60,25 @@ static void reach(double low, double high, uint32_t n, uint32_t *first, uint32_t
 }
 
 /* Upper bound of all lookups within a cell of the majorant grid. */
-static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const uint32_t at[3], bool rgb) {
+static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const uint32_t at[3],
+                         bool rgb) {
   const uint32_t n[3] = {g->nx, g->ny, g->nz};
   uint32_t a[3], b[3];
   float most = 0;
-  for (int i = 0; i < 3; i++) reach((double)at[i] / cells[i], (double)(at[i] + 1) / cells[i], n[i], &a[i], &b[i]);
+  for (int i = 0; i < 3; i++)
+    reach((double)at[i] / cells[i], (double)(at[i] + 1) / cells[i], n[i], &a[i], &b[i]);
   for (uint32_t z = a[2]; z <= b[2]; z++)
     for (uint32_t y = a[1]; y <= b[1]; y++)
       for (uint32_t x = a[0]; x <= b[0]; x++) {
         size_t k = ((size_t)z * n[1] + y) * n[0] + x;
         const float *v = g->values + 4 * k;
-        /* The scale of a sigmoid spectrum is a bound, but up to twice too large, since it is twice the colour's
-         * maximum. The spectrum is therefore sampled. */
+        /* The scale of a sigmoid spectrum is a bound, but up to twice too large, since it is
+         * twice the colour's maximum. The spectrum is therefore sampled. */
         float bound = rgb ? 0 : g->values[k];
         if (rgb && v[3] > 0)
           for (int l = VL_LAMBDA_MIN; l <= VL_LAMBDA_MAX; l += 5)
-            bound = vl_max(bound, v[3] * vl_sigmoid((vlSigmoid){v[0], v[1], v[2]}, (float)l) * 1.001f);
+            bound = vl_max(bound,
+                           v[3] * vl_sigmoid((vlSigmoid){v[0], v[1], v[2]}, (float)l) * 1.001f);
         else if (rgb)
           bound = vl_max(v[0], vl_max(v[1], v[2]));
         most = vl_max(most, bound);
@@ -99,18 +110,21 @@ static void bound_slice(void *user, uint32_t z, uint32_t worker) {
     }
 }
 
-static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
+                              vlError *error) {
   bool rgb = m->own_sigma;
   memcpy(m->low, def->low, sizeof m->low);
   memcpy(m->high, def->high, sizeof m->high);
   if (!copy_grid(world, def, def->density, &m->density) ||
       !copy_grid(world, def, def->emission_scales, &m->emission_scales) ||
-      !copy_grid(world, def, def->temperature, &m->temperature) || !copy_rgb_grid(world, def, def->rgb_a, &m->rgb_a) ||
+      !copy_grid(world, def, def->temperature, &m->temperature) ||
+      !copy_rgb_grid(world, def, def->rgb_a, &m->rgb_a) ||
       !copy_rgb_grid(world, def, def->rgb_s, &m->rgb_s) ||
       !copy_rgb_grid(world, def, def->rgb_emission, &m->rgb_emission))
     return vl_fail_memory(error);
   if (rgb) {
-    /* pbrt-v4 multiplies by the illuminant of the colour space, scaled to the luminance of a constant spectrum of 1. */
+    /* pbrt-v4 multiplies by the illuminant of the colour space, scaled to the luminance of a
+     * constant spectrum of 1. */
     double sum = 0, whole = 0;
     const float *y = vl_cie_y(), *illuminant = vl_space_illuminant(def->space);
     for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
@@ -122,24 +136,30 @@ static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMed
     m->rgb_scale = def->scale;
     m->rgb_emission_scale = def->emission_scale;
     if (world->def.color == VL_COLOR_RGB)
-      m->illuminant = (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = (float)whole, .rgb = {1, 1, 1}};
+      m->illuminant =
+          (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = (float)whole, .rgb = {1, 1, 1}};
     else
-      m->illuminant = (vlSpectral){.kind = VL_SPECTRAL_DENSE, .scale = (float)(whole / sum), .dense = illuminant};
+      m->illuminant = (vlSpectral){
+          .kind = VL_SPECTRAL_DENSE, .scale = (float)(whole / sum), .dense = illuminant};
   }
   uint32_t cells[3] = {def->nx, def->ny, def->nz};
-  for (int i = 0; i < 3; i++) cells[i] = cells[i] > 8 ? 16 : 2 * cells[i];
+  for (int i = 0; i < 3; i++)
+    cells[i] = cells[i] > 8 ? 16 : 2 * cells[i];
   Bounding bounding = {m, vl_medium_majorants(world, m, cells[0], cells[1], cells[2]), rgb};
-  if (!bounding.majorants) return vl_fail_memory(error);
+  if (!bounding.majorants)
+    return vl_fail_memory(error);
   vl_parallel_for(world->context, m->cells[2], bound_slice, &bounding);
   return VL_OK;
 }
 
-vlResult vl_compile_medium_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+vlResult vl_compile_medium_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
+                                vlError *error) {
   vlResult r = compile_cells(world, def, m, error);
   return r == VL_OK && def->temperature ? vl_medium_temperature(world, def, m, error) : r;
 }
 
-vlResult vl_compile_medium_rgb_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+vlResult vl_compile_medium_rgb_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
+                                    vlError *error) {
   m->own_sigma = true;
   return compile_cells(world, def, m, error);
 }

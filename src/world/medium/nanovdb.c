@@ -1,7 +1,8 @@
-/* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read (world/medium/medium.h). This is
- * the only file that uses PNanoVDB.h. Its readers check every address; addresses outside of the grid read as zero. The
- * number of nodes is bounded by the grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot
- * exhaust memory. */
+/* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read
+ * (world/medium/medium.h). This is the only file that uses PNanoVDB.h. Its readers check every
+ * address; addresses outside of the grid read as zero. The number of nodes is bounded by the
+ * grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot exhaust memory.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -42,7 +43,8 @@ typedef struct Tree {
 static const pnanovdb_grid_type_t type = PNANOVDB_GRID_TYPE_FLOAT;
 
 static vlResult fail(const Tree *t, const char *why) {
-  return vl_fail(t->error, VL_ERROR_SCENE, "%s: grid \"%s\": %s", t->path, vl_short_text(t->name).text, why);
+  return vl_fail(t->error, VL_ERROR_SCENE, "%s: grid \"%s\": %s", t->path,
+                 vl_short_text(t->name).text, why);
 }
 
 static bool fits(const Tree *t, uint64_t address, uint64_t size) {
@@ -57,16 +59,22 @@ static float float_at(const Tree *t, pnanovdb_address_t a) {
   return pnanovdb_read_float(t->buffer, a);
 }
 
-/* ---- which blocks there are -------------------------------------------------------------------------------------- */
+/* ---- which blocks there are
+ * -------------------------------------------------------------------------------------- */
 
 static vlResult add_block(Tree *t, const int32_t at[3], uint64_t node, float value) {
-  if (node == 0 && value == t->background) return VL_OK;
-  if (node == 0 && !isfinite(value)) return fail(t, "a value is not finite");
+  if (node == 0 && value == t->background)
+    return VL_OK;
+  if (node == 0 && !isfinite(value))
+    return fail(t, "a value is not finite");
   uint64_t lower = PNANOVDB_GRID_TYPE_GET(type, lower_size);
-  if (node && ++t->nodes > t->size / lower) return fail(t, "its tree is damaged");
-  if (t->blocks.count > MAX_BLOCKS) return fail(t, "it fills too much space");
+  if (node && ++t->nodes > t->size / lower)
+    return fail(t, "its tree is damaged");
+  if (t->blocks.count > MAX_BLOCKS)
+    return fail(t, "it fills too much space");
   Block *b = VL_PUSH(t->world->context, &t->blocks);
-  if (!b) return vl_fail_memory(t->error);
+  if (!b)
+    return vl_fail_memory(t->error);
   *b = (Block){{at[0], at[1], at[2]}, node, value};
   return VL_OK;
 }
@@ -74,17 +82,20 @@ static vlResult add_block(Tree *t, const int32_t at[3], uint64_t node, float val
 static vlResult list_upper(Tree *t, const int32_t at[3], uint64_t address) {
   pnanovdb_upper_handle_t upper = {address_of(address)};
   for (uint32_t n = 0; n < 32768; n++) {
-    int32_t block[3] = {at[0] + (int32_t)(n >> 10), at[1] + (int32_t)(n >> 5 & 31), at[2] + (int32_t)(n & 31)};
+    int32_t block[3] = {at[0] + (int32_t)(n >> 10), at[1] + (int32_t)(n >> 5 & 31),
+                        at[2] + (int32_t)(n & 31)};
     uint64_t child = 0;
     float value = 0;
     if (pnanovdb_upper_get_child_mask(t->buffer, upper, n)) {
       child = pnanovdb_upper_get_child(type, t->buffer, upper, n).address.byte_offset;
-      if (!fits(t, child, PNANOVDB_GRID_TYPE_GET(type, lower_size))) return fail(t, "its tree is damaged");
+      if (!fits(t, child, PNANOVDB_GRID_TYPE_GET(type, lower_size)))
+        return fail(t, "its tree is damaged");
     } else {
       value = float_at(t, pnanovdb_upper_get_table_address(type, t->buffer, upper, n));
     }
     vlResult r = add_block(t, block, child, value);
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   return VL_OK;
 }
@@ -98,7 +109,9 @@ static vlResult list_tile(Tree *t, const int32_t at[3], float value) {
   return r;
 }
 
-/* Maps 21 bits of a root key to the first block: keys hold coordinates >> 12, blocks are 2^7 wide. */
+/* Maps 21 bits of a root key to the first block: keys hold coordinates >> 12, blocks are 2^7
+ * wide.
+ */
 static int32_t block_of_key(uint64_t bits) {
   return (int32_t)(uint32_t)((bits & 0x1fffff) << 12) >> 7;
 }
@@ -106,44 +119,54 @@ static int32_t block_of_key(uint64_t bits) {
 static vlResult list_root(Tree *t, pnanovdb_root_handle_t root) {
   uint32_t count = pnanovdb_root_get_tile_count(t->buffer, root);
   uint64_t tile_size = PNANOVDB_GRID_TYPE_GET(type, root_tile_size);
-  if (count > t->size / tile_size) return fail(t, "its tree is damaged");
+  if (count > t->size / tile_size)
+    return fail(t, "its tree is damaged");
   for (uint32_t n = 0; n < count; n++) {
     pnanovdb_root_tile_handle_t tile = pnanovdb_root_get_tile(type, root, n);
     uint64_t key = pnanovdb_root_tile_get_key(t->buffer, tile);
     int32_t at[3] = {block_of_key(key >> 42), block_of_key(key >> 21), block_of_key(key)};
     vlResult r;
     if (pnanovdb_root_tile_get_child(t->buffer, tile) == 0) {
-      r = list_tile(t, at, float_at(t, pnanovdb_root_tile_get_value_address(type, t->buffer, tile)));
+      r = list_tile(t, at,
+                    float_at(t, pnanovdb_root_tile_get_value_address(type, t->buffer, tile)));
     } else {
       uint64_t child = pnanovdb_root_get_child(type, t->buffer, root, tile).address.byte_offset;
-      if (!fits(t, child, PNANOVDB_GRID_TYPE_GET(type, upper_size))) return fail(t, "its tree is damaged");
+      if (!fits(t, child, PNANOVDB_GRID_TYPE_GET(type, upper_size)))
+        return fail(t, "its tree is damaged");
       r = list_upper(t, at, child);
     }
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   return VL_OK;
 }
 
-/* ---- their bricks ------------------------------------------------------------------------------------------------ */
+/* ---- their bricks
+ * ------------------------------------------------------------------------------------------------
+ */
 
 static vlResult add_tile(Tree *t, float value, uint32_t *entry) {
-  if (!isfinite(value)) return fail(t, "a value is not finite");
+  if (!isfinite(value))
+    return fail(t, "a value is not finite");
   size_t last = t->tiles.count - 1;
   if (value == t->tiles.items[0] || value == t->tiles.items[last]) {
     *entry = VL_SPARSE_TILE | (uint32_t)(value == t->tiles.items[0] ? 0 : last);
     return VL_OK;
   }
   float *slot = VL_PUSH(t->world->context, &t->tiles);
-  if (!slot) return vl_fail_memory(t->error);
+  if (!slot)
+    return vl_fail_memory(t->error);
   *slot = value;
   *entry = VL_SPARSE_TILE | (uint32_t)(t->tiles.count - 1);
   return VL_OK;
 }
 
 static vlResult add_leaf(Tree *t, uint64_t address, uint32_t *entry) {
-  if (!fits(t, address, PNANOVDB_GRID_TYPE_GET(type, leaf_size)) || t->values.count / VL_BRICK_VALUES >= t->most_bricks)
+  if (!fits(t, address, PNANOVDB_GRID_TYPE_GET(type, leaf_size)) ||
+      t->values.count / VL_BRICK_VALUES >= t->most_bricks)
     return fail(t, "its tree is damaged");
-  if (!VL_RESERVE(t->world->context, &t->values, VL_BRICK_VALUES)) return vl_fail_memory(t->error);
+  if (!VL_RESERVE(t->world->context, &t->values, VL_BRICK_VALUES))
+    return vl_fail_memory(t->error);
   float *to = t->values.items + t->values.count;
   pnanovdb_leaf_handle_t leaf = {address_of(address)};
   bool finite = true;
@@ -152,24 +175,29 @@ static vlResult add_leaf(Tree *t, uint64_t address, uint32_t *entry) {
     to[((n & 7) * 8 + (n >> 3 & 7)) * 8 + (n >> 6)] = v;
     finite = finite && isfinite(v);
   }
-  if (!finite) return fail(t, "a value is not finite");
+  if (!finite)
+    return fail(t, "a value is not finite");
   *entry = (uint32_t)(t->values.count / VL_BRICK_VALUES);
   t->values.count += VL_BRICK_VALUES;
   return VL_OK;
 }
 
 static vlResult add_lower(Tree *t, uint64_t address, uint32_t *entry) {
-  if (!VL_RESERVE(t->world->context, &t->bricks, VL_BLOCK_BRICKS)) return vl_fail_memory(t->error);
+  if (!VL_RESERVE(t->world->context, &t->bricks, VL_BLOCK_BRICKS))
+    return vl_fail_memory(t->error);
   uint32_t *to = t->bricks.items + t->bricks.count;
   pnanovdb_lower_handle_t lower = {address_of(address)};
   for (uint32_t n = 0; n < VL_BLOCK_BRICKS; n++) {
     uint32_t *brick = to + ((size_t)(n & 15) * 16 + (n >> 4 & 15)) * 16 + (n >> 8);
     vlResult r;
     if (pnanovdb_lower_get_child_mask(t->buffer, lower, n))
-      r = add_leaf(t, pnanovdb_lower_get_child(type, t->buffer, lower, n).address.byte_offset, brick);
+      r = add_leaf(t, pnanovdb_lower_get_child(type, t->buffer, lower, n).address.byte_offset,
+                   brick);
     else
-      r = add_tile(t, float_at(t, pnanovdb_lower_get_table_address(type, t->buffer, lower, n)), brick);
-    if (r != VL_OK) return r;
+      r = add_tile(t, float_at(t, pnanovdb_lower_get_table_address(type, t->buffer, lower, n)),
+                   brick);
+    if (r != VL_OK)
+      return r;
   }
   *entry = (uint32_t)(t->bricks.count / VL_BLOCK_BRICKS);
   t->bricks.count += VL_BLOCK_BRICKS;
@@ -191,27 +219,35 @@ static vlResult build_table(Tree *t, vlSparseGrid *g) {
     g->size[k] = t->blocks.count ? (uint32_t)(high[k] - low[k]) + 1 : 0;
     cells = cells > MAX_TABLE ? cells : cells * g->size[k];
   }
-  if (cells > MAX_TABLE) return fail(t, "its parts lie too far from each other");
+  if (cells > MAX_TABLE)
+    return fail(t, "its parts lie too far from each other");
   uint32_t *table = vl_world_block(t->world, cells, sizeof *table);
-  if (!table) return vl_fail_memory(t->error);
-  for (size_t i = 0; i < cells; i++) table[i] = VL_SPARSE_TILE;
+  if (!table)
+    return vl_fail_memory(t->error);
+  for (size_t i = 0; i < cells; i++)
+    table[i] = VL_SPARSE_TILE;
   g->blocks = table;
   for (size_t i = 0; i < t->blocks.count; i++) {
     const Block *b = &t->blocks.items[i];
-    size_t x = (size_t)(b->at[0] - low[0]), y = (size_t)(b->at[1] - low[1]), z = (size_t)(b->at[2] - low[2]);
+    size_t x = (size_t)(b->at[0] - low[0]), y = (size_t)(b->at[1] - low[1]),
+           z = (size_t)(b->at[2] - low[2]);
     uint32_t *entry = table + (z * g->size[1] + y) * g->size[0] + x;
     vlResult r = b->node ? add_lower(t, b->node, entry) : add_tile(t, b->value, entry);
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   return VL_OK;
 }
 
-/* ---- the grid ---------------------------------------------------------------------------------------------------- */
+/* ---- the grid
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 /* Moves a growing array into a block owned by the world. */
 static bool give(vlWorld *world, void *items, void *result_pointer) {
   void **slot = VL_PUSH(world->context, &world->blocks);
-  if (!slot) return false;
+  if (!slot)
+    return false;
   *slot = items;
   memcpy(result_pointer, &items, sizeof items);
   return true;
@@ -219,10 +255,12 @@ static bool give(vlWorld *world, void *items, void *result_pointer) {
 
 static vlResult take_apart(Tree *t, vlSparseGrid *g) {
   pnanovdb_grid_handle_t grid = {address_of(0)};
-  if (t->size < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE) return fail(t, "it is damaged");
+  if (t->size < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE)
+    return fail(t, "it is damaged");
   uint32_t kind = pnanovdb_grid_get_grid_type(t->buffer, grid);
   uint32_t use = pnanovdb_grid_get_grid_class(t->buffer, grid);
-  if (kind != PNANOVDB_GRID_TYPE_FLOAT) return fail(t, "its values are not floats");
+  if (kind != PNANOVDB_GRID_TYPE_FLOAT)
+    return fail(t, "its values are not floats");
   if (use != PNANOVDB_GRID_CLASS_FOG_VOLUME && use != PNANOVDB_GRID_CLASS_UNKNOWN)
     return fail(t, "it is no fog volume");
   pnanovdb_map_handle_t map = pnanovdb_grid_get_map(t->buffer, grid);
@@ -236,34 +274,42 @@ static vlResult take_apart(Tree *t, vlSparseGrid *g) {
     g->index_from_medium[4 * i + 3] = (float)sum;
     g->box_low[i] = pnanovdb_grid_get_world_bbox(t->buffer, grid, i);
     g->box_high[i] = pnanovdb_grid_get_world_bbox(t->buffer, grid, 3 + i);
-    if (!isfinite(g->box_low[i]) || !isfinite(g->box_high[i])) return fail(t, "its box is not finite");
+    if (!isfinite(g->box_low[i]) || !isfinite(g->box_high[i]))
+      return fail(t, "its box is not finite");
   }
   for (int i = 0; i < 12; i++)
-    if (!isfinite(g->index_from_medium[i])) return fail(t, "its map is not finite");
+    if (!isfinite(g->index_from_medium[i]))
+      return fail(t, "its map is not finite");
   pnanovdb_tree_handle_t tree = pnanovdb_grid_get_tree(t->buffer, grid);
   pnanovdb_root_handle_t root = pnanovdb_tree_get_root(t->buffer, tree);
   if (!fits(t, root.address.byte_offset, PNANOVDB_GRID_TYPE_GET(type, root_size)))
     return fail(t, "its tree is damaged");
-  t->background = float_at(t, pnanovdb_address_offset(root.address, PNANOVDB_GRID_TYPE_GET(type, root_off_background)));
-  if (!isfinite(t->background)) return fail(t, "its background is not finite");
+  t->background = float_at(
+      t,
+      pnanovdb_address_offset(root.address, PNANOVDB_GRID_TYPE_GET(type, root_off_background)));
+  if (!isfinite(t->background))
+    return fail(t, "its background is not finite");
   t->most_bricks = t->size / PNANOVDB_GRID_TYPE_GET(type, leaf_size);
   float *first = VL_PUSH(t->world->context, &t->tiles);
-  if (!first) return vl_fail_memory(t->error);
+  if (!first)
+    return vl_fail_memory(t->error);
   *first = t->background;
   vlResult r = list_root(t, root);
   return r == VL_OK ? build_table(t, g) : r;
 }
 
-vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name, const vlSparseGrid **grid,
-                         vlError *error) {
+vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name,
+                         const vlSparseGrid **grid, vlError *error) {
   vlNanoGrid found;
   *grid = NULL;
   vlResult r = vl_nanovdb_find(world->context, path, name, &found, error);
-  if (r != VL_OK || !found.words) return r;
+  if (r != VL_OK || !found.words)
+    return r;
   Tree tree = {.world = world, .path = path, .name = name, .size = found.size, .error = error};
   tree.buffer = pnanovdb_make_buf((uint32_t *)found.words, found.size / 4);
   vlSparseGrid *g = vl_world_block(world, 1, sizeof *g);
-  if (g) memset(g, 0, sizeof *g);
+  if (g)
+    memset(g, 0, sizeof *g);
   r = g ? take_apart(&tree, g) : vl_fail_memory(error);
   vl_free(world->context, found.words);
   VL_ARRAY_FREE(world->context, &tree.blocks);
@@ -283,6 +329,7 @@ vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name, con
   VL_ARRAY_FREE(world->context, &tree.tiles);
   VL_ARRAY_FREE(world->context, &tree.bricks);
   VL_ARRAY_FREE(world->context, &tree.values);
-  if (r == VL_OK) *grid = g;
+  if (r == VL_OK)
+    *grid = g;
   return r;
 }

@@ -1,20 +1,22 @@
-/* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments. A ray is intersected at the point where it
- * comes nearest to the axis.
+/* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments. A ray is
+ * intersected at the point where it comes nearest to the axis.
  *
- * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from a flat curve by its
- * normal only; the visible width of a ribbon is multiplied by the cosine between its normal and the ray. The hit point
- * lies on the ray, where the ray comes nearest to the axis. Everything is in shape space unless stated otherwise.
+ * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from a
+ * flat curve by its normal only; the visible width of a ribbon is multiplied by the cosine
+ * between its normal and the ray. The hit point lies on the ray, where the ray comes nearest to
+ * the axis. Everything is in shape space unless stated otherwise.
  *
- * Where rays start that leave a curve. For a cylinder of radius r, let the hit point lie x r beside the axis; the
- * normal n, turned by the angle a = x pi / 2, is perpendicular to the axis. A point at the distance k along n (or -n)
- * is k + x r sin a (k - x r sin a) from the plane through the axis that is perpendicular to n. A ray that starts there
- * and goes away from that plane, or along it, passes the axis at that distance at least, or has passed it. So it does
- * not meet the curve if k >= r (1 + |x sin a|), which is 2 r, the width, at the edges. For flat curves and ribbons r is
- * enough.
+ * Where rays start that leave a curve. For a cylinder of radius r, let the hit point lie x r
+ * beside the axis; the normal n, turned by the angle a = x pi / 2, is perpendicular to the
+ * axis. A point at the distance k along n (or -n) is k + x r sin a (k - x r sin a) from the
+ * plane through the axis that is perpendicular to n. A ray that starts there and goes away from
+ * that plane, or along it, passes the axis at that distance at least, or has passed it. So it
+ * does not meet the curve if k >= r (1 + |x sin a|), which is 2 r, the width, at the edges. For
+ * flat curves and ribbons r is enough.
  *
- * velo takes pbrt's distance: the width along each axis of shape space, that is 1 to 1.73 widths along the normal. In
- * rows of hair that nearly touch the image depends on it, so it is a convention, as the shape itself is. It does not
- * change when a scene is turned. */
+ * velo takes pbrt's distance: the width along each axis of shape space, that is 1 to 1.73
+ * widths along the normal. In rows of hair that nearly touch the image depends on it, so it is
+ * a convention, as the shape itself is. It does not change when a scene is turned. */
 #include <math.h>
 #include <string.h>
 
@@ -24,26 +26,33 @@
 #include "world/shape/kinds.h"
 #include "world/shape/tables.h"
 
-/* Bezier control points in ray coordinates: x and y are perpendicular to the ray, z is along the ray. */
+/* Bezier control points in ray coordinates: x and y are perpendicular to the ray, z is along
+ * the ray. */
 typedef struct Cubic {
   double x[4], y[4], z[4];
 } Cubic;
 
 static bool copy_curves(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
   size_t n = def->faces;
-  enum { MOST_PIECES = 1 << 23 }; /* pieces per shape, since Embree's box of a piece takes more memory than the curve */
+  enum {
+    MOST_PIECES = 1 << 23
+  }; /* pieces per shape, since Embree's box of a piece takes more memory than the curve */
   s->curve = def->curve;
   s->split = def->split_depth < 6 ? def->split_depth : 6;
-  while (s->split && (n << s->split) > MOST_PIECES) s->split--;
+  while (s->split && (n << s->split) > MOST_PIECES)
+    s->split--;
   s->vertices = (uint32_t)(4 * n);
   s->faces = (uint32_t)(n << s->split);
   s->positions = vl_world_block(world, 12 * n, sizeof(float));
   s->widths = vl_world_block(world, 2 * n, sizeof(float));
-  if (!s->positions || !s->widths) return false;
+  if (!s->positions || !s->widths)
+    return false;
   memcpy(s->positions, def->positions, 12 * n * sizeof(float));
   memcpy(s->widths, def->widths, 2 * n * sizeof(float));
-  if (def->curve != VL_CURVE_RIBBON) return true;
-  if (!(s->normals = vl_world_block(world, 6 * n, sizeof(float)))) return false;
+  if (def->curve != VL_CURVE_RIBBON)
+    return true;
+  if (!(s->normals = vl_world_block(world, 6 * n, sizeof(float))))
+    return false;
   memcpy(s->normals, def->normals, 6 * n * sizeof(float));
   return true;
 }
@@ -85,7 +94,8 @@ static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], do
   for (int k = 0; k < 4; k++) {
     double from[3] = {p[3 * k], p[3 * k + 1], p[3 * k + 2]}, to[3];
     vl_map_point(s->from_shape, from, to);
-    for (int i = 0; i < 3; i++) c[i][k] = to[i];
+    for (int i = 0; i < 3; i++)
+      c[i][k] = to[i];
   }
   double radius = 0.5 * fmax(width_at(s, segment, u0), width_at(s, segment, u1));
   for (int i = 0; i < 3; i++) {
@@ -97,14 +107,17 @@ static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], do
   }
 }
 
-/* ---- meeting a ray ----------------------------------------------------------------------------------------------- */
+/* ---- meeting a ray
+ * -----------------------------------------------------------------------------------------------
+ */
 
 typedef struct Search {
   const vlWorldShape *shape;
   uint32_t segment;
-  double d[3];         /* unit */
-  double z_min, z_max; /* range of z along the ray in which hits count; every hit lowers z_max */
-  double flat;         /* largest deviation of a leaf of the bisection from a straight line */
+  double d[3]; /* unit */
+  double z_min,
+      z_max;   /* range of z along the ray in which hits count; every hit lowers z_max */
+  double flat; /* largest deviation of a leaf of the bisection from a straight line */
   double u, v;
   bool found;
 } Search;
@@ -117,18 +130,21 @@ static void ribbon_normal(const vlWorldShape *s, uint32_t segment, double u, dou
   vl_normalize3(to);
   float angle = vl_acos(vl_clamp((float)vl_dot3(from, to), -1, 1));
   double f = 1 - u, t = u;
-  /* For angles below 1e-3 linear interpolation has an error of angle^2 / 8 = 1e-7, the rounding error of a float. */
+  /* For angles below 1e-3 linear interpolation has an error of angle^2 / 8 = 1e-7, the rounding
+   * error of a float. */
   if (angle > 1e-3f) {
     f = vl_sincos((float)(1 - u) * angle).sin;
     t = vl_sincos((float)u * angle).sin;
   }
-  for (int i = 0; i < 3; i++) n[i] = f * from[i] + t * to[i];
+  for (int i = 0; i < 3; i++)
+    n[i] = f * from[i] + t * to[i];
   vl_normalize3(n);
 }
 
 static double seen_width(const vlWorldShape *s, uint32_t segment, double u, const double d[3]) {
   double width = width_at(s, segment, u);
-  if (s->curve != VL_CURVE_RIBBON) return width;
+  if (s->curve != VL_CURVE_RIBBON)
+    return width;
   double n[3];
   ribbon_normal(s, segment, u, n);
   return width * fabs(vl_dot3(n, d));
@@ -153,12 +169,13 @@ static inline double bezier_bend(const double c[4], double w) {
   return 6 * ((1 - w) * (c[2] - 2 * c[1] + c[0]) + w * (c[3] - 2 * c[2] + c[1]));
 }
 
-/* Parameter at which the curve is nearest to the ray: the zero of x x' + y y', the derivative of half the squared
- * distance. */
+/* Parameter at which the curve is nearest to the ray: the zero of x x' + y y', the derivative
+ * of half the squared distance. */
 static double find_foot(const Cubic *c, double w) {
   double low = 0, high = 1;
   for (int step = 0; step < 40; step++) {
-    double x = bezier(c->x, w), y = bezier(c->y, w), dx = bezier_slope(c->x, w), dy = bezier_slope(c->y, w);
+    double x = bezier(c->x, w), y = bezier(c->y, w), dx = bezier_slope(c->x, w),
+           dy = bezier_slope(c->y, w);
     double f = x * dx + y * dy;
     double slope = dx * dx + dy * dy + x * bezier_bend(c->x, w) + y * bezier_bend(c->y, w);
     if (f > 0)
@@ -166,28 +183,37 @@ static double find_foot(const Cubic *c, double w) {
     else
       low = w;
     double next = slope > 0 ? w - f / slope : -1;
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    if (fabs(next - w) < 1e-10) return next; /* well below the rounding error of w as a float */
+    if (!(next >= low && next <= high))
+      next = 0.5 * (low + high);
+    if (fabs(next - w) < 1e-10)
+      return next; /* well below the rounding error of w as a float */
     w = next;
   }
   return w;
 }
 
 static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
-  /* The distance between curve and ray must decrease at the start and increase at the end. Otherwise the nearest point
-   * belongs to a neighbouring piece, or lies beyond the end of the curve; the end is cut off perpendicularly. */
-  if (c->x[0] * (c->x[1] - c->x[0]) + c->y[0] * (c->y[1] - c->y[0]) > 0) return;
-  if (c->x[3] * (c->x[3] - c->x[2]) + c->y[3] * (c->y[3] - c->y[2]) < 0) return;
+  /* The distance between curve and ray must decrease at the start and increase at the end.
+   * Otherwise the nearest point belongs to a neighbouring piece, or lies beyond the end of the
+   * curve; the end is cut off perpendicularly. */
+  if (c->x[0] * (c->x[1] - c->x[0]) + c->y[0] * (c->y[1] - c->y[0]) > 0)
+    return;
+  if (c->x[3] * (c->x[3] - c->x[2]) + c->y[3] * (c->y[3] - c->y[2]) < 0)
+    return;
   double sx = c->x[3] - c->x[0], sy = c->y[3] - c->y[0], l2 = sx * sx + sy * sy;
   double w = l2 > 0 ? -(c->x[0] * sx + c->y[0] * sy) / l2 : 0.5;
   w = w > 0 ? (w < 1 ? w : 1) : 0;
   double nx = c->x[0] + w * sx, ny = c->y[0] + w * sy, reach = half + q->flat;
-  if (nx * nx + ny * ny > reach * reach) return;
+  if (nx * nx + ny * ny > reach * reach)
+    return;
   w = find_foot(c, w);
   double x = bezier(c->x, w), y = bezier(c->y, w), z = bezier(c->z, w);
-  double u = mix(u0, u1, w), width = seen_width(q->shape, q->segment, u, q->d), distance2 = x * x + y * y;
-  if (!(distance2 <= 0.25 * width * width) || !(z > q->z_min && z < q->z_max)) return;
-  double side = bezier_slope(c->y, w) * x - bezier_slope(c->x, w) * y; /* side of the curve on which the ray passes */
+  double u = mix(u0, u1, w), width = seen_width(q->shape, q->segment, u, q->d),
+         distance2 = x * x + y * y;
+  if (!(distance2 <= 0.25 * width * width) || !(z > q->z_min && z < q->z_max))
+    return;
+  double side = bezier_slope(c->y, w) * x -
+                bezier_slope(c->x, w) * y; /* side of the curve on which the ray passes */
   double across = width > 0 ? sqrt(distance2) / width : 0;
   q->z_max = z;
   q->u = u;
@@ -196,8 +222,8 @@ static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
 }
 
 static bool misses(const Search *q, const Cubic *c, double half) {
-  return range_low(c->x) > half || range_high(c->x) < -half || range_low(c->y) > half || range_high(c->y) < -half ||
-         range_low(c->z) > q->z_max || range_high(c->z) < q->z_min;
+  return range_low(c->x) > half || range_high(c->x) < -half || range_low(c->y) > half ||
+         range_high(c->y) < -half || range_low(c->z) > q->z_max || range_high(c->z) < q->z_min;
 }
 
 static void split(const double c[4], double a[4], double b[4]) {
@@ -212,8 +238,10 @@ static void split(const double c[4], double a[4], double b[4]) {
 }
 
 static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
-  double half = 0.5 * fmax(width_at(q->shape, q->segment, u0), width_at(q->shape, q->segment, u1));
-  if (misses(q, c, half)) return;
+  double half =
+      0.5 * fmax(width_at(q->shape, q->segment, u0), width_at(q->shape, q->segment, u1));
+  if (misses(q, c, half))
+    return;
   if (depth == 0) {
     leaf(q, c, u0, u1, half);
     return;
@@ -227,8 +255,8 @@ static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
   search(q, &b, middle, u1, depth - 1);
 }
 
-/* Number of bisections after which the parts deviate from straight lines by less than a twentieth of the width (pbrt
- * book 6.7.2). */
+/* Number of bisections after which the parts deviate from straight lines by less than a
+ * twentieth of the width (pbrt book 6.7.2). */
 static int depth_for(const Cubic *c, double width, double *flat) {
   double bend = 0;
   for (int i = 0; i < 2; i++) {
@@ -237,19 +265,21 @@ static int depth_for(const Cubic *c, double width, double *flat) {
   }
   double error = 1.0607 * bend; /* sqrt(2) 6 bend / 8 */
   int depth = 0;
-  for (; depth < 10 && error > 0.05 * width; depth++) error *= 0.25;
+  for (; depth < 10 && error > 0.05 * width; depth++)
+    error *= 0.25;
   *flat = error;
   return depth;
 }
 
-static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double go[3], const double gd[3], double t_min,
-                            double t_max, vlShapeHit *hit) {
+static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double go[3],
+                            const double gd[3], double t_min, double t_max, vlShapeHit *hit) {
   double o[3], x[3], y[3], u0, u1;
   Search q = {.shape = s, .segment = prim >> s->split};
   vl_map_point(s->to_shape, go, o);
   vl_map_vector(s->to_shape, gd, q.d);
   double length = vl_normalize3(q.d);
-  if (!(length > 0)) return false;
+  if (!(length > 0))
+    return false;
   /* An orthonormal basis perpendicular to the ray (Duff et al. 2017). */
   double sign = q.d[2] < 0 ? -1 : 1, a = -1 / (sign + q.d[2]), b = q.d[0] * q.d[1] * a;
   x[0] = 1 + sign * q.d[0] * q.d[0] * a;
@@ -273,10 +303,12 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   q.z_min = t_min * length;
   q.z_max = t_max * length;
   double width = fmax(width_at(s, q.segment, u0), width_at(s, q.segment, u1));
-  if (misses(&q, &c, 0.5 * width)) return false;
+  if (misses(&q, &c, 0.5 * width))
+    return false;
   int depth = depth_for(&c, width, &q.flat);
   search(&q, &c, u0, u1, depth);
-  if (!q.found) return false;
+  if (!q.found)
+    return false;
   hit->t = q.z_max / length;
   hit->a = q.u;
   hit->b = q.v;
@@ -287,14 +319,17 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   return hit->t > t_min && hit->t < t_max;
 }
 
-/* ---- what it is like there --------------------------------------------------------------------------------------- */
+/* ---- what it is like there
+ * --------------------------------------------------------------------------------------- */
 
 static void scale_to(double v[3], double length) {
   double l = vl_normalize3(v);
-  for (int i = 0; i < 3; i++) v[i] = l > 0 ? v[i] * length : 0;
+  for (int i = 0; i < 3; i++)
+    v[i] = l > 0 ? v[i] * length : 0;
 }
 
-static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
+                        vlSurfacePoint *point) {
   uint32_t segment = prim >> s->split;
   const float *p = s->positions + 12 * (size_t)segment;
   double u = hit->a, v = hit->b, along[3], across[3], n[3], width = width_at(s, segment, u);
@@ -302,9 +337,11 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
     along[i] = bezier_slope(c, u);
     if (!(fabs(along[i]) > 0))
-      along[i] = (c[3] - c[0]) * 1e-6; /* if control points coincide; only the direction counts */
+      along[i] =
+          (c[3] - c[0]) * 1e-6; /* if control points coincide; only the direction counts */
   }
-  if (!(vl_dot3(along, along) > 0)) { /* for a curve without length: any direction perpendicular to the ray */
+  if (!(vl_dot3(along, along) >
+        0)) { /* for a curve without length: any direction perpendicular to the ray */
     double axis[3] = {fabs(hit->d[0]) < 0.6, fabs(hit->d[0]) >= 0.6, 0};
     vl_cross3(hit->d, axis, along);
   }
@@ -316,22 +353,27 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     vl_cross3(hit->d, along, across);
     scale_to(across, width);
   }
-  if (s->curve == VL_CURVE_CYLINDER) { /* the normal is rotated about the curve by up to 90 degrees to each side */
+  if (s->curve == VL_CURVE_CYLINDER) { /* the normal is rotated about the curve by up to 90
+                                          degrees to each side */
     double axis[3] = {along[0], along[1], along[2]}, up[3];
     scale_to(axis, 1);
     vl_cross3(axis, across, up);
     vlSinCos turn = vl_sincos((float)((0.5 - v) * 3.14159265358979323846));
-    for (int i = 0; i < 3; i++) across[i] = across[i] * turn.cos + up[i] * turn.sin;
+    for (int i = 0; i < 3; i++)
+      across[i] = across[i] * turn.cos + up[i] * turn.sin;
   }
   vl_cross3(along, across, n);
   if (!(vl_normalize3(n) > 0))
-    for (int i = 0; i < 3; i++) n[i] = hit->d[i];
+    for (int i = 0; i < 3; i++)
+      n[i] = hit->d[i];
   vl_map_point(s->from_shape, hit->p, point->p);
   vl_map_vector(s->from_shape, along, point->dpdu);
   vl_map_vector(s->from_shape, across, point->dpdv);
-  for (int i = 0; i < 3; i++) point->dndu[i] = point->dndv[i] = 0;
+  for (int i = 0; i < 3; i++)
+    point->dndu[i] = point->dndv[i] = 0;
   vl_map_normal(s->to_shape, n, point->n);
-  double stretch = vl_normalize3(point->n); /* the inverse of the factor for distances along n */
+  double stretch =
+      vl_normalize3(point->n); /* the inverse of the factor for distances along n */
   point->off = stretch > 0 ? width * (fabs(n[0]) + fabs(n[1]) + fabs(n[2])) / stretch : 0;
   double side = s->flip ? -1 : 1;
   for (int i = 0; i < 3; i++) {
@@ -343,7 +385,8 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
 }
 
 /* Gives the middle of a piece. Curves do not emit light, so no other samples are needed. */
-static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
+static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v,
+                         vlSurfacePoint *point, double *pdf) {
   (void)u;
   (void)v;
   (void)pdf;
@@ -365,8 +408,8 @@ static double curve_pdf(const vlWorldShape *shape, uint32_t prim, const double a
   return 0;
 }
 
-static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
-                              vlWorldShape *shape, vlError *error) {
+static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
+                              const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
   (void)to_group;
   (void)from_group;
   return copy_curves(world, def, shape) ? VL_OK : vl_fail_memory(error);

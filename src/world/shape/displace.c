@@ -1,7 +1,8 @@
-/* world/shape/displace.c: subdivides meshes until every edge is short enough, and displaces the vertices along their
- * normals by a texture, as pbrt-v4 displaces PLY meshes. Every edge that is too long is split at its middle, where both
- * adjacent triangles use the same vertex, so that no cracks appear. The longest edge of a triangle is split first.
- * After the displacement, the normals of the displaced surface are computed. */
+/* world/shape/displace.c: subdivides meshes until every edge is short enough, and displaces the
+ * vertices along their normals by a texture, as pbrt-v4 displaces PLY meshes. Every edge that
+ * is too long is split at its middle, where both adjacent triangles use the same vertex, so
+ * that no cracks appear. The longest edge of a triangle is split first. After the displacement,
+ * the normals of the displaced surface are computed. */
 #include "world/shape/displace.h"
 
 #include <math.h>
@@ -13,8 +14,8 @@
 enum { MOST_TRIANGLES = 1 << 22 }; /* take about 600 MB with their BVH */
 
 typedef struct Edge {
-  uint64_t key; /* an edge: its lower vertex index << 32 | its higher one; 0: the entry is free (no edge joins vertex 0
-                   to itself) */
+  uint64_t key; /* an edge: its lower vertex index << 32 | its higher one; 0: the entry is free
+                   (no edge joins vertex 0 to itself) */
   uint32_t middle;
 } Edge;
 
@@ -44,21 +45,26 @@ static void release(Cutter *c) {
   vl_free(c->context, c->edges);
 }
 
-/* ---- edges ------------------------------------------------------------------------------------------------------- */
+/* ---- edges
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static size_t slot_of(const Edge *edges, size_t capacity, uint64_t key) {
   uint64_t h = key * 0x9e3779b97f4a7c15u;
   size_t at = (size_t)(h >> 32 ^ h) & (capacity - 1);
-  while (edges[at].key && edges[at].key != key) at = (at + 1) & (capacity - 1);
+  while (edges[at].key && edges[at].key != key)
+    at = (at + 1) & (capacity - 1);
   return at;
 }
 
 static bool grow_edges(Cutter *c) {
   size_t capacity = c->edge_capacity ? 2 * c->edge_capacity : 1024;
   Edge *edges = vl_alloc_zero(c->context, capacity, sizeof *edges);
-  if (!edges) return false;
+  if (!edges)
+    return false;
   for (size_t i = 0; i < c->edge_capacity; i++)
-    if (c->edges[i].key) edges[slot_of(edges, capacity, c->edges[i].key)] = c->edges[i];
+    if (c->edges[i].key)
+      edges[slot_of(edges, capacity, c->edges[i].key)] = c->edges[i];
   vl_free(c->context, c->edges);
   c->edges = edges;
   c->edge_capacity = capacity;
@@ -67,33 +73,41 @@ static bool grow_edges(Cutter *c) {
 
 static bool normalize(float n[3]) {
   double l = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
-  for (int i = 0; i < 3 && l > 0; i++) n[i] = (float)(n[i] / l);
+  for (int i = 0; i < 3 && l > 0; i++)
+    n[i] = (float)(n[i] / l);
   return l > 0;
 }
 
 static bool add_middle(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
-  if (!VL_RESERVE(c->context, &c->p, 3) || !VL_RESERVE(c->context, &c->n, 3) || !VL_RESERVE(c->context, &c->uv, 2))
+  if (!VL_RESERVE(c->context, &c->p, 3) || !VL_RESERVE(c->context, &c->n, 3) ||
+      !VL_RESERVE(c->context, &c->uv, 2))
     return false;
   *middle = (uint32_t)(c->p.count / 3);
   float n[3];
   for (int i = 0; i < 3; i++) {
-    c->p.items[c->p.count++] = 0.5f * c->p.items[3 * (size_t)a + i] + 0.5f * c->p.items[3 * (size_t)b + i];
+    c->p.items[c->p.count++] =
+        0.5f * c->p.items[3 * (size_t)a + i] + 0.5f * c->p.items[3 * (size_t)b + i];
     n[i] = c->n.items[3 * (size_t)a + i] + c->n.items[3 * (size_t)b + i];
   }
-  if (!normalize(n)) memcpy(n, &c->n.items[3 * (size_t)a], sizeof n);
-  for (int i = 0; i < 3; i++) c->n.items[c->n.count++] = n[i];
+  if (!normalize(n))
+    memcpy(n, &c->n.items[3 * (size_t)a], sizeof n);
+  for (int i = 0; i < 3; i++)
+    c->n.items[c->n.count++] = n[i];
   for (int i = 0; i < 2; i++)
-    c->uv.items[c->uv.count++] = 0.5f * c->uv.items[2 * (size_t)a + i] + 0.5f * c->uv.items[2 * (size_t)b + i];
+    c->uv.items[c->uv.count++] =
+        0.5f * c->uv.items[2 * (size_t)a + i] + 0.5f * c->uv.items[2 * (size_t)b + i];
   return true;
 }
 
 /* Gives the vertex at the middle of an edge. The vertex is created at its first use. */
 static bool middle_of(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
-  if (2 * (c->edge_count + 1) > c->edge_capacity && !grow_edges(c)) return false;
+  if (2 * (c->edge_count + 1) > c->edge_capacity && !grow_edges(c))
+    return false;
   uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
   Edge *e = &c->edges[slot_of(c->edges, c->edge_capacity, key)];
   if (!e->key) {
-    if (!add_middle(c, a, b, &e->middle)) return false;
+    if (!add_middle(c, a, b, &e->middle))
+      return false;
     e->key = key;
     c->edge_count++;
   }
@@ -101,7 +115,9 @@ static bool middle_of(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
   return true;
 }
 
-/* ---- cutting ----------------------------------------------------------------------------------------------------- */
+/* ---- cutting
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static double length2(const Cutter *c, uint32_t a, uint32_t b) {
   const float *p = c->p.items + 3 * (size_t)a, *q = c->p.items + 3 * (size_t)b;
@@ -112,42 +128,50 @@ static double length2(const Cutter *c, uint32_t a, uint32_t b) {
 
 static bool push(Cutter *c, uint32_t a, uint32_t b, uint32_t d) {
   Corners *top = VL_PUSH(c->context, &c->stack);
-  if (top) *top = (Corners){{a, b, d}};
+  if (top)
+    *top = (Corners){{a, b, d}};
   return top != NULL;
 }
 
 /* Subdivides a triangle. Error VL_ERROR_SCENE: too many triangles. */
 static vlResult cut(Cutter *c, Corners first) {
-  if (!push(c, first.v[0], first.v[1], first.v[2])) return VL_ERROR_MEMORY;
+  if (!push(c, first.v[0], first.v[1], first.v[2]))
+    return VL_ERROR_MEMORY;
   while (c->stack.count) {
     Corners t = c->stack.items[--c->stack.count];
     int longest = 0;
     double l2[3];
     for (int k = 0; k < 3; k++) {
       l2[k] = length2(c, t.v[k], t.v[(k + 1) % 3]);
-      if (l2[k] > l2[longest]) longest = k;
+      if (l2[k] > l2[longest])
+        longest = k;
     }
     uint32_t a = t.v[longest], b = t.v[(longest + 1) % 3], d = t.v[(longest + 2) % 3], m;
     if (a == b || !(l2[longest] > c->longest2)) {
-      if (!VL_RESERVE(c->context, &c->indices, 3)) return VL_ERROR_MEMORY;
-      for (int k = 0; k < 3; k++) c->indices.items[c->indices.count++] = t.v[k];
+      if (!VL_RESERVE(c->context, &c->indices, 3))
+        return VL_ERROR_MEMORY;
+      for (int k = 0; k < 3; k++)
+        c->indices.items[c->indices.count++] = t.v[k];
     } else if (!middle_of(c, a, b, &m) || !push(c, m, b, d) || !push(c, a, m, d)) {
       return VL_ERROR_MEMORY;
     }
-    if (c->indices.count / 3 + c->stack.count > MOST_TRIANGLES || c->p.count / 3 > MOST_TRIANGLES)
+    if (c->indices.count / 3 + c->stack.count > MOST_TRIANGLES ||
+        c->p.count / 3 > MOST_TRIANGLES)
       return VL_ERROR_SCENE;
   }
   return VL_OK;
 }
 
-/* Lower bound of the number of triangles after subdivision: no triangle is larger than the equilateral triangle with
- * the longest allowed edge. The bound lets a far too fine subdivision fail at once. */
+/* Lower bound of the number of triangles after subdivision: no triangle is larger than the
+ * equilateral triangle with the longest allowed edge. The bound lets a far too fine subdivision
+ * fail at once. */
 static double least_triangles(const Cutter *c, const vlShapeDef *def) {
   double sum = 0;
   for (size_t f = 0; f < def->faces; f++) {
     const uint32_t *v = def->indices + 3 * f;
     double a = length2(c, v[0], v[1]), b = length2(c, v[1], v[2]), d = length2(c, v[2], v[0]);
-    double area2 = 2 * (a * b + b * d + d * a) - a * a - b * b - d * d; /* Heron's formula: (4 area)^2 */
+    double area2 =
+        2 * (a * b + b * d + d * a) - a * a - b * b - d * d; /* Heron's formula: (4 area)^2 */
     double longest = fmax(a, fmax(b, d)) / c->longest2;
     sum += fmax(sqrt(fmax(0, area2)) / (1.7320508 * c->longest2), sqrt(longest));
   }
@@ -166,11 +190,14 @@ static void find_normals(Cutter *c, const uint32_t *indices, size_t faces) {
       a[i] = q[i] - p[i];
       b[i] = r[i] - p[i];
     }
-    float n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    float n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                  a[0] * b[1] - a[1] * b[0]};
     for (int k = 0; k < 3; k++)
-      for (int i = 0; i < 3; i++) c->n.items[3 * (size_t)v[k] + i] += n[i];
+      for (int i = 0; i < 3; i++)
+        c->n.items[3 * (size_t)v[k] + i] += n[i];
   }
-  for (size_t i = 0; i < c->n.count; i += 3) normalize(c->n.items + i);
+  for (size_t i = 0; i < c->n.count; i += 3)
+    normalize(c->n.items + i);
 }
 
 static bool start(Cutter *c, const vlShapeDef *def) {
@@ -182,13 +209,15 @@ static bool start(Cutter *c, const vlShapeDef *def) {
   c->uv.count = 2 * n;
   memcpy(c->p.items, def->positions, 3 * n * sizeof(float));
   memset(c->uv.items, 0, 2 * n * sizeof(float));
-  if (def->uvs) memcpy(c->uv.items, def->uvs, 2 * n * sizeof(float));
+  if (def->uvs)
+    memcpy(c->uv.items, def->uvs, 2 * n * sizeof(float));
   if (!def->normals) {
     find_normals(c, def->indices, def->faces);
     return true;
   }
   memcpy(c->n.items, def->normals, 3 * n * sizeof(float));
-  for (size_t i = 0; i < 3 * n; i += 3) normalize(c->n.items + i);
+  for (size_t i = 0; i < 3 * n; i += 3)
+    normalize(c->n.items + i);
   return true;
 }
 
@@ -201,11 +230,15 @@ static void move(Cutter *c, const vlWorld *world, int32_t node) {
     vl_mat4_point(c->m, at, q);
     const float *n = c->n.items + 3 * i;
     double along[3] = {n[0], n[1], n[2]}, normal[3] = {0, 0, 0};
-    if (invertible) vl_mat4_normal(&inverse, along, normal);
-    vlTextureQuery where = {c->uv.items[2 * i], c->uv.items[2 * i + 1], vl_vec3((float)q[0], (float)q[1], (float)q[2]),
-                            vl_vec3((float)normal[0], (float)normal[1], (float)normal[2]), NULL};
+    if (invertible)
+      vl_mat4_normal(&inverse, along, normal);
+    vlTextureQuery where = {c->uv.items[2 * i], c->uv.items[2 * i + 1],
+                            vl_vec3((float)q[0], (float)q[1], (float)q[2]),
+                            vl_vec3((float)normal[0], (float)normal[1], (float)normal[2]),
+                            NULL};
     float d = vl_texture_float_at(world, node, &where);
-    for (int k = 0; k < 3; k++) p[k] += d * n[k];
+    for (int k = 0; k < 3; k++)
+      p[k] += d * n[k];
   }
 }
 
@@ -214,14 +247,18 @@ static const void *take(void *items) {
   return items;
 }
 
-vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDef *def, const vlMat4 *m,
-                           vlShapeDef *fine, vlError *error) {
-  Cutter c = {.context = world->context, .m = m, .longest2 = (double)def->edge_length * def->edge_length};
+vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDef *def,
+                           const vlMat4 *m, vlShapeDef *fine, vlError *error) {
+  Cutter c = {.context = world->context,
+              .m = m,
+              .longest2 = (double)def->edge_length * def->edge_length};
   int32_t node = -1;
   vlResult r = vl_world_float_node(world, scene, def->displacement, &node, error);
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   r = start(&c, def) ? VL_OK : VL_ERROR_MEMORY;
-  if (r == VL_OK && !(least_triangles(&c, def) <= MOST_TRIANGLES)) r = VL_ERROR_SCENE;
+  if (r == VL_OK && !(least_triangles(&c, def) <= MOST_TRIANGLES))
+    r = VL_ERROR_SCENE;
   for (uint32_t f = 0; r == VL_OK && f < def->faces; f++) {
     Corners t;
     memcpy(t.v, def->indices + 3 * (size_t)f, sizeof t.v);
@@ -229,10 +266,11 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
   }
   if (r != VL_OK) {
     release(&c);
-    if (r == VL_ERROR_MEMORY) return vl_fail_memory(error);
+    if (r == VL_ERROR_MEMORY)
+      return vl_fail_memory(error);
     return vl_fail_at(error, r, def->source.file, def->source.line, def->source.column,
-                      "displacement: edges of length %g need more than %d triangles", (double)def->edge_length,
-                      MOST_TRIANGLES);
+                      "displacement: edges of length %g need more than %d triangles",
+                      (double)def->edge_length, MOST_TRIANGLES);
   }
   move(&c, world, node);
   find_normals(&c, c.indices.items, c.indices.count / 3);
@@ -242,7 +280,8 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
   fine->positions = take(c.p.items);
   fine->normals = take(c.n.items);
   fine->uvs = def->uvs ? take(c.uv.items) : NULL;
-  if (!def->uvs) vl_free(c.context, c.uv.items);
+  if (!def->uvs)
+    vl_free(c.context, c.uv.items);
   fine->indices = take(c.indices.items);
   fine->tangents = fine->tangent_signs = fine->colors = NULL;
   fine->more_uvs[0] = fine->more_uvs[1] = fine->more_uvs[2] = NULL;

@@ -1,5 +1,5 @@
-/* world/shape/mesh.c: vertices and faces of meshes, transformed to group space; the shape functions of triangles. (The
- * room trace intersects triangles in batches.) */
+/* world/shape/mesh.c: vertices and faces of meshes, transformed to group space; the shape
+ * functions of triangles. (The room trace intersects triangles in batches.) */
 #include "world/shape/mesh.h"
 
 #include <math.h>
@@ -11,7 +11,8 @@
 #include "world/shape/tables.h"
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
-  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);
+  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line,
+                    def->source.column, "%s", what);
 }
 
 static bool is_identity(const vlMat4 *m) {
@@ -19,8 +20,10 @@ static bool is_identity(const vlMat4 *m) {
   return memcmp(e.m, m->m, sizeof e.m) == 0;
 }
 
-/* Positions at one end of a motion, transformed to group space. False: one leaves the range of floats. */
-static bool move_positions(const vlShapeDef *def, const vlMat4 *m, const float *from, float *to) {
+/* Positions at one end of a motion, transformed to group space. False: one leaves the range of
+ * floats. */
+static bool move_positions(const vlShapeDef *def, const vlMat4 *m, const float *from,
+                           float *to) {
   bool fine = true;
   for (size_t i = 0; i < def->vertices; i++) {
     double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
@@ -34,47 +37,57 @@ static bool move_positions(const vlShapeDef *def, const vlMat4 *m, const float *
 }
 
 /* Vertex normals at one end of a motion, transformed to group space. */
-static void move_normals(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, const float *from, float *to) {
+static void move_normals(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
+                         const float *from, float *to) {
   double scale = vl_mat4_scale_of(m);
   for (size_t i = 0; i < 3 * (size_t)def->vertices; i += 3) {
     vl_mat4_vertex_normal(inverse, scale, from + i, to + i);
-    for (size_t k = 0; def->reverse_orientation && k < 3; k++) to[i + k] = -to[i + k];
+    for (size_t k = 0; def->reverse_orientation && k < 3; k++)
+      to[i + k] = -to[i + k];
   }
 }
 
-/* Fills the sets of rows between the two ends of a motion by interpolation. On entry the ends are in the first and the
- * last of `steps` sets. */
+/* Fills the sets of rows between the two ends of a motion by interpolation. On entry the ends
+ * are in the first and the last of `steps` sets. */
 static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
   size_t n = 3 * (size_t)def->vertices;
-  double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
+  double span = world->time_close - world->time_open,
+         first = (def->times[0] - world->time_open) / span,
          last = (def->times[1] - world->time_open) / span;
   const double same = 1e-6; /* tolerance, relative to the motion, as in vl_world_time_steps */
   for (uint32_t k = 1; k + 1 < steps; k++) {
     double f = ((double)k / (steps - 1) - first) / (last - first);
     f = f > same ? (f < 1 - same ? f : 1) : 0;
-    for (size_t i = 0; i < n; i++) rows[k * n + i] = (float)(rows[i] * (1 - f) + rows[(steps - 1) * n + i] * f);
+    for (size_t i = 0; i < n; i++)
+      rows[k * n + i] = (float)(rows[i] * (1 - f) + rows[(steps - 1) * n + i] * f);
   }
 }
 
-static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
-                                  vlWorldShape *s, vlError *error) {
+static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
+                                  const vlMat4 *inverse, vlWorldShape *s, vlError *error) {
   size_t n = 3 * (size_t)def->vertices;
   uint32_t steps = vl_world_time_steps(world, def->times[0], def->times[1]);
   if (steps == 0)
-    return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-                      "vertices move from %g to %g seconds, other things from %g to %g: no even steps lead through all",
-                      def->times[0], def->times[1], world->time_open, world->time_close);
+    return vl_fail_at(
+        error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+        "vertices move from %g to %g seconds, other things from %g to %g: no even "
+        "steps lead through all",
+        def->times[0], def->times[1], world->time_open, world->time_close);
   s->steps = steps + 1;
   float *positions = vl_world_block(world, s->steps * n + 4, sizeof(float)), *normals = NULL;
-  if (!positions) return vl_fail_memory(error);
-  if (s->normals && !(normals = vl_world_block(world, s->steps * n, sizeof(float)))) return vl_fail_memory(error);
+  if (!positions)
+    return vl_fail_memory(error);
+  if (s->normals && !(normals = vl_world_block(world, s->steps * n, sizeof(float))))
+    return vl_fail_memory(error);
   memset(positions + s->steps * n, 0, 4 * sizeof(float));
   memcpy(positions, s->positions, n * sizeof(float));
   if (!move_positions(def, m, def->positions_close, positions + steps * n))
-    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
+    return fail_shape(def, error,
+                      "a vertex leaves the range of floats under the shape's transform");
   spread(world, def, positions, s->steps);
   s->positions = positions;
-  if (!normals) return VL_OK;
+  if (!normals)
+    return VL_OK;
   memcpy(normals, s->normals, n * sizeof(float));
   move_normals(def, m, inverse, def->normals_close, normals + steps * n);
   spread(world, def, normals, s->steps);
@@ -82,46 +95,60 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
   return VL_OK;
 }
 
-vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, vlWorldShape *s,
-                         vlError *error) {
+vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
+                         const vlMat4 *inverse, vlWorldShape *s, vlError *error) {
   size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
   bool same = is_identity(m);
   s->vertices = def->vertices;
   s->faces = def->faces;
   s->positions = vl_world_block(world, 3 * n + 4, sizeof(float));
   s->indices = vl_world_block(world, corners * def->faces + 4, sizeof(uint32_t));
-  if (!s->positions || !s->indices) return vl_fail_memory(error);
+  if (!s->positions || !s->indices)
+    return vl_fail_memory(error);
   memset(s->positions + 3 * n, 0, 4 * sizeof(float));
   memcpy(s->indices, def->indices, corners * def->faces * sizeof(uint32_t));
-  if (def->normals && !(s->normals = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
-  if (def->tangents && !(s->tangents = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
+  if (def->normals && !(s->normals = vl_world_block(world, 3 * n, sizeof(float))))
+    return vl_fail_memory(error);
+  if (def->tangents && !(s->tangents = vl_world_block(world, 3 * n, sizeof(float))))
+    return vl_fail_memory(error);
   if (def->uvs) {
-    if (!(s->uvs = vl_world_block(world, 2 * n, sizeof(float)))) return vl_fail_memory(error);
+    if (!(s->uvs = vl_world_block(world, 2 * n, sizeof(float))))
+      return vl_fail_memory(error);
     memcpy(s->uvs, def->uvs, 2 * n * sizeof(float));
   }
   s->one_sided = def->one_sided && def->kind == VL_SHAPE_TRIANGLES;
-  if (def->kind == VL_SHAPE_TRIANGLES && (!vl_world_copy_floats(world, def->tangent_signs, n, &s->tangent_signs) ||
-                                          !vl_world_copy_floats(world, def->colors, 4 * n, &s->colors) ||
-                                          !vl_world_copy_floats(world, def->more_uvs[0], 2 * n, &s->more_uvs[0]) ||
-                                          !vl_world_copy_floats(world, def->more_uvs[1], 2 * n, &s->more_uvs[1]) ||
-                                          !vl_world_copy_floats(world, def->more_uvs[2], 2 * n, &s->more_uvs[2])))
+  if (def->kind == VL_SHAPE_TRIANGLES &&
+      (!vl_world_copy_floats(world, def->tangent_signs, n, &s->tangent_signs) ||
+       !vl_world_copy_floats(world, def->colors, 4 * n, &s->colors) ||
+       !vl_world_copy_floats(world, def->more_uvs[0], 2 * n, &s->more_uvs[0]) ||
+       !vl_world_copy_floats(world, def->more_uvs[1], 2 * n, &s->more_uvs[1]) ||
+       !vl_world_copy_floats(world, def->more_uvs[2], 2 * n, &s->more_uvs[2])))
     return vl_fail_memory(error);
-  bool mirrored = vl_mat4_determinant3(*m) < 0; /* if m mirrors, it reverses n x t relative to the mapped n and t */
-  for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
-  if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
+  bool mirrored = vl_mat4_determinant3(*m) <
+                  0; /* if m mirrors, it reverses n x t relative to the mapped n and t */
+  for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++)
+    s->tangent_signs[i] = -s->tangent_signs[i];
+  if (same)
+    memcpy(s->positions, def->positions, 3 * n * sizeof(float));
   if (!same && !move_positions(def, m, def->positions, s->positions))
-    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
-  if (def->normals) move_normals(def, m, inverse, def->normals, s->normals);
+    return fail_shape(def, error,
+                      "a vertex leaves the range of floats under the shape's transform");
+  if (def->normals)
+    move_normals(def, m, inverse, def->normals, s->normals);
   for (size_t i = 0; def->tangents && i < n; i++) {
-    double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
+    double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]},
+           q[3];
     vl_mat4_vector(m, p, q);
-    for (int k = 0; k < 3; k++) s->tangents[3 * i + k] = (float)q[k];
+    for (int k = 0; k < 3; k++)
+      s->tangents[3 * i + k] = (float)q[k];
   }
-  return def->positions_close && def->kind == VL_SHAPE_TRIANGLES ? add_vertex_motion(world, def, m, inverse, s, error)
-                                                                 : VL_OK;
+  return def->positions_close && def->kind == VL_SHAPE_TRIANGLES
+             ? add_vertex_motion(world, def, m, inverse, s, error)
+             : VL_OK;
 }
 
-void vl_mesh_bounds(const vlWorldShape *shape, uint32_t corners, uint32_t prim, double low[3], double high[3]) {
+void vl_mesh_bounds(const vlWorldShape *shape, uint32_t corners, uint32_t prim, double low[3],
+                    double high[3]) {
   for (uint32_t k = 0; k < corners; k++)
     for (int i = 0; i < 3; i++) {
       double x = shape->positions[3 * (size_t)shape->indices[(size_t)corners * prim + k] + i];
@@ -130,19 +157,24 @@ void vl_mesh_bounds(const vlWorldShape *shape, uint32_t corners, uint32_t prim, 
     }
 }
 
-/* ---- triangles --------------------------------------------------------------------------------------------------- */
+/* ---- triangles
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 static vlResult triangles_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
-                                  const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
+                                  const vlMat4 *from_group, vlWorldShape *shape,
+                                  vlError *error) {
   return vl_mesh_compile(world, def, to_group, from_group, shape, error);
 }
 
-static void triangles_bounds(const vlWorldShape *shape, uint32_t prim, double low[3], double high[3]) {
+static void triangles_bounds(const vlWorldShape *shape, uint32_t prim, double low[3],
+                             double high[3]) {
   vl_mesh_bounds(shape, 3, prim, low, high);
 }
 
-static bool triangles_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3],
-                                double t_min, double t_max, vlShapeHit *hit) {
+static bool triangles_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3],
+                                const double d[3], double t_min, double t_max,
+                                vlShapeHit *hit) {
   (void)shape;
   (void)prim;
   (void)o;
@@ -153,15 +185,16 @@ static bool triangles_intersect(const vlWorldShape *shape, uint32_t prim, const 
   return false;
 }
 
-static void triangles_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+static void triangles_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit,
+                            vlSurfacePoint *point) {
   (void)shape;
   (void)prim;
   (void)hit;
   (void)point;
 }
 
-static void triangles_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point,
-                             double *pdf) {
+static void triangles_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
+                             vlSurfacePoint *point, double *pdf) {
   (void)shape;
   (void)prim;
   (void)u;

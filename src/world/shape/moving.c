@@ -1,5 +1,5 @@
-/* world/shape/moving.c: compiles motions of the scene into keys at equal time steps, and evaluates positions between
- * them. See moving.h. */
+/* world/shape/moving.c: compiles motions of the scene into keys at equal time steps, and
+ * evaluates positions between them. See moving.h. */
 #include "world/shape/moving.h"
 
 #include <math.h>
@@ -12,10 +12,13 @@
 #include "velo/shape.h"
 #include "world/shape/surface_point.h"
 
-/* ---- when -------------------------------------------------------------------------------------------------------- */
+/* ---- when
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 float vl_world_time(const vlWorld *world, double seconds) {
-  if (!world->moves) return 0;
+  if (!world->moves)
+    return 0;
   double t = (seconds - world->time_open) / (world->time_close - world->time_open);
   return t > 0 ? (t < 1 ? (float)t : 1) : 0;
 }
@@ -28,18 +31,21 @@ static void note_times(vlWorld *world, double from, double to) {
 
 static bool keys_differ(const vlSceneInstance *source) {
   for (uint32_t k = 1; k < source->keys; k++)
-    if (memcmp(source->poses, source->poses + 16 * (size_t)k, 16 * sizeof *source->poses) != 0) return true;
+    if (memcmp(source->poses, source->poses + 16 * (size_t)k, 16 * sizeof *source->poses) != 0)
+      return true;
   return false;
 }
 
 void vl_world_find_times(vlWorld *world, const vlScene *scene) {
   for (size_t i = 0; i < scene->instances.count; i++) {
     const vlSceneInstance *source = &scene->instances.items[i];
-    if (keys_differ(source)) note_times(world, source->times[0], source->times[source->keys - 1]);
+    if (keys_differ(source))
+      note_times(world, source->times[0], source->times[source->keys - 1]);
   }
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
-    if (def->positions_close) note_times(world, def->times[0], def->times[1]);
+    if (def->positions_close)
+      note_times(world, def->times[0], def->times[1]);
   }
 }
 
@@ -48,20 +54,27 @@ enum { MOST_STEPS = 128 }; /* Embree supports 129 keys */
 uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   double span = world->time_close - world->time_open;
   for (uint32_t steps = 1; steps <= MOST_STEPS; steps++) {
-    double a = (from - world->time_open) / span * steps, b = (to - world->time_open) / span * steps;
-    const double same = 1e-6; /* tolerance, relative to a step, since times are given with a few decimals */
-    if (fabs(a - round(a)) < same && fabs(b - round(b)) < same) return steps;
+    double a = (from - world->time_open) / span * steps,
+           b = (to - world->time_open) / span * steps;
+    const double same =
+        1e-6; /* tolerance, relative to a step, since times are given with a few decimals */
+    if (fabs(a - round(a)) < same && fabs(b - round(b)) < same)
+      return steps;
   }
   return 0;
 }
 
-/* ---- instances --------------------------------------------------------------------------------------------------- */
+/* ---- instances
+ * ---------------------------------------------------------------------------------------------------
+ */
 
-/* The exact motion in double precision: one segment between each pair of consecutive keys of the scene. */
+/* The exact motion in double precision: one segment between each pair of consecutive keys of
+ * the scene. */
 typedef struct Motion {
   const vlSceneInstance *source;
   vlMotion *between;
-  double open, span; /* the world's time 0 and the length of the world's time interval, in seconds */
+  double open,
+      span; /* the world's time 0 and the length of the world's time interval, in seconds */
 } Motion;
 
 static vlAffine true_pose(const Motion *motion, double time) {
@@ -79,23 +92,30 @@ static vlAffine true_pose(const Motion *motion, double time) {
   return vl_motion_between(&motion->between[k], f > 0 ? (f < 1 ? f : 1) : 0);
 }
 
-/* Transforms the corners of the box by the pose `at` and by the linear interpolation of a and b at f, and returns the
- * largest squared distance between the two positions of a corner. */
-static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAffine *b, double f, const float low[3],
-                              const float high[3]) {
+/* Transforms the corners of the box by the pose `at` and by the linear interpolation of a and b
+ * at f, and returns the largest squared distance between the two positions of a corner. */
+static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAffine *b,
+                              double f, const float low[3], const float high[3]) {
   double m[9], t[3], most = 0;
-  for (int i = 0; i < 9; i++) m[i] = at->m[i] - ((1 - f) * a->m[i] + f * b->m[i]);
-  for (int i = 0; i < 3; i++) t[i] = at->p[i] - ((1 - f) * a->p[i] + f * b->p[i]);
+  for (int i = 0; i < 9; i++)
+    m[i] = at->m[i] - ((1 - f) * a->m[i] + f * b->m[i]);
+  for (int i = 0; i < 3; i++)
+    t[i] = at->p[i] - ((1 - f) * a->p[i] + f * b->p[i]);
   for (int c = 0; c < 8; c++) {
-    double p[3] = {c & 1 ? low[0] : high[0], c & 2 ? low[1] : high[1], c & 4 ? low[2] : high[2]}, q[3];
-    for (int i = 0; i < 3; i++) q[i] = m[3 * i] * p[0] + m[3 * i + 1] * p[1] + m[3 * i + 2] * p[2] + t[i];
+    double p[3] = {c & 1 ? low[0] : high[0], c & 2 ? low[1] : high[1],
+                   c & 4 ? low[2] : high[2]},
+           q[3];
+    for (int i = 0; i < 3; i++)
+      q[i] = m[3 * i] * p[0] + m[3 * i + 1] * p[1] + m[3 * i + 2] * p[2] + t[i];
     most = fmax(most, vl_dot3(q, q));
   }
   return most;
 }
 
-/* Largest deviation of a corner of the box from the exact motion, sampled at three times in each step. */
-static double strayed(const Motion *motion, uint32_t steps, const float low[3], const float high[3]) {
+/* Largest deviation of a corner of the box from the exact motion, sampled at three times in
+ * each step. */
+static double strayed(const Motion *motion, uint32_t steps, const float low[3],
+                      const float high[3]) {
   double most = 0;
   vlAffine ends[2];
   ends[1] = true_pose(motion, 0);
@@ -111,34 +131,41 @@ static double strayed(const Motion *motion, uint32_t steps, const float low[3], 
   return sqrt(most);
 }
 
-/* Allowed deviation, relative to the size of the moving object. A rotation by 180 degrees between two keys of the
- * scene, the largest possible one, deviates by 1e-4 of the radius at 128 steps. Slower rotations meet this
- * tolerance. */
+/* Allowed deviation, relative to the size of the moving object. A rotation by 180 degrees
+ * between two keys of the scene, the largest possible one, deviates by 1e-4 of the radius at
+ * 128 steps. Slower rotations meet this tolerance. */
 static const double tolerance = 1e-5;
 
 static uint32_t choose_steps(const Motion *motion, const float low[3], const float high[3]) {
-  static const uint8_t tries[] = {1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128};
+  static const uint8_t tries[] = {1,  2,  3,  4,  5,  6,  8,  10, 12, 16,
+                                  20, 24, 32, 40, 48, 64, 80, 96, 128};
   vlAffine start = true_pose(motion, 0);
   double size = 0;
   for (int i = 0; i < 3; i++) {
     double row = 0;
-    for (int j = 0; j < 3; j++) row += fabs(start.m[3 * i + j]) * (high[j] - low[j]);
+    for (int j = 0; j < 3; j++)
+      row += fabs(start.m[3 * i + j]) * (high[j] - low[j]);
     size = fmax(size, row);
   }
-  /* The deviation is proportional to 1 / steps^2, so numbers of steps that are too small can be skipped. */
+  /* The deviation is proportional to 1 / steps^2, so numbers of steps that are too small can be
+   * skipped. */
   double least = 1;
   for (size_t i = 0; i < sizeof tries; i++) {
-    if (tries[i] < least && tries[i] < MOST_STEPS) continue;
+    if (tries[i] < least && tries[i] < MOST_STEPS)
+      continue;
     double far = strayed(motion, tries[i], low, high);
-    if (far <= tolerance * size) return tries[i];
-    if (i == 0 && motion->source->keys == 2 && size > 0) least = 0.7 * sqrt(far / (tolerance * size));
+    if (far <= tolerance * size)
+      return tries[i];
+    if (i == 0 && motion->source->keys == 2 && size > 0)
+      least = 0.7 * sqrt(far / (tolerance * size));
   }
   return MOST_STEPS;
 }
 
-/* The bound for an instance at rest, at the worst of the keys, and that of the interpolated matrix: Embree and velo
- * both compute a (1 - f) + b f, where f is the fractional part of time * steps. The sum has three rounding errors, and
- * f has the rounding error of time * steps. The bound is doubled because both Embree and velo round. */
+/* The bound for an instance at rest, at the worst of the keys, and that of the interpolated
+ * matrix: Embree and velo both compute a (1 - f) + b f, where f is the fractional part of time
+ * * steps. The sum has three rounding errors, and f has the rounding error of time * steps. The
+ * bound is doubled because both Embree and velo round. */
 static void find_error(vlWorldInstance *q) {
   const float eps = 0x1p-24f;
   float steps = (float)(q->keys - 1), mixed[4] = {0, 0, 0, 0};
@@ -151,11 +178,13 @@ static void find_error(vlWorldInstance *q) {
   for (uint32_t k = 0; k + 1 < q->keys; k++) {
     const float *a = q->path + 12 * (size_t)k, *b = a + 12;
     for (int i = 0; i < 12; i++) {
-      float size = fabsf(a[i]) + fabsf(b[i]), error = 2 * eps * (3 * size + 2 * steps * fabsf(b[i] - a[i]));
+      float size = fabsf(a[i]) + fabsf(b[i]),
+            error = 2 * eps * (3 * size + 2 * steps * fabsf(b[i] - a[i]));
       mixed[i % 4] = error > mixed[i % 4] ? error : mixed[i % 4];
     }
   }
-  for (int i = 0; i < 4; i++) q->error[i] += mixed[i];
+  for (int i = 0; i < 4; i++)
+    q->error[i] += mixed[i];
 }
 
 static vlResult fill_path(const Motion *motion, float *path, uint32_t steps, vlError *error) {
@@ -173,20 +202,25 @@ static vlResult fill_path(const Motion *motion, float *path, uint32_t steps, vlE
   return VL_OK;
 }
 
-vlResult vl_world_add_motion(vlWorld *world, const vlSceneInstance *source, const float low[3], const float high[3],
-                             vlWorldInstance *q, vlError *error) {
+vlResult vl_world_add_motion(vlWorld *world, const vlSceneInstance *source, const float low[3],
+                             const float high[3], vlWorldInstance *q, vlError *error) {
   q->keys = 0;
-  if (!keys_differ(source)) return VL_OK;
-  Motion motion = {source, vl_alloc_array(world->context, source->keys, sizeof(vlMotion)), world->time_open,
-                   world->time_close - world->time_open};
-  if (!motion.between) return vl_fail_memory(error);
-  for (uint32_t k = 0; k + 1 < source->keys; k++) /* the scene has checked that a motion exists */
-    vl_motion_make(source->poses + 16 * (size_t)k, source->poses + 16 * (size_t)(k + 1), &motion.between[k]);
+  if (!keys_differ(source))
+    return VL_OK;
+  Motion motion = {source, vl_alloc_array(world->context, source->keys, sizeof(vlMotion)),
+                   world->time_open, world->time_close - world->time_open};
+  if (!motion.between)
+    return vl_fail_memory(error);
+  for (uint32_t k = 0; k + 1 < source->keys;
+       k++) /* the scene has checked that a motion exists */
+    vl_motion_make(source->poses + 16 * (size_t)k, source->poses + 16 * (size_t)(k + 1),
+                   &motion.between[k]);
   uint32_t steps = choose_steps(&motion, low, high);
   float *path = vl_world_block(world, 12 * (size_t)(steps + 1), sizeof *path);
   vlResult r = path ? fill_path(&motion, path, steps, error) : vl_fail_memory(error);
   vl_free(world->context, motion.between);
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   q->keys = steps + 1;
   q->path = path;
   find_error(q);
@@ -206,8 +240,10 @@ void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *mov
   moved->keys = 0;
   moved->path = NULL;
   memcpy(moved->error, q->error, sizeof moved->error);
-  for (int i = 0; i < 12; i++) m[i] = a[i] * (1.0f - k.part) + b[i] * k.part;
-  double x[3] = {m[0], m[4], m[8]}, y[3] = {m[1], m[5], m[9]}, z[3] = {m[2], m[6], m[10]}, rows[3][3];
+  for (int i = 0; i < 12; i++)
+    m[i] = a[i] * (1.0f - k.part) + b[i] * k.part;
+  double x[3] = {m[0], m[4], m[8]}, y[3] = {m[1], m[5], m[9]}, z[3] = {m[2], m[6], m[10]},
+         rows[3][3];
   vl_cross3(y, z, rows[0]);
   vl_cross3(z, x, rows[1]);
   vl_cross3(x, y, rows[2]);
@@ -223,27 +259,35 @@ void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *mov
   }
 }
 
-/* ---- vertices ---------------------------------------------------------------------------------------------------- */
+/* ---- vertices
+ * ----------------------------------------------------------------------------------------------------
+ */
 
 float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time) {
   vlTimeStep k = vl_time_step(time, s->steps);
-  const float *a = s->positions + 3 * ((size_t)k.first * s->vertices + vertex), *b = a + 3 * (size_t)s->vertices;
+  const float *a = s->positions + 3 * ((size_t)k.first * s->vertices + vertex),
+              *b = a + 3 * (size_t)s->vertices;
   float worst = 0, steps = (float)(s->steps - 1);
   for (int i = 0; i < 3; i++) {
-    float error = 2 * 0x1p-24f * (3 * (fabsf(a[i]) + fabsf(b[i])) + 2 * steps * fabsf(b[i] - a[i]));
+    float error =
+        2 * 0x1p-24f * (3 * (fabsf(a[i]) + fabsf(b[i])) + 2 * steps * fabsf(b[i] - a[i]));
     worst = error > worst ? error : worst;
   }
   return worst;
 }
 
-/* ---- following a point ------------------------------------------------------------------------------------------- */
+/* ---- following a point
+ * -------------------------------------------------------------------------------------------
+ */
 
 static void map(const float m[12], const double p[3], double q[3]) {
   for (int i = 0; i < 3; i++)
-    q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] + (double)m[4 * i + 3];
+    q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] +
+           (double)m[4 * i + 3];
 }
 
-/* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to float. */
+/* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to float.
+ */
 static void unmap(const float m[12], const double p[3], double q[3]) {
   double x[3], y[3], z[3], r[3], n[3];
   for (int i = 0; i < 3; i++) {
@@ -265,12 +309,14 @@ static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3
   for (int k = 0; k < 3; k++) {
     float room[3];
     const float *x = vl_vertex_at(s, s->indices[3 * (size_t)prim + k], time, room);
-    for (int i = 0; i < 3; i++) c[k][i] = x[i];
+    for (int i = 0; i < 3; i++)
+      c[k][i] = x[i];
   }
 }
 
 /* Moves a point with a triangle: its barycentric coordinates stay the same. */
-static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to, double p[3]) {
+static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to,
+                            double p[3]) {
   double c[3][3], a[3], b[3], r[3], n[3], x[3];
   corners(s, prim, from, c);
   for (int i = 0; i < 3; i++) {
@@ -280,28 +326,35 @@ static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, fl
   }
   vl_cross3(a, b, n);
   double area = vl_dot3(n, n);
-  if (!(area > 0)) return;
+  if (!(area > 0))
+    return;
   vl_cross3(r, b, x);
   double u = vl_dot3(x, n) / area;
   vl_cross3(a, r, x);
   double v = vl_dot3(x, n) / area;
   corners(s, prim, to, c);
-  for (int i = 0; i < 3; i++) p[i] = (1 - u - v) * c[0][i] + u * c[1][i] + v * c[2][i];
+  for (int i = 0; i < 3; i++)
+    p[i] = (1 - u - v) * c[0][i] + u * c[1][i] + v * c[2][i];
 }
 
-void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance, double from_seconds,
-                     double to_seconds, const double point[3], double moved[3]) {
+void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance,
+                     double from_seconds, double to_seconds, const double point[3],
+                     double moved[3]) {
   const vlWorldShape *s = &world->shapes.items[shape];
   const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
   float from = vl_world_time(world, from_seconds), to = vl_world_time(world, to_seconds);
   double p[3] = {point[0], point[1], point[2]}, g[3];
   memcpy(moved, p, sizeof p);
   bool flows = s->steps > 1, goes = q && q->keys;
-  if (from == to || (!flows && !goes)) return;
+  if (from == to || (!flows && !goes))
+    return;
   vlWorldInstance room;
   memcpy(g, p, sizeof g);
-  if (q) unmap(vl_instance_at(q, from, &room)->from_group, p, g);
-  if (flows) follow_triangle(s, prim, from, to, g);
+  if (q)
+    unmap(vl_instance_at(q, from, &room)->from_group, p, g);
+  if (flows)
+    follow_triangle(s, prim, from, to, g);
   memcpy(moved, g, sizeof g);
-  if (q) map(vl_instance_at(q, to, &room)->from_group, g, moved);
+  if (q)
+    map(vl_instance_at(q, to, &room)->from_group, g, moved);
 }

@@ -1,5 +1,5 @@
-/* world/shape/patch.c: the bilinear patch: intersection, surface at given parameters, uniform sampling of the
- * parameters. */
+/* world/shape/patch.c: the bilinear patch: intersection, surface at given parameters, uniform
+ * sampling of the parameters. */
 #include <math.h>
 
 #include "velo/shape.h"
@@ -25,26 +25,30 @@ static Patch load_patch(const vlWorldShape *s, uint32_t prim) {
 
 static void patch_position(const Patch *q, double u, double v, double p[3]) {
   for (int i = 0; i < 3; i++)
-    p[i] = (1 - u) * ((1 - v) * q->p00[i] + v * q->p01[i]) + u * ((1 - v) * q->p10[i] + v * q->p11[i]);
+    p[i] = (1 - u) * ((1 - v) * q->p00[i] + v * q->p01[i]) +
+           u * ((1 - v) * q->p10[i] + v * q->p11[i]);
 }
 
-static void patch_derivatives(const Patch *q, double u, double v, double dpdu[3], double dpdv[3]) {
+static void patch_derivatives(const Patch *q, double u, double v, double dpdu[3],
+                              double dpdv[3]) {
   for (int i = 0; i < 3; i++) {
     dpdu[i] = (1 - v) * (q->p10[i] - q->p00[i]) + v * (q->p11[i] - q->p01[i]);
     dpdv[i] = (1 - u) * (q->p01[i] - q->p00[i]) + u * (q->p11[i] - q->p10[i]);
   }
 }
 
-/* Intersection accepts u and v outside [0, 1] by this much, about 10^4 rounding errors, so that no ray passes between
- * adjacent patches. */
+/* Intersection accepts u and v outside [0, 1] by this much, about 10^4 rounding errors, so that
+ * no ray passes between adjacent patches. */
 static const double overlap = 1e-12;
-/* Relative size of the determinant below which the gradients of the two texture coordinates count as parallel. */
+/* Relative size of the determinant below which the gradients of the two texture coordinates
+ * count as parallel. */
 static const double parallel = 1e-12;
 
-/* For a fixed u the patch is the line a(u) + v e(u); the ray meets it where the scalar triple product (a(u) - o) . (d x
- * e(u)) is zero. This is a quadratic equation in u (Reshetov 2019, "Cool Patches"). */
-static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3], const double d[3], double t_min,
-                            double t_max, vlShapeHit *hit) {
+/* For a fixed u the patch is the line a(u) + v e(u); the ray meets it where the scalar triple
+ * product (a(u) - o) . (d x e(u)) is zero. This is a quadratic equation in u (Reshetov 2019,
+ * "Cool Patches"). */
+static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3],
+                            const double d[3], double t_min, double t_max, vlShapeHit *hit) {
   Patch q = load_patch(s, prim);
   double a0[3], a1[3], e0[3], e1[3], x0[3], x1[3];
   for (int i = 0; i < 3; i++) {
@@ -59,19 +63,25 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
   double roots[2];
   int count = 0;
   double scale = fabs(b) + fabs(c);
-  if (fabs(a) <= 1e-14 * scale) { /* the equation is linear: a is only rounding error, about 100 times 1e-16 */
-    if (b != 0) roots[count++] = -c / b;
+  if (fabs(a) <=
+      1e-14 *
+          scale) { /* the equation is linear: a is only rounding error, about 100 times 1e-16 */
+    if (b != 0)
+      roots[count++] = -c / b;
   } else {
     double disc = b * b - 4 * a * c;
-    if (disc < 0) return false;
+    if (disc < 0)
+      return false;
     double w = -0.5 * (b + copysign(sqrt(disc), b));
     roots[count++] = w / a;
-    if (w != 0) roots[count++] = c / w;
+    if (w != 0)
+      roots[count++] = c / w;
   }
   bool found = false;
   for (int k = 0; k < count; k++) {
     double u = roots[k];
-    if (!(u >= -overlap && u <= 1 + overlap)) continue;
+    if (!(u >= -overlap && u <= 1 + overlap))
+      continue;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     double base[3], e[3], x[3];
     for (int i = 0; i < 3; i++) {
@@ -81,13 +91,15 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
     /* Solves base + v e = t d with the normal of the plane that d and e span. */
     vl_cross3(d, e, x);
     double den = vl_dot3(x, x);
-    if (!(den > 0)) continue;
+    if (!(den > 0))
+      continue;
     double y[3];
     vl_cross3(base, d, y);
     double v = vl_dot3(y, x) / den;
     vl_cross3(base, e, y);
     double t = vl_dot3(y, x) / den;
-    if (!(v >= -overlap && v <= 1 + overlap) || !(t > t_min && t < t_max)) continue;
+    if (!(v >= -overlap && v <= 1 + overlap) || !(t > t_min && t < t_max))
+      continue;
     v = v < 0 ? 0 : v > 1 ? 1 : v;
     t_max = t;
     hit->t = t;
@@ -99,27 +111,32 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
 }
 
 /* Derivatives of the interpolated vertex normals, before normalisation. */
-static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, double v, double dndu[3], double dndv[3]) {
+static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, double v,
+                          double dndu[3], double dndv[3]) {
   for (int i = 0; i < 3; i++) {
     double n[4];
-    for (int k = 0; k < 4; k++) n[k] = s->normals[3 * (size_t)q->index[k] + i];
+    for (int k = 0; k < 4; k++)
+      n[k] = s->normals[3 * (size_t)q->index[k] + i];
     dndu[i] = (1 - v) * (n[1] - n[0]) + v * (n[3] - n[2]);
     dndv[i] = (1 - u) * (n[2] - n[0]) + u * (n[3] - n[1]);
   }
 }
 
-/* Converts derivatives over the patch's parameters to derivatives over its texture coordinates (pbrt book 6.6.2). If
- * the texture coordinates are degenerate, the derivatives are kept. */
-static void over_texture(const vlWorldShape *s, const Patch *q, double u, double v, vlSurfacePoint *point) {
+/* Converts derivatives over the patch's parameters to derivatives over its texture coordinates
+ * (pbrt book 6.6.2). If the texture coordinates are degenerate, the derivatives are kept. */
+static void over_texture(const vlWorldShape *s, const Patch *q, double u, double v,
+                         vlSurfacePoint *point) {
   double du[2], dv[2];
   for (int i = 0; i < 2; i++) {
     double t[4];
-    for (int k = 0; k < 4; k++) t[k] = s->uvs[2 * (size_t)q->index[k] + i];
+    for (int k = 0; k < 4; k++)
+      t[k] = s->uvs[2 * (size_t)q->index[k] + i];
     du[i] = (1 - v) * (t[1] - t[0]) + v * (t[3] - t[2]);
     dv[i] = (1 - u) * (t[2] - t[0]) + u * (t[3] - t[1]);
   }
   double det = du[0] * dv[1] - du[1] * dv[0];
-  if (!(fabs(det) > parallel * (fabs(du[0] * dv[1]) + fabs(du[1] * dv[0])))) return;
+  if (!(fabs(det) > parallel * (fabs(du[0] * dv[1]) + fabs(du[1] * dv[0]))))
+    return;
   double *pairs[2][2] = {{point->dpdu, point->dpdv}, {point->dndu, point->dndv}};
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < 3; i++) {
@@ -129,18 +146,24 @@ static void over_texture(const vlWorldShape *s, const Patch *q, double u, double
     }
 }
 
-static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v, vlSurfacePoint *point) {
+static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
+                       vlSurfacePoint *point) {
   Patch q = load_patch(s, prim);
   double mixed[3], length;
   patch_position(&q, u, v, point->p);
   double sum = 0; /* the error is along rays, in any direction */
-  for (int i = 0; i < 3; i++) sum += fabs(q.p00[i]) + fabs(q.p10[i]) + fabs(q.p01[i]) + fabs(q.p11[i]);
-  for (int i = 0; i < 3; i++) point->error[i] = VL_SHAPE_ERROR * sum;
+  for (int i = 0; i < 3; i++)
+    sum += fabs(q.p00[i]) + fabs(q.p10[i]) + fabs(q.p01[i]) + fabs(q.p11[i]);
+  for (int i = 0; i < 3; i++)
+    point->error[i] = VL_SHAPE_ERROR * sum;
   patch_derivatives(&q, u, v, point->dpdu, point->dpdv);
   vl_cross3(point->dpdu, point->dpdv, point->n);
   length = vl_normalize3(point->n);
-  for (int i = 0; i < 3; i++) mixed[i] = q.p00[i] - q.p10[i] - q.p01[i] + q.p11[i];
-  vl_cross3(point->dpdu, mixed, point->dndu); /* derivatives of dpdu x dpdv: dpdu is constant along u, dpdv along v */
+  for (int i = 0; i < 3; i++)
+    mixed[i] = q.p00[i] - q.p10[i] - q.p01[i] + q.p11[i];
+  vl_cross3(
+      point->dpdu, mixed,
+      point->dndu); /* derivatives of dpdu x dpdv: dpdu is constant along u, dpdv along v */
   vl_cross3(mixed, point->dpdv, point->dndv);
   vl_normal_derivative(point->n, length, point->dndu);
   vl_normal_derivative(point->n, length, point->dndv);
@@ -162,11 +185,13 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
       point->dndu[i] = -point->dndu[i];
       point->dndv[i] = -point->dndv[i];
     }
-  for (int i = 0; i < 3; i++) point->ns[i] = point->n[i];
+  for (int i = 0; i < 3; i++)
+    point->ns[i] = point->n[i];
   if (s->normals) {
     double ns[3] = {0, 0, 0};
     for (int k = 0; k < 4; k++)
-      for (int i = 0; i < 3; i++) ns[i] += w[k] * s->normals[3 * (size_t)q.index[k] + i];
+      for (int i = 0; i < 3; i++)
+        ns[i] += w[k] * s->normals[3 * (size_t)q.index[k] + i];
     if ((length = vl_normalize3(ns)) > 0) {
       normal_slopes(s, &q, u, v, point->dndu, point->dndv);
       vl_normal_derivative(ns, length, point->dndu);
@@ -179,7 +204,8 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
       }
     }
   }
-  if (s->uvs) over_texture(s, &q, u, v, point);
+  if (s->uvs)
+    over_texture(s, &q, u, v, point);
 }
 
 /* Density per unit area for uniformly sampled parameters. */
@@ -191,46 +217,52 @@ static double density(const Patch *q, double u, double v) {
   return l > 0 ? 1 / l : 0;
 }
 
-static void patch_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point,
-                         double *pdf) {
+static void patch_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
+                         vlSurfacePoint *point, double *pdf) {
   surface_at(shape, prim, u, v, point);
   Patch q = load_patch(shape, prim);
   *pdf = density(&q, u, v);
 }
 
 static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  /* Gauss-Newton steps from the centre of the patch recover the parameters. They need not be exact, since the density
-   * varies slowly. */
+  /* Gauss-Newton steps from the centre of the patch recover the parameters. They need not be
+   * exact, since the density varies slowly. */
   Patch q = load_patch(shape, prim);
   double u = 0.5, v = 0.5;
   for (int step = 0; step < 20; step++) {
     double p[3], du[3], dv[3], r[3];
     patch_position(&q, u, v, p);
     patch_derivatives(&q, u, v, du, dv);
-    for (int i = 0; i < 3; i++) r[i] = at[i] - p[i];
-    double a = vl_dot3(du, du), b = vl_dot3(du, dv), c = vl_dot3(dv, dv), e = vl_dot3(du, r), f = vl_dot3(dv, r);
+    for (int i = 0; i < 3; i++)
+      r[i] = at[i] - p[i];
+    double a = vl_dot3(du, du), b = vl_dot3(du, dv), c = vl_dot3(dv, dv), e = vl_dot3(du, r),
+           f = vl_dot3(dv, r);
     double det = a * c - b * b;
-    if (!(det > 0)) break;
+    if (!(det > 0))
+      break;
     double su = (c * e - b * f) / det, sv = (a * f - b * e) / det;
     u += su;
     v += sv;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     v = v < 0 ? 0 : v > 1 ? 1 : v;
-    if (fabs(su) + fabs(sv) < 1e-9) break; /* the next step would be about 1e-18 */
+    if (fabs(su) + fabs(sv) < 1e-9)
+      break; /* the next step would be about 1e-18 */
   }
   return density(&q, u, v);
 }
 
-static vlResult patch_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
-                              vlWorldShape *shape, vlError *error) {
+static vlResult patch_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
+                              const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
   return vl_mesh_compile(world, def, to_group, from_group, shape, error);
 }
 
-static void patch_bounds(const vlWorldShape *shape, uint32_t prim, double low[3], double high[3]) {
+static void patch_bounds(const vlWorldShape *shape, uint32_t prim, double low[3],
+                         double high[3]) {
   vl_mesh_bounds(shape, 4, prim, low, high);
 }
 
-static void patch_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+static void patch_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit,
+                        vlSurfacePoint *point) {
   surface_at(shape, prim, hit->a, hit->b, point);
 }
 

@@ -1,4 +1,5 @@
-/* world/shape/shapes.c: compiles the shapes of a scene: members that all kinds have, groups and instances, bounds. */
+/* world/shape/shapes.c: compiles the shapes of a scene: members that all kinds have, groups and
+ * instances, bounds. */
 #include <math.h>
 #include <string.h>
 
@@ -14,36 +15,45 @@
 #include "world/world.h"
 
 static void store_affine_f(const vlMat4 *m, float r[12]) {
-  for (int i = 0; i < 12; i++) r[i] = (float)m->m[i];
+  for (int i = 0; i < 12; i++)
+    r[i] = (float)m->m[i];
 }
 static void store_affine_d(const vlMat4 *m, double r[12]) {
-  for (int i = 0; i < 12; i++) r[i] = m->m[i];
+  for (int i = 0; i < 12; i++)
+    r[i] = m->m[i];
 }
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
-  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);
+  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line,
+                    def->source.column, "%s", what);
 }
 
-static vlResult constant_node(vlWorld *world, const vlScene *scene, float value, int32_t *node, vlError *error) {
+static vlResult constant_node(vlWorld *world, const vlScene *scene, float value, int32_t *node,
+                              vlError *error) {
   return vl_world_float_node(world, scene, vl_float_input(value), node, error);
 }
 
-/* A mix with an interface among its parts is compiled as a material with holes: the share that is not interface
- * multiplies the shape's alpha. */
-static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
-                              vlError *error) {
+/* A mix with an interface among its parts is compiled as a material with holes: the share that
+ * is not interface multiplies the shape's alpha. */
+static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def,
+                              vlWorldShape *s, vlError *error) {
   const vlWorldMaterial *m = &world->materials.items[s->material];
   int32_t presence = m->presence, whole = s->alpha, none;
-  for (; m->kind == VL_MATERIAL_MIX; m = &world->materials.items[s->material]) { /* a part that is all there is */
-    const vlWorldMaterial *first = &world->materials.items[m->mix[0]], *second = &world->materials.items[m->mix[1]];
-    if (!first->nothing && !second->nothing) break;
+  for (; m->kind == VL_MATERIAL_MIX;
+       m = &world->materials.items[s->material]) { /* a part that is all there is */
+    const vlWorldMaterial *first = &world->materials.items[m->mix[0]],
+                          *second = &world->materials.items[m->mix[1]];
+    if (!first->nothing && !second->nothing)
+      break;
     s->material = m->mix[first->nothing && !second->nothing ? 1 : 0];
   }
-  if (presence < 0) return VL_OK;
+  if (presence < 0)
+    return VL_OK;
   if (def->inside.index != def->outside.index)
     return fail_shape(def, error, "a mix with an interface cannot divide two media");
   vlResult r = constant_node(world, scene, 0.0f, &none, error);
-  if (r == VL_OK && whole < 0) r = constant_node(world, scene, 1.0f, &whole, error);
+  if (r == VL_OK && whole < 0)
+    r = constant_node(world, scene, 1.0f, &whole, error);
   return r == VL_OK ? vl_world_mix_node(world, none, whole, presence, &s->alpha, error) : r;
 }
 
@@ -60,7 +70,8 @@ static void compute_bounds(const vlWorldShape *s, float low[3], float high[3]) {
     high[i] = -INFINITY;
   }
   if (vl_shape_is_mesh(s->kind)) { /* the box covers all time steps */
-    for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
+    for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++)
+      grow_bounds(low, high, s->positions + 3 * i);
     return;
   }
   for (uint32_t i = 0; i < s->faces; i++) {
@@ -71,35 +82,45 @@ static void compute_bounds(const vlWorldShape *s, float low[3], float high[3]) {
   }
 }
 
-static vlResult compile_geometry(vlWorld *world, const vlScene *scene, const vlShapeDef *def, const vlMat4 *m,
-                                 const vlMat4 *inverse, vlWorldShape *s, vlError *error) {
-  if (!def->displacement.texture.index) return vl_shape_compile(world, def, m, inverse, s, error);
+static vlResult compile_geometry(vlWorld *world, const vlScene *scene, const vlShapeDef *def,
+                                 const vlMat4 *m, const vlMat4 *inverse, vlWorldShape *s,
+                                 vlError *error) {
+  if (!def->displacement.texture.index)
+    return vl_shape_compile(world, def, m, inverse, s, error);
   vlShapeDef fine;
   vlPart *part = world->part;
   world->part = NULL; /* texture nodes belong to the world */
   vlResult r = vl_world_displace(world, scene, def, m, &fine, error);
   world->part = part;
-  if (r != VL_OK) return r;
+  if (r != VL_OK)
+    return r;
   r = vl_shape_compile(world, &fine, m, inverse, s, error);
   vl_world_displace_free(world, &fine);
   return r;
 }
 
-/* Compiles the geometry, or shares that of the previous world. Shapes with arrays have a part for them. */
-static vlResult add_geometry(vlWorld *world, const vlScene *scene, size_t index, const vlMat4 *m, const vlMat4 *inverse,
-                             vlWorldShape *s, vlError *error) {
+/* Compiles the geometry, or shares that of the previous world. Shapes with arrays have a part
+ * for them. */
+static vlResult add_geometry(vlWorld *world, const vlScene *scene, size_t index,
+                             const vlMat4 *m, const vlMat4 *inverse, vlWorldShape *s,
+                             vlError *error) {
   const vlShapeDef *def = &scene->shapes.items[index];
-  bool done, arrays = vl_shape_is_mesh(def->kind) || def->kind == VL_SHAPE_CURVES || def->centers;
+  bool done,
+      arrays = vl_shape_is_mesh(def->kind) || def->kind == VL_SHAPE_CURVES || def->centers;
   world->shape_parts[index] = NULL;
   world->shape_from[index] = VL_NONE;
-  if (!vl_shape_reuse(world, scene, index, s, &done)) return vl_fail_memory(error);
-  if (done) return VL_OK;
+  if (!vl_shape_reuse(world, scene, index, s, &done))
+    return vl_fail_memory(error);
+  if (done)
+    return VL_OK;
   vlPart *part = arrays ? vl_part_add(world) : NULL;
-  if (arrays && !part) return vl_fail_memory(error);
+  if (arrays && !part)
+    return vl_fail_memory(error);
   world->part = part;
   vlResult r = compile_geometry(world, scene, def, m, inverse, s, error);
   world->part = NULL;
-  if (r != VL_OK || !part) return r;
+  if (r != VL_OK || !part)
+    return r;
   compute_bounds(s, part->low, part->high);
   world->shape_parts[index] = part;
   return vl_shape_match(world, index, s) ? VL_OK : vl_fail_memory(error);
@@ -109,7 +130,8 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   const vlShapeDef *def = &scene->shapes.items[index];
   vlWorldShape *s = &world->shapes.items[index];
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
-  if (!vl_mat4_inverse(m, &inverse)) return fail_shape(def, error, "the shape's transform is singular");
+  if (!vl_mat4_inverse(m, &inverse))
+    return fail_shape(def, error, "the shape's transform is singular");
   bool mirrored = vl_mat4_determinant3(m) < 0;
   memset(s, 0, sizeof *s);
   s->kind = def->kind;
@@ -121,12 +143,15 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   s->alpha = -1; /* opaque */
   if (def->alpha.texture.index || def->alpha.value < 1) {
     vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   vlResult cut = cut_interface(world, scene, def, s, error);
-  if (cut != VL_OK) return cut;
+  if (cut != VL_OK)
+    return cut;
   s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
-  world->has_subsurface = world->has_subsurface || world->materials.items[s->material].has_subsurface;
+  world->has_subsurface =
+      world->has_subsurface || world->materials.items[s->material].has_subsurface;
   s->radius = def->radius;
   s->inner_radius = def->inner_radius;
   s->height = def->height;
@@ -149,9 +174,11 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
 static void shape_bounds(const vlWorld *world, size_t index, float low[3], float high[3]) {
   const vlPart *part = world->shape_parts[index];
   float a[3], b[3];
-  if (!part) compute_bounds(&world->shapes.items[index], a, b);
+  if (!part)
+    compute_bounds(&world->shapes.items[index], a, b);
   const float *from = part ? part->low : a, *to = part ? part->high : b;
-  if (!(from[0] <= to[0])) return;
+  if (!(from[0] <= to[0]))
+    return;
   grow_bounds(low, high, from);
   grow_bounds(low, high, to);
 }
@@ -161,48 +188,58 @@ static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
     group->low[i] = INFINITY;
     group->high[i] = -INFINITY;
   }
-  for (uint32_t i = 0; i < group->count; i++) shape_bounds(world, group->shapes[i], group->low, group->high);
+  for (uint32_t i = 0; i < group->count; i++)
+    shape_bounds(world, group->shapes[i], group->low, group->high);
 }
 
-static void instance_bounds(const vlWorld *world, const vlWorldInstance *instance, float low[3], float high[3]) {
-  const float *a = world->groups.items[instance->group].low, *b = world->groups.items[instance->group].high;
+static void instance_bounds(const vlWorld *world, const vlWorldInstance *instance, float low[3],
+                            float high[3]) {
+  const float *a = world->groups.items[instance->group].low,
+              *b = world->groups.items[instance->group].high;
   for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
     const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
     for (int c = 0; a[0] <= b[0] && c < 8; c++) {
       float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
-      for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+      for (int i = 0; i < 3; i++)
+        q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
       grow_bounds(low, high, q);
     }
   }
 }
 
 /* Checks that all coordinates are within 1e18 of 0; rays cannot be traced beyond. */
-static vlResult check_reach(const float low[3], const float high[3], const vlSource *source, vlError *error) {
+static vlResult check_reach(const float low[3], const float high[3], const vlSource *source,
+                            vlError *error) {
   for (int i = 0; i < 3; i++)
     if (low[i] <= high[i] && !(low[i] > -1e18f && high[i] < 1e18f))
       return vl_fail_at(error, VL_ERROR_SCENE, source->file, source->line, source->column,
-                        "the shape reaches from %g to %g: rays can be followed to 1e18 at most", (double)low[i],
-                        (double)high[i]);
+                        "the shape reaches from %g to %g: rays can be followed to 1e18 at most",
+                        (double)low[i], (double)high[i]);
   return VL_OK;
 }
 
-/* If edges are shorter, distances of near hits (a length times an area) have few digits or none, and a triangle can
- * shadow itself. The product of the ray offset, 6e-7 edge lengths, and twice the area must exceed 2^-126
- * (docs/conventions.md). */
+/* If edges are shorter, distances of near hits (a length times an area) have few digits or
+ * none, and a triangle can shadow itself. The product of the ray offset, 6e-7 edge lengths, and
+ * twice the area must exceed 2^-126 (docs/conventions.md). */
 #define SMALLEST_EDGE 1e-10f
 
-/* Warns about the first shape whose triangles are too small. Their size is estimated from the shape's box. */
-static void check_edges(const vlWorld *world, const float low[3], const float high[3], uint64_t triangles,
-                        const vlSource *source, bool *warned) {
-  if (*warned || triangles == 0 || !(low[0] <= high[0])) return;
+/* Warns about the first shape whose triangles are too small. Their size is estimated from the
+ * shape's box. */
+static void check_edges(const vlWorld *world, const float low[3], const float high[3],
+                        uint64_t triangles, const vlSource *source, bool *warned) {
+  if (*warned || triangles == 0 || !(low[0] <= high[0]))
+    return;
   float extent = fmaxf(fmaxf(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
   float edge = extent / sqrtf(fmaxf(0.5f * (float)triangles, 1.0f));
-  if (!(edge < SMALLEST_EDGE) || extent == 0) return;
+  if (!(edge < SMALLEST_EDGE) || extent == 0)
+    return;
   vlError where;
   vl_fail_at(&where, VL_ERROR_SCENE, source->file, source->line, source->column, " ");
-  vl_log(world->context, VL_LOG_WARNING, &where,
-         "triangles of about %.2g: edges below %g may hide light from themselves; use a smaller unit of length",
-         (double)edge, (double)SMALLEST_EDGE);
+  vl_log(
+      world->context, VL_LOG_WARNING, &where,
+      "triangles of about %.2g: edges below %g may hide light from themselves; use a smaller "
+      "unit of length",
+      (double)edge, (double)SMALLEST_EDGE);
   *warned = true;
 }
 
@@ -210,7 +247,8 @@ static uint64_t group_triangles(const vlWorld *world, const vlWorldGroup *group)
   uint64_t sum = 0;
   for (uint32_t i = 0; i < group->count; i++) {
     const vlWorldShape *s = &world->shapes.items[group->shapes[i]];
-    if (s->kind == VL_SHAPE_TRIANGLES) sum += s->faces;
+    if (s->kind == VL_SHAPE_TRIANGLES)
+      sum += s->faces;
   }
   return sum;
 }
@@ -230,30 +268,36 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
       grow_bounds(low, high, b);
     }
     vlResult r = check_reach(low, high, source, error);
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   for (size_t i = 0, k = 0; k < world->instances.count; i++) {
-    if (scene->instances.items[i].hidden || world->groups.items[scene->instances.items[i].group.index].count == 0)
+    if (scene->instances.items[i].hidden ||
+        world->groups.items[scene->instances.items[i].group.index].count == 0)
       continue;
     const vlSource *source = &scene->instances.items[i].source;
     const vlWorldInstance *instance = &world->instances.items[k++];
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
     instance_bounds(world, instance, a, b);
-    check_edges(world, a, b, group_triangles(world, &world->groups.items[instance->group]), source, &warned);
+    check_edges(world, a, b, group_triangles(world, &world->groups.items[instance->group]),
+                source, &warned);
     if (a[0] <= b[0]) {
       grow_bounds(low, high, a);
       grow_bounds(low, high, b);
     }
     vlResult r = check_reach(low, high, source, error);
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   for (int i = 0; i < 3; i++) {
-    if (low[i] > high[i]) low[i] = high[i] = 0;
+    if (low[i] > high[i])
+      low[i] = high[i] = 0;
     world->bounds_min[i] = low[i];
     world->bounds_max[i] = high[i];
     world->center[i] = 0.5f * (low[i] + high[i]);
   }
-  float d[3] = {high[0] - world->center[0], high[1] - world->center[1], high[2] - world->center[2]};
+  float d[3] = {high[0] - world->center[0], high[1] - world->center[1],
+                high[2] - world->center[2]};
   world->radius = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   return VL_OK;
 }
@@ -261,23 +305,27 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
 static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *error) {
   for (size_t i = 0; i < scene->instances.count; i++) {
     const vlSceneInstance *source = &scene->instances.items[i];
-    if (source->hidden || world->groups.items[source->group.index].count == 0) continue;
+    if (source->hidden || world->groups.items[source->group.index].count == 0)
+      continue;
     vlWorldInstance *instance = VL_PUSH(world->context, &world->instances);
-    if (!instance) return vl_fail_memory(error);
+    if (!instance)
+      return vl_fail_memory(error);
     memset(instance, 0, sizeof *instance);
     vlMat4 m = vl_mat4_load(source->world_from_group), inverse;
     if (!vl_mat4_inverse(m, &inverse))
-      return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line, source->source.column,
-                        "the instance's transform is singular");
+      return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line,
+                        source->source.column, "the instance's transform is singular");
     instance->group = source->group.index;
     instance->mirrored = vl_mat4_determinant3(m) < 0;
     store_affine_f(&m, instance->from_group);
     store_affine_f(&inverse, instance->to_group);
     vl_instance_error(instance->from_group, instance->to_group, instance->error);
-    if (source->keys == 0) continue;
+    if (source->keys == 0)
+      continue;
     const vlWorldGroup *group = &world->groups.items[source->group.index];
     vlResult r = vl_world_add_motion(world, source, group->low, group->high, instance, error);
-    if (r != VL_OK) return r;
+    if (r != VL_OK)
+      return r;
   }
   return VL_OK;
 }
@@ -285,7 +333,8 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
 /* Whether rays can hit a shape: it is shown, and a mesh has faces. */
 static bool is_in_group(const vlScene *scene, size_t index) {
   const vlShapeDef *def = &scene->shapes.items[index];
-  return (def->faces || !vl_shape_is_mesh(def->kind)) && !vl_scene_mark(&scene->shape_marks, index).hidden;
+  return (def->faces || !vl_shape_is_mesh(def->kind)) &&
+         !vl_scene_mark(&scene->shape_marks, index).hidden;
 }
 
 vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *error) {
@@ -296,32 +345,42 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
     return vl_fail_memory(error);
   world->shape_parts = vl_world_block(world, scene->shapes.count, sizeof(vlPart *));
   world->shape_from = vl_world_block(world, scene->shapes.count, sizeof(uint32_t));
-  if (!world->shape_parts || !world->shape_from) return vl_fail_memory(error);
+  if (!world->shape_parts || !world->shape_from)
+    return vl_fail_memory(error);
   world->groups.count = group_count;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
-    vlResult r = vl_world_step(world, "shapes", 0.4 + 0.1 * (double)i / (double)scene->shapes.count, error);
-    if (r == VL_OK) r = add_shape(world, scene, i, error);
-    if (r != VL_OK) return r;
+    vlResult r = vl_world_step(world, "shapes",
+                               0.4 + 0.1 * (double)i / (double)scene->shapes.count, error);
+    if (r == VL_OK)
+      r = add_shape(world, scene, i, error);
+    if (r != VL_OK)
+      return r;
     world->shapes.count = i + 1;
-    if (is_in_group(scene, i)) world->groups.items[def->group.index].count++;
+    if (is_in_group(scene, i))
+      world->groups.items[def->group.index].count++;
     world->info.primitives += world->shapes.items[i].faces;
-    if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += world->shapes.items[i].faces;
+    if (def->kind == VL_SHAPE_TRIANGLES)
+      world->info.triangles += world->shapes.items[i].faces;
   }
   for (size_t k = 0; k < group_count; k++) {
     vlWorldGroup *group = &world->groups.items[k];
-    if (!(group->shapes = vl_world_block(world, group->count, sizeof(uint32_t)))) return vl_fail_memory(error);
+    if (!(group->shapes = vl_world_block(world, group->count, sizeof(uint32_t))))
+      return vl_fail_memory(error);
     group->count = 0;
   }
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
-    if (!is_in_group(scene, i)) continue;
+    if (!is_in_group(scene, i))
+      continue;
     vlWorldGroup *group = &world->groups.items[def->group.index];
     group->shapes[group->count++] = (uint32_t)i;
   }
-  for (size_t k = 0; k < group_count; k++) set_group_bounds(world, &world->groups.items[k]);
+  for (size_t k = 0; k < group_count; k++)
+    set_group_bounds(world, &world->groups.items[k]);
   vlResult r = add_instances(world, scene, error);
-  if (r == VL_OK) r = set_world_bounds(world, scene, error);
+  if (r == VL_OK)
+    r = set_world_bounds(world, scene, error);
   world->info.instances = world->instances.count;
   return r;
 }

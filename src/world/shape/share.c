@@ -1,5 +1,6 @@
-/* world/shape/share.c: see share.h. Shapes of one scene are recognised by their index, since their geometry cannot be
- * changed. Others, and displaced meshes, are compiled and then compared number by number. */
+/* world/shape/share.c: see share.h. Shapes of one scene are recognised by their index, since
+ * their geometry cannot be changed. Others, and displaced meshes, are compiled and then
+ * compared number by number. */
 #include "world/shape/share.h"
 
 #include <string.h>
@@ -7,7 +8,9 @@
 #include "scene/scene.h"
 #include "velo/shape.h"
 
-/* ---- comparison -------------------------------------------------------------------------------------------------- */
+/* ---- comparison
+ * --------------------------------------------------------------------------------------------------
+ */
 
 enum { ARRAYS = 13 };
 typedef struct Arrays {
@@ -19,11 +22,13 @@ static Arrays arrays_of(const vlWorldShape *s) {
   size_t v = sizeof(float) * (size_t)s->vertices, n = v * s->steps, f = s->faces;
   size_t corners = s->kind == VL_SHAPE_BILINEAR ? 4 : 3, segments = f >> s->split;
   bool curves = s->kind == VL_SHAPE_CURVES;
-  Arrays a = {{s->positions, s->normals, s->tangents, s->uvs, s->indices, s->tangent_signs, s->more_uvs[0],
-               s->more_uvs[1], s->more_uvs[2], s->colors, s->widths, s->centers, s->radii},
-              {curves ? 12 * segments * sizeof(float) : 3 * n, curves ? 6 * segments * sizeof(float) : 3 * n, 3 * v,
-               2 * v, corners * f * sizeof(uint32_t), v, 2 * v, 2 * v, 2 * v, 4 * v, 2 * segments * sizeof(float),
-               3 * f * sizeof(double), f * sizeof(float)}};
+  Arrays a = {{s->positions, s->normals, s->tangents, s->uvs, s->indices, s->tangent_signs,
+               s->more_uvs[0], s->more_uvs[1], s->more_uvs[2], s->colors, s->widths, s->centers,
+               s->radii},
+              {curves ? 12 * segments * sizeof(float) : 3 * n,
+               curves ? 6 * segments * sizeof(float) : 3 * n, 3 * v, 2 * v,
+               corners * f * sizeof(uint32_t), v, 2 * v, 2 * v, 2 * v, 4 * v,
+               2 * segments * sizeof(float), 3 * f * sizeof(double), f * sizeof(float)}};
   return a;
 }
 
@@ -32,11 +37,13 @@ static void mask(vlWorldShape *s) {
   s->material = s->first_light = s->inside = s->outside = 0;
   s->alpha = 0;
   s->pass_shadow = s->backdrop = false;
-  s->positions = s->normals = s->tangents = s->uvs = s->tangent_signs = s->colors = s->emission_uvs = s->widths = NULL;
+  s->positions = s->normals = s->tangents = s->uvs = s->tangent_signs = s->colors =
+      s->emission_uvs = s->widths = NULL;
   s->radii = NULL;
   s->centers = NULL;
   s->indices = s->light_of = NULL;
-  for (int k = 0; k < 3; k++) s->more_uvs[k] = NULL;
+  for (int k = 0; k < 3; k++)
+    s->more_uvs[k] = NULL;
 }
 
 static bool same_numbers(const vlWorldShape *a, const vlWorldShape *b) {
@@ -51,21 +58,26 @@ static bool same_numbers(const vlWorldShape *a, const vlWorldShape *b) {
 static bool same_arrays(const vlWorldShape *a, const vlWorldShape *b) {
   Arrays x = arrays_of(a), y = arrays_of(b);
   for (int k = 0; k < ARRAYS; k++) {
-    if (!x.item[k] != !y.item[k] || (x.item[k] && x.bytes[k] != y.bytes[k])) return false;
-    if (x.item[k] && x.item[k] != y.item[k] && memcmp(x.item[k], y.item[k], x.bytes[k]) != 0) return false;
+    if (!x.item[k] != !y.item[k] || (x.item[k] && x.bytes[k] != y.bytes[k]))
+      return false;
+    if (x.item[k] && x.item[k] != y.item[k] && memcmp(x.item[k], y.item[k], x.bytes[k]) != 0)
+      return false;
   }
   return true;
 }
 
 bool vl_shape_same(const vlWorld *world, size_t i, const vlWorld *previous, size_t j) {
   const vlWorldShape *a = &world->shapes.items[i], *b = &previous->shapes.items[j];
-  if (a->kind != b->kind || world->shape_parts[i] != previous->shape_parts[j] || a->pass_shadow != b->pass_shadow ||
-      (a->alpha < 0) != (b->alpha < 0) || a->one_sided != b->one_sided)
+  if (a->kind != b->kind || world->shape_parts[i] != previous->shape_parts[j] ||
+      a->pass_shadow != b->pass_shadow || (a->alpha < 0) != (b->alpha < 0) ||
+      a->one_sided != b->one_sided)
     return false;
   return world->shape_parts[i] || same_numbers(a, b);
 }
 
-/* ---- reuse ------------------------------------------------------------------------------------------------------- */
+/* ---- reuse
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 /* Gives *s the geometry of another shape. */
 static void take(const vlWorldShape *from, vlWorldShape *s) {
@@ -85,16 +97,19 @@ static bool same_times(const vlWorld *a, const vlWorld *b) {
   return a->time_open == b->time_open && a->time_close == b->time_close;
 }
 
-bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldShape *s, bool *done) {
+bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldShape *s,
+                    bool *done) {
   const vlWorld *previous = world->previous;
   *done = false;
   if (!previous || previous->scene_number != scene->number || index >= previous->shapes.count ||
       scene->shapes.items[index].displacement.texture.index)
     return true;
   const vlWorldShape *old = &previous->shapes.items[index];
-  if (old->steps > 1 && !same_times(world, previous)) return true;
+  if (old->steps > 1 && !same_times(world, previous))
+    return true;
   vlPart *part = previous->shape_parts[index];
-  if (part && !vl_part_share(world, part)) return false;
+  if (part && !vl_part_share(world, part))
+    return false;
   take(old, s);
   world->shape_parts[index] = part;
   world->shape_from[index] = (uint32_t)index;
@@ -102,7 +117,9 @@ bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldS
   return true;
 }
 
-/* ---- search ------------------------------------------------------------------------------------------------------ */
+/* ---- search
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 /* A hash table of the previous world's shapes with parts. */
 struct vlShapeSearch {
@@ -127,16 +144,21 @@ static uint32_t fingerprint(const vlWorldShape *s) {
 static struct vlShapeSearch *make_search(vlWorld *world) {
   const vlWorld *previous = world->previous;
   uint32_t size = 16;
-  while (size < previous->shapes.count) size *= 2;
+  while (size < previous->shapes.count)
+    size *= 2;
   struct vlShapeSearch *t = vl_world_block(world, 1, sizeof *t);
-  if (!t) return NULL;
+  if (!t)
+    return NULL;
   t->size = size;
   t->first = vl_world_block(world, size, sizeof *t->first);
   t->next = vl_world_block(world, previous->shapes.count + 1, sizeof *t->next);
-  if (!t->first || !t->next) return NULL;
+  if (!t->first || !t->next)
+    return NULL;
   memset(t->first, 0, size * sizeof *t->first);
-  for (uint32_t i = (uint32_t)previous->shapes.count; i-- > 0;) { /* the first of equal ones is found first */
-    if (!previous->shape_parts[i]) continue;
+  for (uint32_t i = (uint32_t)previous->shapes.count;
+       i-- > 0;) { /* the first of equal ones is found first */
+    if (!previous->shape_parts[i])
+      continue;
     uint32_t *slot = &t->first[fingerprint(&previous->shapes.items[i]) & (size - 1)];
     t->next[i] = *slot;
     *slot = i + 1;
@@ -146,16 +168,20 @@ static struct vlShapeSearch *make_search(vlWorld *world) {
 
 bool vl_shape_match(vlWorld *world, size_t index, vlWorldShape *s) {
   const vlWorld *previous = world->previous;
-  if (!previous) return true;
+  if (!previous)
+    return true;
   vlPart *current = world->part;
   world->part = NULL; /* the table belongs to the world */
-  if (!world->shape_search) world->shape_search = make_search(world);
+  if (!world->shape_search)
+    world->shape_search = make_search(world);
   world->part = current;
   const struct vlShapeSearch *t = world->shape_search;
-  if (!t) return false;
+  if (!t)
+    return false;
   for (uint32_t i = t->first[fingerprint(s) & (t->size - 1)]; i; i = t->next[i - 1]) {
     const vlWorldShape *old = &previous->shapes.items[i - 1];
-    if (!same_numbers(old, s) || !same_arrays(old, s)) continue;
+    if (!same_numbers(old, s) || !same_arrays(old, s))
+      continue;
     vl_part_drop_last(world);
     take(old, s);
     world->shape_parts[index] = previous->shape_parts[i - 1];

@@ -1,4 +1,5 @@
-/* world/shape/surface_point.c: calls the function of a shape's kind (kinds.h); bounds and area of primitives. */
+/* world/shape/surface_point.c: calls the function of a shape's kind (kinds.h); bounds and area
+ * of primitives. */
 #include "world/shape/surface_point.h"
 
 #include <math.h>
@@ -23,34 +24,38 @@ void vl_instance_error(const float m[12], const float w[12], float error[4]) {
   for (int i = 0; i < 3; i++) {
     float row = 0;
     for (int k = 0; k < 3; k++)
-      for (int j = 0; j < 3; j++) row += fabsf(m[4 * i + k] * w[4 * k + j]);
+      for (int j = 0; j < 3; j++)
+        row += fabsf(m[4 * i + k] * w[4 * k + j]);
     spread = fmaxf(spread, row);
   }
-  for (int i = 0; i < 12; i++) error[i % 4] = fmaxf(error[i % 4], gamma4 * spread * fabsf(m[i]));
+  for (int i = 0; i < 12; i++)
+    error[i % 4] = fmaxf(error[i % 4], gamma4 * spread * fabsf(m[i]));
 }
 
 #define FUNCTIONS(K, k) [VL_SHAPE_##K] = &vl_shape_functions_##k,
 static const vlShapeFunctions *const functions[] = {VL_SHAPE_KINDS(FUNCTIONS)};
 #undef FUNCTIONS
 
-vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
-                          vlWorldShape *shape, vlError *error) {
+vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
+                          const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
   return functions[def->kind]->compile(world, def, to_group, from_group, shape, error);
 }
 
-bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
-                        double t_max, vlShapeHit *hit) {
+bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3],
+                        const double d[3], double t_min, double t_max, vlShapeHit *hit) {
   hit->a = hit->b = 0;
   return functions[shape->kind]->intersect(shape, prim, o, d, t_min, t_max, hit);
 }
 
-void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit,
+                    vlSurfacePoint *point) {
   point->off = 0;
   memset(point->error, 0, sizeof point->error);
   functions[shape->kind]->point(shape, prim, hit, point);
 }
 
-void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
+void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
+                     vlSurfacePoint *point, double *pdf) {
   *pdf = 0;
   point->off = 0;
   memset(point->error, 0, sizeof point->error);
@@ -61,7 +66,8 @@ double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoi
   return functions[shape->kind]->pdf(shape, prim, point->p);
 }
 
-/* ---- bounds and area, also of triangles -------------------------------------------------------------------------- */
+/* ---- bounds and area, also of triangles
+ * -------------------------------------------------------------------------- */
 
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
   if (shape->kind == VL_SHAPE_TRIANGLES) {
@@ -75,23 +81,25 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
     vl_cross3(a, b, n);
     return (float)(0.5 * sqrt(vl_dot3(n, n)));
   }
-  /* The area is the mean of 1/pdf over a grid of parameters, which is exact for parallelograms. A single point suffices
-   * if the density is constant. */
+  /* The area is the mean of 1/pdf over a grid of parameters, which is exact for parallelograms.
+   * A single point suffices if the density is constant. */
   double sum = 0, scale;
-  bool even = shape->kind == VL_SHAPE_DISK ||
-              ((shape->traits & VL_SHAPE_TRAIT_QUADRIC) && vl_is_similarity(shape->from_shape, &scale));
+  bool even = shape->kind == VL_SHAPE_DISK || ((shape->traits & VL_SHAPE_TRAIT_QUADRIC) &&
+                                               vl_is_similarity(shape->from_shape, &scale));
   const int steps = even ? 1 : 16;
   for (int i = 0; i < steps; i++)
     for (int j = 0; j < steps; j++) {
       vlSurfacePoint point;
       double pdf;
-      vl_shape_sample(shape, prim, ((float)i + 0.5f) / steps, ((float)j + 0.5f) / steps, &point, &pdf);
+      vl_shape_sample(shape, prim, ((float)i + 0.5f) / steps, ((float)j + 0.5f) / steps, &point,
+                      &pdf);
       sum += pdf > 0 ? 1 / pdf : 0;
     }
   return (float)(sum / (steps * steps));
 }
 
-void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]) {
+void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3],
+                          float high[3]) {
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
   functions[shape->kind]->bounds(shape, prim, lo, hi);
   for (int i = 0; i < 3; i++) { /* the box grows by one float step because of rounding */

@@ -1,4 +1,6 @@
-/* world/shape/tables.h: the table of functions of each kind of shape (kinds.h says what they do). */
+/* world/shape/tables.h: the table of functions of each kind of shape (kinds.h says what they
+ * do).
+ */
 #ifndef WORLD_SHAPE_TABLES_H
 #define WORLD_SHAPE_TABLES_H
 

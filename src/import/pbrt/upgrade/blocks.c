@@ -1,5 +1,6 @@
-/* import/pbrt/upgrade/blocks.c: TransformBegin and TransformEnd. pbrt-v3's keep the transform alone, those of pbrt-v4
- * all attributes: what a block sets beside the transform is repeated after it. */
+/* import/pbrt/upgrade/blocks.c: TransformBegin and TransformEnd. pbrt-v3's keep the transform
+ * alone, those of pbrt-v4 all attributes: what a block sets beside the transform is repeated
+ * after it. */
 
 #include "base/context.h"
 #include "base/text.h"
@@ -14,18 +15,21 @@ _Static_assert((int)SETTERS == (int)VL_OLD_ATTRIBUTES, "vlOldBlock has an entry 
 static int attribute_of(const char *word) {
   for (int i = 0; i < SETTERS; i++)
     for (int k = 0; k < 2; k++)
-      if (vl_text_is(setters[i][k], word)) return i;
+      if (vl_text_is(setters[i][k], word))
+        return i;
   return -1;
 }
 
 static bool push(vlOldFile *file, bool transform) {
   vlOldBlock *b = VL_PUSH(file->u->context, &file->blocks);
-  if (!b) return vl_old_fail_memory(file->u);
+  if (!b)
+    return vl_old_fail_memory(file->u);
   *b = (vlOldBlock){.transform = transform};
   return true;
 }
 
-/* The new statement without what was written before it: its last line that begins with the directive. */
+/* The new statement without what was written before it: its last line that begins with the
+ * directive. */
 static const char *last_statement(const char *text) {
   const char *last = text;
   for (const char *line = text; line; line = strchr(line, '\n')) {
@@ -33,19 +37,24 @@ static const char *last_statement(const char *text) {
     const char *word = line + strspn(line, " \t");
     for (int i = 0; i < SETTERS; i++)
       for (int k = 0; k < 2; k++)
-        if (setters[i][k] && strncmp(word, setters[i][k], strlen(setters[i][k])) == 0) last = word;
-    if (!strchr(line, '\n')) break;
+        if (setters[i][k] && strncmp(word, setters[i][k], strlen(setters[i][k])) == 0)
+          last = word;
+    if (!strchr(line, '\n'))
+      break;
   }
   return last;
 }
 
 static bool repeat(vlOldFile *file, vlOldStatement *s, const vlOldBlock *block) {
   for (int i = 0; i < SETTERS; i++) {
-    if (block->set[i].end == block->set[i].start) continue;
+    if (block->set[i].end == block->set[i].start)
+      continue;
     char *text = vl_old_render(file, block->set[i]);
-    bool fine = text ? vl_old_after(file, s, "%s", last_statement(text)) : vl_old_fail_memory(file->u);
+    bool fine =
+        text ? vl_old_after(file, s, "%s", last_statement(text)) : vl_old_fail_memory(file->u);
     vl_free(file->u->context, text);
-    if (!fine) return false;
+    if (!fine)
+      return false;
     vl_old_note(s, "%s of line %u again", setters[i][0], block->line[i]);
   }
   return true;
@@ -56,12 +65,16 @@ bool vl_old_block(vlOldFile *file, vlOldStatement *s) {
   bool transform = strncmp(word, "Transform", 9) == 0, begin = word[strlen(word) - 1] == 'n';
   if (transform) {
     vl_old_note(s, "-> %s", begin ? "AttributeBegin" : "AttributeEnd");
-    if (!vl_old_edit(file, s->keyword, begin ? "AttributeBegin" : "AttributeEnd")) return false;
+    if (!vl_old_edit(file, s->keyword, begin ? "AttributeBegin" : "AttributeEnd"))
+      return false;
   }
-  if (begin) return push(file, transform);
-  if (!file->blocks.count) return true;
+  if (begin)
+    return push(file, transform);
+  if (!file->blocks.count)
+    return true;
   vlOldBlock block = file->blocks.items[--file->blocks.count];
-  if (!block.transform) return true;
+  if (!block.transform)
+    return true;
   /* an outer block of the same kind sets the attribute, too */
   vlOldBlock *outer = file->blocks.count ? &file->blocks.items[file->blocks.count - 1] : NULL;
   for (int i = 0; i < SETTERS && outer; i++)
@@ -74,7 +87,8 @@ bool vl_old_block(vlOldFile *file, vlOldStatement *s) {
 
 void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s) {
   int i = attribute_of(s->word->name);
-  if (i < 0 || !file->blocks.count) return;
+  if (i < 0 || !file->blocks.count)
+    return;
   vlOldBlock *block = &file->blocks.items[file->blocks.count - 1];
   block->set[i] = s->whole;
   block->line[i] = s->line;

@@ -38,7 +38,8 @@ static const struct {
              {"Material", "disney", 3}};
 
 static bool is_word(const vlToken *t, const char *word) {
-  return t->kind == VL_TOKEN_WORD && strlen(word) == t->length && memcmp(word, t->text, t->length) == 0;
+  return t->kind == VL_TOKEN_WORD && strlen(word) == t->length &&
+         memcmp(word, t->text, t->length) == 0;
 }
 
 /* The first sign of the highest rank: signs of pbrt-v2 count more. */
@@ -48,15 +49,21 @@ static void look(vlOldScene *found, char *data, size_t size) {
   vl_tokenizer_start(&tokens, data, size);
   for (;;) {
     vlToken t = vl_token_next(&tokens);
-    if (t.kind == VL_TOKEN_END || t.kind == VL_TOKEN_BAD) return;
+    if (t.kind == VL_TOKEN_END || t.kind == VL_TOKEN_BAD)
+      return;
     for (size_t i = 0; i < VL_LENGTH(signs); i++) {
       bool kind = signs[i].kind != NULL;
       const vlToken *word = kind ? &before : &t;
-      if (!is_word(word, signs[i].directive)) continue;
-      if (kind && (t.kind != VL_TOKEN_STRING || !vl_text_is(t.text, signs[i].kind))) continue;
-      if (found->version && found->version <= signs[i].version) continue;
-      *found = (vlOldScene){.version = signs[i].version, .line = word->line, .column = word->column};
-      snprintf(found->sign, sizeof found->sign, kind ? "%s \"%s\"" : "%s", signs[i].directive, kind ? t.text : "");
+      if (!is_word(word, signs[i].directive))
+        continue;
+      if (kind && (t.kind != VL_TOKEN_STRING || !vl_text_is(t.text, signs[i].kind)))
+        continue;
+      if (found->version && found->version <= signs[i].version)
+        continue;
+      *found =
+          (vlOldScene){.version = signs[i].version, .line = word->line, .column = word->column};
+      snprintf(found->sign, sizeof found->sign, kind ? "%s \"%s\"" : "%s", signs[i].directive,
+               kind ? t.text : "");
     }
     before = t;
   }
@@ -71,7 +78,8 @@ vlOldScene vl_old_scene_text(char *text, size_t size) {
 vlOldScene vl_old_scene(vlContext *context, const char *path) {
   char *data;
   size_t size;
-  if (vl_file_read_given(context, path, true, &data, &size, NULL) != VL_OK) return (vlOldScene){0};
+  if (vl_file_read_given(context, path, true, &data, &size, NULL) != VL_OK)
+    return (vlOldScene){0};
   const vlOldScene found = vl_old_scene_text(data, size);
   vl_free(context, data);
   return found;

@@ -10,7 +10,8 @@ typedef struct vlOldScene {
   char sign[64]; /* the statement: Film "image" */
 } vlOldScene;
 
-/* Looks for statements in the file that pbrt-v4 does not have. The files that it includes are not looked into. */
+/* Looks for statements in the file that pbrt-v4 does not have. The files that it includes are
+ * not looked into. */
 vlOldScene vl_old_scene(vlContext *context, const char *path);
 /* The same in the text of a file, which the tokenizer changes; a zero byte follows it. */
 vlOldScene vl_old_scene_text(char *text, size_t size);

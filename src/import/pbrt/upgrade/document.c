@@ -1,4 +1,5 @@
-/* import/pbrt/upgrade/document.c: cuts pbrt text into statements that keep their places in the text. */
+/* import/pbrt/upgrade/document.c: cuts pbrt text into statements that keep their places in the
+ * text. */
 #include <stdio.h>
 #include <string.h>
 
@@ -11,7 +12,8 @@ static size_t offset(const vlOldFile *file, const char *at) {
 }
 
 /* The token's place, with its quotes. */
-static vlOldSpan span_of(const vlOldFile *file, const vlTokenizer *tokens, const vlToken *token) {
+static vlOldSpan span_of(const vlOldFile *file, const vlTokenizer *tokens,
+                         const vlToken *token) {
   size_t start = offset(file, token->text) - (token->kind == VL_TOKEN_STRING);
   return (vlOldSpan){start, offset(file, tokens->at)};
 }
@@ -21,15 +23,20 @@ static vlToken peek(const vlTokenizer *tokens) {
   /* a string is changed in place when it is read: its first character decides */
   while (copy.at < copy.end && (strchr(" \n\t\r\v\f", *copy.at) || *copy.at == '#')) {
     if (*copy.at == '#')
-      while (copy.at < copy.end && *copy.at != '\n') copy.at++;
+      while (copy.at < copy.end && *copy.at != '\n')
+        copy.at++;
     else
       copy.at++;
   }
   vlToken token = {.kind = VL_TOKEN_WORD, .text = copy.at};
-  if (copy.at >= copy.end) token.kind = VL_TOKEN_END;
-  if (copy.at < copy.end && *copy.at == '"') token.kind = VL_TOKEN_STRING;
-  if (copy.at < copy.end && *copy.at == '[') token.kind = VL_TOKEN_OPEN;
-  if (copy.at < copy.end && *copy.at == ']') token.kind = VL_TOKEN_CLOSE;
+  if (copy.at >= copy.end)
+    token.kind = VL_TOKEN_END;
+  if (copy.at < copy.end && *copy.at == '"')
+    token.kind = VL_TOKEN_STRING;
+  if (copy.at < copy.end && *copy.at == '[')
+    token.kind = VL_TOKEN_OPEN;
+  if (copy.at < copy.end && *copy.at == ']')
+    token.kind = VL_TOKEN_CLOSE;
   return token;
 }
 
@@ -38,16 +45,21 @@ static bool bad_token(vlOldFile *file, const vlToken *token, const char *wanted)
     return vl_old_fail(file, VL_ERROR_SCENE, token->line, token->column, "%s", token->message);
   return vl_old_fail(
       file, VL_ERROR_SCENE, token->line, token->column, "expected %s, found %s", wanted,
-      token->kind == VL_TOKEN_END ? "the end of the file" : vl_short_text_of(token->text, token->length).text);
+      token->kind == VL_TOKEN_END ? "the end of the file"
+                                  : vl_short_text_of(token->text, token->length).text);
 }
 
-static bool add_value(vlOldFile *file, const vlTokenizer *tokens, const vlToken *token, vlOldParam *p) {
+static bool add_value(vlOldFile *file, const vlTokenizer *tokens, const vlToken *token,
+                      vlOldParam *p) {
   size_t i = p->count++;
-  if (token->kind == VL_TOKEN_STRING) p->strings = true;
-  if (i >= VL_OLD_FIRST) return true;
+  if (token->kind == VL_TOKEN_STRING)
+    p->strings = true;
+  if (i >= VL_OLD_FIRST)
+    return true;
   p->span[i] = span_of(file, tokens, token);
   p->text[i] = token->kind == VL_TOKEN_STRING ? token->text : NULL;
-  if (token->kind == VL_TOKEN_WORD) vl_number_parse(token->text, token->length, &p->number[i]);
+  if (token->kind == VL_TOKEN_WORD)
+    vl_number_parse(token->text, token->length, &p->number[i]);
   return true;
 }
 
@@ -57,13 +69,16 @@ static bool read_values(vlOldFile *file, vlTokenizer *tokens, vlOldParam *p) {
     p->value = span_of(file, tokens, &token);
     return add_value(file, tokens, &token, p);
   }
-  if (token.kind != VL_TOKEN_OPEN) return bad_token(file, &token, "a value");
+  if (token.kind != VL_TOKEN_OPEN)
+    return bad_token(file, &token, "a value");
   p->bracket = true;
   p->value.start = offset(file, token.text);
   for (;;) {
     token = vl_token_next(tokens);
-    if (token.kind == VL_TOKEN_CLOSE) break;
-    if (token.kind != VL_TOKEN_STRING && token.kind != VL_TOKEN_WORD) return bad_token(file, &token, "a value or ]");
+    if (token.kind == VL_TOKEN_CLOSE)
+      break;
+    if (token.kind != VL_TOKEN_STRING && token.kind != VL_TOKEN_WORD)
+      return bad_token(file, &token, "a value or ]");
     add_value(file, tokens, &token, p);
   }
   p->value.end = offset(file, tokens->at);
@@ -73,9 +88,11 @@ static bool read_values(vlOldFile *file, vlTokenizer *tokens, vlOldParam *p) {
 static bool read_param(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) {
   vlOldParam *p = VL_PUSH(file->u->context, &s->params);
   vlToken token = vl_token_next(tokens);
-  if (!p) return vl_old_fail_memory(file->u);
+  if (!p)
+    return vl_old_fail_memory(file->u);
   memset(p, 0, sizeof *p);
-  if (token.kind != VL_TOKEN_STRING) return bad_token(file, &token, "a parameter");
+  if (token.kind != VL_TOKEN_STRING)
+    return bad_token(file, &token, "a parameter");
   p->decl = span_of(file, tokens, &token);
   char *text = file->words + offset(file, token.text); /* type and name */
   text += strspn(text, " \t");
@@ -83,7 +100,8 @@ static bool read_param(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) 
   char *name = text + type + strspn(text + type, " \t");
   if (!type || !*name)
     return vl_old_fail(file, VL_ERROR_SCENE, token.line, token.column,
-                       "parameter \"%s\" is not of the form \"type name\"", vl_short_text(text).text);
+                       "parameter \"%s\" is not of the form \"type name\"",
+                       vl_short_text(text).text);
   name[strcspn(name, " \t")] = 0;
   text[type] = 0;
   p->type = p->new_type = text;
@@ -94,12 +112,15 @@ static bool read_param(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) 
 static bool read_names(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) {
   while (s->name_count < s->word->names && peek(tokens).kind == VL_TOKEN_STRING) {
     vlToken token = vl_token_next(tokens);
-    if (token.kind != VL_TOKEN_STRING) return bad_token(file, &token, "a name in quotes");
+    if (token.kind != VL_TOKEN_STRING)
+      return bad_token(file, &token, "a name in quotes");
     s->names[s->name_count] = span_of(file, tokens, &token);
     s->name[s->name_count++] = token.text;
   }
-  bool optional = s->word->form == VL_OLD_PLAIN && s->name_count + 1 == s->word->names && s->name_count > 0;
-  if (s->name_count == s->word->names || optional) return true;
+  bool optional =
+      s->word->form == VL_OLD_PLAIN && s->name_count + 1 == s->word->names && s->name_count > 0;
+  if (s->name_count == s->word->names || optional)
+    return true;
   vlToken token = vl_token_next(tokens);
   return bad_token(file, &token, "a name in quotes");
 }
@@ -113,7 +134,8 @@ static bool read_numbers(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s
       s->numbers[token.kind == VL_TOKEN_CLOSE] = span_of(file, tokens, &token);
     } else {
       vlTokenizer before = *tokens;
-      if (vl_token_number(tokens, &value)) continue;
+      if (vl_token_number(tokens, &value))
+        continue;
       *tokens = before; /* without the blanks that follow */
       return true;
     }
@@ -122,7 +144,8 @@ static bool read_numbers(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s
 
 static const vlOldWord *find_word(const vlToken *token) {
   for (const vlOldWord *w = vl_old_words; w->name; w++)
-    if (strlen(w->name) == token->length && memcmp(w->name, token->text, token->length) == 0) return w;
+    if (strlen(w->name) == token->length && memcmp(w->name, token->text, token->length) == 0)
+      return w;
   return NULL;
 }
 
@@ -130,21 +153,30 @@ bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *
   vlToken token = vl_token_next(tokens);
   *s = (vlOldStatement){.line = token.line, .column = token.column};
   *end = token.kind == VL_TOKEN_END;
-  if (*end) return true;
-  if (token.kind != VL_TOKEN_WORD) return bad_token(file, &token, "a directive");
+  if (*end)
+    return true;
+  if (token.kind != VL_TOKEN_WORD)
+    return bad_token(file, &token, "a directive");
   s->keyword = span_of(file, tokens, &token);
   s->word = find_word(&token);
   if (!s->word)
-    return vl_old_fail(file, VL_ERROR_SCENE, token.line, token.column, "unknown directive \"%s\"",
+    return vl_old_fail(file, VL_ERROR_SCENE, token.line, token.column,
+                       "unknown directive \"%s\"",
                        vl_short_text_of(token.text, token.length).text);
   bool fine = read_names(file, tokens, s);
   switch (s->word->form) {
-    case VL_OLD_PLAIN: break;
-    case VL_OLD_WORD: vl_token_next(tokens); break;
+    case VL_OLD_PLAIN:
+      break;
+    case VL_OLD_WORD:
+      vl_token_next(tokens);
+      break;
     case VL_OLD_NUMBERS:
-    case VL_OLD_MATRIX: fine = fine && read_numbers(file, tokens, s); break;
+    case VL_OLD_MATRIX:
+      fine = fine && read_numbers(file, tokens, s);
+      break;
     case VL_OLD_PARAMS:
-      while (fine && peek(tokens).kind == VL_TOKEN_STRING) fine = read_param(file, tokens, s);
+      while (fine && peek(tokens).kind == VL_TOKEN_STRING)
+        fine = read_param(file, tokens, s);
       break;
   }
   s->whole = (vlOldSpan){s->keyword.start, offset(file, tokens->at)};

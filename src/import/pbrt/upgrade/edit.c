@@ -7,56 +7,69 @@
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-/* ---- errors and reports ------------------------------------------------------------------------------------------ */
+/* ---- errors and reports
+ * ------------------------------------------------------------------------------------------ */
 
-bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column, const char *format, ...) {
+bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
+                 const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);
   vlUpgrade *u = file->u;
-  if (u->result == VL_OK) u->result = vl_fail_at(&u->error, code, file->path, line, column, "%s", text);
+  if (u->result == VL_OK)
+    u->result = vl_fail_at(&u->error, code, file->path, line, column, "%s", text);
   return false;
 }
 
 bool vl_old_fail_memory(vlUpgrade *u) {
-  if (u->result == VL_OK) u->result = vl_fail_memory(&u->error);
+  if (u->result == VL_OK)
+    u->result = vl_fail_memory(&u->error);
   return false;
 }
 
 static void report(const vlOldFile *file, vlUpgradeNote note, uint32_t line, const char *text) {
   const vlUpgradeDef *def = file->u->def;
-  if (file->u->quiet) return;
+  if (file->u->quiet)
+    return;
   vlError where = {0};
   vl_fail_at(&where, VL_OK, file->path, line, 0, "%s", "");
-  if (def->report) def->report(def->report_user, note, &where, text);
+  if (def->report)
+    def->report(def->report_user, note, &where, text);
 }
 
 void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);
-  if (!file->u->quiet) file->u->lost++;
+  if (!file->u->quiet)
+    file->u->lost++;
   report(file, VL_UPGRADE_LOST, line, text);
 }
 
 void vl_old_note(vlOldStatement *s, const char *format, ...) {
   size_t n = strlen(s->changes);
-  if (n + 3 >= sizeof s->changes) return;
-  if (n) n += (size_t)snprintf(s->changes + n, sizeof s->changes - n, ", ");
+  if (n + 3 >= sizeof s->changes)
+    return;
+  if (n)
+    n += (size_t)snprintf(s->changes + n, sizeof s->changes - n, ", ");
   va_list args;
   va_start(args, format);
   vsnprintf(s->changes + n, sizeof s->changes - n, format, args);
   va_end(args);
 }
 
-/* Bit of the order of statements that follow: parameters that are added later still stand before them. */
+/* Bit of the order of statements that follow: parameters that are added later still stand
+ * before them. */
 static const uint32_t AFTER = 0x80000000u;
 
-/* ---- edits ------------------------------------------------------------------------------------------------------- */
+/* ---- edits
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 static bool edit_text(vlOldFile *file, vlOldSpan span, const char *text) {
   vlContext *context = file->u->context;
   uint32_t order = (uint32_t)file->edits.count;
   vlOldEdit *edit = VL_PUSH(context, &file->edits);
-  if (!edit) return vl_old_fail_memory(file->u);
+  if (!edit)
+    return vl_old_fail_memory(file->u);
   *edit = (vlOldEdit){span, vl_strdup(context, text), order};
   return edit->text || vl_old_fail_memory(file->u);
 }
@@ -68,13 +81,14 @@ static char *format_text(vlContext *context, const char *format, va_list args) {
   int n = vsnprintf(NULL, 0, format, again);
   va_end(again);
   char *text = n < 0 ? NULL : vl_alloc(context, (size_t)n + 1);
-  if (text) vsnprintf(text, (size_t)n + 1, format, args);
+  if (text)
+    vsnprintf(text, (size_t)n + 1, format, args);
   return text;
 }
 
 /* An edit of prefix, text and suffix. Frees text. */
-static bool edit_parts(vlOldFile *file, vlOldSpan span, const char *prefix, int prefix_length, char *text,
-                       const char *suffix, int suffix_length) {
+static bool edit_parts(vlOldFile *file, vlOldSpan span, const char *prefix, int prefix_length,
+                       char *text, const char *suffix, int suffix_length) {
   vlContext *context = file->u->context;
   size_t size = text ? strlen(text) + (size_t)prefix_length + (size_t)suffix_length + 1 : 0;
   char *whole = text ? vl_alloc(context, size) : NULL;
@@ -99,19 +113,26 @@ bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...) {
 /* Start of the line of a place, and the length of its indentation. */
 static size_t line_start(const vlOldFile *file, size_t at, int *indent) {
   size_t start = at;
-  while (start > 0 && file->text[start - 1] != '\n') start--;
+  while (start > 0 && file->text[start - 1] != '\n')
+    start--;
   *indent = 0;
-  while (file->text[start + (size_t)*indent] == ' ' || file->text[start + (size_t)*indent] == '\t') ++*indent;
+  while (file->text[start + (size_t)*indent] == ' ' ||
+         file->text[start + (size_t)*indent] == '\t')
+    ++*indent;
   return start;
 }
 
 bool vl_old_remove(vlOldFile *file, vlOldStatement *s) {
   int indent;
   size_t line = line_start(file, s->whole.start, &indent), end = s->whole.end;
-  while (end < file->size && (file->text[end] == ' ' || file->text[end] == '\t' || file->text[end] == '\r')) end++;
-  bool alone = line + (size_t)indent == s->whole.start && (end >= file->size || file->text[end] == '\n');
+  while (end < file->size &&
+         (file->text[end] == ' ' || file->text[end] == '\t' || file->text[end] == '\r'))
+    end++;
+  bool alone =
+      line + (size_t)indent == s->whole.start && (end >= file->size || file->text[end] == '\n');
   vlOldSpan span = alone ? (vlOldSpan){line, end < file->size ? end + 1 : end} : s->whole;
-  for (size_t i = 0; i < s->params.count; i++) s->params.items[i].dropped = true;
+  for (size_t i = 0; i < s->params.count; i++)
+    s->params.items[i].dropped = true;
   s->whole.end = s->whole.start;
   return vl_old_edit(file, span, "%s", "");
 }
@@ -137,7 +158,8 @@ bool vl_old_before(vlOldFile *file, const vlOldStatement *s, const char *format,
   va_start(args, format);
   char *text = format_text(file->u->context, format, args);
   va_end(args);
-  return edit_parts(file, (vlOldSpan){s->keyword.start, s->keyword.start}, "", 0, text, suffix.text, suffix.length);
+  return edit_parts(file, (vlOldSpan){s->keyword.start, s->keyword.start}, "", 0, text,
+                    suffix.text, suffix.length);
 }
 
 bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
@@ -146,18 +168,23 @@ bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, 
   va_start(args, format);
   char *text = format_text(file->u->context, format, args);
   va_end(args);
-  bool fine = edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix.text, prefix.length, text, "", 0);
-  if (fine) file->edits.items[file->edits.count - 1].order |= AFTER;
+  bool fine = edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix.text,
+                         prefix.length, text, "", 0);
+  if (fine)
+    file->edits.items[file->edits.count - 1].order |= AFTER;
   return fine;
 }
 
 /* The blanks before the last parameter, which separate an added one, too. */
 static int separator(const vlOldFile *file, const vlOldStatement *s, const char **text) {
   *text = " ";
-  if (s->params.count < 2) return 1;
+  if (s->params.count < 2)
+    return 1;
   size_t end = s->params.items[s->params.count - 1].decl.start, start = end;
-  while (start > 0 && strchr(" \t\r\n", file->text[start - 1])) start--;
-  if (start == end || end - start > 100) return 1;
+  while (start > 0 && strchr(" \t\r\n", file->text[start - 1]))
+    start--;
+  if (start == end || end - start > 100)
+    return 1;
   *text = file->text + start;
   return (int)(end - start);
 }
@@ -173,42 +200,58 @@ bool vl_old_add(vlOldFile *file, const vlOldStatement *s, const char *format, ..
 }
 
 bool vl_old_rename(vlOldFile *file, vlOldStatement *s, size_t i, const char *name) {
-  if (vl_text_is(s->name[i], name)) return true;
+  if (vl_text_is(s->name[i], name))
+    return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", s->name[i], name);
   s->name[i] = name;
   return vl_old_edit(file, s->names[i], "\"%s\"", name);
 }
 
-/* ---- a finished statement ---------------------------------------------------------------------------------------- */
+/* ---- a finished statement
+ * ---------------------------------------------------------------------------------------- */
 
 /* Removes a parameter with the blanks before it. */
 static bool cut_param(vlOldFile *file, const vlOldParam *p) {
   size_t start = p->decl.start;
-  while (start > 0 && strchr(" \t\r\n", file->text[start - 1])) start--;
+  while (start > 0 && strchr(" \t\r\n", file->text[start - 1]))
+    start--;
   /* a comment before it ends with its line */
   size_t line = start;
-  while (line > 0 && file->text[line - 1] != '\n') line--;
-  if (memchr(file->text + line, '#', start - line)) start = p->decl.start;
+  while (line > 0 && file->text[line - 1] != '\n')
+    line--;
+  if (memchr(file->text + line, '#', start - line))
+    start = p->decl.start;
   return vl_old_edit(file, (vlOldSpan){start, p->value.end}, "%s", "");
 }
 
 bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
-  if (s->finished) return true;
+  if (s->finished)
+    return true;
   s->finished = true;
   for (size_t i = 0; i < s->name_count; i++)
-    if (s->renamed >> i & 1 && !vl_old_edit(file, s->names[i], "\"%s\"", s->name[i])) return false;
+    if (s->renamed >> i & 1 && !vl_old_edit(file, s->names[i], "\"%s\"", s->name[i]))
+      return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    if (p->dropped && s->whole.end == s->whole.start) continue; /* the whole statement is removed */
-    if (p->dropped && !cut_param(file, p)) return false;
-    if (p->dropped) continue;
+    if (p->dropped && s->whole.end == s->whole.start)
+      continue; /* the whole statement is removed */
+    if (p->dropped && !cut_param(file, p))
+      return false;
+    if (p->dropped)
+      continue;
     bool named = vl_text_is(p->name, p->new_name), typed = vl_text_is(p->type, p->new_type);
-    if (!named) vl_old_note(s, "%s -> %s", p->name, p->new_name);
-    if (named && !typed) vl_old_note(s, "%s %s -> %s", p->type, p->name, p->new_type);
-    if ((!named || !typed) && !vl_old_edit(file, p->decl, "\"%s %s\"", p->new_type, p->new_name)) return false;
-    if (p->new_value[0] && !vl_old_edit(file, p->value, "%s", p->new_value)) return false;
+    if (!named)
+      vl_old_note(s, "%s -> %s", p->name, p->new_name);
+    if (named && !typed)
+      vl_old_note(s, "%s %s -> %s", p->type, p->name, p->new_type);
+    if ((!named || !typed) &&
+        !vl_old_edit(file, p->decl, "\"%s %s\"", p->new_type, p->new_name))
+      return false;
+    if (p->new_value[0] && !vl_old_edit(file, p->value, "%s", p->new_value))
+      return false;
   }
-  if (!s->changes[0]) return true;
+  if (!s->changes[0])
+    return true;
   char text[520];
   bool of_kind = s->name_count > 0 && s->word->form == VL_OLD_PARAMS;
   snprintf(text, sizeof text, "%s%s%s", s->word->name, of_kind ? ": " : " ", s->changes);
@@ -219,21 +262,27 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
 static int by_place(const void *a, const void *b) {
   const vlOldEdit *x = a, *y = b;
   bool x_adds = x->span.start == x->span.end, y_adds = y->span.start == y->span.end;
-  if (x->span.start != y->span.start) return x->span.start < y->span.start ? -1 : 1;
-  if (x_adds != y_adds) return x_adds ? -1 : 1;
+  if (x->span.start != y->span.start)
+    return x->span.start < y->span.start ? -1 : 1;
+  if (x_adds != y_adds)
+    return x_adds ? -1 : 1;
   return x->order < y->order ? -1 : x->order > y->order;
 }
 
 char *vl_old_render(vlOldFile *file, vlOldSpan span) {
   size_t size = span.end - span.start + 1;
-  if (file->edits.count) qsort(file->edits.items, file->edits.count, sizeof *file->edits.items, by_place);
-  for (size_t i = 0; i < file->edits.count; i++) size += strlen(file->edits.items[i].text);
+  if (file->edits.count)
+    qsort(file->edits.items, file->edits.count, sizeof *file->edits.items, by_place);
+  for (size_t i = 0; i < file->edits.count; i++)
+    size += strlen(file->edits.items[i].text);
   char *out = vl_alloc(file->u->context, size), *to = out;
-  if (!out) return NULL;
+  if (!out)
+    return NULL;
   size_t at = span.start;
   for (size_t i = 0; i < file->edits.count; i++) {
     const vlOldEdit *e = &file->edits.items[i];
-    if (e->span.start < at || e->span.end > span.end) continue; /* outside, or inside of a larger edit */
+    if (e->span.start < at || e->span.end > span.end)
+      continue; /* outside, or inside of a larger edit */
     memcpy(to, file->text + at, e->span.start - at);
     to += e->span.start - at;
     memcpy(to, e->text, strlen(e->text));

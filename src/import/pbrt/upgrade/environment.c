@@ -1,5 +1,5 @@
-/* import/pbrt/upgrade/environment.c: images of lights. pbrt-v3 has maps over longitude and latitude, pbrt-v4 equal-area
- * maps of the same directions (pbrt book 3.8.3). */
+/* import/pbrt/upgrade/environment.c: images of lights. pbrt-v3 has maps over longitude and
+ * latitude, pbrt-v4 equal-area maps of the same directions (pbrt book 3.8.3). */
 #include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -22,7 +22,8 @@ typedef struct Work {
   vlImage *to;
 } Work;
 
-/* Adds the value at longitude u and latitude v, in pixels, interpolated between four of them. */
+/* Adds the value at longitude u and latitude v, in pixels, interpolated between four of them.
+ */
 static void look(const Work *w, double u, double v, double sum[3]) {
   double fu = floor(u), fv = floor(v);
   for (int c = 0; c < 4; c++) {
@@ -31,7 +32,8 @@ static void look(const Work *w, double u, double v, double sum[3]) {
     j = j < 0 ? 0 : j >= (int64_t)w->height ? (int64_t)w->height - 1 : j;
     double weight = (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv));
     const float *p = w->pixels + 3 * ((size_t)j * w->width + (size_t)i);
-    for (int n = 0; n < 3; n++) sum[n] += weight * p[n];
+    for (int n = 0; n < 3; n++)
+      sum[n] += weight * p[n];
   }
 }
 
@@ -47,34 +49,44 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
     for (int k = 0; k < LOOKS * LOOKS; k++) {
       vlVec3 d = vl_octahedral_decode((float)((x + (k % LOOKS + 0.5) / LOOKS) / side),
                                       (float)((y + (k / LOOKS + 0.5) / LOOKS) / side));
-      double phi = vl_atan2_double(d.y, d.x), theta = vl_acos_double(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z);
-      if (phi < 0) phi += 2 * pi;
+      double phi = vl_atan2_double(d.y, d.x), theta = vl_acos_double(d.z > 1    ? 1
+                                                                     : d.z < -1 ? -1
+                                                                                : (double)d.z);
+      if (phi < 0)
+        phi += 2 * pi;
       look(w, phi / (2 * pi) * w->width - 0.5, theta / pi * w->height - 0.5, sum);
     }
-    for (uint32_t n = 0; n < 3; n++) row[3 * x + n] = (float)(sum[n] * w->factor[n] / (LOOKS * LOOKS));
+    for (uint32_t n = 0; n < 3; n++)
+      row[3 * x + n] = (float)(sum[n] * w->factor[n] / (LOOKS * LOOKS));
   }
 }
 
 /* Three channels; those of an image of one are equal. */
-static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from, float **pixels) {
+static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from,
+                        float **pixels) {
   uint32_t channel[4], count = vl_image_color(from, channel);
   if (!count) {
     u->result = vl_fail(&u->error, VL_ERROR_SCENE, "%s: the image has no colour", map->from);
     return false;
   }
-  if (count < 3) channel[1] = channel[2] = channel[0];
+  if (count < 3)
+    channel[1] = channel[2] = channel[0];
   return vl_image_to_float(from, channel, 3, pixels) == VL_OK || vl_old_fail_memory(u);
 }
 
 static bool convert(vlUpgrade *u, vlOldMap *map, const vlImage *from) {
   double side = sqrt((double)from->width * from->height);
   uint32_t even = 2 * (uint32_t)(side / 2 + 0.5);
-  vlImageDef def = vl_default_image_def(even < LEAST_SIDE ? LEAST_SIDE : even > MOST_SIDE ? MOST_SIDE : even, 0, 3);
+  vlImageDef def = vl_default_image_def(even < LEAST_SIDE  ? LEAST_SIDE
+                                        : even > MOST_SIDE ? MOST_SIDE
+                                                           : even,
+                                        0, 3);
   def.height = def.width;
   def.type = VL_PIXEL_F32;
   vlImage *image = NULL;
   float *pixels = NULL;
-  if (!read_pixels(u, map, from, &pixels)) return false;
+  if (!read_pixels(u, map, from, &pixels))
+    return false;
   bool fine = vl_image_create(u->context, &def, &image) == VL_OK || vl_old_fail_memory(u);
   if (fine) {
     Work work = {pixels, from->width, from->height, map->factor, image};
@@ -87,14 +99,17 @@ static bool convert(vlUpgrade *u, vlOldMap *map, const vlImage *from) {
   return fine;
 }
 
-/* Makes the new image, and names it: "sky-equiarea.exr", or with a number where another file has the name. */
+/* Makes the new image, and names it: "sky-equiarea.exr", or with a number where another file
+ * has the name. */
 static bool make_map(vlUpgrade *u, vlOldMap *map, const char *old, char *name, size_t size) {
   vlImage *from = NULL;
   u->result = vl_image_read_named(u->context, NULL, map->from, &from, &u->error);
   bool fine = u->result == VL_OK && convert(u, map, from);
   vl_image_destroy(from);
-  if (!fine) return false;
-  const char *slash = strrchr(old, '/'), *base = slash ? slash + 1 : old, *dot = strrchr(base, '.');
+  if (!fine)
+    return false;
+  const char *slash = strrchr(old, '/'), *base = slash ? slash + 1 : old,
+             *dot = strrchr(base, '.');
   int stem = dot ? (int)(dot - base) : (int)strlen(base);
   snprintf(name, size, "%.*s-equiarea.exr", stem, base);
   u->result = vl_file_set_name(&u->files, name, size, map->data, map->size, &u->error);
@@ -102,12 +117,14 @@ static bool make_map(vlUpgrade *u, vlOldMap *map, const char *old, char *name, s
   return u->result == VL_OK && (map->name || vl_old_fail_memory(u));
 }
 
-bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
-                        size_t size) {
+bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name,
+                        const double factor[3], char *result, size_t size) {
   vlUpgrade *u = file->u;
   char path[4096];
-  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name, path, sizeof path);
-  if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
+  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name,
+                               path, sizeof path);
+  if (found == VL_FOUND_TOO_LONG)
+    return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   if (found == VL_FOUND_NOT) {
     u->missing++;
     vl_old_lose(file, line, "there is no image \"%s\": it must become an equal-area map", name);
@@ -119,7 +136,9 @@ bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const 
       return snprintf(result, size, "%s", map->name) > 0;
   }
   vlOldMap *map = VL_PUSH(u->context, &u->maps);
-  if (!map) return vl_old_fail_memory(u);
-  *map = (vlOldMap){.from = vl_strdup(u->context, path), .factor = {factor[0], factor[1], factor[2]}};
+  if (!map)
+    return vl_old_fail_memory(u);
+  *map = (vlOldMap){.from = vl_strdup(u->context, path),
+                    .factor = {factor[0], factor[1], factor[2]}};
   return map->from ? make_map(u, map, name, result, size) : vl_old_fail_memory(u);
 }

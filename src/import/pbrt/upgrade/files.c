@@ -14,7 +14,8 @@ static bool relative(const char *folder, const char *file, char *result, size_t 
   size_t same = 0, at = 0, n = 0;
   while (folder[at] && folder[at] == file[at]) {
     at++;
-    if (folder[at - 1] == '/') same = at;
+    if (folder[at - 1] == '/')
+      same = at;
   }
   if (!folder[at] && file[at] == '/')
     same = at + 1;
@@ -25,7 +26,8 @@ static bool relative(const char *folder, const char *file, char *result, size_t 
     n += (size_t)snprintf(result + n, n < size ? size - n : 0, "../");
     f += strcspn(f, "/");
     f += *f == '/';
-    if (n >= size) return false;
+    if (n >= size)
+      return false;
   }
   n += (size_t)snprintf(result + n, size - n, "%s", file + same);
   return n < size;
@@ -40,16 +42,20 @@ static bool is_metal(const char *name, char *result, size_t size) {
   for (size_t i = 0; i < VL_LENGTH(metals); i++)
     for (int k = 0; k < 2; k++) {
       snprintf(known, sizeof known, "%s.%s.spd", metals[i], parts[k]);
-      if (vl_text_is(known, base)) return snprintf(result, size, "metal-%s-%s", metals[i], parts[k]) > 0;
+      if (vl_text_is(known, base))
+        return snprintf(result, size, "metal-%s-%s", metals[i], parts[k]) > 0;
     }
   return false;
 }
 
-bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result, size_t size) {
+bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result,
+                      size_t size) {
   vlUpgrade *u = file->u;
   char path[4096], beside[4096], real[PATH_MAX];
-  if (is_metal(name, result, size)) return true;
-  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name, path, sizeof path);
+  if (is_metal(name, result, size))
+    return true;
+  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name,
+                               path, sizeof path);
   if (found == VL_FOUND_TOO_LONG || strlen(name) >= size)
     return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   snprintf(result, size, "%s", name);
@@ -59,9 +65,10 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
     return true;
   }
   struct stat info;
-  bool first = vl_path_join(u->first, name, beside, sizeof beside) && vl_context_allows(u->context, beside) &&
-               stat(beside, &info) == 0;
-  if (name[0] == '/' || (u->same_folder && first)) return true;
+  bool first = vl_path_join(u->first, name, beside, sizeof beside) &&
+               vl_context_allows(u->context, beside) && stat(beside, &info) == 0;
+  if (name[0] == '/' || (u->same_folder && first))
+    return true;
   if (!realpath(first ? beside : path, real) || !relative(u->to_folder, real, result, size))
     return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long: %s", path);
   return true;
@@ -69,35 +76,48 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
 
 bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p) {
   char name[4096];
-  if (!p || !p->strings) return true;
-  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
-  if (vl_text_is(name, p->text[0])) return true;
+  if (!p || !p->strings)
+    return true;
+  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name))
+    return false;
+  if (vl_text_is(name, p->text[0]))
+    return true;
   vl_old_note(s, "filename is \"%s\"", name);
   return vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
 
-/* ---- Include ----------------------------------------------------------------------------------------------------- */
+/* ---- Include
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 static const vlOldInclude *find_include(vlUpgrade *u, const char *path) {
   for (size_t i = 0; i < u->includes.count; i++)
-    if (vl_text_is(u->includes.items[i].path, path)) return &u->includes.items[i];
+    if (vl_text_is(u->includes.items[i].path, path))
+      return &u->includes.items[i];
   return NULL;
 }
 
-/* The name of a changed file: its own in another folder, else with -v4; never an existing file of the old scene. */
-static bool new_name(vlUpgrade *u, const char *name, const char *path, char *result, size_t size) {
+/* The name of a changed file: its own in another folder, else with -v4; never an existing file
+ * of the old scene. */
+static bool new_name(vlUpgrade *u, const char *name, const char *path, char *result,
+                     size_t size) {
   char clean[4096], real[PATH_MAX], folder[PATH_MAX + 4200];
-  const char *from = name[0] == '/' || strncmp(name, "../", 3) == 0 || strstr(name, "/../") ? NULL : name;
-  if (!from) from = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-  while (strncmp(from, "./", 2) == 0) from += 2;
+  const char *from =
+      name[0] == '/' || strncmp(name, "../", 3) == 0 || strstr(name, "/../") ? NULL : name;
+  if (!from)
+    from = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+  while (strncmp(from, "./", 2) == 0)
+    from += 2;
   size_t length = strlen(from);
-  if (vl_ends_with(from, ".gz")) length -= 3;
+  if (vl_ends_with(from, ".gz"))
+    length -= 3;
   snprintf(clean, sizeof clean, "%.*s", (int)length, from);
   bool suffix = vl_ends_with(clean, ".pbrt");
   size_t stem = strlen(clean) - (suffix ? 5 : 0);
   snprintf(folder, sizeof folder, "%s/%s", u->to_folder, clean);
   bool clash = realpath(folder, real) != NULL && u->same_folder;
-  int n = snprintf(result, size, "%.*s%s%s", (int)stem, clean, clash ? "-v4" : "", suffix ? ".pbrt" : clean + stem);
+  int n = snprintf(result, size, "%.*s%s%s", (int)stem, clean, clash ? "-v4" : "",
+                   suffix ? ".pbrt" : clean + stem);
   return n > 0 && (size_t)n < size;
 }
 
@@ -105,9 +125,11 @@ static bool new_name(vlUpgrade *u, const char *name, const char *path, char *res
 static bool keep_output(vlUpgrade *u, const char *name, char *text) {
   char **slot = VL_PUSH(u->context, &u->outputs), *copy = vl_strdup(u->context, name);
   char **second = slot && copy ? VL_PUSH(u->context, &u->outputs) : NULL;
-  if (slot) u->outputs.items[u->outputs.count - (second ? 2 : 1)] = copy;
+  if (slot)
+    u->outputs.items[u->outputs.count - (second ? 2 : 1)] = copy;
   if (!second) {
-    if (!slot) vl_free(u->context, copy);
+    if (!slot)
+      vl_free(u->context, copy);
     vl_free(u->context, text);
     return vl_old_fail_memory(u);
   }
@@ -119,14 +141,16 @@ static bool keep_output(vlUpgrade *u, const char *name, char *text) {
 static const vlOldInclude *find_text(const vlUpgrade *u, const char *path, const char *text) {
   for (size_t i = 0; i < u->includes.count; i++) {
     const vlOldInclude *n = &u->includes.items[i];
-    if (vl_text_is(n->path, path) && (n->text && text ? vl_text_is(n->text, text) : n->text == text)) return n;
+    if (vl_text_is(n->path, path) &&
+        (n->text && text ? vl_text_is(n->text, text) : n->text == text))
+      return n;
   }
   return NULL;
 }
 
 /* The name of the new file; a number is added where another file has it. */
-static bool choose_name(vlOldFile *file, const vlOldStatement *s, const char *path, const char *text, char *name,
-                        size_t size) {
+static bool choose_name(vlOldFile *file, const vlOldStatement *s, const char *path,
+                        const char *text, char *name, size_t size) {
   vlUpgrade *u = file->u;
   if (!new_name(u, s->name[0], path, name, size))
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
@@ -134,8 +158,11 @@ static bool choose_name(vlOldFile *file, const vlOldStatement *s, const char *pa
   return u->result == VL_OK;
 }
 
-/* Upgrades the file, and names the new one. first: it was not included before. Null after an error. */
-static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s, const char *path, bool first) {
+/* Upgrades the file, and names the new one. first: it was not included before. Null after an
+ * error.
+ */
+static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s,
+                                        const char *path, bool first) {
   vlUpgrade *u = file->u;
   char name[4096], *text = NULL;
   const size_t made = u->names.count;
@@ -147,7 +174,8 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
   bool fine = vl_old_upgrade_file(u, path, &text, &changed);
   u->quiet = quiet;
   u->depth--;
-  if (!fine) return NULL;
+  if (!fine)
+    return NULL;
   if (!changed) {
     vl_free(u->context, text);
     text = NULL;
@@ -157,12 +185,14 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
     vl_free(u->context, text);
     return known;
   }
-  if (!text && !vl_old_file_name(file, s->line, s->name[0], name, sizeof name)) return NULL;
+  if (!text && !vl_old_file_name(file, s->line, s->name[0], name, sizeof name))
+    return NULL;
   if (text && !choose_name(file, s, path, text, name, sizeof name)) {
     vl_free(u->context, text);
     return NULL;
   }
-  if (text && !keep_output(u, name, text)) return NULL;
+  if (text && !keep_output(u, name, text))
+    return NULL;
   vlOldInclude *n = VL_PUSH(u->context, &u->includes);
   if (!n) {
     vl_old_fail_memory(u);
@@ -183,16 +213,20 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
 bool vl_old_include(vlOldFile *file, vlOldStatement *s) {
   vlUpgrade *u = file->u;
   char path[4096];
-  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, s->name[0], path, sizeof path);
-  if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
+  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path,
+                               s->name[0], path, sizeof path);
+  if (found == VL_FOUND_TOO_LONG)
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
   if (u->depth > 64)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "files include each other more than 64 deep");
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
+                       "files include each other more than 64 deep");
   if (found == VL_FOUND_NOT) {
     u->missing++;
     vl_old_lose(file, s->line, "there is no file \"%s\": its name stays as it is", s->name[0]);
     return true;
   }
   const vlOldInclude *known = find_include(u, path);
-  if (!known || known->makes || (known->refers && u->renamed)) known = read_include(file, s, path, !known);
+  if (!known || known->makes || (known->refers && u->renamed))
+    known = read_include(file, s, path, !known);
   return known && vl_old_rename(file, s, 0, known->name);
 }

@@ -22,23 +22,31 @@
 
 static const vlOldRow point[] = {{"I"}, PLACE, COMMON, {0}};
 static const vlOldRow spot[] = {{"I"}, {"coneangle"}, {"conedeltaangle"}, PLACE, COMMON, {0}};
-static const vlOldRow goniometric[] = {{"I"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, COMMON, {0}};
-static const vlOldRow projection[] = {{"mapname", VL_OLD_RENAME, "filename"},      {"filename"}, {"fov"},
-                                      {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"}, COMMON,       {0}};
+static const vlOldRow goniometric[] = {
+    {"I"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, COMMON, {0}};
+static const vlOldRow projection[] = {
+    {"mapname", VL_OLD_RENAME, "filename"},      {"filename"}, {"fov"},
+    {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"}, COMMON,       {0}};
 static const vlOldRow distant[] = {{"L"}, PLACE, COMMON, {"illuminance"}, {0}};
-static const vlOldRow infinite[] = {
-    {"L"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, {"portal"}, {"illuminance"}, SAMPLES, COMMON, {0}};
+static const vlOldRow infinite[] = {{"L"},           {"mapname", VL_OLD_RENAME, "filename"},
+                                    {"filename"},    {"portal"},
+                                    {"illuminance"}, SAMPLES,
+                                    COMMON,          {0}};
 static const vlOldRow area[] = {{"L"}, {"twosided"}, SAMPLES, COMMON, {0}};
 
-/* ---- the factor -------------------------------------------------------------------------------------------------- */
+/* ---- the factor
+ * --------------------------------------------------------------------------------------------------
+ */
 
 /* The pairs of a sampled spectrum; the caller frees both arrays. */
-static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths, float **values) {
+static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths,
+                       float **values) {
   vlContext *context = file->u->context;
   const char *at = file->text + p->value.start, *end = file->text + p->value.end;
   *wavelengths = vl_alloc_array(context, p->count, sizeof **wavelengths);
   *values = vl_alloc_array(context, p->count, sizeof **values);
-  if (!*wavelengths || !*values) return vl_old_fail_memory(file->u);
+  if (!*wavelengths || !*values)
+    return vl_old_fail_memory(file->u);
   for (size_t n = 0; at < end && n < p->count;) {
     double number;
     if (!vl_number_scan(&at, end, &number)) {
@@ -59,7 +67,9 @@ static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, doubl
   vlError error;
   *factor = 1;
   if (sampled && p->strings)
-    vl_old_lose(file, line, "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness by \"scale\"",
+    vl_old_lose(file, line,
+                "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness "
+                "by \"scale\"",
                 p->name);
   if (p && vl_text_is(p->type, "blackbody") && p->count && p->number[0] > 0) {
     spectrum = vl_spectrum_blackbody((float)p->number[0]);
@@ -72,8 +82,10 @@ static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, doubl
   } else {
     return true;
   }
-  double y = fine ? vl_spectrum_photometric(&spectrum, &error) : 0, unit = vl_spectrum_photometric(&one, &error);
-  if (y > 0 && unit > 0) *factor = y / unit;
+  double y = fine ? vl_spectrum_photometric(&spectrum, &error) : 0,
+         unit = vl_spectrum_photometric(&one, &error);
+  if (y > 0 && unit > 0)
+    *factor = y / unit;
   vl_free(file->u->context, wavelengths);
   vl_free(file->u->context, values);
   return fine;
@@ -82,64 +94,80 @@ static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, doubl
 static bool set_color(vlOldFile *file, vlOldParam *p, const double rgb[3]) {
   char n[3][32];
   (void)file;
-  for (int i = 0; i < 3; i++) vl_old_text(rgb[i], n[i]);
+  for (int i = 0; i < 3; i++)
+    vl_old_text(rgb[i], n[i]);
   p->new_type = "rgb";
   snprintf(p->new_value, sizeof p->new_value, "[ %s %s %s ]", n[0], n[1], n[2]);
-  for (int i = 0; i < 3; i++) p->number[i] = rgb[i];
+  for (int i = 0; i < 3; i++)
+    p->number[i] = rgb[i];
   p->count = 3;
   return true;
 }
 
-/* Makes one number of all factors: "scale", which was a colour, and `more`. tint receives what is not grey. */
-static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, double more, double tint[3]) {
+/* Makes one number of all factors: "scale", which was a colour, and `more`. tint receives what
+ * is not grey. */
+static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, double more,
+                       double tint[3]) {
   vlOldParam *scale = vl_old_find(s, "scale");
   double value = 1, rgb[3] = {1, 1, 1}, own[3];
   char text[32];
-  for (int i = 0; i < 3; i++) tint[i] = 1;
+  for (int i = 0; i < 3; i++)
+    tint[i] = 1;
   if (scale && !vl_old_is_grey(scale, &value)) {
     value = 1;
     if (!vl_old_is_color(scale, rgb)) {
       vl_old_lose(file, s->line, "\"scale\": a spectrum has no counterpart: 1 is taken");
     } else if (color && vl_old_is_color(color, own)) {
-      for (int i = 0; i < 3; i++) own[i] *= rgb[i];
+      for (int i = 0; i < 3; i++)
+        own[i] *= rgb[i];
       set_color(file, color, own);
       vl_old_note(s, "%s times scale", color->name);
     } else {
       memcpy(tint, rgb, sizeof rgb);
     }
   }
-  if (scale && value * more == value && vl_text_is(scale->new_type, "float")) return true;
+  if (scale && value * more == value && vl_text_is(scale->new_type, "float"))
+    return true;
   value *= more;
   bool needed = (float)value != 1.0f;
   if (scale && needed && scale->count == 3 && more == 1) { /* the number as it is written */
     scale->new_type = "float";
-    snprintf(scale->new_value, sizeof scale->new_value, "%.*s", (int)(scale->span[0].end - scale->span[0].start),
+    snprintf(scale->new_value, sizeof scale->new_value, "%.*s",
+             (int)(scale->span[0].end - scale->span[0].start),
              file->text + scale->span[0].start);
     return true;
   }
-  if (scale) scale->dropped = true;
-  if (!needed) return true;
+  if (scale)
+    scale->dropped = true;
+  if (!needed)
+    return true;
   vl_old_note(s, "scale %s", vl_old_text(value, text));
   return vl_old_add(file, s, "\"float scale\" %s", vl_old_text(value, text));
 }
 
 /* pbrt-v3's blackbody has a factor as its second number. */
 static double blackbody_scale(vlOldFile *file, vlOldParam *p) {
-  if (!p || !vl_text_is(p->type, "blackbody") || p->count != 2) return 1;
+  if (!p || !vl_text_is(p->type, "blackbody") || p->count != 2)
+    return 1;
   snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
            file->text + p->span[0].start);
   return p->number[1];
 }
 
-/* ---- images ------------------------------------------------------------------------------------------------------ */
+/* ---- images
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool around, const double factor[3]) {
+static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool around,
+                       const double factor[3]) {
   char name[4096];
-  if (!map->strings) return true;
+  if (!map->strings)
+    return true;
   if (!(around ? vl_old_environment(file, s->line, map->text[0], factor, name, sizeof name)
                : vl_old_file_name(file, s->line, map->text[0], name, sizeof name)))
     return false;
-  if (vl_text_is(name, map->text[0])) return true;
+  if (vl_text_is(name, map->text[0]))
+    return true;
   vl_old_note(s, around ? "an equal-area map \"%s\"" : "filename is \"%s\"", name);
   return vl_old_edit(file, map->span[0], "\"%s\"", name);
 }
@@ -149,7 +177,9 @@ static bool goniometric_light(vlOldFile *file, vlOldStatement *s, vlOldParam *ma
   vlOldParam *color = vl_old_find(s, "I");
   const double one[3] = {1, 1, 1};
   double more = blackbody_scale(file, color), factor, tint[3];
-  if (!luminance(file, s->line, color, &factor) || !fold_scale(file, s, color, more * factor, tint)) return false;
+  if (!luminance(file, s->line, color, &factor) ||
+      !fold_scale(file, s, color, more * factor, tint))
+    return false;
   if (tint[0] != tint[1] || tint[1] != tint[2])
     vl_old_lose(file, s->line, "goniometric: a colour \"scale\" has no counterpart: left out");
   return name_image(file, s, map, true, one);
@@ -159,17 +189,22 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
   bool around = !vl_text_is(s->name[0], "projection");
   double more = 1, tint[3], rgb[3] = {1, 1, 1}, grey;
-  if (!map || !map->strings || !map->text[0][0]) return true;
-  if (vl_text_is(s->name[0], "goniometric")) return goniometric_light(file, s, map);
-  if (!color) color = vl_old_find(s, "I");
+  if (!map || !map->strings || !map->text[0][0])
+    return true;
+  if (vl_text_is(s->name[0], "goniometric"))
+    return goniometric_light(file, s, map);
+  if (!color)
+    color = vl_old_find(s, "I");
   if (color && !vl_old_is_color(color, rgb)) {
     vl_old_lose(file, s->line, "\"%s\" is a spectrum beside an image: left out", color->name);
     color->dropped = true;
   } else if (color && vl_old_is_grey(color, &grey)) {
     more = grey;
-    for (int i = 0; i < 3; i++) rgb[i] = 1;
+    for (int i = 0; i < 3; i++)
+      rgb[i] = 1;
     color->dropped = true;
-    if (grey != 1) vl_old_note(s, "%s in scale", color->name);
+    if (grey != 1)
+      vl_old_note(s, "%s in scale", color->name);
   } else if (color && around) {
     color->dropped = true;
     vl_old_note(s, "%s in the image", color->name);
@@ -177,8 +212,10 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
     vl_old_lose(file, s->line, "projection: a colour \"I\" has no counterpart: left out");
     color->dropped = true;
   }
-  if (!fold_scale(file, s, NULL, more, tint)) return false;
-  for (int i = 0; i < 3; i++) tint[i] *= rgb[i];
+  if (!fold_scale(file, s, NULL, more, tint))
+    return false;
+  for (int i = 0; i < 3; i++)
+    tint[i] *= rgb[i];
   if (!around && (tint[0] != tint[1] || tint[1] != tint[2]))
     vl_old_lose(file, s->line, "projection: a colour \"scale\" has no counterpart: left out");
   return name_image(file, s, map, around, tint);
@@ -187,17 +224,25 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
 static bool plain_light(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
   double more, factor, tint[3];
-  if (!color) color = vl_old_find(s, "I");
-  if (map && map->strings && map->text[0][0]) return image_light(file, s);
-  if (map) map->dropped = true;
+  if (!color)
+    color = vl_old_find(s, "I");
+  if (map && map->strings && map->text[0][0])
+    return image_light(file, s);
+  if (map)
+    map->dropped = true;
   more = blackbody_scale(file, color);
-  if (!luminance(file, s->line, color, &factor) || !fold_scale(file, s, color, more * factor, tint)) return false;
-  if (tint[0] == tint[1] && tint[1] == tint[2]) return true;
+  if (!luminance(file, s->line, color, &factor) ||
+      !fold_scale(file, s, color, more * factor, tint))
+    return false;
+  if (tint[0] == tint[1] && tint[1] == tint[2])
+    return true;
   if (!color) {
     char n[3][32];
-    for (int i = 0; i < 3; i++) vl_old_text(tint[i], n[i]);
+    for (int i = 0; i < 3; i++)
+      vl_old_text(tint[i], n[i]);
     bool intensity = vl_text_is(s->name[0], "point") || vl_text_is(s->name[0], "spot");
-    return vl_old_add(file, s, "\"rgb %s\" [ %s %s %s ]", intensity ? "I" : "L", n[0], n[1], n[2]);
+    return vl_old_add(file, s, "\"rgb %s\" [ %s %s %s ]", intensity ? "I" : "L", n[0], n[1],
+                      n[2]);
   }
   vl_old_lose(file, s->line, "a colour \"scale\" of a spectrum has no counterpart: left out");
   return true;
@@ -218,15 +263,18 @@ bool vl_old_light(vlOldFile *file, vlOldStatement *s) {
     vl_old_lose(file, s->line, "light \"%s\" has no counterpart: left out", s->name[0]);
     return vl_old_remove(file, s);
   }
-  return kind->rule(file, s) && vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 0, kind->to);
+  return kind->rule(file, s) && vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) &&
+         vl_old_rename(file, s, 0, kind->to);
 }
 
 bool vl_old_area_light(vlOldFile *file, vlOldStatement *s) {
   bool diffuse = vl_text_is(s->name[0], "diffuse") || vl_text_is(s->name[0], "area");
-  if (!s->name[0][0]) return true;
+  if (!s->name[0][0])
+    return true;
   if (!diffuse) {
     vl_old_lose(file, s->line, "area light \"%s\" has no counterpart: left out", s->name[0]);
     return vl_old_remove(file, s);
   }
-  return plain_light(file, s) && vl_old_rows(file, s, area, VL_OLD_LOSE) && vl_old_rename(file, s, 0, "diffuse");
+  return plain_light(file, s) && vl_old_rows(file, s, area, VL_OLD_LOSE) &&
+         vl_old_rename(file, s, 0, "diffuse");
 }

@@ -1,5 +1,5 @@
-/* import/pbrt/upgrade/materials.c: Material and MakeNamedMaterial: the rows of the materials. Defaults that differ are
- * written out. */
+/* import/pbrt/upgrade/materials.c: Material and MakeNamedMaterial: the rows of the materials.
+ * Defaults that differ are written out. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -16,20 +16,26 @@
 static const char whole_coat[] = "the coat reflects what its eta says";
 
 static const vlOldRow matte[] = {{"Kd", VL_OLD_RENAME, "reflectance"}, {"sigma"}, BUMP, {0}};
-static const vlOldRow plastic[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
-                                   {"Ks", VL_OLD_LOSE, whole_coat},
-                                   {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
-                                   ROUGHNESSES,
-                                   BUMP,
-                                   {0}};
-static const vlOldRow substrate[] = {
-    {"Kd", VL_OLD_RENAME, "reflectance"}, {"Ks", VL_OLD_LOSE, whole_coat}, ROUGHNESSES, BUMP, {0}};
+static const vlOldRow plastic[] = {
+    {"Kd", VL_OLD_RENAME, "reflectance"},
+    {"Ks", VL_OLD_LOSE, whole_coat},
+    {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
+    ROUGHNESSES,
+    BUMP,
+    {0}};
+static const vlOldRow substrate[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
+                                     {"Ks", VL_OLD_LOSE, whole_coat},
+                                     ROUGHNESSES,
+                                     BUMP,
+                                     {0}};
 static const vlOldRow metal[] = {{"eta"}, {"k"}, ROUGHNESSES, BUMP, {0}};
-static const vlOldRow mirror[] = {{"Kr", VL_OLD_RENAME, "reflectance"},
-                                  {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.9 0.9 0.9 ]"},
-                                  BUMP,
-                                  {0}};
-static const vlOldRow glass[] = {{"index", VL_OLD_RENAME, "eta"}, {"eta"}, ROUGHNESSES, BUMP, {0}};
+static const vlOldRow mirror[] = {
+    {"Kr", VL_OLD_RENAME, "reflectance"},
+    {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.9 0.9 0.9 ]"},
+    BUMP,
+    {0}};
+static const vlOldRow glass[] = {
+    {"index", VL_OLD_RENAME, "eta"}, {"eta"}, ROUGHNESSES, BUMP, {0}};
 static const vlOldRow translucent[] = {{"Ks", VL_OLD_LOSE, "only the diffuse part is kept"},
                                        {"roughness", VL_OLD_DROP},
                                        {"remaproughness", VL_OLD_DROP},
@@ -47,20 +53,21 @@ static const vlOldRow hair[] = {{"color", VL_OLD_RENAME, "reflectance"},
                                 {"beta_n"},
                                 {"alpha"},
                                 {0}};
-static const vlOldRow kdsubsurface[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
-                                        {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]"},
-                                        {"mfp"},
-                                        {"mfp", VL_OLD_DEFAULT, "\"rgb mfp\" [ 1 1 1 ]"},
-                                        {"Kr", VL_OLD_DROP},
-                                        {"Kt", VL_OLD_DROP},
-                                        {"index", VL_OLD_RENAME, "eta"},
-                                        {"eta", VL_OLD_DEFAULT, "\"float eta\" 1.3"},
-                                        {"eta"},
-                                        {"g"},
-                                        {"scale"},
-                                        ROUGHNESSES,
-                                        BUMP,
-                                        {0}};
+static const vlOldRow kdsubsurface[] = {
+    {"Kd", VL_OLD_RENAME, "reflectance"},
+    {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]"},
+    {"mfp"},
+    {"mfp", VL_OLD_DEFAULT, "\"rgb mfp\" [ 1 1 1 ]"},
+    {"Kr", VL_OLD_DROP},
+    {"Kt", VL_OLD_DROP},
+    {"index", VL_OLD_RENAME, "eta"},
+    {"eta", VL_OLD_DEFAULT, "\"float eta\" 1.3"},
+    {"eta"},
+    {"g"},
+    {"scale"},
+    ROUGHNESSES,
+    BUMP,
+    {0}};
 static const vlOldRow subsurface[] = {{"Kr", VL_OLD_DROP},
                                       {"Kt", VL_OLD_DROP},
                                       {"index", VL_OLD_RENAME, "eta"},
@@ -73,41 +80,50 @@ static const vlOldRow subsurface[] = {{"Kr", VL_OLD_DROP},
                                       ROUGHNESSES,
                                       BUMP,
                                       {0}};
-static const vlOldRow uber[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
-                                {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
-                                {"Ks", VL_OLD_LOSE, whole_coat},
-                                {"Kr", VL_OLD_LOSE, "its mirror reflection is that of the coat"},
-                                {"Kt", VL_OLD_LOSE, "nothing is transmitted"},
-                                {"index", VL_OLD_RENAME, "eta"},
-                                {"eta"},
-                                ROUGHNESSES,
-                                BUMP,
-                                {0}};
+static const vlOldRow uber[] = {
+    {"Kd", VL_OLD_RENAME, "reflectance"},
+    {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
+    {"Ks", VL_OLD_LOSE, whole_coat},
+    {"Kr", VL_OLD_LOSE, "its mirror reflection is that of the coat"},
+    {"Kt", VL_OLD_LOSE, "nothing is transmitted"},
+    {"index", VL_OLD_RENAME, "eta"},
+    {"eta"},
+    ROUGHNESSES,
+    BUMP,
+    {0}};
 static const vlOldRow none[] = {{"bumpmap", VL_OLD_DROP}, {0}};
 static const vlOldRow fourier[] = {{"bsdffile", VL_OLD_DROP}, BUMP, {0}};
-static const vlOldRow disney[] = {{"metallic"}, {"roughness"}, {"eta"}, {"clearcoat"}, BUMP, {0}};
+static const vlOldRow disney[] = {{"metallic"},  {"roughness"}, {"eta"},
+                                  {"clearcoat"}, BUMP,          {0}};
 static const vlOldRow mix[] = {{"materials"}, {"amount"}, {0}};
 
-/* ---- rules ------------------------------------------------------------------------------------------------------- */
+/* ---- rules
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 /* Oren and Nayar's roughness; zero has no effect. */
 static bool matte_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "sigma");
   double value;
-  if (!p) return true;
+  if (!p)
+    return true;
   if (!vl_old_is_grey(p, &value) || value != 0)
-    vl_old_lose(file, s->line, "matte's \"sigma\" has no counterpart: the surface is Lambertian");
+    vl_old_lose(file, s->line,
+                "matte's \"sigma\" has no counterpart: the surface is Lambertian");
   p->dropped = true;
   return true;
 }
 
 /* A roughness of pbrt-v3's default where none is given. */
 static bool add_roughness(vlOldFile *file, vlOldStatement *s, const char *value) {
-  if (vl_old_find(s, "roughness")) return true;
+  if (vl_old_find(s, "roughness"))
+    return true;
   bool u = vl_old_find(s, "uroughness"), v = vl_old_find(s, "vroughness");
   vl_old_note(s, "with roughness %s", value);
-  if (!u && !v) return vl_old_add(file, s, "\"float roughness\" %s", value);
-  if (u && v) return true;
+  if (!u && !v)
+    return vl_old_add(file, s, "\"float roughness\" %s", value);
+  if (u && v)
+    return true;
   return vl_old_add(file, s, u ? "\"float vroughness\" %s" : "\"float uroughness\" %s", value);
 }
 
@@ -120,15 +136,18 @@ static bool is_black(vlOldStatement *s, const char *name) {
 /* Without its coat, plastic and substrate are diffuse. */
 static bool coat_rule(vlOldFile *file, vlOldStatement *s) {
   if (is_black(s, "Ks")) {
-    static const char *const coat[] = {"Ks", "roughness", "uroughness", "vroughness", "remaproughness"};
-    for (size_t i = 0; i < VL_LENGTH(coat); i++) vl_old_drop(s, vl_old_find(s, coat[i]));
+    static const char *const coat[] = {"Ks", "roughness", "uroughness", "vroughness",
+                                       "remaproughness"};
+    for (size_t i = 0; i < VL_LENGTH(coat); i++)
+      vl_old_drop(s, vl_old_find(s, coat[i]));
     return true;
   }
   return add_roughness(file, s, "0.1");
 }
 
 static bool substrate_rule(vlOldFile *file, vlOldStatement *s) {
-  if (!coat_rule(file, s) || vl_old_find(s, "Kd")) return true;
+  if (!coat_rule(file, s) || vl_old_find(s, "Kd"))
+    return true;
   return vl_old_add(file, s, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]");
 }
 
@@ -142,15 +161,19 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
   for (int i = 0; i < 2; i++) {
     vlOldParam *p = vl_old_find(s, names[i]);
     double value;
-    if (!p) continue;
+    if (!p)
+      continue;
     if (!vl_old_is_grey(p, &value) || value != 1)
-      vl_old_lose(file, s->line, "glass: \"%s\" has no counterpart: clear glass is written", names[i]);
+      vl_old_lose(file, s->line, "glass: \"%s\" has no counterpart: clear glass is written",
+                  names[i]);
     vl_old_drop(s, p);
   }
   vlOldParam *eta = vl_old_find(s, "eta");
-  if (!eta) eta = vl_old_find(s, "index");
+  if (!eta)
+    eta = vl_old_find(s, "index");
   if (eta && vl_old_is_texture(eta)) {
-    vl_old_lose(file, s->line, "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
+    vl_old_lose(file, s->line,
+                "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
     vl_old_drop(s, eta);
   }
   return true;
@@ -161,22 +184,27 @@ static bool tell_path(vlOldFile *file, const vlOldStatement *s) {
   vlUpgrade *u = file->u;
   if (u->plain_path && !u->subsurface)
     vl_old_lose(file, s->line,
-                "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as integrator");
+                "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as "
+                "integrator");
   u->plain_path = false;
   return true;
 }
 
 /* A name says all; pbrt-v4 wants sigma_a and sigma_s both or neither. */
 static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
-  vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"), *b = vl_old_find(s, "sigma_s");
+  vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"),
+             *b = vl_old_find(s, "sigma_s");
   bool named = name && name->strings && name->text[0][0];
   if (named) {
     vl_old_drop(s, a);
     vl_old_drop(s, b);
   }
   tell_path(file, s);
-  if (named || !a == !b) return true;
-  return vl_old_add(file, s, "%s", a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
+  if (named || !a == !b)
+    return true;
+  return vl_old_add(
+      file, s, "%s",
+      a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
 }
 
 static bool kd_rule(vlOldFile *file, vlOldStatement *s) {
@@ -186,7 +214,8 @@ static bool kd_rule(vlOldFile *file, vlOldStatement *s) {
 static bool none_rule(vlOldFile *file, vlOldStatement *s) {
   (void)file;
   for (size_t i = 0; i < s->params.count; i++)
-    if (!vl_text_is(s->params.items[i].name, "type")) vl_old_drop(s, &s->params.items[i]);
+    if (!vl_text_is(s->params.items[i].name, "type"))
+      vl_old_drop(s, &s->params.items[i]);
   return true;
 }
 
@@ -205,9 +234,12 @@ static const vlOldKind kinds[] = {
     {"subsurface", "subsurface", subsurface, subsurface_rule},
     {"disney", "principled", disney, vl_old_disney,
      "disney has no counterpart in pbrt-v4: velo's own principled is written"},
-    {"fourier", "diffuse", fourier, NULL, "fourier has no counterpart: grey diffuse is written"},
-    {"measured", "diffuse", none, none_rule, "pbrt-v2's measured has no counterpart: grey diffuse is written"},
-    {"shinymetal", "conductor", NULL, none_rule, "pbrt-v2's shinymetal has no counterpart: a conductor is written"},
+    {"fourier", "diffuse", fourier, NULL,
+     "fourier has no counterpart: grey diffuse is written"},
+    {"measured", "diffuse", none, none_rule,
+     "pbrt-v2's measured has no counterpart: grey diffuse is written"},
+    {"shinymetal", "conductor", NULL, none_rule,
+     "pbrt-v2's shinymetal has no counterpart: a conductor is written"},
     {"none", "interface", none, none_rule},
     {"", "interface", none, none_rule},
     {0}};
@@ -217,9 +249,11 @@ static bool is_new(const char *name, vlOldStatement *s) {
   static const char *const names[] = {"diffuse",         "coateddiffuse", "conductor",
                                       "coatedconductor", "dielectric",    "diffusetransmission",
                                       "thindielectric",  "interface",     "principled"};
-  if (vl_text_is(name, "measured")) return vl_old_find(s, "filename") != NULL && !vl_old_find(s, "type");
+  if (vl_text_is(name, "measured"))
+    return vl_old_find(s, "filename") != NULL && !vl_old_find(s, "type");
   for (size_t i = 0; i < VL_LENGTH(names); i++)
-    if (vl_text_is(names[i], name)) return true;
+    if (vl_text_is(names[i], name))
+      return true;
   return false;
 }
 
@@ -229,36 +263,46 @@ static const char *new_kind(vlOldStatement *s, const vlOldKind *kind) {
   for (size_t i = 0; i < s->params.count && coated; i++) {
     const vlOldParam *p = &s->params.items[i];
     double value;
-    if (p->dropped && vl_text_is(p->name, "Ks") && vl_old_is_grey(p, &value) && value == 0) return "diffuse";
+    if (p->dropped && vl_text_is(p->name, "Ks") && vl_old_is_grey(p, &value) && value == 0)
+      return "diffuse";
   }
   return kind->to;
 }
 
 static const vlOldKind *find(vlOldFile *file, vlOldStatement *s, const char *name) {
   const vlOldKind *kind = vl_old_kind(kinds, name);
-  if (is_new(name, s)) return NULL;
-  if (kind) return kind;
+  if (is_new(name, s))
+    return NULL;
+  if (kind)
+    return kind;
   static const vlOldKind unknown = {"", "diffuse", NULL, none_rule};
-  vl_old_lose(file, s->line, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written", name);
+  vl_old_lose(file, s->line, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written",
+              name);
   return &unknown;
 }
 
 static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
-  if (kind->lost) vl_old_lose(file, s->line, "%s", kind->lost);
-  if (kind->rule && !kind->rule(file, s)) return false;
+  if (kind->lost)
+    vl_old_lose(file, s->line, "%s", kind->lost);
+  if (kind->rule && !kind->rule(file, s))
+    return false;
   const vlOldRow *rows = kind->rows;
-  static const vlOldRow bare[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
-                                  BUMP,
-                                  {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
-                                  {0}};
-  if (!vl_text_is(new_kind(s, kind), kind->to)) rows = bare;
+  static const vlOldRow bare[] = {
+      {"Kd", VL_OLD_RENAME, "reflectance"},
+      BUMP,
+      {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
+      {0}};
+  if (!vl_text_is(new_kind(s, kind), kind->to))
+    rows = bare;
   return vl_old_rows(file, s, rows, VL_OLD_LOSE);
 }
 
 bool vl_old_material(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = find(file, s, s->name[0]);
-  if (!kind) return true;
-  if (!rewrite(file, s, kind)) return false;
+  if (!kind)
+    return true;
+  if (!rewrite(file, s, kind))
+    return false;
   return vl_old_rename(file, s, 0, new_kind(s, kind));
 }
 
@@ -266,10 +310,13 @@ bool vl_old_named_material(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");
   const char *name = type && type->strings ? type->text[0] : "matte"; /* pbrt-v3's default */
   const vlOldKind *kind = find(file, s, name);
-  if (!kind) return true;
-  if (!rewrite(file, s, kind)) return false;
+  if (!kind)
+    return true;
+  if (!rewrite(file, s, kind))
+    return false;
   const char *to = new_kind(s, kind);
   vl_old_note(s, "\"%s\" -> \"%s\"", name, to);
-  if (!type) return vl_old_add(file, s, "\"string type\" \"%s\"", to);
+  if (!type)
+    return vl_old_add(file, s, "\"string type\" \"%s\"", to);
   return vl_old_edit(file, type->span[0], "\"%s\"", to);
 }

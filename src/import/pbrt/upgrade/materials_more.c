@@ -1,5 +1,5 @@
-/* import/pbrt/upgrade/materials_more.c: materials whose parameters are computed: uber with opacity, translucent, mix,
- * disney. */
+/* import/pbrt/upgrade/materials_more.c: materials whose parameters are computed: uber with
+ * opacity, translucent, mix, disney. */
 #include <stdio.h>
 
 #include "base/text.h"
@@ -8,57 +8,75 @@
 /* Text of a colour: [ r g b ]. */
 static void color_text(const double rgb[3], char text[120]) {
   char n[3][32];
-  for (int i = 0; i < 3; i++) vl_old_text(rgb[i], n[i]);
+  for (int i = 0; i < 3; i++)
+    vl_old_text(rgb[i], n[i]);
   snprintf(text, 120, "[ %s %s %s ]", n[0], n[1], n[2]);
 }
 
-/* Writes a share as a parameter "amount": a number, or a float texture. False after an error. */
-static bool amount_text(vlOldFile *file, vlOldStatement *s, const vlOldParam *p, const char *what, char *text,
-                        size_t size) {
+/* Writes a share as a parameter "amount": a number, or a float texture. False after an error.
+ */
+static bool amount_text(vlOldFile *file, vlOldStatement *s, const vlOldParam *p,
+                        const char *what, char *text, size_t size) {
   double rgb[3];
   char number[32];
   if (p && vl_old_is_texture(p)) {
     const char *copy = vl_old_float_copy(file, s, p->text[0]);
-    if (file->u->result != VL_OK) return false;
-    if (copy) return snprintf(text, size, "\"texture amount\" \"%s\"", copy) > 0;
-    vl_old_lose(file, s->line, "%s: texture \"%s\" cannot become one of numbers: 0.5 is taken", what, p->text[0]);
+    if (file->u->result != VL_OK)
+      return false;
+    if (copy)
+      return snprintf(text, size, "\"texture amount\" \"%s\"", copy) > 0;
+    vl_old_lose(file, s->line, "%s: texture \"%s\" cannot become one of numbers: 0.5 is taken",
+                what, p->text[0]);
   }
   double value = 0.5;
-  if (p && vl_old_is_color(p, rgb)) value = (rgb[0] + rgb[1] + rgb[2]) / 3;
+  if (p && vl_old_is_color(p, rgb))
+    value = (rgb[0] + rgb[1] + rgb[2]) / 3;
   if (p && vl_old_is_color(p, rgb) && !vl_old_is_grey(p, &value))
     vl_old_lose(file, s->line, "%s: a colour has no counterpart: its mean is taken", what);
   snprintf(text, size, "\"float amount\" %s", vl_old_text(value, number));
   return true;
 }
 
-/* ---- uber -------------------------------------------------------------------------------------------------------- */
+/* ---- uber
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 /* The statement becomes a named material, and the material itself a mix of it with nothing. */
 static bool mix_with_nothing(vlOldFile *file, vlOldStatement *s, const vlOldParam *opacity) {
   char amount[600], solid[300];
   vlUpgrade *u = file->u;
-  if (!amount_text(file, s, opacity, "opacity", amount, sizeof amount)) return false;
-  if (!u->see_through && !vl_old_before(file, s, "MakeNamedMaterial \"see-through\" \"string type\" \"interface\""))
+  if (!amount_text(file, s, opacity, "opacity", amount, sizeof amount))
+    return false;
+  if (!u->see_through &&
+      !vl_old_before(file, s,
+                     "MakeNamedMaterial \"see-through\" \"string type\" \"interface\""))
     return false;
   u->see_through = true;
   if (vl_text_is(s->word->name, "Material")) {
     snprintf(solid, sizeof solid, "solid-%u", ++u->made);
     vlOldSpan head = {s->keyword.start, s->names[0].end};
-    if (!vl_old_edit(file, head, "MakeNamedMaterial \"%s\" \"string type\" \"coateddiffuse\"", solid)) return false;
-    return vl_old_after(file, s, "Material \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s", solid, amount);
+    if (!vl_old_edit(file, head, "MakeNamedMaterial \"%s\" \"string type\" \"coateddiffuse\"",
+                     solid))
+      return false;
+    return vl_old_after(file, s,
+                        "Material \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s",
+                        solid, amount);
   }
   snprintf(solid, sizeof solid, "%.200s-solid", s->name[0]);
   s->renamed = 0; /* the name is written here */
-  if (!vl_old_edit(file, s->names[0], "\"%s\"", solid)) return false;
-  return vl_old_after(
-      file, s, "MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s",
-      s->name[0], solid, amount);
+  if (!vl_old_edit(file, s->names[0], "\"%s\"", solid))
+    return false;
+  return vl_old_after(file, s,
+                      "MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [ "
+                      "\"see-through\" \"%s\" ] %s",
+                      s->name[0], solid, amount);
 }
 
 static void drop_black(vlOldStatement *s, const char *name) {
   double value;
   vlOldParam *p = vl_old_find(s, name);
-  if (p && vl_old_is_grey(p, &value) && value == 0) vl_old_drop(s, p);
+  if (p && vl_old_is_grey(p, &value) && value == 0)
+    vl_old_drop(s, p);
 }
 
 bool vl_old_uber(vlOldFile *file, vlOldStatement *s) {
@@ -68,44 +86,55 @@ bool vl_old_uber(vlOldFile *file, vlOldStatement *s) {
   drop_black(s, "Kt");
   vlOldParam *ks = vl_old_find(s, "Ks");
   bool coat = !ks || !vl_old_is_grey(ks, &value) || value != 0;
-  if (coat && !vl_old_find(s, "roughness") && !vl_old_find(s, "uroughness") && !vl_old_find(s, "vroughness") &&
-      !vl_old_add(file, s, "\"float roughness\" 0.1"))
+  if (coat && !vl_old_find(s, "roughness") && !vl_old_find(s, "uroughness") &&
+      !vl_old_find(s, "vroughness") && !vl_old_add(file, s, "\"float roughness\" 0.1"))
     return false;
   if (!coat) {
-    static const char *const names[] = {"Ks",    "roughness", "uroughness", "vroughness", "remaproughness",
-                                        "index", "eta"};
-    for (size_t i = 0; i < VL_LENGTH(names); i++) vl_old_drop(s, vl_old_find(s, names[i]));
+    static const char *const names[] = {
+        "Ks", "roughness", "uroughness", "vroughness", "remaproughness", "index", "eta"};
+    for (size_t i = 0; i < VL_LENGTH(names); i++)
+      vl_old_drop(s, vl_old_find(s, names[i]));
   }
-  if (!opacity) return true;
+  if (!opacity)
+    return true;
   bool opaque = vl_old_is_grey(opacity, &value) && value == 1;
   vl_old_drop(s, opacity);
   return opaque || mix_with_nothing(file, s, opacity);
 }
 
-/* ---- translucent ------------------------------------------------------------------------------------------------- */
+/* ---- translucent
+ * -------------------------------------------------------------------------------------------------
+ */
 
 bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
   double kd[3] = {0.25, 0.25, 0.25}, share[2][3] = {{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}};
-  static const char *const from[2] = {"reflect", "transmit"}, *const to[2] = {"reflectance", "transmittance"};
+  static const char *const from[2] = {"reflect", "transmit"}, *const to[2] = {"reflectance",
+                                                                              "transmittance"};
   vlOldParam *p = vl_old_find(s, "Kd");
   const char *texture = p && vl_old_is_texture(p) ? p->text[0] : NULL;
   if (p && !texture && !vl_old_is_color(p, kd))
-    vl_old_lose(file, s->line, "translucent: a sampled \"Kd\" has no counterpart: 0.25 is taken");
+    vl_old_lose(file, s->line,
+                "translucent: a sampled \"Kd\" has no counterpart: 0.25 is taken");
   for (int k = 0; k < 2; k++) {
     vlOldParam *q = vl_old_find(s, from[k]);
     if (q && !vl_old_is_color(q, share[k]))
-      vl_old_lose(file, s->line, "translucent: a \"%s\" that is no colour has no counterpart: 0.5 is taken", from[k]);
+      vl_old_lose(file, s->line,
+                  "translucent: a \"%s\" that is no colour has no counterpart: 0.5 is taken",
+                  from[k]);
   }
-  bool same =
-      memcmp(share[0], share[1], sizeof share[0]) == 0 && share[0][0] == share[0][1] && share[0][1] == share[0][2];
+  bool same = memcmp(share[0], share[1], sizeof share[0]) == 0 && share[0][0] == share[0][1] &&
+              share[0][1] == share[0][2];
   if (texture && same) {
     char scale[32];
-    return vl_old_add(file, s, "\"texture reflectance\" \"%s\" \"texture transmittance\" \"%s\" \"float scale\" %s",
-                      texture, texture, vl_old_text(share[0][0], scale));
+    return vl_old_add(
+        file, s,
+        "\"texture reflectance\" \"%s\" \"texture transmittance\" \"%s\" \"float scale\" %s",
+        texture, texture, vl_old_text(share[0][0], scale));
   }
   if (texture) {
     vl_old_lose(file, s->line,
-                "translucent: a texture times \"reflect\" has no counterpart: the texture alone is taken "
+                "translucent: a texture times \"reflect\" has no counterpart: the texture "
+                "alone is taken "
                 "where that is not black");
     for (int k = 0; k < 2; k++) {
       double sum = share[k][0] + share[k][1] + share[k][2];
@@ -118,64 +147,82 @@ bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
   for (int k = 0; k < 2; k++) {
     char text[120];
     double product[3];
-    for (int i = 0; i < 3; i++) product[i] = kd[i] * share[k][i];
+    for (int i = 0; i < 3; i++)
+      product[i] = kd[i] * share[k][i];
     color_text(product, text);
-    if (!vl_old_add(file, s, "\"rgb %s\" %s", to[k], text)) return false;
+    if (!vl_old_add(file, s, "\"rgb %s\" %s", to[k], text))
+      return false;
   }
   return true;
 }
 
-/* ---- mix --------------------------------------------------------------------------------------------------------- */
+/* ---- mix
+ * ---------------------------------------------------------------------------------------------------------
+ */
 
 /* pbrt-v3's amount weighs the first material, pbrt-v4's the second: the names change places. */
 bool vl_old_mix(vlOldFile *file, vlOldStatement *s) {
-  vlOldParam *first = vl_old_find(s, "namedmaterial1"), *second = vl_old_find(s, "namedmaterial2"),
-             *amount = vl_old_find(s, "amount");
+  vlOldParam *first = vl_old_find(s, "namedmaterial1"),
+             *second = vl_old_find(s, "namedmaterial2"), *amount = vl_old_find(s, "amount");
   char text[600];
-  if (!first && !second && vl_old_find(s, "materials")) return true; /* pbrt-v4's already */
+  if (!first && !second && vl_old_find(s, "materials"))
+    return true; /* pbrt-v4's already */
   if (!first || !second || !first->strings || !second->strings)
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
                        "mix: \"namedmaterial1\" or \"namedmaterial2\" is missing");
   double value;
   if (amount && !vl_old_is_grey(amount, &value)) {
-    if (!amount_text(file, s, amount, "mix", text, sizeof text)) return false;
+    if (!amount_text(file, s, amount, "mix", text, sizeof text))
+      return false;
     vl_old_drop(s, amount);
-    if (!vl_old_add(file, s, "%s", text)) return false;
+    if (!vl_old_add(file, s, "%s", text))
+      return false;
   } else if (amount) {
     amount->new_type = "float";
     if (amount->count == 3)
-      snprintf(amount->new_value, sizeof amount->new_value, "%.*s", (int)(amount->span[0].end - amount->span[0].start),
+      snprintf(amount->new_value, sizeof amount->new_value, "%.*s",
+               (int)(amount->span[0].end - amount->span[0].start),
                file->text + amount->span[0].start);
   }
   vl_old_note(s, "namedmaterial1, namedmaterial2 -> materials");
   second->dropped = true;
   first->new_name = "materials";
-  snprintf(first->new_value, sizeof first->new_value, "[ \"%.80s\" \"%.80s\" ]", second->text[0], first->text[0]);
+  snprintf(first->new_value, sizeof first->new_value, "[ \"%.80s\" \"%.80s\" ]",
+           second->text[0], first->text[0]);
   return true;
 }
 
-/* ---- disney ------------------------------------------------------------------------------------------------------ */
+/* ---- disney
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static bool rename_if(vlOldStatement *s, const char *from, const char *to) {
   vlOldParam *p = vl_old_find(s, from);
-  if (!p) return false;
+  if (!p)
+    return false;
   p->new_name = to;
   return true;
 }
 
 bool vl_old_disney(vlOldFile *file, vlOldStatement *s) {
-  static const char *const lost[] = {"speculartint", "sheen",     "sheentint",     "scatterdistance",
-                                     "flatness",     "difftrans", "clearcoatgloss"};
-  if (!rename_if(s, "color", "basecolor") && !vl_old_add(file, s, "\"rgb basecolor\" [ 0.5 0.5 0.5 ]")) return false;
-  if (!vl_old_find(s, "metallic") && !vl_old_add(file, s, "\"float metallic\" 0")) return false;
-  if (!vl_old_find(s, "roughness") && !vl_old_add(file, s, "\"float roughness\" 0.5")) return false;
+  static const char *const lost[] = {"speculartint",    "sheen",    "sheentint",
+                                     "scatterdistance", "flatness", "difftrans",
+                                     "clearcoatgloss"};
+  if (!rename_if(s, "color", "basecolor") &&
+      !vl_old_add(file, s, "\"rgb basecolor\" [ 0.5 0.5 0.5 ]"))
+    return false;
+  if (!vl_old_find(s, "metallic") && !vl_old_add(file, s, "\"float metallic\" 0"))
+    return false;
+  if (!vl_old_find(s, "roughness") && !vl_old_add(file, s, "\"float roughness\" 0.5"))
+    return false;
   rename_if(s, "spectrans", "transmission");
   rename_if(s, "thin", "thinwalled");
   rename_if(s, "anisotropic", "anisotropy");
   for (size_t i = 0; i < VL_LENGTH(lost); i++) {
     vlOldParam *p = vl_old_find(s, lost[i]);
     double value;
-    if (!p) continue;
+    if (!p)
+      continue;
     if (!vl_old_is_grey(p, &value) || value != 0)
       vl_old_lose(file, s->line, "disney: \"%s\" has no counterpart", lost[i]);
     p->dropped = true;

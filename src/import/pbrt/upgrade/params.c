@@ -1,4 +1,6 @@
-/* import/pbrt/upgrade/params.c: parameters: finding them, their values, the rows that rename them. */
+/* import/pbrt/upgrade/params.c: parameters: finding them, their values, the rows that rename
+ * them.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,13 +11,15 @@
 vlOldParam *vl_old_find(vlOldStatement *s, const char *name) {
   for (size_t i = s->params.count; i > 0; i--) {
     vlOldParam *p = &s->params.items[i - 1];
-    if (!p->dropped && vl_text_is(p->name, name)) return p;
+    if (!p->dropped && vl_text_is(p->name, name))
+      return p;
   }
   return NULL;
 }
 
 void vl_old_drop(vlOldStatement *s, vlOldParam *p) {
-  if (!p || p->dropped) return;
+  if (!p || p->dropped)
+    return;
   p->dropped = true;
   vl_old_note(s, "without %s", p->name);
 }
@@ -25,15 +29,20 @@ bool vl_old_is_texture(const vlOldParam *p) {
 }
 
 bool vl_old_is_color(const vlOldParam *p, double rgb[3]) {
-  if (!p || p->strings || vl_text_is(p->new_type, "blackbody") || vl_text_is(p->new_type, "spectrum")) return false;
-  if (p->count != 1 && p->count != 3) return false;
-  for (int i = 0; i < 3; i++) rgb[i] = p->number[p->count == 3 ? i : 0];
+  if (!p || p->strings || vl_text_is(p->new_type, "blackbody") ||
+      vl_text_is(p->new_type, "spectrum"))
+    return false;
+  if (p->count != 1 && p->count != 3)
+    return false;
+  for (int i = 0; i < 3; i++)
+    rgb[i] = p->number[p->count == 3 ? i : 0];
   return true;
 }
 
 bool vl_old_is_grey(const vlOldParam *p, double *value) {
   double rgb[3];
-  if (!vl_old_is_color(p, rgb) || rgb[0] != rgb[1] || rgb[1] != rgb[2]) return false;
+  if (!vl_old_is_color(p, rgb) || rgb[0] != rgb[1] || rgb[1] != rgb[2])
+    return false;
   *value = rgb[0];
   return true;
 }
@@ -47,39 +56,52 @@ const char *vl_old_text(double value, char text[32]) {
   for (int digits = 1; digits <= 9; digits++) {
     snprintf(text, 32, "%.*g", digits, value);
     bool plain = !strchr(text, 'e') || !(fabs(value) >= 1e-4 && fabs(value) < 1e7);
-    if (plain && (float)strtod(text, NULL) == (float)value) break;
+    if (plain && (float)strtod(text, NULL) == (float)value)
+      break;
   }
   return text;
 }
 
-/* ---- types ------------------------------------------------------------------------------------------------------- */
+/* ---- types
+ * -------------------------------------------------------------------------------------------------------
+ */
 
-static const char *const types[][2] = {
-    {"color", "rgb"}, {"point", "point3"}, {"vector", "vector3"}, {"normal3", "normal"}, {"point3f", "point3"}};
+static const char *const types[][2] = {{"color", "rgb"},
+                                       {"point", "point3"},
+                                       {"vector", "vector3"},
+                                       {"normal3", "normal"},
+                                       {"point3f", "point3"}};
 
 /* XYZ to linear sRGB (IEC 61966-2-1). */
 static void set_rgb_of_xyz(vlOldParam *p) {
-  static const double m[3][3] = {
-      {3.240479, -1.537150, -0.498535}, {-0.969256, 1.875991, 0.041556}, {0.055648, -0.204043, 1.057311}};
+  static const double m[3][3] = {{3.240479, -1.537150, -0.498535},
+                                 {-0.969256, 1.875991, 0.041556},
+                                 {0.055648, -0.204043, 1.057311}};
   double rgb[3];
   char text[3][32];
   for (int i = 0; i < 3; i++) {
     rgb[i] = m[i][0] * p->number[0] + m[i][1] * p->number[1] + m[i][2] * p->number[2];
-    if (rgb[i] < 0) rgb[i] = 0;
+    if (rgb[i] < 0)
+      rgb[i] = 0;
     vl_old_text(rgb[i], text[i]);
   }
-  for (int i = 0; i < 3; i++) p->number[i] = rgb[i];
+  for (int i = 0; i < 3; i++)
+    p->number[i] = rgb[i];
   p->new_type = "rgb";
   snprintf(p->new_value, sizeof p->new_value, "[ %s %s %s ]", text[0], text[1], text[2]);
 }
 
 static bool unquote_bools(vlOldFile *file, vlOldStatement *s, vlOldParam *p) {
   for (size_t i = 0; i < p->count && i < VL_OLD_FIRST; i++) {
-    if (!p->text[i]) continue;
+    if (!p->text[i])
+      continue;
     bool on = vl_text_is(p->text[i], "true");
-    if (!on && !vl_text_is(p->text[i], "false")) continue;
-    if (!vl_old_edit(file, p->span[i], on ? "true" : "false")) return false;
-    if (!i) vl_old_note(s, "bool %s without quotes", p->name);
+    if (!on && !vl_text_is(p->text[i], "false"))
+      continue;
+    if (!vl_old_edit(file, p->span[i], on ? "true" : "false"))
+      return false;
+    if (!i)
+      vl_old_note(s, "bool %s without quotes", p->name);
   }
   return true;
 }
@@ -88,23 +110,35 @@ bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     for (size_t k = 0; k < VL_LENGTH(types); k++)
-      if (vl_text_is(p->type, types[k][0])) p->new_type = types[k][1];
-    if (vl_text_is(p->type, "xyz") && p->count == 3) set_rgb_of_xyz(p);
-    if (vl_text_is(p->type, "bool") && p->strings && !unquote_bools(file, s, p)) return false;
-    /* a spectrum of numbers is pairs of wavelength and value; a file's name is that of a file or of a metal */
-    if (!vl_text_is(p->type, "spectrum") || !p->strings || p->count < 1) continue;
+      if (vl_text_is(p->type, types[k][0]))
+        p->new_type = types[k][1];
+    if (vl_text_is(p->type, "xyz") && p->count == 3)
+      set_rgb_of_xyz(p);
+    if (vl_text_is(p->type, "bool") && p->strings && !unquote_bools(file, s, p))
+      return false;
+    /* a spectrum of numbers is pairs of wavelength and value; a file's name is that of a file
+     * or of a metal */
+    if (!vl_text_is(p->type, "spectrum") || !p->strings || p->count < 1)
+      continue;
     char name[4096];
-    if (!strchr(p->text[0], '.') && !strchr(p->text[0], '/')) continue;
-    if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
-    if (p->count > 1) vl_old_lose(file, s->line, "\"%s\" names several files: the first is kept", p->name);
-    if (vl_text_is(name, p->text[0]) && p->count == 1) continue;
+    if (!strchr(p->text[0], '.') && !strchr(p->text[0], '/'))
+      continue;
+    if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name))
+      return false;
+    if (p->count > 1)
+      vl_old_lose(file, s->line, "\"%s\" names several files: the first is kept", p->name);
+    if (vl_text_is(name, p->text[0]) && p->count == 1)
+      continue;
     vl_old_note(s, "%s is \"%s\"", p->name, name);
-    if (!vl_old_edit(file, p->value, "\"%s\"", name)) return false;
+    if (!vl_old_edit(file, p->value, "\"%s\"", name))
+      return false;
   }
   return true;
 }
 
-/* ---- rows -------------------------------------------------------------------------------------------------------- */
+/* ---- rows
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_open(const vlOldParam *p) {
   return !p->dropped && p->new_name == p->name;
@@ -115,25 +149,35 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     bool same = vl_text_is(p->name, row->name);
-    if (same && row->action != VL_OLD_DEFAULT) known[i] = true;
+    if (same && row->action != VL_OLD_DEFAULT)
+      known[i] = true;
     found = found || same || vl_text_is(p->new_name, row->name);
-    if (!same || !is_open(p)) continue;
+    if (!same || !is_open(p))
+      continue;
     switch (row->action) {
       case VL_OLD_KEEP:
-      case VL_OLD_DEFAULT: break;
-      case VL_OLD_RENAME: p->new_name = row->to; break;
-      case VL_OLD_DROP: vl_old_drop(s, p); break;
+      case VL_OLD_DEFAULT:
+        break;
+      case VL_OLD_RENAME:
+        p->new_name = row->to;
+        break;
+      case VL_OLD_DROP:
+        vl_old_drop(s, p);
+        break;
       case VL_OLD_LOSE:
         p->dropped = true;
         vl_old_lose(file, s->line, "%s \"%s\": \"%s\" has no counterpart%s%s", s->word->name,
-                    s->name_count ? s->name[s->name_count - 1] : "", p->name, row->to ? ": " : "",
-                    row->to ? row->to : "");
+                    s->name_count ? s->name[s->name_count - 1] : "", p->name,
+                    row->to ? ": " : "", row->to ? row->to : "");
         break;
     }
   }
-  if (row->action != VL_OLD_DEFAULT || found) return true;
-  bool shared = s->word->rule == vl_old_filter || s->word->rule == vl_old_light; /* kinds that both pbrts have */
-  if (shared && !file->u->is_old) return true;
+  if (row->action != VL_OLD_DEFAULT || found)
+    return true;
+  bool shared = s->word->rule == vl_old_filter ||
+                s->word->rule == vl_old_light; /* kinds that both pbrts have */
+  if (shared && !file->u->is_old)
+    return true;
   vl_old_note(s, "with %s", row->to);
   return vl_old_add(file, s, "%s", row->to);
 }
@@ -141,21 +185,25 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
 bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others) {
   enum { MOST = 64 };
   bool known[MOST] = {false};
-  if (s->params.count > MOST) return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "too many parameters");
+  if (s->params.count > MOST)
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "too many parameters");
   for (const vlOldRow *row = rows; row && row->name; row++)
-    if (!apply(file, s, row, known)) return false;
+    if (!apply(file, s, row, known))
+      return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    if (known[i] || !is_open(p) || others == VL_OLD_KEEP || vl_text_is(p->name, "type")) continue;
+    if (known[i] || !is_open(p) || others == VL_OLD_KEEP || vl_text_is(p->name, "type"))
+      continue;
     p->dropped = true;
-    vl_old_lose(file, s->line, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out", s->word->name,
-                s->name_count ? s->name[s->name_count - 1] : "", p->name);
+    vl_old_lose(file, s->line, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out",
+                s->word->name, s->name_count ? s->name[s->name_count - 1] : "", p->name);
   }
   return true;
 }
 
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name) {
   for (const vlOldKind *k = kinds; k->from; k++)
-    if (vl_text_is(k->from, name)) return k;
+    if (vl_text_is(k->from, name))
+      return k;
   return NULL;
 }

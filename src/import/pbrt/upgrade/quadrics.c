@@ -12,10 +12,12 @@ enum { AROUND = 96, ALONG = 24, MOST_HEIGHTS = 4000000 };
 
 typedef VL_ARRAY(char) Text;
 
-static bool put(vlContext *context, Text *text, const char *format, double a, double b, double c) {
+static bool put(vlContext *context, Text *text, const char *format, double a, double b,
+                double c) {
   char part[120];
   int n = snprintf(part, sizeof part, format, a, b, c);
-  if (n < 0 || !VL_RESERVE(context, text, (size_t)n + 1)) return false;
+  if (n < 0 || !VL_RESERVE(context, text, (size_t)n + 1))
+    return false;
   memcpy(text->items + text->count, part, (size_t)n + 1);
   text->count += (size_t)n;
   return true;
@@ -40,8 +42,10 @@ static void point(const Grid *g, uint32_t i, uint32_t j, double p[3]) {
   }
   double c = vl_precise_cos(angle), s = vl_precise_sin(angle), x = 0, y = 0;
   p[2] = g->z[0] + v * (g->z[1] - g->z[0]);
-  if (g->kind == 0) x = g->radius * (1 - v);
-  if (g->kind == 1) x = g->radius * sqrt(p[2] / g->z[1]);
+  if (g->kind == 0)
+    x = g->radius * (1 - v);
+  if (g->kind == 1)
+    x = g->radius * sqrt(p[2] / g->z[1]);
   if (g->kind == 2) {
     x = g->p1[0] + v * (g->p2[0] - g->p1[0]);
     y = g->p1[1] + v * (g->p2[1] - g->p1[1]);
@@ -57,18 +61,20 @@ static bool write_grid(vlContext *context, const Grid *g, Text *text) {
     for (uint32_t i = 0; fine && i < g->nu; i++) {
       double p[3];
       point(g, i, j, p);
-      fine = put(context, text, i % 8 ? "  %.7g %.7g %.7g" : "\n    %.7g %.7g %.7g", p[0], p[1], p[2]);
+      fine = put(context, text, i % 8 ? "  %.7g %.7g %.7g" : "\n    %.7g %.7g %.7g", p[0], p[1],
+                 p[2]);
     }
   fine = fine && put(context, text, " ]\n  \"point2 uv\" [", 0, 0, 0);
   for (uint32_t j = 0; fine && j < g->nv; j++)
     for (uint32_t i = 0; fine && i < g->nu; i++)
-      fine = put(context, text, i % 8 ? "  %.7g %.7g" : "\n    %.7g %.7g", (double)i / (g->nu - 1),
-                 (double)j / (g->nv - 1), 0);
+      fine = put(context, text, i % 8 ? "  %.7g %.7g" : "\n    %.7g %.7g",
+                 (double)i / (g->nu - 1), (double)j / (g->nv - 1), 0);
   fine = fine && put(context, text, " ]\n  \"integer indices\" [", 0, 0, 0);
   for (uint32_t j = 0; fine && j + 1 < g->nv; j++)
     for (uint32_t i = 0; fine && i + 1 < g->nu; i++) {
       double a = (double)j * g->nu + i, b = a + g->nu;
-      fine = put(context, text, i % 8 ? "  %.0f %.0f %.0f" : "\n    %.0f %.0f %.0f", a, a + 1, b + 1) &&
+      fine = put(context, text, i % 8 ? "  %.0f %.0f %.0f" : "\n    %.0f %.0f %.0f", a, a + 1,
+                 b + 1) &&
              put(context, text, "  %.0f %.0f %.0f", a, b + 1, b);
     }
   return fine && put(context, text, " ]", 0, 0, 0);
@@ -78,33 +84,42 @@ static bool read_heights(vlOldFile *file, vlOldStatement *s, Grid *g) {
   const vlOldParam *p = vl_old_find(s, "Pz");
   double nu = vl_old_number(s, "nu", 0), nv = vl_old_number(s, "nv", 0);
   if (!p || !(nu >= 2) || !(nv >= 2) || nu * nv != (double)p->count || p->count > MOST_HEIGHTS)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "heightfield: \"Pz\" must hold nu * nv numbers");
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
+                       "heightfield: \"Pz\" must hold nu * nv numbers");
   g->nu = (uint32_t)nu;
   g->nv = (uint32_t)nv;
   g->z_values = vl_alloc_array(file->u->context, p->count, sizeof *g->z_values);
-  if (!g->z_values) return vl_old_fail_memory(file->u);
+  if (!g->z_values)
+    return vl_old_fail_memory(file->u);
   const char *at = file->text + p->value.start, *end = file->text + p->value.end;
   size_t n = 0;
   while (at < end && n < p->count) {
-    if (*at == '#') at += strcspn(at, "\n");
+    if (*at == '#')
+      at += strcspn(at, "\n");
     if (at < end && !vl_number_scan(&at, end, &g->z_values[n]))
       at++;
     else
       n++;
   }
-  return n == p->count || vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "heightfield: \"Pz\" holds no number");
+  return n == p->count || vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
+                                      "heightfield: \"Pz\" holds no number");
 }
 
 static void read_point(vlOldStatement *s, const char *name, double p[3]) {
   const vlOldParam *given = vl_old_find(s, name);
-  if (given && given->count == 3) memcpy(p, given->number, 3 * sizeof *p);
+  if (given && given->count == 3)
+    memcpy(p, given->number, 3 * sizeof *p);
 }
 
 bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
   static const char *const names[] = {"cone", "paraboloid", "hyperboloid", "heightfield"};
   vlContext *context = file->u->context;
-  Grid g = {.nu = AROUND + 1, .nv = ALONG + 1, .radius = vl_old_number(s, "radius", 1), .p2 = {1, 1, 1}};
-  while (!vl_text_is(names[g.kind], s->name[0])) g.kind++;
+  Grid g = {.nu = AROUND + 1,
+            .nv = ALONG + 1,
+            .radius = vl_old_number(s, "radius", 1),
+            .p2 = {1, 1, 1}};
+  while (!vl_text_is(names[g.kind], s->name[0]))
+    g.kind++;
   g.phi = vl_old_number(s, "phimax", 360) * 3.141592653589793 / 180;
   g.z[0] = g.kind == 1 ? vl_old_number(s, "zmin", 0) : 0;
   g.z[1] = g.kind == 1 ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
@@ -118,13 +133,14 @@ bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
   bool fine = write_grid(context, &g, &text) || vl_old_fail_memory(file->u);
   vl_free(context, g.z_values);
   if (fine && g.kind < 3)
-    vl_old_lose(file, s->line, "shape \"%s\" has no counterpart: %u triangles are written", s->name[0],
-                2 * (g.nu - 1) * (g.nv - 1));
+    vl_old_lose(file, s->line, "shape \"%s\" has no counterpart: %u triangles are written",
+                s->name[0], 2 * (g.nu - 1) * (g.nv - 1));
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     p->dropped = !vl_text_is(p->name, "alpha");
   }
-  fine = fine && vl_old_edit(file, (vlOldSpan){s->whole.end, s->whole.end}, "\n  %s", text.items);
+  fine =
+      fine && vl_old_edit(file, (vlOldSpan){s->whole.end, s->whole.end}, "\n  %s", text.items);
   VL_ARRAY_FREE(context, &text);
   return fine;
 }

@@ -1,4 +1,5 @@
-/* import/pbrt/upgrade/settings.c: camera, film, sampler, filter, integrator, accelerator, media, WorldBegin. */
+/* import/pbrt/upgrade/settings.c: camera, film, sampler, filter, integrator, accelerator,
+ * media, WorldBegin. */
 #include <math.h>
 #include <stdio.h>
 
@@ -8,24 +9,35 @@
 #define BOUNDS \
   { "pixelbounds", VL_OLD_LOSE, "give the film's \"pixelbounds\"" }
 
-/* ---- camera ------------------------------------------------------------------------------------------------------ */
+/* ---- camera
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 #define SHUTTER                                              \
   {"shutteropen"}, {"shutterclose"}, {"frameaspectratio"}, { \
     "screenwindow"                                           \
   }
-static const vlOldRow perspective[] = {{"fov"}, {"lensradius"}, {"focaldistance"}, SHUTTER, {0}};
+static const vlOldRow perspective[] = {
+    {"fov"}, {"lensradius"}, {"focaldistance"}, SHUTTER, {0}};
 static const vlOldRow environment[] = {
-    SHUTTER, {"mapping", VL_OLD_DEFAULT, "\"string mapping\" \"equirectangular\""}, {"fov", VL_OLD_DROP}, {0}};
-static const vlOldRow realistic[] = {
-    {"lensfile"}, {"aperturediameter"}, {"focusdistance"}, {"aperture"}, {"simpleweighting", VL_OLD_DROP}, SHUTTER,
+    SHUTTER,
+    {"mapping", VL_OLD_DEFAULT, "\"string mapping\" \"equirectangular\""},
+    {"fov", VL_OLD_DROP},
     {0}};
+static const vlOldRow realistic[] = {{"lensfile"},
+                                     {"aperturediameter"},
+                                     {"focusdistance"},
+                                     {"aperture"},
+                                     {"simpleweighting", VL_OLD_DROP},
+                                     SHUTTER,
+                                     {0}};
 
 static bool half_fov(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "halffov");
   char text[32];
   (void)file;
-  if (!p || p->count < 1) return true;
+  if (!p || p->count < 1)
+    return true;
   if (vl_old_find(s, "fov")) {
     vl_old_drop(s, vl_old_find(s, "fov"));
     return true;
@@ -38,8 +50,10 @@ static bool half_fov(vlOldFile *file, vlOldStatement *s) {
 static bool lens_file(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "lensfile");
   char name[4096];
-  if (!p || !p->strings) return true;
-  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
+  if (!p || !p->strings)
+    return true;
+  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name))
+    return false;
   return vl_text_is(name, p->text[0]) || vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
 
@@ -50,26 +64,33 @@ static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, 
                                     {0}};
 
 /* Replaces kind and parameters by the table. Unknown kinds become `otherwise`. */
-static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kinds, const char *otherwise) {
+static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kinds,
+                    const char *otherwise) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s->line, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name, s->name[0], otherwise);
-    for (size_t i = 0; i < s->params.count; i++) s->params.items[i].dropped = true;
+    vl_old_lose(file, s->line, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name,
+                s->name[0], otherwise);
+    for (size_t i = 0; i < s->params.count; i++)
+      s->params.items[i].dropped = true;
     return vl_old_rename(file, s, 0, otherwise);
   }
-  if (kind->lost) vl_old_lose(file, s->line, "%s", kind->lost);
-  return (!kind->rule || kind->rule(file, s)) && vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) &&
-         vl_old_rename(file, s, 0, kind->to);
+  if (kind->lost)
+    vl_old_lose(file, s->line, "%s", kind->lost);
+  return (!kind->rule || kind->rule(file, s)) &&
+         vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 0, kind->to);
 }
 
 /* In pbrt-v4 the image is as much brighter as the shutter is open longer. */
 bool vl_old_camera(vlOldFile *file, vlOldStatement *s) {
   double open = vl_old_number(s, "shutteropen", 0), close = vl_old_number(s, "shutterclose", 1);
-  if (close > open) file->u->exposure = 1 / (close - open);
+  if (close > open)
+    file->u->exposure = 1 / (close - open);
   return rewrite(file, s, cameras, "perspective");
 }
 
-/* ---- film -------------------------------------------------------------------------------------------------------- */
+/* ---- film
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 static const vlOldRow film[] = {{"xresolution"},
                                 {"yresolution"},
@@ -86,18 +107,22 @@ static const vlOldKind films[] = {{"image", "rgb", film}, {0}};
 bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
   static const char *const news[] = {"rgb", "gbuffer", "spectral"};
   for (int i = 0; i < 3; i++)
-    if (vl_text_is(s->name[0], news[i])) return true;
+    if (vl_text_is(s->name[0], news[i]))
+      return true;
   vlOldParam *scale = vl_old_find(s, "scale");
   vlUpgrade *u = file->u;
-  if (scale && scale->count == 1) u->iso = 100 * scale->number[0];
-  if (scale) vl_old_drop(s, scale);
+  if (scale && scale->count == 1)
+    u->iso = 100 * scale->number[0];
+  if (scale)
+    vl_old_drop(s, scale);
   u->film_file = file;
   u->film_end = s->whole.end;
   u->film_line = s->line;
   return rewrite(file, s, films, "rgb");
 }
 
-/* ---- sampler, filter, accelerator -------------------------------------------------------------------------------- */
+/* ---- sampler, filter, accelerator
+ * -------------------------------------------------------------------------------- */
 
 static const vlOldRow sampler[] = {{"pixelsamples"},
                                    {"xsamples"},
@@ -150,9 +175,11 @@ static bool gaussian_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "alpha");
   char text[32];
   (void)file;
-  if (!p || p->count != 1 || !(p->number[0] > 0)) return true;
+  if (!p || p->count != 1 || !(p->number[0] > 0))
+    return true;
   p->new_name = "sigma";
-  snprintf(p->new_value, sizeof p->new_value, "%s", vl_old_text(sqrt(0.5 / p->number[0]), text));
+  snprintf(p->new_value, sizeof p->new_value, "%s",
+           vl_old_text(sqrt(0.5 / p->number[0]), text));
   return true;
 }
 
@@ -171,38 +198,51 @@ bool vl_old_filter(vlOldFile *file, vlOldStatement *s) {
 static const vlOldRow bvh[] = {{"maxnodeprims"}, {"splitmethod"}, {0}};
 static const vlOldRow kdtree[] = {{"intersectcost"}, {"traversalcost"}, {"emptybonus"},
                                   {"maxprims"},      {"maxdepth"},      {0}};
-static const vlOldKind accelerators[] = {{"bvh", "bvh", bvh}, {"kdtree", "kdtree", kdtree}, {"none", "bvh"}, {0}};
+static const vlOldKind accelerators[] = {
+    {"bvh", "bvh", bvh}, {"kdtree", "kdtree", kdtree}, {"none", "bvh"}, {0}};
 
 bool vl_old_accelerator(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, accelerators, "bvh");
 }
 
-/* ---- integrator -------------------------------------------------------------------------------------------------- */
+/* ---- integrator
+ * --------------------------------------------------------------------------------------------------
+ */
 
 #define LIGHTS                                              \
   {"lightsamplestrategy", VL_OLD_RENAME, "lightsampler"}, { \
     "lightsampler"                                          \
   }
-static const vlOldRow path[] = {{"maxdepth"}, {"rrthreshold", VL_OLD_DROP}, LIGHTS, BOUNDS, {"regularize"}, {0}};
-static const vlOldRow bdpt[] = {{"maxdepth"},         LIGHTS,         BOUNDS, {"visualizestrategies"},
-                                {"visualizeweights"}, {"regularize"}, {0}};
-static const vlOldRow mlt[] = {
-    {"maxdepth"}, {"bootstrapsamples"}, {"chains"}, {"mutationsperpixel"}, {"largestepprobability"},
-    {"sigma"},    {"regularize"},       {0}};
-static const vlOldRow sppm[] = {{"maxdepth"},
-                                {"numiterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
-                                {"iterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
-                                {"photonsperiteration"},
-                                {"imagewritefrequency", VL_OLD_DROP},
-                                {"radius"},
-                                {0}};
-static const vlOldRow ao[] = {{"cossample"}, {"nsamples", VL_OLD_DROP}, BOUNDS, {"maxdistance"}, {0}};
+static const vlOldRow path[] = {
+    {"maxdepth"}, {"rrthreshold", VL_OLD_DROP}, LIGHTS, BOUNDS, {"regularize"}, {0}};
+static const vlOldRow bdpt[] = {
+    {"maxdepth"},         LIGHTS,         BOUNDS, {"visualizestrategies"},
+    {"visualizeweights"}, {"regularize"}, {0}};
+static const vlOldRow mlt[] = {{"maxdepth"},
+                               {"bootstrapsamples"},
+                               {"chains"},
+                               {"mutationsperpixel"},
+                               {"largestepprobability"},
+                               {"sigma"},
+                               {"regularize"},
+                               {0}};
+static const vlOldRow sppm[] = {
+    {"maxdepth"},
+    {"numiterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
+    {"iterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
+    {"photonsperiteration"},
+    {"imagewritefrequency", VL_OLD_DROP},
+    {"radius"},
+    {0}};
+static const vlOldRow ao[] = {
+    {"cossample"}, {"nsamples", VL_OLD_DROP}, BOUNDS, {"maxdistance"}, {0}};
 static const vlOldRow direct[] = {{"maxdepth"}, {"strategy", VL_OLD_DROP}, BOUNDS, {0}};
 
 /* pbrt-v3's spatial sampler is nearest to that of the light tree. */
 static bool light_sampler(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "lightsamplestrategy");
-  if (!p || !p->strings || !vl_text_is(p->text[0], "spatial")) return true;
+  if (!p || !p->strings || !vl_text_is(p->text[0], "spatial"))
+    return true;
   vl_old_note(s, "spatial -> bvh");
   return vl_old_edit(file, p->span[0], "\"bvh\"");
 }
@@ -224,8 +264,10 @@ static const vlOldKind integrators[] = {{"path", "path", path, light_sampler},
 
 bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
   bool older = vl_text_is(s->word->name, "SurfaceIntegrator");
-  if (older) vl_old_note(s, "-> Integrator");
-  if (older && !vl_old_edit(file, s->keyword, "Integrator")) return false;
+  if (older)
+    vl_old_note(s, "-> Integrator");
+  if (older && !vl_old_edit(file, s->keyword, "Integrator"))
+    return false;
   /* pbrt-v3's path renders subsurface scattering, pbrt-v4's does not */
   const vlOldKind *kind = vl_old_kind(integrators, s->name[0]);
   bool path_tracer = !kind || vl_text_is(kind->to, "path");
@@ -239,28 +281,36 @@ bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, integrators, "path");
 }
 
-/* ---- media ------------------------------------------------------------------------------------------------------- */
+/* ---- media
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 #define SUBSTANCE                                \
   {"preset"}, {"sigma_a"}, {"sigma_s"}, {"g"}, { \
     "scale"                                      \
   }
 static const vlOldRow homogeneous[] = {SUBSTANCE, {"Le"}, {0}};
-static const vlOldRow grid[] = {SUBSTANCE, {"density"}, {"nx"}, {"ny"}, {"nz"}, {"p0"}, {"p1"}, {0}};
+static const vlOldRow grid[] = {SUBSTANCE, {"density"}, {"nx"}, {"ny"},
+                                {"nz"},    {"p0"},      {"p1"}, {0}};
 static const vlOldKind media[] = {
     {"homogeneous", "homogeneous", homogeneous}, {"heterogeneous", "uniformgrid", grid}, {0}};
 
 bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");
   const vlOldKind *kind = type && type->strings ? vl_old_kind(media, type->text[0]) : NULL;
-  if (!kind) return true; /* pbrt-v4's own */
-  if (!vl_old_rows(file, s, kind->rows, VL_OLD_LOSE)) return false;
-  if (vl_text_is(kind->from, kind->to)) return true;
+  if (!kind)
+    return true; /* pbrt-v4's own */
+  if (!vl_old_rows(file, s, kind->rows, VL_OLD_LOSE))
+    return false;
+  if (vl_text_is(kind->from, kind->to))
+    return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", kind->from, kind->to);
   return vl_old_edit(file, type->span[0], "\"%s\"", kind->to);
 }
 
-/* ---- WorldBegin -------------------------------------------------------------------------------------------------- */
+/* ---- WorldBegin
+ * --------------------------------------------------------------------------------------------------
+ */
 
 bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   file->u->has_world = true;
@@ -269,14 +319,18 @@ bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   double iso = u->iso * u->exposure;
   if (!u->filter_given && u->is_old) {
     vl_old_note(s, "PixelFilter \"box\", pbrt-v3's default, before it");
-    if (!vl_old_before(file, s, "PixelFilter \"box\"")) return false;
+    if (!vl_old_before(file, s, "PixelFilter \"box\""))
+      return false;
   }
-  if (iso == 100) return true;
+  if (iso == 100)
+    return true;
   if (u->film_file != file) {
-    vl_old_lose(file, s->line, "the film's \"iso\" must be %s, for its scale and the shutter's time",
+    vl_old_lose(file, s->line,
+                "the film's \"iso\" must be %s, for its scale and the shutter's time",
                 vl_old_text(iso, text));
     return true;
   }
   vl_old_note(s, "the film's iso is %s", vl_old_text(iso, text));
-  return vl_old_edit(file, (vlOldSpan){u->film_end, u->film_end}, " \"float iso\" %s", vl_old_text(iso, text));
+  return vl_old_edit(file, (vlOldSpan){u->film_end, u->film_end}, " \"float iso\" %s",
+                     vl_old_text(iso, text));
 }

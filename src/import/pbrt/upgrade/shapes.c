@@ -8,14 +8,18 @@
   }
 
 static const vlOldRow sphere[] = {{"radius"}, {"zmin"}, {"zmax"}, {"phimax"}, ALPHA, {0}};
-static const vlOldRow disk[] = {{"radius"}, {"height"}, {"innerradius"}, {"phimax"}, ALPHA, {0}};
-static const vlOldRow mesh[] = {{"P"},       {"N"},           {"S"}, {"uv"}, {"st", VL_OLD_RENAME, "uv"},
-                                {"indices"}, {"faceIndices"}, ALPHA, {0}};
+static const vlOldRow disk[] = {{"radius"}, {"height"}, {"innerradius"},
+                                {"phimax"}, ALPHA,      {0}};
+static const vlOldRow mesh[] = {
+    {"P"},       {"N"},           {"S"}, {"uv"}, {"st", VL_OLD_RENAME, "uv"},
+    {"indices"}, {"faceIndices"}, ALPHA, {0}};
 static const vlOldRow ply[] = {{"filename"}, ALPHA, {0}};
-static const vlOldRow loop[] = {{"P"}, {"indices"}, {"nlevels", VL_OLD_RENAME, "levels"}, {"levels"}, {"scheme"},
-                                ALPHA, {0}};
-static const vlOldRow curve[] = {{"P"},      {"N"},      {"type"},       {"basis"}, {"degree"}, {"width"},
-                                 {"width0"}, {"width1"}, {"splitdepth"}, ALPHA,     {0}};
+static const vlOldRow loop[] = {{"P"},      {"indices"}, {"nlevels", VL_OLD_RENAME, "levels"},
+                                {"levels"}, {"scheme"},  ALPHA,
+                                {0}};
+static const vlOldRow curve[] = {{"P"},          {"N"},     {"type"},   {"basis"},
+                                 {"degree"},     {"width"}, {"width0"}, {"width1"},
+                                 {"splitdepth"}, ALPHA,     {0}};
 
 /* uvs were lists of numbers. */
 static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
@@ -23,7 +27,8 @@ static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
   (void)file;
   for (int i = 0; i < 2; i++) {
     vlOldParam *p = vl_old_find(s, names[i]);
-    if (p) p->new_type = "point2";
+    if (p)
+      p->new_type = "point2";
   }
   return true;
 }
@@ -53,6 +58,7 @@ bool vl_old_shape(vlOldFile *file, vlOldStatement *s) {
                 vl_text_is(s->name[0], "nurbs") ? " (convert it to a mesh)" : "");
     return vl_old_remove(file, s);
   }
-  return (!kind->rule || kind->rule(file, s)) && (!kind->rows || vl_old_rows(file, s, kind->rows, VL_OLD_LOSE)) &&
+  return (!kind->rule || kind->rule(file, s)) &&
+         (!kind->rows || vl_old_rows(file, s, kind->rows, VL_OLD_LOSE)) &&
          vl_old_rename(file, s, 0, kind->to);
 }

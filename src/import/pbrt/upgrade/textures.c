@@ -7,7 +7,8 @@
 
 static vlOldTexture *find_texture(vlUpgrade *u, const char *name) {
   for (size_t i = u->textures.count; i > 0; i--)
-    if (vl_text_is(u->textures.items[i - 1].name, name)) return &u->textures.items[i - 1];
+    if (vl_text_is(u->textures.items[i - 1].name, name))
+      return &u->textures.items[i - 1];
   return NULL;
 }
 
@@ -25,10 +26,12 @@ static const vlOldRow constant[] = {{"value"}, {0}};
 static const vlOldRow scale[] = {{"tex"}, {"scale"}, {0}};
 static const vlOldRow mix[] = {{"tex1"}, {"tex2"}, {"amount"}, {0}};
 static const vlOldRow bilerp[] = {{"v00"}, {"v01"}, {"v10"}, {"v11"}, MAPPING, {0}};
-static const vlOldRow imagemap[] = {{"filename"}, {"wrap"},   {"maxanisotropy"}, {"scale"}, {"invert"},
-                                    {"encoding"}, {"filter"}, MAPPING,           {0}};
+static const vlOldRow imagemap[] = {{"filename"}, {"wrap"},   {"maxanisotropy"},
+                                    {"scale"},    {"invert"}, {"encoding"},
+                                    {"filter"},   MAPPING,    {0}};
 static const vlOldRow uv[] = {MAPPING, {0}};
-static const vlOldRow checkerboard[] = {{"dimension"}, {"tex1"}, {"tex2"}, {"aamode", VL_OLD_DROP}, MAPPING, {0}};
+static const vlOldRow checkerboard[] = {{"dimension"},           {"tex1"}, {"tex2"},
+                                        {"aamode", VL_OLD_DROP}, MAPPING,  {0}};
 static const vlOldRow dots[] = {{"inside"}, {"outside"}, MAPPING, {0}};
 static const vlOldRow noise[] = {{"octaves"}, {"roughness"}, {0}};
 static const vlOldRow marble[] = {{"octaves"}, {"roughness"}, {"scale"}, {"variation"}, {0}};
@@ -38,7 +41,9 @@ static bool is_spectrum(const vlOldStatement *s) {
   return !vl_text_is(s->name[1], "float");
 }
 
-/* ---- scale ------------------------------------------------------------------------------------------------------- */
+/* ---- scale
+ * -------------------------------------------------------------------------------------------------------
+ */
 
 /* Whether the input is a constant of one number; an input that is not given is 1. */
 static bool one_number(const vlOldParam *p, double *value) {
@@ -49,7 +54,8 @@ static bool one_number(const vlOldParam *p, double *value) {
 static void set_scale(vlOldFile *file, vlOldParam *p) {
   p->new_name = "scale";
   p->new_type = "float";
-  if (p->count != 3) return;
+  if (p->count != 3)
+    return;
   snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
            file->text + p->span[0].start);
 }
@@ -59,10 +65,13 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *a = vl_old_find(s, "tex1"), *b = vl_old_find(s, "tex2");
   double value, rgb[3];
   char text[32];
-  if (!a && !b) return true; /* pbrt-v4's already, or 1 */
+  if (!a && !b)
+    return true; /* pbrt-v4's already, or 1 */
   if (!is_spectrum(s)) {
-    if (a) a->new_name = "tex";
-    if (b) b->new_name = "scale";
+    if (a)
+      a->new_name = "tex";
+    if (b)
+      b->new_name = "scale";
     return true;
   }
   if (!one_number(b, &value) && one_number(a, &value)) {
@@ -79,49 +88,64 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
       b = t;
     }
     const char *copy = vl_old_float_copy(file, s, b->text[0]);
-    if (file->u->result != VL_OK) return false;
+    if (file->u->result != VL_OK)
+      return false;
     if (copy) {
       if (!is_noise(file->u, b->text[0]))
-        vl_old_lose(file, s->line, "a product of two colour textures has no counterpart: \"%s\" becomes one of numbers",
+        vl_old_lose(file, s->line,
+                    "a product of two colour textures has no counterpart: \"%s\" becomes one "
+                    "of numbers",
                     b->text[0]);
       b->new_name = "scale";
       snprintf(b->new_value, sizeof b->new_value, "\"%.150s\"", copy);
     } else {
-      vl_old_lose(file, s->line, "a product of two colour textures has no counterpart: \"%s\" is left out", b->text[0]);
+      vl_old_lose(file, s->line,
+                  "a product of two colour textures has no counterpart: \"%s\" is left out",
+                  b->text[0]);
       b->dropped = true;
     }
   } else if (b && vl_old_is_color(b, rgb)) {
-    vl_old_lose(file, s->line, "a texture times a colour has no counterpart: the colour's mean is taken");
+    vl_old_lose(file, s->line,
+                "a texture times a colour has no counterpart: the colour's mean is taken");
     set_scale(file, b);
-    snprintf(b->new_value, sizeof b->new_value, "%s", vl_old_text((rgb[0] + rgb[1] + rgb[2]) / 3, text));
+    snprintf(b->new_value, sizeof b->new_value, "%s",
+             vl_old_text((rgb[0] + rgb[1] + rgb[2]) / 3, text));
   } else if (b) {
-    vl_old_lose(file, s->line, "a texture times a spectrum has no counterpart: the texture alone is taken");
+    vl_old_lose(file, s->line,
+                "a texture times a spectrum has no counterpart: the texture alone is taken");
     b->dropped = true;
   }
-  if (a) a->new_name = "tex";
+  if (a)
+    a->new_name = "tex";
   return true;
 }
 
-/* ---- others ------------------------------------------------------------------------------------------------------ */
+/* ---- others
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static bool image_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *trilinear = vl_old_find(s, "trilinear"), *gamma = vl_old_find(s, "gamma"),
              *name = vl_old_find(s, "filename");
   if (trilinear) {
-    bool on = trilinear->text[0] ? vl_text_is(trilinear->text[0], "true") : file->text[trilinear->span[0].start] == 't';
+    bool on = trilinear->text[0] ? vl_text_is(trilinear->text[0], "true")
+                                 : file->text[trilinear->span[0].start] == 't';
     vl_old_drop(s, trilinear);
-    if (on && !vl_old_add(file, s, "\"string filter\" \"trilinear\"")) return false;
+    if (on && !vl_old_add(file, s, "\"string filter\" \"trilinear\""))
+      return false;
   }
   if (gamma && vl_text_is(gamma->type, "bool")) {
-    bool on = gamma->text[0] ? vl_text_is(gamma->text[0], "true") : file->text[gamma->span[0].start] == 't';
+    bool on = gamma->text[0] ? vl_text_is(gamma->text[0], "true")
+                             : file->text[gamma->span[0].start] == 't';
     vl_old_drop(s, gamma);
-    if (!vl_old_add(file, s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear")) return false;
+    if (!vl_old_add(file, s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear"))
+      return false;
   } else if (gamma) {
     char text[32];
     vl_old_drop(s, gamma);
-    if (!(gamma->number[0] == 1
-              ? vl_old_add(file, s, "\"string encoding\" \"linear\"")
-              : vl_old_add(file, s, "\"string encoding\" \"gamma %s\"", vl_old_text(gamma->number[0], text))))
+    if (!(gamma->number[0] == 1 ? vl_old_add(file, s, "\"string encoding\" \"linear\"")
+                                : vl_old_add(file, s, "\"string encoding\" \"gamma %s\"",
+                                             vl_old_text(gamma->number[0], text))))
       return false;
   }
   return vl_old_write_file_name(file, s, name);
@@ -129,38 +153,51 @@ static bool image_rule(vlOldFile *file, vlOldStatement *s) {
 
 /* Red is u, green v: the corners of a bilinear interpolation. */
 static bool uv_rule(vlOldFile *file, vlOldStatement *s) {
-  return vl_old_add(file, s, "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb v11\" [ 1 1 0 ]");
+  return vl_old_add(file, s,
+                    "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb "
+                    "v11\" [ 1 1 0 ]");
 }
 
 /* A noise of colours is one of numbers already. */
 static bool keep_noise(vlUpgrade *u, const char *name, const char *copy) {
   vlOldTexture *t = VL_PUSH(u->context, &u->textures);
-  if (!t) return vl_old_fail_memory(u);
-  *t = (vlOldTexture){.name = vl_strdup(u->context, name), .copy = vl_strdup(u->context, copy), .grey = true};
+  if (!t)
+    return vl_old_fail_memory(u);
+  *t = (vlOldTexture){
+      .name = vl_strdup(u->context, name), .copy = vl_strdup(u->context, copy), .grey = true};
   return (t->name && t->copy) || vl_old_fail_memory(u);
 }
 
 /* pbrt-v4's noise is of numbers: a mix of black and white by it is the colour texture. */
 static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
-  if (!is_spectrum(s)) return true;
+  if (!is_spectrum(s))
+    return true;
   char name[300];
   snprintf(name, sizeof name, "%.200s-float", s->name[0]);
   vl_old_note(s, "a mix by the float texture \"%s\"", name);
-  if (!keep_noise(file->u, s->name[0], name)) return false;
+  if (!keep_noise(file->u, s->name[0], name))
+    return false;
   s->name[1] = "float";
   s->renamed = 0; /* its name is written here */
-  return vl_old_edit(file, s->names[0], "\"%s\"", name) && vl_old_edit(file, s->names[1], "\"float\"") &&
+  return vl_old_edit(file, s->names[0], "\"%s\"", name) &&
+         vl_old_edit(file, s->names[1], "\"float\"") &&
          vl_old_after(file, s,
-                      "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" [ 1 1 1 ] "
+                      "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" "
+                      "[ 1 1 1 ] "
                       "\"texture amount\" \"%s\"",
                       s->name[0], name);
 }
 
-/* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of it. */
+/* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of
+ * it.
+ */
 static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
-  if (is_spectrum(s)) return true;
-  vl_old_lose(file, s->line, "marble of numbers has no counterpart: the constant 1 replaces it");
-  for (size_t i = 0; i < s->params.count; i++) vl_old_drop(s, &s->params.items[i]);
+  if (is_spectrum(s))
+    return true;
+  vl_old_lose(file, s->line,
+              "marble of numbers has no counterpart: the constant 1 replaces it");
+  for (size_t i = 0; i < s->params.count; i++)
+    vl_old_drop(s, &s->params.items[i]);
   return vl_old_edit(file, s->names[2], "\"constant\"");
 }
 
@@ -181,13 +218,17 @@ static const vlOldKind kinds[] = {
     {"ptex", "ptex", ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
     {0}};
 
-/* ---- float copies ------------------------------------------------------------------------------------------------ */
+/* ---- float copies
+ * ------------------------------------------------------------------------------------------------
+ */
 
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture) {
   vlUpgrade *u = file->u;
   vlOldTexture *t = find_texture(u, texture);
-  if (!t) return NULL;
-  if (t->copy) return t->copy;
+  if (!t)
+    return NULL;
+  if (t->copy)
+    return t->copy;
   char name[300];
   snprintf(name, sizeof name, "%.200s-float", texture);
   t->copy = vl_strdup(u->context, name);
@@ -201,7 +242,8 @@ const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *te
 /* Keeps what follows name and type of an image texture in the new text. */
 static bool keep(vlOldFile *file, const vlOldStatement *s) {
   vlUpgrade *u = file->u;
-  if (!vl_text_is(s->name[2], "imagemap") || !is_spectrum(s)) return true;
+  if (!vl_text_is(s->name[2], "imagemap") || !is_spectrum(s))
+    return true;
   char *text = vl_old_render(file, (vlOldSpan){s->names[2].start, s->whole.end});
   vlOldTexture *t = text ? VL_PUSH(u->context, &u->textures) : NULL;
   if (!t) {
@@ -214,9 +256,13 @@ static bool keep(vlOldFile *file, const vlOldStatement *s) {
 
 bool vl_old_texture(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[2]);
-  if (kind && kind->lost) vl_old_lose(file, s->line, "%s", kind->lost);
-  if (kind && kind->rule && !kind->rule(file, s)) return false;
-  if (vl_text_is(s->name[1], "color") && !vl_old_rename(file, s, 1, "spectrum")) return false;
-  return !kind || (vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 2, kind->to) &&
-                   vl_old_finish(file, s) && keep(file, s));
+  if (kind && kind->lost)
+    vl_old_lose(file, s->line, "%s", kind->lost);
+  if (kind && kind->rule && !kind->rule(file, s))
+    return false;
+  if (vl_text_is(s->name[1], "color") && !vl_old_rename(file, s, 1, "spectrum"))
+    return false;
+  return !kind ||
+         (vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) &&
+          vl_old_rename(file, s, 2, kind->to) && vl_old_finish(file, s) && keep(file, s));
 }

@@ -1,5 +1,5 @@
-/* import/pbrt/upgrade/upgrade.c: the interface: reads the statements of each file, applies the rules, writes the new
- * files. */
+/* import/pbrt/upgrade/upgrade.c: the interface: reads the statements of each file, applies the
+ * rules, writes the new files. */
 #include "import/pbrt/upgrade/upgrade.h"
 
 #include <limits.h>
@@ -15,7 +15,8 @@
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/detect.h"
 
-/* ---- directives without a table -----------------------------------------------------------------------------------
+/* ---- directives without a table
+ * -----------------------------------------------------------------------------------
  */
 
 static bool remove_it(vlOldFile *file, vlOldStatement *s) {
@@ -31,61 +32,66 @@ static bool lose_it(vlOldFile *file, vlOldStatement *s) {
 /* Numbers without brackets, those of a matrix in brackets. */
 static bool bracket(vlOldFile *file, vlOldStatement *s) {
   bool has = s->numbers[0].end > s->numbers[0].start, wanted = s->word->form == VL_OLD_MATRIX;
-  if (has == wanted) return true;
+  if (has == wanted)
+    return true;
   if (wanted)
     return vl_old_edit(file, (vlOldSpan){s->keyword.end, s->keyword.end}, " [") &&
            vl_old_edit(file, (vlOldSpan){s->whole.end, s->whole.end}, " ]");
-  return vl_old_edit(file, s->numbers[0], "%s", "") && vl_old_edit(file, s->numbers[1], "%s", "");
+  return vl_old_edit(file, s->numbers[0], "%s", "") &&
+         vl_old_edit(file, s->numbers[1], "%s", "");
 }
 
-const vlOldWord vl_old_words[] = {{"AttributeBegin", VL_OLD_PLAIN, 0, vl_old_block},
-                                  {"AttributeEnd", VL_OLD_PLAIN, 0, vl_old_block},
-                                  {"TransformBegin", VL_OLD_PLAIN, 0, vl_old_block},
-                                  {"TransformEnd", VL_OLD_PLAIN, 0, vl_old_block},
-                                  {"Identity", VL_OLD_PLAIN, 0, NULL},
-                                  {"ReverseOrientation", VL_OLD_PLAIN, 0, NULL},
-                                  {"WorldBegin", VL_OLD_PLAIN, 0, vl_old_world},
-                                  {"WorldEnd", VL_OLD_PLAIN, 0, remove_it},
-                                  {"ObjectEnd", VL_OLD_PLAIN, 0, NULL},
-                                  {"ActiveTransform", VL_OLD_WORD, 0, NULL},
-                                  {"Include", VL_OLD_PLAIN, 1, vl_old_include},
-                                  {"Import", VL_OLD_PLAIN, 1, vl_old_include},
-                                  {"Translate", VL_OLD_NUMBERS, 0, bracket},
-                                  {"Scale", VL_OLD_NUMBERS, 0, bracket},
-                                  {"Rotate", VL_OLD_NUMBERS, 0, bracket},
-                                  {"LookAt", VL_OLD_NUMBERS, 0, bracket},
-                                  {"TransformTimes", VL_OLD_NUMBERS, 0, bracket},
-                                  {"Transform", VL_OLD_MATRIX, 0, bracket},
-                                  {"ConcatTransform", VL_OLD_MATRIX, 0, bracket},
-                                  {"CoordinateSystem", VL_OLD_PLAIN, 1, NULL},
-                                  {"CoordSysTransform", VL_OLD_PLAIN, 1, NULL},
-                                  {"ColorSpace", VL_OLD_PLAIN, 1, NULL},
-                                  {"NamedMaterial", VL_OLD_PLAIN, 1, NULL},
-                                  {"ObjectBegin", VL_OLD_PLAIN, 1, NULL},
-                                  {"ObjectInstance", VL_OLD_PLAIN, 1, NULL},
-                                  {"MediumInterface", VL_OLD_PLAIN, 2, NULL},
-                                  {"Attribute", VL_OLD_PARAMS, 1, NULL},
-                                  {"Film", VL_OLD_PARAMS, 1, vl_old_film},
-                                  {"Sampler", VL_OLD_PARAMS, 1, vl_old_sampler},
-                                  {"Integrator", VL_OLD_PARAMS, 1, vl_old_integrator},
-                                  {"SurfaceIntegrator", VL_OLD_PARAMS, 1, vl_old_integrator},
-                                  {"VolumeIntegrator", VL_OLD_PARAMS, 1, lose_it},
-                                  {"Renderer", VL_OLD_PARAMS, 1, lose_it},
-                                  {"Volume", VL_OLD_PARAMS, 1, lose_it},
-                                  {"SearchPath", VL_OLD_PLAIN, 1, lose_it},
-                                  {"PixelFilter", VL_OLD_PARAMS, 1, vl_old_filter},
-                                  {"Accelerator", VL_OLD_PARAMS, 1, vl_old_accelerator},
-                                  {"Camera", VL_OLD_PARAMS, 1, vl_old_camera},
-                                  {"MakeNamedMedium", VL_OLD_PARAMS, 1, vl_old_medium},
-                                  {"Material", VL_OLD_PARAMS, 1, vl_old_material},
-                                  {"MakeNamedMaterial", VL_OLD_PARAMS, 1, vl_old_named_material},
-                                  {"AreaLightSource", VL_OLD_PARAMS, 1, vl_old_area_light},
-                                  {"LightSource", VL_OLD_PARAMS, 1, vl_old_light},
-                                  {"Shape", VL_OLD_PARAMS, 1, vl_old_shape},
-                                  {"Texture", VL_OLD_PARAMS, 3, vl_old_texture},
-                                  {NULL, VL_OLD_PLAIN, 0, NULL}};
+const vlOldWord vl_old_words[] = {
+    {"AttributeBegin", VL_OLD_PLAIN, 0, vl_old_block},
+    {"AttributeEnd", VL_OLD_PLAIN, 0, vl_old_block},
+    {"TransformBegin", VL_OLD_PLAIN, 0, vl_old_block},
+    {"TransformEnd", VL_OLD_PLAIN, 0, vl_old_block},
+    {"Identity", VL_OLD_PLAIN, 0, NULL},
+    {"ReverseOrientation", VL_OLD_PLAIN, 0, NULL},
+    {"WorldBegin", VL_OLD_PLAIN, 0, vl_old_world},
+    {"WorldEnd", VL_OLD_PLAIN, 0, remove_it},
+    {"ObjectEnd", VL_OLD_PLAIN, 0, NULL},
+    {"ActiveTransform", VL_OLD_WORD, 0, NULL},
+    {"Include", VL_OLD_PLAIN, 1, vl_old_include},
+    {"Import", VL_OLD_PLAIN, 1, vl_old_include},
+    {"Translate", VL_OLD_NUMBERS, 0, bracket},
+    {"Scale", VL_OLD_NUMBERS, 0, bracket},
+    {"Rotate", VL_OLD_NUMBERS, 0, bracket},
+    {"LookAt", VL_OLD_NUMBERS, 0, bracket},
+    {"TransformTimes", VL_OLD_NUMBERS, 0, bracket},
+    {"Transform", VL_OLD_MATRIX, 0, bracket},
+    {"ConcatTransform", VL_OLD_MATRIX, 0, bracket},
+    {"CoordinateSystem", VL_OLD_PLAIN, 1, NULL},
+    {"CoordSysTransform", VL_OLD_PLAIN, 1, NULL},
+    {"ColorSpace", VL_OLD_PLAIN, 1, NULL},
+    {"NamedMaterial", VL_OLD_PLAIN, 1, NULL},
+    {"ObjectBegin", VL_OLD_PLAIN, 1, NULL},
+    {"ObjectInstance", VL_OLD_PLAIN, 1, NULL},
+    {"MediumInterface", VL_OLD_PLAIN, 2, NULL},
+    {"Attribute", VL_OLD_PARAMS, 1, NULL},
+    {"Film", VL_OLD_PARAMS, 1, vl_old_film},
+    {"Sampler", VL_OLD_PARAMS, 1, vl_old_sampler},
+    {"Integrator", VL_OLD_PARAMS, 1, vl_old_integrator},
+    {"SurfaceIntegrator", VL_OLD_PARAMS, 1, vl_old_integrator},
+    {"VolumeIntegrator", VL_OLD_PARAMS, 1, lose_it},
+    {"Renderer", VL_OLD_PARAMS, 1, lose_it},
+    {"Volume", VL_OLD_PARAMS, 1, lose_it},
+    {"SearchPath", VL_OLD_PLAIN, 1, lose_it},
+    {"PixelFilter", VL_OLD_PARAMS, 1, vl_old_filter},
+    {"Accelerator", VL_OLD_PARAMS, 1, vl_old_accelerator},
+    {"Camera", VL_OLD_PARAMS, 1, vl_old_camera},
+    {"MakeNamedMedium", VL_OLD_PARAMS, 1, vl_old_medium},
+    {"Material", VL_OLD_PARAMS, 1, vl_old_material},
+    {"MakeNamedMaterial", VL_OLD_PARAMS, 1, vl_old_named_material},
+    {"AreaLightSource", VL_OLD_PARAMS, 1, vl_old_area_light},
+    {"LightSource", VL_OLD_PARAMS, 1, vl_old_light},
+    {"Shape", VL_OLD_PARAMS, 1, vl_old_shape},
+    {"Texture", VL_OLD_PARAMS, 3, vl_old_texture},
+    {NULL, VL_OLD_PLAIN, 0, NULL}};
 
-/* ---- a file ------------------------------------------------------------------------------------------------------ */
+/* ---- a file
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 static bool read_all(vlOldFile *file) {
   vlTokenizer tokens;
@@ -94,13 +100,17 @@ static bool read_all(vlOldFile *file) {
     vlOldStatement s;
     bool fine = vl_old_read(file, &tokens, &s, &end);
     if (fine && !end) {
-      fine = (s.word->form != VL_OLD_PARAMS || vl_old_types(file, &s)) && vl_old_names(file, &s);
-      if (fine && s.word->rule) fine = s.word->rule(file, &s);
+      fine =
+          (s.word->form != VL_OLD_PARAMS || vl_old_types(file, &s)) && vl_old_names(file, &s);
+      if (fine && s.word->rule)
+        fine = s.word->rule(file, &s);
       fine = fine && vl_old_finish(file, &s);
-      if (fine) vl_old_block_sets(file, &s);
+      if (fine)
+        vl_old_block_sets(file, &s);
     }
     vl_old_free(file, &s);
-    if (!fine) return false;
+    if (!fine)
+      return false;
   }
   return true;
 }
@@ -112,7 +122,8 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
   *text = NULL;
   vlResult r = u->depth ? vl_file_read(u->context, path, true, &data, &file.size, &error)
                         : vl_file_read_given(u->context, path, true, &data, &file.size, &error);
-  if (r != VL_OK) return vl_old_fail(&file, r, 0, 0, "%s", error.message);
+  if (r != VL_OK)
+    return vl_old_fail(&file, r, 0, 0, "%s", error.message);
   file.text = data;
   file.words = vl_alloc(u->context, file.size + 1);
   bool fine = file.words || vl_old_fail_memory(u);
@@ -126,33 +137,39 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
     fine = read_all(&file);
   }
   *changed = file.edits.count > 0;
-  if (fine && !(*text = vl_old_render(&file, (vlOldSpan){0, file.size}))) fine = vl_old_fail_memory(u);
-  for (size_t i = 0; i < file.edits.count; i++) vl_free(u->context, file.edits.items[i].text);
+  if (fine && !(*text = vl_old_render(&file, (vlOldSpan){0, file.size})))
+    fine = vl_old_fail_memory(u);
+  for (size_t i = 0; i < file.edits.count; i++)
+    vl_free(u->context, file.edits.items[i].text);
   VL_ARRAY_FREE(u->context, &file.edits);
   VL_ARRAY_FREE(u->context, &file.blocks);
   vl_free(u->context, file.words);
   vl_free(u->context, data);
-  if (u->film_file == &file) u->film_file = NULL;
+  if (u->film_file == &file)
+    u->film_file = NULL;
   return fine;
 }
 
 static void tell_written(const vlUpgrade *u, const char *path, const char *what) {
   vlError place = {0};
   vl_fail_at(&place, VL_OK, path, 0, 0, "%s", "");
-  if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, what);
+  if (u->def->report)
+    u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, what);
 }
 
 /* Writes all files, or none. */
 static bool write_files(vlUpgrade *u, const char *text) {
   char path[PATH_MAX + 4200];
   for (size_t i = 0; i < u->maps.count && u->result == VL_OK; i++)
-    u->result =
-        vl_file_set_write(&u->files, u->maps.items[i].name, u->maps.items[i].data, u->maps.items[i].size, &u->error);
+    u->result = vl_file_set_write(&u->files, u->maps.items[i].name, u->maps.items[i].data,
+                                  u->maps.items[i].size, &u->error);
   for (size_t i = 0; i + 1 < u->outputs.count && u->result == VL_OK; i += 2)
     u->result = vl_file_set_write(&u->files, u->outputs.items[i], u->outputs.items[i + 1],
                                   strlen(u->outputs.items[i + 1]), &u->error);
-  if (u->result == VL_OK) u->result = vl_file_set_main(&u->files, text, strlen(text), &u->error);
-  if (u->result != VL_OK) return false;
+  if (u->result == VL_OK)
+    u->result = vl_file_set_main(&u->files, text, strlen(text), &u->error);
+  if (u->result != VL_OK)
+    return false;
   for (size_t i = 0; i < u->maps.count; i++) {
     snprintf(path, sizeof path, "%s/%s", u->to_folder, u->maps.items[i].name);
     tell_written(u, path, "the light's image, equal-area");
@@ -165,14 +182,19 @@ static bool write_files(vlUpgrade *u, const char *text) {
   return true;
 }
 
-/* ---- the interface ----------------------------------------------------------------------------------------------- */
+/* ---- the interface
+ * -----------------------------------------------------------------------------------------------
+ */
 
 static bool folder_of(const char *path, char result[4096]) {
   char folder[4096], real[PATH_MAX];
   const char *slash = strrchr(path, '/');
-  int n = snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
-  if (slash == path) n = snprintf(folder, sizeof folder, "/");
-  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real) || strlen(real) >= 4096) return false;
+  int n = snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1,
+                   slash ? path : ".");
+  if (slash == path)
+    n = snprintf(folder, sizeof folder, "/");
+  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real) || strlen(real) >= 4096)
+    return false;
   memcpy(result, real, strlen(real) + 1);
   return true;
 }
@@ -195,7 +217,8 @@ static void release(vlUpgrade *u) {
     vl_free(c, u->includes.items[i].path);
     vl_free(c, u->includes.items[i].name);
   }
-  for (size_t i = 0; i < u->outputs.count; i++) vl_free(c, u->outputs.items[i]);
+  for (size_t i = 0; i < u->outputs.count; i++)
+    vl_free(c, u->outputs.items[i]);
   for (size_t i = 0; i < u->maps.count; i++) {
     VL_FREE(c, u->maps.items[i].from, u->maps.items[i].name, u->maps.items[i].data);
   }
@@ -209,11 +232,13 @@ static void release(vlUpgrade *u) {
 static bool run(vlUpgrade *u) {
   char *text = NULL;
   bool changed;
-  if (!vl_old_upgrade_file(u, u->first, &text, &changed)) return false;
+  if (!vl_old_upgrade_file(u, u->first, &text, &changed))
+    return false;
   if (u->def->strict && u->lost) {
     vl_free(u->context, text);
-    u->result = vl_fail_at(&u->error, VL_ERROR_UNSUPPORTED, u->first, 0, 0,
-                           "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
+    u->result =
+        vl_fail_at(&u->error, VL_ERROR_UNSUPPORTED, u->first, 0, 0,
+                   "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
     return false;
   }
   bool fine = vl_old_check(u, text) && write_files(u, text);
@@ -225,14 +250,16 @@ vlUpgradeDef vl_default_upgrade_def(void) {
   return (vlUpgradeDef){.cookie = VL_COOKIE_UPGRADE};
 }
 
-vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, const vlUpgradeDef *def,
-                          vlError *error) {
+vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to,
+                          const vlUpgradeDef *def, vlError *error) {
   vlUpgradeDef plain = vl_default_upgrade_def();
   vl_error_clear(error);
-  if (!context || !from || !to) return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: an argument is null");
+  if (!context || !from || !to)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: an argument is null");
   if (def && def->cookie != VL_COOKIE_UPGRADE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: " VL_BAD_COOKIE);
-  if (same_file(from, to)) return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: %s would be overwritten", to);
+  if (same_file(from, to))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: %s would be overwritten", to);
   vlUpgrade u = {.context = context,
                  .def = def ? def : &plain,
                  .first = from,
@@ -240,11 +267,13 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, 
                  .exposure = 1,
                  .iso = 100,
                  .plain_path = true};
-  if (!folder_of(to, u.to_folder)) return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
+  if (!folder_of(to, u.to_folder))
+    return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
   u.same_folder = folder_of(from, u.from_folder) && vl_text_is(u.from_folder, u.to_folder);
   vl_file_set_begin(&u.files, context, to);
   vl_file_set_end(&u.files, run(&u));
   release(&u);
-  if (error && u.result != VL_OK) *error = u.error;
+  if (error && u.result != VL_OK)
+    *error = u.error;
   return u.result;
 }

@@ -1,7 +1,8 @@
-/* import/pbrt/upgrade/upgrade.h: types and functions shared by the files that turn pbrt-v3 text into pbrt-v4 text.
- * Data flow: document.c cuts a file into statements that keep their places in the text; tables.c and the rules
- * (materials.c, textures.c, lights.c, shapes.c, settings.c) say what changes; edit.c collects edits and applies them,
- * so that all other text stays as it is; files.c finds and names files; upgrade.c drives. */
+/* import/pbrt/upgrade/upgrade.h: types and functions shared by the files that turn pbrt-v3 text
+ * into pbrt-v4 text. Data flow: document.c cuts a file into statements that keep their places
+ * in the text; tables.c and the rules (materials.c, textures.c, lights.c, shapes.c, settings.c)
+ * say what changes; edit.c collects edits and applies them, so that all other text stays as it
+ * is; files.c finds and names files; upgrade.c drives. */
 #ifndef IMPORT_PBRT_UPGRADE_UPGRADE_H
 #define IMPORT_PBRT_UPGRADE_UPGRADE_H
 
@@ -37,10 +38,11 @@ typedef struct vlOldStatement {
   vlOldSpan names[3];
   const char *name[3];
   VL_ARRAY(vlOldParam) params;
-  vlOldSpan numbers[2]; /* opening and closing bracket of a list of numbers; start == end: none */
-  char changes[400];    /* what the report says of the statement */
-  uint32_t renamed;     /* bits of the names that vl_old_finish writes */
-  bool finished;        /* vl_old_finish has run */
+  vlOldSpan
+      numbers[2];    /* opening and closing bracket of a list of numbers; start == end: none */
+  char changes[400]; /* what the report says of the statement */
+  uint32_t renamed;  /* bits of the names that vl_old_finish writes */
+  bool finished;     /* vl_old_finish has run */
 } vlOldStatement;
 
 typedef struct vlOldEdit {
@@ -63,7 +65,9 @@ typedef struct vlOldName {
   char *old, *name; /* name: in the new scene, where each is given once */
 } vlOldName;
 
-/* A file that was included. One that makes names, or refers to renamed ones, becomes several files. */
+/* A file that was included. One that makes names, or refers to renamed ones, becomes several
+ * files.
+ */
 typedef struct vlOldInclude {
   char *path, *name;  /* where it was found; what the new Include says */
   const char *text;   /* of the new file, which u->outputs owns; null: the old file is used */
@@ -94,16 +98,18 @@ typedef struct vlUpgrade {
   VL_ARRAY(vlOldName) names;
   VL_ARRAY(vlOldTexture) textures;
   VL_ARRAY(vlOldInclude) includes;
-  VL_ARRAY(char *) outputs; /* pairs: name, relative to the new scene's folder, and text of the files to write */
-  vlFileSet files;          /* the new scene's */
-  uint32_t missing;         /* files that were not found */
+  VL_ARRAY(char *)
+  outputs; /* pairs: name, relative to the new scene's folder, and text of the files to write */
+  vlFileSet files;  /* the new scene's */
+  uint32_t missing; /* files that were not found */
   VL_ARRAY(vlOldMap) maps;
   uint32_t depth;
   bool is_old; /* the first file has statements that pbrt-v4 does not have */
   bool filter_given, has_world;
-  bool subsurface, plain_path; /* the first file has subsurface materials; the integrator is path */
-  double exposure;             /* factor on the film's iso: 1 / the shutter's time */
-  double iso;                  /* of the film: 100 * its scale */
+  bool subsurface,
+      plain_path;  /* the first file has subsurface materials; the integrator is path */
+  double exposure; /* factor on the film's iso: 1 / the shutter's time */
+  double iso;      /* of the film: 100 * its scale */
   struct vlOldFile *film_file;
   size_t film_end; /* where parameters of the film can be added */
   uint32_t film_line;
@@ -126,7 +132,8 @@ typedef struct vlOldFile {
   VL_ARRAY(vlOldBlock) blocks;
 } vlOldFile;
 
-/* ---- statements (document.c) --------------------------------------------------------------------------------------
+/* ---- statements (document.c)
+ * --------------------------------------------------------------------------------------
  */
 
 typedef enum vlOldForm {
@@ -152,18 +159,23 @@ typedef struct vlTokenizer vlTokenizer;
 bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *end);
 void vl_old_free(vlOldFile *file, vlOldStatement *s);
 
-/* ---- edits and reports (edit.c) ------------------------------------------------------------------------------------
+/* ---- edits and reports (edit.c)
+ * ------------------------------------------------------------------------------------
  */
 
-bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
+                 const char *format, ...) __attribute__((format(printf, 5, 6)));
 bool vl_old_fail_memory(vlUpgrade *u);
 /* Reports what has no counterpart. */
-void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* Adds to what the report says of the statement's change. */
-void vl_old_note(vlOldStatement *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Replaces part of the text. Insertions have an empty span; those at the same place keep their order. */
-bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void vl_old_note(vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* Replaces part of the text. Insertions have an empty span; those at the same place keep their
+ * order. */
+bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* Removes a whole statement, with its line where it stands alone. */
 bool vl_old_remove(vlOldFile *file, vlOldStatement *s);
 /* Adds a statement before or after s, on a line of its own with the same indentation. */
@@ -181,10 +193,12 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s);
 /* The new text of a span; the caller frees it. Null: out of memory. */
 char *vl_old_render(vlOldFile *file, vlOldSpan span);
 
-/* ---- parameters (params.c) -----------------------------------------------------------------------------------------
+/* ---- parameters (params.c)
+ * -----------------------------------------------------------------------------------------
  */
 
-vlOldParam *vl_old_find(vlOldStatement *s, const char *name); /* the last one that is not dropped; null: none */
+vlOldParam *vl_old_find(vlOldStatement *s,
+                        const char *name); /* the last one that is not dropped; null: none */
 /* Leaves the parameter out. */
 void vl_old_drop(vlOldStatement *s, vlOldParam *p);
 /* Converts type names and values to those of pbrt-v4. */
@@ -211,8 +225,8 @@ typedef struct vlOldRow {
   vlOldAction action;
   const char *to;
 } vlOldRow;
-/* Applies rows, which end with a null name, to the parameters that are not yet renamed or dropped. others: what is done
- * with parameters that no row names. */
+/* Applies rows, which end with a null name, to the parameters that are not yet renamed or
+ * dropped. others: what is done with parameters that no row names. */
 bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others);
 
 /* A kind of one directive. A row of a table ends with its last member that is not null. */
@@ -226,7 +240,8 @@ typedef struct vlOldKind {
 /* The row of a kind; null for unknown kinds. The table ends with a null name. */
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name);
 
-/* ---- rules ---------------------------------------------------------------------------------------------------------
+/* ---- rules
+ * ---------------------------------------------------------------------------------------------------------
  */
 
 vlOldRule vl_old_material, vl_old_named_material;                         /* materials.c */
@@ -238,10 +253,11 @@ vlOldRule vl_old_camera, vl_old_film, vl_old_sampler, vl_old_integrator;  /* set
 vlOldRule vl_old_filter, vl_old_accelerator, vl_old_medium, vl_old_world; /* settings.c */
 /* Adds what only WorldBegin knows: the default filter, the exposure. */
 bool vl_old_finish_settings(vlOldFile *file, vlOldStatement *world);
-/* A float texture with the values of the spectrum texture, written before the statement. Null: there is none. */
+/* A float texture with the values of the spectrum texture, written before the statement. Null:
+ * there is none. */
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture);
-/* Gives names that are made a second time new ones, also where the statement refers to them (names.c). Runs before the
- * rule of the statement. */
+/* Gives names that are made a second time new ones, also where the statement refers to them
+ * (names.c). Runs before the rule of the statement. */
 bool vl_old_names(vlOldFile *file, vlOldStatement *s);
 vlOldRule vl_old_block; /* blocks.c */
 /* Remembers a statement that sets an attribute. */
@@ -249,22 +265,25 @@ void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s);
 /* Shapes that pbrt-v4 does not have, as triangles (quadrics.c). */
 vlOldRule vl_old_mesh_of_shape;
 
-/* ---- files (files.c, environment.c) -------------------------------------------------------------------------------
+/* ---- files (files.c, environment.c)
+ * -------------------------------------------------------------------------------
  */
 
 /* What the new scene says for a file that the old one names. False after an error. */
-bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result, size_t size);
+bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result,
+                      size_t size);
 /* The same for the file that a parameter names (null: none), and says so. */
 bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p);
 /* Includes: upgrades the file and names the new one. */
 vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
 bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
-/* The name of the equal-area image that an image over longitude and latitude becomes, times the factor. The image is
- * made, and written at the end. */
-bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
-                        size_t size);
-/* Reads the new scene as velo reads scenes; false: it is wrong. Nothing is written before (check.c). */
+/* The name of the equal-area image that an image over longitude and latitude becomes, times the
+ * factor. The image is made, and written at the end. */
+bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name,
+                        const double factor[3], char *result, size_t size);
+/* Reads the new scene as velo reads scenes; false: it is wrong. Nothing is written before
+ * (check.c). */
 bool vl_old_check(vlUpgrade *u, const char *text);
 
 #endif

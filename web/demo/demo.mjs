@@ -1,6 +1,7 @@
 // demo/demo.mjs: the demonstration page: files are dropped, workers render, the page shows image, hash and receipt.
 import { lacks } from './velo.mjs';
-import { VeloWorkers } from './workers.mjs';
+import { sha256 } from './sha256.mjs';
+import { VeloWorkers, lacksWorkers } from './workers.mjs';
 
 const $ = (id) => document.getElementById(id);
 const scenes = /\.(pbrt|pbrt\.gz|gltf|glb|obj|ply|stl|off)$/i;
@@ -45,6 +46,14 @@ function explain(result, name) {
   return `velo could not render ${name} (${line || `exit code ${result.code}`}): try other settings, or another scene.`;
 }
 
+// The same of what kept velo from running.
+function explainError(error) {
+  const text = error.message.replace(/\.$/, '');
+  if (/memory|allocat/i.test(text)) return `There is too little memory (${text}): close other pages, or choose fewer workers or a smaller image.`;
+  if (/: 40[34] /.test(text)) return `The server lacks a file of this page (${text}): it must have the whole folder that script/wasm makes.`;
+  return `velo could not run (${text}): reload the page, or close others.`;
+}
+
 function show(bytes) {
   const image = $('image');
   if (image.src) URL.revokeObjectURL(image.src);
@@ -52,9 +61,8 @@ function show(bytes) {
   image.hidden = false;
 }
 
-async function finish(files, exr) {
-  const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', exr));
-  $('hash').textContent = [...digest].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+async function finish(exr) {
+  $('hash').textContent = sha256(exr);
   if ($('exr').href) URL.revokeObjectURL($('exr').href);
   $('exr').href = URL.createObjectURL(new Blob([exr]));
   const info = await workers.run(0, ['image', 'info', '/image.exr'], { files: { '/image.exr': exr } });
@@ -93,20 +101,23 @@ async function render(files) {
     });
     if (own !== workers) return;
     if (result.code !== 0) return say(explain(result, names[0].slice(1)), true);
-    await finish(files, result.files['/image.exr']);
+    await finish(result.files['/image.exr']);
     say(`${names[0].slice(1)}: ${spp} samples per pixel in ${((performance.now() - started) / 1000).toFixed(1)} s.`);
   } catch (error) {
-    if (own === workers) say(`velo could not run: ${error.message.replace(/\.$/, '')}. Reload the page, or close others.`, true);
+    if (own === workers) say(explainError(error), true);
   } finally {
     if (own === workers) $('stop').hidden = true;
   }
 }
 
+async function readFile(file) {
+  return new Uint8Array(await file.arrayBuffer());
+}
+
 // All files of dropped folders, by their paths.
 async function readEntry(entry, files) {
   if (entry.isFile) {
-    const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
-    files[entry.fullPath] = new Uint8Array(await file.arrayBuffer());
+    files[entry.fullPath] = await readFile(await new Promise((resolve, reject) => entry.file(resolve, reject)));
     return;
   }
   const reader = entry.createReader();
@@ -117,14 +128,22 @@ async function readEntry(entry, files) {
   }
 }
 
-async function readList(list) {
+// Renders what `read` puts into the files that it is given.
+async function renderRead(read) {
   const files = {};
-  for (const file of list) files['/' + file.name] = new Uint8Array(await file.arrayBuffer());
-  return files;
+  try {
+    await read(files);
+  } catch (error) {
+    return say(`The browser could not read the files (${error.message.replace(/\.$/, '')}): drop them again, or fewer of them.`, true);
+  }
+  await render(files);
 }
 
 $('workers').value = navigator.hardwareConcurrency ?? 1;
-$('choose').onchange = async (event) => render(await readList(event.target.files));
+$('choose').onchange = (event) =>
+  renderRead(async (files) => {
+    for (const file of event.target.files) files['/' + file.name] = await readFile(file);
+  });
 $('example').onclick = () => render({ '/example.pbrt': new TextEncoder().encode(example) });
 $('stop').onclick = () => {
   workers?.close();
@@ -137,17 +156,18 @@ document.ondragover = (event) => {
   $('drop').className = 'over';
 };
 document.ondragleave = () => ($('drop').className = '');
-document.ondrop = async (event) => {
+document.ondrop = (event) => {
   event.preventDefault();
   $('drop').className = '';
   const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter(Boolean);
-  const files = {};
-  for (const entry of entries) await readEntry(entry, files);
-  render(files);
+  renderRead(async (files) => {
+    for (const entry of entries) await readEntry(entry, files);
+  });
 };
 window.started = true; // index.html says so otherwise
-if (lacks()) {
-  say(lacks(), true);
+const missing = lacks() ?? lacksWorkers();
+if (missing) {
+  say(missing, true);
   for (const input of document.querySelectorAll('input, button')) input.disabled = true;
   document.ondrop = (event) => event.preventDefault();
 } else if (location.hash === '#example') $('example').click();

@@ -24,6 +24,9 @@ export interface RenderOptions {
   onImage?: (files: Files, spp: number) => void;
 }
 
+/** What this browser lacks for workers, as a sentence for its user; null: nothing. */
+export function lacksWorkers(): string | null;
+
 export class VeloWorkers {
   /** count: default all processors */
   constructor(count?: number, url?: string | URL);

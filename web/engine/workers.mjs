@@ -1,6 +1,19 @@
 // engine/workers.mjs: velo in web workers. Each worker renders samples of its own; the films merge exactly, so that the image
 // has the bytes of a single render. No shared memory: the page needs no special headers.
 
+// What this browser lacks for workers, as lacks() of velo.mjs: those without workers of modules do not read the option.
+export function lacksWorkers() {
+  let read = false;
+  const options = {
+    get type() {
+      read = true;
+      return 'module';
+    },
+  };
+  if (typeof Worker === 'function') new Worker('data:text/javascript,', options).terminate();
+  return read ? null : 'This browser has no workers of modules; use Firefox 114, Chrome 80, Safari 15 or newer.';
+}
+
 export class VeloWorkers {
   #workers = [];
   #waiting = new Map();

@@ -23,8 +23,10 @@ function(velo_wasm_program target)
     ${target} PRIVATE -O2 -g1 -sMODULARIZE -sEXPORT_NAME=createVelo -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sALLOW_MEMORY_GROWTH
     -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=64MB -sTOTAL_STACK=4MB -sIMPORTED_MEMORY -sFORCE_FILESYSTEM -lnodefs.js
     -sEXPORTED_RUNTIME_METHODS=FS,NODEFS,callMain,ENV -sENVIRONMENT=web,worker,node -sNODEJS_CATCH_EXIT=0
-    -sNODEJS_CATCH_REJECTION=0 --js-library ${CMAKE_SOURCE_DIR}/web/engine/rgb_tables.js
+    -sNODEJS_CATCH_REJECTION=0 "SHELL:--js-library ${CMAKE_SOURCE_DIR}/web/engine/rgb_tables.js"
+    "SHELL:--js-library ${CMAKE_SOURCE_DIR}/web/engine/page_calls.js"
     --extern-post-js ${CMAKE_SOURCE_DIR}/web/engine/program_end.js -sABORTING_MALLOC=0)
   set_property(TARGET ${target} PROPERTY RULE_LAUNCH_LINK "env NODE_PATH=/usr/share/nodejs") # Debian's place of its modules
-  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${CMAKE_SOURCE_DIR}/web/engine/rgb_tables.js)
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${CMAKE_SOURCE_DIR}/web/engine/rgb_tables.js
+                                                 ${CMAKE_SOURCE_DIR}/web/engine/page_calls.js)
 endfunction()

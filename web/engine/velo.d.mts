@@ -16,6 +16,20 @@ export interface RunOptions {
   memory?: number;
 }
 
+export interface PageOptions extends Omit<RunOptions, 'onWrite'> {
+  /** called with each message of docs/view.md, one JSON object */
+  onMessage: (text: string) => void;
+  /** called with each frame */
+  onFrame: (bytes: ArrayBuffer) => void;
+}
+
+export interface Page {
+  /** A message of docs/view.md, one JSON object. */
+  send(text: string): void;
+  /** Does a piece of work, such as a pass of the image. Returns whether there may be more before the next message. */
+  work(): boolean;
+}
+
 export interface Result {
   /** velo's exit code: docs/conventions.md */
   code: number;
@@ -37,6 +51,8 @@ export class Velo {
   /** Runs a command, such as ["render", "/room.pbrt", "-o", "/room.png"], in an instance of its own. It takes this thread
    * until it ends. */
   run(args: string[], options?: RunOptions): Promise<Result>;
+  /** Begins `velo view` with the page as its server, such as ["view", "/room.pbrt"]. It runs when work() is called. */
+  page(args: string[], options: PageOptions): Promise<Page>;
 }
 
 /** The samples of a .pfm file: rows from the top down, `channels` values per pixel. */

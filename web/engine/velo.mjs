@@ -66,27 +66,29 @@ export class Velo {
     this.#tables[space] ??= await fetchPacked(new URL(`rgb_${space}.bin.gz`, this.#base));
   }
 
-  async run(args, options = {}) {
+  // Does something that may need a table: then it is fetched, and it is done again.
+  async #withTables(action) {
     for (;;) {
       try {
-        return await this.#once(args, options);
+        return await action();
       } catch (error) {
         if (typeof error?.rgbTable !== 'number' || this.#tables[error.rgbTable]) throw error;
-        await this.#table(error.rgbTable); // the scene needs it: again, with it
+        await this.#table(error.rgbTable);
       }
     }
   }
 
-  async #once(args, { files = {}, mount = {}, folder = '/', onWrite, onText, memory = 4096 }) {
-    const text = ['', ''];
-    const print = (stream) => (line) => {
-      text[stream] += line + '\n';
-      onText?.(line, stream === 1);
-    };
+  run(args, options = {}) {
+    return this.#withTables(() => this.#once(args, options));
+  }
+
+  // An instance of the program, with its files; page: see page_calls.js.
+  async #instance({ files = {}, mount = {}, folder = '/', memory = 4096 }, print, page) {
     const pages = Math.max(1024, Math.min(65536, Math.floor(memory * 16))); // of 64 KB
     const instance = await this.#create({
       thisProgram: 'velo',
       rgbTables: this.#tables,
+      page,
       wasmMemory: makeMemory(pages),
       print: print(0),
       printErr: print(1),
@@ -110,6 +112,45 @@ export class Velo {
     }
     fs.mkdirTree(folder);
     fs.chdir(folder);
+    return instance;
+  }
+
+  // `velo view` with the page as its server: args as on the command line, options as for run, and onMessage(text), onFrame(buffer).
+  // Gives { send(text), work() }: work does a piece of work and tells whether there may be more. docs/view.md has the messages.
+  async page(args, { onMessage, onFrame, onText, ...options }) {
+    const page = { onText: onMessage, onFrame, message: '' };
+    let instance, code, errors;
+    const print = (stream) => (line) => {
+      if (stream) errors += line + '\n';
+      onText?.(line, stream === 1);
+    };
+    await this.#withTables(async () => {
+      errors = '';
+      instance = await this.#instance(options, print, page);
+      try {
+        code = instance.callMain(args) ?? 0;
+      } catch (error) {
+        if (error?.name !== 'ExitStatus') throw error;
+        code = error.status;
+      }
+    });
+    if (code) throw new Error(errors.trim().split('\n').at(-1));
+    const send = (text) => {
+      page.message = text;
+      instance._velo_page_message();
+    };
+    return { send, work: () => instance._velo_page_work() !== 0 };
+  }
+
+  async #once(args, options) {
+    const { onWrite, onText } = options;
+    const text = ['', ''];
+    const print = (stream) => (line) => {
+      text[stream] += line + '\n';
+      onText?.(line, stream === 1);
+    };
+    const instance = await this.#instance(options, print);
+    const fs = instance.FS;
     if (onWrite) {
       const rename = fs.rename.bind(fs);
       fs.rename = (from, to) => {

@@ -57,7 +57,7 @@ struct Engine {
   /* under the lock */
   bool quit;
   double interrupted;  /* time of the first request to stop that the render thread has not
-                          obeyed; 0:  none */
+                          obeyed; 0: none */
   double stop_seconds; /* the longest time from such a request to the end of the work, since the
                           last status */
   uint32_t clients;
@@ -84,6 +84,7 @@ struct Engine {
   Wanted now; /* what is being rendered */
   vlFilm *film;
   ViewTracer best;    /* of new films */
+  uint32_t coarse;    /* scale of the next coarse image; 1: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
   bool racing;        /* it goes on */
@@ -107,8 +108,7 @@ struct Engine {
 };
 
 /* The race of --tracer auto (engine_race.c); on the render thread. Forgets the last scene's
- * result.
- */
+ * result. */
 void engine_race_forget(Engine *engine);
 /* Whether the race is due, if `spp` samples per pixel are wanted. */
 bool engine_race_due(const Engine *engine, uint32_t spp);
@@ -145,8 +145,14 @@ void engine_post_state(Engine *engine, uint32_t client);
 /* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of
  * one gesture are one step; 0: none. */
 void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
+/* The thread that renders. */
+void *engine_render(void *engine);
 /* The thread that watches the files. */
 void *engine_watch(void *engine);
+/* Sends errors and warnings of a load to the pages: for report_listen. */
+void engine_report(void *engine, const char *kind, const vlError *what);
+/* Loads the scene that a page has chosen. False: none is chosen. */
+bool engine_load_choice(Engine *engine);
 /* Goes on with the scene that was loaded again, if there is one. Returns whether there was. */
 bool engine_swap_model(Engine *engine);
 /* The thread that loads what pages choose among the lecture's scenes. */
@@ -155,6 +161,8 @@ void *engine_load_chosen(void *engine);
 void engine_answer(Engine *engine, const Task *task);
 /* The thread that answers questions while the render goes on. */
 void *engine_answer_questions(void *engine);
+/* Answers the first question. False: there is none. */
+bool engine_answer_question(Engine *engine);
 /* Writes a camera or an image; posts its name. */
 void engine_save(Engine *engine, const Task *task);
 /* Writes the camera and posts the command that renders the present image. */
@@ -180,6 +188,8 @@ void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *messag
 void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 /* The thread that traces the paths of pixels. */
 void *engine_trace(void *engine);
+/* Traces the paths of the first pixel. False: there is none. */
+bool engine_trace_next(Engine *engine);
 /* Posts why a message is not answered. */
 void engine_refuse(Engine *engine, const Task *task, const char *why);
 /* Writes the drawings over the image as curves in pixels, for every projection and distortion;

@@ -1,7 +1,6 @@
 /* view/engine_paths.c: the paths of a pixel, traced again for a page, on a thread beside the
  * render. A page has one request at a time: a newer one, another camera or another scene ends
- * it.
- */
+ * it. */
 #include <string.h>
 
 #include "camera/paths.h"
@@ -61,10 +60,10 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
   }
   if (render.tracer != VL_TRACER_PATH && render.tracer != VL_TRACER_VOLPATH) {
     char why[200];
-    snprintf(why, sizeof why,
-             "paths of the tracer %s are not recorded; start velo view with --tracer path or "
-             "volpath",
-             kind_name("tracers", (int)render.tracer));
+    snprintf(
+        why, sizeof why,
+        "paths of the tracer %s are not recorded; start velo view with --tracer path or volpath",
+        kind_name("tracers", (int)render.tracer));
     engine_refuse(e, task, why);
     return;
   }
@@ -85,28 +84,40 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
   paths_free(&traced);
 }
 
-void *engine_trace(void *user) {
-  Engine *e = user;
-  static Task task; /* this thread alone uses it */
+bool engine_trace_next(Engine *e) {
+  static Task task; /* the thread that traces alone uses them */
   static ViewCamera camera;
   pthread_mutex_lock(&e->lock);
-  for (;;) {
-    while (!e->quit && !e->trace_count)
-      pthread_cond_wait(&e->wake, &e->lock);
-    if (e->quit)
-      break;
+  bool any = !e->quit && e->trace_count > 0;
+  if (any) {
     task = e->traces[0];
     memmove(e->traces, e->traces + 1, --e->trace_count * sizeof *e->traces);
     camera = e->wanted.camera;
     e->trace_client = task.client;
     vl_cancel_clear(e->trace_stop);
-    pthread_mutex_unlock(&e->lock);
-    pthread_rwlock_rdlock(&e->model_lock);
-    answer(e, &task, &camera);
-    pthread_rwlock_unlock(&e->model_lock);
-    pthread_mutex_lock(&e->lock);
-    e->trace_client = 0;
   }
   pthread_mutex_unlock(&e->lock);
-  return NULL;
+  if (!any)
+    return false;
+  pthread_rwlock_rdlock(&e->model_lock);
+  answer(e, &task, &camera);
+  pthread_rwlock_unlock(&e->model_lock);
+  pthread_mutex_lock(&e->lock);
+  e->trace_client = 0;
+  pthread_mutex_unlock(&e->lock);
+  return true;
+}
+
+void *engine_trace(void *user) {
+  Engine *e = user;
+  for (;;) {
+    pthread_mutex_lock(&e->lock);
+    while (!e->quit && !e->trace_count)
+      pthread_cond_wait(&e->wake, &e->lock);
+    bool quit = e->quit;
+    pthread_mutex_unlock(&e->lock);
+    if (quit)
+      return NULL;
+    engine_trace_next(e);
+  }
 }

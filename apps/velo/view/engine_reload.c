@@ -1,15 +1,13 @@
-/* view/engine_reload.c: watches the scene's files. When one changed, the scene is loaded in the
- * background, and the render thread goes on with the new world; when it cannot be loaded, the
- * old image stays and the error is shown. In the same way the lecture's scenes are loaded when
- * a page chooses one. */
+/* view/engine_reload.c: the render goes on with a world that was loaded anew: after a change of
+ * the scene's files (engine_watch.c), or because a page chose another of the lecture's scenes,
+ * which are loaded here. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/report.h"
 #include "view/engine_status.h"
 
-/* Sends errors and warnings of the load to the pages. */
-static void on_report(void *user, const char *kind, const vlError *what) {
+void engine_report(void *user, const char *kind, const vlError *what) {
   Engine *e = user;
   JsonText text;
   if (kind && strcmp(kind, "warning") != 0)
@@ -26,39 +24,35 @@ static void on_report(void *user, const char *kind, const vlError *what) {
   json_text_post(&text, e->server, 0);
 }
 
-static void post(Engine *e, const char *type) {
-  JsonText text;
-  if (json_text_begin(&text, type))
-    json_text_post(&text, e->server, 0);
-}
+/* ---- the lecture's scenes
+ * ---------------------------------------------------------------------------------------- */
 
-/* Loads the scene again. Returns whether it could be loaded. */
-static bool load_again(Engine *e, Watch *watch) {
-  Model *model = calloc(1, sizeof *model);
-  if (!model)
-    return false;
-  post(e, "loading");
+bool engine_load_choice(Engine *e) {
   pthread_mutex_lock(&e->lock);
-  uint32_t load = ++e->loads;
+  const char *path = e->quit ? NULL : e->chosen;
+  uint32_t change = e->chosen_change;
+  e->chosen = NULL;
   pthread_mutex_unlock(&e->lock);
-  report_listen(on_report, e);
-  pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
-  int status = model_load(e->def.context, e->def.path, e->def.arguments, e->model.world, e->end,
-                          model, &e->files);
-  pthread_rwlock_unlock(&e->model_lock);
+  if (!path)
+    return false;
+  Model *model = calloc(1, sizeof *model);
+  FileList files = {.count = 0};
+  report_listen(engine_report, e);
+  int status =
+      model ? model_load(e->def.context, path, e->def.arguments, NULL, e->end, model, &files)
+            : STATUS_OTHER;
   report_listen(NULL, NULL);
-  watch_files(watch, &e->files);
+  file_list_free(&files);
   if (status >= 0) {
     free(model);
-    return false;
+    return true;
   }
-  model->load = load;
-  post(e, "loaded");
   pthread_mutex_lock(&e->lock);
   Model *unused = e->next;
   e->next = model;
+  e->next_path = path;
+  e->next_change = change;
   engine_interrupt(e);
-  engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
   if (unused)
@@ -67,73 +61,18 @@ static bool load_again(Engine *e, Watch *watch) {
   return true;
 }
 
-static bool ends(Engine *e) {
-  pthread_mutex_lock(&e->lock);
-  bool quit = e->quit;
-  pthread_mutex_unlock(&e->lock);
-  return quit;
-}
-
-void *engine_watch(void *user) {
-  Engine *e = user;
-  Watch *watch = watch_create();
-  bool good = true;
-  if (!watch) {
-    report_warning("changes of the scene's files are not noticed: the system gives no inotify");
-    return NULL;
-  }
-  watch_files(watch, &e->files);
-  while (!ends(e))
-    if (watch_wait(watch, 0.1, !good) && !ends(e))
-      good = load_again(e, watch);
-  watch_destroy(watch);
-  return NULL;
-}
-
-/* ---- the lecture's scenes
- * ---------------------------------------------------------------------------------------- */
-
-/* Waits for a choice. Null: the end. */
-static const char *wait_for_choice(Engine *e, uint32_t *change) {
-  pthread_mutex_lock(&e->lock);
-  while (!e->quit && !e->chosen)
-    pthread_cond_wait(&e->wake, &e->lock);
-  const char *path = e->quit ? NULL : e->chosen;
-  *change = e->chosen_change;
-  e->chosen = NULL;
-  pthread_mutex_unlock(&e->lock);
-  return path;
-}
-
 void *engine_load_chosen(void *user) {
   Engine *e = user;
-  uint32_t change;
-  report_listen(on_report, e);
-  for (const char *path; (path = wait_for_choice(e, &change));) {
-    Model *model = calloc(1, sizeof *model);
-    FileList files = {.count = 0};
-    int status =
-        model ? model_load(e->def.context, path, e->def.arguments, NULL, e->end, model, &files)
-              : STATUS_OTHER;
-    file_list_free(&files);
-    if (status >= 0) {
-      free(model);
-      continue;
-    }
+  for (;;) {
     pthread_mutex_lock(&e->lock);
-    Model *unused = e->next;
-    e->next = model;
-    e->next_path = path;
-    e->next_change = change;
-    engine_interrupt(e);
-    pthread_cond_broadcast(&e->wake);
+    while (!e->quit && !e->chosen)
+      pthread_cond_wait(&e->wake, &e->lock);
+    bool quit = e->quit;
     pthread_mutex_unlock(&e->lock);
-    if (unused)
-      model_free(unused);
-    free(unused);
+    if (quit)
+      return NULL;
+    engine_load_choice(e);
   }
-  report_listen(NULL, NULL);
-  return NULL;
 }
 
 /* ---- the render thread

@@ -1,6 +1,6 @@
-/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine
- * as fits into first_seconds; then come finer ones, then the film of the whole image, whose
- * samples add up. */
+/* view/engine_run.c: what is rendered when; see engine.h. The first image after a change is as
+ * fine as fits into first_seconds; then come finer ones, then the film of the whole image,
+ * whose samples add up. */
 #include "view/engine.h"
 
 #include <math.h>
@@ -21,12 +21,13 @@ enum { COARSEST = 32, FIRST_PIXELS = 8192, FEWEST_PIXELS = 2048 };
 static const double first_seconds = 0.03;
 static const double pass_seconds = 0.2; /* of a pass at the beginning; */
 static const double longest_pass = 1.0; /* later ones are longer */
+static const double step_seconds = 0.1; /* of a pass where nothing can interrupt it */
 static const double publish_share =
     0.03; /* of the time, for frames, when the image is nearly done */
 static const double status_seconds = 0.25; /* between two states of the render */
 
 static double read_clock(clockid_t clock) {
-  struct timespec now;
+  struct timespec now = {0}; /* it stays so where there is no such clock */
   clock_gettime(clock, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
@@ -139,8 +140,8 @@ static bool render_coarse(Engine *e, uint32_t scale) {
   return result == VL_OK;
 }
 
-/* Coarse images until one pass of the whole image is next. False: interrupted. */
-static bool render_coarse_images(Engine *e) {
+/* The scale of the first image after a change; 1: a pass of the whole image is next. */
+static uint32_t first_scale(const Engine *e) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
   double most = e->coarse_seconds > 0 ? first_seconds / e->coarse_seconds : FIRST_PIXELS;
   if (most < FEWEST_PIXELS)
@@ -148,10 +149,7 @@ static bool render_coarse_images(Engine *e) {
   uint32_t scale = 1;
   while (scale < COARSEST && pixels > most * scale * scale)
     scale++;
-  for (; scale > 1; scale /= 2)
-    if (!render_coarse(e, scale))
-      return false;
-  return true;
+  return scale;
 }
 
 /* ---- ground truth
@@ -234,7 +232,8 @@ static void begin_film(Engine *e) {
 /* The number of samples of the next pass of a film that shall have `most`. */
 static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
-  double seconds = fmin(longest_pass, pass_seconds + 0.25 * e->rendered),
+  double seconds = e->def.stepwise ? step_seconds
+                                   : fmin(longest_pass, pass_seconds + 0.25 * e->rendered),
          n = seconds / (e->pixel_seconds * pixels + 1e-9);
   uint32_t done = vl_film_spp(film), left = most - done;
   n = n < 1 ? 1 : n > 256 ? 256 : floor(n);
@@ -308,26 +307,26 @@ static bool render_pass(Engine *e) {
   return true;
 }
 
-/* Adds samples until the image is done or something else is asked for. */
-static void render_film(Engine *e) {
+/* One pass, or the race. False: interrupted, or nothing is left to do. */
+static bool render_film(Engine *e) {
   if (!e->film)
     begin_film(e);
-  while (e->film && is_unfinished(e, e->now.spp) && !engine_interrupted(e)) {
-    bool race = !e->successor && engine_race_due(e, e->now.spp);
-    if (race ? !engine_race(e) : !render_pass(e))
-      return;
-    if (race)
-      continue;
-    if (engine_succeed(e))
-      e->published = e->reported = 0; /* both are due */
-    if (!e->successor)
-      publish_if_due(e);
-    tell_if_due(e, !is_unfinished(e, e->now.spp));
-  }
+  if (!e->film || !is_unfinished(e, e->now.spp) || engine_interrupted(e))
+    return false;
+  if (!e->successor && engine_race_due(e, e->now.spp))
+    return engine_race(e);
+  if (!render_pass(e))
+    return false;
+  if (engine_succeed(e))
+    e->published = e->reported = 0; /* both are due */
+  if (!e->successor)
+    publish_if_due(e);
+  tell_if_due(e, !is_unfinished(e, e->now.spp));
+  return true;
 }
 
-/* ---- the thread
- * --------------------------------------------------------------------------------------------------
+/* ---- the work
+ * ---------------------------------------------------------------------------------------------------
  */
 
 /* Takes over what is wanted. Returns whether the image begins anew. */
@@ -354,22 +353,25 @@ static bool take_wanted(Engine *e) {
   return true;
 }
 
+/* Whether there is something to do; the caller holds the lock. */
+static bool has_work(const Engine *e) {
+  const Wanted *w = &e->wanted;
+  bool samples = w->channel == 0 || w->channel == CHANNEL_ERROR,
+       other_channel = w->channel != e->now.channel;
+  bool unfinished = samples && is_unfinished(e, w->spp),
+       changed = other_channel || w->spp != e->now.spp;
+  return must_stop(e) ||
+         (e->clients && ((!w->paused && (unfinished || changed)) || other_channel));
+}
+
 /* Waits until there is something to do. False: the end. */
 static bool wait_for_work(Engine *e) {
   pthread_mutex_lock(&e->lock);
   if (e->interrupted > 0)
     e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
   e->interrupted = 0;
-  for (;;) {
-    bool samples = e->wanted.channel == 0 || e->wanted.channel == CHANNEL_ERROR;
-    bool unfinished = samples && is_unfinished(e, e->wanted.spp);
-    bool changed = e->wanted.channel != e->now.channel || e->wanted.spp != e->now.spp;
-    if (must_stop(e) || (e->clients && !e->wanted.paused && (unfinished || changed)))
-      break;
-    if (e->clients && e->wanted.channel != e->now.channel)
-      break;
+  while (!has_work(e))
     pthread_cond_wait(&e->wake, &e->lock);
-  }
   bool quit = e->quit;
   pthread_mutex_unlock(&e->lock);
   return !quit;
@@ -391,26 +393,55 @@ static void answer_tasks(Engine *e) {
   }
 }
 
-static void *run(void *user) {
+/* Takes up what is asked for. */
+static void begin_work(Engine *e) {
+  engine_swap_model(e);
+  answer_tasks(e);
+  if (!take_wanted(e))
+    return;
+  e->coarse = 1;
+  if (e->now.channel) {
+    if (!render_channel(e))
+      e->now.channel = UINT32_MAX; /* it is rendered anew */
+  } else if (e->film) {
+    publish_film(e, e->film, 1);
+  } else {
+    e->coarse = first_scale(e);
+  }
+}
+
+/* The next coarse image, or the next samples. False: interrupted, or nothing is left to do. */
+static bool work(Engine *e) {
+  if (e->coarse > 1) {
+    uint32_t scale = e->coarse;
+    bool done = render_coarse(e, scale);
+    e->coarse = done ? scale / 2 : 1;
+    return done;
+  }
+  return (e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed &&
+         render_film(e);
+}
+
+void *engine_render(void *user) {
   Engine *e = user;
   while (wait_for_work(e)) {
-    engine_swap_model(e);
-    answer_tasks(e);
-    bool anew = take_wanted(e);
-    if (anew && e->now.channel) {
-      if (!render_channel(e))
-        e->now.channel = UINT32_MAX; /* it is rendered anew */
-    } else if (anew && e->film) {
-      publish_film(e, e->film, 1);
-    } else if (anew && !render_coarse_images(e)) {
-      tell_end(e);
-      continue;
+    begin_work(e);
+    while (work(e)) {
     }
-    if ((e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed)
-      render_film(e);
     tell_end(e);
   }
   return NULL;
+}
+
+bool engine_work(Engine *e) {
+  if (engine_load_choice(e) || engine_answer_question(e) || engine_trace_next(e))
+    return true;
+  if (!has_work(e))
+    return false;
+  begin_work(e);
+  if (!work(e))
+    tell_end(e);
+  return true;
 }
 
 int engine_take_model(Engine *e) {
@@ -481,38 +512,8 @@ ServerCalls engine_calls(Engine *engine) {
                        .clients = engine_clients};
 }
 
-int engine_start(Engine *engine, Server *server) {
+void engine_attach(Engine *engine, Server *server) {
   engine->server = server;
-  if (pthread_create(&engine->thread, NULL, run, engine) != 0)
-    return report_failure(STATUS_OTHER, "the system refuses to start a thread");
-  engine->started = true;
-  engine->answering =
-      pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
-  engine->tracing = pthread_create(&engine->tracer, NULL, engine_trace, engine) == 0;
-  void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
-  engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
-  return -1;
-}
-
-int engine_stop(Engine *engine) {
-  if (!engine->started)
-    return STATUS_OK;
-  pthread_mutex_lock(&engine->lock);
-  engine->quit = true;
-  engine_interrupt(engine);
-  vl_cancel_request(engine->end);
-  vl_cancel_request(engine->trace_stop);
-  pthread_cond_broadcast(&engine->wake);
-  pthread_mutex_unlock(&engine->lock);
-  pthread_join(engine->thread, NULL);
-  if (engine->watching)
-    pthread_join(engine->watcher, NULL);
-  if (engine->answering)
-    pthread_join(engine->answerer, NULL);
-  if (engine->tracing)
-    pthread_join(engine->tracer, NULL);
-  engine->started = false;
-  return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
 }
 
 void engine_destroy(Engine *engine) {

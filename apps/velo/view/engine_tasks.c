@@ -168,23 +168,33 @@ void engine_answer(Engine *e, const Task *task) {
   }
 }
 
+bool engine_answer_question(Engine *e) {
+  static Task task; /* the thread that answers alone uses it */
+  pthread_mutex_lock(&e->lock);
+  bool any = !e->quit && e->question_count > 0;
+  if (any) {
+    task = e->questions[0];
+    memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
+  }
+  pthread_mutex_unlock(&e->lock);
+  if (!any)
+    return false;
+  pthread_rwlock_rdlock(&e->model_lock);
+  engine_answer(e, &task);
+  pthread_rwlock_unlock(&e->model_lock);
+  return true;
+}
+
 void *engine_answer_questions(void *user) {
   Engine *e = user;
-  static Task task; /* this thread alone uses it */
   for (;;) {
     pthread_mutex_lock(&e->lock);
     while (!e->quit && !e->question_count)
       pthread_cond_wait(&e->wake, &e->lock);
     bool quit = e->quit;
-    if (!quit) {
-      task = e->questions[0];
-      memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
-    }
     pthread_mutex_unlock(&e->lock);
     if (quit)
       return NULL;
-    pthread_rwlock_rdlock(&e->model_lock);
-    engine_answer(e, &task);
-    pthread_rwlock_unlock(&e->model_lock);
+    engine_answer_question(e);
   }
 }

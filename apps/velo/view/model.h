@@ -5,7 +5,7 @@
 
 #include "render/job.h"
 #include "render/scene_options.h"
-#include "view/watch.h"
+#include "view/file_list.h"
 
 typedef struct Model {
   vlScene *scene;

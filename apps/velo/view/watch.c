@@ -17,26 +17,6 @@ struct Watch {
   int *folders; /* watch descriptors, one for each file; folders occur several times */
 };
 
-void file_list_add(FileList *list, const char *path) {
-  for (uint32_t i = 0; i < list->count; i++)
-    if (strcmp(list->paths[i], path) == 0)
-      return;
-  char **larger = realloc(list->paths, (list->count + 1) * sizeof *larger);
-  if (!larger)
-    return;
-  list->paths = larger;
-  larger[list->count] = strdup(path);
-  if (larger[list->count])
-    list->count++;
-}
-
-void file_list_free(FileList *list) {
-  for (uint32_t i = 0; i < list->count; i++)
-    free(list->paths[i]);
-  free(list->paths);
-  *list = (FileList){.count = 0};
-}
-
 Watch *watch_create(void) {
   Watch *watch = calloc(1, sizeof *watch);
   if (!watch)

@@ -4,16 +4,8 @@
 #define APP_VIEW_WATCH_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-/* Paths of files, each once. */
-typedef struct FileList {
-  char **paths;
-  uint32_t count;
-} FileList;
-/* Adds a path unless the list has it, or there is no memory. */
-void file_list_add(FileList *list, const char *path);
-void file_list_free(FileList *list);
+#include "view/file_list.h"
 
 typedef struct Watch Watch;
 /* Null: the system gives no inotify. */

@@ -1,0 +1,39 @@
+/* view/engine_threads.c: the engine's threads: one renders, one answers questions, one traces
+ * the paths of pixels, one loads scenes. Where there are no threads, page.c calls engine_work.
+ */
+#include "cli/report.h"
+#include "view/engine_parts.h"
+
+int engine_start(Engine *engine, Server *server) {
+  engine->server = server;
+  if (pthread_create(&engine->thread, NULL, engine_render, engine) != 0)
+    return report_failure(STATUS_OTHER, "the system refuses to start a thread");
+  engine->started = true;
+  engine->answering =
+      pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
+  engine->tracing = pthread_create(&engine->tracer, NULL, engine_trace, engine) == 0;
+  void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
+  engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
+  return -1;
+}
+
+int engine_stop(Engine *engine) {
+  if (!engine->started)
+    return STATUS_OK;
+  pthread_mutex_lock(&engine->lock);
+  engine->quit = true;
+  engine_interrupt(engine);
+  vl_cancel_request(engine->end);
+  vl_cancel_request(engine->trace_stop);
+  pthread_cond_broadcast(&engine->wake);
+  pthread_mutex_unlock(&engine->lock);
+  pthread_join(engine->thread, NULL);
+  if (engine->watching)
+    pthread_join(engine->watcher, NULL);
+  if (engine->answering)
+    pthread_join(engine->answerer, NULL);
+  if (engine->tracing)
+    pthread_join(engine->tracer, NULL);
+  engine->started = false;
+  return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
+}

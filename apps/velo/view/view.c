@@ -89,7 +89,8 @@ const Option view_options[] = {
     {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1,
      65535, NULL},
     {VIEW_LISTEN, 0, "listen", OPTION_TEXT, "ADDRESS",
-     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other machine can reach"},
+     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other "
+     "machine can reach"},
     {VIEW_NO_OPEN, 0, "no-open", OPTION_FLAG, NULL, "do not open a browser"},
     {VIEW_LECTURE, 0, "lecture", OPTION_FLAG, NULL,
      "show the lecture with live scenes, in place of FILE"},
@@ -108,7 +109,8 @@ const Option view_options[] = {
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, if the file of --camera has several"},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
-     "show the cameras of this trajectory or rig in the view from outside; at most 200 of them"},
+     "show the cameras of this trajectory or rig in the view from outside; at most 200 of "
+     "them"},
     {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH",
      "image size for a file of --camera that does not give one"},
     {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: scene, by name or number from 0"},
@@ -135,7 +137,9 @@ const Option view_options[] = {
     {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS", "axis of the model that points up:", 0, 0,
      up_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
-     "light transport algorithm; auto: chosen by a short race when the image has 32 samples, the default where the "
+     "light transport algorithm; auto: chosen by a short race when the image has 32 samples, "
+     "the "
+     "default where the "
      "scene names none:",
      0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
@@ -180,7 +184,8 @@ const Option view_options[] = {
     {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE",
      "limit of the memory, such as 2G"},
     {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "FOLDER",
-     "files that the scene names must be in this folder, and the system confines velo where it can"},
+     "files that the scene names must be in this folder, and the system confines velo where it "
+     "can"},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "warn of unsupported features instead of refusing them"},
     {RENDER_STRICT, 0, "strict", OPTION_FLAG, NULL, "glTF, OBJ: a missing image is an error"},
@@ -207,12 +212,20 @@ const Command view_command = {
     .usage = "FILE | --lecture [options]",
     .summary = "see and steer a scene in the browser while it renders",
     .text =
-        "Prints the address of a page and opens it in a browser. The page shows the scene while it renders,\n"
-        "moves the camera, edits it in every spelling, shows ground truth, and saves cameras and images\n"
-        "(docs/view.md). The address has a random token; only this machine can reach it. Through ssh, the\n"
+        "Prints the address of a page and opens it in a browser. The page shows the scene "
+        "while it "
+        "renders,\n"
+        "moves the camera, edits it in every spelling, shows ground truth, and saves cameras "
+        "and "
+        "images\n"
+        "(docs/view.md). The address has a random token; only this machine can reach it. "
+        "Through "
+        "ssh, the\n"
         "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.\n"
         "\n"
-        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose images are live: a slider\n"
+        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose images "
+        "are "
+        "live: a slider\n"
         "moves d, e, zoom, s or roll, and image, formulas and the view from outside follow.",
     .examples =
         "velo view scenes/lecture/pinhole.pbrt\n"

@@ -13,6 +13,7 @@
 #include "camera/parts.h"
 #include "camera_files/files.h"
 #include "trace/sampler/sampler.h"
+#include "velo/projection.h"
 
 uint32_t vl_sample_sequence(void) {
   return VL_SAMPLE_SEQUENCE;

@@ -1,13 +1,13 @@
 /* camera/batch.hot.c: film samples to rays, in batches. Compiled once per instruction set. */
-#include "camera/cube.h"
 #include "camera/eyes.h"
 #include "camera/lens.h"
-#include "camera/orthographic.h"
 #include "camera/own.h"
-#include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/rays.h"
 #include "camera/stages.h"
+#include "projection/cube.h"
+#include "projection/orthographic.h"
+#include "projection/perspective.h"
 
 /* The kinds of lens. lens_u and lens_v are random numbers for DISC, and points of the aperture
  * for POINTS. For OPTICS, rays start at d->x, d->y. */

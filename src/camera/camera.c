@@ -5,10 +5,11 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
-#include "camera/kinds.h"
 #include "camera/own.h"
 #include "camera/parts.h"
+#include "projection/properties.row.h"
 #include "schema/schema.h"
+#include "velo/projection.h"
 
 vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
   return (vlCameraDef){

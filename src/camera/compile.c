@@ -3,13 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera/kinds.h"
 #include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
 #include "math/approx_double.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "projection/properties.row.h"
+#include "velo/projection.h"
 
 /* Number of pixels by which a plane that wraps around extends beyond its edges. No filter is
  * wider.

@@ -4,12 +4,12 @@
 #include <math.h>
 
 #include "base/error.h"
-#include "camera/kinds.h"
 #include "camera/optics.h"
 #include "camera/own.h"
 #include "camera/parts.h"
 #include "camera/points.h"
 #include "math/elementary.h"
+#include "projection/properties.row.h"
 
 enum { DEGREE = 8, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
 static const double pi = 3.14159265358979323846;

@@ -5,9 +5,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "camera/kinds.h"
 #include "camera/parts.h"
 #include "math/elementary.h"
+#include "projection/properties.row.h"
+#include "velo/projection.h"
 
 static const double pi = 3.14159265358979323846;
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */

@@ -4,11 +4,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "camera/kinds.h"
 #include "camera/parts.h"
 #include "camera/points.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "projection/properties.row.h"
+#include "velo/projection.h"
 
 static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) {
   const vlProjectionRow *row = vl_projection_row(def->projection);
@@ -155,6 +156,10 @@ bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical,
       vl_plane_project(camera->projection, &c, vertical ? 0.0 : s, vertical ? s : 0.0, z);
   *radius = vertical ? p.y : p.x;
   return p.valid > 0.0 && isfinite(*radius) && *radius > 0.0;
+}
+
+bool vl_camera_sees_ahead(vlProjection kind) {
+  return vl_projection_row(kind)->traits & VL_PROJECTION_AHEAD;
 }
 
 /* ---- COLMAP's models (sensor/models.h of COLMAP; parameters in its order)

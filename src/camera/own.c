@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "velo/projection.h"
 
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {
   const size_t size = VL_PAD(n) * sizeof(double);

@@ -3,11 +3,11 @@
 #include <math.h>
 
 #include "camera/optics.h"
-#include "camera/orthographic.h"
 #include "camera/own.h"
-#include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/points.h"
+#include "projection/orthographic.h"
+#include "projection/perspective.h"
 
 vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
   if (c->own) {

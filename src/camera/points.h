@@ -5,7 +5,7 @@
 #define CAMERA_POINTS_H
 
 #include "camera/distortion.h"
-#include "camera/projection.h"
+#include "projection/kinds.h"
 
 /* Maps pixels from the principal point to the plane. */
 static inline vlPlanePoint vl_pixel_to_plane(const vlCameraCompiled *c, double x, double y) {

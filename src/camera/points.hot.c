@@ -5,11 +5,12 @@
 #include "camera/optics_chunk.h"
 #include "camera/stages.h"
 
-#include "camera/orthographic.h"
 #include "camera/own.h"
-#include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/points.h"
+#include "projection/orthographic.h"
+#include "projection/perspective.h"
+#include "velo/projection.h"
 
 /* Removes the distortion of plane points in place, with a fixed number of Newton steps. */
 static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y,

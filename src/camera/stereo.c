@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "math/transform.h"
+#include "velo/projection.h"
 
 static const char *const names[] = {"none", "parallel", "off-axis", "toe-in",
                                     "omnidirectional"};

@@ -9,6 +9,7 @@
 #include "camera/parts.h"
 #include "math/double3.h"
 #include "math/elementary.h"
+#include "velo/projection.h"
 
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
 

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/projection.h"
 
 typedef struct {
   const char *name;

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "camera_files/lines.h"
+#include "velo/projection.h"
 
 static const struct {
   const char *name;

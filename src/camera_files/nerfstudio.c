@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
+#include "velo/projection.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
 

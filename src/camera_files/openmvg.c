@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/projection.h"
 
 /* The number at key, -1 where there is none. The tree's numbers are doubles. */
 static double id_of(const json_t *object, const char *key) {

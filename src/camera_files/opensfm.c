@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/projection.h"
 
 static vlResult coefficients(const vlCameraFile *file, const json_t *camera,
                              const char *const *names, double *k, uint32_t count) {

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/projection.h"
 
 static vlResult read_first(const vlCameraFile *file, const json_t *tree,
                            vlCameraRecord *record) {

@@ -6,8 +6,9 @@
 #include <stdio.h>
 
 #include "base/text.h"
-#include "camera/kinds.h"
 #include "camera_files/fields.h"
+#include "projection/properties.row.h"
+#include "velo/projection.h"
 #include "velo/setting.h"
 
 /* By vlProjection; "" for those that the file cannot hold: a lens of many elements. */

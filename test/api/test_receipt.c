@@ -14,6 +14,7 @@
 
 #include "base/digest.h"
 #include "failing_allocator.h"
+#include "velo/projection.h"
 #include "velo/receipt.h"
 #include "velo/render.h"
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "velo/camera.h"
+#include "velo/projection.h"
 
 enum { HEADER = 8 + 14 + 16 + 1 };
 

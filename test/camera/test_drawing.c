@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "velo/drawing.h"
+#include "velo/projection.h"
 
 static vlContext *context;
 

@@ -9,6 +9,7 @@
 
 #include "camera/optics.h"
 #include "camera/rays.h"
+#include "velo/projection.h"
 
 static const char double_gauss[] =
     VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat";

@@ -5,6 +5,7 @@
 
 #include "camera/rays.h"
 #include "statistics.h"
+#include "velo/projection.h"
 
 enum { N = 1024 };
 static float film[2][N], lens[2][N], when[N], out[10][N];

@@ -4,6 +4,7 @@
  */
 #include "camera/cameras.h"
 
+#include "velo/projection.h"
 #include "velo/vanishing.h"
 
 static vlCameraDef random_def(uint64_t *seed) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "velo/load.h"
+#include "velo/projection.h"
 #include "velo/render.h"
 
 static vlCameraRecord read_as(const char *path, vlCameraDialect dialect, const char *frame) {

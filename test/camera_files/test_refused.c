@@ -3,6 +3,7 @@
  * the format has them. Cameras that a file does not hold, files that are cut off, memory that
  * runs out. */
 #include "camera_files/files.h"
+#include "velo/projection.h"
 
 #include <dirent.h>
 

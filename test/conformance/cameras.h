@@ -5,94 +5,15 @@
 #define TEST_CONFORMANCE_CAMERAS_H
 
 #include "conformance.h"
+#include "projection/projection.case.h"
 #include "velo/camera_file.h"
 #include "velo/export.h"
 #include "velo/setting.h"
 #include "velo/shape.h"
 
-/* A direction at angle theta to the axis, towards +x, is this many focal lengths from the
- * centre.
- */
-typedef struct ProjectionKnown {
-  double theta, r;
-} ProjectionKnown;
-
-typedef struct ProjectionCase {
-  double fov;      /* degrees over the smaller side; 0: by fx */
-  double focal;    /* fx = fy, pixels; 0: by fov or by the projection itself */
-  double shape[2]; /* VL_UNSET in all kinds without */
-  bool optics;
-  double solid_angle; /* of the whole image, steradians; 0: not known */
-  ProjectionKnown known[2];
-} ProjectionCase;
-
-#define NO_SHAPE \
-  { VL_UNSET, VL_UNSET }
-#define HALF_SQRT3 0.86602540378443865
-static const ProjectionCase perspective_camera = {
-    .fov = 90,
-    .shape = NO_SHAPE,
-    .known = {{PI / 6, 0.57735026918962576}, {-PI / 6, -0.57735026918962576}}};
-static const ProjectionCase orthographic_camera = {.focal = 20, .shape = NO_SHAPE};
-static const ProjectionCase equidistant_camera = {.fov = 180,
-                                                  .shape = NO_SHAPE,
-                                                  .solid_angle = 2 * PI,
-                                                  .known = {{PI / 3, PI / 3}, {-1.5, -1.5}}};
-static const ProjectionCase equisolid_camera = {.fov = 180,
-                                                .shape = NO_SHAPE,
-                                                .solid_angle = 2 * PI,
-                                                .known = {{PI / 3, 1}, {-PI / 3, -1}}};
-static const ProjectionCase stereographic_camera = {
-    .fov = 180,
-    .shape = NO_SHAPE,
-    .solid_angle = 2 * PI,
-    .known = {{PI / 3, 1.1547005383792515}, {-PI / 3, -1.1547005383792515}}};
-static const ProjectionCase sine_camera = {
-    .fov = 180, .shape = NO_SHAPE, .known = {{PI / 3, HALF_SQRT3}, {-PI / 6, -.5}}};
-static const ProjectionCase equirectangular_camera = {
-    .shape = NO_SHAPE, .solid_angle = 4 * PI, .known = {{PI / 3, PI / 3}, {-2.5, -2.5}}};
-static const ProjectionCase equal_area_camera = {
-    .shape = NO_SHAPE,
-    .solid_angle = 4 * PI,
-    .known = {{PI / 3, 0.70710678118654752}, {PI / 2 - 1e-12, 1}}};
-/* The whole cylinder as far up and down as the image shows. */
-static const ProjectionCase cylindrical_camera = {.shape = NO_SHAPE,
-                                                  .known = {{PI / 3, PI / 3}, {-2.5, -2.5}}};
-static const ProjectionCase cube_camera = {.shape = {0, VL_UNSET}, .solid_angle = 4 * PI};
-/* d = .5: (d + 1) sin / (d + cos) */
-static const ProjectionCase panini_camera = {
-    .fov = 120,
-    .shape = {0.5, VL_UNSET},
-    .known = {{PI / 3, 1.5 * HALF_SQRT3}, {-PI / 6, -0.75 / (0.5 + HALF_SQRT3)}}};
-/* w = .9: atan(2 tan(theta) tan(w / 2)) / w */
-static const ProjectionCase fov_camera = {
-    .focal = 20,
-    .shape = {0.9, VL_UNSET},
-    .known = {{PI / 4, 0.853514284171}, {-PI / 4, -0.853514284171}}};
-/* lambda = -.2: tan = r / (1 - .2 r^2), at r = 1 tan = 1.25 */
-static const ProjectionCase division_camera = {
-    .focal = 20,
-    .shape = {-0.2, VL_UNSET},
-    .known = {{0.89605538457134396, 1}, {-0.89605538457134396, -1}}};
-/* xi = .8: sin / (cos + xi) */
-static const ProjectionCase unified_camera = {
-    .focal = 20,
-    .shape = {0.8, VL_UNSET},
-    .known = {{PI / 3, HALF_SQRT3 / 1.3}, {-PI / 2, -1.25}}};
-/* alpha = .6, beta = 1.1: sin / (alpha sqrt(beta sin^2 + cos^2) + (1 - alpha) cos) */
-static const ProjectionCase eucm_camera = {
-    .focal = 20,
-    .shape = {0.6, 1.1},
-    .known = {{PI / 3, 1.053439392292}, {-PI / 2, -1.589104315409}}};
-/* xi = -.2, alpha = .6: at 90 degrees sin / (alpha sqrt(1 + xi^2) + (1 - alpha) xi) */
-static const ProjectionCase double_sphere_camera = {
-    .focal = 20,
-    .shape = {-0.2, 0.6},
-    .known = {{PI / 2, 1.880115058780}, {-PI / 2, -1.880115058780}}};
-static const ProjectionCase optics_camera = {.optics = true, .shape = NO_SHAPE};
-
-#define CAMERA_CASE(NAME, name) &name##_camera,
-static const ProjectionCase *const projection_cases[] = {VL_PROJECTION_KINDS(CAMERA_CASE)};
+#define CASE(NAME, name) &name##_projection,
+static const ProjectionCase *const projection_cases[] = {VL_PROJECTION_KINDS(CASE)};
+#undef CASE
 enum { PROJECTIONS = VL_PROJECTION_OWN };
 _Static_assert(sizeof projection_cases / sizeof *projection_cases == PROJECTIONS,
                "a case for each projection");

@@ -3,6 +3,7 @@
  * parameters.
  */
 #include "import/load.h"
+#include "velo/projection.h"
 
 #define W "WorldBegin\nShape \"sphere\"\n"
 #define FILM "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 200\n"

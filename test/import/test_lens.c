@@ -1,6 +1,7 @@
 /* test/import/test_lens.c: lenses in scene files: velo's parameters, pbrt's realistic camera,
  * errors. */
 #include "import/load.h"
+#include "velo/projection.h"
 
 #define W "WorldBegin\nShape \"sphere\"\n"
 #define FILM "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 200\n"

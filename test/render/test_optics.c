@@ -3,6 +3,7 @@
 #include "render/shots.h"
 
 #include "velo/focus.h"
+#include "velo/projection.h"
 
 /* A bright dot out of focus shows the opening upright: more light below the middle of a
  * triangle's corner than above.

@@ -12,6 +12,7 @@
 #include "velo/channels.h"
 #include "velo/film.h"
 #include "velo/paths.h"
+#include "velo/projection.h"
 #include "velo/trace.h"
 
 /* ---- an own camera that is velo's perspective camera

@@ -2,6 +2,7 @@
 #include "view/state.h"
 #include "velo/camera_file.h"
 #include "velo/channels.h"
+#include "velo/projection.h"
 
 bool json_text_begin(JsonText *json, const char *type) {
   *json = (JsonText){.text = NULL};

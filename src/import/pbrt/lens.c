@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "image/image.h"
+#include "velo/projection.h"
 
 static bool scene_ok(const vlDict *dict) {
   return dict->import->scene->error.code == VL_OK;

@@ -1,13 +1,13 @@
-/* camera/panini.h: the general Panini projection and its inverse. The scene is projected onto a
- * cylinder about the vertical axis, and the cylinder is viewed from a distance d behind its
- * axis. d = 0 is the perspective projection and d = 1 is the cylindrical stereographic
+/* projection/panini.h: the general Panini projection and its inverse. The scene is projected
+ * onto a cylinder about the vertical axis, and the cylinder is viewed from a distance d behind
+ * its axis. d = 0 is the perspective projection and d = 1 is the cylindrical stereographic
  * projection; large d approaches the cylindrical orthographic projection. Vertical lines and
  * lines through the centre stay straight (Sharpless, Postle, German, "Pannini: A New Projection
  * for Rendering Wide Angle Perspective Images", 2010). */
-#ifndef CAMERA_PANINI_H
-#define CAMERA_PANINI_H
+#ifndef PROJECTION_PANINI_H
+#define PROJECTION_PANINI_H
 
-#include "camera/plane.h"
+#include "projection/functions.h"
 
 /* Returns the lower bound of cos(longitude). At the bound the plane is infinite for d <= 1, and
  * it folds for d > 1. */
@@ -29,5 +29,8 @@ static inline vlPlanePoint vl_panini_project(double d, double x, double y, doubl
       x * s, y * s,
       across > 0.0 && over > VL_HORIZON && cosine >= vl_panini_edge(d) ? 1.0 : 0.0};
 }
+
+VL_PROJECTION_FUNCTIONS(PANINI, panini, vl_panini_unproject(a[0], x, y),
+                        vl_panini_project(a[0], x, y, z))
 
 #endif

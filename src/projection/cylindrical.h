@@ -1,12 +1,12 @@
-/* camera/cylindrical.h: the cylindrical projection and its inverse. The cylinder's axis is the
- * camera's vertical axis. x is the longitude (radians, -pi to pi); y is the tangent of the
+/* projection/cylindrical.h: the cylindrical projection and its inverse. The cylinder's axis is
+ * the camera's vertical axis. x is the longitude (radians, -pi to pi); y is the tangent of the
  * latitude and points down. Vertical lines and the horizon stay straight. The plane wraps
  * around: it extends by `over` (radians) beyond -pi and pi, so that filters see no edge. */
-#ifndef CAMERA_CYLINDRICAL_H
-#define CAMERA_CYLINDRICAL_H
+#ifndef PROJECTION_CYLINDRICAL_H
+#define PROJECTION_CYLINDRICAL_H
 
-#include "camera/plane.h"
 #include "math/approx_double.h"
+#include "projection/functions.h"
 
 static inline vlDirection vl_cylindrical_unproject(double over, double x, double y) {
   int inside = __builtin_fabs(x) <= 3.14159265358979323846 + over;
@@ -19,5 +19,8 @@ static inline vlPlanePoint vl_cylindrical_project(double x, double y, double z) 
   return (vlPlanePoint){vl_atan2_double(x, z), y / vl_not_tiny(across),
                         across > 0.0 ? 1.0 : 0.0};
 }
+
+VL_PROJECTION_FUNCTIONS(CYLINDRICAL, cylindrical, vl_cylindrical_unproject(c->over_x, x, y),
+                        vl_cylindrical_project(x, y, z))
 
 #endif

@@ -1,15 +1,15 @@
-/* camera/equirectangular.h: the equirectangular projection and its inverse. x is the longitude
- * and y is the latitude, both in radians. The plane's centre is straight ahead. The longitude
- * is in
+/* projection/equirectangular.h: the equirectangular projection and its inverse. x is the
+ * longitude and y is the latitude, both in radians. The plane's centre is straight ahead. The
+ * longitude is in
  * [-pi, pi] and the latitude in [-pi/2, pi/2]; -pi/2 is up. The plane extends by `over_x` and
  * `over_y` (radians) beyond these ranges. There it continues around the sphere and over the
  * poles, so that filters see no edge. The projection returns points within the ranges.
  */
-#ifndef CAMERA_EQUIRECTANGULAR_H
-#define CAMERA_EQUIRECTANGULAR_H
+#ifndef PROJECTION_EQUIRECTANGULAR_H
+#define PROJECTION_EQUIRECTANGULAR_H
 
-#include "camera/plane.h"
 #include "math/approx_double.h"
+#include "projection/functions.h"
 
 static inline vlDirection vl_equirectangular_unproject(double over_x, double over_y, double x,
                                                        double y) {
@@ -24,5 +24,9 @@ static inline vlPlanePoint vl_equirectangular_project(double x, double y, double
   return (vlPlanePoint){vl_atan2_double(x, z), vl_atan2_double(y, across),
                         across + __builtin_fabs(y) > 0.0 ? 1.0 : 0.0};
 }
+
+VL_PROJECTION_FUNCTIONS(EQUIRECTANGULAR, equirectangular,
+                        vl_equirectangular_unproject(c->over_x, c->over_y, x, y),
+                        vl_equirectangular_project(x, y, z))
 
 #endif

@@ -1,14 +1,14 @@
-/* camera/equal_area.h: the equal-area projection of the whole sphere to a square, and its
+/* projection/equal_area.h: the equal-area projection of the whole sphere to a square, and its
  * inverse. Each pixel covers the same solid angle (Clarberg, "Fast Equal-Area Mapping of the
  * (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The plane is [-1, 1]^2. Its centre is
  * straight ahead; its corners are straight back. The plane extends by `over` beyond each edge,
  * where it continues at the mirrored half of that edge, as the sphere does. So filters see no
  * edge. */
-#ifndef CAMERA_EQUAL_AREA_H
-#define CAMERA_EQUAL_AREA_H
+#ifndef PROJECTION_EQUAL_AREA_H
+#define PROJECTION_EQUAL_AREA_H
 
-#include "camera/plane.h"
 #include "math/approx_double.h"
+#include "projection/functions.h"
 
 static inline vlDirection vl_equal_area_unproject(double over, double x, double y) {
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y);
@@ -37,5 +37,8 @@ static inline vlPlanePoint vl_equal_area_project(double x, double y, double z) {
   return (vlPlanePoint){__builtin_copysign(uu, x), __builtin_copysign(vv, y),
                         length > 0.0 ? 1.0 : 0.0};
 }
+
+VL_PROJECTION_FUNCTIONS(EQUAL_AREA, equal_area, vl_equal_area_unproject(c->over_x, x, y),
+                        vl_equal_area_project(x, y, z))
 
 #endif

@@ -1,11 +1,12 @@
-/* camera/perspective.h: the perspective projection: all projectors meet in the centre of
+/* projection/perspective.h: the perspective projection: all projectors meet in the centre of
  * projection, the view plane is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing
- * from the Ground Up, ch. 8 and 9.) The inverse (x/z and y/z) is in projection.h. */
-#ifndef CAMERA_PERSPECTIVE_H
-#define CAMERA_PERSPECTIVE_H
+ * from the Ground Up, ch. 8 and 9.) */
+#ifndef PROJECTION_PERSPECTIVE_H
+#define PROJECTION_PERSPECTIVE_H
 
 #include "camera/local.h"
 #include "camera/rays.h"
+#include "projection/functions.h"
 
 /* x, y: pixels from the principal point. The direction has the form of the lecture, (x_v, y_v,
  * d), with the view plane at distance d = fx and pixels of size 1. It is not divided by d, so
@@ -20,5 +21,8 @@ static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, 
   r.dz = c->focal;
   return r;
 }
+
+VL_PROJECTION_FUNCTIONS(PERSPECTIVE, perspective, ((vlDirection){x, y, 1.0, 1.0}),
+                        ((vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0}))
 
 #endif

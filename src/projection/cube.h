@@ -1,5 +1,5 @@
-/* camera/cube.h: the six faces of a cube in one image, projection and inverse: right, left, up,
- * down, front, back (the order +x -x +y -y +z -z of cube maps with y up). Each face is a
+/* projection/cube.h: the six faces of a cube in one image, projection and inverse: right, left,
+ * up, down, front, back (the order +x -x +y -y +z -z of cube maps with y up). Each face is a
  * perspective view of 90 degrees, one unit of the plane wide. Right, left, front and back are
  * upright; up's lower edge and down's upper edge adjoin front. The plane's origin is its top
  * left corner. Two layouts:
@@ -13,10 +13,10 @@
  * face is chosen by the pixel and passed separately, as the number of the plane's cell: column
  * + 8 row.
  */
-#ifndef CAMERA_CUBE_H
-#define CAMERA_CUBE_H
+#ifndef PROJECTION_CUBE_H
+#define PROJECTION_CUBE_H
 
-#include "camera/plane.h"
+#include "projection/functions.h"
 
 /* Returns the number of the cell that contains a plane point. A point far outside the layout
  * gets a cell that belongs to no face. */
@@ -62,5 +62,8 @@ static inline vlPlanePoint vl_cube_project(double cross, double x, double y, dou
   return (vlPlanePoint){column + 0.5 * (a * k + 1.0), row + 0.5 * (b * k + 1.0),
                         major > 0.0 ? 1.0 : 0.0};
 }
+
+VL_PROJECTION_FUNCTIONS(CUBE, cube, vl_cube_unproject(a[0], c->over_y, face, x, y),
+                        vl_cube_project(a[0], x, y, z))
 
 #endif

@@ -1,9 +1,10 @@
-/* camera/kinds.h: properties of each projection, one row per kind. The functions of each
- * projection are in projection.h. */
-#ifndef CAMERA_KINDS_H
-#define CAMERA_KINDS_H
+/* projection/properties.row.h: what a projection's row says of it to other code; the rows are
+ * in the files of the kinds, projection/NAME.row.c. */
+#ifndef PROJECTION_PROPERTIES_ROW_H
+#define PROJECTION_PROPERTIES_ROW_H
 
 #include "velo/camera.h"
+#include "velo/schema.h"
 
 enum {
   VL_PROJECTION_AHEAD = 1, /* sees only z > 0: near, far and focus surfaces are planes of
@@ -27,6 +28,8 @@ typedef struct vlShapeNumber {
 } vlShapeNumber;
 
 typedef struct vlProjectionRow {
+  vlKindRow
+      in_files; /* name and parameters in scene files; without a name another camera has it */
   const char *name; /* name in messages */
   const char *key;  /* key in velo's JSON; null if a file cannot contain the number */
   uint32_t traits;
@@ -40,17 +43,6 @@ typedef struct vlProjectionRow {
    * 90 degrees (180 for fisheyes). */
   void (*standard_focal)(const vlCameraDef *def, const vlCamera *camera, double focal[2]);
 } vlProjectionRow;
-
-/* Defines the row of a kind. The kind must be in the list of kinds. */
-#define VL_PROJECTION_ROW(NAME, variable, ...)                                \
-  _Static_assert(VL_PROJECTION_##NAME >= 0, "a kind of VL_PROJECTION_KINDS"); \
-  const vlProjectionRow vl_projection_##variable = {__VA_ARGS__}
-
-/* Declares the row of each kind. kinds.c or a file of the kind's own defines it. */
-#define VL_PROJECTION_DECLARE(NAME, name) extern const vlProjectionRow vl_projection_##name;
-VL_PROJECTION_KINDS(VL_PROJECTION_DECLARE)
-VL_PROJECTION_DECLARE(OWN, own)
-#undef VL_PROJECTION_DECLARE
 
 /* Returns the row of a kind, or null for an unknown kind. */
 const vlProjectionRow *vl_projection_row(vlProjection kind);

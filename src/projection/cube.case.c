@@ -1,0 +1,7 @@
+/* projection/cube.case.c: what tests know of the cube projection. */
+#include "projection/projection.case.h"
+
+const ProjectionCase cube_projection = {
+    .shape = {0, VL_UNSET},
+    .solid_angle = 4 * CASE_PI,
+};

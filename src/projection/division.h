@@ -1,0 +1,28 @@
+/* projection/division.h: the division model (Fitzgibbon, "Simultaneous linear estimation of
+ * multiple view geometry and lens distortion", 2001). */
+#ifndef PROJECTION_DIVISION_H
+#define PROJECTION_DIVISION_H
+
+#include "projection/functions.h"
+
+/* Undistorted = distorted / (1 + lambda r^2). Domain: barrel (lambda < 0) all directions but
+ * straight back; pincushion up to r = 1/sqrt(lambda), where it folds. */
+static inline vlDirection vl_division_unproject(double lambda, double x, double y) {
+  double r2 = x * x + y * y;
+  return (vlDirection){x, y, 1.0 + lambda * r2, lambda * r2 <= 1.0 && r2 < 1e30 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_division_project(double lambda, double x, double y, double z) {
+  double across2 = x * x + y * y, root = z * z - 4.0 * lambda * across2, s = vl_root(root);
+  /* 2/(z + s) for z >= 0; an equal expression without cancellation for z < 0 (then lambda < 0,
+   * s > |z|) */
+  double ahead = 2.0 / vl_not_tiny(z + s),
+         behind = (s - z) / vl_not_tiny(-2.0 * lambda * across2);
+  double k = z < 0.0 ? behind : ahead;
+  int valid = root >= 0.0 && (z > 0.0 || (lambda < 0.0 && across2 > 0.0));
+  return (vlPlanePoint){x * k, y * k, valid ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(DIVISION, division, vl_division_unproject(a[0], x, y),
+                        vl_division_project(a[0], x, y, z))
+
+#endif

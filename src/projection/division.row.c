@@ -1,0 +1,21 @@
+/* projection/division.row.c: the name and the parameters of the division projection. */
+#include "projection/projection.row.h"
+
+static const vlParameter parameters[] = {
+    MODEL,
+    SHAPE("lambda", 0, "required: the model's distortion parameter", VL_RANGE(-1e3, 1e3)),
+};
+
+const vlProjectionRow vl_projection_row_division = {
+    .in_files =
+        {
+            .name = "division",
+            .description = "the division model (Fitzgibbon)",
+            VL_ROW_PARAMETERS(parameters),
+        },
+    .name = "division",
+    .key = "division",
+    .traits = CALIBRATED,
+    .count = 1,
+    .numbers = {{"lambda", -1e3, 1e3, VL_UNSET}},
+};

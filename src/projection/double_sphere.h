@@ -1,0 +1,29 @@
+/* projection/double_sphere.h: the double sphere model and its domain (Usenko, Demmel, Cremers,
+ * "The Double Sphere Camera Model", 2018). */
+#ifndef PROJECTION_DOUBLE_SPHERE_H
+#define PROJECTION_DOUBLE_SPHERE_H
+
+#include "projection/functions.h"
+
+/* m = X / (a d2 + (1 - a)(xi d1 + Z)), d1 = |P|, d2 = sqrt(R^2 + (xi d1 + Z)^2). */
+static inline vlDirection vl_double_sphere_unproject(double xi, double a, double x, double y) {
+  double r2 = x * x + y * y, root = 1.0 - (2.0 * a - 1.0) * r2;
+  double z = (1.0 - a * a * r2) / (a * vl_root(root) + (1.0 - a));
+  double second = z * z + (1.0 - xi * xi) * r2, k = (z * xi + vl_root(second)) / (z * z + r2);
+  return (vlDirection){x * k, y * k, k * z - xi,
+                       root >= 0.0 && second >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_double_sphere_project(double xi, double a, double x, double y,
+                                                    double z) {
+  double across2 = x * x + y * y, d1 = __builtin_sqrt(across2 + z * z), shifted = xi * d1 + z;
+  double d2 = __builtin_sqrt(across2 + shifted * shifted), under = a * d2 + (1.0 - a) * shifted;
+  double k = 1.0 / vl_not_tiny(under), w1 = a > 0.5 ? (1.0 - a) / a : a / (1.0 - a);
+  double w2 = (w1 + xi) / __builtin_sqrt(2.0 * w1 * xi + xi * xi + 1.0);
+  return (vlPlanePoint){x * k, y * k, z > -w2 * d1 && under > VL_HORIZON * d1 ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(DOUBLE_SPHERE, double_sphere,
+                        vl_double_sphere_unproject(a[0], a[1], x, y),
+                        vl_double_sphere_project(a[0], a[1], x, y, z))
+
+#endif

@@ -1,0 +1,31 @@
+/* projection/equal_area.row.c: the name and the parameters of the equal area projection. */
+#include "projection/projection.row.h"
+
+static const vlParameter parameters[] = {
+    MODEL,
+};
+
+static void whole_square(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
+  (void)camera;
+  focal[0] = 0.5 * d->width;
+  focal[1] = 0.5 * d->height;
+}
+
+static double spread(const double shape[2]) {
+  (void)shape;
+  return 1.7724538509055159; /* 4 pi over an area of 4 */
+}
+
+const vlProjectionRow vl_projection_row_equal_area = {
+    .in_files =
+        {
+            .name = "equalarea",
+            .description = "panorama: equal-area octahedral map of the sphere to a square",
+            VL_ROW_PARAMETERS(parameters),
+        },
+    .name = "equal-area",
+    .key = "equal-area",
+    .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION,
+    .spread = spread,
+    .standard_focal = whole_square,
+};

@@ -1,0 +1,26 @@
+/* projection/equidistant.h: the equidistant fisheye: a direction at angle theta from the view
+ * axis is at radius theta. (Ray, Applied Photographic Optics, 3rd ed., ch. 28; Miyamoto, "Fish
+ * eye lens", 1964). */
+#ifndef PROJECTION_EQUIDISTANT_H
+#define PROJECTION_EQUIDISTANT_H
+
+#include "math/approx_double.h"
+#include "projection/functions.h"
+
+/* The domain is all directions except straight back. */
+static inline vlDirection vl_equidistant_unproject(double x, double y) {
+  double r = vl_not_tiny(vl_length2(x, y));
+  vlSinCosDouble a = vl_sincos_double(r < 4.0 ? r : 4.0);
+  double k = a.sin / r;
+  return (vlDirection){x * k, y * k, a.cos, r <= 3.14159265358979323846 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_equidistant_project(double x, double y, double z) {
+  double across = vl_length2(x, y), r = vl_not_tiny(across);
+  double k = vl_atan2_double(r, z) / r;
+  return (vlPlanePoint){x * k, y * k, across > 0.0 || z > 0.0 ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(EQUIDISTANT, equidistant, vl_equidistant_unproject(x, y),
+                        vl_equidistant_project(x, y, z))
+
+#endif

@@ -1,0 +1,8 @@
+/* projection/equirectangular.case.c: what tests know of the equirectangular projection. */
+#include "projection/projection.case.h"
+
+const ProjectionCase equirectangular_projection = {
+    .shape = NO_SHAPE,
+    .solid_angle = 4 * CASE_PI,
+    .known = {{CASE_PI / 3, CASE_PI / 3}, {-2.5, -2.5}},
+};

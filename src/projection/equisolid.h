@@ -1,0 +1,24 @@
+/* projection/equisolid.h: the equisolid fisheye: a direction at angle theta from the view axis
+ * is at radius 2 sin(theta/2). (Ray, Applied Photographic Optics, 3rd ed., ch. 28; Miyamoto,
+ * "Fish eye lens", 1964). */
+#ifndef PROJECTION_EQUISOLID_H
+#define PROJECTION_EQUISOLID_H
+
+#include "projection/fisheye.h"
+#include "projection/functions.h"
+
+static inline vlDirection vl_equisolid_unproject(double x, double y) {
+  double r2 = x * x + y * y, k = vl_root(1.0 - 0.25 * r2);
+  return (vlDirection){x * k, y * k, 1.0 - 0.5 * r2, r2 < 4.0 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_equisolid_project(double x, double y, double z) {
+  double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
+  double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
+  double k = scale * __builtin_sqrt(2.0 / vl_not_tiny(q));
+  return (vlPlanePoint){x * k, y * k, q > 0.0 ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(EQUISOLID, equisolid, vl_equisolid_unproject(x, y),
+                        vl_equisolid_project(x, y, z))
+
+#endif

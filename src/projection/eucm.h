@@ -1,0 +1,25 @@
+/* projection/eucm.h: the enhanced unified model (Khomutenko, Garcia, Martinet, "An Enhanced
+ * Unified Camera Model", 2016). The domain is from the paper on the double sphere (Usenko,
+ * Demmel, Cremers, 2018). */
+#ifndef PROJECTION_EUCM_H
+#define PROJECTION_EUCM_H
+
+#include "projection/functions.h"
+
+/* m = X / (a d + (1 - a) Z), d = sqrt(b R^2 + Z^2). */
+static inline vlDirection vl_eucm_unproject(double a, double b, double x, double y) {
+  double r2 = x * x + y * y, root = 1.0 - (2.0 * a - 1.0) * b * r2;
+  double z = (1.0 - b * a * a * r2) / (a * vl_root(root) + (1.0 - a));
+  return (vlDirection){x, y, z, root >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_eucm_project(double a, double b, double x, double y, double z) {
+  double d = __builtin_sqrt(b * (x * x + y * y) + z * z), under = a * d + (1.0 - a) * z,
+         k = 1.0 / vl_not_tiny(under);
+  double edge = a > 0.5 ? (1.0 - a) / a : a / (1.0 - a);
+  return (vlPlanePoint){x * k, y * k, z >= -edge * d && under > VL_HORIZON * d ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(EUCM, eucm, vl_eucm_unproject(a[0], a[1], x, y),
+                        vl_eucm_project(a[0], a[1], x, y, z))
+
+#endif

@@ -1,0 +1,24 @@
+/* projection/fov.h: the FOV model of wide-angle lenses, by its field of view w (Devernay and
+ * Faugeras, "Straight lines have to be straight", 2001). */
+#ifndef PROJECTION_FOV_H
+#define PROJECTION_FOV_H
+
+#include "math/approx_double.h"
+#include "projection/functions.h"
+
+/* r = atan(2 tan(theta) tan(w/2)) / w; t = 2 tan(w/2). Domain: the half-space z > 0. */
+static inline vlDirection vl_fov_unproject(double w, double t, double x, double y) {
+  double r = vl_not_tiny(vl_length2(x, y)), angle = r * w;
+  vlSinCosDouble a = vl_sincos_double(angle < 4.0 ? angle : 4.0);
+  double k = a.sin / r;
+  return (vlDirection){x * k, y * k, a.cos * t, angle < 1.57079632679489655 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_fov_project(double w, double t, double x, double y, double z) {
+  double r = vl_not_tiny(vl_length2(x, y)), k = vl_atan2_double(t * r, z) / (w * r);
+  return (vlPlanePoint){x * k, y * k, z > 0.0 ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(FOV, fov, vl_fov_unproject(a[0], a[1], x, y),
+                        vl_fov_project(a[0], a[1], x, y, z))
+
+#endif

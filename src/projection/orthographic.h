@@ -1,0 +1,25 @@
+/* projection/orthographic.h: the orthographic projection: projectors are parallel to the view
+ * axis, and size does not depend on distance. fx, fy are pixels per scene unit. */
+#ifndef PROJECTION_ORTHOGRAPHIC_H
+#define PROJECTION_ORTHOGRAPHIC_H
+
+#include "camera/local.h"
+#include "camera/rays.h"
+#include "projection/functions.h"
+
+/* x, y: pixels from the principal point. */
+static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c, double x,
+                                                      double y) {
+  vlCameraLocal r;
+  r.ox = (x - c->skew_ratio * y) * c->inv_fx;
+  r.oy = y * c->inv_fy;
+  r.dx = 0.0;
+  r.dy = 0.0;
+  r.dz = 1.0;
+  return r;
+}
+
+VL_PROJECTION_FUNCTIONS(ORTHOGRAPHIC, orthographic, ((vlDirection){x, y, 1.0, 1.0}),
+                        ((vlPlanePoint){x, y, z >= 0.0 ? 1.0 : 0.0}))
+
+#endif

@@ -1,0 +1,9 @@
+/* projection/panini.case.c: what tests know of the panini projection. */
+#include "projection/projection.case.h"
+
+/* d = .5: (d + 1) sin / (d + cos) */
+const ProjectionCase panini_projection = {
+    .fov = 120,
+    .shape = {0.5, VL_UNSET},
+    .known = {{CASE_PI / 3, 1.5 * HALF_SQRT3}, {-CASE_PI / 6, -0.75 / (0.5 + HALF_SQRT3)}},
+};

@@ -1,0 +1,36 @@
+/* projection/projection.case.h: what the tests of projections must know of a kind beyond its
+ * row: a field of view, the solid angle of the image, and known radii. */
+#ifndef PROJECTION_PROJECTION_CASE_H
+#define PROJECTION_PROJECTION_CASE_H
+
+#include <stdbool.h>
+
+#include "velo/projection.h"
+
+/* A direction at angle theta to the axis, towards +x, is this many focal lengths from the
+ * centre.
+ */
+typedef struct ProjectionKnown {
+  double theta, r;
+} ProjectionKnown;
+
+typedef struct ProjectionCase {
+  double fov;      /* degrees over the smaller side; 0: by fx */
+  double focal;    /* fx = fy, pixels; 0: by fov or by the projection itself */
+  double shape[2]; /* VL_UNSET in all kinds without */
+  bool optics;
+  double solid_angle; /* of the whole image, steradians; 0: not known */
+  ProjectionKnown known[2];
+} ProjectionCase;
+
+#define NO_SHAPE \
+  { VL_UNSET, VL_UNSET }
+#define HALF_SQRT3 0.86602540378443865
+#define CASE_PI 3.14159265358979323846
+
+/* Declares the case of each kind, which is in the file of the kind: projection/NAME.case.c. */
+#define PROJECTION_CASE(NAME, name) extern const ProjectionCase name##_projection;
+VL_PROJECTION_KINDS(PROJECTION_CASE)
+#undef PROJECTION_CASE
+
+#endif

@@ -1,0 +1,21 @@
+/* projection/sine.h: the orthographic fisheye: a direction at angle theta from the view axis is
+ * at radius sin(theta). (Ray, Applied Photographic Optics, 3rd ed., ch. 28; Miyamoto, "Fish eye
+ * lens", 1964). */
+#ifndef PROJECTION_SINE_H
+#define PROJECTION_SINE_H
+
+#include "projection/functions.h"
+
+/* Domain: the half-space z > 0. */
+static inline vlDirection vl_sine_unproject(double x, double y) {
+  double r2 = x * x + y * y;
+  return (vlDirection){x, y, vl_root(1.0 - r2), r2 <= 1.0 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_sine_project(double x, double y, double z) {
+  double length = vl_length3(x, y, z), k = 1.0 / vl_not_tiny(length);
+  return (vlPlanePoint){x * k, y * k, z >= 0.0 && length > 0.0 ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(SINE, sine, vl_sine_unproject(x, y), vl_sine_project(x, y, z))
+
+#endif

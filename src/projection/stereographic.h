@@ -1,0 +1,26 @@
+/* projection/stereographic.h: the stereographic fisheye: a direction at angle theta from the
+ * view axis is at radius 2 tan(theta/2). (Ray, Applied Photographic Optics, 3rd ed., ch. 28;
+ * Miyamoto, "Fish eye lens", 1964). */
+#ifndef PROJECTION_STEREOGRAPHIC_H
+#define PROJECTION_STEREOGRAPHIC_H
+
+#include "projection/fisheye.h"
+#include "projection/functions.h"
+
+static inline vlDirection vl_stereographic_unproject(double x, double y) {
+  double t = 0.25 * (x * x + y * y), k = 1.0 / (1.0 + t);
+  return (vlDirection){x * k, y * k, (1.0 - t) * k, t < 1e30 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_stereographic_project(double x, double y, double z) {
+  double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
+  double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
+  double k = 2.0 * scale / vl_not_tiny(q);
+  /* q = 1 + cosine is about angle^2 / 2, so the domain ends 1e-14 radians from straight back,
+   * as in the inverse */
+  return (vlPlanePoint){x * k, y * k, q > 1e-29 ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(STEREOGRAPHIC, stereographic, vl_stereographic_unproject(x, y),
+                        vl_stereographic_project(x, y, z))
+
+#endif

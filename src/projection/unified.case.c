@@ -1,0 +1,9 @@
+/* projection/unified.case.c: what tests know of the unified projection. */
+#include "projection/projection.case.h"
+
+/* xi = .8: sin / (cos + xi) */
+const ProjectionCase unified_projection = {
+    .focal = 20,
+    .shape = {0.8, VL_UNSET},
+    .known = {{CASE_PI / 3, HALF_SQRT3 / 1.3}, {-CASE_PI / 2, -1.25}},
+};

@@ -1,0 +1,24 @@
+/* projection/unified.h: the unified model (Mei and Rives, "Single view point omnidirectional
+ * camera calibration from planar grids", 2007). */
+#ifndef PROJECTION_UNIFIED_H
+#define PROJECTION_UNIFIED_H
+
+#include "projection/functions.h"
+
+/* m = X / (Z + xi |P|). */
+static inline vlDirection vl_unified_unproject(double xi, double x, double y) {
+  double r2 = x * x + y * y, root = 1.0 + (1.0 - xi * xi) * r2;
+  double k = (xi + vl_root(root)) / (r2 + 1.0);
+  return (vlDirection){x * k, y * k, k - xi, root >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_unified_project(double xi, double x, double y, double z) {
+  double length = vl_length3(x, y, z), under = z + xi * length, k = 1.0 / vl_not_tiny(under);
+  double edge = xi > 1.0 ? 1.0 / xi : xi;
+  return (vlPlanePoint){x * k, y * k,
+                        z >= -edge * length && under > VL_HORIZON * length ? 1.0 : 0.0};
+}
+
+VL_PROJECTION_FUNCTIONS(UNIFIED, unified, vl_unified_unproject(a[0], x, y),
+                        vl_unified_project(a[0], x, y, z))
+
+#endif

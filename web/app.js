@@ -1,5 +1,5 @@
 // The page: joins the connection, the image, the camera and the panels.
-import { connect } from "./connection.js";
+import { connect, engineName } from "./connection.js";
 import { parseFrame } from "./frame.js";
 import { Screen } from "./screen.js";
 import { Pointer, keyAction, tools } from "./pointer.js";
@@ -90,7 +90,18 @@ const app = {
   },
 };
 
-const screen = app.screen = new Screen(byId("screen"));
+function openScreen() {
+  try {
+    return new Screen(byId("screen"));
+  } catch (error) {
+    byId("status").textContent = `${error.message}: use a current Firefox, Chrome, Edge or Safari`;
+    throw error;
+  }
+}
+
+const screen = app.screen = openScreen();
+screen.onlost = () => app.notice("The browser took away what draws the image; the image is back as soon as the browser allows it.");
+screen.onrestored = () => app.notice("");
 const panel = new Panel(byId("camera"), (set, gesture) => app.edit(set, gesture));
 const display = app.display = new Display(byId("display"), app);
 const overlay = new Overlay(byId("overlays"), app);
@@ -193,6 +204,7 @@ connect({
   state(connected, reason) {
     document.body.classList.toggle("away", !connected);
     if (!connected) byId("status").textContent = reason ? `closed: ${reason}` : "velo has ended or cannot be reached; trying again";
+    if (!connected && engineName() === "browser") app.notice(`velo does not run in this page: ${reason}`);
   },
 }).then(connection => { app.connection = connection; }, error => { byId("status").textContent = error.message; });
 

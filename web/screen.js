@@ -75,19 +75,43 @@ class Layer {
 export class Screen {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = this.gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: false });
-    if (!gl) throw new Error("this browser has no WebGL2");
-    this.programs = new Map();
-    this.laying = compile(gl, lay);
+    this.gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: false });
+    if (!this.gl) throw new Error("this browser has no WebGL2");
     this.pixels = new Pixels();
-    this.layer = new Layer(gl);      // the present frame
-    this.whole = new Layer(gl);      // the last frame of the whole image, behind a rectangle
+    this.begin();
+    canvas.addEventListener("webglcontextlost", event => {
+      event.preventDefault(); // so that it can come back
+      this.lost = true;
+      this.onlost?.();
+    });
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.lost = false;
+      this.restore();
+      this.onrestored?.();
+    });
     this.display = { exposure: 0, view: 0, kind: 0, low: [0, 0, 0], high: [1, 1, 1] };
     this.zoom = 1;                   // 1: the whole image fits
     this.centre = [0.5, 0.5];        // place of the image in the middle of the stage
     this.drawn = 0;
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
+  }
+
+  begin() {
+    const { gl } = this;
+    this.programs = new Map();
+    this.laying = compile(gl, lay);
+    this.layer = new Layer(gl); // the present frame
+    this.whole = new Layer(gl); // the last frame of the whole image, behind a rectangle
+  }
+
+  // After a loss of the context: the present frame again.
+  restore() {
+    this.begin();
+    const { frame } = this;
+    if (!frame) return;
+    this.layer.take({ ...frame, tiles: [{ x: 0, y: 0, w: frame.columns, h: frame.rows, pixels: this.pixels.data }] }, false);
+    this.draw();
   }
 
   get frame() { return this.pixels.frame; }
@@ -97,7 +121,7 @@ export class Screen {
     const isWhole = frame.columns * frame.scale >= frame.width && frame.rows * frame.scale >= frame.height;
     if (!isWhole && this.layer.frame && !fits && !this.cropped) [this.layer, this.whole] = [this.whole, this.layer];
     this.cropped = !isWhole;
-    this.layer.take(frame, fits && this.layer.frame !== null);
+    if (!this.lost) this.layer.take(frame, fits && this.layer.frame !== null);
     this.pixels.take(frame);
     this.draw();
   }
@@ -166,6 +190,7 @@ export class Screen {
   }
 
   drawNow() {
+    if (this.lost) return;
     const gl = this.gl, ratio = window.devicePixelRatio || 1, k = this.factor(), [left, top] = this.origin();
     if (this.cropped) this.develop(this.whole);
     this.develop(this.layer);

@@ -16,6 +16,9 @@ const WORDS = {
     status: (s) => `${s.spp} of ${s.target} samples per pixel`,
     engine: { server: "Rendered by velo view.", browser: "Rendered by velo in this page (WebAssembly)." },
     hash: (hash) => `SHA-256 of the image: ${hash}`,
+    printed: (why) => `The figures stay as printed: ${why}.`,
+    lost: "The browser took away what draws the image: the figure is the printed one until it comes back.",
+    reasons: { webgl: "this browser has no WebGL2", wasm: "this browser has no WebAssembly with vector instructions", memory: "the browser has too little memory" },
   },
   it: {
     steered: "un'altra pagina ha il comando",
@@ -25,6 +28,9 @@ const WORDS = {
     status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
     engine: { server: "Immagini calcolate da velo view.", browser: "Immagini calcolate da velo in questa pagina (WebAssembly)." },
     hash: (hash) => `SHA-256 dell'immagine: ${hash}`,
+    printed: (why) => `Le figure restano quelle stampate: ${why}.`,
+    lost: "Il browser ha tolto alla pagina ciò che disegna l'immagine: finché non torna, la figura è quella stampata.",
+    reasons: { webgl: "questo browser non ha WebGL2", wasm: "questo browser non ha WebAssembly con istruzioni vettoriali", memory: "il browser ha troppo poca memoria" },
   },
 };
 const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far"];
@@ -39,6 +45,9 @@ export function figureCamera(c) {
   if (c.projection === "panini") camera.panini = c.shape[0];
   return camera;
 }
+
+// Why the engine cannot render: a kind of WORDS.reasons, or the message itself.
+const REASONS = [[/WebGL2/, "webgl"], [/WebAssembly|unpack/, "wasm"], [/memory/i, "memory"]];
 
 // The fields of velo's camera that change between two cameras of a figure.
 export function changedFields(before, after) {
@@ -65,7 +74,15 @@ export class Live {
     this.svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     this.svg.id = "overlay";
     document.body.append(this.canvas, this.svg);
-    this.screen = new Screen(this.canvas);
+    this.connection = { send() {} }; // before the engine is there
+    try {
+      this.screen = new Screen(this.canvas);
+    } catch (error) {
+      this.end(error.message);
+      return;
+    }
+    this.screen.onlost = () => this.lose(true);
+    this.screen.onrestored = () => this.lose(false);
     this.overlay = new Overlay(document.createElement("div"), this);
     attachDrag(this.canvas, this);
     this.screen.onplace = () => this.overlay.draw();
@@ -73,7 +90,6 @@ export class Live {
     addEventListener("wheel", (event) => { // over the view from outside it scrolls the page
       if (!event.ctrlKey && event.target.closest?.(".pane.outside")) event.stopPropagation();
     }, { capture: true, passive: true });
-    this.connection = { send() {} }; // before the engine is there
     connect({
       text: (message) => this.receive(message),
       frame: (buffer) => this.receiveFrame(buffer),
@@ -84,6 +100,7 @@ export class Live {
   use(language) {
     this.leave();
     this.words = WORDS[language];
+    if (this.why) this.end(this.why);
     this.sign();
     this.canvas.title = this.words.image;
     this.canvas.setAttribute("aria-label", this.words.image);
@@ -92,6 +109,7 @@ export class Live {
   // ---- for figures.js ----
 
   start(element, scene) {
+    if (this.broken) return Promise.reject(new Error(this.reason));
     this.leave();
     this.element = element;
     this.scene = scene;
@@ -145,6 +163,7 @@ export class Live {
     cancelAnimationFrame(this.timer);
     this.timer = null;
     this.pending = null;
+    if (this.broken) return;
     if (this.element && this.screen.frame && !this.canvas.hidden) {
       const pane = this.element.querySelector(".pane.image");
       const still = Object.assign(document.createElement("canvas"), { className: "still", width: this.canvas.width, height: this.canvas.height });
@@ -219,6 +238,7 @@ export class Live {
 
   // Which engine renders, with the hash of the image when it has all its samples.
   async sign() {
+    if (this.broken) return this.foot("");
     const { frame } = this.screen, serial = frame?.serial;
     const done = frame && frame.spp > 0 && frame.spp === this.target;
     const hash = done ? await hashOf(this.screen.pixels.data) : null;
@@ -310,7 +330,7 @@ export class Live {
     const frame = parseFrame(buffer);
     this.screen.take(frame); // also one of another scene: the next has only what differs from it
     this.connection.send({ type: "seen", serial: frame.serial });
-    if (this.element && this.state && frame.change >= this.first) this.canvas.hidden = false;
+    if (this.element && this.state && frame.change >= this.first) this.canvas.hidden = Boolean(this.screen.lost);
     this.frames = (this.frames ?? 0) + 1;
     this.shown = frame.change;
     this.sign();
@@ -319,6 +339,32 @@ export class Live {
   connected(connected, reason) {
     if (connected) return;
     this.steers = undefined;
-    this.tell(reason || this.words.away);
+    if (engineName() === "browser") this.end(reason);
+    else this.tell(reason || this.words.away);
+  }
+
+  // Nothing renders any more, since `why`: the printed figures are shown.
+  end(why) {
+    const kind = REASONS.find(([test]) => test.test(why))?.[1], { words } = this;
+    this.why = why;
+    this.reason = (kind ? words.reasons[kind] : why).replace(/^velo: (error: )?|\.$/g, "");
+    this.broken = words.printed(this.reason);
+    this.canvas.hidden = true;
+    this.tell(this.broken);
+    this.foot("");
+    this.pending?.reject(new Error(this.reason));
+    this.pending = null;
+    const live = this.figures.find((f) => f.element === this.element);
+    if (!live) return;
+    live.element.querySelector(".still")?.remove();
+    live.complain(this.broken);
+  }
+
+  // The context of WebGL is lost, or is there again.
+  lose(lost) {
+    if (!this.element) return;
+    this.canvas.hidden = lost || !(this.shown >= this.first);
+    if (lost) this.element.querySelector(".still")?.remove();
+    this.complain(lost ? this.words.lost : "");
   }
 }

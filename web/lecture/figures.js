@@ -80,6 +80,7 @@ class Figure {
     this.error.setAttribute("role", "status");
     const image = element.querySelector("img"), outside = make("div", { className: "pane outside" });
     outside.setAttribute("aria-label", words.outside);
+    outside.setAttribute("role", "group");
     this.image = make("div", { className: "pane image" }, image);
     element.prepend(make("div", { className: "panes" }, this.image, ...(element.dataset.outside ? [outside] : [])));
     element.append(this.panel, this.error);

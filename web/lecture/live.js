@@ -224,7 +224,7 @@ export class Live {
   receive(message) {
     if (message.type === "state") this.receiveState(message);
     else if (message.type === "refused") this.refused(message);
-    else if (message.type === "error" || message.type === "warning") this.complain(message.message);
+    else if (message.type === "error" || message.type === "warning") this.complain(this.explain(message.message));
     else if (message.type === "status") this.receiveStatus(message);
     else if (message.type === "role") this.receiveRole(message);
     else if (message.id) this.answered(message);
@@ -246,6 +246,11 @@ export class Live {
     const words = this.words;
     this.hash = hash;
     this.foot(words.engine[engineName()] + (hash ? " " + words.hash(hash) : ""));
+  }
+
+  // A message of velo for the reader: too little memory concerns the figure, whose printed image is there.
+  explain(message) {
+    return /memory/i.test(message) ? this.words.printed(this.words.reasons.memory) : message;
   }
 
   answered(message) {

@@ -1,6 +1,7 @@
 // web/lecture/main.js: the page of velo view --lecture: the lecture in one of its languages, with velo as the renderer.
 import { Live } from "./live.js";
 import { openLecture } from "./page.js";
+import { attachScroll } from "./scroll.js";
 
 const byId = (id) => document.getElementById(id);
 const OTHER = { en: ["it", "Italiano"], it: ["en", "English"] };
@@ -22,6 +23,7 @@ async function open(language, place) {
   live.use(language);
   lecture = await openLecture(root, { docs: "docs/", language, start: (...a) => live.start(...a), show: (...a) => live.show(...a), stop: (...a) => live.stop(...a) });
   live.figures = lecture.figures;
+  attachScroll(root);
   document.documentElement.lang = language;
   document.title = root.querySelector("h1").textContent;
   const [other, name] = OTHER[language];
@@ -46,5 +48,5 @@ document.addEventListener("click", (event) => {
 });
 
 const asked = new URLSearchParams(location.search).get("language");
-open(OTHER[asked] ? asked : "en").catch((error) => { byId("status").textContent = error.message; });
+open(OTHER[asked] ? asked : document.documentElement.lang).catch((error) => { byId("status").textContent = error.message; });
 window.velo = { live, choose, get lecture() { return lecture; } }; // for tests

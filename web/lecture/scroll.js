@@ -1,7 +1,7 @@
 // web/lecture/scroll.js: what is wider than its box scrolls, also by the keyboard: such boxes can be focused.
 export function attachScroll(root) {
   const update = (box) => {
-    if (box.scrollWidth > box.clientWidth + 1 || box.scrollHeight > box.clientHeight + 1) box.tabIndex = 0;
+    if (box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight) box.tabIndex = 0;
     else box.removeAttribute("tabindex");
   };
   const observer = new ResizeObserver((entries) => entries.forEach(({ target }) => update(target)));

@@ -9,6 +9,8 @@ const looks = { eye: ["#f5a623", 3], window: ["#f5a623", 2], grid: ["#f5a62366",
   far: ["#7fd1ff", 1.4], distance: ["#f5a623", 1.2], focus: ["#ff7ad1", 1.2], projector: ["#9cff7a", 1.4], axes: ["#e5484d", 2], film: ["#f5a623", 1],
   path: ["#ffd24a", 1.8], leaves: ["#9fb4c8", 1.2, [2, 4]], light: ["#fff3b0", 1.1, [5, 3]], occluded: ["#c0566a", 0.8, [2, 3]] };
 
+const basis = ["#ff8a80", "#7fe09a", "#8fb4ff"]; // u, v, w: the same on the lecture's page
+
 // Of the cameras of a trajectory.
 const strings = { volume: ["#8fd3c7", 0.7], window: ["#8fd3c7", 1], eye: ["#8fd3c7", 4], path: ["#8fd3c799", 1.4] };
 const eyeOf = m => [m[3], m[7], m[11]];
@@ -138,7 +140,8 @@ export class Outside {
     if (this.image) g.drawImage(this.image, 0, 0, w, h);
     g.fillStyle = "#0006";
     g.fillRect(0, 0, w, h);
-    for (const [part, ...n] of d?.lines || []) this.stroke(g, n.slice(0, 3), n.slice(3), looks[part] || ["#fff", 1]);
+    let axis = 0; // u, v, w
+    for (const [part, ...n] of d?.lines || []) this.stroke(g, n.slice(0, 3), n.slice(3), part === "axes" ? [basis[axis++ % 3], 2.4] : looks[part] || ["#fff", 1]);
     for (const [part, ...n] of this.string.lines || []) this.stroke(g, n.slice(0, 3), n.slice(3), strings[part] || strings.volume);
     this.drawPaths(g);
     g.font = "italic 14px serif";
@@ -146,7 +149,7 @@ export class Outside {
       const p = this.project(at);
       if (p[2] <= 0) continue;
       g.strokeStyle = "#000c", g.lineWidth = 3, g.strokeText(text, p[0] + 6, p[1] - 5);
-      g.fillStyle = "#fff", g.fillText(text, p[0] + 6, p[1] - 5);
+      g.fillStyle = basis["uvw".indexOf(text)] ?? "#fff", g.fillText(text, p[0] + 6, p[1] - 5);
     }
     this.handles = {};
     if (!d) return;

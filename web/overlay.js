@@ -149,7 +149,7 @@ export class Overlay {
       const at = [p.x, p.y], [x, y] = this.app.screen.toPage(...at);
       this.svg.append(element("circle", { cx: x, cy: y, r: 5, fill: colours[i], stroke: "#fff" }));
       if (this.straight) for (const from of [[0, 0], [f.width, 0], [0, f.height], [f.width, f.height], centre])
-        this.line(from, at, { stroke: colours[i], "stroke-width": 0.8, "stroke-dasharray": "3 4" });
+        this.line(from, at, { stroke: colours[i], "stroke-width": 1, "stroke-dasharray": ["12 3", "6 4", "2 4"][i] });
       this.label(at, "xyz"[i], colours[i]);
     });
   }

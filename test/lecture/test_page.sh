@@ -5,7 +5,7 @@ command -v node >/dev/null 2>&1 || {
   skip page "needs node"
   exit 77
 }
-cp "$VELO_SOURCE_DIR"/web/lecture/*.js "$work"
+cp -r "$VELO_SOURCE_DIR/web" "$work"
 cp "$VELO_SOURCE_DIR/test/lecture/page.js" "$work/test_page.js"
 echo '{ "type": "module" }' >"$work/package.json"
 
@@ -22,5 +22,12 @@ if [ -x "$VELO" ]; then
   tr ' ' '\n' <<<"$pixels" | paste -d, - "$work/velo.csv" >"$work/rays.csv"
 fi
 
+"$VELO_SOURCE_DIR/tools/lecture_figures" --check >"$work/figures.txt" && pass figures_are_drawn || fail figures_are_drawn "$(cat "$work/figures.txt")"
+# The slides' program, in C: its image is that of the drawn figures.
+if "${CC:-cc}" -std=c17 -O1 "$VELO_SOURCE_DIR/examples/lecture.c" -lm -o "$work/slides" 2>/dev/null; then
+  "$work/slides" size=40x30 s=10 n=1 >"$work/lecture.ppm"
+fi
+
 cd "$work" || exit 1
-node test_page.js "$VELO_SOURCE_DIR/docs"
+node test_page.js "$VELO_SOURCE_DIR/docs" || failures=1
+exit "$((failures > 0))"

@@ -57,7 +57,7 @@ def test_files(view):
     names |= set(re.findall(r"\]\(\.\./([^)#]*\.[a-z]+)", text))
     wrong = [name for name in sorted(names) if view.get(view.path + name) != (200, read(name, "rb"))]
     check("files", len(names) > 50 and not wrong, wrong)
-    for name in ("figures", "formulas", "listing", "live", "main", "markdown", "page", "sliders"):
+    for name in ("drawings", "drawings/frame", "drawn", "figures", "formulas", "links", "listing", "live", "main", "markdown", "math", "page", "present", "sliders"):
         check("module_" + name, view.get(f"{view.path}lecture/{name}.js")[0] == 200)
     check("no_token", view.get("/docs/lecture.md")[0] == 403)
     check("foreign_host", view.get(view.path + "docs/lecture.md", host="example.com")[0] == 403)
@@ -128,7 +128,7 @@ def test_figure(b, language):
     n = make_live(b, "view_plane_500")
     figure = f"velo.lecture.figures[{n}]"
     comma = "," if language == "it" else "."
-    numbers = lambda: b.run(f"{figure}.element.querySelector('.numbers').textContent")
+    numbers = lambda: b.run(f"{figure}.element.querySelector('.numbers').dataset.text")
     before, formula = middle(b), numbers()
     check(language + "_formula", formula == "f = zoom · d / s = 1 · 500 / 1 = 500", formula)
     box = b.run(f"(() => {{ const r = {figure}.element.querySelector('[data-slider=d] input').getBoundingClientRect(); return [r.x, r.y + r.height / 2, r.width]; }})()")
@@ -137,7 +137,7 @@ def test_figure(b, language):
     b.wait(f"velo.live.state.camera.d > 900 && velo.live.shown === velo.live.change && velo.live.screen.frame.scale === 1")
     d = b.run(f"{figure}.camera.d")
     check(language + "_slider_moves_the_numbers", numbers() == f"f = zoom · d / s = 1 · {d:g} / 1 = {d:g}", numbers(), d)
-    text = b.run("document.querySelector('blockquote[data-formula=fov] .numbers').textContent")
+    text = b.run("document.querySelector('blockquote[data-formula=fov] .numbers').dataset.text")
     check(language + "_formula_of_the_text", comma in text and text.endswith("°") and "43" not in text.split("=")[-1], text)
     check(language + "_slider_moves_the_image", abs(middle(b) - before) > 1e5, before, middle(b))
     # the drawing follows the slider in steps: wait for the one of this d
@@ -196,9 +196,29 @@ def test_page(b, view):
           b.run(f"velo.lecture.figures[{n}].camera.eye.join() === velo.live.state.camera.eye.join()"), b.run(arm), length)
     b.run("velo.live.canvas.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp', cancelable: true }))")
     b.wait("velo.live.shown === velo.live.change && Math.abs(velo.live.state.camera.eye[1]) > 5")
+    # a click on a pixel: its ray in the formulas, its projector outside; r counts from below
+    n = make_live(b, "lecture/axis_aligned")
+    b.wait("velo.live.outside?.drawing && velo.live.state.bounds")
+    at = b.run("(() => { const r = velo.live.canvas.getBoundingClientRect(), p = velo.live.screen.toPage(100.5, 299.5); return [r.x + p[0], r.y + p[1]]; })()")
+    b.click(*at)
+    numbers = b.wait(f"velo.lecture.figures[{n}].pixel.r === 100 && velo.lecture.figures[{n}].pixel.c === 100 && [...velo.lecture.figures[{n}].element.querySelectorAll('.numbers')].at(-1).dataset.text")
+    check("click_pixel", numbers.startswith("d = (−99.5, −99.5, −500)"), numbers)
+    b.wait("velo.live.outside.point && velo.live.outside.drawing.lines.some(l => l[0] === 'projector')")
+    # the Panini projection has its own slider, and d is there for perspective alone
+    n = make_live(b, "wide_perspective")
+    shown = f"velo.lecture.figures[{n}].rows.filter(r => !r.row.hidden).map(r => r.slider.name).join()"
+    check("sliders_perspective", b.run(shown) == "fov", b.run(shown))
+    b.click_on("button.view[data-view=wide_panini]")
+    b.wait(f"velo.live.scene.includes('panini') && {shown} === 'fov,panini'")
+    before = b.wait("velo.live.screen.frame.scale === 1 && velo.live.shown === velo.live.change && velo.live.screen.values().reduce((a, x) => a + x, 0)")
+    b.run(f"(() => {{ const i = velo.lecture.figures[{n}].rows.find(r => r.slider.name === 'panini').input; i.value = 0; i.dispatchEvent(new Event('input')); }})()")
+    b.wait("velo.live.state.camera.shape[0] === 0 && velo.live.shown === velo.live.change && velo.live.screen.frame.scale === 1")
+    check("panini", abs(middle(b) - before) > 1e4, before, middle(b))
+    b.click_on("button.view[data-view=wide_stereographic]")
+    b.wait(f"velo.live.scene.includes('stereographic') && {shown} === 'fov'")
     # what cannot be: near behind far
-    make_live(b, "lecture/pinhole")
-    b.run("(() => { const f = velo.lecture.figures.find(f => f.element.dataset.scene.includes('/pinhole')); f.set({ ...f.camera, near: 900, far: 300 }, false); })()")
+    make_live(b, "lecture/example_2")
+    b.run("(() => { const f = velo.lecture.figures.find(f => f.element.dataset.scene.includes('/example_2')); f.set({ ...f.camera, near: 900, far: 300 }, false); })()")
     words = b.wait("[...document.querySelectorAll('figure .error')].map(e => e.textContent).join('')")
     check("refusal_is_shown", "far" in words, words)
     b.run("[...document.querySelectorAll('a[data-source]')].find(a => a.textContent === 'Pinhole_get_direction').click()")
@@ -215,7 +235,7 @@ def test_page(b, view):
     place = "(() => { const h = [...document.querySelectorAll('#page > :is(h1, h2, h3)')]; return h.findLastIndex(e => e.getBoundingClientRect().top < innerHeight / 3); })()"
     before = b.run(place)
     b.run("document.getElementById('language').click()")
-    b.wait("document.documentElement.lang === 'it' && velo.lecture.figures.length >= 15 && document.title.includes('lezione')")
+    b.wait("document.documentElement.lang === 'it' && velo.lecture.figures.length >= 15 && document.title.includes('prospettica')")
     b.wait(f"{place} === {before}")
     check("switch_keeps_the_place", before > 3 and b.run("location.search") == "?language=it", before)
     check("no_errors", not b.problems(), b.problems())

@@ -1,18 +1,19 @@
 // web/lecture/drag.js: dragging a live image turns the camera round lookat, as on the page of velo view; with Ctrl or
-// Shift it looks round or moves sideways. Arrow keys turn, too. The wheel and vertical strokes of a finger scroll.
+// Shift it looks round or moves sideways. A click picks a pixel. Arrow keys turn, too. The wheel and vertical strokes of a finger scroll.
 import * as steer from "../steer.js";
 
 const ARROWS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 // live: state, null while velo loads; camera(), edit(set), next() before a gesture, screen.factor().
 export function attachDrag(canvas, live) {
-  let last = null;
+  let last = null, moved = 0;
   canvas.tabIndex = 0;
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button !== 0 || !live.state) return;
     canvas.setPointerCapture(event.pointerId);
     canvas.focus({ preventScroll: true });
     last = event;
+    moved = 0;
     live.next();
     event.preventDefault();
   });
@@ -21,11 +22,17 @@ export function attachDrag(canvas, live) {
     const dx = event.clientX - last.clientX, dy = event.clientY - last.clientY;
     const c = live.camera(), k = live.screen.factor(), angle = Math.PI / canvas.clientHeight;
     last = event;
-    if (!dx && !dy) return;
+    moved += Math.abs(dx) + Math.abs(dy);
+    if (moved < 3) return;
     live.edit(event.shiftKey ? steer.pan(c, dx / k, dy / k) : event.ctrlKey ? steer.look(c, -dx / c.fx / k, -dy / c.fy / k)
       : steer.orbit(c, dx * angle, dy * angle));
   });
-  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, () => { last = null; });
+  canvas.addEventListener("pointerup", (event) => {
+    const box = canvas.getBoundingClientRect();
+    if (last && moved < 3 && live.state) live.pick(...live.screen.toImage(event.clientX - box.left, event.clientY - box.top));
+    last = null;
+  });
+  canvas.addEventListener("pointercancel", () => { last = null; });
   canvas.addEventListener("keydown", (event) => {
     const way = ARROWS[event.key];
     if (!way || !live.state || event.ctrlKey || event.altKey || event.metaKey) return;

@@ -6,55 +6,14 @@
 //   stop(figure)                  the figure is live no longer
 //
 // One figure is live at a time: the one that was clicked last, while it is in sight; else the one nearest to the middle.
+import { make } from "../dom.js";
+import { Drawn } from "./drawn.js";
 import { formula } from "./formulas.js";
-import { parseSliders, positionOf, sliderValue, valueAt, withSlider } from "./sliders.js";
+import { showMath } from "./math.js";
+import { parseSliders, sliderRow, withSlider } from "./sliders.js";
+import { words } from "./words.js";
 
-const STEPS = 1000;
 const CALM = 120; // milliseconds without scrolling after which a figure becomes live
-const WORDS = {
-  en: { reset: "Reset", sliders: "camera", failed: "no live image", outside: "the camera from outside" },
-  it: { reset: "Ripristina", sliders: "camera", failed: "nessuna immagine dal vivo", outside: "la camera dall'esterno" },
-};
-
-function make(tag, properties = {}, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
-
-// Three significant digits are what a slider can set.
-const rounded = (value) => Number(value.toPrecision(Math.abs(value) >= 1000 ? 4 : 3));
-
-function short(value, language) {
-  if (!Number.isFinite(value)) return value > 0 ? "∞" : "–";
-  const text = String(rounded(value)).replace("-", "−");
-  return language === "it" ? text.replace(".", ",") : text;
-}
-
-// One row: name, slider, value. change(value) is called while it moves; update(camera) sets it.
-function sliderRow(slider, language, change) {
-  const input = make("input", { type: "range", min: 0, max: STEPS, step: 1 });
-  const output = make("output");
-  const row = make("label", { className: "slider" }, make("span", { textContent: slider.name.replace("_", " ") }), input, output);
-  row.dataset.slider = slider.name;
-  const write = (value) => {
-    output.textContent = short(value, language);
-    input.setAttribute("aria-valuetext", output.textContent);
-  };
-  input.addEventListener("input", () => {
-    const value = rounded(valueAt(slider, input.value / STEPS));
-    write(value);
-    change(value);
-  });
-  const update = (camera) => {
-    const value = sliderValue(camera, slider.name);
-    row.hidden = value === undefined; // such as d, where the view's projection has none
-    if (row.hidden || input.matches(":active")) return; // it is held
-    input.value = Math.round(STEPS * positionOf(slider, value));
-    write(value);
-  };
-  return { row, update };
-}
 
 class Figure {
   constructor(element, options) {
@@ -63,27 +22,26 @@ class Figure {
     this.views = [];
     this.scene = element.dataset.scene;
     this.folder = this.scene.replace(/[^/]*$/, "");
+    this.name = this.scene.slice(this.folder.length).replace(/\.pbrt$/, "");
     this.camera = null;
     this.first = null;
     this.seen = false;
-    const { language } = options, words = WORDS[language];
-    this.rows = parseSliders(element.dataset.sliders ?? "").filter((slider) => slider.min !== undefined)
+    this.pixel = {}; // the clicked pixel { r, c }, of the formulas
+    const { language } = options, w = words(language);
+    this.rows = parseSliders(element.dataset.sliders ?? "")
       .map((slider) => sliderRow(slider, language, (value) => this.set(withSlider(this.camera, slider.name, value), false)));
-    this.formulas = (element.dataset.formulas ?? "").split(",").filter(Boolean)
-      .map((name) => ({ name, line: make("p", { className: "numbers" }) }));
-    const reset = make("button", { type: "button", className: "reset", textContent: words.reset });
-    reset.addEventListener("click", () => this.first && this.set(this.first, true));
-    this.panel = make("div", { className: this.rows.length > 5 ? "controls many" : "controls", hidden: true }, ...this.rows.map((r) => r.row), reset, ...this.formulas.map((f) => f.line));
+    this.formulas = (element.dataset.formulas ?? "").split(",").filter(Boolean).map((name) => ({ name, line: make("p", { class: "numbers" }) }));
+    const reset = make("button", { type: "button", class: "reset", textContent: w.reset, onclick: () => this.first && this.set(this.first, true) });
+    this.panel = make("div", { class: "controls", hidden: true }, ...this.rows.map((r) => r.row), make("div", { class: "buttons" }, reset),
+      make("div", { class: "formulas" }, ...this.formulas.map((f) => f.line)));
     this.panel.setAttribute("role", "group");
-    this.panel.setAttribute("aria-label", words.sliders);
-    this.error = make("p", { className: "error", hidden: true });
+    this.panel.setAttribute("aria-label", w.sliders);
+    this.error = make("p", { class: "error", hidden: true });
     this.error.setAttribute("role", "status");
-    const image = element.querySelector("img"), outside = make("div", { className: "pane outside" });
-    outside.setAttribute("aria-label", words.outside);
-    outside.setAttribute("role", "group");
-    this.image = make("div", { className: "pane image" }, image);
-    element.prepend(make("div", { className: "panes" }, this.image, ...(element.dataset.outside ? [outside] : [])));
-    element.append(this.panel, this.error);
+    const outside = make("div", { class: "pane outside", role: "group" });
+    outside.setAttribute("aria-label", w.outside);
+    this.image = make("div", { class: "pane image" }, element.querySelector("img"));
+    element.prepend(make("div", { class: "panes" }, this.image, ...(element.dataset.outside ? [outside] : []), this.panel), this.error);
   }
 
   // The figure becomes live, or shows another view. keep: a scene that was there before keeps its camera.
@@ -101,8 +59,10 @@ class Figure {
       this.panel.hidden = false;
       this.complain("");
       this.set(again ? this.camera : camera, true, again);
+      this.onready?.();
+      this.onready = null;
     } catch (error) {
-      if (scene === this.scene && this.seen) this.complain(`${WORDS[this.options.language].failed}: ${error.message}`);
+      if (scene === this.scene && this.seen) this.complain(`${words(this.options.language).failed}: ${error.message}`);
     }
   }
 
@@ -121,9 +81,16 @@ class Figure {
   set(camera, moveSliders, render = true) {
     this.camera = camera;
     if (moveSliders) for (const { update } of this.rows) update(camera);
-    for (const { name, line } of this.formulas) line.textContent = formula(name, camera, this.options.language);
-    if (camera.d !== undefined) this.options.changed(camera);
+    for (const { name, line } of this.formulas) showMath(line, formula(name, { ...camera, ...this.pixel }, this.options.language));
+    if (camera.d !== undefined) this.options.changed({ ...camera, ...this.pixel });
+    this.onchange?.();
     if (render) this.options.show(this.element, this.scene, camera);
+  }
+
+  // The formulas are those of this pixel from now on: r counts from below.
+  pick(r, c) {
+    this.pixel = { r, c };
+    if (this.camera) this.set(this.camera, false, false);
   }
 
   // The renderer's numbers are those of `camera`.
@@ -169,28 +136,30 @@ function chooseLive(figures) {
   };
 }
 
-// All live figures below root. The formulas of the text show the numbers of the figure that changed last.
+// All figures below root. The formulas of the text show the numbers of the figure that changed last.
 export function attachFigures(root, options) {
   const quotes = [...root.querySelectorAll("blockquote.formula")].map((quote) => {
-    const line = make("p", { className: "numbers", hidden: true });
+    const line = make("p", { class: "numbers", hidden: true });
     quote.append(line);
     return { line, name: quote.dataset.formula };
   });
   const changed = (camera) => {
     for (const { line, name } of quotes) {
-      line.textContent = formula(name, camera, options.language);
+      showMath(line, formula(name, camera, options.language));
       line.hidden = false;
     }
   };
-  const figures = [];
-  for (const element of root.querySelectorAll("figure.live, button.view")) {
+  const figures = [], drawn = [];
+  for (const element of root.querySelectorAll("figure.live, figure.drawn, button.view")) {
     const figure = figures.at(-1);
-    if (element.matches("figure")) {
+    if (element.matches("figure.drawn")) {
+      drawn.push(new Drawn(element, options));
+    } else if (element.matches("figure")) {
       figures.push(new Figure(element, { language: "en", ...options, changed }));
     } else if (figure) {
       figure.views.push(element);
       element.addEventListener("click", () => figure.start(`${figure.folder}${element.dataset.view}.pbrt`, false));
     }
   }
-  return { figures, close: chooseLive(figures) };
+  return { figures, drawn, close: chooseLive(figures) };
 }

@@ -6,7 +6,7 @@
 const DEFAULTS = { eye: [0, 0, 500], lookat: [0, 0, 0], up: [0, 1, 0], d: 500, zoom: 1, s: 1, roll: 0, width: 400, height: 400,
                    px: 0.5, py: 0.5, direction: [-1, 0.75, -5] };
 const DEPTHS = [250, 0, -500, -1500]; // the disks of scenes/lecture/property_1.pbrt
-const OUTERMOST = 2.6; // x of the outermost spheres of the middle row in scenes/lecture/objects/spheres.pbrt
+const OUTERMOST = 2.6, RADIUS = 0.6; // x of the outermost spheres of the middle row in scenes/lecture/objects/spheres.pbrt
 const DEGREES = 180 / Math.PI;
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -44,14 +44,14 @@ export function vanishingPoint(camera, direction) {
 }
 
 // Numbers with at most four digits behind the point, in the language's form.
-function writer(language) {
+export function writer(language) {
   const number = (x, digits = 4) => {
     const text = Number(x.toFixed(digits)).toString().replace("-", "−");
     return (text === "−0" ? "0" : text).replace(".", language === "it" ? "," : ".");
   };
   const separator = language === "it" ? "; " : ", ";
   const vector = (a, digits = 4) => `(${a.map((x) => number(x, digits)).join(separator)})`;
-  return { number, vector };
+  return { number, vector, separator, point: language === "it" ? "," : "." };
 }
 
 const FORMULAS = {
@@ -81,9 +81,11 @@ const FORMULAS = {
     return `${axis}: ${point ? vector([k.width / 2 + point[0], k.height / 2 - point[1]], 1) : "∞"}`;
   }).join("   "),
 
+  // A sphere whose radius is seen under alpha, at the angle theta from the view direction: the ratio of the axes of its image.
   ellipse: (k, { number }) => {
-    const angle = Math.atan(OUTERMOST / k.eye[2]);
-    return `θ = ${number(angle * DEGREES, 1)}°, 1 / cos θ = ${number(1 / Math.cos(angle), 2)}`;
+    const theta = Math.atan(OUTERMOST / k.eye[2]), sine = RADIUS / Math.hypot(OUTERMOST, k.eye[2]), alpha = Math.asin(sine);
+    const ratio = Math.cos(alpha) / Math.sqrt(Math.cos(theta) ** 2 - sine ** 2);
+    return `θ = ${number(theta * DEGREES, 1)}°, α = ${number(alpha * DEGREES, 1)}°, cos α / √(cos² θ − sin² α) = ${number(ratio, 2)}`;
   },
 
   dolly: (k, { number }) => {

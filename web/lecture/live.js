@@ -11,7 +11,7 @@ const WORDS = {
   en: {
     steered: "another page steers",
     away: "velo has ended or cannot be reached; trying again",
-    image: "Drag: turn round lookat. Shift: sideways. Ctrl: look round. Arrow keys turn",
+    image: "Click: a pixel's ray. Drag: turn round lookat. Shift: sideways. Ctrl: look round. Arrow keys turn",
     outside: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Ctrl and wheel: nearer, farther",
     status: (s) => `${s.spp} of ${s.target} samples per pixel`,
     engine: { server: "Rendered by velo view.", browser: "Rendered by velo in this page (WebAssembly)." },
@@ -23,7 +23,7 @@ const WORDS = {
   it: {
     steered: "un'altra pagina ha il comando",
     away: "velo è terminato o non è raggiungibile; nuovo tentativo",
-    image: "Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce",
+    image: "Clic: il raggio di un pixel. Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce",
     outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
     status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
     engine: { server: "Immagini calcolate da velo view.", browser: "Immagini calcolate da velo in questa pagina (WebAssembly)." },
@@ -33,16 +33,16 @@ const WORDS = {
     reasons: { webgl: "questo browser non ha WebGL2", wasm: "questo browser non ha WebAssembly con istruzioni vettoriali", memory: "il browser ha troppo poca memoria" },
   },
 };
-const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far"];
+const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far", "exposure_time"];
 
 // The camera of a figure, of velo's camera. What it does not have is absent.
 export function figureCamera(c) {
-  const camera = { projection: c.projection, width: c.width, height: c.height };
-  for (const name of ["eye", "lookat", "up", "zoom", "s", "roll", "near"]) camera[name] = c[name];
+  const camera = { kind: c.kind, width: c.width, height: c.height };
+  for (const name of ["eye", "lookat", "up", "zoom", "s", "roll", "near", "exposure_time"]) camera[name] = c[name];
   camera.far = c.far ?? Infinity;
-  if (c.projection === "perspective") camera.d = c.d;
-  if (["perspective", "panini", "stereographic"].includes(c.projection)) camera.fov = c.fov_horizontal;
-  if (c.projection === "panini") camera.panini = c.shape[0];
+  if (c.kind === "perspective") camera.d = c.d;
+  if (["perspective", "panini", "stereographic"].includes(c.kind)) camera.fov = c.fov_horizontal;
+  if (c.kind === "panini") camera.panini = c.shape[0];
   return camera;
 }
 
@@ -150,6 +150,20 @@ export class Live {
     figure.set({ ...figure.camera, ...set }, true);
   }
 
+  // The pixel at a place of the image: its ray in the formulas, its projector in the view from outside.
+  pick(x, y) {
+    const { width, height } = this.local, column = Math.floor(x), row = Math.floor(y), figure = this.figures.find((f) => f.element === this.element);
+    if (!figure || column < 0 || row < 0 || column >= width || row >= height) return;
+    figure.pick(height - 1 - row, column);
+    const box = [column, row, column + 1, row + 1], grow = Math.max(0, 3 / this.screen.factor() - 0.5);
+    this.overlay.band([box[0] - grow, box[1] - grow, box[2] + grow, box[3] + grow]);
+    this.ask({ type: "pick", x: column + 0.5, y: row + 0.5 }, (answer) => {
+      if (!this.outside || answer.type !== "picked") return;
+      this.outside.point = answer.object?.id ? answer.P : null;
+      this.outside.outline();
+    });
+  }
+
   ask(message, answer) {
     const id = this.nextId++;
     this.waiting.set(id, answer);
@@ -174,6 +188,7 @@ export class Live {
     }
     this.canvas.hidden = true;
     this.overlay.on.clear();
+    this.overlay.rectangle = null;
     this.overlay.draw();
     this.outside = this.element = this.state = null;
   }

@@ -31,7 +31,7 @@ async function open(language, place) {
   await Promise.all([...root.querySelectorAll("img")].map((image) => image.decode().catch(() => 0)));
   const heading = place && root.querySelectorAll(":scope > :is(h1, h2, h3)")[place.index];
   if (heading) scrollBy(0, heading.getBoundingClientRect().top - place.top);
-  else if (location.hash) document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
+  else if (!lecture.follow() && location.hash) document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 
 function choose(language) {

@@ -1,8 +1,11 @@
 // web/lecture/markdown.js: the Markdown of docs/lecture.md and docs/lezione.md as HTML, and no more Markdown than that:
-// headings, paragraphs, lists, tables, indented code, quotes, emphasis, code, links, images, and the marks of
-// docs/view-lecture.md. A live mark makes a <figure class="live">, a formula mark a <blockquote class="formula">.
+// headings, paragraphs, lists, tables, indented code, quotes (formulas), emphasis, code, links, images, folds (<details>), and the
+// marks of docs/view-lecture.md. A live mark makes a <figure class="live">, a drawn mark a <figure class="drawn">, a formula
+// mark a <blockquote class="formula">.
+import { mathHtml } from "./math.js";
 
 const LIVE_WORDS = ["scene", "sliders", "views", "formulas", "outside", "overlay"];
+const FOLD = /^(?:<details><summary>([^<]*)<\/summary>|<\/details>)$/;
 const COMMAND = /^(script|build)\/|^velo /;
 
 export function escapeHtml(text) {
@@ -51,6 +54,18 @@ export function parseMark(text) {
     values[name] = word.slice(at + 1);
   }
   return values;
+}
+
+// A drawn mark: a name, and sliders.
+export function parseDrawn(text) {
+  const [name, ...words] = text.split(/\s+/), sliders = words.find((word) => word.startsWith("sliders="));
+  if (!/^\w+$/.test(name) || words.some((word) => word !== sliders)) throw new Error(`'${text}' is not NAME sliders=...`);
+  return { name, sliders: sliders?.slice("sliders=".length) ?? "" };
+}
+
+function drawnFigure({ name, sliders }, alt, source, page) {
+  return `<figure class="drawn" data-drawn="${escapeHtml(name)}" data-sliders="${escapeHtml(sliders)}">${image(alt, source, page)}` +
+    `<figcaption>${inline(alt, { ...page, views: [] })}</figcaption></figure>`;
 }
 
 // The figure of a table has no caption of its own: the table has the views' captions.
@@ -104,6 +119,7 @@ const BLOCKS = [
   { first: /^> /, next: /^> / },
   { first: /^(-|\d+\.) /, next: /^(-|\d+\.) |^ +\S/ },
   { first: /^!\[[^\]]*\]\([^)]*\)$/, next: null },
+  { first: FOLD, next: null },
   { first: /\S/, next: /\S/ },
 ];
 
@@ -122,12 +138,21 @@ function block(kind, lines, mark, page) {
   }
   if (kind === 4) {
     const formula = mark.formula ? ` class="formula" data-formula="${escapeHtml(mark.formula)}"` : "";
-    return `<blockquote${formula}><p>${inline(lines.map((line) => line.slice(2)).join(" "), page)}</p></blockquote>`;
+    const text = lines.map((line) => line.slice(2)).join(" ");
+    return `<blockquote${formula}><p>${mathHtml(text)}</p></blockquote>`;
   }
   if (kind === 5) return list(lines, page);
   if (kind === 6 && mark.live) {
     const [, alt, source] = first.match(/^!\[([^\]]*)\]\(([^)]*)\)$/);
     return figure(mark.live, alt, source, page);
+  }
+  if (kind === 6 && mark.drawn) {
+    const [, alt, source] = first.match(/^!\[([^\]]*)\]\(([^)]*)\)$/);
+    return drawnFigure(mark.drawn, alt, source, page);
+  }
+  if (kind === 7) {
+    const title = first.match(FOLD)[1];
+    return title === undefined ? "</details>" : `<details><summary>${inline(title, page)}</summary>`;
   }
   return `<p>${inline(lines.join(" "), page)}</p>`;
 }
@@ -149,6 +174,7 @@ export function markdownToHtml(text, options = {}) {
     if (kind === 0) {
       const [, name, value] = lines[i].match(/^<!-- (\w+): (.*) -->$/) ?? [];
       if (name === "live") mark = { live: parseMark(value) };
+      else if (name === "drawn") mark = { drawn: parseDrawn(value) };
       else if (name === "formula") mark = { formula: value };
       else throw new Error(`unknown mark: ${lines[i]}`);
     } else {

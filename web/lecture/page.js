@@ -1,7 +1,9 @@
 // web/lecture/page.js: the lecture as a page: fetches a page's Markdown and fills an element with it.
 import { attachFigures } from "./figures.js";
 import { attachListings } from "./listing.js";
+import { attachLinks } from "./links.js";
 import { markdownToHtml } from "./markdown.js";
+import { attachPresenter } from "./present.js";
 
 const PAGES = { en: "lecture.md", it: "lezione.md" };
 
@@ -11,7 +13,7 @@ function settleLinks(root) {
   for (const link of root.querySelectorAll("a")) {
     const target = link.getAttribute("href"), file = target.match(/^\.\.\/(.*\.[a-z]+)(#.*)?$/);
     const language = Object.keys(PAGES).find((name) => PAGES[name] === target);
-    if (target.startsWith("#")) continue;
+    if (target.startsWith("#")) continue; // also links to a figure: "#projection?e=200"
     if (language) {
       Object.assign(link, { href: `?language=${language}`, hreflang: language });
     } else if (file) {
@@ -39,8 +41,21 @@ export async function openLecture(root, options) {
   };
   const text = await get(docs + PAGES[language]);
   root.lang = language;
-  root.innerHTML = markdownToHtml(text, { image: (source) => docs + source });
+  const page = document.createElement("template"); // its images are not fetched: drawn figures need none
+  page.innerHTML = markdownToHtml(text, { image: (source) => docs + source });
+  for (const image of page.content.querySelectorAll("figure.drawn img")) {
+    image.closest("figure").dataset.alt = image.alt;
+    image.remove();
+  }
+  page.content.querySelector("figure")?.classList.add("first");
+  root.replaceChildren(page.content);
   settleLinks(root);
   attachListings(root, (path) => get(`${docs}../${path}`), language);
-  return attachFigures(root, { ...options, language });
+  const lecture = attachFigures(root, { ...options, language });
+  const links = attachLinks(root, lecture, language), presenter = attachPresenter(root, lecture, language);
+  return { ...lecture, presenter, follow: links.follow, stop: lecture.close, close() {
+    links.close();
+    presenter.close();
+    lecture.close();
+  } };
 }

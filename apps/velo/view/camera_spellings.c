@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "cli/vector.h"
+#include "velo/projection.h"
 #include "view/camera_edit.h"
 
 static const double degrees = 180.0 / 3.14159265358979323846;
@@ -77,14 +78,16 @@ static void put_focal(Json *json, const ViewCamera *camera) {
 
 static void put_projection(Json *json, const ViewCamera *camera) {
   static const char *const distortions[] = {"none", "opencv", "radial", "thin prism"};
-  static const char *const kinds[] = {/* as settings have them; `projection` is for people to read */
+  static const char *const kinds[] = {
+  /* as settings have them; `projection` is for people to read */
 #define NAME(NAME, name) #name,
-                                      VL_PROJECTION_KINDS(NAME)
+      VL_PROJECTION_KINDS(NAME)
 #undef NAME
   };
   const vlCameraDef *def = &camera->def;
   json_text(json, "projection", vl_projection_name(def->projection));
-  if (def->projection != VL_PROJECTION_OWN) json_text(json, "kind", kinds[def->projection]);
+  if (def->projection != VL_PROJECTION_OWN)
+    json_text(json, "kind", kinds[def->projection]);
   put_numbers(json, "shape", camera->made.shape, 2);
   json_number(json, "max_angle", def->max_angle * degrees);
   json_text(json, "distortion", distortions[def->distortion]);

@@ -135,13 +135,14 @@ def retina(k):
 
 
 def uvw(k):
-    eye, up = [k["eye_x"], k["eye_y"], k["eye_z"]], [math.sin(math.radians(k["up_angle"])), math.cos(math.radians(k["up_angle"])), 0]
-    w = unit(eye)
+    eye, lookat = ([k[f"{point}_{axis}"] for axis in "xyz"] for point in ("eye", "lookat"))
+    up = [math.sin(math.radians(k["up_angle"])), math.cos(math.radians(k["up_angle"])), 0]
+    w = unit([a - b for a, b in zip(eye, lookat)])
     side = cross(up, w)
     first = [w, [*side, math.hypot(*side)]]
     if math.hypot(*side) < 1e-6:
         return first
-    u, v, _ = basis(eye, [0, 0, 0], up, k["roll"])
+    u, v, _ = basis(eye, lookat, up, k["roll"])
     return first + [u, v]
 
 
@@ -172,7 +173,7 @@ def loop(k):
     columns = 17 if k["columns"] == "<=" else 16
     r, c = divmod(min(int(k["pixel"]), columns * 12 - 1), columns)
     d = [25 * (c - 8 + 0.5), 25 * (r - 6 + 0.5), 100 if k["third"] == "zw" else -500]
-    return [[0, 0, 500], d, unit(d)]
+    return [[0, 0, 500], [d[0]], [d[1]], [d[2]], unit(d)]
 
 
 def view_plane(k):

@@ -7,6 +7,8 @@
 // Grammar: a line is sums between relations (= ≈ < > ≤ ≥ : , ;); a sum is products between + and −; a product is factors,
 // with · or × or nothing between them; / makes a fraction of all factors before it in the product, and of the one after it.
 
+import { updateScroll } from "./scroll.js";
+
 const FUNCTIONS = ["cos", "sin", "tan", "atan", "acos", "√"];
 const RELATIONS = ["=", "≈", "<", ">", "≤", "≥", ":", ",", ";", "→", "≠"];
 const CLOSING = { "(": ")", "‖": "‖", "|": "|" };
@@ -147,6 +149,7 @@ export function showMath(element, text) {
   const before = [...element.querySelectorAll("mn")].map((n) => n.textContent), known = element.dataset.text !== undefined;
   element.dataset.text = text;
   element.innerHTML = mathHtml(text);
+  updateScroll(element);
   if (!known) return;
   const numbers = [...element.querySelectorAll("mn")];
   if (numbers.length === before.length) numbers.forEach((n, i) => n.classList.toggle("changed", n.textContent !== before[i]));

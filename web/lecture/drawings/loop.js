@@ -55,7 +55,8 @@ const loop = {
   },
   numbers(s, w) {
     const { r, c, d, color } = stepOf(s, Math.min(s.pixel, columnsOf(s) * V - 1)), third = s.third === "zw" ? "zw" : "−d";
-    return [`**o** = (0${w.separator}0${w.separator}${E})`, `**d** = (${S} (${c} − ${H} / 2 + 0${w.point}5)${w.separator}${S} (${r} − ${V} / 2 + 0${w.point}5)${w.separator}${third}) = ${w.vector(d, 1)}`,
+    return [`**o** = (0${w.separator}0${w.separator}${E})`, `d_x = s (c − h_res / 2 + 0${w.point}5) = ${S} (${c} − ${H} / 2 + 0${w.point}5) = ${w.number(d[0], 1)}`,
+            `d_y = s (r − v_res / 2 + 0${w.point}5) = ${S} (${r} − ${V} / 2 + 0${w.point}5) = ${w.number(d[1], 1)}`, `d_z = ${third} = ${w.number(d[2])}`,
             `**d** / ‖**d**‖ = ${w.vector(unit(d), 4)}`, `RGB = ${w.vector(color)}`];
   },
   below: true,

@@ -19,7 +19,10 @@ expect_text "--version: the version" "velo $version"
 expect_text "--version: the compiler" "compiler          "
 expect_text "--version: instruction sets" "instruction sets  x86-64-v2, x86-64-v3, x86-64-v4; here x86-64-v"
 lines=$out
-for library in Embree OpenEXR libpng libjpeg-turbo zlib jansson libyaml expat libwebp meshoptimizer; do
+embree=
+if grep -q embree "$prefix/lib/pkgconfig/velo-static.pc"; then embree=Embree; fi
+if [ -z "$embree" ]; then check "--version: no Embree" test "${lines#*Embree}" = "$lines"; fi
+for library in $embree OpenEXR libpng libjpeg-turbo zlib jansson libyaml expat libwebp meshoptimizer; do
   check "--version: $library" sh -c "printf '%s' \"\$1\" | grep -qE '$library [0-9]+[.0-9]*'" sh "$lines"
 done
 if commit=$(git -C "$VELO_SOURCE_DIR" rev-parse --short=12 HEAD 2>/dev/null) &&

@@ -47,9 +47,12 @@ done
 median=$(printf '%s\n' $times | sort -n | sed -n 3p)
 check "a second call starts at once ($median ms)" test "$median" -lt 300
 
-check "bootstrap lists packages" "$VELO_SOURCE_DIR/script/bootstrap" --list test
+check "bootstrap lists packages" env -u VELO_EMBREE "$VELO_SOURCE_DIR/script/bootstrap" --list test
 expect_text "with the build's" libembree-dev
 expect_text "and the tests'" libcmocka-dev
+check "bootstrap lists packages without Embree" env VELO_EMBREE=OFF "$VELO_SOURCE_DIR/script/bootstrap" --list test
+expect_text "with OpenEXR's" libopenexr-dev
+check "and not Embree's" test "${out#*embree}" = "$out"
 check "and those for building for aarch64" "$VELO_SOURCE_DIR/script/bootstrap" --list cross
 expect_text "a cross compiler" gcc-aarch64-linux-gnu
 expect_code 2 "an unknown set is refused" "$VELO_SOURCE_DIR/script/bootstrap" nonsense

@@ -103,6 +103,15 @@ def build_module(folder, settings):
     return os.path.join(build, "python")
 
 
+def stripped(path):
+    """The contents of an extension without what only debuggers read: builds of packages have it."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = os.path.join(folder, "stripped")
+        subprocess.run(["strip", "-o", result, path], check=True)
+        with open(result, "rb") as file:
+            return file.read()
+
+
 def package_files(folder):
     """{name in the wheel: contents}"""
     files = {}
@@ -111,7 +120,7 @@ def package_files(folder):
             if name.endswith((".py", ".pyi", ".so")) or name == "py.typed":
                 path = os.path.join(place, name)
                 with open(path, "rb") as file:
-                    files[os.path.relpath(path, folder)] = file.read()
+                    files[os.path.relpath(path, folder)] = stripped(path) if name.endswith(".so") else file.read()
     if not any(name.endswith(".abi3.so") for name in files):
         raise RuntimeError(f"no extension in {folder}")
     return files

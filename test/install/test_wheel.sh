@@ -33,6 +33,9 @@ if [ -f "$VELO_BINARY_DIR/python/velo/_velo.abi3.so" ]; then
   wheel=$(basename "$work"/a/*.whl)
   check "the same bytes of the wheel" cmp "$work/a/$wheel" "$work/c/$wheel"
   check "the wheel is for the stable ABI ($wheel)" sh -c "case $wheel in velo-$version-cp311-abi3-*.whl) ;; *) false ;; esac"
+  mkdir "$work/lean"
+  check "the wheel unpacks" "$python" -m zipfile -e "$work/a/$wheel" "$work/lean"
+  check "without what only debuggers read" sh -c "! readelf -SW '$work/lean/velo/_velo.abi3.so' | grep -qE ' \.(symtab|debug)'"
   cat >"$work/record.py" <<'END'
 import base64, csv, hashlib, io, sys, zipfile
 wheel = zipfile.ZipFile(sys.argv[1])

@@ -84,7 +84,7 @@ typedef enum vlResult {
                             value out of range */
   VL_ERROR_MEMORY = 2,   /**< an allocation failed; the object is as before the call */
   VL_ERROR_SCENE =
-      3, /**< the contents of a file or scene are wrong; the error names the place */
+      3, /**< the contents of a file or scene are wrong; the error names the line */
   VL_ERROR_MISSING = 4, /**< a file that the scene names does not exist */
   VL_ERROR_IO = 5,      /**< reading or writing failed: no such folder, disk full, permission */
   VL_ERROR_UNSUPPORTED = 6, /**< valid, but not implemented */

@@ -156,7 +156,7 @@ typedef struct vlIdInfo {
   const char *name, *path, *place;
   bool shared_name;  /**< the name is that of the group: other instances have it, too */
   const char *type;  /**< "triangles", "sphere", "diffuse", "instance", ... */
-  vlSource source;   /**< place in the scene's file; its `file` is null if not known */
+  vlSource source;   /**< location in the scene's file; its `file` is null if not known */
   uint32_t material; /**< the id.material of an object */
 } vlIdInfo;
 /** The number of ids of a kind. Ids run from 1 to this number. */

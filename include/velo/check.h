@@ -60,7 +60,7 @@ typedef struct vlFinding {
   vlFindingKind kind;  /**< what was found */
   vlSeverity severity; /**< how bad it is */
   vlResult code;       /**< for errors: the result that rendering would return */
-  vlSource source;     /**< place in the scene's file; file is null or line 0 if not known */
+  vlSource source;     /**< location in the scene's file; file is null or line 0 if not known */
   const char *message; /**< one line */
 } vlFinding;
 

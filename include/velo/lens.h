@@ -68,7 +68,7 @@ VL_API vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlO
                                  vlError *error);
 /** As vl_optics_create, with the surfaces from a text file: four numbers per line (radius,
  * thickness, ior, aperture); # starts a comment. def's surfaces are ignored. Further errors:
- * SCENE (wrong contents, with the place), MISSING, IO. */
+ * SCENE (wrong contents, with the line), MISSING, IO. */
 VL_API vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef *def,
                                vlOptics **optics, vlError *error);
 /** Makes a copy of a lens that is focused at another distance from the film, in scene units.

@@ -1,6 +1,7 @@
 /** @file
- * velo/scene_base.h: the scene itself, and what its parts have in common: ids, places in files,
- * labels. A header that only points at parts includes this one instead of all of velo/scene.h.
+ * velo/scene_base.h: the scene itself, and what its parts have in common: ids, locations in
+ * files, labels. A header that only points at parts includes this one instead of all of
+ * velo/scene.h.
  */
 #ifndef VELO_SCENE_BASE_H
 #define VELO_SCENE_BASE_H
@@ -65,7 +66,7 @@ typedef struct vlShapeDef vlShapeDef;
  * (velo/render.h). */
 typedef struct vlSceneDefs vlSceneDefs;
 
-/** A place in a file, which later errors refer to. `file` is copied. */
+/** A location in a file, which later errors refer to. `file` is copied. */
 typedef struct vlSource {
   const char *file;      /**< path; may be null */
   uint32_t line, column; /**< from 1; 0: not known */

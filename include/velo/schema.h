@@ -1,6 +1,6 @@
 /** @file
  * velo/schema.h: a table row for each kind of thing in a scene: its name in files, its
- * parameters (type, unit, default, range, place in the def) and its traits. The scene's
+ * parameters (type, unit, default, range, offset in the def) and its traits. The scene's
  * defaults and range checks, the importers, the exporters and the tables of the documentation
  * all read these rows. Constant data: any thread may read it at any time; never freed. */
 #ifndef VELO_SCHEMA_H
@@ -40,8 +40,9 @@ typedef enum vlParameterType {
 
 /** The role of a spectrum parameter; it decides how an RGB value becomes a spectrum. */
 typedef enum vlParameterRole {
-  VL_PARAMETER_NO_ROLE, /**< not a spectrum, or the role of the place where a texture is used */
-  VL_PARAMETER_ALBEDO,  /**< a reflectance or transmittance, 0 to 1 */
+  VL_PARAMETER_NO_ROLE,   /**< not a spectrum, or the role of the parameter where a texture is
+                             used */
+  VL_PARAMETER_ALBEDO,    /**< a reflectance or transmittance, 0 to 1 */
   VL_PARAMETER_UNBOUNDED, /**< any value from 0 */
   VL_PARAMETER_ILLUMINANT /**< of a light: times the colour space's white */
 } vlParameterRole;

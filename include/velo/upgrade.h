@@ -13,12 +13,12 @@ extern "C" {
 typedef enum vlUpgradeNote {
   VL_UPGRADE_CHANGED, /**< a statement was rewritten; its meaning is the same */
   VL_UPGRADE_LOST, /**< pbrt-v4 has no counterpart: left out or replaced, as the message says */
-  VL_UPGRADE_WROTE /**< a file was written; the place names it */
+  VL_UPGRADE_WROTE /**< a file was written; the location names it */
 } vlUpgradeNote;
 
-/** Receives a note: `place` is the place in the old file, or the new file for WROTE; both live
- * until the callback returns. Called on the calling thread, in the order of the file. */
-typedef void vlUpgradeReport(void *user, vlUpgradeNote note, const vlError *place,
+/** Receives a note: `location` is the line in the old file, or the new file for WROTE; both
+ * live until the callback returns. Called on the calling thread, in the order of the file. */
+typedef void vlUpgradeReport(void *user, vlUpgradeNote note, const vlError *location,
                              const char *message);
 
 /** How to upgrade a scene. */
@@ -44,7 +44,7 @@ VL_API vlUpgradeDef vl_default_upgrade_def(void);
  * The new scene is read before it is written: it is an error if vl_scene_load, with
  * `permissive`, would refuse it, and then nothing is written. def may be null. Meaning of the
  * statements: https://pbrt.org/fileformat-v3 and https://pbrt.org/fileformat-v4. Errors:
- * ARGUMENT, SCENE (syntax; a place in the new scene that would be refused), MISSING, IO,
+ * ARGUMENT, SCENE (syntax; a line of the new scene that would be refused), MISSING, IO,
  * MEMORY; UNSUPPORTED with `strict`. */
 VL_API vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to,
                                  const vlUpgradeDef *def, vlError *error);

@@ -71,7 +71,7 @@ typedef struct vlBuildDef {
 VL_API vlBuildDef vl_default_build_def(void);
 /** Compiles the scene and reads the images that it names. The scene may be destroyed
  * afterwards. def may be null. Errors: ARGUMENT, the error of vl_scene_result, SCENE (with the
- * place), MISSING (images), IO, MEMORY, UNSUPPORTED. *world is null after an error. */
+ * line), MISSING (images), IO, MEMORY, UNSUPPORTED. *world is null after an error. */
 VL_API vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **world,
                                vlError *error);
 /** As vl_world_build, for the last build of a scene. It needs less memory: the scene's meshes

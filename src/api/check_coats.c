@@ -83,7 +83,7 @@ static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
   return coat.lost;
 }
 
-/* Adds one note for the whole scene. Its place is that of the coat with the largest loss. */
+/* Adds one note for the whole scene. Its location is that of the coat with the largest loss. */
 static void check_coats(vlCheck *check) {
   Coats coats = {0};
   const vlMaterialDef *worst = NULL;

@@ -2,7 +2,6 @@
  * files are added in the order of their number of samples, the largest first. A file is skipped
  * if an added file has all its samples. It is an error if it shares only some of its samples
  * with an added file. */
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -317,9 +316,9 @@ static vlResult merge_block(Merge *m) {
   }
   if ((result = check_earlier(m)) != VL_OK)
     return result;
-  const uint32_t place[4] = {h->x0, h->y0, h->x1, h->y1};
+  const uint32_t window[4] = {h->x0, h->y0, h->x1, h->y1};
   vlFilmBlockHead head;
-  vl_film_block_head(def, place, m->range_count, &m->compared, &head);
+  vl_film_block_head(def, window, m->range_count, &m->compared, &head);
   uint32_t crc = vl_film_crc(0, &head, sizeof head);
   crc = vl_film_crc(crc, m->ranges, m->range_count * sizeof *m->ranges);
   crc = vl_film_crc(crc, m->sum, head.data_size);

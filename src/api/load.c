@@ -13,6 +13,7 @@
 #include "import/import.h"
 #include "scene/scene.h"
 #include "velo/camera_file.h"
+#include "velo/check.h"
 
 typedef vlResult Import(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
@@ -115,4 +116,15 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
                 "%.300s: unknown kind of scene file (known: %s)", path, known);
   return vl_scene_result(scene, error);
+}
+
+vlResult vl_scene_diagnose(vlScene *scene, const char *path, const vlLoadDef *def,
+                           vlProblemFn *tell, void *user, vlError *error) {
+  if (!scene || !tell)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene diagnose: scene or tell is null");
+  scene->problem = tell;
+  scene->problem_user = user;
+  vlResult result = vl_scene_load(scene, path, def, error);
+  scene->problem = NULL;
+  return result;
 }

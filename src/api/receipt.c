@@ -107,10 +107,10 @@ static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
   /* reads all numbers as reals, which keeps -0; the counts become integers below */
-  json_error_t place;
+  json_error_t location;
   const size_t flags = JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES;
   json_t *tree =
-      text.failed ? NULL : vl_json_parse(text.text.items, text.text.count, flags, &place);
+      text.failed ? NULL : vl_json_parse(text.text.items, text.text.count, flags, &location);
   VL_ARRAY_FREE(context, &text.text);
   static const char *const counts[] = {"velo_camera", "width", "height", "blades"};
   bool good = tree != NULL;
@@ -314,12 +314,12 @@ const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index) {
 }
 
 const char *vl_receipt_own(const vlReceipt *receipt, vlOwnKind kind) {
-  static const char *const places[VL_OWN_KINDS][2] = {
+  static const char *const keys[VL_OWN_KINDS][2] = {
       {"camera", "own"}, {"render", "own_sampler"}, {"render", "own_tracer"}};
   if ((unsigned)kind >= VL_OWN_KINDS)
     return NULL;
   return json_string_value(
-      json_object_get(json_object_get(receipt->tree, places[kind][0]), places[kind][1]));
+      json_object_get(json_object_get(receipt->tree, keys[kind][0]), keys[kind][1]));
 }
 
 /* Returns an integer from 0 to 2^32 - 1, or 0 if the value is anything else. */

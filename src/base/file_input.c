@@ -52,9 +52,9 @@ static bool insert(vlContext *context, vlFileInputs *inputs, const char *path,
     vl_free(context, copy);
     return false;
   }
-  vlFileInput *place = inputs->list.items + at;
-  memmove(place + 1, place, (inputs->list.count - 1 - at) * sizeof *place);
-  *place = (vlFileInput){copy, *stamp, other};
+  vlFileInput *slot = inputs->list.items + at;
+  memmove(slot + 1, slot, (inputs->list.count - 1 - at) * sizeof *slot);
+  *slot = (vlFileInput){copy, *stamp, other};
   return true;
 }
 

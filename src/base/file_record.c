@@ -39,10 +39,10 @@ static bool insert(vlContext *context, vlFileRecords *records, const vlFileRecor
     vl_free(context, path);
     return false;
   }
-  vlFileRecord *place = records->files.items + at;
-  memmove(place + 1, place, (records->files.count - 1 - at) * sizeof *place);
-  *place = *record;
-  place->path = path;
+  vlFileRecord *slot = records->files.items + at;
+  memmove(slot + 1, slot, (records->files.count - 1 - at) * sizeof *slot);
+  *slot = *record;
+  slot->path = path;
   return true;
 }
 

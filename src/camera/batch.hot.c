@@ -2,7 +2,7 @@
 #include "camera/eyes.h"
 #include "camera/lens.h"
 #include "camera/own.h"
-#include "camera/place.h"
+#include "camera/pose.h"
 #include "camera/rays.h"
 #include "camera/stages.h"
 #include "projection/cube.h"
@@ -38,7 +38,7 @@ static inline __attribute__((always_inline)) void ray_loop(
       local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
     if (lens == POINTS)
       local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
-    vlWorldRay w = vl_camera_place(c, local);
+    vlWorldRay w = vl_camera_to_world(c, local);
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
     oz[i] = (float)w.oz;
@@ -52,7 +52,7 @@ static inline __attribute__((always_inline)) void ray_loop(
 }
 
 /* Finishes the rays of a chunk from known directions, for samples from `first` on. */
-static inline __attribute__((always_inline)) void place_loop(
+static inline __attribute__((always_inline)) void world_loop(
     const int lens, const int eyes, const vlCameraCompiled *camera, uint32_t first,
     uint32_t count, const vlDirections *d, const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
@@ -79,9 +79,9 @@ static inline __attribute__((always_inline)) void place_loop(
       local.ox = d->x[i];
       local.oy = d->y[i];
     }
-    vlWorldRay w = vl_camera_place(c, local);
+    vlWorldRay w = vl_camera_to_world(c, local);
     if (eyes)
-      w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
+      w = vl_camera_offset_eye(c, vl_eye_offset(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -137,15 +137,15 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
       vlCameraSamples points = *s;
       points.lens_u = x;
       points.lens_v = y;
-      place_loop(POINTS, 1, c, first, n, &d, &points, r);
+      world_loop(POINTS, 1, c, first, n, &d, &points, r);
     } else if (c->has_lens && c->eye_circle != 0.0) {
-      place_loop(DISC, 1, c, first, n, &d, s, r);
+      world_loop(DISC, 1, c, first, n, &d, s, r);
     } else if (c->has_lens) {
-      place_loop(DISC, 0, c, first, n, &d, s, r);
+      world_loop(DISC, 0, c, first, n, &d, s, r);
     } else if (c->eye_circle != 0.0) {
-      place_loop(NO_LENS, 1, c, first, n, &d, s, r);
+      world_loop(NO_LENS, 1, c, first, n, &d, s, r);
     } else {
-      place_loop(NO_LENS, 0, c, first, n, &d, s, r);
+      world_loop(NO_LENS, 0, c, first, n, &d, s, r);
     }
     if (r->weight && c->vignetting)
       weigh_staged(n, &d, r->weight + first);
@@ -191,7 +191,7 @@ static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
     }
     vl_camera_optics(c, n, s->lens_u + first, s->lens_v + first, &d, seen,
                      r->weight ? r->weight + first : NULL);
-    place_loop(OPTICS, 0, c, first, n, &d, s, r);
+    world_loop(OPTICS, 0, c, first, n, &d, s, r);
     for (uint32_t i = 0; r->valid && i < n; i++)
       r->valid[first + i] = (float)seen[i];
   }
@@ -199,7 +199,7 @@ static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
 
 /* A ray that is not finite, or whose weight is negative, stands for a sample that is left out:
  * weight NaN. */
-static void own_place_loop(const vlCameraCompiled *camera, uint32_t count,
+static void own_world_loop(const vlCameraCompiled *camera, uint32_t count,
                            const vlOwnRows *rows, const vlCameraRays *r, uint32_t first,
                            float *valid, float *weight) {
   const vlCameraCompiled copy = *camera, *c = &copy;
@@ -210,7 +210,7 @@ static void own_place_loop(const vlCameraCompiled *camera, uint32_t count,
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = rows->dx[i], y = rows->dy[i], z = rows->dz[i], factor = rows->weight[i];
     double length = vl_length3(x, y, z);
-    vlWorldRay w = vl_own_place(c, rows->ox[i], rows->oy[i], rows->oz[i], x, y, z);
+    vlWorldRay w = vl_own_to_world(c, rows->ox[i], rows->oy[i], rows->oz[i], x, y, z);
     double sum = w.ox + w.oy + w.oz + length + factor;
     int none = length == 0.0, bad = !(sum - sum == 0.0) || !(factor >= 0.0);
     int good = !none && !bad;
@@ -251,7 +251,7 @@ static void own_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSample
       rows.time[i] = c->own_from + c->own_clock * seconds;
     }
     vl_own_rays(c, m, &rows);
-    own_place_loop(c, count, &rows, r, first, valid, weight);
+    own_world_loop(c, count, &rows, r, first, valid, weight);
     for (uint32_t i = 0; r->valid && i < count; i++)
       r->valid[first + i] = valid[i];
     for (uint32_t i = 0; r->weight && i < count; i++)

@@ -14,15 +14,15 @@
 
 #include "camera/plane.h"
 
-typedef struct vlEyePlace {
+typedef struct vlEyeOffset {
   double x, z; /* y = 0 */
-} vlEyePlace;
+} vlEyeOffset;
 
 /* Returns the eye position for a direction of any length. For straight up or down it is the
  * circle's centre. */
-static inline vlEyePlace vl_eye_place(double r, double dx, double dz) {
+static inline vlEyeOffset vl_eye_offset(double r, double dx, double dz) {
   double k = r / vl_not_tiny(vl_length2(dx, dz));
-  return (vlEyePlace){dz * k, -dx * k};
+  return (vlEyeOffset){dz * k, -dx * k};
 }
 
 /* Returns the direction to a point from the eye position that sees it. It is valid only for

@@ -1,7 +1,6 @@
 /* camera/optics_find.c: the exit pupil bounds of a lens of many elements for each film ring,
  * and its chief rays (pbrt book 5.4.5). Computed once, when the lens is made. */
 #include <math.h>
-#include <string.h>
 
 #include "camera/optics.h"
 

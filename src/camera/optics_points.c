@@ -5,15 +5,15 @@
 
 #include "camera/optics.h"
 #include "camera/optics_chunk.h"
-#include "camera/place.h"
 #include "camera/points.h"
+#include "camera/pose.h"
 
 static bool chief_at(const vlOptics *o, double radius, vlChief *chief) {
-  double place = radius / o->chief_step;
-  if (!(place <= VL_CHIEFS))
+  double position = radius / o->chief_step;
+  if (!(position <= VL_CHIEFS))
     return false;
-  int i = (int)place < VL_CHIEFS - 1 ? (int)place : VL_CHIEFS - 1;
-  double share = place - i;
+  int i = (int)position < VL_CHIEFS - 1 ? (int)position : VL_CHIEFS - 1;
+  double share = position - i;
   return vl_optics_chief(
       o, radius, (1.0 - share) * o->chiefs[i].pupil + share * o->chiefs[i + 1].pupil, chief);
 }
@@ -92,7 +92,7 @@ void vl_optics_unproject_chunk(const vlCameraCompiled *c, uint32_t count,
     double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
     bool good = isfinite(x) && isfinite(y) &&
                 vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r);
-    vlWorldRay w = vl_camera_place(c, r);
+    vlWorldRay w = vl_camera_to_world(c, r);
     vl_store_world_ray(out, i, good, w);
     out->valid[i] = good ? 1.0 : 0.0;
   }

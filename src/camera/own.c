@@ -49,7 +49,7 @@ void vl_own_pixels(const vlCameraCompiled *c, uint32_t n, const double *x, const
 }
 
 bool vl_own_ray_at(const vlCameraCompiled *c, const vlOwnRows *r, uint32_t i, vlWorldRay *ray) {
-  *ray = vl_own_place(c, r->ox[i], r->oy[i], r->oz[i], r->dx[i], r->dy[i], r->dz[i]);
+  *ray = vl_own_to_world(c, r->ox[i], r->oy[i], r->oz[i], r->dx[i], r->dy[i], r->dz[i]);
   double sum =
       ray->dx * ray->inv_length + ray->dy * ray->inv_length + ray->dz * ray->inv_length;
   return ray->length > 0.0 && isfinite(sum) && isfinite(ray->ox + ray->oy + ray->oz);

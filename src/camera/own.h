@@ -5,7 +5,7 @@
 
 #include "camera/own_rays.h"
 #include "camera/parts.h"
-#include "camera/place.h"
+#include "camera/pose.h"
 
 /* Inputs and outputs of vlOwnRaysFn. */
 typedef struct vlOwnRows {
@@ -24,10 +24,10 @@ void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, c
                        vlOwnRows *rows);
 
 /* A ray of camera space in the world. */
-static inline vlWorldRay vl_own_place(const vlCameraCompiled *c, double ox, double oy,
-                                      double oz, double dx, double dy, double dz) {
+static inline vlWorldRay vl_own_to_world(const vlCameraCompiled *c, double ox, double oy,
+                                         double oz, double dx, double dy, double dz) {
   const double *m = c->rotation;
-  vlWorldRay w = vl_camera_place(c, (vlCameraLocal){ox, oy, dx, dy, dz});
+  vlWorldRay w = vl_camera_to_world(c, (vlCameraLocal){ox, oy, dx, dy, dz});
   w.ox += m[2] * oz;
   w.oy += m[5] * oz;
   w.oz += m[8] * oz;

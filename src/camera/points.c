@@ -4,8 +4,8 @@
 
 #include "camera/optics.h"
 #include "camera/own.h"
-#include "camera/place.h"
 #include "camera/points.h"
+#include "camera/pose.h"
 #include "projection/orthographic.h"
 #include "projection/perspective.h"
 
@@ -97,9 +97,9 @@ bool vl_camera_unproject(const vlCamera *camera, double x, double y, double orig
     vlCameraLocal r = local_ray(&c, x - c.cx, y - c.cy, &valid);
     if (valid == 0.0)
       return false;
-    w = vl_camera_place(&c, r);
+    w = vl_camera_to_world(&c, r);
     if (c.eye_circle != 0.0)
-      w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
+      w = vl_camera_offset_eye(&c, vl_eye_offset(c.eye_circle, r.dx, r.dz), w);
   }
   origin[0] = w.ox;
   origin[1] = w.oy;

@@ -6,8 +6,8 @@
 #include "camera/stages.h"
 
 #include "camera/own.h"
-#include "camera/place.h"
 #include "camera/points.h"
+#include "camera/pose.h"
 #include "projection/orthographic.h"
 #include "projection/perspective.h"
 #include "velo/projection.h"
@@ -83,9 +83,9 @@ static inline __attribute__((always_inline)) void place_loop(
     const double *dy, const double *dz, const double *valid, vlCameraPoints *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlWorldRay w = vl_camera_place(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
+    vlWorldRay w = vl_camera_to_world(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
     if (eyes)
-      w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, dx[i], dz[i]), w);
+      w = vl_camera_offset_eye(c, vl_eye_offset(c->eye_circle, dx[i], dz[i]), w);
     int good = valid[i] > 0.0;
     vl_store_world_ray(out, i, good, w);
     out->valid[i] = valid[i];
@@ -103,7 +103,7 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
     double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
     vlCameraLocal r =
         orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
-    vlWorldRay w = vl_camera_place(c, r);
+    vlWorldRay w = vl_camera_to_world(c, r);
     double sum = w.dx * w.inv_length + w.dy * w.inv_length + w.dz * w.inv_length;
     int good = sum - sum == 0.0 && x - x == 0.0 && y - y == 0.0;
     vl_store_world_ray(out, i, good, w);

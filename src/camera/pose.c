@@ -1,7 +1,6 @@
 /* camera/pose.c: position and orientation of the camera, from eye, lookat, up and roll (the
  * lecture's compute_uvw) or from a matrix. */
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "camera/parts.h"

@@ -62,12 +62,7 @@ static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *re
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double m[16];
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_PLANES, &c);
-  if (result != VL_OK)
-    return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_camera_no_model(file, d);
-  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
+  vlResult result = vl_camera_fit_plain(file, record, VL_HOLDS_POSE | VL_HOLDS_PLANES, &c);
   if (result != VL_OK)
     return result;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;

@@ -15,10 +15,9 @@ static vlResult read_image(const vlCameraFile *file, const json_t *image, const 
   vlResult result = vl_camera_numbers(file, image, "cam_K", k, 9, 9, NULL);
   if (result != VL_OK)
     return result;
-  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!vl_camera_set_intrinsics(d, k, false))
     return vl_camera_wrong_in(file, image, "cam_K",
                               "bop: \"cam_K\" must be [fx 0 cx; 0 fy cy; 0 0 1]");
-  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_origin(d);
   if (vl_camera_has(image, "cam_R_w2c") || vl_camera_has(image, "cam_t_w2c")) {
     result = VL_READ_FIELDS(file, image, VL_FIELD_LIST("cam_R_w2c", r, 9),

@@ -97,15 +97,15 @@ static vlResult read_named(const vlCameraFile *file, const json_t *tree, const c
   vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
   if (result != VL_OK)
     return result;
-  vlCameraPlaces places = {.root = NULL};
+  vlCameraLocations locations = {.root = NULL};
   vlCameraFile other = *file;
   other.path = path;
-  other.places = &places;
+  other.locations = &locations;
   result = vl_camera_tree(&other, text, size, &inner);
   if (result == VL_OK)
     result = read_camera(&other, inner, record);
   json_decref(inner);
-  vl_camera_places_free(&other);
+  vl_camera_locations_free(&other);
   vl_free(file->context, text);
   return result;
 }

@@ -219,10 +219,11 @@ static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const
       return result;
     const CameraId *id =
         ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
-    vlFramePlace place = {path, lines.line, (uint32_t)t->frames.count, record.name};
+    vlFrameLocation location = {path, lines.line, (uint32_t)t->frames.count, record.name};
     if (!id)
-      return vl_frame_wrong(file, &place, "there is no camera %.0f in cameras.txt", wanted.id);
-    result = vl_trajectory_add(t, file, &place, id->index, record.camera.world_from_camera,
+      return vl_frame_wrong(file, &location, "there is no camera %.0f in cameras.txt",
+                            wanted.id);
+    result = vl_trajectory_add(t, file, &location, id->index, record.camera.world_from_camera,
                                VL_UNSET);
     if (result != VL_OK)
       return result;
@@ -283,11 +284,11 @@ static bool find_files(const char *path, bool to_read, char cameras[4096], char 
   static const char *const inner[] = {"", "sparse/0/", "sparse/", "0/"};
   int a, b;
   if (is_folder(path)) {
-    int found = 0, places = to_read ? 4 : 1;
-    while (found < places && !exists(path, inner[found], "cameras.bin") &&
+    int found = 0, folders = to_read ? 4 : 1;
+    while (found < folders && !exists(path, inner[found], "cameras.bin") &&
            !exists(path, inner[found], "cameras.txt"))
       found++;
-    const char *below = inner[found % places],
+    const char *below = inner[found % folders],
                *suffix = exists(path, below, "cameras.bin") ? "bin" : "txt";
     a = snprintf(cameras, 4096, "%s/%scameras.%s", path, below, suffix);
     b = snprintf(images, 4096, "%s/%simages.%s", path, below, suffix);

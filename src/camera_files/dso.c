@@ -4,7 +4,6 @@
  * cx and cy are below 1, the four numbers are shares of the image's sides, which begins at
  * (-0.5, -0.5).
  */
-#include <math.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"

@@ -118,11 +118,11 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
 static vlResult read_tree(vlCameraFile *file, const char *text, size_t size,
                           const vlCameraSink *sink, vlCameraRecord *record) {
   json_t *tree = NULL;
-  vlCameraPlaces places = {.root = NULL};
-  file->places = &places;
+  vlCameraLocations locations = {.root = NULL};
+  file->locations = &locations;
   vlResult result = vl_camera_tree(file, text, size, &tree);
   if (result != VL_OK) {
-    vl_camera_places_free(file);
+    vl_camera_locations_free(file);
     if (result == VL_ERROR_SCENE && size > 0 && !is_meant_as_tree(file->path, text))
       return no_kind(file, text, size);
     return result;
@@ -143,9 +143,9 @@ static vlResult read_tree(vlCameraFile *file, const char *text, size_t size,
     result = read_source(file, wish ? wish : found, &(Source){.tree = tree}, sink, record);
   }
   if (result == VL_ERROR_SCENE)
-    vl_camera_place_error(file);
+    vl_camera_locate_error(file);
   json_decref(tree);
-  vl_camera_places_free(file);
+  vl_camera_locations_free(file);
   return result;
 }
 

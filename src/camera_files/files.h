@@ -15,10 +15,10 @@
 
 /* The position of each value of a tree in the file, as line << 32 | column. A value precedes
  * the values that it contains. */
-typedef struct vlCameraPlaces {
+typedef struct vlCameraLocations {
   const json_t *root;
   VL_ARRAY(uint64_t) at;
-} vlCameraPlaces;
+} vlCameraLocations;
 
 /* The state of one read or write. */
 typedef struct vlCameraFile {
@@ -26,7 +26,7 @@ typedef struct vlCameraFile {
   const char *path, *dialect; /* name of the dialect, for messages */
   const vlCameraFileDef *def;
   vlError *error;
-  vlCameraPlaces *places; /* may be null; then errors have no line */
+  vlCameraLocations *locations; /* may be null; then errors have no line */
   const uint32_t
       *ordinal; /* number of the camera to read, which overrides the def; may be null */
 } vlCameraFile;
@@ -45,18 +45,18 @@ vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, cons
                             const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* Parses JSON, YAML or XML, which the first character tells apart. FileStorage's XML becomes a
  * tree of the same form as its YAML; other XML becomes the elements of vl_camera_xml. A list at
- * the top level is wrapped: {"[]": list}. If file->places is set, the positions of the values
- * are recorded there. */
+ * the top level is wrapped: {"[]": list}. If file->locations is set, the positions of the
+ * values are recorded there. */
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size,
                            json_t **tree);
 /* Records the position of the next value. Returns false if out of memory. */
-bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column);
+bool vl_camera_to_world(const vlCameraFile *file, uint32_t line, uint32_t column);
 /* Adds a position to an error that has none: the position of the first field that the message
  * quotes, or of the top-level value. */
-void vl_camera_place_error(const vlCameraFile *file);
-void vl_camera_places_free(vlCameraFile *file);
+void vl_camera_locate_error(const vlCameraFile *file);
+void vl_camera_locations_free(vlCameraFile *file);
 
 /* Parses XML. Below the root, only elements whose tags are in the list `wanted` are kept,
  * unless the list contains the root itself. Null ends the list. If the list is null, all
@@ -176,6 +176,9 @@ bool vl_camera_drops(const vlCameraFile *file, const char *field);
  * not include. */
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
                        vlCamera *camera);
+/* vl_camera_fit for dialects with perspective and orthographic cameras without distortion. */
+vlResult vl_camera_fit_plain(const vlCameraFile *file, const vlCameraRecord *record,
+                             uint32_t holds, vlCamera *camera);
 /* The lens models that calibration tools name. */
 typedef enum vlLensFamily {
   VL_LENS_PINHOLE,
@@ -220,6 +223,9 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 
 /* Sets fx, fy, cx, cy from values for which the centre of the first pixel is (0, 0). */
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
+/* The same and the skew from the matrix fx skew cx, 0 fy cy, 0 0 1; false: it is none, or skew
+ * is not allowed. */
+bool vl_camera_set_intrinsics(vlCameraDef *def, const double k[9], bool skew);
 /* Sets OpenCV's distortion. Zeros are appended up to the next number of coefficients that
  * OpenCV allows. */
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);

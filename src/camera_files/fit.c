@@ -149,6 +149,16 @@ vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *reco
   return vl_camera_no_model(file, &record->camera);
 }
 
+vlResult vl_camera_fit_plain(const vlCameraFile *file, const vlCameraRecord *record,
+                             uint32_t holds, vlCamera *camera) {
+  vlResult result = vl_camera_fit(file, record, holds, camera);
+  if (result != VL_OK)
+    return result;
+  if (record->camera.projection > VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_camera_no_model(file, &record->camera);
+  return vl_camera_refuse(file, "distortion", camera->distortion.steps != 0);
+}
+
 vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record,
                                uint32_t holds, vlCamera *camera) {
   vlFittedLens lens;

@@ -2,7 +2,6 @@
  * detection) and calib_cam_to_cam.txt (raw data: S_00, K_00, D_00, R_00, T_00). x right, y
  * down, z forward; camera from world; the first pixel's centre is (0, 0). P = K [I | t]: the
  * world's space is the rectified camera 0's; R and T: camera 0's. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -78,10 +77,9 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
   if (!vl_camera_set_sides(d, rows[0].values))
     return vl_camera_wrong_line(file, &rows[0].line, rows[0].line.text,
                                 "%s must be two whole numbers of pixels", rows[0].key);
-  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!vl_camera_set_intrinsics(d, k, false))
     return vl_camera_wrong_line(file, &rows[1].line, rows[1].line.text,
                                 "%s must be fx 0 cx, 0 fy cy, 0 0 1", rows[1].key);
-  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, rows[2].values, 5);
   vl_camera_set_pose(d, rows[3].values, rows[4].values);
   return VL_OK;

@@ -13,6 +13,14 @@ void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, do
   def->cy = cy + 0.5;
 }
 
+bool vl_camera_set_intrinsics(vlCameraDef *d, const double k[9], bool skew) {
+  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0 || (!skew && k[1] != 0.0))
+    return false;
+  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
+  d->skew = k[1];
+  return true;
+}
+
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count) {
   static const uint32_t counts[] = {4, 5, 8, 12, 14};
   def->distortion = count ? VL_DISTORTION_OPENCV : VL_DISTORTION_NONE;

@@ -257,19 +257,13 @@ static void put_matrix(vlCameraText *text, const char *name, const vlMat4 *m, bo
 
 static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *record,
                                vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
   const Api *api = &apis[0];
   vlCamera c;
   for (int i = 0; i < API_COUNT; i++)
     if (vl_text_is(apis[i].name, file->dialect))
       api = &apis[i];
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES;
-  vlResult result = vl_camera_fit(file, record, holds, &c);
-  if (result != VL_OK)
-    return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_camera_no_model(file, d);
-  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
+  vlResult result = vl_camera_fit_plain(file, record, holds, &c);
   if (result != VL_OK)
     return result;
   vlMat4 projection = projection_of(&c, api), view = vl_mat4_load(c.camera_from_world);

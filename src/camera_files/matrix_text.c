@@ -65,11 +65,6 @@ static bool intrinsics_of(const Matrix *matrix, double k[9]) {
   return k[3] == 0.0 && k[6] == 0.0 && k[7] == 0.0 && k[8] == 1.0 && k[0] > 1.0 && k[4] > 1.0;
 }
 
-static void set_intrinsics(const double k[9], vlCameraDef *d) {
-  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
-  d->skew = k[1];
-}
-
 /* P = K [R | t]: K is upper triangular with a positive diagonal, found from the rows of P by
  * Gram and Schmidt from the last row on. False: P is no projection of a camera. */
 static bool decompose(const double p[12], double k[9], double r[9], double t[3]) {
@@ -197,7 +192,7 @@ static vlResult read_matrix(const vlCameraFile *file, const char *text, size_t s
   if (matrix.rows == 0)
     return no_matrix(file, text, size);
   if (intrinsics_of(&matrix, k)) {
-    set_intrinsics(k, d);
+    vl_camera_set_intrinsics(d, k, true);
     vl_camera_set_origin(d);
     return find_size(file, record);
   }
@@ -210,7 +205,7 @@ static vlResult read_matrix(const vlCameraFile *file, const char *text, size_t s
       return vl_camera_wrong_at(
           file, 1, 1,
           "matrix: 3 x 4 numbers must be a projection K [R | t], with fx and fy in pixels");
-    set_intrinsics(k, d);
+    vl_camera_set_intrinsics(d, k, true);
     vl_camera_set_pose(d, r, t);
     return find_size(file, record);
   }
@@ -222,7 +217,7 @@ static vlResult read_matrix(const vlCameraFile *file, const char *text, size_t s
                            "matrix: a pose without intrinsics: beside it there is none of "
                            "intrinsic/intrinsic_color.txt, "
                            "camera-intrinsics.txt, intrinsics.txt, K.txt");
-  set_intrinsics(k, d);
+  vl_camera_set_intrinsics(d, k, true);
   vl_camera_set_matrix(d, matrix.m, false);
   return find_size(file, record);
 }

@@ -2,7 +2,6 @@
  * cam1 as [f 0 cx; 0 f cy; 0 0 1], baseline, width, height. x right, y down, z forward; the
  * world's space is camera 0's, in the baseline's unit; the first pixel's centre is (0, 0). */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,10 +76,9 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
   }
   if (at[strspn(at, "] ;")])
     return vl_camera_wrong_line(file, &line, at, "unexpected text");
-  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!vl_camera_set_intrinsics(&record->camera, k, false))
     return vl_camera_wrong_line(file, &line, line.text, "%s must be [fx 0 cx; 0 fy cy; 0 0 1]",
                                 names[chosen]);
-  vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
   const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   double t[3] = {0, 0, 0};
   if (chosen == 1) {

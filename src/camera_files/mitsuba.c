@@ -435,14 +435,9 @@ static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *re
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME;
-  vlResult result = vl_camera_fit(file, record, holds, &c);
-  if (result != VL_OK)
-    return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_camera_no_model(file, d);
+  vlResult result = vl_camera_fit_plain(file, record, holds, &c);
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c.lens_radius > 0.0 && !flat;
   bool centred = flat || lens; /* these have no principal point */
-  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
   if (result == VL_OK)
     result = vl_camera_refuse(file, "fy", !flat && fabs(c.fy - c.fx) > 1e-12 * c.fx);
   if (result == VL_OK)

@@ -33,23 +33,21 @@ static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t s
     result = read_matrix(file, &lines, "intrinsic", 3, k);
   if (result != VL_OK)
     return result;
-  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!vl_camera_set_intrinsics(&record->camera, k, true))
     return vl_camera_wrong_line(file, &lines, lines.text,
                                 "\"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");
   if (!vl_camera_set_matrix(&record->camera, m, true))
     return vl_camera_wrong_line(file, &last, last.text, "\"extrinsic\" is singular");
-  vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
-  record->camera.skew = k[1];
   const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
              *end = strstr(name, "_cam.txt");
-  static const char *const places[] = {"../images", "../blended_images"}, *const suffixes[] = {
-                                                                              "jpg", "png"};
+  static const char *const folders[] = {"../images", "../blended_images"}, *const suffixes[] = {
+                                                                               "jpg", "png"};
   for (int i = 0; i < 4; i++)
-    snprintf(images[i], sizeof images[i], "%s/%.200s", places[i / 2], name);
+    snprintf(images[i], sizeof images[i], "%s/%.200s", folders[i / 2], name);
   if (!end || end - name > 200)
     return vl_camera_size_beside(file, (const char *const[]){NULL}, record);
   for (int i = 0; i < 4; i++)
-    snprintf(images[i], sizeof images[i], "%s/%.*s.%s", places[i / 2], (int)(end - name), name,
+    snprintf(images[i], sizeof images[i], "%s/%.*s.%s", folders[i / 2], (int)(end - name), name,
              suffixes[i % 2]);
   return vl_camera_size_beside(
       file, (const char *const[]){images[0], images[1], images[2], images[3], NULL}, record);

@@ -67,7 +67,7 @@ vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, con
   vlResult result = vl_camera_numbers(file, tree, key, k, 9, 9, NULL);
   if (result != VL_OK)
     return result;
-  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!vl_camera_set_intrinsics(d, k, true))
     return vl_camera_wrong_in(file, tree, key, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]",
                               file->dialect, key);
   if (k[1] != 0.0)
@@ -75,7 +75,6 @@ vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, con
                               "%s: \"%s\" has a skew of %g, which OpenCV's projection takes no "
                               "notice of; set it to 0",
                               file->dialect, key, k[1]);
-  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   return VL_OK;
 }
 

@@ -1,7 +1,6 @@
 /* camera_files/openmvg.c: OpenMVG's sfm_data.json. Camera axes: x right, y down, z forward;
  * rotation is camera from world, center the camera's centre. The principal point counts from
  * the image's corner. */
-#include <stdio.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"

@@ -8,13 +8,8 @@ static vlResult write_pbrt(const vlCameraFile *file, const vlCameraRecord *recor
                            vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
-  vlResult result = vl_camera_fit(
+  vlResult result = vl_camera_fit_plain(
       file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME, &c);
-  if (result != VL_OK)
-    return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_camera_no_model(file, d);
-  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
   if (result != VL_OK)
     return result;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;

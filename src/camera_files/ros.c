@@ -123,11 +123,10 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
   if (!vl_camera_set_sides(d, side))
     return vl_camera_wrong_at(file, side_line, 1,
                               "ros: [image] needs width and height in whole pixels");
-  if (!matrix || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!matrix || !vl_camera_set_intrinsics(d, k, false))
     return vl_camera_wrong_at(
         file, matrix_line, 1,
         "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
-  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, lens, lenses);
   vl_camera_set_origin(d);
   return VL_OK;

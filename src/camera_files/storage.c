@@ -11,8 +11,8 @@
 #include "camera_files/files.h"
 
 static bool place_of(const vlCameraFile *file, const json_t *element) {
-  return vl_camera_place(file, (uint32_t)json_number_value(json_object_get(element, "#")),
-                         (uint32_t)json_number_value(json_object_get(element, "|")));
+  return vl_camera_to_world(file, (uint32_t)json_number_value(json_object_get(element, "#")),
+                            (uint32_t)json_number_value(json_object_get(element, "|")));
 }
 
 static json_t *token(const char *text, size_t length) {
@@ -100,7 +100,7 @@ vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t si
   if (result != VL_OK)
     return result;
   if (!vl_text_is(vl_camera_text(root, "<"), "opencv_storage")) {
-    *tree = root; /* a file of another tool: the elements hold their own places in the file */
+    *tree = root; /* a file of another tool: the elements hold their own lines in the file */
     return VL_OK;
   }
   if (!(*tree = convert(file, root, 32)))

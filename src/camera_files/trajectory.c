@@ -16,14 +16,14 @@
 /* Allowed deviation of a pose's matrix from a rotation: files have 4 digits or more. */
 static const double rotation_tolerance = 1e-3;
 
-vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format,
-                        ...) {
+vlResult vl_frame_wrong(const vlCameraFile *file, const vlFrameLocation *location,
+                        const char *format, ...) {
   char message[300];
   VL_FORMAT(message, format);
-  const char *path = place->path ? place->path : file->path,
-             *name = place->name ? place->name : "";
-  return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0,
-                    "frame %u%s%s%s: %s", place->frame, *name ? " (" : "",
+  const char *path = location->path ? location->path : file->path,
+             *name = location->name ? location->name : "";
+  return vl_fail_at(file->error, VL_ERROR_SCENE, path, location->line, location->line ? 1 : 0,
+                    "frame %u%s%s%s: %s", location->frame, *name ? " (" : "",
                     vl_short_text(name).text, *name ? ")" : "", message);
 }
 
@@ -42,14 +42,15 @@ static const char *pose_fault(const double m[16]) {
   return vl_determinant3(m) > 0.0 ? NULL : "the pose is no rotation: it mirrors";
 }
 
-vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place,
-                           int32_t camera, const double m[16], double time) {
+vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file,
+                           const vlFrameLocation *location, int32_t camera, const double m[16],
+                           double time) {
   const char *fault = pose_fault(m);
   if (fault)
-    return vl_frame_wrong(file, place, "%s", fault);
+    return vl_frame_wrong(file, location, "%s", fault);
   if (t->frames.count == INT32_MAX)
-    return vl_frame_wrong(file, place, "too many frames");
-  const char *name = place->name ? place->name : "";
+    return vl_frame_wrong(file, location, "too many frames");
+  const char *name = location->name ? location->name : "";
   size_t length = strlen(name) + 1;
   if (!VL_RESERVE(t->context, &t->names, length))
     return vl_fail_memory(file->error);
@@ -59,7 +60,7 @@ vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFr
   memcpy(frame->pose, m, sizeof frame->pose);
   frame->time = time;
   frame->camera = camera;
-  frame->line = place->line;
+  frame->line = location->line;
   frame->name = t->names.count;
   memcpy(t->names.items + t->names.count, name, length);
   t->names.count += length;
@@ -104,9 +105,9 @@ static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraR
         file, "%s", file->error && file->error->message[0] ? file->error->message : "camera");
   if (result == VL_OK)
     result = vl_trajectory_add_camera(t, file, record, &index);
-  vlFramePlace place = {.name = record->name, .frame = frame};
+  vlFrameLocation location = {.name = record->name, .frame = frame};
   if (result == VL_OK)
-    result = vl_trajectory_add(t, file, &place, index, camera.world_from_camera, VL_UNSET);
+    result = vl_trajectory_add(t, file, &location, index, camera.world_from_camera, VL_UNSET);
   return result;
 }
 

@@ -23,21 +23,22 @@ struct vlTrajectory {
 /* A frame's location for messages: the file (if it is not the opened one), the line and the
  * frame.
  */
-typedef struct vlFramePlace {
+typedef struct vlFrameLocation {
   const char *path;
   uint32_t line, frame;
   const char *name;
-} vlFramePlace;
+} vlFrameLocation;
 
-vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format,
-                        ...) __attribute__((format(printf, 3, 4)));
+vlResult vl_frame_wrong(const vlCameraFile *file, const vlFrameLocation *location,
+                        const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Finds a camera that is equal to this one except for pose and name, or adds this one. *index
  * is its index. */
 vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file,
                                   const vlCameraRecord *record, int32_t *index);
 /* Checks a frame's pose and adds the frame. */
-vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place,
-                           int32_t camera, const double world_from_camera[16], double time);
+vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file,
+                           const vlFrameLocation *location, int32_t camera,
+                           const double world_from_camera[16], double time);
 
 /* Reads one frame of transforms.json (nerf.c). */
 vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame,

@@ -243,8 +243,8 @@ static bool headless(Csv *csv, int count) {
   return true;
 }
 
-static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double v[COLUMNS],
-                        double m[16]) {
+static vlResult pose_of(const Csv *csv, const vlFrameLocation *location,
+                        const double v[COLUMNS], double m[16]) {
   vlCameraDef def = vl_default_camera_def(1, 1);
   vlCamera camera = {.width = 1};
   vlError error;
@@ -258,7 +258,7 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
     if (vl_camera_make(&def, &camera, NULL, &error) != VL_OK) {
       const char *text =
           strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
-      return vl_frame_wrong(csv->file, place, "%s", text);
+      return vl_frame_wrong(csv->file, location, "%s", text);
     }
     memcpy(m, camera.world_from_camera, sizeof camera.world_from_camera);
     return VL_OK;
@@ -268,7 +268,7 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
     const double q[4] = {v[QW], v[QX], v[QY], v[QZ]};
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(fabs(length - 1.0) < 0.01) || !vl_rotation_from_quaternion(q, r))
-      return vl_frame_wrong(csv->file, place,
+      return vl_frame_wrong(csv->file, location,
                             "the quaternion's length is %g; a rotation's is 1", length);
     memcpy(t, v + TX, sizeof t);
   } else {
@@ -323,23 +323,24 @@ static vlResult read_line(Csv *csv, char *line) {
           "KITTI 12 (three rows of a matrix), those of Replica 16 (four rows)",
           "");
   }
-  vlFramePlace place = {NULL, csv->line, (uint32_t)csv->trajectory->frames.count, NULL};
+  vlFrameLocation location = {NULL, csv->line, (uint32_t)csv->trajectory->frames.count, NULL};
   if (count != csv->columns)
-    return vl_frame_wrong(csv->file, &place, "the line has %d fields; the header has %d", count,
-                          csv->columns);
+    return vl_frame_wrong(csv->file, &location, "the line has %d fields; the header has %d",
+                          count, csv->columns);
   for (int i = 0; i < count; i++) {
     int column = csv->of[i];
     if (column == NAME)
-      place.name = fields[i];
+      location.name = fields[i];
     else if (column != NUMBER && column != IGNORED &&
              (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
-      return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%s\"; it must be a finite number",
-                            names[column], vl_short_text(fields[i]).text);
+      return vl_frame_wrong(csv->file, &location,
+                            "\"%s\" is \"%s\"; it must be a finite number", names[column],
+                            vl_short_text(fields[i]).text);
   }
-  vlResult result = pose_of(csv, &place, v, m);
+  vlResult result = pose_of(csv, &location, v, m);
   if (result != VL_OK)
     return result;
-  return vl_trajectory_add(csv->trajectory, csv->file, &place, VL_NO_CAMERA, m,
+  return vl_trajectory_add(csv->trajectory, csv->file, &location, VL_NO_CAMERA, m,
                            csv->has[TIME] ? v[TIME] * csv->time_unit : VL_UNSET);
 }
 

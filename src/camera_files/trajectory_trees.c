@@ -19,11 +19,12 @@ static uint32_t line_of_key(const char *text, const char *key, uint32_t n) {
 }
 
 /* Prefixes the reader's message with the frame, and with its location if known. */
-static vlResult in_frame(const vlCameraFile *file, const vlFramePlace *place, vlResult result) {
+static vlResult in_frame(const vlCameraFile *file, const vlFrameLocation *location,
+                         vlResult result) {
   if (result != VL_ERROR_SCENE || !file->error)
     return result;
   vlError inner = *file->error;
-  vl_frame_wrong(file, place, "%s", inner.message);
+  vl_frame_wrong(file, location, "%s", inner.message);
   return result;
 }
 
@@ -42,7 +43,7 @@ vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *from, cons
     record.camera = vl_default_camera_def(1, 1);
     record.dialect = VL_CAMERA_DIALECT_NERF;
     record.frames = count;
-    vlFramePlace place = {.frame = i, .name = vl_camera_text(frame, "file_path")};
+    vlFrameLocation location = {.frame = i, .name = vl_camera_text(frame, "file_path")};
     int32_t camera = 0;
     vlResult result = VL_ERROR_SCENE;
     if (json_is_object(frame))
@@ -52,10 +53,10 @@ vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *from, cons
     if (result == VL_OK)
       result = vl_trajectory_add_camera(t, file, &record, &camera);
     if (result == VL_OK)
-      result = vl_trajectory_add(t, file, &place, camera, record.camera.world_from_camera,
+      result = vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
                                  json_is_number(time) ? json_number_value(time) : VL_UNSET);
     else
-      result = in_frame(file, &place, result);
+      result = in_frame(file, &location, result);
     if (result == VL_OK)
       continue;
     if (result == VL_ERROR_SCENE && file->error && file->error->line == 0) {
@@ -86,13 +87,13 @@ vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from,
     record.camera = vl_default_camera_def(1, 1);
     record.dialect = VL_CAMERA_DIALECT_KALIBR;
     int32_t camera = 0;
-    vlFramePlace place = {.frame = i, .name = key};
+    vlFrameLocation location = {.frame = i, .name = key};
     vlResult result = vl_camera_read_kalibr(file, tree, &record);
     if (result == VL_OK)
       result = vl_trajectory_add_camera(t, file, &record, &camera);
     if (result == VL_OK)
-      result =
-          vl_trajectory_add(t, file, &place, camera, record.camera.world_from_camera, VL_UNSET);
+      result = vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
+                                 VL_UNSET);
     if (result != VL_OK)
       return result;
   }
@@ -124,8 +125,8 @@ vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from,
         file, "opencv: \"extrinsic_parameters\" must be 6 numbers for each view: rvec, tvec");
   for (size_t i = 0; i < count; i++) {
     double v[6] = {0}, r[9];
-    vlFramePlace place = {.frame = (uint32_t)i,
-                          .line = line_of_key(text, "extrinsic_parameters", 0)};
+    vlFrameLocation location = {.frame = (uint32_t)i,
+                                .line = line_of_key(text, "extrinsic_parameters", 0)};
     const json_t *row = nested ? json_array_get(data, i) : NULL;
     bool good = !nested || json_array_size(row) == 6;
     for (size_t k = 0; k < 6 && good; k++) {
@@ -134,12 +135,12 @@ vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from,
       v[k] = json_number_value(value);
     }
     if (!good)
-      return vl_frame_wrong(file, &place,
+      return vl_frame_wrong(file, &location,
                             "\"extrinsic_parameters\" must be 6 finite numbers: rvec, tvec");
     vl_rotation_from_vector(v, r);
     vl_camera_set_pose(&record.camera, r, v + 3);
-    result =
-        vl_trajectory_add(t, file, &place, camera, record.camera.world_from_camera, VL_UNSET);
+    result = vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
+                               VL_UNSET);
     if (result != VL_OK)
       return result;
   }

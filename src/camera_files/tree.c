@@ -24,7 +24,7 @@ vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t co
 
 /* Records the positions of the values of a valid JSON text. The position of a value is its
  * first character; keys have none. */
-static bool place_json(const vlCameraFile *file, const char *text, size_t size) {
+static bool locate_json(const vlCameraFile *file, const char *text, size_t size) {
   const char *end = text + size, *line_start = text;
   uint32_t line = 1;
   for (const char *at = text; at < end && *at;) {
@@ -49,7 +49,7 @@ static bool place_json(const vlCameraFile *file, const char *text, size_t size) 
     } else {
       at += strcspn(at, " \t\r\n,:]}");
     }
-    if (!vl_camera_place(file, line, (uint32_t)(first - line_start) + 1))
+    if (!vl_camera_to_world(file, line, (uint32_t)(first - line_start) + 1))
       return false;
   }
   return true;
@@ -57,16 +57,17 @@ static bool place_json(const vlCameraFile *file, const char *text, size_t size) 
 
 static vlResult parse_json(const vlCameraFile *file, const char *text, size_t size,
                            json_t **tree) {
-  json_error_t place;
-  *tree = vl_json_parse(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
-  if (!*tree && vl_json_lacks_memory(&place))
+  json_error_t location;
+  *tree =
+      vl_json_parse(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &location);
+  if (!*tree && vl_json_lacks_memory(&location))
     return vl_fail_memory(file->error);
   if (!*tree)
     return vl_fail_at(file->error, VL_ERROR_SCENE, file->path,
-                      place.line > 0 ? (uint32_t)place.line : 0,
-                      place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %.*s",
-                      (int)vl_json_problem_length(place.text), place.text);
-  return place_json(file, text, size) ? VL_OK : vl_fail_memory(file->error);
+                      location.line > 0 ? (uint32_t)location.line : 0,
+                      location.column > 0 ? (uint32_t)location.column : 0, "not JSON: %.*s",
+                      (int)vl_json_problem_length(location.text), location.text);
+  return locate_json(file, text, size) ? VL_OK : vl_fail_memory(file->error);
 }
 
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
@@ -93,7 +94,7 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
   if (first >= size)
     return vl_camera_wrong(file, "the file is empty");
   bool list = text[first] == '[';
-  if (list && !vl_camera_place(file, 1, 1))
+  if (list && !vl_camera_to_world(file, 1, 1))
     return vl_fail_memory(file->error);
   if (text[first] == '{' || list)
     result = parse_json(file, text, size, tree);
@@ -112,8 +113,8 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
   if (result != VL_OK) {
     json_decref(*tree);
     *tree = NULL;
-  } else if (file->places) {
-    file->places->root = *tree;
+  } else if (file->locations) {
+    file->locations->root = *tree;
   }
   return result;
 }
@@ -313,11 +314,9 @@ vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t
 
 vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key,
                          const double k[9], vlCameraDef *def) {
-  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+  if (!vl_camera_set_intrinsics(def, k, true))
     return vl_camera_wrong_in(
         file, object, key, "%s: \"%s\" must be fx skew cx, 0 fy cy, 0 0 1", file->dialect, key);
-  vl_camera_set_centred(def, k[0], k[4], k[2], k[5]);
-  def->skew = k[1];
   return VL_OK;
 }
 

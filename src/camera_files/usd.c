@@ -298,13 +298,8 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
   vlCamera c;
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_PLANES |
                    VL_HOLDS_TIME | VL_HOLDS_EXPOSURE;
-  vlResult result = vl_camera_fit(file, record, holds, &c);
-  if (result != VL_OK)
-    return result;
-  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_camera_no_model(file, d);
+  vlResult result = vl_camera_fit_plain(file, record, holds, &c);
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
   if (result == VL_OK)
     result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
   if (result != VL_OK)

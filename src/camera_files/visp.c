@@ -3,7 +3,6 @@
  * is (0, 0). The distortion kud maps the ideal point to the distorted one and equals OpenCV's
  * k1. kdu, the inverse, is not used. k1 to k4 of Kannala-Brandt are those of OpenCV's fisheye
  * model; ViSP writes a k5 and does not use it. */
-#include <math.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"

@@ -18,12 +18,12 @@ static const double below[3] = {126.0 / 13.0, 330.0 / 13.0, 193.0 / 13.0};
 
 static void set_distortion(double r, vlCameraDef *d) {
   double k[8] = {0.0}, power = 1.0;
-  static const int places[3] = {0, 1, 4}; /* k1, k2, k3 */
+  static const int indices[3] = {0, 1, 4}; /* k1, k2, k3 */
   if (r == 0.0)
     return;
   for (int i = 0; i < 3; i++) {
     power *= r;
-    k[places[i]] = above[i] * power;
+    k[indices[i]] = above[i] * power;
     k[5 + i] = below[i] * power;
   }
   vl_camera_set_opencv(d, k, 8);

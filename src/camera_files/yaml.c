@@ -69,26 +69,26 @@ static vlResult add(const vlCameraFile *file, Builder *b, json_t *value, yaml_ma
   return failed ? vl_fail_memory(file->error) : VL_OK;
 }
 
-static vlResult place(const vlCameraFile *file, yaml_mark_t mark) {
-  bool placed = vl_camera_place(file, (uint32_t)mark.line + 1, (uint32_t)mark.column + 1);
+static vlResult locate(const vlCameraFile *file, yaml_mark_t mark) {
+  bool placed = vl_camera_to_world(file, (uint32_t)mark.line + 1, (uint32_t)mark.column + 1);
   return placed ? VL_OK : vl_fail_memory(file->error);
 }
 
-/* Counts the values of a copy, which are all at the place of the alias. */
-static vlResult place_copy(const vlCameraFile *file, Builder *b, const json_t *value,
-                           yaml_mark_t mark) {
+/* Counts the values of a copy, which are all at the location of the alias. */
+static vlResult locate_copy(const vlCameraFile *file, Builder *b, const json_t *value,
+                            yaml_mark_t mark) {
   const char *key;
   json_t *child;
   size_t i;
   if (++b->copies > MAX_COPIES)
     return wrong_at(file, mark, "the aliases make more than 100,000 values");
-  vlResult result = place(file, mark);
+  vlResult result = locate(file, mark);
   if (json_is_object(value)) {
     json_object_foreach((json_t *)value, key, child) if (result == VL_OK) result =
-        place_copy(file, b, child, mark);
+        locate_copy(file, b, child, mark);
   } else {
     json_array_foreach((json_t *)value, i, child) if (result == VL_OK) result =
-        place_copy(file, b, child, mark);
+        locate_copy(file, b, child, mark);
   }
   return result;
 }
@@ -122,7 +122,7 @@ static vlResult merge(const vlCameraFile *file, Builder *b, const json_t *from,
   json_object_foreach((json_t *)from, key, child) {
     if (json_object_get(into, key))
       continue;
-    vlResult result = place_copy(file, b, child, mark);
+    vlResult result = locate_copy(file, b, child, mark);
     if (result == VL_OK && json_object_set_new(into, key, json_deep_copy(child)) != 0)
       result = vl_fail_memory(file->error);
     if (result != VL_OK)
@@ -147,13 +147,13 @@ static vlResult alias(const vlCameraFile *file, Builder *b, const yaml_event_t *
   const char *key = b->depth ? b->key[b->depth - 1] : NULL;
   if (vl_text_is(key, "<<"))
     return merge(file, b, value, event->start_mark);
-  vlResult result = place_copy(file, b, value, event->start_mark);
+  vlResult result = locate_copy(file, b, value, event->start_mark);
   return result == VL_OK ? add(file, b, json_deep_copy(value), event->start_mark) : result;
 }
 
 static vlResult take_value(const vlCameraFile *file, Builder *b, json_t *value,
                            const yaml_char_t *anchor, yaml_mark_t mark) {
-  vlResult result = place(file, mark);
+  vlResult result = locate(file, mark);
   if (result != VL_OK)
     json_decref(value);
   else

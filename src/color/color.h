@@ -100,6 +100,12 @@ static inline float vl_channels_at(const float t[3], float lambda) {
   return a + (x - (float)i) * (b - a);
 }
 
+/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the range of linear values that rounds
+ * to each code: code c stands for values from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1].
+ * The first are correctly rounded floats, the second are rounded up. */
+extern const float vl_srgb8_to_linear[256];
+extern const float vl_srgb8_begin[256];
+
 /* The density of sampled wavelengths is piecewise linear between VL_VISIBLE_KNOTS wavelengths.
  * Its values are found by numerical minimisation: four wavelengths, rotated by quarters through
  * the cumulative distribution, have nearly the same sum of RGB for usual lights and

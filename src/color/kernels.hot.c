@@ -158,7 +158,7 @@ static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r
   const float *p = table->coefficients;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlRgbPlace at = vl_rgb_place(r[i], g[i], b[i]);
+    vlRgbPoint at = vl_rgb_point(r[i], g[i], b[i]);
     c0[i] = vl_rgb_coefficient(p, 0, at);
     c1[i] = vl_rgb_coefficient(p, 1, at);
     c2[i] = vl_rgb_coefficient(p, 2, at);
@@ -176,7 +176,7 @@ static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float 
     high = high > b[i] ? high : b[i];
     float m = high > 0.0f ? 2.0f * high : 0.0f;
     float inv = high > 0.0f ? 1.0f / m : 0.0f;
-    vlRgbPlace at = vl_rgb_place(r[i] * inv, g[i] * inv, b[i] * inv);
+    vlRgbPoint at = vl_rgb_point(r[i] * inv, g[i] * inv, b[i] * inv);
     scale[i] = m;
     c0[i] = vl_rgb_coefficient(p, 0, at);
     c1[i] = vl_rgb_coefficient(p, 1, at);

@@ -51,11 +51,11 @@ static inline vlRgbCell vl_rgb_cell(float v, int size) {
 
 /* Position of a colour in the table: its cell, the weights of the cell's upper nodes, and the
  * factor on the stored coefficients. The computation reads no memory. */
-typedef struct vlRgbPlace {
+typedef struct vlRgbPoint {
   int index;
   float x, y, z, scale;
-} vlRgbPlace;
-static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, float g,
+} vlRgbPoint;
+static inline __attribute__((always_inline)) vlRgbPoint vl_rgb_point(float r, float g,
                                                                      float b) {
   r = r > 0.0f ? r : 0.0f;
   g = g > 0.0f ? g : 0.0f;
@@ -90,12 +90,12 @@ static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, fl
   /* black: exactly -2^30, for which the sigmoid is exactly 0 */
   k = k > 4.656612873e-10f ? k : 4.656612873e-10f;
   float scale = (flip ? -1.0f : 1.0f) / k;
-  return (vlRgbPlace){i, cx.t, cy.t, cz.t, scale};
+  return (vlRgbPoint){i, cx.t, cy.t, cz.t, scale};
 }
 
 /* Interpolates one of the three coefficients; k is its index. */
 static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k,
-                                                                      vlRgbPlace at) {
+                                                                      vlRgbPoint at) {
   enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
   int i = at.index + k;
   float a = p[i], b = p[i + Y], c = p[i + Z], d = p[i + Z + Y];
@@ -113,7 +113,7 @@ static inline __attribute__((always_inline)) float vl_rgb_coefficient(const floa
  * clang loses the simd pragma when this function is inlined through another. */
 static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(
     const vlRgbTable *table, float r, float g, float b) {
-  vlRgbPlace at = vl_rgb_place(r, g, b);
+  vlRgbPoint at = vl_rgb_point(r, g, b);
   const float *p = table->coefficients;
   return (vlSigmoid){vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at),
                      vl_rgb_coefficient(p, 2, at)};

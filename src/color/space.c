@@ -1,4 +1,7 @@
-/* color/space.c: the colour spaces and the standard observer, from the constant tables. */
+/* color/space.c: the colour spaces and the standard observer, from the constant tables; finds
+ * spectra by name. */
+#include "base/text.h"
+#include "color/named.h"
 #include "color/tables.h"
 
 static const vlSpaceTable *space_table(vlColorSpace space) {
@@ -44,4 +47,18 @@ void vl_xyz_from_rgb(vlColorSpace space, float m[9]) {
 void vl_space_chromaticities(vlColorSpace space, float xy[8]) {
   for (int i = 0; i < 8; i++)
     xy[i] = (float)space_table(space)->xy[i];
+}
+
+const char *vl_named_spectrum_name(unsigned index) {
+  return index < vl_table_named_count ? vl_table_named[index].name : NULL;
+}
+
+const float *vl_named_spectrum(const char *name) {
+  if (!name)
+    return NULL;
+  for (uint32_t i = 0; i < vl_table_named_count; i++) {
+    if (vl_text_is(vl_table_named[i].name, name))
+      return vl_table_named[i].values;
+  }
+  return NULL;
 }

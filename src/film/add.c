@@ -1,5 +1,5 @@
 /* film/add.c: adds samples to the exact sums, with integers only. The product of the float's
- * mantissa and the weight's is exact; one multiplication shifts it to its place in the 128-bit
+ * mantissa and the weight's is exact; one multiplication shifts it to its bits of the 128-bit
  * sum. There are no branches on the values. */
 #include "film/sums.h"
 

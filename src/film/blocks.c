@@ -10,13 +10,13 @@ uint32_t vl_film_block_count(const uint32_t w[4]) {
   return cells(w[0], w[2]) * cells(w[1], w[3]);
 }
 
-void vl_film_block_place(const uint32_t w[4], uint32_t index, uint32_t place[4]) {
+void vl_film_block_window(const uint32_t w[4], uint32_t index, uint32_t area[4]) {
   uint32_t across = cells(w[0], w[2]), x = w[0] / VL_FILM_BLOCK + index % across;
   uint32_t y = w[1] / VL_FILM_BLOCK + index / across;
-  place[0] = x * VL_FILM_BLOCK > w[0] ? x * VL_FILM_BLOCK : w[0];
-  place[1] = y * VL_FILM_BLOCK > w[1] ? y * VL_FILM_BLOCK : w[1];
-  place[2] = (x + 1) * VL_FILM_BLOCK < w[2] ? (x + 1) * VL_FILM_BLOCK : w[2];
-  place[3] = (y + 1) * VL_FILM_BLOCK < w[3] ? (y + 1) * VL_FILM_BLOCK : w[3];
+  area[0] = x * VL_FILM_BLOCK > w[0] ? x * VL_FILM_BLOCK : w[0];
+  area[1] = y * VL_FILM_BLOCK > w[1] ? y * VL_FILM_BLOCK : w[1];
+  area[2] = (x + 1) * VL_FILM_BLOCK < w[2] ? (x + 1) * VL_FILM_BLOCK : w[2];
+  area[3] = (y + 1) * VL_FILM_BLOCK < w[3] ? (y + 1) * VL_FILM_BLOCK : w[3];
 }
 
 uint32_t vl_film_block_at(const uint32_t w[4], uint32_t x, uint32_t y) {

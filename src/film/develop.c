@@ -12,7 +12,7 @@ static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType ty
   return vl_image_set_attribute(image, &a);
 }
 
-/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's place in the whole
+/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's window in the whole
  * image (inclusive). */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
   float xy[8];

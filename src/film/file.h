@@ -12,7 +12,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "film files are little-endian, and sums are stored as they are");
 
 enum {
-  VL_FILM_FORMAT = 3, /* 1 and 2 are read, too: file_old.c */
+  VL_FILM_FORMAT = 3, /* 1 and 2 are read, too: file_common.c */
   VL_FILM_MOST_RANGES = 1 << 16,
   VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
 };
@@ -92,7 +92,7 @@ typedef struct vlFilmReader {
   vlFilmShape shape;
   vlFilmTexts texts;
   char buffer[4096];
-  uint64_t buffer_at; /* place of the buffer's bytes in the file */
+  uint64_t buffer_at; /* offset of the buffer's bytes in the file */
   size_t buffered;    /* number of these bytes */
   uint32_t blocks, next;
   /* head and ranges of the block that was read last */
@@ -160,7 +160,7 @@ uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);
 vlResult vl_film_put_header(vlFileWriter *writer, const char *header);
 /* Fills a block's head. compared: null: none. Returns the size of the block in the file, bytes.
  */
-size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count,
+size_t vl_film_block_head(const vlFilmDef *def, const uint32_t window[4], uint32_t range_count,
                           const vlComparedNoise *compared, vlFilmBlockHead *head);
 
 #endif

@@ -90,8 +90,8 @@ static bool take_attribute(const json_t *list, vlAttribute *a) {
 
 vlResult vl_film_attributes_set(const char *path, const char *text, vlImage *image,
                                 vlError *error) {
-  json_error_t place;
-  json_t *tree = vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &place), *list;
+  json_error_t location;
+  json_t *tree = vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &location), *list;
   const char *key;
   if (!tree)
     return vl_fail_memory(error); /* the text is that of a tree */

@@ -1,4 +1,5 @@
-/* film/file_common.c: functions that readers and writers of film files share. */
+/* film/file_common.c: functions that readers, writers and mergers of film files share;
+ * blocks of formats 1 and 2. */
 #include <string.h>
 #include <zlib.h>
 
@@ -31,18 +32,91 @@ vlResult vl_film_put_header(vlFileWriter *writer, const char *header) {
   return VL_OK;
 }
 
-size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count,
+size_t vl_film_block_head(const vlFilmDef *def, const uint32_t window[4], uint32_t range_count,
                           const vlComparedNoise *compared, vlFilmBlockHead *head) {
-  size_t pixels = (size_t)(place[2] - place[0]) * (place[3] - place[1]),
+  size_t pixels = (size_t)(window[2] - window[0]) * (window[3] - window[1]),
          each = vl_film_pixel_size(def);
   *head = (vlFilmBlockHead){.magic = VL_FILM_BLOCK_MAGIC,
                             .range_count = range_count,
-                            .x0 = place[0],
-                            .y0 = place[1],
-                            .x1 = place[2],
-                            .y1 = place[3],
+                            .x0 = window[0],
+                            .y0 = window[1],
+                            .x1 = window[2],
+                            .y1 = window[3],
                             .data_size = range_count ? pixels * each : 0};
   if (range_count && compared && compared->spp)
     head->compared = *compared;
   return sizeof *head + range_count * sizeof(vlSampleSpan) + head->data_size + sizeof(uint32_t);
+}
+
+/* Adds a block of sums. The sums are integers, so the order does not matter. The reader has
+ * checked that no sum can overflow. */
+void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, uint32_t to_end,
+                       const void *from, uint32_t from_end) {
+  vlFilmPixel *p = to;
+  const vlFilmPixel *q = from;
+  vlFilmMoments *m = (void *)(p + pixels);
+  const vlFilmMoments *n = (const void *)(q + pixels);
+  size_t moments = def->errors ? pixels : 0, cells = pixels * def->buckets;
+  uint32_t part = vl_first_part(to_end > from_end ? to_end : from_end);
+  for (size_t i = 0; i < moments; i++) {
+    vlFilmMoments more = n[i];
+    if (vl_first_part(to_end) != part)
+      vl_film_join_parts(&m[i], &p[i]);
+    if (vl_first_part(from_end) != part)
+      vl_film_join_parts(&more, &q[i]);
+    vl_film_sum_moments(&m[i], &more);
+  }
+  for (size_t i = 0; i < pixels; i++) {
+    for (int c = 0; c < 3; c++)
+      p[i].color[c] += q[i].color[c];
+    p[i].alpha += q[i].alpha;
+    p[i].weight += q[i].weight;
+  }
+  vlPackedInt128 *sums = (void *)(m + moments);
+  const vlPackedInt128 *more = (const void *)(n + moments);
+  for (size_t i = 0; i < cells; i++)
+    sums[i] += more[i];
+  int64_t *weights = (void *)(sums + cells);
+  const int64_t *other = (const void *)(more + cells);
+  for (size_t i = 0; i < cells; i++)
+    weights[i] += other[i];
+}
+
+/* ---- blocks of formats 1 and 2. They lack the sums of the first part of the samples, which
+ * films with errors have; format 2 has the means of earlier samples in blocks that adaptive
+ * sampling compared. All samples of such a film become its first part. So its standard errors
+ * are those of independent samples, until more samples join them. */
+
+typedef struct OldMoments {
+  vlInt128 plain[3];
+  uint64_t squares[3][3];
+  uint64_t samples;
+} OldMoments;
+_Static_assert(sizeof(OldMoments) == 128, "as in the files");
+
+size_t vl_film_old_data_size(const vlFilmDef *def, uint32_t format, size_t pixels,
+                             bool compared) {
+  size_t each =
+      vl_film_pixel_size(def) - (def->errors ? sizeof(vlFilmMoments) - sizeof(OldMoments) : 0);
+  return pixels * (each + (format == 2 && compared ? VL_FILM_OLD_MEAN : 0));
+}
+
+void vl_film_convert_old_data(const vlFilmDef *def, size_t pixels, void *data) {
+  if (!def->errors)
+    return;
+  const vlFilmPixel *pixel = data;
+  char *moments = (char *)data + pixels * sizeof *pixel;
+  size_t spectra = pixels * def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
+  memmove(moments + pixels * sizeof(vlFilmMoments), moments + pixels * sizeof(OldMoments),
+          spectra);
+  for (size_t i = pixels; i-- > 0;) { /* each moves to a later place, the last one first */
+    OldMoments old;
+    memcpy(&old, moments + i * sizeof old, sizeof old);
+    vlFilmMoments made = {.samples = old.samples};
+    for (int c = 0; c < 3; c++)
+      made.plain[c] = old.plain[c];
+    memcpy(made.squares, old.squares, sizeof made.squares);
+    vl_film_join_parts(&made, &pixel[i]);
+    memcpy(moments + i * sizeof made, &made, sizeof made);
+  }
 }

@@ -100,9 +100,9 @@ static json_t *film_tree(const vlFilmShape *shape) {
 }
 
 static bool put_text(json_t *tree, const char *key, const char *text) {
-  json_error_t place;
+  json_error_t location;
   return !text ||
-         put(tree, key, vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &place));
+         put(tree, key, vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &location));
 }
 
 char *vl_film_header_make(vlContext *context, const vlFilmShape *shape,
@@ -239,13 +239,13 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
                              size_t size, vlFilmShape *shape, vlFilmTexts *texts,
                              vlError *error) {
   *texts = (vlFilmTexts){NULL, NULL};
-  json_error_t place;
-  json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &place);
-  if (!tree && vl_json_lacks_memory(&place))
+  json_error_t location;
+  json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &location);
+  if (!tree && vl_json_lacks_memory(&location))
     return vl_fail_memory(error);
   if (!tree)
     return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path,
-                   place.line, place.text);
+                   location.line, location.text);
   vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
   if (result == VL_OK)
     result = take_text(context, path, tree, "receipt", &texts->receipt, error);

@@ -68,7 +68,7 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
 }
 
 /* Copies a block's data, as stored in the file, into the film. */
-static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data) {
+static void copy_block(vlFilm *film, const vlFilmBlockHead *h, const char *data) {
   uint32_t width = h->x1 - h->x0, height = h->y1 - h->y0, n = film->def.buckets;
   size_t pixels = (size_t)width * height;
   const char *moments = data + pixels * sizeof(vlFilmPixel);
@@ -122,7 +122,7 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
       }
       film->compared[block] = r->head.compared;
     }
-    place_block(film, &r->head, data);
+    copy_block(film, &r->head, data);
     uint32_t end = r->ranges[r->head.range_count - 1].end;
     if (film->end < end)
       film->end = end;

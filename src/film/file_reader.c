@@ -143,7 +143,7 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
     r->next++;
     return r->at == r->size ? VL_OK : damaged(r, "bytes behind its end", error);
   }
-  uint32_t place[4];
+  uint32_t window[4];
   vlFilmBlockHead expected, *h = &r->head;
   uint64_t left = r->size - r->at;
   if (left < sizeof *h + sizeof(uint32_t))
@@ -151,19 +151,19 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   vlResult result = get(r, h, sizeof *h, r->at, error);
   if (result != VL_OK)
     return result;
-  vl_film_block_place(r->shape.def.crop, r->next, place);
+  vl_film_block_window(r->shape.def.crop, r->next, window);
   bool good = h->magic == VL_FILM_BLOCK_MAGIC && h->range_count <= VL_FILM_MOST_RANGES;
   uint32_t ranges = good ? h->range_count : 0;
-  size_t whole = vl_film_block_head(&r->shape.def, place, ranges, NULL, &expected);
+  size_t whole = vl_film_block_head(&r->shape.def, window, ranges, NULL, &expected);
   if (ranges && r->format < VL_FILM_FORMAT) {
-    size_t pixels = (size_t)(place[2] - place[0]) * (place[3] - place[1]),
+    size_t pixels = (size_t)(window[2] - window[0]) * (window[3] - window[1]),
            present = expected.data_size;
     expected.data_size =
         vl_film_old_data_size(&r->shape.def, r->format, pixels, h->compared.spp > 0);
     whole += expected.data_size - present;
   }
-  if (!good || h->x0 != place[0] || h->y0 != place[1] || h->x1 != place[2] ||
-      h->y1 != place[3] || h->data_size != expected.data_size)
+  if (!good || h->x0 != window[0] || h->y0 != window[1] || h->x1 != window[2] ||
+      h->y1 != window[3] || h->data_size != expected.data_size)
     return damaged(r, "a block's head", error);
   if (whole > left)
     return damaged(r, "it ends too early", error);

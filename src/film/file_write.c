@@ -34,23 +34,25 @@ vlFilmWriteDef vl_default_film_write_def(void) {
 }
 
 /* The samples of the film's pixels in a block of the window. Empty: none. */
-static vlSampleSpan samples_of(const vlFilm *film, const uint32_t place[4]) {
+static vlSampleSpan samples_of(const vlFilm *film, const uint32_t block_window[4]) {
   const uint32_t *c = film->def.crop, first = film->sequence.first;
-  if (place[0] < c[0] || place[1] < c[1] || place[2] > c[2] || place[3] > c[3])
+  if (block_window[0] < c[0] || block_window[1] < c[1] || block_window[2] > c[2] ||
+      block_window[3] > c[3])
     return (vlSampleSpan){first, first};
   return (vlSampleSpan){
-      first, first + vl_film_block_spp(film, vl_film_block_at(c, place[0], place[1]))};
+      first,
+      first + vl_film_block_spp(film, vl_film_block_at(c, block_window[0], block_window[1]))};
 }
 
 /* The head of a block of the window. Returns the size of the block in the file, bytes. */
-static size_t head_of(const vlFilm *film, const uint32_t place[4], vlSampleSpan samples,
+static size_t head_of(const vlFilm *film, const uint32_t block_window[4], vlSampleSpan samples,
                       vlFilmBlockHead *head) {
   bool filled = samples.first < samples.end;
   const vlComparedNoise *compared =
       filled && film->compared
-          ? film->compared + vl_film_block_at(film->def.crop, place[0], place[1])
+          ? film->compared + vl_film_block_at(film->def.crop, block_window[0], block_window[1])
           : NULL;
-  return vl_film_block_head(&film->def, place, filled, compared, head);
+  return vl_film_block_head(&film->def, block_window, filled, compared, head);
 }
 
 /* Whether the crop lies in the window and no block of the window is partly inside the crop. */
@@ -64,11 +66,11 @@ static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
 
 /* Copies a block's data to `to`, in the order of the file. Returns the end of the copied data.
  */
-static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
-  uint32_t width = place[2] - place[0], n = film->def.buckets;
-  size_t first =
-      (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
-  size_t rows = place[3] - place[1], line = film->width;
+static char *gather(const vlFilm *film, const uint32_t block_window[4], char *to) {
+  uint32_t width = block_window[2] - block_window[0], n = film->def.buckets;
+  size_t first = (size_t)(block_window[1] - film->def.crop[1]) * film->width +
+                 (block_window[0] - film->def.crop[0]);
+  size_t rows = block_window[3] - block_window[1], line = film->width;
   for (size_t y = 0; y < rows; y++, to += width * sizeof(vlFilmPixel))
     memcpy(to, film->front + first + y * line, width * sizeof(vlFilmPixel));
   for (size_t y = 0; y < rows && film->def.errors; y++, to += width * sizeof(vlFilmMoments))
@@ -85,16 +87,16 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   if (atomic_load(&run->failed_errno))
     return;
   char *buffer = run->buffers + worker * run->buffer_size, *to = buffer;
-  uint32_t place[4];
-  vl_film_block_place(run->window, block, place);
-  vlSampleSpan range = samples_of(run->film, place);
+  uint32_t block_window[4];
+  vl_film_block_window(run->window, block, block_window);
+  vlSampleSpan range = samples_of(run->film, block_window);
   vlFilmBlockHead head;
-  head_of(run->film, place, range, &head);
+  head_of(run->film, block_window, range, &head);
   memcpy(to, &head, sizeof head);
   to += sizeof head;
   if (head.range_count) {
     memcpy(to, &range, sizeof range);
-    to = gather(run->film, place, to + sizeof range);
+    to = gather(run->film, block_window, to + sizeof range);
   }
   uint32_t crc = vl_film_crc(0, buffer, (size_t)(to - buffer));
   memcpy(to, &crc, sizeof crc);
@@ -127,11 +129,11 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
   run->buffers = vl_alloc_array(writer->context, threads, run->buffer_size);
   vlResult result = run->offsets && run->buffers ? VL_OK : vl_fail_memory(error);
   for (uint32_t i = 0; i < count && result == VL_OK; i++) {
-    uint32_t place[4];
+    uint32_t block_window[4];
     vlFilmBlockHead head;
-    vl_film_block_place(run->window, i, place);
+    vl_film_block_window(run->window, i, block_window);
     run->offsets[i] = at;
-    at += head_of(run->film, place, samples_of(run->film, place), &head);
+    at += head_of(run->film, block_window, samples_of(run->film, block_window), &head);
   }
   if (result == VL_OK && writer->file.in_memory && !vl_file_reserve(&writer->file, at))
     result = vl_fail_memory(error);

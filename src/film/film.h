@@ -62,7 +62,7 @@ void vl_film_set_spp(vlFilm *film,
  * a block have the same number of samples. */
 enum { VL_FILM_BLOCK = 32 };
 uint32_t vl_film_block_count(const uint32_t window[4]);
-void vl_film_block_place(const uint32_t window[4], uint32_t index, uint32_t place[4]);
+void vl_film_block_window(const uint32_t window[4], uint32_t index, uint32_t area[4]);
 /* The block with a pixel of the window. */
 uint32_t vl_film_block_at(const uint32_t window[4], uint32_t x, uint32_t y);
 /* The number of samples of a block. It is at most vl_film_spp, which some block has. */

@@ -191,7 +191,7 @@ static double find_least(Shape s, double a, double b) {
   return 0.5 * (a + b);
 }
 
-/* Finds the lobes of [0, radius], separated by the places where f changes sign or touches zero;
+/* Finds the lobes of [0, radius], separated by the points where f changes sign or touches zero;
  * a grid brackets them. Returns their number; 0: too many, or f is not above zero at its
  * centre. */
 static int find_lobes(Shape s, double radius, Lobe *lobes) {

@@ -5,24 +5,24 @@
 
 #include "film/sums.h"
 
-/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their place among
+/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their bits among
  * 192 bits. |value| < 2^40: with 2^31 samples the sum stays below 2^191. */
 static inline void add_square(uint64_t sum[3], float value) {
   uint32_t bits = vl_float_bits(value);
   int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
   uint64_t mantissa = (uint64_t)(bits & 0x7fffffu) | (uint64_t)(field > 0) << 23;
   uint64_t square = mantissa * mantissa;
-  int32_t place =
+  int32_t shift =
       2 * (exponent - 150) + VL_SQUARE_BITS; /* at most 2 * (166 - 150) + 80 = 112 */
-  if (place < 0) {
-    square = place > -63 ? square >> -place : 0;
-    place = 0;
+  if (shift < 0) {
+    square = shift > -63 ? square >> -shift : 0;
+    shift = 0;
   }
   __extension__ typedef unsigned __int128 Wide;
-  Wide low = (Wide)square << place, old = (Wide)sum[1] << 64 | sum[0], now = old + low;
+  Wide low = (Wide)square << shift, old = (Wide)sum[1] << 64 | sum[0], now = old + low;
   sum[0] = (uint64_t)now;
   sum[1] = (uint64_t)(now >> 64);
-  sum[2] += (place > 80 ? square >> (128 - place) : 0) + (now < old);
+  sum[2] += (shift > 80 ? square >> (128 - shift) : 0) + (now < old);
 }
 
 void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel) {

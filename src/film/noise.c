@@ -188,13 +188,15 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
   if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2)
     return INFINITY;
   Display d = {view, vl_film_view_factor(exposure, scale)};
-  uint32_t place[4];
-  vl_film_block_place(film->def.crop, block, place);
+  uint32_t block_window[4];
+  vl_film_block_window(film->def.crop, block, block_window);
   const uint32_t *crop = film->def.crop;
-  Block b = {.width = place[2] - place[0], .height = place[3] - place[1]};
+  Block b = {.width = block_window[2] - block_window[0],
+             .height = block_window[3] - block_window[1]};
   for (uint32_t y = 0; y < b.height; y++)
     for (uint32_t x = 0; x < b.width; x++) {
-      size_t at = (size_t)(place[1] + y - crop[1]) * film->width + (place[0] + x - crop[0]);
+      size_t at = (size_t)(block_window[1] + y - crop[1]) * film->width +
+                  (block_window[0] + x - crop[0]);
       const vlFilmPixel *p = film->front + at;
       if (p->weight <= 0)
         return INFINITY;
@@ -210,7 +212,8 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
   double each = upper_limit(square),
          together = upper_limit(block_square(&pooled, &d, correlation)), ratio = 1;
   if (vl_film_block_spp(film, block) >= LEAST_FOR_RATIO) {
-    size_t first = (size_t)(place[1] - crop[1]) * film->width + (place[0] - crop[0]);
+    size_t first =
+        (size_t)(block_window[1] - crop[1]) * film->width + (block_window[0] - crop[0]);
     ratio = square_ratio(film, first, &b, &d, correlation, square);
   }
   return sqrt(ratio * (each > together ? each : together));

@@ -63,8 +63,8 @@ void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *a) {
     }
     int64_t weight = (int64_t)((double)w * (1 << VL_WEIGHT_BITS) + (w < 0.0f ? -0.5 : 0.5));
     for (int c = 0; c < 4; c++) {
-      double place = ((double)a->lambda[c][i] - low) * scale;
-      uint32_t bucket = place > 0 ? (uint32_t)place : 0;
+      double position = ((double)a->lambda[c][i] - low) * scale;
+      uint32_t bucket = position > 0 ? (uint32_t)position : 0;
       size_t cell = at * n + (bucket < n ? bucket : n - 1);
       s->sums[1][cell] += vl_film_product(a->radiance[c][i], weight);
       s->weights[1][cell] += weight;

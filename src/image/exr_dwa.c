@@ -11,7 +11,6 @@
 
 #include "base/free.h"
 #include "base/text.h"
-#include "image/dct.h"
 #include "image/exr_huffman.h"
 #include "image/pixel.h"
 
@@ -20,7 +19,7 @@ enum { HEAD_WORDS = 11, UINT = 0, HALF = 1, FLOAT = 2 };
 
 typedef struct Plan {
   int scheme;
-  int place; /* component of a colour: 0, 1 or 2; -1: none */
+  int component; /* component of a colour: 0, 1 or 2; -1: none */
   bool done;
   size_t offset; /* offset of the channel in its stream (unknown or runs), bytes */
   size_t line;   /* offset of the channel's line in a line of the chunk, bytes */
@@ -39,6 +38,49 @@ typedef struct Dwa {
   size_t ac_count, dc_count, ac_at, dc_at;
   size_t unknown_size, runs_size; /* sizes of the streams, summed over the channels, bytes */
 } Dwa;
+
+/* ---- the inverse cosine transform of 8 x 8 values, orthonormal. Plain sums in a fixed order
+ * give the same bits everywhere. */
+
+/* 0.5 cos(k pi / 16) */
+static const float COSINE[8] = {0.5f,        0.49039264f, 0.46193977f, 0.41573481f,
+                                0.35355339f, 0.27778512f, 0.19134172f, 0.09754516f};
+
+/* Entry of the orthonormal inverse transform: sample n of frequency k. */
+static float basis(int n, int k) {
+  if (k == 0)
+    return COSINE[4];
+  int angle = (2 * n + 1) * k % 32; /* in units of pi / 16, period 32 */
+  if (angle > 16)
+    angle = 32 - angle;
+  return angle <= 8 ? (angle == 8 ? 0.0f : COSINE[angle]) : -COSINE[16 - angle];
+}
+
+/* matrix[n][k]: the weight of frequency k in sample n. */
+static void dct_make(float matrix[8][8]) {
+  for (int n = 0; n < 8; n++)
+    for (int k = 0; k < 8; k++)
+      matrix[n][k] = basis(n, k);
+}
+
+/* Transforms values stored by rows, in place. */
+static void dct_inverse(float block[64], const float matrix[8][8]) {
+  float rows[64];
+  for (int y = 0; y < 8; y++)
+    for (int n = 0; n < 8; n++) {
+      float sum = 0.0f;
+      for (int k = 0; k < 8; k++)
+        sum += matrix[n][k] * block[8 * y + k];
+      rows[8 * y + n] = sum;
+    }
+  for (int n = 0; n < 8; n++)
+    for (int x = 0; x < 8; x++) {
+      float sum = 0.0f;
+      for (int k = 0; k < 8; k++)
+        sum += matrix[n][k] * rows[8 * k + x];
+      block[8 * n + x] = sum;
+    }
+}
 
 static uint64_t le64(const uint8_t *p) {
   uint64_t v = 0;
@@ -69,7 +111,7 @@ void vl_dwa_make_curve(uint16_t *curve) {
 
 typedef struct Rule {
   char suffix[129];
-  int scheme, place, type;
+  int scheme, component, type;
   bool any_case;
 } Rule;
 
@@ -95,8 +137,8 @@ static void apply_rule(Dwa *d, const Rule *rule) { /* the last matching rule cou
     if (!rule_matches(rule, &d->channels[i]))
       continue;
     d->plans[i].scheme = rule->scheme;
-    if (rule->place >= 0)
-      d->plans[i].place = rule->place;
+    if (rule->component >= 0)
+      d->plans[i].component = rule->component;
   }
 }
 
@@ -104,14 +146,16 @@ static void apply_rule(Dwa *d, const Rule *rule) { /* the last matching rule cou
 static void legacy_rules(Dwa *d) {
   static const struct {
     const char *suffix;
-    int scheme, place;
+    int scheme, component;
   } OLD[] = {{"r", LOSSY, 0},     {"red", LOSSY, 0}, {"g", LOSSY, 1},   {"grn", LOSSY, 1},
              {"green", LOSSY, 1}, {"b", LOSSY, 2},   {"blu", LOSSY, 2}, {"blue", LOSSY, 2},
              {"y", LOSSY, -1},    {"by", LOSSY, -1}, {"ry", LOSSY, -1}, {"a", RUNS, -1}};
   for (size_t i = 0; i < VL_LENGTH(OLD); i++)
     for (int type = OLD[i].scheme == RUNS ? UINT : HALF; type <= FLOAT; type++) {
-      Rule rule = {
-          .scheme = OLD[i].scheme, .place = OLD[i].place, .type = type, .any_case = true};
+      Rule rule = {.scheme = OLD[i].scheme,
+                   .component = OLD[i].component,
+                   .type = type,
+                   .any_case = true};
       memcpy(rule.suffix, OLD[i].suffix, strlen(OLD[i].suffix) + 1);
       apply_rule(d, &rule);
     }
@@ -131,12 +175,12 @@ static bool read_rules(Dwa *d, const uint8_t *p, size_t size) {
     }
     if (size - at < 3)
       return false;
-    rule.place = (p[at + 1] >> 4) - 1;
+    rule.component = (p[at + 1] >> 4) - 1;
     rule.scheme = p[at + 1] >> 2 & 3;
     rule.any_case = p[at + 1] & 1;
     rule.type = p[at + 2];
     at += 3;
-    if (rule.place > 2 || rule.scheme > RUNS || rule.type > FLOAT)
+    if (rule.component > 2 || rule.scheme > RUNS || rule.type > FLOAT)
       return false;
     apply_rule(d, &rule);
   }
@@ -227,7 +271,7 @@ static bool next_block(Dwa *d, uint16_t dc, const float matrix[8][8], float bloc
   }
   for (int i = 0; i < 64; i++)
     block[i] = vl_half_to_float(zigzag[ZIGZAG[i]]);
-  vl_dct_inverse(block, matrix);
+  dct_inverse(block, matrix);
   return true;
 }
 
@@ -257,7 +301,7 @@ static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
   float matrix[8][8], block[3][64];
   if (plane * count > d->dc_count - d->dc_at)
     return false;
-  vl_dct_make(matrix);
+  dct_make(matrix);
   for (uint32_t by = 0; by < blocks_y; by++)
     for (uint32_t bx = 0; bx < blocks_x; bx++) {
       for (uint32_t c = 0; c < count; c++)
@@ -295,10 +339,10 @@ static int compare_layers(const char *a, const char *b) {
 static bool unpack_color(Dwa *d, const char *layer) {
   uint32_t color[3] = {0}, found = 0;
   for (uint32_t k = 0; k < d->count; k++) {
-    if (compare_layers(d->channels[k].name, layer) != 0 || d->plans[k].place < 0)
+    if (compare_layers(d->channels[k].name, layer) != 0 || d->plans[k].component < 0)
       continue;
-    color[d->plans[k].place] = k;
-    found |= 1u << d->plans[k].place;
+    color[d->plans[k].component] = k;
+    found |= 1u << d->plans[k].component;
   }
   if (found != 7)
     return true;
@@ -442,7 +486,7 @@ vlResult vl_dwa_unpack(vlContext *context, const vlDwaChannel *channels, uint32_
   if (!d.plans)
     return VL_ERROR_MEMORY;
   for (uint32_t i = 0; i < count; i++)
-    d.plans[i].place = -1;
+    d.plans[i].component = -1;
   vlResult result = unpack(&d, packed, packed_size);
   vl_free(context, d.plans);
   return result;

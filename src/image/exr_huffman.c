@@ -3,8 +3,6 @@
  * the next eight bits hold n. Longer codes are numerically lower. */
 #include "image/exr_huffman.h"
 
-#include <string.h>
-
 enum { SYMBOLS = 65537, LONGEST = 58 };
 
 typedef struct Bits {

@@ -19,8 +19,8 @@ typedef struct Reader {
   exr_attr_box2i_t window;
   exr_compression_t compression;
   uint32_t width, height;
-  uint32_t *place; /* for each channel of the file, its channel in the image or NOT_WANTED */
-  uint32_t count;  /* number of the image's channels */
+  uint32_t *target; /* for each channel of the file, its channel in the image or NOT_WANTED */
+  uint32_t count;   /* number of the image's channels */
   int user_type, user_size;
   vlImage *image;
   exr_decode_pipeline_t pipeline;
@@ -343,11 +343,11 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
   for (int32_t y = 0; y < chunk->height; y++)
     for (uint32_t i = 0; i < count; i++) {
       size_t step = r->dwa_channels[i].type == EXR_PIXEL_HALF ? 2 : 4;
-      if (r->place[i] == NOT_WANTED) {
+      if (r->target[i] == NOT_WANTED) {
         from += step * (size_t)chunk->width;
         continue;
       }
-      char *to = origin + (size_t)y * pixel * r->width + (size_t)r->user_size * r->place[i];
+      char *to = origin + (size_t)y * pixel * r->width + (size_t)r->user_size * r->target[i];
       for (int32_t x = 0; x < chunk->width; x++, from += step, to += pixel)
         convert_value(r->dwa_channels[i].type, from, r->user_type, to);
     }
@@ -376,9 +376,9 @@ static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
     c->decode_to_ptr = NULL; /* not read */
-    if (r->place[i] == NOT_WANTED)
+    if (r->target[i] == NOT_WANTED)
       continue;
-    c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->place[i];
+    c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->target[i];
     c->user_bytes_per_element = (int16_t)r->user_size;
     c->user_data_type = (uint16_t)r->user_type;
     c->user_pixel_stride = (int32_t)pixel;
@@ -397,18 +397,18 @@ static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
 static vlResult create(Reader *r) {
   vlContext *context = r->base.file->context;
   uint32_t count = (uint32_t)r->list->num_channels, next = 0;
-  r->place = vl_alloc_array(context, count, sizeof *r->place);
+  r->target = vl_alloc_array(context, count, sizeof *r->target);
   const char **names = vl_alloc_array(context, count, sizeof *names);
-  vlResult result = r->place && names ? VL_OK : VL_ERROR_MEMORY;
+  vlResult result = r->target && names ? VL_OK : VL_ERROR_MEMORY;
   for (uint32_t i = 0; result == VL_OK && i < count; i++)
-    r->place[i] = NOT_WANTED;
+    r->target[i] = NOT_WANTED;
   for (uint32_t k = 0; result == VL_OK && k <= 5; k++)
     for (uint32_t i = 0; i < count; i++) {
       const char *name = r->list->entries[i].name.str;
       if (rank(name) != k || next >= r->count || !is_wanted(r->base.file, name))
         continue;
       names[next] = name;
-      r->place[i] = next++;
+      r->target[i] = next++;
     }
   if (result == VL_OK) {
     vlImageDef def = vl_default_image_def(r->width, r->height, r->count);
@@ -427,11 +427,11 @@ static vlResult create(Reader *r) {
     result = VL_ERROR_MEMORY;
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     exr_pixel_type_t type = r->list->entries[i].pixel_type;
-    if (r->place[i] == NOT_WANTED)
+    if (r->target[i] == NOT_WANTED)
       continue;
-    r->image->stored[r->place[i]] = type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
-                                    : type == EXR_PIXEL_UINT ? VL_PIXEL_U32
-                                                             : VL_PIXEL_F32;
+    r->image->stored[r->target[i]] = type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
+                                     : type == EXR_PIXEL_UINT ? VL_PIXEL_U32
+                                                              : VL_PIXEL_F32;
   }
   if (result == VL_OK)
     result = vl_exr_attributes_in(r->exr, r->image);
@@ -483,7 +483,7 @@ vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
   if (r.started)
     exr_decoding_destroy(r.exr, &r.pipeline);
   exr_finish(&r.exr);
-  VL_FREE(file->context, r.place, r.dwa_channels, r.dwa_curve, r.packed, r.unpacked);
+  VL_FREE(file->context, r.target, r.dwa_channels, r.dwa_curve, r.packed, r.unpacked);
   if (result == VL_OK)
     *image = r.image;
   else

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/free.h"
 #include "base/text.h"
+#include "color/color.h"
 #include "image/pixel.h"
 
 enum { NAME_MAX_LENGTH = 255 }; /* OpenEXR's limit for long names */

@@ -1,6 +1,8 @@
 /* image/pixel.c: see pixel.h. */
 #include "image/pixel.h"
 
+#include "color/color.h"
+
 uint8_t vl_linear_to_srgb8(float linear) {
   uint32_t low =
       0; /* last code that begins at or before the value; NaN compares false and gives 0 */

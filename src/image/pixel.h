@@ -55,12 +55,6 @@ static inline uint16_t vl_float_to_half(float f) {
  * ------------------------------------------------------------------------------------------------------
  */
 
-/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the range of linear values that rounds
- * to each code: code c stands for values from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1].
- * All values are correctly rounded floats. */
-extern const float vl_srgb8_to_linear[256];
-extern const float vl_srgb8_begin[256];
-
 /* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives 0.
  */
 uint8_t vl_linear_to_srgb8(float linear);

@@ -1,6 +1,5 @@
 /* image/pnm.c: netpbm's P1 to P6: bitmaps, grey and colour, as text and binary, up to 16 bits.
  * Values are taken as sRGB. */
-#include <string.h>
 
 #include "image/codec.h"
 

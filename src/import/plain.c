@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/file.h"
 #include "base/free.h"
 #include "import/import.h"
 #include "import/labels.h"
@@ -99,6 +100,15 @@ static bool separate_faces(vlContext *context, vlPlainMesh *m) {
   free_mesh(context, m);
   *m = made;
   return true;
+}
+
+bool vl_import_plain_read(vlScene *scene, const char *path, char **data, size_t *size) {
+  vlError inside = {0};
+  vl_import_plain_settings(scene);
+  vlResult r = vl_file_read_given(scene->context, path, true, data, size, &inside);
+  if (r != VL_OK)
+    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
+  return r == VL_OK;
 }
 
 vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,

@@ -9,7 +9,7 @@ typedef struct vlRepairs {
   uint64_t normals, uvs, shapes; /* numbers of vertices, and of the shapes that hold them */
   uint32_t images;               /* that are missing */
   uint32_t includes;             /* that were left out */
-  char file[512];                /* place of the first repaired shape */
+  char file[512];                /* location of the first repaired shape */
   uint32_t line;
 } vlRepairs;
 

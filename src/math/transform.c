@@ -108,10 +108,8 @@ void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]) {
 }
 
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]) {
-  const double *m = a->m;
   double r[3];
-  for (int i = 0; i < 3; i++)
-    r[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
+  vl_map_vector(a->m, v, r);
   for (int i = 0; i < 3; i++)
     result[i] = r[i];
 }

@@ -38,6 +38,25 @@ static inline vlVec3 vl_normalize(vlVec3 a) {
   float s = l > 0.0f ? 1.0f / __builtin_sqrtf(l) : 0.0f;
   return vl_mul(a, s);
 }
+/* Element i of three arrays. */
+static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
+  return vl_vec3(x[i], y[i], z[i]);
+}
+/* The product of a 3x3 matrix and a vector. */
+static inline vlVec3 vl_turn(const float m[9], vlVec3 v) {
+  return vl_vec3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+                 m[6] * v.x + m[7] * v.y + m[8] * v.z);
+}
+/* A point and a vector under an affine map (3x4). */
+static inline vlVec3 vl_affine_point(const float m[12], vlVec3 p) {
+  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
+                 m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+static inline vlVec3 vl_affine_vector(const float m[12], vlVec3 v) {
+  return vl_vec3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
+                 m[8] * v.x + m[9] * v.y + m[10] * v.z);
+}
 static inline float vl_min(float a, float b) {
   return a < b ? a : b;
 }

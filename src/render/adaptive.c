@@ -2,7 +2,6 @@
 #include "render/adaptive.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/context.h"
 

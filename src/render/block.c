@@ -212,7 +212,7 @@ static bool shared_block(const vlRenderRun *r, uint32_t block, vlSharedBlock *b)
   return false;
 }
 
-/* Moves the n traced samples of the batch to their places in the worker's grids. */
+/* Moves the n traced samples of the batch to their cells of the worker's grids. */
 static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b,
                         uint32_t first, uint32_t n) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
@@ -306,12 +306,12 @@ static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock 
   uint32_t total = width * height * count, done = 0, n = 0, filled = 0;
   uint32_t across = (width + VL_RENDER_TILE - 1) / VL_RENDER_TILE,
            down = (height + VL_RENDER_TILE - 1) / VL_RENDER_TILE;
-  uint32_t places = across * down * TILE_PIXELS;
+  uint32_t slots = across * down * TILE_PIXELS;
   for (uint32_t s = 0; s < count; s++)
     total -= skip_useless(r, w, b, &w->grids[s], first + s);
   uint32_t batches = (total + VL_BATCH - 1) / VL_BATCH;
   for (uint32_t s = first; s < first + count; s++)
-    for (uint32_t m = 0; m < places;
+    for (uint32_t m = 0; m < slots;
          m++) { /* tile by tile; in a tile in Morton order, for coherent packets */
       uint32_t tile = m / TILE_PIXELS, in = m % TILE_PIXELS;
       uint32_t x = tile % across * VL_RENDER_TILE + morton_half(in);

@@ -106,7 +106,7 @@ typedef struct vlChannelPass {
   const vlGroundTruthKernels *ground_truth_kernels;
   vlGroundTruthDef ground_truth, features;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
-  uint32_t place[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the
+  uint32_t first[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the
                                           floats and among the ids */
   vlImage *images[2];                  /* floats, ids */
   uint32_t step[2];                    /* values per pixel */
@@ -149,10 +149,10 @@ static inline size_t vl_channel_at(const vlChannelPass *p, uint32_t x, uint32_t 
          (x - p->def->crop[0]);
 }
 static inline float *vl_channel_floats(const vlChannelPass *p, size_t at, uint32_t index) {
-  return (float *)vl_image_pixels(p->images[0]) + at * p->step[0] + p->place[0][index];
+  return (float *)vl_image_pixels(p->images[0]) + at * p->step[0] + p->first[0][index];
 }
 static inline uint32_t *vl_channel_ids(const vlChannelPass *p, size_t at, uint32_t index) {
-  return (uint32_t *)vl_image_pixels(p->images[1]) + at * p->step[1] + p->place[1][index];
+  return (uint32_t *)vl_image_pixels(p->images[1]) + at * p->step[1] + p->first[1][index];
 }
 static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
   return w->rows + (size_t)row * VL_ROW_SIZE;

@@ -149,7 +149,7 @@ static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOAT
     const struct Channel *c = &channels[i];
     if (!vl_channel_wanted(p, 1u << i))
       continue;
-    p->place[id][i] = count;
+    p->first[id][i] = count;
     if (i < VL_INDEX_CRYPTO || i == VL_INDEX_FEATURES) {
       uint32_t first = id ? c->floats : 0, parts = id ? c->ids : c->floats;
       for (uint32_t k = 0; k < parts; k++)

@@ -53,7 +53,7 @@ uint32_t vl_cryptomatte_hash(const char *name) {
 
 enum { NAME_PART = 200, NAME_SIZE = NAME_PART + 32 };
 
-/* Number of bytes of the UTF-8 character at this place; 0: not valid UTF-8. */
+/* Number of bytes of the UTF-8 character that begins here; 0: not valid UTF-8. */
 static size_t character(const char *at) {
   const unsigned char *b = (const unsigned char *)at;
   size_t n = b[0] < 0x80 ? 1 : b[0] >= 0xc2 && b[0] < 0xe0 ? 2 : (b[0] & 0xf0) == 0xe0 ? 3 : 0;

@@ -42,7 +42,7 @@ typedef struct vlFilmRayRows {
   vlCameraRays rays;
 } vlFilmRayRows;
 
-/* Places of those arrays in a worker's rows of VL_ROW_SIZE numbers each; a caller's own rows
+/* Offsets of those arrays in a worker's rows of VL_ROW_SIZE numbers each; a caller's own rows
  * begin at VL_FILM_ROWS. */
 enum {
   VL_FILM_U,

@@ -8,7 +8,6 @@
  * Pixels of the sky have flow, too. Their target is a direction; it is visible if the other
  * camera's ray hits nothing. */
 #include <math.h>
-#include <string.h>
 
 #include "math/double3.h"
 #include "render/channel_pass.h"

@@ -1,6 +1,5 @@
 /* render/media_fit.c: whether the media of a scene fit together (trace/medium/fit.hot.c):
  * traces a batch of volpath's paths from all parts of the image. */
-#include <string.h>
 
 #include "base/context.h"
 #include "base/free.h"

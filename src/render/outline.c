@@ -17,7 +17,7 @@ enum { CHUNK = 256, AROUND = 256, RINGS = 64 };
 /* Points to be added to the boxes, a chunk at a time. */
 typedef struct Points {
   const vlCamera *camera;
-  const float *place; /* the instance's transform: 3x4, or null */
+  const float *transform; /* the instance's transform: 3x4, or null */
   vlIdBox *box;
   bool space, outline, whole; /* requested boxes; whole: all points so far projected */
   uint32_t count;
@@ -54,9 +54,10 @@ static void add(Points *p, double x, double y, double z) {
   own[1] = y;
   own[2] = z;
   for (int i = 0; i < 3; i++)
-    world[i] = p->place ? (double)p->place[4 * i] * x + (double)p->place[4 * i + 1] * y +
-                              (double)p->place[4 * i + 2] * z + (double)p->place[4 * i + 3]
-                        : own[i];
+    world[i] = p->transform
+                   ? (double)p->transform[4 * i] * x + (double)p->transform[4 * i + 1] * y +
+                         (double)p->transform[4 * i + 2] * z + (double)p->transform[4 * i + 3]
+                   : own[i];
   if (++p->count == CHUNK)
     flush(p);
 }
@@ -133,7 +134,7 @@ uint64_t vl_box_points(const vlWorldShape *s) {
   return rings ? (uint64_t)RINGS * AROUND : 8 * (uint64_t)s->faces;
 }
 
-static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {
+static Points begin(const vlCamera *camera, vlIdBox *box, const float *transform) {
   for (int k = 0; k < 3; k++) {
     box->low[k] = INFINITY;
     box->high[k] = -INFINITY;
@@ -144,9 +145,9 @@ static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {
   }
   for (int i = 0; i < 16; i++)
     box->world_from_box[i] = i % 5 == 0;
-  for (int i = 0; i < 12 && place; i++)
-    box->world_from_box[i] = (double)place[i];
-  return (Points){.camera = camera, .place = place, .box = box, .whole = true};
+  for (int i = 0; i < 12 && transform; i++)
+    box->world_from_box[i] = (double)transform[i];
+  return (Points){.camera = camera, .transform = transform, .box = box, .whole = true};
 }
 
 static void end(Points *p) {

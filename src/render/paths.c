@@ -3,7 +3,6 @@
 #include "velo/paths.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/cancel.h"

@@ -64,12 +64,13 @@ void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, i
                    rows + k * stride);
 }
 
-/* Whether a sample counts in the pixel of the block that is nearest along an axis. place: its
- * pixel, from the grid's edge; at: its film point, from its pixel's corner. The same bits as
- * its weight. */
+/* Whether a sample counts in the pixel of the block that is nearest along an axis. position:
+ * its pixel, from the grid's edge; at: its film point, from its pixel's corner. The same bits
+ * as its weight. */
 static bool reaches(const vlFilterCurve *curve, uint32_t border, uint32_t pixels,
-                    uint32_t place, float at) {
-  int32_t first = (int32_t)border, last = (int32_t)(border + pixels) - 1, own = (int32_t)place;
+                    uint32_t position, float at) {
+  int32_t first = (int32_t)border, last = (int32_t)(border + pixels) - 1,
+          own = (int32_t)position;
   int32_t nearest = own < first ? first : own > last ? last : own;
   return vl_filter_curve_at(curve, at - (0.5f + (float)(nearest - own))) > 0.0f;
 }

@@ -171,21 +171,21 @@ static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
   uint32_t *start = run->counts, paths = inner->paths, groups = inner->groups,
            each = paths / groups;
   memset(start, 0, ((size_t)paths + 1) * sizeof *start);
-#define PLACE(X) ((X)->path % groups * each + (X)->path / groups)
+#define SLOT(X) ((X)->path % groups * each + (X)->path / groups)
   for (uint32_t i = 0; i < count; i++)
-    start[PLACE(&run->vertices[i]) + 1]++;
+    start[SLOT(&run->vertices[i]) + 1]++;
   for (uint32_t i = 0; i < paths; i++)
     start[i + 1] += start[i];
   for (uint32_t g = 0; g <= groups; g++)
     inner->start[g] = start[g * each];
   uint32_t *passed = run->passed ? run->sorted_passed : NULL;
   for (uint32_t i = 0; i < count; i++) {
-    uint32_t at = start[PLACE(&run->vertices[i])]++;
+    uint32_t at = start[SLOT(&run->vertices[i])]++;
     sorted[at] = run->vertices[i];
     if (passed)
       passed[at] = run->passed[i];
   }
-#undef PLACE
+#undef SLOT
   for (uint32_t k = 1; k < count; k++) {
     vlLightVertex moving = sorted[k];
     uint32_t at = k, with = passed ? passed[k] : 0;
@@ -249,9 +249,9 @@ static float shared_number(uint32_t seed, uint32_t index) {
 
 /* The same in base 3: with base 2, wavelength and time would be correlated. */
 static float shared_time(const vlTwoWayRun *run, uint32_t index) {
-  double turn = vl_hash2(run->pass_seed, time_seed) * 0x1p-32, place = 1;
+  double turn = vl_hash2(run->pass_seed, time_seed) * 0x1p-32, digit = 1;
   for (uint32_t x = index; x > 0; x /= 3)
-    turn += (x % 3) * (place /= 3);
+    turn += (x % 3) * (digit /= 3);
   return fminf((float)(turn - floor(turn)), VL_ONE_MINUS_EPSILON);
 }
 

@@ -3,8 +3,6 @@
  * the larger bound of its inputs, for a product the product of the bounds, for an image its
  * brightest texel. */
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/file.h"

@@ -2,7 +2,6 @@
  * or a wrong image, whether the media of nested solids agree, and whether the scene is on the
  * right side of portals. */
 #include <math.h>
-#include <string.h>
 
 #include "math/double3.h"
 #include "scene/check.h"

@@ -2,7 +2,6 @@
  * missing uvs, and transmissive solids that are open or whose normals point inwards. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/free.h"
 #include "math/double3.h"

@@ -22,7 +22,7 @@ enum {
   BLOCK = 32            /* faces in a row that have a box */
 };
 
-/* A mesh at a place in the world. */
+/* A mesh with its transform to the world. */
 typedef struct Placed {
   const vlShapeDef *def;
   const vlExtent *blocks; /* the shape's */
@@ -204,8 +204,8 @@ static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size
   return true;
 }
 
-static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape,
-                  const vlMat4 *world_from_group, bool fixed) {
+static bool survey_mesh(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape,
+                        const vlMat4 *world_from_group, bool fixed) {
   if (!make_blocks(context, s, d, shape))
     return false;
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
@@ -229,7 +229,7 @@ static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t sha
 }
 
 /* False: memory is exhausted, or the scene is too large. */
-static bool place_all(const vlScene *scene, Survey *s) {
+static bool survey_meshes(const vlScene *scene, Survey *s) {
   uint64_t faces = 0, count = scene->shapes.count + scene->instances.count;
   for (size_t i = 0; i < scene->shapes.count; i++)
     faces += scene->shapes.items[i].faces;
@@ -243,7 +243,7 @@ static bool place_all(const vlScene *scene, Survey *s) {
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *d = &scene->shapes.items[i];
     if (d->kind == VL_SHAPE_TRIANGLES && !d->group.index && d->faces &&
-        !place(scene->context, s, d, i, &identity, true))
+        !survey_mesh(scene->context, s, d, i, &identity, true))
       return false;
   }
   for (size_t k = 0; k < scene->instances.count; k++) {
@@ -252,7 +252,7 @@ static bool place_all(const vlScene *scene, Survey *s) {
       const vlShapeDef *d = &scene->shapes.items[i];
       bool member = d->group.index && d->group.index == scene->instances.items[k].group.index;
       if (member && d->kind == VL_SHAPE_TRIANGLES && d->faces &&
-          !place(scene->context, s, d, i, &m, false))
+          !survey_mesh(scene->context, s, d, i, &m, false))
         return false;
     }
   }
@@ -416,7 +416,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
   Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
   closed->shell = vl_alloc_zero(scene->context, scene->shapes.count + 1, sizeof *closed->shell);
   bool ok = s && closed->shell, found = false;
-  if (ok && place_all(scene, s)) {
+  if (ok && survey_meshes(scene, s)) {
     double covered, front;
     aim(s, box, eye);
     vl_parallel_for(scene->context, RAYS, cast, s);

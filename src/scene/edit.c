@@ -162,8 +162,8 @@ static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
       return checked;                                                               \
     if (!(def))                                                                     \
       return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);            \
-    vlSource place = (def)->source; /* its file's name outlives the change */       \
-    if (!vl_scene_copy_source(scene, &place))                                       \
+    vlSource source = (def)->source; /* its file's name outlives the change */      \
+    if (!vl_scene_copy_source(scene, &source))                                      \
       return take_error(scene, error);                                              \
     size_t blocks = (scene)->blocks.count, images = (scene)->images.count;          \
     size_t count = (scene)->array.count;                                            \

@@ -2,7 +2,6 @@
 #include "scene/lamps.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "math/elementary.h"
 #include "math/transform.h"

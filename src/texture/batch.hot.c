@@ -267,7 +267,7 @@ void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
     blue = blue > most ? most : blue;
     float m = vl_max(red, vl_max(green, blue));
     float scale = albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
-    vlRgbPlace at = vl_rgb_place(red * inv, green * inv, blue * inv);
+    vlRgbPoint at = vl_rgb_point(red * inv, green * inv, blue * inv);
     vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at),
                    vl_rgb_coefficient(p, 2, at)};
     value[0][k] = scale * vl_sigmoid(s, lambda[0][k]);

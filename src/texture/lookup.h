@@ -50,10 +50,7 @@ static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextu
 }
 
 static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
-  const float *m = node->texture_from_world;
-  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
-                 m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+  return vl_affine_point(node->texture_from_world, p);
 }
 
 static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at) {
@@ -327,7 +324,7 @@ static inline bool vl_two_levels(const vlTextureNode *node, float level) {
   return node->filter != VL_FILTER_BILINEAR && level - (float)(uint32_t)level > 0.0f;
 }
 /* Where tap k is, in lengths of the footprint from its middle. */
-static inline float vl_tap_place(float inv_taps, uint32_t k) {
+static inline float vl_tap_offset(float inv_taps, uint32_t k) {
   return 0.5f * inv_taps - 0.5f + (float)k * inv_taps;
 }
 
@@ -341,8 +338,8 @@ static inline uint32_t vl_lookup_squares(const vlTextureNode *node, const vlMipm
   uint32_t levels = vl_two_levels(node, at->plan.level) ? 2 : 1, count = 0;
   float inv = 1.0f / (float)at->plan.taps;
   for (uint32_t k = 0; k < at->plan.taps; k++) {
-    float place = vl_tap_place(inv, k), s = at->s + place * at->plan.s,
-          t = at->t - place * at->plan.t;
+    float offset = vl_tap_offset(inv, k), s = at->s + offset * at->plan.s,
+          t = at->t - offset * at->plan.t;
     for (uint32_t level = 0; level < levels; level++) {
       int32_t x, y;
       if (!vl_texel_square(mip, (uint32_t)at->plan.level + level, s, t, node->wrap,
@@ -389,7 +386,7 @@ static inline __attribute__((always_inline)) vlTexel vl_image_value(
     bool both = vl_two_levels(node, plan.level);
     float inv = 1.0f / (float)plan.taps, f = plan.level - (float)level;
     for (uint32_t k = 0; k < plan.taps; k++) {
-      float place = vl_tap_place(inv, k), x = s + place * plan.s, y = t - place * plan.t;
+      float offset = vl_tap_offset(inv, k), x = s + offset * plan.s, y = t - offset * plan.t;
       vlTexel a = squares ? vl_blend_texels(mip, &mip->levels[level], squares++)
                           : vl_bilinear_2(mip, level, x, y, node->wrap, node->wrap_t);
       if (both) {

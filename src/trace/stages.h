@@ -584,10 +584,6 @@ static inline float vl_power_heuristic(float a, float b) {
   return a2 < VL_INFINITY ? (a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f) : 1.0f;
 }
 
-static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
-  return vl_vec3(x[i], y[i], z[i]);
-}
-
 /* How surface lane i receives light, and how the point that ray i left did. */
 static inline __attribute__((always_inline)) vlReceiver vl_receiver(const vlSurface *f,
                                                                     uint32_t i) {

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "scene/scene.h"
+#include "world/part.h"
 #include "world/world.h"
 
 /* ---- parts (part.h)
@@ -211,7 +212,7 @@ void vl_world_destroy(vlWorld *world) {
   vl_free(c, world);
 }
 
-vlResult vl_world_placed(vlSource source, vlError *error, vlResult r) {
+vlResult vl_world_locate_error(vlSource source, vlError *error, vlResult r) {
   if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line)
     return r;
   char message[sizeof error->message];
@@ -221,4 +222,16 @@ vlResult vl_world_placed(vlSource source, vlError *error, vlResult r) {
 
 void vl_world_info(const vlWorld *world, vlWorldInfo *info) {
   *info = world->info;
+}
+
+void vl_part_release(vlPart *part) {
+  if (atomic_fetch_sub(&part->users, 1) > 1)
+    return;
+  vlContext *context = part->context;
+  if (part->destroy)
+    part->destroy(context, part->object);
+  for (size_t i = 0; i < part->blocks.count; i++)
+    vl_free(context, part->blocks.items[i]);
+  VL_ARRAY_FREE(context, &part->blocks);
+  vl_free(context, part);
 }

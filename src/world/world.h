@@ -359,7 +359,7 @@ void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3]
 /* During the build: CANCELLED if it must stop. name, fraction: as in vlStep. */
 vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, vlError *error);
 /* Returns r. Adds the source location to an error that has none. */
-vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
+vlResult vl_world_locate_error(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);
 /* Sets *to to a new block owned by the world, with a copy of the numbers; leaves *to unchanged

@@ -91,7 +91,7 @@ scene syntax.pbrt 'Shape "sphere" "float radius" [1 "'
 finds 3 syntax 'syntax\.pbrt:4:34: error: unclosed string' syntax.pbrt
 printf 'Shape "sphere"\nShape "sphere"\n' >fragment.pbrt
 finds 3 a_fragment_is_one_error '^1 error, ' fragment.pbrt
-finds 3 and_ends_the_reading 'note: nothing after this place was looked at' fragment.pbrt
+finds 3 and_ends_the_reading 'note: nothing after this line was looked at' fragment.pbrt
 
 scene unused.pbrt 'Texture "t" "spectrum" "constant" "rgb value" [1 0 0]' 'MakeNamedMaterial "m" "string type" "diffuse"' \
   'ObjectBegin "o" Shape "sphere" ObjectEnd' 'MakeNamedMedium "fog" "string type" "homogeneous"' \

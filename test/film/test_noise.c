@@ -62,7 +62,7 @@ static void blocks_of_a_crop(void **state) {
   uint32_t pixels = 0;
   for (uint32_t i = 0; i < 9; i++) {
     uint32_t place[4];
-    vl_film_block_place(crop_, i, place);
+    vl_film_block_window(crop_, i, place);
     pixels += (place[2] - place[0]) * (place[3] - place[1]);
     assert_int_equal(vl_film_block_at(crop_, place[0], place[1]), i);
     assert_int_equal(vl_film_block_at(crop_, place[2] - 1, place[3] - 1), i);
@@ -111,7 +111,7 @@ static void bound_holds(void **state) {
     vlFilm *film = noisy_film(context, 0.5f, 0.05f, seed);
     for (uint32_t i = 0; i < 6; i++) {
       uint32_t place[4];
-      vl_film_block_place(crop_, i, place);
+      vl_film_block_window(crop_, i, place);
       double pixels = (double)((place[2] - place[0]) * (place[3] - place[1])), noise;
       noise = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1);
       double errors = (noise * noise / square - 1) / sqrt(2.0 / (SPP - 1) / pixels);

@@ -2,6 +2,7 @@
 #include "sample_images.h"
 
 #include "base/cookie.h"
+#include "color/color.h"
 #include "image/pixel.h"
 
 static void test_create(void **state) {

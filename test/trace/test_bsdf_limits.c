@@ -355,10 +355,10 @@ static void special(void **state) {
               b->pdf[3] == 0);
   /* the closed form itself */
   const vlCoatTable *t = s->coats[1];
-  vlCoatPlace p = vl_coat_place(0.8f);
+  vlCoatCell p = vl_coat_cell(0.8f);
   const float *q = t->transmittance[0] + p.first;
   double ti = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
-  p = vl_coat_place(b->oz[0]);
+  p = vl_coat_cell(b->oz[0]);
   q = t->transmittance[0] + p.first;
   double to = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t), x = 0.5 * (double)t->back[0],
          series = 1 + x + x * x + x * x * x + x * x * x * x;

@@ -100,7 +100,7 @@ static void walk(Walk *tally, statRng *rng, double cos_o, double eta, double tau
 }
 
 static double through(const float *row, double c) {
-  vlCoatPlace p = vl_coat_place((float)c);
+  vlCoatCell p = vl_coat_cell((float)c);
   const float *q = row + p.first;
   return (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
 }

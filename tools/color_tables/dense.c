@@ -250,7 +250,7 @@ static void make_spaces(const state *s, space spaces[SPACE_COUNT]) {
  * -----------------------------------------------------------------------------------------------------
  */
 
-static void write_floats(FILE *file, const float *v, int count, int stride) {
+void write_floats(FILE *file, const float *v, int count, int stride) {
   for (int i = 0; i < count; i++) {
     fprintf(file, "%s%.9g%s,", i % 10 ? " " : "\n    ", (double)v[i * stride],
             v[i * stride] == floorf(v[i * stride]) ? ".0f" : "f");
@@ -283,7 +283,9 @@ bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
   static float shares[LAMBDA_COUNT][3];
   if (!make_channels(&spaces[0], shares))
     return false;
-  fprintf(file, "/* Written by tools/color_tables. */\n#include \"color/tables.h\"\n\n");
+  fprintf(
+      file,
+      "/* Written by tools/color_tables. */\n#include \"color/sensor.h\"\n#include \"color/tables.h\"\n\n");
   fprintf(file, "const double vl_table_y_integral = %.17g;\n", y_integral(&all));
   fprintf(file, "const double vl_table_daylight[3][VL_DAYLIGHT_COUNT] = {");
   for (int k = 0; k < 3; k++)
@@ -327,5 +329,6 @@ bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
     fprintf(file, "%d},", spaces[i].illuminant);
   }
   fprintf(file, "\n};\n");
+  write_curves(file);
   return true;
 }

@@ -26,6 +26,10 @@ bool make_channels(const space *srgb, float shares[LAMBDA_COUNT][3]);
  */
 void make_spectra(space spaces[SPACE_COUNT]);
 bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]);
+/* Writes count values, each the stride-th, as members of an initialiser. */
+void write_floats(FILE *file, const float *v, int count, int stride);
+/* In curves.c. */
+void write_curves(FILE *file);
 /* In rgb.c: computes the coefficient table of one space: 3 N^3 colours with 3 floats each. */
 void solve_space(const space *s, float *coefficients);
 

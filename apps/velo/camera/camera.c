@@ -1,9 +1,7 @@
 /* camera/camera.c: see camera.h. Also `velo camera convert`. */
 #include "camera/camera.h"
 
-#include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"

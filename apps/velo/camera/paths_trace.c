@@ -7,13 +7,13 @@
 #include "velo/channels.h"
 
 /* A path to be put in order. */
-typedef struct Place {
+typedef struct Rank {
   double share;
   uint32_t index;
-} Place;
+} Rank;
 
 static int larger_first(const void *a, const void *b) {
-  const Place *i = a, *j = b;
+  const Rank *i = a, *j = b;
   if (!(i->share == j->share))
     return !isfinite(i->share) || i->share > j->share ? -1 : 1;
   return i->index < j->index ? -1 : i->index > j->index;
@@ -21,18 +21,18 @@ static int larger_first(const void *a, const void *b) {
 
 static uint32_t *make_order(const vlPixelPaths *paths, bool by_sample) {
   uint32_t count = paths->count, *order = malloc(count * sizeof *order);
-  Place *places = malloc(count * sizeof *places);
-  for (uint32_t i = 0; places && i < count; i++)
-    places[i] = (Place){.share = fabs(paths_share(&paths->paths[i])), .index = i};
-  if (places && !by_sample)
-    qsort(places, count, sizeof *places, larger_first);
-  for (uint32_t i = 0; places && order && i < count; i++)
-    order[i] = places[i].index;
-  if (!places) {
+  Rank *ranks = malloc(count * sizeof *ranks);
+  for (uint32_t i = 0; ranks && i < count; i++)
+    ranks[i] = (Rank){.share = fabs(paths_share(&paths->paths[i])), .index = i};
+  if (ranks && !by_sample)
+    qsort(ranks, count, sizeof *ranks, larger_first);
+  for (uint32_t i = 0; ranks && order && i < count; i++)
+    order[i] = ranks[i].index;
+  if (!ranks) {
     free(order);
     order = NULL;
   }
-  free(places);
+  free(ranks);
   return order;
 }
 

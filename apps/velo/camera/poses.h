@@ -12,7 +12,7 @@ enum { MOST_CAMERAS = 200 };
  * errors, too. */
 vlResult poses_load(vlContext *context, const char *path, const vlCamera *base,
                     vlCamera **cameras, uint32_t *count, vlError *error);
-/* Distance at which their view planes are drawn; 0 if all stand at the same place. */
+/* Distance at which their view planes are drawn; 0 if all stand at the same point. */
 double poses_plane(const vlCamera *cameras, uint32_t count);
 
 #endif

@@ -3,7 +3,6 @@
  * affects the image; black squares are empty. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "camera/verify.h"
 #include "cli/vector.h"
@@ -126,7 +125,7 @@ int target_read_marker(const Target *target, int i, int j, const Image *image, d
   return code == marker_code(marker_of(target, i, j));
 }
 
-/* ---- size and place
+/* ---- size and pose
  * ----------------------------------------------------------------------------------------------
  */
 

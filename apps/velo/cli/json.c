@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates included).
  */

@@ -157,14 +157,14 @@ static void say(const char *kind, int status, const vlError *where, const char *
     report_json_end(&json);
     return;
   }
-  char place[700] = "", text[4096];
+  char location[700] = "", text[4096];
   if (file && column)
-    snprintf(place, sizeof place, "%s:%u:%u: ", file, line, column);
+    snprintf(location, sizeof location, "%s:%u:%u: ", file, line, column);
   else if (file && line)
-    snprintf(place, sizeof place, "%s:%u: ", file, line);
+    snprintf(location, sizeof location, "%s:%u: ", file, line);
   else if (file)
-    snprintf(place, sizeof place, "%s: ", file);
-  snprintf(text, sizeof text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", place,
+    snprintf(location, sizeof location, "%s: ", file);
+  snprintf(text, sizeof text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", location,
            message);
   put_line(text);
 }

@@ -39,7 +39,7 @@ int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void report_usage_of(const char *file);
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no
- * place; may be null. */
+ * location; may be null. */
 int report_error(const vlError *error, vlResult result, const char *file);
 /* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after
  * reporting that it cannot be written. A reader that has seen enough (velo help render | head)
@@ -51,7 +51,7 @@ int report_reason(vlResult result, const char *file, const char *what);
 /* Reports a note. Prints nothing with --quiet or in JSON mode. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Receives each error and warning besides stderr. kind: "warning"; null: an error. what:
- * message and place. Called on the thread that reports. */
+ * message and location. Called on the thread that reports. */
 typedef void ReportFn(void *user, const char *kind, const vlError *what);
 /* Sets who receives them; null: nobody. */
 void report_listen(ReportFn *listener, void *user);

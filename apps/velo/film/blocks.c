@@ -109,7 +109,7 @@ static void take_part(Grid *grid, uint32_t x, uint32_t y, const uint32_t crop[4]
   const uint32_t blocks[4] = {x, y, x + width, y + height};
   for (int i = 0; i < 4; i++) {
     uint32_t pixel = (crop[i & 1] / FILM_BLOCK + blocks[i]) * FILM_BLOCK;
-    part->place[i] =
+    part->window[i] =
         i < 2 ? (pixel > crop[i] ? pixel : crop[i]) : (pixel < crop[i] ? pixel : crop[i]);
   }
   part->samples = parts->lists[id - 1];

@@ -13,7 +13,7 @@ typedef struct RangeList {
 
 /* A rectangle of pixels and its samples. */
 typedef struct FilmPart {
-  uint32_t place[4];
+  uint32_t window[4];
   RangeList samples;
 } FilmPart;
 

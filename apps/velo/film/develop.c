@@ -1,5 +1,4 @@
 /* film/develop.c: `velo film develop`: makes the images of a film file, without the scene. */
-#include <math.h>
 #include <string.h>
 
 #include "cli/commands.h"

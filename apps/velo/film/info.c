@@ -11,8 +11,8 @@
 
 enum { INFO_MISSING, INFO_CHECK };
 
-static bool is_whole(const uint32_t place[4], const uint32_t crop[4]) {
-  return memcmp(place, crop, 4 * sizeof *place) == 0;
+static bool is_whole(const uint32_t window[4], const uint32_t crop[4]) {
+  return memcmp(window, crop, 4 * sizeof *window) == 0;
 }
 
 static void print_ranges(const RangeList *list) {
@@ -72,8 +72,8 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
     print_ranges(&p->samples);
     if (planned)
       printf(" of %u", planned);
-    if (!is_whole(p->place, c))
-      printf(", pixels %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+    if (!is_whole(p->window, c))
+      printf(", pixels %u,%u,%u,%u", p->window[0], p->window[1], p->window[2], p->window[3]);
     putchar('\n');
   }
   if (!parts->count)
@@ -126,8 +126,8 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
       print_command(receipt);
       if (r->first || r->end != planned)
         printf(" --samples %u:%u", r->first, r->end);
-      if (!is_whole(p->place, crop))
-        printf(" --tiles %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+      if (!is_whole(p->window, crop))
+        printf(" --tiles %u,%u,%u,%u", p->window[0], p->window[1], p->window[2], p->window[3]);
       printf(" --film");
       snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
       print_word(name);

@@ -71,10 +71,10 @@ static void check_point(Check *c, const double origin[3], const double direction
 
 /* Checks channels that only have to be finite, and reads the film point. */
 static void check_plain(Check *c) {
-  const int places[] = {c->uv, c->albedo}, counts[] = {2, 3};
+  const int channels[] = {c->uv, c->albedo}, counts[] = {2, 3};
   for (int i = 0; i < 2; i++)
-    for (int k = 0; k < counts[i] && places[i] >= 0; k++)
-      check_note(c, RULE_FINITE, isfinite(c->pixel[places[i] + k]) ? 0 : (double)INFINITY);
+    for (int k = 0; k < counts[i] && channels[i] >= 0; k++)
+      check_note(c, RULE_FINITE, isfinite(c->pixel[channels[i] + k]) ? 0 : (double)INFINITY);
   for (int k = 0; k < 3 && c->error >= 0; k++) /* infinity: too few samples */
     check_note(c, RULE_FINITE, c->pixel[c->error + k] >= 0 ? 0 : (double)INFINITY);
   if (c->samples >= 0 && c->spp > 0) {

@@ -1,10 +1,9 @@
 /* image/denoise.c: `velo image denoise`: writes a denoised copy of a rendered image. */
-#include <string.h>
 
+#include "image/denoise.h"
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
-#include "image/denoise.h"
 #include "image/image.h"
 #include "render/job.h"
 #include "render/output_names.h"

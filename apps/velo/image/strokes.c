@@ -1,5 +1,4 @@
 /* image/strokes.c: overlay_text: letters as strokes. */
-#include <string.h>
 
 #include "image/overlay.h"
 

@@ -55,8 +55,8 @@ vlResult channels_make_visible(vlContext *context, vlImage **ids);
 vlResult channels_describe(const Channels *c, vlImage *image);
 /* Sets the header attribute of the mode, if there are channels. */
 vlResult channels_describe_mode(const Channels *c, vlImage *image);
-/* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, the box of each
- * id in the image. `right` (may be null): the other view of the same file, whose ids are
+/* Writes PATH.ids.json: type, name, material, location in its file and, if wanted, the box of
+ * each id in the image. `right` (may be null): the other view of the same file, whose ids are
  * included. Nothing for the standard output. Returns STATUS_OK or the exit code. */
 int channels_write_ids(const Channels *c, const Channels *right, vlContext *context,
                        const vlWorld *world, const char *path);

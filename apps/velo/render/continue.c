@@ -128,10 +128,10 @@ static int find_extent(const Source *source, uint32_t crop[4], vlSampleRange *ra
                  : refuse(source, STATUS_SCENE, "%s: the film has no samples", source->path);
     if (!block.range_count)
       continue;
-    const uint32_t place[4] = {block.x0, block.y0, block.x1, block.y1};
+    const uint32_t window[4] = {block.x0, block.y0, block.x1, block.y1};
     for (int i = 0; i < 4; i++)
-      if (!any || (i < 2 ? place[i] < crop[i] : place[i] > crop[i]))
-        crop[i] = place[i];
+      if (!any || (i < 2 ? window[i] < crop[i] : window[i] > crop[i]))
+        crop[i] = window[i];
     if (!any)
       *range = block.ranges[0];
     if (block.ranges[block.range_count - 1].end > range->end)

@@ -1,7 +1,6 @@
 /* render/describe.c: describes what a job would render, as text or JSON (--dry-run). See job.h.
  */
 #include <math.h>
-#include <string.h>
 
 #include "cli/context.h"
 #include "cli/kinds.h"

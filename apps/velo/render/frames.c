@@ -114,9 +114,9 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job,
                            &camera->eyes[i], &error);
   if (result == VL_OK)
     return make_film(frames, context, camera);
-  vlError place = camera->job.camera_place;
-  snprintf(place.message, sizeof place.message, "%s", error.message);
-  return report_error(&place, result, path);
+  vlError location = camera->job.camera_location;
+  snprintf(location.message, sizeof location.message, "%s", error.message);
+  return report_error(&location, result, path);
 }
 
 static int load_file(vlContext *context, const char *path, const Arguments *arguments,
@@ -287,8 +287,8 @@ bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outpu
 }
 
 /* Moves a camera whose pose is relative to the frame. */
-static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *from,
-                      vlCamera *camera, vlError *error) {
+static vlResult put_camera(const Frames *frames, const Frame *frame, const vlCamera *from,
+                           vlCamera *camera, vlError *error) {
   double pose[16];
   *camera = *from;
   if (!frames->trajectory)
@@ -307,12 +307,12 @@ static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *
 
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera,
                        vlError *error) {
-  return place(frames, frame, &frame->camera->eyes[view], camera, error);
+  return put_camera(frames, frame, &frame->camera->eyes[view], camera, error);
 }
 
 vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera,
                        vlError *error) {
-  return place(frames, frame, &frame->camera->middle, camera, error);
+  return put_camera(frames, frame, &frame->camera->middle, camera, error);
 }
 
 /* ---- names

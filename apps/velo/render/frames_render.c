@@ -70,7 +70,7 @@ static void show(Run *run, const Frame *frame) {
 }
 
 /* Text that names the frame in messages. */
-static void frame_place(const Run *run, const Frame *frame, char *text, size_t size) {
+static void frame_name(const Run *run, const Frame *frame, char *text, size_t size) {
   if (!run->frames->trajectory)
     snprintf(text, size, "%s", frame->camera->job.path);
   else
@@ -121,14 +121,14 @@ static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **
 }
 
 /* Renders the film of a view and develops it. */
-static int render_film(Run *run, const char *place, int view, Job *job, FrameImage *image) {
+static int render_film(Run *run, const char *name, int view, Job *job, FrameImage *image) {
   vlError error = {0};
   vlRenderStats stats = {0};
   vlResult result =
       vl_render(run->world, &job->camera, run->film, &job->defs->render, &stats, &error);
   add_stats(&run->total, &stats);
   if (result != VL_OK && result != VL_CANCELLED)
-    return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
+    return report_failure(STATUS_OTHER, "%s: %s", name, error.message);
   image->spp = vl_film_spp(run->film);
   int status = image->spp ? film_keeper_finish(&run->keeper, run->film) : STATUS_OK;
   if (status == STATUS_OK && image->spp)
@@ -145,13 +145,13 @@ static int render_film(Run *run, const char *place, int view, Job *job, FrameIma
 
 /* Makes the job of a view, with its camera. */
 static int make_view(Run *run, const Frame *frame, int view, Job *job) {
-  char place[200];
+  char name[200];
   vlError error = {0};
   *job = frame->camera->job;
-  frame_place(run, frame, place, sizeof place);
+  frame_name(run, frame, name, sizeof name);
   vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
   if (result != VL_OK)
-    return report_error(&error, result, place);
+    return report_error(&error, result, name);
   return lens_autofocus(job, NULL, run->world);
 }
 
@@ -174,10 +174,10 @@ static int check_films(Run *run) {
 /* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a
  * whole pass is done. */
 static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
-  char place[200];
+  char name[200];
   vlFilm *own = NULL;
   Job *job = &image->jobs[view];
-  frame_place(run, frame, place, sizeof place);
+  frame_name(run, frame, name, sizeof name);
   int status = make_view(run, frame, view, job);
   if (status >= 0)
     return status;
@@ -185,7 +185,7 @@ static int render_view(Run *run, const Frame *frame, int view, FrameImage *image
   job->defs->render.progress_user = run;
   status = open_film(run, frame, view, job, &own);
   if (status < 0)
-    status = render_film(run, place, view, job, image);
+    status = render_film(run, name, view, job, image);
   film_keeper_free(&run->keeper);
   vl_film_destroy(own);
   return status;

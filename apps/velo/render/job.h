@@ -127,9 +127,9 @@ typedef struct Job {
   /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the
    * size of its description */
   vlSceneDefs *defs;
-  vlError
-      camera_place; /* place of the camera in its file; only file, line and column are used */
-  vlCamera camera;  /* at the film's size */
+  vlError camera_location; /* location of the camera in its file; only file, line and column are
+                              used */
+  vlCamera camera;         /* at the film's size */
   const ReceiptCamera *receipt_camera; /* replaces --camera FILE; null: none */
   const struct ReceiptPlan *receipt;   /* receipts of the images; null: none */
   bool records_files;                  /* for receipts */

@@ -72,12 +72,12 @@ const Choice isa_choices[] = {
 
 /* File, line and column of the camera. The name is copied, since the scene's string ends with
  * the scene. */
-static vlError camera_place(const vlSceneDefs *defs, const char *path) {
+static vlError camera_location(const vlSceneDefs *defs, const char *path) {
   vlSource source = defs->camera_source;
-  vlError place = {.line = source.file ? source.line : 0,
-                   .column = source.file ? source.column : 0};
-  snprintf(place.file, sizeof place.file, "%s", source.file ? source.file : path);
-  return place;
+  vlError location = {.line = source.file ? source.line : 0,
+                      .column = source.file ? source.column : 0};
+  snprintf(location.file, sizeof location.file, "%s", source.file ? source.file : path);
+  return location;
 }
 
 /* Takes camera and image size from a camera file. Returns -1, or the exit code after reporting
@@ -96,8 +96,8 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
   defs->film.height = record.camera.height;
   const uint32_t whole[4] = {0, 0, defs->film.width, defs->film.height};
   memcpy(defs->film.crop, whole, sizeof whole);
-  job->camera_place = (vlError){0};
-  snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
+  job->camera_location = (vlError){0};
+  snprintf(job->camera_location.file, sizeof job->camera_location.file, "%s", path);
   return -1;
 }
 
@@ -125,7 +125,7 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
   if (result == VL_OK)
     result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
-    job->camera_place = camera_place(vl_scene_defs(other), path);
+    job->camera_location = camera_location(vl_scene_defs(other), path);
     result = vl_scene_take_camera(scene, other, &error);
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
@@ -291,9 +291,9 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
   vlResult result = vl_camera_make(
       &def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
   if (result != VL_OK) {
-    snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s",
+    snprintf(job->camera_location.message, sizeof job->camera_location.message, "%s",
              error.message[0] ? error.message : vl_result_name(result));
-    return report_error(error.file[0] ? &error : &job->camera_place, result, NULL);
+    return report_error(error.file[0] ? &error : &job->camera_location, result, NULL);
   }
   if (camera.width == width && camera.height == height) {
     job->camera = camera;
@@ -358,8 +358,8 @@ int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const c
   defs->film.height = def->height;
   const uint32_t whole[4] = {0, 0, def->width, def->height};
   memcpy(defs->film.crop, whole, sizeof whole);
-  job->camera_place = (vlError){.line = 0};
-  snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
+  job->camera_location = (vlError){.line = 0};
+  snprintf(job->camera_location.file, sizeof job->camera_location.file, "%s", path);
   job->defs = defs;
   int status = lens_override(NULL, defs, arguments);
   return status < 0 ? fit_camera(job, defs, arguments) : status;
@@ -399,7 +399,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
   vlSceneDefs *defs = vl_scene_defs(scene);
   job->path = path;
   job->defs = defs;
-  job->camera_place = camera_place(defs, path);
+  job->camera_location = camera_location(defs, path);
   if (v[RENDER_CAMERA].given && !scene_camera_is_own(path, arguments)) {
     int status = -1;
     vl_context_record_files(context, false); /* the receipt holds the camera itself */

@@ -27,11 +27,11 @@ static int refocus(vlScene *scene, const vlSceneDefs *defs, double distance) {
   vlResult result = vl_scene_refocus(scene, distance, &error);
   if (result == VL_OK)
     return -1;
-  const vlSource *place = &defs->camera_source;
-  if (place->file) {
-    snprintf(error.file, sizeof error.file, "%s", place->file);
-    error.line = place->line;
-    error.column = place->column;
+  const vlSource *source = &defs->camera_source;
+  if (source->file) {
+    snprintf(error.file, sizeof error.file, "%s", source->file);
+    error.line = source->line;
+    error.column = source->column;
   }
   return report_error(&error, result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
 }
@@ -97,8 +97,9 @@ int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world) {
   vlError error = {0};
   vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, &error);
   if (result != VL_OK) {
-    snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s", error.message);
-    return report_error(&job->camera_place,
+    snprintf(job->camera_location.message, sizeof job->camera_location.message, "%s",
+             error.message);
+    return report_error(&job->camera_location,
                         result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
   }
   pixel[0] = pixel[1] = VL_UNSET;

@@ -2,7 +2,6 @@
  * description, and prints all findings with their positions to stdout. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"
@@ -81,7 +80,7 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
     report_message(list, &error);
   if (!read && r == VL_ERROR_SCENE)
     add(list, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, arguments->operands[0], 0, 0,
-        "nothing after this place was looked at");
+        "nothing after this line was looked at");
   vlCheckDef def = vl_default_check_def();
   def.images = !arguments->values[CHECK_NO_IMAGES].given;
   if (read)
@@ -224,7 +223,7 @@ const Command scene_check_command = {
     .text =
         "Reads a scene, continues after errors, and prints all findings, each with its kind "
         "and "
-        "its place\n"
+        "its location\n"
         "in the file: missing, damaged and invalid files; unused and overwritten names; solids "
         "of "
         "glass\n"

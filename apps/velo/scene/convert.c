@@ -1,8 +1,5 @@
 /* scene/convert.c: `velo scene convert`: converts a scene to another format and reports losses.
  */
-#include <stdio.h>
-#include <string.h>
-#include <strings.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"

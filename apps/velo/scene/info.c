@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "cli/commands.h"
@@ -229,7 +228,7 @@ static void json_box(Json *json, const char *key, const double v[3]) {
   json_end(json, ']');
 }
 
-static void json_place(Json *json, const vlSource *source) {
+static void json_location(Json *json, const vlSource *source) {
   if (source->file)
     json_text(json, "file", source->file);
   if (source->line)
@@ -313,7 +312,7 @@ static void json_lights(Json *json, const Facts *f) {
     json_bool(json, "image", l.image);
     if (l.faces)
       json_integer(json, "faces", (int64_t)l.faces);
-    json_place(json, &l.source);
+    json_location(json, &l.source);
     json_end(json, '}');
   }
   json_end(json, ']');
@@ -327,7 +326,7 @@ static void json_unused(Json *json, const Facts *f) {
       continue;
     json_begin(json, NULL, '{');
     json_text(json, "message", u->message);
-    json_place(json, &u->source);
+    json_location(json, &u->source);
     json_end(json, '}');
   }
   json_end(json, ']');

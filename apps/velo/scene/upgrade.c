@@ -47,7 +47,7 @@ static unsigned count_text(List *list, const char *text) {
   return 1;
 }
 
-static void take_note(void *user, vlUpgradeNote note, const vlError *place,
+static void take_note(void *user, vlUpgradeNote note, const vlError *location,
                       const char *message) {
   static const char *const kinds[] = {"", "lost: ", "wrote: "};
   List *list = user;
@@ -59,9 +59,9 @@ static void take_note(void *user, vlUpgradeNote note, const vlError *place,
     return;
   if (note == VL_UPGRADE_CHANGED && count_text(list, message) > SHOWN && !list->all)
     return;
-  text_print_plain(place->file);
-  if (place->line)
-    printf(":%u", place->line);
+  text_print_plain(location->file);
+  if (location->line)
+    printf(":%u", location->line);
   printf(": %s", kinds[note]);
   text_print_plain(message);
   putchar('\n');
@@ -131,7 +131,7 @@ const Command scene_upgrade_command = {
         "file names are adapted to it. Images of infinite lights become equal-area octahedral "
         "maps "
         "(.exr).\n"
-        "Prints each change, and everything that has no counterpart in pbrt-v4, with its place "
+        "Prints each change, and everything that has no counterpart in pbrt-v4, with its line "
         "in "
         "OLD.",
     .examples =

@@ -23,14 +23,14 @@ enum { VERIFY_MOST_RUNS = 24, VERIFY_MOST_MATERIALS = 32, VERIFY_MOST_NOTES = 16
 
 /* Where the scene is: as in its file; shifted, turned, scaled; or all of these. Its camera is
  * always moved with it. */
-typedef enum VerifyPlace {
+typedef enum VerifyPose {
   VERIFY_AS_IT_IS,
   VERIFY_SHIFTED,
   VERIFY_TURNED,
   VERIFY_SCALED,
   VERIFY_MOVED,
   VERIFY_PLACES
-} VerifyPlace;
+} VerifyPose;
 /* Which lights the scene has. A light is small if a ray cannot meet it: point, spot, distant
  * and so on. */
 typedef enum VerifyLights {
@@ -45,7 +45,7 @@ typedef enum VerifyLights {
 typedef struct VerifyRun {
   const char *name; /* "bidirectional, scaled" */
   vlTracer tracer;
-  VerifyPlace place;
+  VerifyPose pose;
   VerifyLights lights;
   bool sharp;     /* textures are not filtered */
   bool reference; /* by the reference renderer, a program of its own */
@@ -99,7 +99,7 @@ typedef struct Verify {
   double meets;   /* how much of the image a light path from the sky or a sun meets, as a number
                      of   independent paths */
   double matrix[VERIFY_PLACES][16]; /* world of the copy from the world of the file */
-  VerifyPlace place;                /* the scene's state */
+  VerifyPose pose;                  /* the scene's state */
   VerifyLights lights;
   vlEmissionId *emissions; /* of each shape, as in the file */
   uint32_t shapes, light_count;

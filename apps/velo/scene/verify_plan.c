@@ -2,7 +2,6 @@
  * compared. */
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "scene/verify.h"
 #include "velo/edit.h"
@@ -212,15 +211,15 @@ void verify_plan(Verify *v) {
                        .against = volpath});
   add(v, (VerifyRun){.name = "volpath, shifted",
                      .tracer = VL_TRACER_VOLPATH,
-                     .place = VERIFY_SHIFTED,
+                     .pose = VERIFY_SHIFTED,
                      .against = volpath});
   add(v, (VerifyRun){.name = "volpath, turned",
                      .tracer = VL_TRACER_VOLPATH,
-                     .place = VERIFY_TURNED,
+                     .pose = VERIFY_TURNED,
                      .against = volpath});
   add(v, (VerifyRun){.name = "volpath, scaled",
                      .tracer = VL_TRACER_VOLPATH,
-                     .place = VERIFY_SCALED,
+                     .pose = VERIFY_SCALED,
                      .against = volpath});
   const int both = caustics ? add(v, (VerifyRun){.name = "bidirectional, all lights",
                                                  .tracer = VL_TRACER_BIDIRECTIONAL,
@@ -228,6 +227,6 @@ void verify_plan(Verify *v) {
                             : first;
   add(v, (VerifyRun){.name = "bidirectional, moved",
                      .tracer = VL_TRACER_BIDIRECTIONAL,
-                     .place = VERIFY_MOVED,
+                     .pose = VERIFY_MOVED,
                      .against = both});
 }

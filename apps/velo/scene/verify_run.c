@@ -12,7 +12,7 @@
 
 enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096, LEAST_MET = 100 };
 
-/* ---- places
+/* ---- poses
  * ------------------------------------------------------------------------------------------------------
  */
 
@@ -61,26 +61,26 @@ static void choose_places(Verify *v, const double centre[3], double distance) {
   matrix_multiply(v->matrix[VERIFY_SCALED], v->matrix[VERIFY_MOVED], v->matrix[VERIFY_MOVED]);
 }
 
-static vlResult move_scene(Verify *v, VerifyPlace place, vlError *error) {
+static vlResult move_scene(Verify *v, VerifyPose pose, vlError *error) {
   double back[16], change[16];
-  if (place == v->place)
+  if (pose == v->pose)
     return VL_OK;
-  invert_similarity(v->matrix[v->place], back);
-  matrix_multiply(v->matrix[place], back, change);
-  v->place = place;
+  invert_similarity(v->matrix[v->pose], back);
+  matrix_multiply(v->matrix[pose], back, change);
+  v->pose = pose;
   return vl_scene_transform(v->scene, change, error);
 }
 
-static vlResult move_camera(const Verify *v, VerifyPlace place, vlCamera *camera,
+static vlResult move_camera(const Verify *v, VerifyPose pose, vlCamera *camera,
                             vlError *error) {
   double open[16], close[16];
   *camera = v->camera;
-  if (place == VERIFY_AS_IT_IS)
+  if (pose == VERIFY_AS_IT_IS)
     return VL_OK;
-  matrix_multiply(v->matrix[place], v->camera.world_from_camera, open);
+  matrix_multiply(v->matrix[pose], v->camera.world_from_camera, open);
   if (!v->camera.moves)
     return vl_camera_move(&v->camera, open, camera, error);
-  matrix_multiply(v->matrix[place], v->camera.world_from_camera_close, close);
+  matrix_multiply(v->matrix[pose], v->camera.world_from_camera_close, close);
   return vl_camera_travel(&v->camera, open, close, v->camera.pose_times, camera, error);
 }
 
@@ -115,15 +115,15 @@ static vlResult choose_lights(Verify *v, VerifyLights lights, vlError *error) {
 typedef struct Set {
   vlWorld *world;
   vlCamera camera;
-  VerifyPlace place;
+  VerifyPose pose;
   VerifyLights lights;
   bool evenly;
 } Set;
 
-/* Builds the world of a run, if *set is of another place or of other lights. */
+/* Builds the world of a run, if *set is of another pose or of other lights. */
 static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *error) {
   const bool same =
-      run->place == set->place && run->lights == set->lights && run->evenly == set->evenly;
+      run->pose == set->pose && run->lights == set->lights && run->evenly == set->evenly;
   if (set->world && same)
     return VL_OK;
   vlBuildDef build = v->job.defs->build;
@@ -131,12 +131,12 @@ static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *er
     build.light_sampler = VL_LIGHT_SAMPLER_UNIFORM;
   build.regularize = false; /* it changes the materials, and not all tracers know it */
   vl_world_destroy(set->world);
-  *set = (Set){.place = run->place, .lights = run->lights, .evenly = run->evenly};
-  vlResult result = move_scene(v, run->place, error);
+  *set = (Set){.pose = run->pose, .lights = run->lights, .evenly = run->evenly};
+  vlResult result = move_scene(v, run->pose, error);
   if (result == VL_OK)
     result = choose_lights(v, run->lights, error);
   if (result == VL_OK)
-    result = move_camera(v, run->place, &set->camera, error);
+    result = move_camera(v, run->pose, &set->camera, error);
   if (result == VL_OK)
     result = vl_world_build(v->scene, &build, &set->world, error);
   return result;
@@ -379,11 +379,11 @@ static vlResult count_rays(Verify *v, VerifyRun *run, const Set *set, vlFilm *fi
  * ----------------------------------------------------------------------------------------------------
  */
 
-/* Moved copies have as many rays as the scene at its own place. */
+/* Moved copies have as many rays as the scene in its own pose. */
 static bool takes_part(const VerifyRun *run, int look) {
   if (run->left_out)
     return false;
-  return look == VERIFY_TRIAL ? run->place == VERIFY_AS_IT_IS : look == 0 || run->again;
+  return look == VERIFY_TRIAL ? run->pose == VERIFY_AS_IT_IS : look == 0 || run->again;
 }
 
 static vlResult go(Verify *v, VerifyRun *run, Set *set, vlFilm *film, int look,

@@ -149,15 +149,15 @@ static void put_horizon(Json *json, const vlCamera *camera, const CameraPose *po
 /* The images of lines parallel to the axes, through the rays of the image's corners and middle,
  * up to their vanishing points. */
 static void put_vanishing_lines(Json *json, const vlCamera *camera, const CameraPose *pose) {
-  static const double places[5][2] = {
+  static const double positions[5][2] = {
       {0.02, 0.02}, {0.98, 0.02}, {0.02, 0.98}, {0.98, 0.98}, {0.5, 0.5}};
   if (camera->projection == VL_PROJECTION_ORTHOGRAPHIC)
     return;
   for (int axis = 0; axis < 3; axis++)
     for (int n = 0; n < 5; n++) {
       double o[3], d[3], p[3], mixed[3];
-      if (!vl_camera_unproject(camera, places[n][0] * camera->width,
-                               places[n][1] * camera->height, o, d))
+      if (!vl_camera_unproject(camera, positions[n][0] * camera->width,
+                               positions[n][1] * camera->height, o, d))
         continue;
       double sign = camera->world_from_camera[4 * axis + 2] < 0
                         ? -1

@@ -80,7 +80,7 @@ void *engine_load_chosen(void *user) {
  */
 
 /* Whether two cameras are described by the same numbers. */
-static bool same_place(const ViewCamera *a, const ViewCamera *b) {
+static bool same_pose(const ViewCamera *a, const ViewCamera *b) {
   const vlCamera *c = &a->made, *d = &b->made;
   return c->projection == d->projection && c->width == d->width && c->height == d->height &&
          c->fx == d->fx && c->fy == d->fy && c->cx == d->cx && c->cy == d->cy &&
@@ -117,7 +117,7 @@ bool engine_swap_model(Engine *e) {
                shown.made.height == e->scene_camera.made.height;
   /* the page's camera stays unless the file's camera changed, or it has parts of the old scene
    */
-  bool keep = !other && sized && same_place(&before, &e->scene_camera) &&
+  bool keep = !other && sized && same_pose(&before, &e->scene_camera) &&
               !shown.def.lens.optics && !shown.def.lens.aperture;
   if (taken && keep) {
     e->wanted.camera = e->history.cameras[0] = shown;

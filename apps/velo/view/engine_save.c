@@ -1,6 +1,5 @@
 /* view/engine_save.c: writes cameras and images into the folder in which the program was
  * started, and makes the command that renders the present image again. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -141,11 +141,11 @@ static size_t tile_bytes(const ViewFrame *frame, const uint32_t tile[4]) {
 }
 
 static uint8_t *put_tile(const ViewFrame *frame, const uint32_t tile[4], uint8_t *to) {
-  const uint16_t place[4] = {(uint16_t)tile[0], (uint16_t)tile[1],
-                             (uint16_t)(tile[2] - tile[0]), (uint16_t)(tile[3] - tile[1])};
-  size_t row = place[2] * pixel_size(frame), used = 0;
-  memcpy(to, place, sizeof place);
-  to += sizeof place;
+  const uint16_t rectangle[4] = {(uint16_t)tile[0], (uint16_t)tile[1],
+                                 (uint16_t)(tile[2] - tile[0]), (uint16_t)(tile[3] - tile[1])};
+  size_t row = rectangle[2] * pixel_size(frame), used = 0;
+  memcpy(to, rectangle, sizeof rectangle);
+  to += sizeof rectangle;
   for (uint32_t y = tile[1]; y < tile[3]; y++, used += row)
     memcpy(to + used,
            frame->pixels + ((size_t)y * frame->columns + tile[0]) * pixel_size(frame), row);

@@ -20,7 +20,7 @@ typedef struct ViewFrame {
   uint32_t serial;        /* number of the frame, from 1 */
   uint32_t change;        /* the last change that it shows */
   uint32_t width, height; /* the whole image, pixels */
-  uint32_t x0, y0;        /* place of the frame's first pixel in the image */
+  uint32_t x0, y0;        /* position of the frame's first pixel in the image */
   uint32_t scale;         /* a pixel of the frame covers scale x scale pixels of the image */
   uint32_t columns, rows; /* pixels of the frame */
   FrameFormat format;

@@ -2,7 +2,6 @@
  * waits for Ctrl-C. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 

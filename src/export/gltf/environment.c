@@ -4,8 +4,6 @@
  * Faces are PNG of 16 bits, RGBD: radiance = linear colour / D. D is a multiple of 1/255, so a
  * reader of 8 bits sees the same D. */
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "color/color.h"
 #include "export/export.h"
@@ -75,12 +73,8 @@ static void radiance(const Cube *cube, vlVec3 d, float sum[3]) {
         sum[c] += s->rgb[c];
       continue;
     }
-    const float *m = s->light_from_world, *k = s->to_srgb;
-    look_octahedral(s->map,
-                    vl_normalize(vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z,
-                                         m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                                         m[6] * d.x + m[7] * d.y + m[8] * d.z)),
-                    own);
+    const float *k = s->to_srgb;
+    look_octahedral(s->map, vl_normalize(vl_turn(s->light_from_world, d)), own);
     for (int c = 0; c < 3; c++) {
       float v = s->scale * (k[3 * c] * own[0] + k[3 * c + 1] * own[1] + k[3 * c + 2] * own[2]);
       sum[c] += v > 0 ? v : 0.0f;

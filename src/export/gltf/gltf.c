@@ -330,13 +330,13 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
       const vlShapeDef *d = &s->shapes.items[k];
       if (d->group.index != instance->group.index || mesh_of[k] < 0)
         continue;
-      json_t *place = node_of(d->group_from_shape);
+      json_t *shape = node_of(d->group_from_shape);
       if (s->groups.items[d->group.index - 1].shape_count == 1 &&
-          !json_object_get(place, "matrix") && !d->centers)
+          !json_object_get(shape, "matrix") && !d->centers)
         json_object_set_new(node, "mesh", json_integer(mesh_of[k]));
       else
         put_nodes(x, d, mesh_of[k], children);
-      json_decref(place);
+      json_decref(shape);
     }
     if (json_array_size(children))
       json_object_set(node, "children", children);

@@ -76,10 +76,10 @@ static void put(vlExport *x, const vlParameter *p, const void *def, bool spectru
   vlPbrtInput input = prepared->input;
   switch (p->type) {
     case VL_PARAMETER_BOOL:
-      PUT(" \"bool %s\" %s", p->name, *(const bool *)at ? "true" : "false");
-      break;
     case VL_PARAMETER_COUNT:
-      PUT(" \"integer %s\" [%u]", p->name, *(const uint32_t *)at);
+    case VL_PARAMETER_CHOICE:
+    case VL_PARAMETER_SPECTRUM:
+      vl_pbrt_parameter(x, p, def);
       break;
     case VL_PARAMETER_FLOAT:
       PUT(" \"float %s\" [%.9g]", p->name, k * (double)*(const float *)at);
@@ -92,17 +92,11 @@ static void put(vlExport *x, const vlParameter *p, const void *def, bool spectru
       break;
     case VL_PARAMETER_DOUBLE3:
       break; /* only cameras have parameters of this type */
-    case VL_PARAMETER_CHOICE:
-      PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]);
-      break;
     case VL_PARAMETER_STRING:
       PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at);
       break;
     case VL_PARAMETER_FILE:
       PUT(" \"string %s\" \"%s\"", p->name, prepared->file);
-      break;
-    case VL_PARAMETER_SPECTRUM:
-      vl_pbrt_spectrum(x, p->name, at);
       break;
     case VL_PARAMETER_EITHER_INPUT:
       if (spectrum)

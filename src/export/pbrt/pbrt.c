@@ -191,7 +191,7 @@ static void put_tracer(vlExport *x) {
  */
 
 /* Writes the light's transform. It includes the position when pbrt's kind has no "from". */
-static void put_place(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
+static void put_transform(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
   double m[16];
   memcpy(m, d->world_from_light, sizeof m);
   for (int i = 0; i < 3 && !vl_row_find(row, "from"); i++)
@@ -211,7 +211,7 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
       return false;
   }
   PUT("AttributeBegin\n");
-  put_place(x, row, d);
+  put_transform(x, row, d);
   if (d->medium.index)
     PUT("  MediumInterface \"\" \"medium%u\"\n", d->medium.index);
   PUT("  LightSource \"%s\"", row->name);

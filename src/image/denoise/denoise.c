@@ -107,7 +107,7 @@ static float get(const Denoise *d, uint32_t x, uint32_t y, int channel) {
   return vl_image_get(d->image, x, y, (uint32_t)channel);
 }
 
-static ptrdiff_t place(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
+static ptrdiff_t index_of(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
   return (ptrdiff_t)y * p->stride + (ptrdiff_t)x;
 }
 
@@ -131,7 +131,7 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
   const vlDenoiseChannels *from = &d->channels;
   float farthest = 1e-3f * d->nearest;
   for (uint32_t x = 0; x < p->width; x++) {
-    ptrdiff_t at = place(p, x, y);
+    ptrdiff_t at = index_of(p, x, y);
     for (int k = 0; k < VL_DENOISE_FEATURES && from->features; k++) {
       float v = get(d, x, y, from->feature[k]);
       if (!isfinite(v))
@@ -190,8 +190,8 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const Denoise *d = user;
   for (uint32_t x = 0; x < d->planes.width; x++)
-    if (d->planes.valid[place(&d->planes, x, y)] == 0.0f)
-      fill(&d->planes, place(&d->planes, x, y));
+    if (d->planes.valid[index_of(&d->planes, x, y)] == 0.0f)
+      fill(&d->planes, index_of(&d->planes, x, y));
 }
 
 /* ---- outliers
@@ -232,7 +232,7 @@ static void cap_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
   for (uint32_t x = 0; x < p->width; x++) {
-    ptrdiff_t at = place(p, x, y);
+    ptrdiff_t at = index_of(p, x, y);
     float v = mean3(p->color, at), factor = 1.0f;
     if (v > 0.0f && mean3(p->variance, at) > 0.25f * v * v) {
       float most = 4.0f * third_neighbour(p, at);
@@ -247,7 +247,7 @@ static void scale_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
   for (uint32_t x = 0; x < p->width; x++) {
-    ptrdiff_t at = place(p, x, y);
+    ptrdiff_t at = index_of(p, x, y);
     float factor = p->result[0][at];
     for (int c = 0; c < COLOR; c++) {
       p->color[c][at] *= factor;
@@ -305,7 +305,7 @@ static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
   const vlDenoisePlanes *p = &d->planes;
   float *to = vl_image_row(clean, y), filled[COLOR], variance[COLOR];
   for (uint32_t x = 0; x < p->width; x++, to += clean->channels) {
-    ptrdiff_t at = place(p, x, y);
+    ptrdiff_t at = index_of(p, x, y);
     bool valid = p->valid[at] != 0.0f;
     if (!valid)
       nearest_valid(p, p->result, at, filled, variance);

@@ -199,16 +199,16 @@ static bool any(const float w[N]) {
   return bits != 0;
 }
 
-/* Fits N pixels from index `at` of the planes and index `place` of the tile on. Neighbours
+/* Fits N pixels from index `at` of the planes and index `first` of the tile on. Neighbours
  * without weight for any of the pixels are left out. */
-static void fit(const vlDenoisePlanes *p, float (*weight)[VL_DENOISE_TILE], int place,
+static void fit(const vlDenoisePlanes *p, float (*weight)[VL_DENOISE_TILE], int first,
                 ptrdiff_t at) {
   Equations e = {0};
   Group q;
   int g = 0;
   for (int dy = -R, k = 0; dy <= R; dy++)
     for (int dx = -R; dx <= R; dx++, k++) {
-      const float *w = weight[k] + place;
+      const float *w = weight[k] + first;
       if (!any(w))
         continue;
       set_neighbour(p, &q, g++, w, at, dx, dy);

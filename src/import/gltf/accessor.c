@@ -36,7 +36,7 @@ static uint32_t component_count(const char *type, bool *matrix) {
 
 /* Checks that `count` elements of `size` bytes, `stride` bytes apart from `offset` on, lie
  * inside the view. */
-static bool fits(vlGltf *g, const vlGltfPlace *at, int64_t view, size_t offset, size_t count,
+static bool fits(vlGltf *g, const vlGltfLocation *at, int64_t view, size_t offset, size_t count,
                  size_t size, size_t stride) {
   const vlGltfView *v = &g->views[view];
   if (!v->data)
@@ -53,15 +53,15 @@ static bool fits(vlGltf *g, const vlGltfPlace *at, int64_t view, size_t offset, 
   return true;
 }
 
-static bool read_sparse(vlGltf *g, const vlGltfPlace *up, const json_t *json, vlGltfAccessor *a,
-                        size_t size) {
+static bool read_sparse(vlGltf *g, const vlGltfLocation *up, const json_t *json,
+                        vlGltfAccessor *a, size_t size) {
   const json_t *sparse, *indices, *values;
   if (!vl_gltf_object(g, up, json, "sparse", &sparse))
     return false;
   if (!sparse)
     return true;
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "sparse"), *at_i = VL_GLTF_KEY(at, "indices"),
-                    *at_v = VL_GLTF_KEY(at, "values");
+  const vlGltfLocation *at = VL_GLTF_KEY(up, "sparse"), *at_i = VL_GLTF_KEY(at, "indices"),
+                       *at_v = VL_GLTF_KEY(at, "values");
   int64_t index_view, value_view;
   size_t index_offset = 0, value_offset = 0, type = 0;
   if (!vl_gltf_size(g, at, sparse, "count", &a->sparse_count) ||
@@ -105,12 +105,12 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
   return i;
 }
 
-const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_t index) {
+const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *from, size_t index) {
   (void)from;
   vlGltfAccessor *a = &g->accessors[index];
   if (a->state == VL_GLTF_GOOD)
     return a;
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "accessors", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "accessors", index);
   const json_t *json = vl_gltf_item(g, "accessors", index);
   const char *type = "";
   int64_t view;
@@ -259,7 +259,7 @@ void vl_gltf_read_uints(const vlGltfAccessor *a, uint32_t wanted, uint32_t *out)
   }
 }
 
-bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
+bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes) {
   /* Triangles may share their data and points become small solids, so the geometry may be
    * larger than the file. More than a thousandfold is refused. */
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
@@ -270,8 +270,8 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
                       (unsigned long long)(limit >> 20));
 }
 
-float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components,
-                           size_t count, size_t *read) {
+float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
+                           uint32_t components, size_t count, size_t *read) {
   const vlGltfAccessor *a = vl_gltf_accessor(g, at, index);
   if (!a)
     return NULL;

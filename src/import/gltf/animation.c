@@ -24,7 +24,7 @@ static void free_track(vlContext *context, Track *t) {
   vl_free(context, t->values);
 }
 
-static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler,
+static bool read_track(vlGltf *g, const vlGltfLocation *at, const json_t *sampler,
                        uint32_t components, Track *t) {
   int64_t input, output;
   static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
@@ -135,10 +135,10 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
 
 /* KHR_animation_pointer: pointers to node properties ("/nodes/3/translation") are read. Other
  * pointers are ignored. */
-static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target, int64_t *node,
-                         const char **path) {
+static bool read_pointer(vlGltf *g, const vlGltfLocation *up, const json_t *target,
+                         int64_t *node, const char **path) {
   const json_t *json = vl_gltf_extension(target, "KHR_animation_pointer");
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
+  const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
   const char *pointer = "";
   if (!vl_gltf_text(g, at, json, "pointer", &pointer))
     return false;
@@ -155,10 +155,11 @@ static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target,
   return true;
 }
 
-static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animation, size_t i) {
+static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *animation,
+                          size_t i) {
   static const char *const paths[] = {"translation", "rotation", "scale", "weights"};
-  const vlGltfPlace *at = VL_GLTF_ITEM(up, "channels", i),
-                    *at_target = VL_GLTF_KEY(at, "target");
+  const vlGltfLocation *at = VL_GLTF_ITEM(up, "channels", i),
+                       *at_target = VL_GLTF_KEY(at, "target");
   const json_t *channel = json_array_get(json_object_get(animation, "channels"), i), *target;
   const json_t *samplers = json_object_get(animation, "samplers");
   const char *path = "";
@@ -184,7 +185,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   if (node < 0 || what < 0)
     return true; /* the specification allows to ignore these channels */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
-  const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
+  const vlGltfLocation *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
   if (!json_is_object(json))
     return vl_gltf_fail(g, at_sampler, "must be an object");
   static const uint32_t components[] = {3, 4, 3, 1};
@@ -209,7 +210,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
 }
 
 bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "animations", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "animations", index);
   const json_t *animation = vl_gltf_item(g, "animations", index), *channels, *samplers;
   size_t count, sampler_count;
   if (!vl_gltf_array(g, at, animation, "channels", &channels, &count) ||

@@ -22,7 +22,7 @@ static void set_size(vlGltf *g, double aspect) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
-static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+static bool take_perspective(vlGltf *g, const vlGltfLocation *at, const json_t *json,
                              vlCameraDef *def) {
   double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
   if (!vl_gltf_number(g, at, json, "yfov", &yfov) ||
@@ -44,7 +44,7 @@ static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *jso
   return true;
 }
 
-static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, const json_t *json,
                               vlCameraDef *def) {
   double x = 0, y = 0, near_plane = 0, far_plane = INFINITY;
   if (!vl_gltf_number(g, at, json, "xmag", &x) || !vl_gltf_number(g, at, json, "ymag", &y) ||
@@ -81,7 +81,7 @@ static void set_pose(const vlMat4 *world, double m[16]) {
 }
 
 static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "cameras", camera);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "cameras", camera);
   const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
   static const char *const types[] = {"perspective", "orthographic"};
   int flat = 0;

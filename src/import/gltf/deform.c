@@ -12,9 +12,9 @@
 /* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are
  * `stride` floats apart.
  */
-static bool add_target(vlGltf *g, const vlGltfPlace *at, const json_t *target, const char *name,
-                       uint32_t components, uint32_t stride, float weight, size_t vertices,
-                       float sign_y, float *out) {
+static bool add_target(vlGltf *g, const vlGltfLocation *at, const json_t *target,
+                       const char *name, uint32_t components, uint32_t stride, float weight,
+                       size_t vertices, float sign_y, float *out) {
   int64_t index;
   if (!vl_gltf_index(g, at, target, name, g->accessor_count, &index))
     return false;
@@ -31,7 +31,7 @@ static bool add_target(vlGltf *g, const vlGltfPlace *at, const json_t *target, c
   return true;
 }
 
-bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                    const json_t *primitive, const vlGltfNode *node, vlGltfPrimitive *p) {
   const json_t *targets;
   size_t count;
@@ -49,7 +49,7 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
     else
       weight = (float)json_number_value(json_array_get(given, i));
     const json_t *target = json_array_get(targets, i);
-    const vlGltfPlace *here = VL_GLTF_ITEM(at, "targets", i);
+    const vlGltfLocation *here = VL_GLTF_ITEM(at, "targets", i);
     if (!json_is_object(target))
       return vl_gltf_fail(g, here, "must be an object");
     if (!isfinite(weight))
@@ -75,7 +75,7 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
 
 /* Computes the matrix world_from_mesh of each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "skins", skin);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "skins", skin);
   const json_t *json = vl_gltf_item(g, "skins", skin), *joints;
   int64_t inverse;
   *matrices = NULL;
@@ -87,7 +87,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   float *columns = NULL;
   size_t inverse_count = 0;
   if (inverse >= 0) {
-    const vlGltfPlace *here = VL_GLTF_KEY(at, "inverseBindMatrices");
+    const vlGltfLocation *here = VL_GLTF_KEY(at, "inverseBindMatrices");
     const vlGltfAccessor *a = vl_gltf_accessor(g, here, (size_t)inverse);
     if (!a)
       return false;
@@ -132,7 +132,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
 /* Adds weight * matrix of each joint to sums (12 numbers per vertex, row-major), as the
  * attributes JOINTS_set and WEIGHTS_set give them. *found: whether the mesh has these
  * attributes. */
-static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attributes,
+static bool add_influences(vlGltf *g, const vlGltfLocation *up, const json_t *attributes,
                            const char *joints_name, const char *weights_name,
                            const vlMat4 *matrices, size_t count, size_t vertices, double *sums,
                            bool *found) {
@@ -143,7 +143,7 @@ static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attri
     return false;
   if (joint_index < 0 || weight_index < 0)
     return true;
-  const vlGltfPlace *at = VL_GLTF_KEY(up, joints_name);
+  const vlGltfLocation *at = VL_GLTF_KEY(up, joints_name);
   const vlGltfAccessor *a = vl_gltf_accessor(g, at, (size_t)joint_index);
   if (!a)
     return false;
@@ -195,7 +195,7 @@ static void turn(const double *m, bool normal, float *v) {
     v[i] = l > 0 ? (float)(r[i] / l) : v[i];
 }
 
-bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
+bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
                   const vlGltfNode *node, vlGltfPrimitive *p) {
   static const char *const joints[] = {"JOINTS_0", "JOINTS_1", "JOINTS_2", "JOINTS_3"};
   static const char *const weights[] = {"WEIGHTS_0", "WEIGHTS_1", "WEIGHTS_2", "WEIGHTS_3"};
@@ -203,7 +203,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
   if (!vl_gltf_index(g, VL_GLTF_KEY(NULL, "nodes"), node->json, "skin", g->skin_count, &skin))
     return false;
   const json_t *attributes = json_object_get(primitive, "attributes");
-  const vlGltfPlace *here = VL_GLTF_KEY(at, "attributes");
+  const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
   vlMat4 *matrices;
   size_t count;
   if (!joint_matrices(g, (size_t)(skin < 0 ? 0 : skin), &matrices, &count))

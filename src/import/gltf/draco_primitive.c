@@ -3,8 +3,6 @@
  * needs it. */
 #include "import/gltf/draco.h"
 
-#include <string.h>
-
 #include "import/gltf/gltf.h"
 
 static const char name[] = "KHR_draco_mesh_compression";
@@ -12,7 +10,7 @@ static const char name[] = "KHR_draco_mesh_compression";
 #ifdef VELO_DRACO
 /* Fills an accessor. index: its number; id: of Draco's attribute, negative: the indices of the
  * faces. */
-static bool fill(vlGltf *g, const vlGltfPlace *at, const vlDraco *mesh, size_t index,
+static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_t index,
                  int64_t id) {
   const vlGltfAccessor *read = vl_gltf_accessor(g, at, index);
   vlGltfAccessor *a = &g->accessors[index];
@@ -44,7 +42,7 @@ static bool fill(vlGltf *g, const vlGltfPlace *at, const vlDraco *mesh, size_t i
   return true;
 }
 
-static bool fill_all(vlGltf *g, const vlGltfPlace *at, const vlGltfPlace *here,
+static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *here,
                      const json_t *primitive, const json_t *own, const vlDraco *mesh) {
   const json_t *attributes = json_object_get(primitive, "attributes");
   const char *key;
@@ -69,9 +67,9 @@ static bool fill_all(vlGltf *g, const vlGltfPlace *at, const vlGltfPlace *here,
   return true;
 }
 
-bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive) {
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *primitive) {
   const json_t *json = vl_gltf_extension(primitive, name), *own;
-  const vlGltfPlace *here = VL_GLTF_KEY(at, "extensions.KHR_draco_mesh_compression");
+  const vlGltfLocation *here = VL_GLTF_KEY(at, "extensions.KHR_draco_mesh_compression");
   int64_t view, first;
   if (!json)
     return true;
@@ -96,7 +94,7 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *pr
   return ok;
 }
 #else
-bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive) {
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *primitive) {
   const json_t *attributes = json_object_get(primitive, "attributes");
   int64_t position;
   if (!vl_gltf_extension(primitive, name))

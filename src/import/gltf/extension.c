@@ -90,7 +90,7 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     return false;
   for (size_t i = 0; i < required_count; i++) {
     const char *name = json_string_value(json_array_get(required, i));
-    const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
+    const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
     if (!name)
       return vl_gltf_fail(g, at, "must be a string");
     if (is_in(name, known, known_count))
@@ -112,7 +112,7 @@ bool vl_gltf_check_extensions(vlGltf *g) {
   }
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
-    const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
+    const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
     if (!name)
       return vl_gltf_fail(g, at, "must be a string");
     if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))

@@ -1,6 +1,5 @@
 /* import/gltf/file.c: reads the file: .gltf or .glb (distinguished by the first bytes), its
  * JSON, uris, buffers and buffer views. */
-#include <stdio.h>
 
 #include "base/file.h"
 #include "base/free.h"
@@ -201,7 +200,7 @@ static size_t unescape(const char *text, char *result) {
   return n;
 }
 
-static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data,
+static bool unpack(vlGltf *g, const vlGltfLocation *at, const char *uri, const uint8_t **data,
                    size_t *size) {
   const char *comma = strchr(uri, ',');
   if (!comma)
@@ -236,7 +235,7 @@ static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint
   return true;
 }
 
-bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data,
+bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uint8_t **data,
                  size_t *size, const char **path) {
   *data = NULL;
   *path = NULL;
@@ -264,7 +263,7 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
  */
 
 static bool read_buffer(vlGltf *g, size_t i) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "buffers", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "buffers", i);
   const json_t *json = vl_gltf_item(g, "buffers", i);
   vlGltfBuffer *b = &g->buffers[i];
   const char *uri = NULL, *path = NULL;
@@ -305,7 +304,7 @@ static bool read_buffer(vlGltf *g, size_t i) {
 }
 
 static bool read_view(vlGltf *g, size_t i) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "bufferViews", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "bufferViews", i);
   const json_t *json = vl_gltf_item(g, "bufferViews", i);
   const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
   int64_t buffer;

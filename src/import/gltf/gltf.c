@@ -11,7 +11,7 @@ bool vl_gltf_choose_variant(vlGltf *g) {
     return true;
   const json_t *extension = vl_gltf_extension(g->root, "KHR_materials_variants"), *variants;
   size_t count;
-  const vlGltfPlace *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
+  const vlGltfLocation *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
   if (!vl_gltf_array(g, at, extension, "variants", &variants, &count))
     return false;
   char names[300] = "";

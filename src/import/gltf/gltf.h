@@ -2,7 +2,7 @@
  * Data flow: file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses,
  * animation.c)
  * -> mesh.c (deform.c, topology.c, tangent.c) with material.c, texture.c -> scene. Every index,
- * offset and size of the file is checked before it is used. An error names its place in the
+ * offset and size of the file is checked before it is used. An error names its location in the
  * JSON, for example meshes[3].primitives[0].attributes.POSITION. Source: the glTF 2.0
  * specification (Khronos) and the specifications of its extensions. */
 #ifndef IMPORT_GLTF_GLTF_H
@@ -15,15 +15,15 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 
-/* A place in the JSON: a key, and an index for an element of an array. Places are linked on the
- * caller's stack. */
-typedef struct vlGltfPlace {
-  const struct vlGltfPlace *up;
+/* A location in the JSON: a key, and an index for an element of an array. Locations are linked
+ * on the caller's stack. */
+typedef struct vlGltfLocation {
+  const struct vlGltfLocation *up;
   const char *key;
   size_t index; /* SIZE_MAX: none */
-} vlGltfPlace;
-#define VL_GLTF_KEY(up, key) (&(vlGltfPlace){(up), (key), SIZE_MAX})
-#define VL_GLTF_ITEM(up, key, index) (&(vlGltfPlace){(up), (key), (index)})
+} vlGltfLocation;
+#define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), SIZE_MAX})
+#define VL_GLTF_ITEM(up, key, index) (&(vlGltfLocation){(up), (key), (index)})
 
 typedef struct vlGltfBuffer {
   const uint8_t *data;
@@ -157,44 +157,44 @@ enum {
 /* ---- errors and JSON (json.c): a function that returns bool has reported the error when it
  * returns false --------- */
 
-/* Report the error "path: place: message". Always return false. */
-bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...)
+/* Report the error "path: location: message". Always return false. */
+bool vl_gltf_fail(vlGltf *g, const vlGltfLocation *location, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format,
-                       ...) __attribute__((format(printf, 4, 5)));
+bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfLocation *location,
+                       const char *format, ...) __attribute__((format(printf, 4, 5)));
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
   vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
   return false;
 }
-void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format,
-                  ...) __attribute__((format(printf, 4, 5)));
+void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfLocation *location,
+                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 
 /* Typed members of a JSON object. An absent member leaves the value as it is and returns true.
  * A member of the wrong type is an error. object may be null: every member is absent. */
-bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                     double *value);
-bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    float *value);
-bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                      size_t count, double *values);
-bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                   bool *value);
-bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                   const char **value);
 /* *value receives the index of the member's string among the names. */
-bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                     const char *const *names, int count, int *value);
 /* A non-negative integer. */
-bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                   size_t *value);
 /* An index below limit; -1 when absent. */
-bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    size_t limit, int64_t *index);
-bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                     const json_t **value);
-bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    const json_t **value, size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);
@@ -209,14 +209,14 @@ bool vl_gltf_open(vlGltf *g);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
-bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *at, const json_t *json,
                          vlGltfView *view);
 /* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is
  * not compressed. */
-bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive);
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *primitive);
 /* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is
  * the file's path: in the folder of the glTF file, else on the search path. */
-bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data,
+bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uint8_t **data,
                  size_t *size, const char **path);
 
 /* ---- extensions (extension.c)
@@ -233,7 +233,7 @@ void vl_gltf_check_names(vlGltf *g);
  * ----------------------------------------------------------------------------------------- */
 
 /* The accessor, checked; null after an error. */
-const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *at, size_t index);
+const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *at, size_t index);
 /* Reads all elements as floats, `components` per element. Components that the accessor lacks
  * are left unchanged in out. Normalised integers map to [-1, 1] or [0, 1]; other integers keep
  * their value. */
@@ -242,11 +242,11 @@ void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uin
 /* A new block of count * components floats from an accessor. The accessor must have one of the
  * given numbers of components and count elements (0: any; *read receives the count). Null after
  * an error. */
-float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components,
-                           size_t count, size_t *read);
+float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
+                           uint32_t components, size_t count, size_t *read);
 /* Adds to the bytes of geometry made so far. Reports an error when the sum is out of proportion
  * to the file's size. */
-bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
+bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes);
 
 /* ---- the tree (node.c, animation.c)
  * ------------------------------------------------------------------------------ */
@@ -288,15 +288,15 @@ double vl_gltf_animation_end(const vlGltf *g, size_t animation);
 
 /* Where the file describes a shape. node is SIZE_MAX for a shape of a group, material -1 for
  * the default one. */
-typedef struct vlGltfShapePlace {
+typedef struct vlGltfShapeIndices {
   size_t node, mesh, primitive;
   int64_t material;
-} vlGltfShapePlace;
+} vlGltfShapeIndices;
 /* Makes the labels of nodes and materials. */
 bool vl_gltf_make_labels(vlGltf *g);
 void vl_gltf_free_labels(vlGltf *g);
 /* The scene owns the strings of the label. */
-bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label);
+bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label);
 /* Labels the instance that was added last. */
 void vl_gltf_label_instance(vlGltf *g, size_t node);
 
@@ -333,15 +333,15 @@ bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
 /* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles,
  * according to its mode. Points and lines become small solids with new vertices. */
-bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices,
+bool vl_gltf_triangles(vlGltf *g, const vlGltfLocation *at, uint32_t mode, uint32_t *indices,
                        size_t count, vlGltfPrimitive *p);
 /* Removes the vertices that no face uses. */
 bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p);
 /* deform.c: applies morph targets and skins. */
-bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                    const json_t *primitive, const vlGltfNode *node, vlGltfPrimitive *p);
 /* Transforms the positions to world space. */
-bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
+bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
                   const vlGltfNode *node, vlGltfPrimitive *p);
 /* tangent.c: MikkTSpace tangents for uv set `set`, and flat normals where the primitive has
  * none. Vertices are split where tangents differ. */
@@ -369,16 +369,17 @@ typedef struct vlGltfTextureUse {
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
-bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id);
 /* The bytes or the path of images[index]. */
 bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */
-bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set);
+bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, const json_t *info,
+                         uint32_t *set);
 
 /* volume.c: vl_gltf_volume reads KHR_materials_volume of a solid. vl_gltf_angle_texture
  * converts a texture of directions to a texture of angles in radians and adds rotation. */
-bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, const json_t *json,
                     vlGltfMaterial *result);
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 
@@ -387,7 +388,7 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
  */
 
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t light);
-bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *at);
+bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *at);
 bool vl_gltf_choose_camera(vlGltf *g);
 /* Reads a camera that no node has. The scene's own camera is replaced. */
 bool vl_gltf_check_camera(vlGltf *g, size_t index);

@@ -16,7 +16,7 @@ typedef struct Cube {
   float *faces[6]; /* 3 per texel, rows from the top */
 } Cube;
 
-static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube, int face) {
+static bool read_face(vlGltf *g, const vlGltfLocation *at, size_t index, Cube *cube, int face) {
   if (!vl_gltf_read_image(g, index))
     return false;
   const vlGltfImage *file = &g->images[index];
@@ -100,11 +100,11 @@ static bool add_cube(vlGltf *g, const Cube *cube, const double rotation[4], doub
   return ok;
 }
 
-bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *scene_at) {
+bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *scene_at) {
   const json_t *own = vl_gltf_extension(scene, "EXT_lights_image_based"), *lights, *levels;
   if (!own)
     return true;
-  const vlGltfPlace *up = VL_GLTF_KEY(NULL, "extensions.EXT_lights_image_based");
+  const vlGltfLocation *up = VL_GLTF_KEY(NULL, "extensions.EXT_lights_image_based");
   size_t count, level_count;
   int64_t index;
   if (!vl_gltf_array(g, up, vl_gltf_extension(g->root, "EXT_lights_image_based"), "lights",
@@ -114,8 +114,8 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *scen
     return false;
   if (index < 0)
     return true;
-  const vlGltfPlace *at = VL_GLTF_ITEM(up, "lights", (size_t)index),
-                    *at_images = VL_GLTF_KEY(at, "specularImages");
+  const vlGltfLocation *at = VL_GLTF_ITEM(up, "lights", (size_t)index),
+                       *at_images = VL_GLTF_KEY(at, "specularImages");
   const json_t *json = json_array_get(lights, (size_t)index);
   double rotation[4] = {0, 0, 0, 1}, intensity = 1;
   if (!json_is_object(json))

@@ -1,60 +1,60 @@
-/* import/gltf/json.c: errors that name a place in the JSON; typed members. */
+/* import/gltf/json.c: errors that name a location in the JSON; typed members. */
 #include <math.h>
 #include <stdio.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-/* Writes the place from its outermost part inwards. */
-static size_t write_place(const vlGltfPlace *place, char *text, size_t size) {
-  size_t n = place->up ? write_place(place->up, text, size) : 0;
+/* Writes the location from its outermost part inwards. */
+static size_t write_location(const vlGltfLocation *location, char *text, size_t size) {
+  size_t n = location->up ? write_location(location->up, text, size) : 0;
   if (n + 1 >= size)
     return n;
-  int wrote = place->index == SIZE_MAX
-                  ? snprintf(text + n, size - n, "%s%.60s", n ? "." : "", place->key)
-                  : snprintf(text + n, size - n, "%s%.60s[%zu]", n ? "." : "", place->key,
-                             place->index);
+  int wrote = location->index == SIZE_MAX
+                  ? snprintf(text + n, size - n, "%s%.60s", n ? "." : "", location->key)
+                  : snprintf(text + n, size - n, "%s%.60s[%zu]", n ? "." : "", location->key,
+                             location->index);
   return wrote < 0 ? n : n + (size_t)wrote < size ? n + (size_t)wrote : size - 1;
 }
 
-static void format_message(const vlGltfPlace *place, const char *format, va_list args,
+static void format_message(const vlGltfLocation *location, const char *format, va_list args,
                            char *text, size_t size) {
-  size_t n = place ? write_place(place, text, size) : 0;
+  size_t n = location ? write_location(location, text, size) : 0;
   if (n && n + 3 < size)
     n += (size_t)snprintf(text + n, size - n, ": ");
   vsnprintf(text + n, size - n, format, args);
 }
 
-static void fail(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format,
+static void fail(vlGltf *g, vlResult code, const vlGltfLocation *location, const char *format,
                  va_list args) {
   char text[512];
-  format_message(place, format, args, text, sizeof text);
+  format_message(location, format, args, text, sizeof text);
   vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", text);
 }
 
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format,
-                       ...) {
+bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfLocation *location,
+                       const char *format, ...) {
   va_list args;
   va_start(args, format);
-  fail(g, code, place, format, args);
+  fail(g, code, location, format, args);
   va_end(args);
   return false;
 }
 
-bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) {
+bool vl_gltf_fail(vlGltf *g, const vlGltfLocation *location, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  fail(g, VL_ERROR_SCENE, place, format, args);
+  fail(g, VL_ERROR_SCENE, location, format, args);
   va_end(args);
   return false;
 }
 
-void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format,
-                  ...) {
+void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfLocation *location,
+                  const char *format, ...) {
   char text[512];
   va_list args;
   va_start(args, format);
-  format_message(place, format, args, text, sizeof text);
+  format_message(location, format, args, text, sizeof text);
   va_end(args);
   vlError where;
   vl_fail_at(&where, VL_ERROR_SCENE, g->path, 0, 0, " ");
@@ -91,7 +91,7 @@ static const char *kind_of(const json_t *value) {
   return "nothing";
 }
 
-static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const char *wanted,
+static bool wrong_kind(vlGltf *g, const vlGltfLocation *at, const char *key, const char *wanted,
                        const json_t *found) {
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
 }
@@ -99,7 +99,7 @@ static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const 
 /* Looks up a member of this kind. *value is null if it is not there. Returns false after an
  * error.
  */
-static bool member(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+static bool member(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    const char *wanted, const json_t **value) {
   *value = json_object_get(object, key);
   if (!*value || vl_text_is(kind_of(*value), wanted))
@@ -109,7 +109,7 @@ static bool member(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
   return false;
 }
 
-bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                     double *value) {
   const json_t *v;
   if (!member(g, at, object, key, "a number", &v))
@@ -122,7 +122,7 @@ bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, cons
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%g is out of range", *value);
 }
 
-bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    float *value) {
   double x = *value;
   bool ok = vl_gltf_number(g, at, object, key, &x);
@@ -130,7 +130,7 @@ bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
   return ok;
 }
 
-bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                      size_t count, double *values) {
   const json_t *v;
   if (!member(g, at, object, key, "an array", &v))
@@ -152,7 +152,7 @@ bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, con
   return true;
 }
 
-bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                   bool *value) {
   const json_t *v;
   if (!member(g, at, object, key, "true or false", &v))
@@ -163,7 +163,7 @@ bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const 
   return true;
 }
 
-bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                   const char **value) {
   const json_t *v;
   if (!member(g, at, object, key, "a string", &v))
@@ -174,7 +174,7 @@ bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const 
   return true;
 }
 
-bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                     const char *const *names, int count, int *value) {
   const char *text = names[*value];
   if (!vl_gltf_text(g, at, object, key, &text))
@@ -191,7 +191,7 @@ bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, cons
                       vl_short_text(text).text, list);
 }
 
-static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v,
+static bool whole(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t *v,
                   size_t *value) {
   if (!json_is_number(v))
     return wrong_kind(g, at, key, "a whole number", v);
@@ -203,13 +203,13 @@ static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_
   return true;
 }
 
-bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                   size_t *value) {
   const json_t *v = json_object_get(object, key);
   return !v || whole(g, at, key, v, value);
 }
 
-bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    size_t limit, int64_t *index) {
   const json_t *v = json_object_get(object, key);
   size_t value = 0;
@@ -226,12 +226,12 @@ bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
   return true;
 }
 
-bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                     const json_t **value) {
   return member(g, at, object, key, "an object", value);
 }
 
-bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
+bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    const json_t **value, size_t *count) {
   const bool ok = member(g, at, object, key, "an array", value);
   *count = json_array_size(*value);

@@ -152,13 +152,13 @@ static void append_copy(const vlGltf *g, char name[VL_LABEL_SIZE]) {
 }
 
 void vl_gltf_label_instance(vlGltf *g, size_t node) {
-  char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE], place[80];
-  vlLabel label = {.path = path, .place = place};
+  char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE], location[80];
+  vlLabel label = {.path = path, .place = location};
   snprintf(name, sizeof name, "%s", g->node_labels[node]);
   node_path(g, node, CHAIN, path);
   append_copy(g, name);
   append_copy(g, path);
-  print_node(g, node, place, sizeof place);
+  print_node(g, node, location, sizeof location);
   if (vl_label_make_unique(g->scene, &g->instance_names, name, node, &label.name))
     vl_scene_label_instance(g->scene, &label);
 }
@@ -175,8 +175,8 @@ static bool material_tells(const json_t *primitives, size_t index) {
   return index < 100;
 }
 
-bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label) {
-  char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE] = "", place[160], number[40];
+bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label) {
+  char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE] = "", location[160], number[40];
   const char *mesh = name_of(vl_gltf_item(g, "meshes", at->mesh));
   const char *material =
       at->material < 0 ? NULL : name_of(vl_gltf_item(g, "materials", (size_t)at->material));
@@ -189,20 +189,21 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label) 
     node_path(g, at->node, CHAIN, path);
     append_copy(g, name);
     append_copy(g, path);
-    n = (size_t)print_node(g, at->node, place, sizeof place);
-    place[n++] = '.';
+    n = (size_t)print_node(g, at->node, location, sizeof location);
+    location[n++] = '.';
   }
   const char *last = strrchr(path, '/');
   if (mesh && !vl_text_is(last ? last + 1 : path, mesh))
     vl_label_append(path, mesh);
   vl_label_append(path, material);
-  snprintf(place + n, sizeof place - n, "meshes[%zu].primitives[%zu]", at->mesh, at->primitive);
+  snprintf(location + n, sizeof location - n, "meshes[%zu].primitives[%zu]", at->mesh,
+           at->primitive);
   const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", at->mesh), "primitives");
   snprintf(number, sizeof number, "%zu", at->primitive);
   if (json_array_size(primitives) > 1)
     vl_label_append(name,
                     material && material_tells(primitives, at->primitive) ? material : number);
-  *label = (vlLabel){.path = path, .place = place};
+  *label = (vlLabel){.path = path, .place = location};
   return vl_label_make_unique(g->scene, &g->shape_names, name,
                               at->node == SIZE_MAX ? at->mesh : at->node, &label->name) &&
          vl_scene_copy_string(g->scene, &label->path) &&

@@ -6,8 +6,8 @@
 #include "velo/light.h"
 
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
-  const vlGltfPlace *up = VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"),
-                    *at = VL_GLTF_ITEM(up, "lights", (size_t)index);
+  const vlGltfLocation *up = VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"),
+                       *at = VL_GLTF_ITEM(up, "lights", (size_t)index);
   const json_t *json = json_array_get(g->lights, (size_t)index), *spot;
   if (!json_is_object(json))
     return vl_gltf_fail(g, at, "must be an object");

@@ -1,6 +1,5 @@
 /* import/gltf/material.c: metallic-roughness materials and the KHR_materials extensions become
  * the principled material, its emission and its coverage. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +12,7 @@
 
 typedef struct Reader {
   vlGltf *g;
-  const vlGltfPlace *at;
+  const vlGltfLocation *at;
   const json_t *json;
   vlMaterialDef *def;
   vlGltfMaterial *result;
@@ -25,7 +24,7 @@ typedef struct Reader {
  */
 
 /* A factor in [0, 1] times a channel of a texture. */
-static bool channel(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool channel(const Reader *r, const vlGltfLocation *at, const json_t *json,
                     const char *factor_key, const char *texture_key, int which,
                     float default_factor, vlFloatInput *input) {
   float factor = default_factor;
@@ -41,7 +40,7 @@ static bool channel(const Reader *r, const vlGltfPlace *at, const json_t *json,
   return vl_gltf_texture(r->g, at, json, texture_key, &use, &input->texture);
 }
 
-static bool read_color(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_color(const Reader *r, const vlGltfLocation *at, const json_t *json,
                        const char *key, size_t count, float color[4]) {
   double v[4] = {color[0], color[1], color[2], color[3]};
   if (!vl_gltf_numbers(r->g, at, json, key, count, v))
@@ -52,7 +51,7 @@ static bool read_color(const Reader *r, const vlGltfPlace *at, const json_t *jso
 }
 
 /* A colour times an sRGB texture (times the vertex colours). */
-static bool color_input(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool color_input(const Reader *r, const vlGltfLocation *at, const json_t *json,
                         const char *texture_key, const float color[4], bool vertex_colors,
                         vlSpectrumInput *input) {
   vlGltfTextureUse use = vl_gltf_use_color();
@@ -70,7 +69,7 @@ static bool color_input(const Reader *r, const vlGltfPlace *at, const json_t *js
   return input->texture.index != 0;
 }
 
-static bool normal_input(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool normal_input(const Reader *r, const vlGltfLocation *at, const json_t *json,
                          const char *key, vlTextureId *id, float *scale) {
   const json_t *info = json_object_get(json, key);
   vlGltfTextureUse use = vl_gltf_use_color();
@@ -92,7 +91,7 @@ static bool normal_input(const Reader *r, const vlGltfPlace *at, const json_t *j
  */
 
 /* Reads the coverage: the base colour's fourth channel, interpreted by alphaMode. */
-static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_alpha(const Reader *r, const vlGltfLocation *at, const json_t *json,
                        const char *texture_key, float factor) {
   static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
   int mode = 0;
@@ -131,7 +130,7 @@ static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *jso
 
 static bool read_metallic_roughness(const Reader *r, float base[4]) {
   const json_t *json;
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
+  const vlGltfLocation *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
   vlPrincipledDef *p = &r->def->principled;
   return vl_gltf_object(r->g, r->at, r->json, "pbrMetallicRoughness", &json) &&
          read_color(r, at, json, "baseColorFactor", 4, base) &&
@@ -146,7 +145,8 @@ static bool read_metallic_roughness(const Reader *r, float base[4]) {
 /* Reads KHR_materials_pbrSpecularGlossiness as a material that is not metallic. The reflectance
  * at normal incidence is the specular colour. */
 static bool read_specular_glossiness(const Reader *r, const json_t *json, float base[4]) {
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_pbrSpecularGlossiness");
+  const vlGltfLocation *at =
+      VL_GLTF_KEY(r->at, "extensions.KHR_materials_pbrSpecularGlossiness");
   vlPrincipledDef *p = &r->def->principled;
   float specular[4] = {1, 1, 1, 1}, glossiness = 1;
   if (!read_color(r, at, json, "diffuseFactor", 4, base) ||
@@ -175,7 +175,7 @@ static const json_t *extension(const Reader *r, const char *name) {
   return vl_gltf_extension(r->json, name);
 }
 
-static bool read_specular(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_specular(const Reader *r, const vlGltfLocation *at, const json_t *json,
                           vlPrincipledDef *p) {
   float color[4] = {1, 1, 1, 1};
   return channel(r, at, json, "specularFactor", "specularTexture", 3, 1.0f, &p->specular) &&
@@ -183,7 +183,7 @@ static bool read_specular(const Reader *r, const vlGltfPlace *at, const json_t *
          color_input(r, at, json, "specularColorTexture", color, false, &p->specular_color);
 }
 
-static bool read_coat(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_coat(const Reader *r, const vlGltfLocation *at, const json_t *json,
                       vlPrincipledDef *p) {
   return channel(r, at, json, "clearcoatFactor", "clearcoatTexture", 0, 0.0f, &p->clearcoat) &&
          channel(r, at, json, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1, 0.0f,
@@ -192,7 +192,7 @@ static bool read_coat(const Reader *r, const vlGltfPlace *at, const json_t *json
                       &p->clearcoat_normal_scale);
 }
 
-static bool read_sheen(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_sheen(const Reader *r, const vlGltfLocation *at, const json_t *json,
                        vlPrincipledDef *p) {
   float color[4] = {0, 0, 0, 1};
   return read_color(r, at, json, "sheenColorFactor", 3, color) &&
@@ -201,7 +201,7 @@ static bool read_sheen(const Reader *r, const vlGltfPlace *at, const json_t *jso
                  &p->sheen_roughness);
 }
 
-static bool read_iridescence(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_iridescence(const Reader *r, const vlGltfLocation *at, const json_t *json,
                              vlPrincipledDef *p) {
   float least = 100, most = 400;
   if (!channel(r, at, json, "iridescenceFactor", "iridescenceTexture", 0, 0.0f,
@@ -218,7 +218,7 @@ static bool read_iridescence(const Reader *r, const vlGltfPlace *at, const json_
                          &p->iridescence_thickness.texture);
 }
 
-static bool read_anisotropy(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool read_anisotropy(const Reader *r, const vlGltfLocation *at, const json_t *json,
                             vlPrincipledDef *p) {
   float rotation = 0;
   if (!channel(r, at, json, "anisotropyStrength", "anisotropyTexture", 2, 0.0f,
@@ -236,7 +236,8 @@ static bool read_anisotropy(const Reader *r, const vlGltfPlace *at, const json_t
  * extension. */
 static const struct {
   const char *key;
-  bool (*read)(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p);
+  bool (*read)(const Reader *r, const vlGltfLocation *at, const json_t *json,
+               vlPrincipledDef *p);
 } layers[] = {{"extensions.KHR_materials_specular", read_specular},
               {"extensions.KHR_materials_clearcoat", read_coat},
               {"extensions.KHR_materials_sheen", read_sheen},
@@ -261,7 +262,7 @@ static bool read_transmission(const Reader *r) {
                *diffuse = extension(r, "KHR_materials_diffuse_transmission"),
                *dispersion = extension(r, "KHR_materials_dispersion"),
                *ior = extension(r, "KHR_materials_ior");
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_transmission");
+  const vlGltfLocation *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_transmission");
   vlPrincipledDef *p = &r->def->principled;
   float color[4] = {1, 1, 1, 1}, index = 1.5f, thickness = 0;
   if (glass && !channel(r, at, glass, "transmissionFactor", "transmissionTexture", 0, 0.0f,
@@ -297,7 +298,7 @@ static bool read_transmission(const Reader *r) {
  * ----------------------------------------------------------------------------------------------------
  */
 
-static bool add_emission(const Reader *r, const vlGltfPlace *at, const json_t *json,
+static bool add_emission(const Reader *r, const vlGltfLocation *at, const json_t *json,
                          const char *texture_key, const float color[4], float strength) {
   if (!(color[0] > 0 || color[1] > 0 || color[2] > 0) || !(strength > 0))
     return true;
@@ -328,7 +329,7 @@ static bool read_emission(const Reader *r) {
 static bool read_unlit(const Reader *r) {
   float base[4] = {1, 1, 1, 1};
   const json_t *json;
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
+  const vlGltfLocation *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
   *r->def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   r->def->source.file = r->g->path;
   r->def->reflectance = vl_spectrum_input(vl_spectrum_constant(0.0f));
@@ -377,8 +378,8 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors) {
   if (name && other->made &&
       !vl_label_make_unique(g->scene, &g->material_names, name, (size_t)index, &name))
     return NULL;
-  char place[40];
-  snprintf(place, sizeof place, "materials[%d]", (int)index);
+  char location[40];
+  snprintf(location, sizeof location, "materials[%d]", (int)index);
   Reader r = {g,      VL_GLTF_ITEM(NULL, "materials", (size_t)(index < 0 ? 0 : index)),
               json,   &def,
               result, colors};
@@ -386,7 +387,7 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors) {
   if (!read_material(&r))
     return NULL;
   def.name = name;
-  def.place = index < 0 ? NULL : place;
+  def.place = index < 0 ? NULL : location;
   result->material = vl_scene_add_material(g->scene, &def);
   result->made = result->material.index != 0;
   return result->made ? result : NULL;

@@ -1,7 +1,6 @@
 /* import/gltf/mesh.c: a mesh's primitives become shapes: attributes are read, deformed,
  * triangulated and given tangents. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/free.h"
@@ -10,11 +9,11 @@
 
 /* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null
  * when the primitive lacks the attribute. */
-static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes,
+static bool attribute(vlGltf *g, const vlGltfLocation *up, const json_t *attributes,
                       const char *name, uint32_t least, uint32_t components, size_t vertices,
                       float **out) {
   int64_t index;
-  const vlGltfPlace *at = VL_GLTF_KEY(up, name);
+  const vlGltfLocation *at = VL_GLTF_KEY(up, name);
   if (!vl_gltf_index(g, up, attributes, name, g->accessor_count, &index))
     return false;
   if (index < 0)
@@ -29,11 +28,11 @@ static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes
   return *out != NULL;
 }
 
-static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *attributes,
+static bool read_attributes(vlGltf *g, const vlGltfLocation *up, const json_t *attributes,
                             int64_t position, vlGltfPrimitive *p) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "attributes"),
-                    *at_position = VL_GLTF_KEY(at, "POSITION");
+  const vlGltfLocation *at = VL_GLTF_KEY(up, "attributes"),
+                       *at_position = VL_GLTF_KEY(at, "POSITION");
   const vlGltfAccessor *a = vl_gltf_accessor(g, at_position, (size_t)position);
   if (!a)
     return false;
@@ -55,10 +54,10 @@ static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *attr
 }
 
 /* The indices in a new block; 0, 1, 2, ... when the primitive has none. */
-static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primitive,
+static bool read_indices(vlGltf *g, const vlGltfLocation *up, const json_t *primitive,
                          size_t vertices, uint32_t **indices, size_t *count) {
   int64_t index;
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "indices");
+  const vlGltfLocation *at = VL_GLTF_KEY(up, "indices");
   if (!vl_gltf_index(g, up, primitive, "indices", g->accessor_count, &index))
     return false;
   const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, at, (size_t)index);
@@ -89,13 +88,13 @@ static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primiti
 }
 
 /* The material of the chosen variant, or the primitive's own. */
-static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *primitive,
+static bool choose_material(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
                             int64_t *material) {
   if (!vl_gltf_index(g, at, primitive, "material", g->material_count, material))
     return false;
   const json_t *mappings =
       json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
-  const vlGltfPlace *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
+  const vlGltfLocation *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
   for (size_t i = 0; g->variant >= 0 && i < json_array_size(mappings); i++) {
     const json_t *mapping = json_array_get(mappings, i),
                  *variants = json_object_get(mapping, "variants");
@@ -181,7 +180,7 @@ static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vl
   return id.index != 0;
 }
 
-static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMaterial *m,
+static bool finish_primitive(vlGltf *g, const vlGltfLocation *at, const vlGltfMaterial *m,
                              vlGltfPrimitive *p, vlGroupId group, vlMat4 pose, bool posed) {
   if (!vl_gltf_compact(g, p))
     return false;
@@ -209,7 +208,7 @@ static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMater
 }
 
 /* The vertices as deformed at shutter close. */
-static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                        const json_t *primitive, const vlGltfNode *node, int64_t position,
                        bool skinned, vlGltfPrimitive *p) {
   vlGltfPrimitive q = {0};
@@ -229,7 +228,7 @@ static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
 
 /* A deforming mesh cannot emit light. An emissive mesh keeps its emission and loses its
  * deformation. */
-static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
+static void still(vlGltf *g, const vlGltfLocation *at, vlGltfPrimitive *p) {
   vl_free(g->context, p->positions_close);
   vl_free(g->context, p->normals_close);
   p->positions_close = p->normals_close = NULL;
@@ -238,7 +237,7 @@ static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
                  "gives out light, and stays as it is when the shutter opens");
 }
 
-static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                           const json_t *primitive, const vlGltfNode *node, vlGroupId group,
                           vlMat4 pose, vlGltfPrimitive *p) {
   const json_t *attributes;
@@ -287,24 +286,24 @@ static void count_deformed(vlGltf *g, const json_t *primitive, bool skinned) {
   g->scene->morphed += json_object_get(primitive, "targets") != NULL;
 }
 
-static bool label_last(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, size_t node,
-                       size_t mesh, size_t i) {
-  vlGltfShapePlace place = {.node = node, .mesh = mesh, .primitive = i};
-  return choose_material(g, at, primitive, &place.material) &&
-         vl_gltf_label_shape(g, &place,
+static bool label_last(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
+                       size_t node, size_t mesh, size_t i) {
+  vlGltfShapeIndices at_shape = {.node = node, .mesh = mesh, .primitive = i};
+  return choose_material(g, at, primitive, &at_shape.material) &&
+         vl_gltf_label_shape(g, &at_shape,
                              &g->scene->shapes.items[g->scene->shapes.count - 1].label);
 }
 
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
                       vlGroupId group, vlMat4 pose) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count))
     return false;
   for (size_t i = 0; i < count; i++) {
     const json_t *primitive = json_array_get(primitives, i);
-    const vlGltfPlace *here = VL_GLTF_ITEM(at, "primitives", i);
+    const vlGltfLocation *here = VL_GLTF_ITEM(at, "primitives", i);
     if (!json_is_object(primitive))
       return vl_gltf_fail(g, here, "must be an object");
     vlGltfPrimitive p = {0};
@@ -321,7 +320,7 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
 
 /* Grows the box by one primitive's positions, in the node's space; those of a skin are in the
  * world. */
-static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
+static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                           const json_t *primitive, const vlGltfNode *node, double low[3],
                           double high[3]) {
   const json_t *attributes = json_object_get(primitive, "attributes");
@@ -348,7 +347,7 @@ static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh,
 
 bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3],
                       double high[3]) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   const uint64_t spent = g->spent; /* the arrays are freed again */

@@ -2,7 +2,6 @@
  * meshoptimizer. The decoders never read outside their input but assert that sizes are valid:
  * sizes are checked here. */
 #include <meshoptimizer.h>
-#include <string.h>
 
 #include "import/gltf/gltf.h"
 
@@ -37,11 +36,11 @@ static int decode(Mode mode, void *out, size_t count, size_t stride, const uint8
   return -1;
 }
 
-bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *up, const json_t *json,
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, const json_t *json,
                          vlGltfView *view) {
   static const char *const modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
   static const char *const filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.EXT_meshopt_compression");
+  const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.EXT_meshopt_compression");
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0, count = 0;
   int mode = ATTRIBUTES, filter = NONE;

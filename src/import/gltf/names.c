@@ -185,7 +185,7 @@ static bool is_known(const char *key) {
   return length > 0 && key[length] && key[length - 1] == '_';
 }
 
-static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *reported) {
+static void look(vlGltf *g, const vlGltfLocation *at, const char *key, uint32_t *reported) {
   if (strlen(key) < 4 || is_known(key))
     return;
   const char *near = vl_nearest_name(key, known, KNOWN);
@@ -194,9 +194,9 @@ static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *re
                  vl_short_text(key).text, near);
 }
 
-/* Unknown names are also shortened where they are part of a place. Extras and extensions that
- * velo does not read are not checked. jansson limits the depth of the recursion. */
-static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *reported) {
+/* Unknown names are also shortened where they are part of a location. Extras and extensions
+ * that velo does not read are not checked. jansson limits the depth of the recursion. */
+static void walk(vlGltf *g, const vlGltfLocation *at, json_t *value, uint32_t *reported) {
   const char *name;
   json_t *part;
   size_t i;

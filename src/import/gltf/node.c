@@ -28,7 +28,7 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 }
 
 static bool read_node(vlGltf *g, size_t i) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "nodes", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", i);
   vlGltfNode *n = &g->nodes[i];
   double columns[16];
   const json_t *children;
@@ -132,7 +132,7 @@ bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
  */
 
 /* Poses of EXT_mesh_gpu_instancing relative to the node; null and count 0 when absent. */
-static bool read_instances(vlGltf *g, const vlGltfPlace *node_at, const json_t *node,
+static bool read_instances(vlGltf *g, const vlGltfLocation *node_at, const json_t *node,
                            vlMat4 **poses, size_t *count) {
   static const char *const names[3] = {"TRANSLATION", "ROTATION", "SCALE"};
   static const uint32_t sizes[3] = {3, 4, 3};
@@ -141,14 +141,14 @@ static bool read_instances(vlGltf *g, const vlGltfPlace *node_at, const json_t *
   const json_t *extension = vl_gltf_extension(node, "EXT_mesh_gpu_instancing"), *attributes;
   if (!extension)
     return true;
-  const vlGltfPlace *at = VL_GLTF_KEY(node_at, "extensions.EXT_mesh_gpu_instancing");
+  const vlGltfLocation *at = VL_GLTF_KEY(node_at, "extensions.EXT_mesh_gpu_instancing");
   if (!vl_gltf_object(g, at, extension, "attributes", &attributes))
     return false;
   float *values[3] = {NULL, NULL, NULL};
   bool ok = true;
   for (int k = 0; k < 3 && ok; k++) {
     int64_t index;
-    const vlGltfPlace *here = VL_GLTF_KEY(at, "attributes");
+    const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
     ok = vl_gltf_index(g, here, attributes, names[k], g->accessor_count, &index);
     if (!ok || index < 0)
       continue;
@@ -274,11 +274,11 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
 }
 
 static bool draw_node(vlGltf *g, size_t i) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "nodes", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", i);
   const vlGltfNode *node = &g->nodes[i];
   int64_t mesh, light = -1;
   const json_t *punctual = vl_gltf_extension(node->json, "KHR_lights_punctual");
-  const vlGltfPlace *at_light = VL_GLTF_KEY(at, "extensions.KHR_lights_punctual");
+  const vlGltfLocation *at_light = VL_GLTF_KEY(at, "extensions.KHR_lights_punctual");
   if (!vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) ||
       !vl_gltf_index(g, at_light, punctual, "light", g->light_count, &light))
     return false;
@@ -326,7 +326,7 @@ static bool emissive(vlGltf *g, const json_t *primitive) {
 
 /* Marks the nodes that the scene reaches, in order. The stack is explicit because trees may be
  * deep. */
-static bool collect(vlGltf *g, const json_t *roots, const vlGltfPlace *at, uint32_t *order,
+static bool collect(vlGltf *g, const json_t *roots, const vlGltfLocation *at, uint32_t *order,
                     size_t *count) {
   uint32_t *stack = vl_alloc_array(g->context, g->node_count + 1, sizeof *stack);
   if (!stack)
@@ -417,7 +417,7 @@ bool vl_gltf_draw(vlGltf *g) {
   size_t chosen = index < 0 ? 0 : (size_t)index;
   if (g->def->scene && !choose_scene(g, &chosen))
     return false;
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "scenes", chosen);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "scenes", chosen);
   const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL,
                *roots = NULL;
   size_t root_count = 0, count = 0;

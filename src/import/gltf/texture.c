@@ -27,7 +27,7 @@ static bool is_remote(const char *uri) {
 }
 
 /* Reports a missing image: as an error if strict. */
-static bool report_missing(vlGltf *g, const vlGltfPlace *at, vlGltfImage *image,
+static bool report_missing(vlGltf *g, const vlGltfLocation *at, vlGltfImage *image,
                            const char *name, const char *why) {
   char text[512];
   snprintf(text, sizeof text, "%.400s", name);
@@ -45,7 +45,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
   if (image->read)
     return true;
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "images", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "images", index);
   const json_t *json = vl_gltf_item(g, "images", index);
   const char *uri = NULL;
   int64_t view;
@@ -78,7 +78,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds",
                                        "EXT_texture_avif"};
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "textures", texture);
   const json_t *json = vl_gltf_item(g, "textures", texture);
   const json_t *webp = vl_gltf_extension(json, "EXT_texture_webp");
   if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), webp, "source",
@@ -104,13 +104,13 @@ static vlWrap wrap_of(double code) {
 }
 
 static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "textures", texture);
   int64_t index;
   if (!vl_gltf_index(g, at, vl_gltf_item(g, "textures", texture), "sampler", g->sampler_count,
                      &index))
     return false;
   const json_t *sampler = index < 0 ? NULL : vl_gltf_item(g, "samplers", (size_t)index);
-  const vlGltfPlace *here = VL_GLTF_ITEM(NULL, "samplers", (size_t)(index < 0 ? 0 : index));
+  const vlGltfLocation *here = VL_GLTF_ITEM(NULL, "samplers", (size_t)(index < 0 ? 0 : index));
   double s = 10497, t = 10497, large = 9729;
   if (!vl_gltf_number(g, here, sampler, "wrapS", &s) ||
       !vl_gltf_number(g, here, sampler, "wrapT", &t) ||
@@ -123,7 +123,8 @@ static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
   return true;
 }
 
-bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set) {
+bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, const json_t *info,
+                         uint32_t *set) {
   size_t value = 0;
   const json_t *transform = vl_gltf_extension(info, "KHR_texture_transform");
   if (!vl_gltf_size(g, at, info, "texCoord", &value) ||
@@ -140,12 +141,12 @@ bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, u
 }
 
 /* KHR_texture_transform maps uvs with v downwards; here v points upwards before and after. */
-static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info,
+static bool read_transform(vlGltf *g, const vlGltfLocation *up, const json_t *info,
                            vlTextureDef *def) {
   const json_t *json = vl_gltf_extension(info, "KHR_texture_transform");
   if (!json)
     return true;
-  const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_texture_transform");
+  const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_texture_transform");
   double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
   if (!vl_gltf_numbers(g, at, json, "offset", 2, offset) ||
       !vl_gltf_numbers(g, at, json, "scale", 2, scale) ||
@@ -160,10 +161,10 @@ static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info,
   return true;
 }
 
-bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *up, const json_t *object, const char *key,
+bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const json_t *object, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id) {
   const json_t *info;
-  const vlGltfPlace *at = VL_GLTF_KEY(up, key);
+  const vlGltfLocation *at = VL_GLTF_KEY(up, key);
   int64_t texture, image;
   *id = (vlTextureId){0};
   if (!vl_gltf_object(g, up, object, key, &info))

@@ -30,7 +30,7 @@ typedef struct NewMesh { /* room for the vertices and faces to be made */
   size_t vertices, faces;
 } NewMesh;
 
-static bool make_room(vlGltf *g, const vlGltfPlace *at, const vlGltfPrimitive *p,
+static bool make_room(vlGltf *g, const vlGltfLocation *at, const vlGltfPrimitive *p,
                       size_t vertices, size_t faces, NewMesh *b) {
   memset(b, 0, sizeof *b);
   if (vertices > UINT32_MAX)
@@ -161,7 +161,7 @@ static float point_radius(const vlGltf *g, const vlGltfPrimitive *p) {
   return d > 0 && isfinite(d) ? (float)(0.003 * sqrt(d)) : 0.003f;
 }
 
-static bool make_solids(vlGltf *g, const vlGltfPlace *at, uint32_t mode,
+static bool make_solids(vlGltf *g, const vlGltfLocation *at, uint32_t mode,
                         const uint32_t *indices, size_t count, vlGltfPrimitive *p) {
   size_t solids = mode == POINTS      ? count
                   : mode == LINES     ? count / 2
@@ -198,7 +198,7 @@ static bool make_solids(vlGltf *g, const vlGltfPlace *at, uint32_t mode,
  * ---------------------------------------------------------------------------------------------------
  */
 
-bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices,
+bool vl_gltf_triangles(vlGltf *g, const vlGltfLocation *at, uint32_t mode, uint32_t *indices,
                        size_t count, vlGltfPrimitive *p) {
   if (mode <= LINE_STRIP) {
     bool ok = make_solids(g, at, mode, indices, count, p);

@@ -29,7 +29,7 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
   static const char *const keys[2] = {"min", "max"}, *const codes[2] = {
                                                          "ACCESSOR_MIN_MISMATCH",
                                                          "ACCESSOR_MAX_MISMATCH"};
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "accessors", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "accessors", index);
   for (int k = 0; k < 2; k++) {
     const json_t *given = json_object_get(vl_gltf_item(g, "accessors", index), keys[k]);
     for (uint32_t c = 0; c < components && json_array_size(given) == components; c++) {
@@ -96,7 +96,7 @@ static void mark_used(const vlGltf *g, uint8_t *used) {
 /* A node that no scene reaches, with its mesh as its skin and morph targets deform it, and its
  * light. */
 static bool read_node(vlGltf *g, size_t index) {
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "nodes", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", index);
   const vlGltfNode *node = &g->nodes[index];
   const json_t *punctual = vl_gltf_extension(node->json, "KHR_lights_punctual");
   int64_t mesh, light = -1;

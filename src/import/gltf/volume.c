@@ -11,7 +11,7 @@
 
 /* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) /
  * distance per channel. */
-bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json,
+bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, const json_t *json,
                     vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];

@@ -1,7 +1,6 @@
 /* import/obj/mtl.c: reads the material libraries of OBJ files into vlMtl. Statements that velo
  * does not use are ignored; broken ones are errors with their line. */
 #include <math.h>
-#include <stdio.h>
 #include <sys/stat.h>
 
 #include "base/file.h"
@@ -319,7 +318,7 @@ static bool read_library(vlObj *obj, char *name) {
     vl_scene_fail(obj->scene, r, (vlSource){obj->path, obj->line, 1}, "%s", error.message);
     return false;
   }
-  /* Errors name the library's line; the OBJ file's own place is restored afterwards. */
+  /* Errors name the library's line; the OBJ file's own line is restored afterwards. */
   const char *own_path = obj->path;
   uint32_t own_line = obj->line, own_more = obj->more_lines, current = 0;
   obj->path = path;

@@ -1,7 +1,6 @@
 /* import/obj/mtl_material.c: converts vlMtl to the principled material. docs/importers.md lists
  * the rules where MTL is ambiguous. */
 #include <math.h>
-#include <stdio.h>
 
 #include "import/obj/obj.h"
 

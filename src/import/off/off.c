@@ -262,14 +262,10 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load,
   vlContext *context = scene->context;
   char *data = NULL;
   size_t size = 0;
-  vlError inside = {0};
-  vl_import_plain_settings(scene);
-  vlResult r = vl_file_read_given(context, path, true, &data, &size, &inside);
-  if (r != VL_OK)
-    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
+  bool ok = vl_import_plain_read(scene, path, &data, &size);
   s.at = data;
   s.end = data + size;
-  bool ok = r == VL_OK && read(&s);
+  ok = ok && read(&s);
   vl_free(context, data);
   VL_ARRAY_FREE(context, &s.indices);
   VL_ARRAY_FREE(context, &s.corners);

@@ -187,7 +187,7 @@ struct vlImport {
   vlCurveRun curves;
   vlMeshRun mesh_runs[VL_MESH_RUNS];
   vlSphereRun sphere_runs[VL_MESH_RUNS];
-  uint32_t next_sphere_run; /* the run that is ended when a new one needs its place */
+  uint32_t next_sphere_run; /* the run that is ended when a new one needs its slot */
   uint32_t next_run;
   double edge_scale; /* Option "displacementedgescale" */
   uint32_t depth;    /* nesting of textures or materials that refer to each other */
@@ -218,9 +218,9 @@ bool vl_import_unsupported(vlImport *import, vlSource source, const char *format
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
                        const char *const *known, size_t known_count, const char *const *later,
                        size_t later_count);
-/* Like vl_import_unknown; the known names are the kinds of the family. */
 /* The name of a kind for messages. Names that velo does not know are shortened. */
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
+/* Like vl_import_unknown; the known names are the kinds of the family. */
 bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family,
                             const char *name);
 const char *vl_import_keep(vlImport *import,
@@ -228,6 +228,17 @@ const char *vl_import_keep(vlImport *import,
                                                  null when out of memory */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
                       const vlParamList *own, const vlParamList *attributes);
+/* vl_import_dict for a directive that names a kind. */
+vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                           const char *kind, vlSource source, vlColorSpace space,
+                           const vlParamList *own, const vlParamList *attributes);
+/* The same for a directive that a file has once; standard: its kind where the file lacks it. */
+vlDict vl_import_choice_dict(vlImport *import, const char *directive,
+                             const vlKindFamily *family, const vlChoice *choice,
+                             const char *standard);
+/* Reports a name that is not in the table. Returns false. */
+bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing,
+                            const char *name, const vlNameTable *table);
 /* Looks for a file that the file `naming` names (find.h), and notes the first that is in the
  * current folder only. */
 vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path,

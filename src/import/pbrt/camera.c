@@ -1,8 +1,6 @@
 /* import/pbrt/camera.c: converts the Camera directive to a vlCameraDef. The file reads pbrt's
  * cameras, and velo's own ones (pinhole, thin lens, other projections, calibrated lenses) with
  * the parameters of the lecture (docs/lecture.md). */
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -320,12 +318,8 @@ static bool read_kind(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const v
 bool vl_import_camera(vlImport *import) {
   vlSceneDefs *defs = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->camera;
-  char what[96];
-  snprintf(what, sizeof what, "Camera \"%s\"",
-           vl_import_kind_text(&vl_camera_family, choice->given ? choice->kind : "perspective")
-               .text);
   vlDict dict =
-      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+      vl_import_choice_dict(import, "Camera", &vl_camera_family, choice, "perspective");
   vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
   int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind)
                            : (int)VL_CAMERA_PBRT_PERSPECTIVE;
@@ -347,7 +341,7 @@ bool vl_import_camera(vlImport *import) {
     if (!read_kind(&dict, &def, (vlCameraKind)kind, row))
       return false;
   }
-  if (!check(import, what, &def))
+  if (!check(import, dict.what, &def))
     return false;
   defs->camera = def;
   /* in pbrt the exposure grows with the time that the shutter is open; velo's own cameras have

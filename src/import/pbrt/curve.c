@@ -1,7 +1,6 @@
 /* import/pbrt/curve.c: Shape "curve". Every basis and degree becomes cubic Bezier segments.
  * Successive curves that differ only in their points become one shape, since hair is described
  * by millions of directives. */
-#include <stdio.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"

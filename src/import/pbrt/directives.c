@@ -1,8 +1,6 @@
 /* import/pbrt/directives.c: reads directives (parse.h). */
 #include "import/pbrt/parse.h"
 
-#include <stdio.h>
-
 #include "base/text.h"
 #include "import/pbrt/parser.h"
 
@@ -14,7 +12,7 @@ static bool take_string(vlParserFile *file, const char *directive, const char *w
     return true;
   }
   if (token.kind == VL_TOKEN_BAD)
-    return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+    return vl_parse_fail_bad(file, &token);
   return vl_parse_fail(file, vl_parse_source(file, &token),
                        "%s: expected %s in quotes, found %s", directive, what,
                        vl_parse_show(&token).text);
@@ -25,7 +23,7 @@ static bool take_number(vlParserFile *file, const char *directive, double *value
   if (token.kind == VL_TOKEN_WORD && vl_number_parse(token.text, token.length, value))
     return true;
   if (token.kind == VL_TOKEN_BAD)
-    return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+    return vl_parse_fail_bad(file, &token);
   return vl_parse_fail(file, vl_parse_source(file, &token), "%s: expected a number, found %s",
                        directive, vl_parse_show(&token).text);
 }
@@ -127,7 +125,7 @@ static bool send(vlParserFile *file, const vlStatement *statement) {
 static bool read_matrix(vlParserFile *file, const Keyword *k, vlStatement *s) {
   vlToken open = vl_parse_take(file);
   if (open.kind == VL_TOKEN_BAD)
-    return vl_parse_fail(file, vl_parse_source(file, &open), "%s", open.message);
+    return vl_parse_fail_bad(file, &open);
   if (open.kind != VL_TOKEN_OPEN)
     return vl_parse_fail(file, vl_parse_source(file, &open),
                          "%s: expected [ and 16 numbers, found %s", k->name,
@@ -182,7 +180,7 @@ static bool read_option(vlParserFile *file, vlStatement *s) {
   if (bracket)
     token = vl_parse_take(file);
   if (token.kind == VL_TOKEN_BAD)
-    return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+    return vl_parse_fail_bad(file, &token);
   if (token.kind != VL_TOKEN_WORD && token.kind != VL_TOKEN_STRING)
     return vl_parse_fail(file, vl_parse_source(file, &token),
                          "Option: expected a value, found %s", vl_parse_show(&token).text);
@@ -324,7 +322,7 @@ bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
     if (token.kind == VL_TOKEN_END)
       return true;
     if (token.kind == VL_TOKEN_BAD)
-      return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+      return vl_parse_fail_bad(file, &token);
     if (token.kind != VL_TOKEN_WORD)
       return vl_parse_fail(file, vl_parse_source(file, &token),
                            "expected a directive, found %s", vl_parse_show(&token).text);

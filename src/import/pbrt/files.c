@@ -1,6 +1,5 @@
 /* import/pbrt/files.c: reads the first file and the files of Include and Import, within limits
  * (parse.h). */
-#include <stdio.h>
 #include <sys/stat.h>
 
 #include "base/file.h"

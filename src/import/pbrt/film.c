@@ -143,11 +143,7 @@ static bool (*const rules[0 VL_FILM_KINDS(VL_COUNT_KIND)])(vlDict *dict, vlScene
 bool vl_import_film(vlImport *import) {
   vlSceneDefs *s = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->film;
-  char what[96];
-  snprintf(what, sizeof what, "Film \"%s\"",
-           vl_import_kind_text(&vl_film_family, choice->given ? choice->kind : "rgb").text);
-  vlDict dict =
-      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_choice_dict(import, "Film", &vl_film_family, choice, "rgb");
   int kind = choice->given ? vl_kind_find(&vl_film_family, choice->kind) : VL_FILM_RGB;
   bool known = kind >= 0;
   if (!known && !vl_import_unknown_kind(import, choice->source, &vl_film_family, choice->kind))

@@ -1,6 +1,5 @@
 /* import/pbrt/light.c: LightSource and AreaLightSource of pbrt-v4. This file stores scale,
  * power and illuminance; the world applies them. */
-#include <stdio.h>
 #include <string.h>
 
 #include "color/color.h"
@@ -84,12 +83,10 @@ static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
 enum { MOST_PARAMETERS = 32 };
 
 bool vl_import_light(vlImport *import, const vlStatement *s) {
-  char what[96];
   bool given[MOST_PARAMETERS];
-  snprintf(what, sizeof what, "LightSource \"%s\"",
-           vl_import_kind_text(&vl_light_family, s->names[0]).text);
-  vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
-                               vl_import_attributes(import, VL_ATTR_LIGHT));
+  vlDict dict = vl_import_kind_dict(import, "LightSource", &vl_light_family, s->names[0],
+                                    s->source, import->state.space, s->params,
+                                    vl_import_attributes(import, VL_ATTR_LIGHT));
   int kind = vl_kind_find(&vl_light_family, s->names[0]);
   if (kind < 0) /* permissive: skipped */
     return vl_import_unknown_kind(import, s->source, &vl_light_family, s->names[0]);
@@ -120,12 +117,10 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
-  char what[96];
   bool given[MOST_PARAMETERS];
-  snprintf(what, sizeof what, "AreaLightSource \"%s\"",
-           vl_import_kind_text(&vl_emission_family, s->names[0]).text);
-  vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
-                               vl_import_attributes(import, VL_ATTR_LIGHT));
+  vlDict dict = vl_import_kind_dict(import, "AreaLightSource", &vl_emission_family, s->names[0],
+                                    s->source, import->state.space, s->params,
+                                    vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};
   if (s->names[0][0] == 0)
     return true; /* as in pbrt, an empty name ends the current area light */

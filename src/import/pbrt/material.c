@@ -10,15 +10,8 @@
 bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
                            vlMaterialId *id, bool *is_interface) {
   uint32_t index;
-  if (!vl_names_find(&import->named_materials, name, &index)) {
-    const char *near = vl_names_nearest(&import->named_materials, name);
-    if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "there is no material \"%s\" (did you mean \"%s\"?)",
-                            vl_short_text(name).text, vl_short_text(near).text);
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no material \"%s\"",
-                          vl_short_text(name).text);
-  }
+  if (!vl_names_find(&import->named_materials, name, &index))
+    return vl_import_missing_name(import, source, "material", name, &import->named_materials);
   if (import->materials.items[index].state == VL_IN_PROGRESS)
     return vl_import_fail(import, VL_ERROR_SCENE, source, "material \"%s\" is mixed of itself",
                           vl_short_text(name).text);

@@ -1,7 +1,6 @@
 /* import/pbrt/medium.c: MakeNamedMedium, and the media of shapes, lights and the camera. Names
  * are resolved at the end, since pbrt allows a medium to be named before it is defined.
  * Parameters and defaults are pbrt-v4's. */
-#include <math.h>
 #include <stdio.h>
 
 #include "base/text.h"
@@ -213,13 +212,7 @@ static bool find(vlImport *import, const char *name, vlSource source, vlMediumId
   id->index = 0;
   if (!name[0] || vl_names_find(&import->media, name, &id->index))
     return true;
-  const char *near = vl_names_nearest(&import->media, name);
-  if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, source,
-                          "there is no medium \"%s\" (did you mean \"%s\"?)",
-                          vl_short_text(name).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no medium \"%s\"",
-                        vl_short_text(name).text);
+  return vl_import_missing_name(import, source, "medium", name, &import->media);
 }
 
 /* Warns when a scene with media names one of pbrt's surface integrators, which ignore media.

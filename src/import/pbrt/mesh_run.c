@@ -3,7 +3,6 @@
  * VL_MESH_RUN_FROM-th shape of a file on, meshes of few triangles with equal graphics state are
  * merged. Nothing is merged before that, or while diagnosing. Several runs are open at a time,
  * since exporters alternate between materials. */
-#include <math.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"

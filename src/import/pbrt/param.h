@@ -35,7 +35,7 @@ const char *vl_param_type_nearest(const char *text);
 typedef struct vlParam {
   vlParamType type;
   char *name;
-  vlSource source; /* place of the declaration; its file name is not owned */
+  vlSource source; /* location of the declaration; its file name is not owned */
   /* One of these is filled: integers for type integer, floats for other numbers. */
   VL_ARRAY(float) floats;
   VL_ARRAY(int32_t) integers;
@@ -65,8 +65,8 @@ typedef struct vlImport vlImport;
  * vlDict lives on the stack. Names passed to its functions are string literals. */
 typedef struct vlDict {
   vlImport *import;
-  const char *what; /* 'Shape "sphere"', for errors */
-  vlSource source;  /* of the directive */
+  char what[160];  /* 'Shape "sphere"', for errors */
+  vlSource source; /* of the directive */
   vlColorSpace space;
   const vlParamList *own, *attributes; /* attributes may be null */
   const char *asked[64];

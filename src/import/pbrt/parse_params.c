@@ -12,6 +12,10 @@ vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
   return (vlSource){file->path, token->line, token->column};
 }
 
+bool vl_parse_fail_bad(vlParserFile *file, const vlToken *token) {
+  return vl_parse_fail(file, vl_parse_source(file, token), "%s", token->message);
+}
+
 bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);
@@ -215,7 +219,7 @@ static bool read_run(vlParserFile *file, vlParam *param) {
 static bool read_values(vlParserFile *file, vlParam *param) {
   vlToken token = vl_parse_take(file);
   if (token.kind == VL_TOKEN_BAD)
-    return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+    return vl_parse_fail_bad(file, &token);
   if (token.kind != VL_TOKEN_OPEN) {
     if (token.kind == VL_TOKEN_END || token.kind == VL_TOKEN_CLOSE)
       return vl_parse_fail(file, vl_parse_source(file, &token),
@@ -233,7 +237,7 @@ static bool read_values(vlParserFile *file, vlParam *param) {
     if (token.kind == VL_TOKEN_CLOSE)
       return true;
     if (token.kind == VL_TOKEN_BAD)
-      return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+      return vl_parse_fail_bad(file, &token);
     if (token.kind == VL_TOKEN_OPEN)
       return vl_parse_fail(file, vl_parse_source(file, &token), "[ inside of [ ]");
     if (token.kind == VL_TOKEN_END)
@@ -250,7 +254,7 @@ bool vl_parse_params(vlParserFile *file, vlParamList *params) {
   for (;;) {
     vlToken token = vl_parse_peek(file);
     if (token.kind == VL_TOKEN_BAD)
-      return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+      return vl_parse_fail_bad(file, &token);
     if (token.kind == VL_TOKEN_END && file->included &&
         vl_parse_peek(file->parent).kind == VL_TOKEN_STRING) {
       file = file->parent;

@@ -39,6 +39,8 @@ typedef struct vlShownToken {
 } vlShownToken;
 
 vlShownToken vl_parse_show(const vlToken *token);
+/* Reports a token of kind VL_TOKEN_BAD. Returns false. */
+bool vl_parse_fail_bad(vlParserFile *file, const vlToken *token);
 vlSource vl_parse_source(const vlParserFile *file, const vlToken *token);
 bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -1,6 +1,5 @@
 /* import/pbrt/sampling.c: converts the directives Sampler, PixelFilter, Integrator and
  * Accelerator to the scene's defs. Defaults are pbrt-v4's. */
-#include <stdio.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
@@ -73,11 +72,7 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   s->render.spp = 16;
   if (!choice->given)
     return true;
-  char what[96];
-  snprintf(what, sizeof what, "Sampler \"%s\"",
-           vl_import_kind_text(&vl_sampler_family, choice->kind).text);
-  vlDict dict =
-      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_choice_dict(import, "Sampler", &vl_sampler_family, choice, NULL);
   int kind;
   bool good, given[16];
   const vlKindRow *row = find_row(import, &vl_sampler_family, choice, &kind, &good);
@@ -109,11 +104,8 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
   s->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
   if (!choice->given)
     return true;
-  char what[96];
-  snprintf(what, sizeof what, "PixelFilter \"%s\"",
-           vl_import_kind_text(&vl_pixel_filter_family, choice->kind).text);
   vlDict dict =
-      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+      vl_import_choice_dict(import, "PixelFilter", &vl_pixel_filter_family, choice, NULL);
   int kind = vl_kind_find(&vl_pixel_filter_family, choice->kind);
   if (kind < 0)
     return vl_import_unknown_kind(import, choice->source, &vl_pixel_filter_family,
@@ -191,11 +183,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   s->tracer_missing = !choice->given;
   if (!choice->given)
     return true;
-  char what[96];
-  snprintf(what, sizeof what, "Integrator \"%s\"",
-           vl_import_kind_text(&vl_tracer_family, choice->kind).text);
-  vlDict dict =
-      vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_choice_dict(import, "Integrator", &vl_tracer_family, choice, NULL);
   int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
   const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
   if (!row) { /* permissive: a path tracer of the same depth replaces it */

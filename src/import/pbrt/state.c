@@ -1,7 +1,5 @@
 /* import/pbrt/state.c: pbrt's graphics state: current transforms, named coordinate systems, the
  * stack. */
-#include <math.h>
-#include <string.h>
 
 #include "import/pbrt/builder.h"
 #include "math/double3.h"
@@ -99,14 +97,8 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
       import->state.ctm[i] = import->matrices.items[index].at[i];
     return true;
   }
-  const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);
-  if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "there is no coordinate system \"%s\" (did you mean \"%s\"?)",
-                          vl_short_text(s->names[0]).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                        "there is no coordinate system \"%s\"",
-                        vl_short_text(s->names[0]).text);
+  return vl_import_missing_name(import, s->source, "coordinate system", s->names[0],
+                                &import->coordinate_systems);
 }
 
 /* ---- the stack

@@ -19,13 +19,8 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
       return vl_import_fail(import, VL_ERROR_SCENE, source,
                             "texture \"%s\" is a %s texture; a %s texture is needed here",
                             vl_short_text(name).text, spectrum ? "float" : "spectrum", type);
-    const char *near = vl_names_nearest(table, name);
-    if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "there is no %s texture \"%s\" (did you mean \"%s\"?)", type,
-                            vl_short_text(name).text, vl_short_text(near).text);
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no %s texture \"%s\"", type,
-                          vl_short_text(name).text);
+    return vl_import_missing_name(import, source,
+                                  spectrum ? "spectrum texture" : "float texture", name, table);
   }
   if (import->textures.items[index].state == VL_IN_PROGRESS)
     return vl_import_fail(import, VL_ERROR_SCENE, source, "texture \"%s\" refers to itself",

@@ -110,8 +110,18 @@ bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length
   return true;
 }
 
-static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
+bool vl_ply_skip_property(vlPlyReader *r, const vlPlyProperty *p) {
   double ignored;
+  uint64_t n = 1;
+  if (p->is_list && !vl_ply_read_length(r, p, &n))
+    return false;
+  for (uint64_t k = 0; k < n; k++)
+    if (!vl_ply_read_value(r, p->type, &ignored))
+      return false;
+  return true;
+}
+
+static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
   if (r->format != VL_PLY_ASCII && !e->has_list) {
     r->at += e->count * e->row_size;
     return true;
@@ -119,15 +129,9 @@ static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
   if (e->property_count == 0)
     return true;
   for (uint64_t i = 0; i < e->count; i++)
-    for (uint32_t j = 0; j < e->property_count; j++) {
-      const vlPlyProperty *p = &e->properties[j];
-      uint64_t n = 1;
-      if (p->is_list && !vl_ply_read_length(r, p, &n))
+    for (uint32_t j = 0; j < e->property_count; j++)
+      if (!vl_ply_skip_property(r, &e->properties[j]))
         return false;
-      for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &ignored))
-          return false;
-    }
   return true;
 }
 

@@ -343,23 +343,13 @@ static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
 }
 
 bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e) {
-  double ignored;
   if (r->mesh->face_colors)
     return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
   for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
-      uint64_t n = 1;
-      if (p->role == VL_PLY_INDICES) {
-        if (!read_strip(r, p))
-          return false;
-        continue;
-      }
-      if (p->is_list && !vl_ply_read_length(r, p, &n))
+      if (!(p->role == VL_PLY_INDICES ? read_strip(r, p) : vl_ply_skip_property(r, p)))
         return false;
-      for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &ignored))
-          return false;
     }
   return true;
 }

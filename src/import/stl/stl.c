@@ -144,14 +144,10 @@ vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
   Stl s = {.scene = scene, .path = path};
   char *data = NULL;
   size_t size = 0;
-  vlError inside = {0};
-  vl_import_plain_settings(scene);
-  vlResult r = vl_file_read_given(scene->context, path, true, &data, &size, &inside);
-  if (r != VL_OK)
-    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
+  bool ok = vl_import_plain_read(scene, path, &data, &size);
   s.at = data;
   s.end = data + size;
-  bool ok = r == VL_OK && read(&s);
+  ok = ok && read(&s);
   vl_free(scene->context, data);
   size_t vertices = s.positions.count / 3;
   uint32_t *indices = ok ? vl_alloc_array(scene->context, vertices + 1, sizeof *indices) : NULL;

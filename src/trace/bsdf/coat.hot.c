@@ -135,7 +135,7 @@ PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, floa
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlCoatPlace p = vl_coat_place(vl_abs(z[i]));
+    vlCoatCell p = vl_coat_cell(vl_abs(z[i]));
     nodes.first[i] = p.first;
     nodes.at[i] = p.t;
   }

@@ -112,7 +112,7 @@ static void directions(const vlEnvironment *env, uint32_t padded, Block *restric
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
-    vlVec3 w = vl_normalize(vl_environment_turn(turn, vl_octahedral_decode(b->s[k], b->t[k])));
+    vlVec3 w = vl_normalize(vl_turn(turn, vl_octahedral_decode(b->s[k], b->t[k])));
     vl_set_lane3(b->wx, b->wy, b->wz, k, w);
   }
 }
@@ -183,7 +183,7 @@ static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t pad
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
     vlVec3 d = vl_vec3(b->wx[k], b->wy[k], b->wz[k]);
-    vlVec2 st = vl_octahedral_encode(vl_normalize(vl_environment_turn(turn, d)));
+    vlVec2 st = vl_octahedral_encode(vl_normalize(vl_turn(turn, d)));
     b->s[k] = st.x;
     b->t[k] = st.y;
   }

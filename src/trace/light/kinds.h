@@ -95,9 +95,7 @@ static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
 
 /* Transforms a world direction to the light's frame, for lights with an image. */
 static inline vlVec3 vl_light_local(const vlWorldLight *light, vlVec3 d) {
-  const float *m = light->corners;
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
+  return vl_turn(light->corners, d);
 }
 
 /* Sets target, direction and density of a sample of a point light. Returns 1 / distance^2. */

@@ -2,8 +2,6 @@
  * (vlAccel.scene). Those of the previous world are shared. */
 #include "world/accel/bvh.h"
 
-#include <string.h>
-
 #include "base/error.h"
 #include "world/accel/share.h"
 

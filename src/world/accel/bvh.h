@@ -37,7 +37,7 @@ static inline const void *vl_bvh_at(uintptr_t child) {
   return (const void *)(child & ~(uintptr_t)3);
 }
 
-/* Boxes of the children: rows low x, high x, low y, high y, low z, high z. Places without a
+/* Boxes of the children: rows low x, high x, low y, high y, low z, high z. Slots without a
  * child have low > high. */
 typedef float vlBvhBoxes[6][VL_BVH_WIDTH];
 typedef struct vlBvhNode {
@@ -53,14 +53,14 @@ typedef struct vlBvhItem {
 } vlBvhItem;
 
 /* Triangles, as a structure of arrays. Of moving ones, with their corners at time 0. The last
- * fills places that are left over. */
+ * fills slots that are left over. */
 typedef struct vlBvhFour {
   float corner[3][3][VL_BVH_FOUR]; /* [corner][axis] */
   uint32_t geometry[VL_BVH_FOUR], primitive[VL_BVH_FOUR];
 } vlBvhFour;
-/* Puts the corners of a triangle at `time` into place k. */
-static inline void vl_bvh_place(const vlWorldShape *s, uint32_t prim, float time,
-                                vlBvhFour *four, uint32_t k) {
+/* Puts the corners of a triangle at `time` into slot k. */
+static inline void vl_bvh_put_corners(const vlWorldShape *s, uint32_t prim, float time,
+                                      vlBvhFour *four, uint32_t k) {
   for (size_t c = 0; c < 3; c++) {
     float room[3];
     const float *at = vl_vertex_at(s, s->indices[3 * (size_t)prim + c], time, room);
@@ -96,7 +96,7 @@ vlResult vl_bvh_make(const struct vlWorld *world, uint32_t group, vlBvh **tree, 
 void vl_bvh_release(vlContext *context, vlBvh *tree); /* null is allowed */
 
 /* Group from world for an instance, and for a moving one at `time`, by the operations of
- * Embree: a ray is in the same place of the group, bit for bit. */
+ * Embree: a ray is in the same slot of the group, bit for bit. */
 void vl_bvh_map(const float from_group[12], float to_group[12]);
 
 /* As those of embree.h. */

@@ -5,7 +5,6 @@
  * Its sums and products are computed in the order in which Embree computes them without fused
  * multiply-add, so that a ray hits the same triangles. */
 #include <math.h>
-#include <string.h>
 
 #include "math/vec.h"
 #include "world/accel/bvh.h"
@@ -35,11 +34,11 @@ typedef struct Query {
   vlNearest nearest; /* its instance is an index; VL_NONE for none */
 } Query;
 
-/* A place of the stack: the tree below `child` begins at the distance `near`. */
-typedef struct Place {
+/* An entry of the stack: the tree below `child` begins at the distance `near`. */
+typedef struct StackEntry {
   uintptr_t child;
   float near;
-} Place;
+} StackEntry;
 
 static inline float larger(float a, float b) {
   return a > b ? a : b;
@@ -202,7 +201,7 @@ static __attribute__((noinline)) void move(const Query *q, vlBvhFour *f) {
   for (uint32_t k = 0; k < F; k++) {
     uint32_t prim = f->primitive[k];
     const vlWorldShape *s = shape_of(q, f->geometry[k] & ~VL_BVH_ASKS, &prim);
-    vl_bvh_place(s, prim, q->time, f, k);
+    vl_bvh_put_corners(s, prim, q->time, f, k);
   }
 }
 
@@ -277,27 +276,27 @@ static inline bool meet_leaf(Query *q, const vlBvh *tree, uintptr_t child, const
 }
 
 /* Puts the children that are met on the stack, the nearest last. */
-static inline Place *push(Place *top, const vlBvhNode *node, uint32_t met, const float begin[W],
-                          bool any) {
-  Place *base = top;
+static inline StackEntry *push(StackEntry *top, const vlBvhNode *node, uint32_t met,
+                               const float begin[W], bool any) {
+  StackEntry *base = top;
   for (; met; met &= met - 1) {
     int k = __builtin_ctz(met);
-    Place *at = top++;
+    StackEntry *at = top++;
     for (; !any && at > base && at[-1].near < begin[k]; at--)
       *at = at[-1];
-    *at = (Place){node->child[k], begin[k]};
+    *at = (StackEntry){node->child[k], begin[k]};
   }
   return top;
 }
 
 /* A ray through a tree. Returns whether it is blocked, if any hit blocks it. */
 static bool walk(Query *q, const vlBvh *tree, const float o[3], const float d[3], bool any) {
-  Place stack[VL_BVH_STACK], *top = stack;
+  StackEntry stack[VL_BVH_STACK], *top = stack;
   Ray r = ray_of(tree, o, d);
   if (tree->root)
-    *top++ = (Place){tree->root, 0.0f};
+    *top++ = (StackEntry){tree->root, 0.0f};
   while (top > stack) {
-    Place at = *--top;
+    StackEntry at = *--top;
     if (!any && at.near > q->limit)
       continue;
     if (vl_bvh_kind(at.child) != VL_BVH_NODE) {

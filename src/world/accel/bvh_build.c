@@ -388,7 +388,7 @@ static bool make_leaf(Builder *b, Arena *arena, const Range *r, uintptr_t *child
     four->geometry[k] = item.geometry;
     four->primitive[k] = item.primitive;
     const vlWorldShape *s = shape_of(b, &item);
-    vl_bvh_place(s, item.primitive, 0, four, k);
+    vl_bvh_put_corners(s, item.primitive, 0, four, k);
   }
   return true;
 }

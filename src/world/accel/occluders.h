@@ -14,7 +14,7 @@
 
 enum {
   VL_OCCLUDERS = 96,        /* at most as many triangles are tested */
-  VL_OCCLUDER_TABLE = 1024, /* places of the table of counts; a power of two */
+  VL_OCCLUDER_TABLE = 1024, /* slots of the table of counts; a power of two */
 };
 
 /* A triangle in world space. inside: a ray must meet it so far from its edges, in barycentric
@@ -25,7 +25,7 @@ typedef struct vlOccluder {
   float inside;
 } vlOccluder;
 
-/* How often a triangle has blocked a ray. geometry, prim: Embree's; count 0: the place is free.
+/* How often a triangle has blocked a ray. geometry, prim: Embree's; count 0: the slot is free.
  */
 typedef struct vlOccluderCount {
   uint32_t geometry, prim, count;

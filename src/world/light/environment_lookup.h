@@ -74,15 +74,11 @@ static inline uint32_t vl_environment_at(const vlEnvironment *env, float s, floa
   return y * env->size + x;
 }
 
-static inline vlVec3 vl_environment_turn(const float m[9], vlVec3 d) {
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
-}
 static inline vlVec3 vl_environment_direction(const vlEnvironment *env, float s, float t) {
-  return vl_normalize(vl_environment_turn(env->world_from_light, vl_octahedral_decode(s, t)));
+  return vl_normalize(vl_turn(env->world_from_light, vl_octahedral_decode(s, t)));
 }
 static inline vlVec2 vl_environment_square(const vlEnvironment *env, vlVec3 d) {
-  return vl_octahedral_encode(vl_normalize(vl_environment_turn(env->light_from_world, d)));
+  return vl_octahedral_encode(vl_normalize(vl_turn(env->light_from_world, d)));
 }
 
 #endif

@@ -214,7 +214,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
     *slot = (uint32_t)world->lights.count - 1;
   }
   vlResult r = compile[def->kind](world, def, light, e, error);
-  return vl_world_placed(def->source, error, r);
+  return vl_world_locate_error(def->source, error, r);
 }
 
 vlResult vl_world_add_lights(vlWorld *world, const vlScene *scene, vlError *error) {

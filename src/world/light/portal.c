@@ -39,10 +39,7 @@ static void set_frame(const vlLightDef *def, vlPortal *portal) {
 }
 
 static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
-  const float *m = env->light_from_world;
-  vlVec3 l = vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                     m[6] * d.x + m[7] * d.y + m[8] * d.z);
-  vlVec2 st = vl_octahedral_encode(vl_normalize(l));
+  vlVec2 st = vl_environment_square(env, d);
   float y = vl_light_texel_luminance(vl_nearest(mip, 0, st.x, st.y, VL_WRAP_OCTAHEDRAL),
                                      mip->channels);
   return y > 0.0f ? y : 0.0f;

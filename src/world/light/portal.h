@@ -29,9 +29,7 @@ typedef struct vlPortalWindow {
 } vlPortalWindow;
 
 static inline vlVec3 vl_portal_local(const vlPortal *portal, vlVec3 d) {
-  const float *m = portal->frame;
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
+  return vl_turn(portal->frame, d);
 }
 static inline vlVec3 vl_portal_world(const vlPortal *portal, vlVec3 d) {
   const float *m = portal->frame;

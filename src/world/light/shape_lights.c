@@ -133,7 +133,7 @@ static vlResult add_shape_emission(vlWorld *world, const vlScene *scene,
   e->image = -1;
   vlResult r = add_emission(world, scene, def, e, error);
   if (r != VL_OK)
-    return vl_world_placed(def->source, error, r);
+    return vl_world_locate_error(def->source, error, r);
   *index = (uint32_t)world->emitted.count - 1;
   return VL_OK;
 }

@@ -218,7 +218,7 @@ static double back_share(const Rules *rules, const Interface *s) {
 }
 
 static double at_cosine(const float *t, double c) {
-  vlCoatPlace p = vl_coat_place((float)c);
+  vlCoatCell p = vl_coat_cell((float)c);
   const float *q = t + p.first;
   return (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
 }

@@ -80,18 +80,18 @@ vlResult vl_coat_white_albedo(vlContext *context, const vlCoatTable *table, doub
 void vl_coat_free(vlContext *context, vlCoatTable *table);
 
 /* Position of T(cos) in the table: four nodes from `first` on, at t in [0, 3] among them. */
-typedef struct vlCoatPlace {
+typedef struct vlCoatCell {
   int32_t first;
   float t;
-} vlCoatPlace;
-static inline vlCoatPlace vl_coat_place(float cosine) {
+} vlCoatCell;
+static inline vlCoatCell vl_coat_cell(float cosine) {
   float c = cosine > 0.0f ? cosine : 0.0f;
   c = c < 1.0f ? c : 1.0f;
   float x = __builtin_sqrtf(__builtin_sqrtf(c)) * (float)(VL_COAT_COS - 1);
   int32_t first = (int32_t)x - 1;
   first = first > 0 ? first : 0;
   first = first < VL_COAT_COS - 4 ? first : VL_COAT_COS - 4;
-  return (vlCoatPlace){first, x - (float)first};
+  return (vlCoatCell){first, x - (float)first};
 }
 /* Lagrange's cubic through four equally spaced values. */
 static inline float vl_coat_cubic(float q0, float q1, float q2, float q3, float t) {

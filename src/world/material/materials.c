@@ -361,7 +361,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
     else
       r = vl_fail_memory(error);
   }
-  return vl_world_placed(def->source, error, r);
+  return vl_world_locate_error(def->source, error, r);
 }
 
 vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *error) {

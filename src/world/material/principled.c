@@ -4,7 +4,6 @@
 #include "world/material/principled.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "world/material/compile.h"
 

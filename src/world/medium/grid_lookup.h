@@ -6,16 +6,6 @@
 #include "math/vec.h"
 #include "world/medium/medium.h"
 
-static inline vlVec3 vl_medium_point(const float m[12], vlVec3 p) {
-  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
-                 m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
-}
-static inline vlVec3 vl_medium_vector(const float m[12], vlVec3 d) {
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[4] * d.x + m[5] * d.y + m[6] * d.z,
-                 m[8] * d.x + m[9] * d.y + m[10] * d.z);
-}
-
 /* The eight cells around a point, and the weights of trilinear interpolation. */
 typedef struct vlTrilinear {
   int32_t x, y, z;
@@ -71,7 +61,7 @@ static inline float vl_sparse_value(const vlSparseGrid *g, int32_t x, int32_t y,
 }
 /* Trilinear lookup at p, in medium space. */
 static inline float vl_sparse_lookup(const vlSparseGrid *g, vlVec3 p) {
-  vlVec3 q = vl_medium_point(g->index_from_medium, p);
+  vlVec3 q = vl_affine_point(g->index_from_medium, p);
   float limit = 1e9f;
   if (!(vl_abs(q.x) < limit && vl_abs(q.y) < limit && vl_abs(q.z) < limit))
     return g->tiles[0];

@@ -205,7 +205,7 @@ static vlResult use(vlWorld *world, const vlScene *scene, uint32_t *compiled, vl
     memset(m, 0, sizeof *m);
     vlResult r = obtain(world, scene, id, m, error);
     if (r != VL_OK)
-      return vl_world_placed(def->source, error, r);
+      return vl_world_locate_error(def->source, error, r);
     compiled[id.index - 1] = (uint32_t)world->media.count;
   }
   *index = compiled[id.index - 1] - 1;

@@ -131,7 +131,7 @@ static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q
  * vl_medium_coefficients. */
 static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumLight *whole,
                                          const float lambda[4], vlVec3 world_p, bool emission) {
-  vlVec3 p = vl_medium_point(m->medium_from_world, world_p);
+  vlVec3 p = vl_affine_point(m->medium_from_world, world_p);
   vlVec3 q = vl_vec3((p.x - m->low[0]) / (m->high[0] - m->low[0]),
                      (p.y - m->low[1]) / (m->high[1] - m->low[1]),
                      (p.z - m->low[2]) / (m->high[2] - m->low[2]));
@@ -198,8 +198,8 @@ typedef struct vlMajorantWalk {
  */
 static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0,
                                      float t1, vlMajorantWalk *w) {
-  vlVec3 po = vl_medium_point(m->medium_from_world, o),
-         pd = vl_medium_vector(m->medium_from_world, d);
+  vlVec3 po = vl_affine_point(m->medium_from_world, o),
+         pd = vl_affine_vector(m->medium_from_world, d);
   const float from[3] = {po.x, po.y, po.z}, along[3] = {pd.x, pd.y, pd.z};
   for (int i = 0; i < 3; i++) {
     if (along[i] == 0.0f) {

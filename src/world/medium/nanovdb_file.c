@@ -2,7 +2,6 @@
  * a header, grid descriptions, and the grids, plain or compressed by zlib. The layout is that
  * of format version 32: header 16 bytes; description 176 bytes and a name; then the grids in
  * the same order. All sizes are checked against the file's size. */
-#include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 

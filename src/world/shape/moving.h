@@ -61,22 +61,23 @@ static inline void vl_moving_vertex(const vlWorldShape *s, const float *rows, ui
  * together. */
 float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time);
 
-/* Position of a vertex. The result points to `room` if the vertex moves, otherwise into the
- * shape.
+/* A vertex's row of positions or normals. The result points to `room` if the vertex moves,
+ * otherwise into the shape.
  */
+static inline const float *vl_row_at(const vlWorldShape *s, const float *rows, uint32_t vertex,
+                                     float time, float room[3]) {
+  if (s->steps <= 1)
+    return rows + 3 * (size_t)vertex;
+  vl_moving_vertex(s, rows, vertex, time, room);
+  return room;
+}
 static inline const float *vl_vertex_at(const vlWorldShape *s, uint32_t vertex, float time,
                                         float room[3]) {
-  if (s->steps <= 1)
-    return s->positions + 3 * (size_t)vertex;
-  vl_moving_vertex(s, s->positions, vertex, time, room);
-  return room;
+  return vl_row_at(s, s->positions, vertex, time, room);
 }
 static inline const float *vl_normal_at(const vlWorldShape *s, uint32_t vertex, float time,
                                         float room[3]) {
-  if (s->steps <= 1)
-    return s->normals + 3 * (size_t)vertex;
-  vl_moving_vertex(s, s->normals, vertex, time, room);
-  return room;
+  return vl_row_at(s, s->normals, vertex, time, room);
 }
 
 /* Gives the position at to_seconds of the surface point that is at `point` at from_seconds, in

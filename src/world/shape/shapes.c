@@ -253,21 +253,39 @@ static uint64_t group_triangles(const vlWorld *world, const vlWorldGroup *group)
   return sum;
 }
 
+/* Bounds of the world so far. */
+typedef struct Bounds {
+  vlWorld *world;
+  float low[3], high[3];
+  bool warned;
+  vlError *error;
+} Bounds;
+
+/* Adds the box from a to b of a shape or an instance with so many triangles. */
+static vlResult add_bounds(Bounds *all, const float a[3], const float b[3], uint64_t triangles,
+                           const vlSource *source) {
+  check_edges(all->world, a, b, triangles, source, &all->warned);
+  if (a[0] <= b[0]) {
+    grow_bounds(all->low, all->high, a);
+    grow_bounds(all->low, all->high, b);
+  }
+  return check_reach(all->low, all->high, source, all->error);
+}
+
 static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *error) {
-  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  Bounds bounds = {.world = world,
+                   .low = {INFINITY, INFINITY, INFINITY},
+                   .high = {-INFINITY, -INFINITY, -INFINITY},
+                   .error = error};
+  float *low = bounds.low, *high = bounds.high;
   const vlWorldGroup *root = &world->groups.items[0];
-  bool warned = false;
   for (uint32_t i = 0; i < root->count; i++) {
     const vlWorldShape *s = &world->shapes.items[root->shapes[i]];
     const vlSource *source = &scene->shapes.items[root->shapes[i]].source;
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
     shape_bounds(world, root->shapes[i], a, b);
-    check_edges(world, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source, &warned);
-    if (a[0] <= b[0]) {
-      grow_bounds(low, high, a);
-      grow_bounds(low, high, b);
-    }
-    vlResult r = check_reach(low, high, source, error);
+    vlResult r =
+        add_bounds(&bounds, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source);
     if (r != VL_OK)
       return r;
   }
@@ -279,13 +297,8 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
     const vlWorldInstance *instance = &world->instances.items[k++];
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
     instance_bounds(world, instance, a, b);
-    check_edges(world, a, b, group_triangles(world, &world->groups.items[instance->group]),
-                source, &warned);
-    if (a[0] <= b[0]) {
-      grow_bounds(low, high, a);
-      grow_bounds(low, high, b);
-    }
-    vlResult r = check_reach(low, high, source, error);
+    vlResult r = add_bounds(
+        &bounds, a, b, group_triangles(world, &world->groups.items[instance->group]), source);
     if (r != VL_OK)
       return r;
   }

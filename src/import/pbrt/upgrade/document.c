@@ -1,6 +1,5 @@
-/* import/pbrt/upgrade/document.c: cuts pbrt text into statements that keep their places in the
+/* import/pbrt/upgrade/document.c: cuts pbrt text into statements that keep their offsets in the
  * text. */
-#include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -11,7 +10,7 @@ static size_t offset(const vlOldFile *file, const char *at) {
   return (size_t)(at - file->words);
 }
 
-/* The token's place, with its quotes. */
+/* The token's span, with its quotes. */
 static vlOldSpan span_of(const vlOldFile *file, const vlTokenizer *tokens,
                          const vlToken *token) {
   size_t start = offset(file, token->text) - (token->kind == VL_TOKEN_STRING);

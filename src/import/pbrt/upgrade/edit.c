@@ -110,7 +110,7 @@ bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...) {
   return edit_parts(file, span, "", 0, text, "", 0);
 }
 
-/* Start of the line of a place, and the length of its indentation. */
+/* Start of the line of an offset, and the length of its indentation. */
 static size_t line_start(const vlOldFile *file, size_t at, int *indent) {
   size_t start = at;
   while (start > 0 && file->text[start - 1] != '\n')
@@ -259,7 +259,7 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-static int by_place(const void *a, const void *b) {
+static int by_offset(const void *a, const void *b) {
   const vlOldEdit *x = a, *y = b;
   bool x_adds = x->span.start == x->span.end, y_adds = y->span.start == y->span.end;
   if (x->span.start != y->span.start)
@@ -272,7 +272,7 @@ static int by_place(const void *a, const void *b) {
 char *vl_old_render(vlOldFile *file, vlOldSpan span) {
   size_t size = span.end - span.start + 1;
   if (file->edits.count)
-    qsort(file->edits.items, file->edits.count, sizeof *file->edits.items, by_place);
+    qsort(file->edits.items, file->edits.count, sizeof *file->edits.items, by_offset);
   for (size_t i = 0; i < file->edits.count; i++)
     size += strlen(file->edits.items[i].text);
   char *out = vl_alloc(file->u->context, size), *to = out;

@@ -7,7 +7,7 @@
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-#define PLACE \
+#define POSE  \
   {"from"}, { \
     "to"      \
   }
@@ -20,14 +20,14 @@
     "nsamples", VL_OLD_DROP   \
   }
 
-static const vlOldRow point[] = {{"I"}, PLACE, COMMON, {0}};
-static const vlOldRow spot[] = {{"I"}, {"coneangle"}, {"conedeltaangle"}, PLACE, COMMON, {0}};
+static const vlOldRow point[] = {{"I"}, POSE, COMMON, {0}};
+static const vlOldRow spot[] = {{"I"}, {"coneangle"}, {"conedeltaangle"}, POSE, COMMON, {0}};
 static const vlOldRow goniometric[] = {
     {"I"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, COMMON, {0}};
 static const vlOldRow projection[] = {
     {"mapname", VL_OLD_RENAME, "filename"},      {"filename"}, {"fov"},
     {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"}, COMMON,       {0}};
-static const vlOldRow distant[] = {{"L"}, PLACE, COMMON, {"illuminance"}, {0}};
+static const vlOldRow distant[] = {{"L"}, POSE, COMMON, {"illuminance"}, {0}};
 static const vlOldRow infinite[] = {{"L"},           {"mapname", VL_OLD_RENAME, "filename"},
                                     {"filename"},    {"portal"},
                                     {"illuminance"}, SAMPLES,

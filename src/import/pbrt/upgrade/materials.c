@@ -1,6 +1,5 @@
 /* import/pbrt/upgrade/materials.c: Material and MakeNamedMaterial: the rows of the materials.
  * Defaults that differ are written out. */
-#include <stdio.h>
 
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"

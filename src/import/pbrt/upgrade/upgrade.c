@@ -7,11 +7,13 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include "base/context.h"
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/free.h"
 #include "base/text.h"
+#include "import/import.h"
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/detect.h"
 
@@ -151,10 +153,10 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
 }
 
 static void tell_written(const vlUpgrade *u, const char *path, const char *what) {
-  vlError place = {0};
-  vl_fail_at(&place, VL_OK, path, 0, 0, "%s", "");
+  vlError location = {0};
+  vl_fail_at(&location, VL_OK, path, 0, 0, "%s", "");
   if (u->def->report)
-    u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, what);
+    u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &location, what);
 }
 
 /* Writes all files, or none. */
@@ -229,6 +231,39 @@ static void release(vlUpgrade *u) {
   VL_ARRAY_FREE(c, &u->maps);
 }
 
+/* Reads the new scene before it is written: what velo refuses is an error of the upgrade. A
+ * file without WorldBegin is part of a scene and is not checked. What velo does not render is
+ * no mistake of the upgrade (permissive), nor is a file that the old scene lacks, too. The
+ * images that are made of the old ones are not there yet: permissive again. */
+static bool check(vlUpgrade *u, const char *text) {
+  if (!u->has_world)
+    return true;
+  vlContext *context = NULL;
+  vlScene *scene = NULL;
+  vlError error = {0};
+  vlResult r = vl_context_create_quiet(u->context,
+                                       &context); /* its notes would not be about the upgrade */
+  if (r == VL_OK)
+    r = vl_scene_create(context, &scene);
+  if (r == VL_OK) {
+    vlLoadDef def = vl_default_load_def();
+    def.permissive = true;
+    def.search_path = u->def->search_path;
+    r = vl_import_pbrt_texts(scene, u->to, text, (const char *const *)u->outputs.items,
+                             u->outputs.count / 2, &def, &error);
+  }
+  vl_scene_destroy(scene);
+  vl_context_destroy(context);
+  if (r == VL_OK || (r == VL_ERROR_MISSING && u->missing))
+    return true;
+  if (r == VL_ERROR_MEMORY)
+    return vl_old_fail_memory(u);
+  u->result =
+      vl_fail_at(&u->error, VL_ERROR_SCENE, error.file, error.line, error.column,
+                 "%s; the upgraded scene is wrong here, and nothing is written", error.message);
+  return false;
+}
+
 static bool run(vlUpgrade *u) {
   char *text = NULL;
   bool changed;
@@ -241,7 +276,7 @@ static bool run(vlUpgrade *u) {
                    "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
     return false;
   }
-  bool fine = vl_old_check(u, text) && write_files(u, text);
+  bool fine = check(u, text) && write_files(u, text);
   vl_free(u->context, text);
   return fine;
 }

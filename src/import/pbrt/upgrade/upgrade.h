@@ -1,5 +1,5 @@
 /* import/pbrt/upgrade/upgrade.h: types and functions shared by the files that turn pbrt-v3 text
- * into pbrt-v4 text. Data flow: document.c cuts a file into statements that keep their places
+ * into pbrt-v4 text. Data flow: document.c cuts a file into statements that keep their offsets
  * in the text; tables.c and the rules (materials.c, textures.c, lights.c, shapes.c, settings.c)
  * say what changes; edit.c collects edits and applies them, so that all other text stays as it
  * is; files.c finds and names files; upgrade.c drives. */
@@ -172,7 +172,7 @@ void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...)
 /* Adds to what the report says of the statement's change. */
 void vl_old_note(vlOldStatement *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/* Replaces part of the text. Insertions have an empty span; those at the same place keep their
+/* Replaces part of the text. Insertions have an empty span; those at the same offset keep their
  * order. */
 bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -282,8 +282,5 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
  * factor. The image is made, and written at the end. */
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name,
                         const double factor[3], char *result, size_t size);
-/* Reads the new scene as velo reads scenes; false: it is wrong. Nothing is written before
- * (check.c). */
-bool vl_old_check(vlUpgrade *u, const char *text);
 
 #endif

@@ -1,7 +1,7 @@
-/* camera/place.h: the pose, last of the four factors of a camera: camera space to world space.
+/* camera/pose.h: the pose, last of the four factors of a camera: camera space to world space.
  */
-#ifndef CAMERA_PLACE_H
-#define CAMERA_PLACE_H
+#ifndef CAMERA_POSE_H
+#define CAMERA_POSE_H
 
 #include "camera/eyes.h"
 #include "camera/local.h"
@@ -15,7 +15,7 @@ typedef struct vlWorldRay {
                     per unit of depth */
 } vlWorldRay;
 
-static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLocal r) {
+static inline vlWorldRay vl_camera_to_world(const vlCameraCompiled *c, vlCameraLocal r) {
   const double *m = c->rotation;
   vlWorldRay w;
   w.ox = c->position[0] + (m[0] * r.ox + m[1] * r.oy);
@@ -31,8 +31,8 @@ static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLoca
 
 /* Transforms a ray to world space, with its origin at the eye position of its direction
  * (omnidirectional stereo). */
-static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePlace eye,
-                                             vlWorldRay w) {
+static inline vlWorldRay vl_camera_offset_eye(const vlCameraCompiled *c, vlEyeOffset eye,
+                                              vlWorldRay w) {
   const double *m = c->rotation;
   w.ox += m[0] * eye.x + m[2] * eye.z;
   w.oy += m[3] * eye.x + m[5] * eye.z;

@@ -1,24 +1,24 @@
-/* camera_files/places.c: the line and column of each value of a tree. The parsers record the
+/* camera_files/locations.c: the line and column of each value of a tree. The parsers record the
  * positions in the tree's order, with each value before the values that it contains. A lookup
  * counts the values before the wanted one. */
 
 #include "base/text.h"
 #include "camera_files/files.h"
 
-bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column) {
-  if (!file->places)
+bool vl_camera_to_world(const vlCameraFile *file, uint32_t line, uint32_t column) {
+  if (!file->locations)
     return true;
-  uint64_t *place = VL_PUSH(file->context, &file->places->at);
-  if (place)
-    *place = (uint64_t)line << 32 | column;
-  return place != NULL;
+  uint64_t *location = VL_PUSH(file->context, &file->locations->at);
+  if (location)
+    *location = (uint64_t)line << 32 | column;
+  return location != NULL;
 }
 
-void vl_camera_places_free(vlCameraFile *file) {
-  if (!file->places)
+void vl_camera_locations_free(vlCameraFile *file) {
+  if (!file->locations)
     return;
-  VL_ARRAY_FREE(file->context, &file->places->at);
-  file->places = NULL;
+  VL_ARRAY_FREE(file->context, &file->locations->at);
+  file->locations = NULL;
 }
 
 /* Counts the values before the wanted one. Returns true when it is found. */
@@ -41,9 +41,10 @@ static bool count_to(const json_t *node, const json_t *wanted, size_t *index) {
 
 /* The index of object[key], or of the object. true, false and null are the same value
  * everywhere, so the values of an object are counted by their keys. */
-static size_t index_of(const vlCameraPlaces *places, const json_t *object, const char *key) {
+static size_t index_of(const vlCameraLocations *locations, const json_t *object,
+                       const char *key) {
   size_t index = 0;
-  if (!count_to(places->root, object, &index))
+  if (!count_to(locations->root, object, &index))
     return SIZE_MAX;
   if (!key || !json_object_get(object, key))
     return index;
@@ -62,11 +63,12 @@ vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, cons
                             const char *format, ...) {
   char message[400];
   VL_FORMAT(message, format);
-  size_t index = file->places && object ? index_of(file->places, object, key) : SIZE_MAX;
-  uint64_t place =
-      file->places && index < file->places->at.count ? file->places->at.items[index] : 0;
-  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)(place >> 32),
-                    (uint32_t)place, "%s", message);
+  size_t index = file->locations && object ? index_of(file->locations, object, key) : SIZE_MAX;
+  uint64_t location = file->locations && index < file->locations->at.count
+                          ? file->locations->at.items[index]
+                          : 0;
+  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)(location >> 32),
+                    (uint32_t)location, "%s", message);
 }
 
 /* The first object of the tree that has this key. */
@@ -85,12 +87,12 @@ static const json_t *holder_of(const json_t *node, const char *key) {
   return found;
 }
 
-void vl_camera_place_error(const vlCameraFile *file) {
+void vl_camera_locate_error(const vlCameraFile *file) {
   vlError *error = file->error;
-  if (!error || error->line || !file->places || !file->places->at.count ||
+  if (!error || error->line || !file->locations || !file->locations->at.count ||
       !vl_text_is(error->file, file->path))
     return;
-  const json_t *root = file->places->root, *holder = NULL;
+  const json_t *root = file->locations->root, *holder = NULL;
   char key[64];
   const char *quote = strchr(error->message, '"'), *end = quote ? strchr(quote + 1, '"') : NULL;
   if (end && end - quote - 1 < (long)sizeof key) {
@@ -98,8 +100,8 @@ void vl_camera_place_error(const vlCameraFile *file) {
     key[end - quote - 1] = 0;
     holder = holder_of(root, key);
   }
-  size_t index = holder ? index_of(file->places, holder, key) : 0;
-  uint64_t place = index < file->places->at.count ? file->places->at.items[index] : 0;
-  error->line = (uint32_t)(place >> 32);
-  error->column = (uint32_t)place;
+  size_t index = holder ? index_of(file->locations, holder, key) : 0;
+  uint64_t location = index < file->locations->at.count ? file->locations->at.items[index] : 0;
+  error->line = (uint32_t)(location >> 32);
+  error->column = (uint32_t)location;
 }

@@ -1,4 +1,4 @@
-/* color/sensor_data.c: spectral sensitivities of measured cameras, 380 to 720 nm in steps of 10
+/* sensor_data.c: spectral sensitivities of measured cameras, 380 to 720 nm in steps of 10
  * nm, red, green and blue at each, relative; and reflectances of the 24 patches of a
  * ColorChecker, 380 to 730 nm in steps of 10 nm. The cameras were measured for PhysLight by A.
  * Langlands and L. Fascione, Weta Digital, 2020, and published under the Apache License 2.0

@@ -155,16 +155,12 @@ static const Command help_command = {
     .summary = "print the options of a command",
     .text =
         "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options "
-        "in "
-        "sections\n"
+        "in sections\n"
         "(of render the most used ones, --all prints all), and examples. For image, scene, "
-        "camera "
-        "or film, prints "
-        "this for each command of that group.",
+        "camera or film, prints this for each command of that group.",
     .examples =
         "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man "
-        "render | "
-        "man -l -",
+        "render | man -l -",
     .options = help_options,
     .max_operands = MAX_OPERANDS,
 };

@@ -108,16 +108,14 @@ static void check_coats(vlCheck *check) {
   vlCheckName name = vl_check_material_name(worst);
   if (count == 1)
     vl_check_add(check, VL_FINDING_ROUGH_COAT, VL_SEVERITY_NOTE, worst->source,
-                 "the rough coat of %s loses %.0f %% of the light over a white base, as pbrt's "
-                 "does: \"bool "
-                 "conserveenergy\" true keeps it",
+                 "the rough coat of %s loses %.0f %% of the light over a white base, as "
+                 "pbrt's does: \"bool conserveenergy\" true keeps it",
                  name.text, 100 * most);
   else
     vl_check_add(
         check, VL_FINDING_ROUGH_COAT, VL_SEVERITY_NOTE, worst->source,
-        "%u rough coats lose %.0f to %.0f %% of the light over a white base, as pbrt's "
-        "do, that of %s most: "
-        "\"bool conserveenergy\" true keeps it",
+        "%u rough coats lose %.0f to %.0f %% of the light over a white base, as pbrt's do, "
+        "that of %s most: \"bool conserveenergy\" true keeps it",
         count, 100 * fewest, 100 * most, name.text);
 }
 

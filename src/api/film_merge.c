@@ -421,9 +421,8 @@ vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t co
   if (!context || !paths || !count || !output || def->cookie != VL_COOKIE_FILM_MERGE)
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
-        "film merge: context, paths, count or output is null, or def.cookie is not that "
-        "of a default def of "
-        "this version");
+        "film merge: context, paths, count or output is null, or def.cookie is not that of a "
+        "default def of this version");
   vlFilmLock *lock;
   vlResult result = vl_film_lock_write(context, output, &lock, error);
   if (result != VL_OK)

@@ -211,9 +211,8 @@ vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt 
   if (!context || !def || !receipt || def->cookie != VL_COOKIE_RECEIPT || !def->defs)
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
-        "receipt: context, def, def.defs or receipt is null, or def.cookie is not that "
-        "of a default def of "
-        "this version");
+        "receipt: context, def, def.defs or receipt is null, or def.cookie is not that of a "
+        "default def of this version");
   json_t *tree = json_object();
   bool good = vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) &&
               put_velo(tree, def->commit) &&

@@ -275,7 +275,6 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
       !*warning)
     *warning =
         "camera: the lens folds or its model ends inside the image; what lies beyond sees "
-        "nothing "
-        "(alpha 0)";
+        "nothing (alpha 0)";
   return VL_OK;
 }

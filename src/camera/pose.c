@@ -67,9 +67,8 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
   if (sqrt(dot(right, right)) < parallel_sine) {
     if (warning)
       *warning =
-          "camera: up is parallel to the view direction; the image's right is taken along the "
-          "world's x axis (z when "
-          "looking along x)";
+          "camera: up is parallel to the view direction; the image's right is taken along "
+          "the world's x axis (z when looking along x)";
     /* The default up vector is the component of x perpendicular to w, or of z if w is near x.
      * When the camera looks straight down, the top of the image is -z, as on a map. */
     Vec axis = fabs(w.x) > 0.9 ? (Vec){0.0, 0.0, 1.0} : (Vec){1.0, 0.0, 0.0};

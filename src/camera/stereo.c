@@ -47,8 +47,7 @@ static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *erro
   if (s->mode == VL_STEREO_OMNIDIRECTIONAL && !round)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: omnidirectional stereo goes all round: with the equirectangular, "
-                   "cylindrical, equal-area "
-                   "and cube projections, not with the %s one",
+                   "cylindrical, equal-area and cube projections, not with the %s one",
                    vl_projection_name(c->projection));
   return VL_OK;
 }

@@ -53,8 +53,7 @@ static vlResult radius(const vlCameraDef *def, double focal_mm, vlCamera *camera
       return VL_OK; /* the ISO value affects only the exposure */
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: f_number %g needs the focal length in millimetres (focal_mm or "
-                   "sensor_width_mm); or give "
-                   "lens_radius",
+                   "sensor_width_mm); or give lens_radius",
                    d->f_number);
   }
   double r = 0.5 * focal_mm / (d->f_number * d->unit_mm);
@@ -62,9 +61,8 @@ static vlResult radius(const vlCameraDef *def, double focal_mm, vlCamera *camera
       fabs(r - def->lens_radius) > agreement * fmax(r, def->lens_radius))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
-        "camera: f_number %.9g at %.9g mm gives a lens radius of %.9g, but lens_radius "
-        "is %.9g; give one of "
-        "them",
+        "camera: f_number %.9g at %.9g mm gives a lens radius of %.9g, but lens_radius is "
+        "%.9g; give one of them",
         d->f_number, focal_mm, r, def->lens_radius);
   camera->lens_radius = r;
   return VL_OK;
@@ -80,8 +78,7 @@ static vlResult tilt(const vlCameraDef *def, double focal_mm, vlCamera *camera,
   if (plane && lens)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: tilt_x %g, tilt_y %g turn the plane in focus and lens_tilt_x %g, "
-                   "lens_tilt_y %g the lens; "
-                   "give one of them",
+                   "lens_tilt_y %g the lens; give one of them",
                    d->tilt_x, d->tilt_y, d->lens_tilt_x, d->lens_tilt_y);
   if (def->projection > VL_PROJECTION_ORTHOGRAPHIC)
     return vl_fail(error, VL_ERROR_ARGUMENT,
@@ -94,8 +91,7 @@ static vlResult tilt(const vlCameraDef *def, double focal_mm, vlCamera *camera,
   if (vl_is_unset(focal_mm))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: lens_tilt needs the focal length in millimetres (focal_mm or "
-                   "sensor_width_mm); or give "
-                   "tilt_x and tilt_y of the plane");
+                   "sensor_width_mm); or give tilt_x and tilt_y of the plane");
   /* the hinge rule: the plane in focus meets the plane through the lens, parallel to the film,
    * f / sin(tilt) away */
   camera->lens.hinge[0] = vl_precise_sin(d->lens_tilt_y) * d->unit_mm / focal_mm;

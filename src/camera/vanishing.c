@@ -182,9 +182,8 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
     if (!(x + y < 0.0))
       return vl_fail(
           error, VL_ERROR_ARGUMENT,
-          "vanishing points: seen from the principal point (%.9g, %.9g), numbers %u and "
-          "%u are less than 90 "
-          "degrees apart; directions at right angles are not",
+          "vanishing points: seen from the principal point (%.9g, %.9g), numbers %u and %u "
+          "are less than 90 degrees apart; directions at right angles are not",
           p[0], p[1], i + 1, (i + 1) % def->count + 1);
     if (fabs(x) + fabs(y) >= least)
       continue;

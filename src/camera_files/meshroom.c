@@ -138,8 +138,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
       return vl_camera_wrong_in(file, intrinsic, i ? "height" : "width",
-                                "meshroom: the image is %g x %g; it must be "
-                                "whole pixels",
+                                "meshroom: the image is %g x %g; it must be whole pixels",
                                 size[0], size[1]);
   d->width = (uint32_t)size[0];
   d->height = (uint32_t)size[1];

@@ -237,8 +237,7 @@ static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *
       record->name[0] && !strpbrk(record->name, "<>&\"") ? record->name : "camera";
   vl_camera_put(text,
                 "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  "
-                "<chunk label=\"Chunk\" "
-                "enabled=\"true\">\n    <sensors next_id=\"1\">\n");
+                "<chunk label=\"Chunk\" enabled=\"true\">\n    <sensors next_id=\"1\">\n");
   vl_camera_put(
       text,
       "      <sensor id=\"0\" label=\"sensor\" type=\"%s\">\n        <resolution width=\"%u\" "
@@ -246,8 +245,7 @@ static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *
       type, c.width, c.height);
   vl_camera_put(text,
                 "        <calibration type=\"%s\" class=\"adjusted\">\n          <resolution "
-                "width=\"%u\" "
-                "height=\"%u\"/>\n          <f>%.17g</f>\n",
+                "width=\"%u\" height=\"%u\"/>\n          <f>%.17g</f>\n",
                 type, c.width, c.height, c.fy);
   vl_camera_put(text, "          <cx>%.17g</cx>\n          <cy>%.17g</cy>\n",
                 c.cx - 0.5 * c.width + 0.0, c.cy - 0.5 * c.height + 0.0);

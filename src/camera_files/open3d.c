@@ -49,8 +49,7 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree,
   if (vl_text_is(name, "ViewTrajectory"))
     return vl_camera_wrong_in(file, tree, "class_name",
                               "open3d: a ViewTrajectory depends on the viewer's window and "
-                              "model; save the camera with "
-                              "P (PinholeCameraParameters)");
+                              "model; save the camera with P (PinholeCameraParameters)");
   if (!list && vl_camera_has(tree, "intrinsic_matrix")) {
     vl_camera_set_origin(&record->camera);
     return read_intrinsic(file, tree, record);

@@ -181,11 +181,9 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
   const bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV;
   vl_camera_put_form(
       text, record, &c, NULL,
-      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": "
-      "[{\"key\": 0, \"value\": "
-      "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
-      "\"data\": {\"local_path\": "
-      "\"\", \"filename\": ");
+      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": "
+      "0, \"value\": {\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
+      "\"data\": {\"local_path\": \"\", \"filename\": ");
   vl_camera_put_string(text, record->name);
   return VL_PUT_FORM(
       text, record, &c,

@@ -174,9 +174,8 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
   const double f[4] = {c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side,
                        (c.cy - 0.5 * c.height) / side};
   VL_PUT_FORM(text, record, &c,
-              "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": \"$type\", "
-              "\"width\": $width, "
-              "\"height\": $height",
+              "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": "
+              "\"$type\", \"width\": $width, \"height\": $height",
               VL_WORD("type", type));
   if (!whole)
     VL_PUT_FORM(text, record, &c,

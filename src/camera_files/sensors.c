@@ -232,9 +232,8 @@ static vlResult read_stream(const vlCameraFile *file, const json_t *stream,
   } else {
     return vl_camera_wrong_in(
         file, stream, vl_camera_has(stream, "model") ? "model" : "coeffs",
-        "realsense: the model \"%s\" with these \"coeffs\" is none of velo; "
-        "there are Brown Conrady "
-        "and Kannala Brandt",
+        "realsense: the model \"%s\" with these \"coeffs\" is none of velo; there are Brown "
+        "Conrady and Kannala Brandt",
         vl_short_text(model ? model : "").text);
   }
   return VL_OK;

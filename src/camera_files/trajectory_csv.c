@@ -162,9 +162,8 @@ static vlResult check_columns(const Csv *csv) {
   if (found != 1)
     return wrong(csv, 0,
                  found ? "the columns say a pose in two ways%s"
-                       : "the columns say no pose: tx ty tz qx qy qz qw, or eye_x eye_y eye_z "
-                         "lookat_x lookat_y "
-                         "lookat_z, or m00 to m23%s",
+                       : "the columns say no pose: tx ty tz qx qy qz qw, or eye_x eye_y "
+                         "eye_z lookat_x lookat_y lookat_z, or m00 to m23%s",
                  "");
   if (any(csv, UP_X, UP_Z) && !whole(csv, UP_X, UP_Z))
     return wrong(csv, 0, "\"up\" has not all of its columns%s", "");

@@ -319,9 +319,8 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
   put_name(text, record->name);
   vl_camera_put(
       text,
-      "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x "
-      "right, y up, z "
-      "back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
+      "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x right, "
+      "y up, z back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
   if (timed)
     vl_camera_put(text, "    timeCodesPerSecond = 1\n");
   vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");

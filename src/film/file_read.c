@@ -62,8 +62,7 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
     return VL_OK;
   return vl_fail(error, VL_ERROR_SCENE,
                  "%s: its pixels do not all begin with the same samples; \"velo film info "
-                 "--missing\" lists what is "
-                 "missing",
+                 "--missing\" lists what is missing",
                  r->path);
 }
 

@@ -139,9 +139,8 @@ void vl_repairs_report(vlContext *context, const vlRepairs *r, const char *file)
       first.line = r->line;
     }
     vl_log(context, VL_LOG_WARNING, &first,
-           "repaired (zero or not finite): %llu normal%s, %llu uv%s in %llu shape%s, of which "
-           "this "
-           "is the first",
+           "repaired (zero or not finite): %llu normal%s, %llu uv%s in %llu shape%s, of "
+           "which this is the first",
            (unsigned long long)r->normals, plural(r->normals), (unsigned long long)r->uvs,
            plural(r->uvs), (unsigned long long)r->shapes, plural(r->shapes));
   }

@@ -83,8 +83,7 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "ground truth: Cryptomatte, features, standard errors and modes other than the "
-        "centre need the "
-        "image's film and how it was rendered");
+        "centre need the image's film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
     return vl_fail(

@@ -171,8 +171,7 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (d.conserve_energy && !vl_coat_in_closed_form(&d)) {
     bad(scene, def->source, what,
         "energy is conserved over a diffuse base only, under a medium of albedo 0 and "
-        "untextured "
-        "thickness");
+        "untextured thickness");
     return none;
   }
   if (d.kind == VL_MATERIAL_MIX) {

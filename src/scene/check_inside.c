@@ -367,9 +367,8 @@ static void check_portals(vlCheck *c, const Box *boxes, const Box *groups) {
     if (high <= hair)
       vl_check_add(
           c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
-          "this light gives no light: the whole scene is on the side of its portal that "
-          "the sky is on; "
-          "give the portal's corners in the opposite order");
+          "this light gives no light: the whole scene is on the side of its portal that the "
+          "sky is on; give the portal's corners in the opposite order");
     else if (!s->defs.camera_missing && height_of(&g, eye) < -hair)
       vl_check_add(
           c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,

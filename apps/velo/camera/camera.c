@@ -205,9 +205,8 @@ static const Option convert_options[] = {
     {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT",
      "dialect of IN; default: recognised by its content:", 0, 0, dialect_choices},
     {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",
-     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, "
-     ".pbrt pbrt, "
-     "transforms.json nerf, cameras.txt colmap:",
+     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda "
+     "usd, .pbrt pbrt, transforms.json nerf, cameras.txt colmap:",
      0, 0, dialect_choices},
     {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera of IN to use, by name or number from 0, if it has several"},
@@ -222,8 +221,7 @@ const Command camera_convert_command = {
     .summary = "convert a camera file to another tool's format",
     .text =
         "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted. A "
-        "field "
-        "that OUT's\n"
+        "field that OUT's\n"
         "dialect cannot hold is an error that names it (--drop leaves it out).",
     .examples =
         "velo camera convert camera.yaml camera.json\n"

@@ -257,23 +257,18 @@ static const Option draw_options[] = {
     {DRAW_SIZE, 0, "size", OPTION_SIZE, "WxH", "size of the drawing in pixels; default 960x640",
      16, 16384, NULL},
     {DRAW_FROM, 0, "from", OPTION_TEXT, "AZIMUTH,ELEVATION",
-     "where the drawing is seen from, in degrees: to the right of the camera's view direction, "
-     "above the horizon; "
-     "default 130,20"},
+     "where the drawing is seen from, in degrees: to the right of the camera's view "
+     "direction, above the horizon; default 130,20"},
     {DRAW_ZOOM, 0, "zoom", OPTION_NUMBER, "X",
      "factor on the size of what is drawn; 1: it fills the image", 1e-3, 1e3, NULL},
     {DRAW_PARTS, 0, "parts", OPTION_TEXT, "LIST",
      "parts that are drawn, separated by commas: eye, window, grid, volume, near, far, axes, "
-     "distance, focus, "
-     "projector, film (behind the eye), path; default: all but film"},
+     "distance, focus, projector, film (behind the eye), path; default: all but film"},
     {DRAW_POINT, 0, "point", OPTION_TEXTS, "x,y,z",
      "point whose projector is drawn; may be given several times. Default: two visible points"},
     {DRAW_PLANE, 0, "plane", OPTION_NUMBER, "D",
      "distance of the view plane (of fisheyes and panoramas: of a sphere) from the eye; "
-     "default: "
-     "the camera's d, if "
-     "the "
-     "plane is then before what the camera sees",
+     "default: the camera's d, if the plane is then before what the camera sees",
      1e-30, 1e30, NULL},
     {DRAW_REACH, 0, "reach", OPTION_NUMBER, "D",
      "distance at which the view volume ends; default: behind what is seen", 1e-30, 1e30, NULL},
@@ -316,14 +311,12 @@ const Command camera_draw_command = {
     .usage = "SCENE -o FILE [options]",
     .summary = "draw a camera from outside: eye, view plane, pyramid",
     .text =
-        "Renders the scene small, from outside, and draws the scene's camera over it: the eye, "
-        "the "
-        "view plane\n"
+        "Renders the scene small, from outside, and draws the scene's camera over it: the "
+        "eye, the view plane\n"
         "with its grid of pixels, the view volume with near and far planes, the axes u v w, "
         "projectors from\n"
-        "points to their images, the plane in focus. Fisheyes and distorted lenses show their "
-        "true "
-        "rays. Lines\n"
+        "points to their images, the plane in focus. Fisheyes and distorted lenses show "
+        "their true rays. Lines\n"
         "behind the scene are faint and dashed (docs/draw.md).",
     .examples =
         "velo camera draw room.pbrt -o outside.png\n"

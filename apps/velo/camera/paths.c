@@ -120,9 +120,8 @@ static const Option paths_options[] = {
     {PATHS_SHOW, 0, "show", OPTION_INTEGER, "N", "number of paths that are printed; default 16",
      0, 1 << 20, NULL},
     {PATHS_SORT, 0, "sort", OPTION_CHOICE, "NAME",
-     "order of the paths: the largest share of the pixel first, or by "
-     "sample:",
-     0, 0, sort_choices},
+     "order of the paths: the largest share of the pixel first, or by sample:", 0, 0,
+     sort_choices},
     {PATHS_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the image"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels"},
@@ -164,15 +163,13 @@ const Command camera_paths_command = {
     .usage = "SCENE --pixel x,y [options]",
     .summary = "print the paths of a pixel, vertex by vertex",
     .text =
-        "Traces the samples that count in one pixel again (those of the pixels around, too, if "
-        "pixels share\n"
+        "Traces the samples that count in one pixel again (those of the pixels around, too, "
+        "if pixels share\n"
         "samples), with the random numbers of `velo render`, and prints each path: what it "
-        "met, "
-        "the sampled\n"
+        "met, the sampled\n"
         "lobes with their densities, the lights with their weights, and what each\n"
         "adds. The path with the largest share of the pixel comes first: so a firefly shows "
-        "where "
-        "it is from.\n"
+        "where it is from.\n"
         "The options of the image must be those of the render (docs/tracers.md).",
     .examples =
         "velo camera paths room.pbrt --pixel 320,200\n"

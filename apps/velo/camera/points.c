@@ -182,18 +182,14 @@ static const Option points_options[] = {
      "camera file in any dialect of `velo camera convert`, or a scene file"},
     {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",
      "position of (0, 0) in the image: its top left corner (default; the centre of the first "
-     "pixel "
-     "is (0.5, 0.5)), or "
-     "the centre of the first pixel, as in OpenCV:",
+     "pixel is (0.5, 0.5)), or the centre of the first pixel, as in OpenCV:",
      0, 0, origin_choices},
     {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file has several"},
     {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
      "end at a line that is not numbers. Default: the line is reported and its result marked "
-     "as "
-     "not valid, the other "
-     "lines are read, and the exit code is 3"},
+     "as not valid, the other lines are read, and the exit code is 3"},
     {0}};
 
 const Command camera_project_command = {
@@ -201,12 +197,10 @@ const Command camera_project_command = {
     .usage = "--camera FILE POINTS.csv [options]",
     .summary = "map world points to pixels",
     .text =
-        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints u,v,z,valid,inside "
-        "for "
-        "each: column\n"
+        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints "
+        "u,v,z,valid,inside for each: column\n"
         "and row in the image plane; depth along the view axis; valid, 1 if the camera's "
-        "equations "
-        "map the point\n"
+        "equations map the point\n"
         "(then unproject returns its ray); inside, 1 if u,v is in the image.",
     .examples =
         "velo camera project --camera camera.yaml points.csv\n"

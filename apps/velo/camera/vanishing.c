@@ -427,9 +427,8 @@ static const Option vanishing_options[] = {
     {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for --from, or for a FILE without one",
      1, 1 << 24, NULL},
     {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
-     "with --from: the axes to which the points belong, with - before an axis for its negative "
-     "end: xz (default of two "
-     "points), xyz (of three), -zx, ..."},
+     "with --from: the axes to which the points belong, with - before an axis for its "
+     "negative end: xz (default of two points), xyz (of three), -zx, ..."},
     {V_TO, 0, "to", OPTION_CHOICE, "DIALECT",
      "with --from: dialect of RESULT; default: by its name:", 0, 0, dialect_choices},
     {0}};
@@ -440,13 +439,11 @@ const Command camera_vanishing_command = {
     .summary = "compute vanishing points, or a camera from them",
     .text =
         "Prints the vanishing points of the world's axes in the image of FILE's camera (a "
-        "camera "
-        "file of any\n"
+        "camera file of any\n"
         "dialect, or a scene), in pixels from the image's corner, and the horizon. --overlay "
-        "draws "
-        "them: lines\n"
-        "along x red, y green, z blue, the horizon yellow. With --from, computes focal length, "
-        "principal point\n"
+        "draws them: lines\n"
+        "along x red, y green, z blue, the horizon yellow. With --from, computes focal "
+        "length, principal point\n"
         "and rotation from two vanishing points and a known principal point, or from three "
         "vanishing points.",
     .examples =

@@ -109,9 +109,8 @@ static void print_text(const Verification *v, const char *path, const char *agai
   if (m->found) {
     uint32_t covered, seeing = parts(v, &covered);
     printf(
-        "\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels (pose "
-        "%u, "
-        "at %.1f, %.1f)\n",
+        "\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels "
+        "(pose %u, at %.1f, %.1f)\n",
         m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->most, m->pose,
         m->at_x, m->at_y);
     printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m),
@@ -255,9 +254,7 @@ static const Option verify_options[] = {
     {VERIFY_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
      "compare the images with the equations of the camera in this file, to find out whether "
-     "both "
-     "files describe the "
-     "same camera"},
+     "both files describe the same camera"},
     {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME",
      "camera of OTHER to use, by name or number from 0, if it has several"},
     {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL,
@@ -285,12 +282,10 @@ const Command camera_verify_command = {
     .usage = "--camera FILE [options]",
     .summary = "render a chessboard through a camera and measure its corners",
     .text =
-        "Renders a board in many poses through the camera, finds the corners in the images to "
-        "a "
-        "hundredth of a\n"
+        "Renders a board in many poses through the camera, finds the corners in the images "
+        "to a hundredth of a\n"
         "pixel, and compares them with an independent implementation of the camera's "
-        "equations. "
-        "Exit code 1 if\n"
+        "equations. Exit code 1 if\n"
         "the error of a corner is above the threshold, or corners are missing.",
     .examples =
         "velo camera verify --camera camera.yaml\n"

@@ -346,8 +346,7 @@ static void zsh_command(const Command *const *commands, int count, const Command
 static void print_zsh(const Command *const *commands, int count, const Command *help) {
   printf(
       "#compdef velo\n# written by `velo help --completion zsh`\n_velo() {\n  local "
-      "command=$words[2]\n  local -a "
-      "names\n");
+      "command=$words[2]\n  local -a names\n");
   printf("  if ((CURRENT == 2)); then\n");
   zsh_describe(commands, count, NULL);
   printf("  fi\n");

@@ -34,9 +34,8 @@ int context_open(const vlContextDef *def, vlContext **context) {
       if (def->isa != vl_default_context_def().isa)
         return report_usage("--isa: this machine does not have it");
       return report_usage(
-          "the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must "
-          "have "
-          "it");
+          "the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine "
+          "must have it");
     case VL_ERROR_SCENE:
     case VL_ERROR_IO:
     case VL_ERROR_MEMORY:

@@ -235,12 +235,9 @@ void manual_print_program(const Command *const *commands, int count) {
   printf(".SH DESCRIPTION\n");
   put_prose(
       "velo renders scenes of pbrt-v4, glTF, OBJ, PLY, STL and OFF by spectral path tracing, "
-      "with "
-      "verified camera "
-      "models. An image has the same bits for any number of threads. Further commands inspect "
-      "and "
-      "convert scenes, "
-      "images, cameras and film files. Each command has a manual page of its own.",
+      "with verified camera models. An image has the same bits for any number of threads. "
+      "Further commands inspect and convert scenes, images, cameras and film files. Each "
+      "command has a manual page of its own.",
       ".PP");
   printf(".SH COMMANDS\n");
   for (int i = 0; i < count; i++) {

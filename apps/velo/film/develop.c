@@ -143,15 +143,12 @@ static int run_develop(const Command *command, const Arguments *arguments) {
 static const Option develop_options[] = {
     {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "image file to write; may be given several times. The suffix chooses the format, as for "
-     "velo "
-     "render"},
+     "velo render"},
     {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
     {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
      "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so "
-     "that "
-     "the geometric mean of "
-     "the luminance becomes 18 % grey"},
+     "that the geometric mean of the luminance becomes 18 % grey"},
     {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL,
      "write .exr with 16-bit instead of 32-bit floats"},
     {0}};
@@ -162,14 +159,12 @@ const Command film_develop_command = {
     .summary = "write the images of a film file",
     .text =
         "Writes the image of a film file, which may be incomplete. An .exr also has the "
-        "standard "
-        "errors and\n"
+        "standard errors and\n"
         "the spectrum, if the film has their sums. Ground truth requires the scene:\n"
         "velo render --continue FILE -o IMAGE.exr --channels LIST.",
     .examples =
         "velo film develop room.film -o room.exr\nvelo film develop room.film -o room.png "
-        "--view "
-        "agx",
+        "--view agx",
     .options = develop_options,
     .min_operands = 1,
     .max_operands = 1,

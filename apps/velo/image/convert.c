@@ -250,9 +250,8 @@ static const Option convert_options[] = {
      "write .exr with 16-bit instead of 32-bit floats"},
     {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "write one channel only, such as Z"},
     {CONVERT_SCALE, 0, "scale", OPTION_NUMBER, "FACTOR",
-     "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in RGB-D "
-     "data sets has 5000 or "
-     "1000 per metre",
+     "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in "
+     "RGB-D data sets has 5000 or 1000 per metre",
      1e-9, 1e9, NULL},
     {0}};
 

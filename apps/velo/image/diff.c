@@ -168,9 +168,7 @@ static const Option diff_options[] = {
      "write an image of the FLIP differences in false colours"},
     {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",
      "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther "
-     "than "
-     "VALUE from 1); may "
-     "be given several times"},
+     "than VALUE from 1); may be given several times"},
     {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {0}};
 

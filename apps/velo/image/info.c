@@ -311,8 +311,7 @@ const Command image_info_command = {
     .summary = "print format, size, channels and attributes of an image",
     .text =
         "Prints the format, size, channels and header attributes of FILE. Matrices are in "
-        "OpenEXR's order (row "
-        "vectors).",
+        "OpenEXR's order (row vectors).",
     .examples =
         "velo image info room.exr\n"
         "velo image info --json room.exr",

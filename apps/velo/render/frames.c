@@ -379,8 +379,7 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
     if (frames->views == 2 && !by_view && !output_holds_layers(pattern))
       return report_usage(
           "output \"%s\": only .exr holds both eyes in one file; put %%v (left, right) into "
-          "the "
-          "name",
+          "the name",
           pattern);
     if (frames_count(frames) > 1) {
       int status = check_twice(frames, pattern);

@@ -236,9 +236,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
     else
       report_warning(
           "the sampler %s has a fixed number of samples: the render ends at %u spp even if "
-          "--time "
-          "is not over; give "
-          "--spp",
+          "--time is not over; give --spp",
           kind_name("samplers", (int)defs->render.sampler), defs->render.spp);
   }
 }
@@ -266,9 +264,8 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
     }
     if (!good || !(low >= 360 && high <= 830 && low < high))
       return report_usage(
-          "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, "
-          "inside of "
-          "360 to 830 nm",
+          "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to "
+          "MAX, inside of 360 to 830 nm",
           v->text);
     defs->film.buckets = count;
     defs->film.lambda_min = low;

@@ -33,9 +33,8 @@ int noise_check(const Arguments *arguments) {
   if (v[RENDER_SAMPLES].given ||
       (v[RENDER_SHARD].given && !by_tiles && !v[RENDER_TRAJECTORY].given))
     return report_usage(
-        "--noise: the samples that a block needs follow from all those before; split the image "
-        "with "
-        "--shard-by tiles");
+        "--noise: the samples that a block needs follow from all those before; split the "
+        "image with --shard-by tiles");
   return -1;
 }
 
@@ -58,8 +57,7 @@ int noise_expose(const Outputs *outputs, bool many, vlRenderDef *render, vlRende
   if (outputs->meter || (many && outputs->exposure != render->noise_exposure))
     return report_usage(
         "--noise is measured in display values: their exposure must be known before the "
-        "render; "
-        "give --exposure EV");
+        "render; give --exposure EV");
   render->noise_exposure = whole->noise_exposure = outputs->exposure;
   return -1;
 }

@@ -90,9 +90,8 @@ int outputs_check_names(const Outputs *outputs) {
       return fail_suffix(outputs->paths[i]);
     if (output_is_stdout(outputs->paths[i]) && !outputs->to_stdout)
       return report_usage(
-          "output \"%s\": this command does not write images to the standard output; a file of "
-          "that "
-          "name is ./%s",
+          "output \"%s\": this command does not write images to the standard output; a file "
+          "of that name is ./%s",
           outputs->paths[i], outputs->paths[i]);
     for (int j = 0; j < i; j++)
       if (strcmp(outputs->paths[i], outputs->paths[j]) == 0)

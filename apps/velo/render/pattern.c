@@ -27,10 +27,8 @@ int pattern_check(const char *pattern) {
     int width;
     if (!sign_at(at + 1, &length, &width))
       return report_usage(
-          "output \"%s\": \"%.*s\" is not known; there are %%d or %%04d (the frame's number), "
-          "%%n "
-          "(its name), %%c "
-          "(camera), %%v (eye), %%%%",
+          "output \"%s\": \"%.*s\" is not known; there are %%d or %%04d (the frame's "
+          "number), %%n (its name), %%c (camera), %%v (eye), %%%%",
           pattern, (int)(at[1] ? length + 1 : 1), at);
     at += 1 + length;
   }

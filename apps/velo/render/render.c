@@ -629,13 +629,11 @@ const Command render_command = {
     .summary = "render a scene: .pbrt .gltf .glb .obj .ply .stl .off",
     .text =
         "Renders FILE. Options override the settings in the file. After the first pass, and "
-        "then "
-        "about every\n"
-        "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it becomes "
-        "NAME.EXT.\n"
-        "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film file "
-        "of "
-        "--film,\n"
+        "then about every\n"
+        "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it "
+        "becomes NAME.EXT.\n"
+        "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film "
+        "file of --film,\n"
         "which the same command again continues, or --continue.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"

@@ -69,9 +69,7 @@ static void tell_camera(const vlSceneDefs *s) {
              tan(0.5 * c->fov);
   report_note(
       "no camera in the file: eye (%.5g, %.5g, %.5g), lookat (%.5g, %.5g, %.5g), up (%.3g, "
-      "%.3g, "
-      "%.3g), d %.5g "
-      "pixels",
+      "%.3g, %.3g), d %.5g pixels",
       c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0],
       c->up[1], c->up[2], d);
 }

@@ -45,8 +45,7 @@ int shard_check(const Arguments *arguments) {
   if (arguments->text_count)
     return report_usage(
         "-o: a part of an image is kept in a film; \"velo film merge\" and \"velo film "
-        "develop\" "
-        "make the image");
+        "develop\" make the image");
   return -1;
 }
 
@@ -123,9 +122,7 @@ void shard_warn(const Arguments *arguments, vlTracer tracer) {
   if ((by_tiles || v[RENDER_TILES].given) && tracer_has_light_paths(tracer))
     report_warning(
         "this tracer follows light from the lamps for the whole image: each part by tiles "
-        "repeats "
-        "it; "
-        "parts by samples do not");
+        "repeats it; parts by samples do not");
 }
 
 int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render) {

@@ -31,9 +31,7 @@ static const Option convert_options[] = {
      "file"},
     {CONVERT_PROVE, 0, "prove", OPTION_FLAG, NULL,
      "render A and B, 256 pixels wide, and print for each material the ratio of its "
-     "brightness, B "
-     "divided by A, in "
-     "red, green and blue"},
+     "brightness, B divided by A, in red, green and blue"},
     {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME",
      "glTF: camera to write, by name or number from 0"},
     {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS",
@@ -114,8 +112,7 @@ const Command scene_convert_command = {
     .summary = "write a scene in another format: .gltf, .glb, .pbrt",
     .text =
         "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of B's "
-        "suffix. "
-        "What that\n"
+        "suffix. What that\n"
         "format cannot hold exactly is reported: one line per kind, with the number of "
         "occurrences.",
     .examples =

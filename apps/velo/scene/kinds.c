@@ -230,9 +230,7 @@ const Command scene_kinds_command = {
     .summary = "list kinds of objects in pbrt files and their parameters",
     .text =
         "Without FAMILY, prints the names of the families. With FAMILY, prints a Markdown "
-        "table of "
-        "parameters for each "
-        "kind of that family.",
+        "table of parameters for each kind of that family.",
     .examples = "velo scene kinds\nvelo scene kinds lights",
     .options = options,
     .min_operands = 0,

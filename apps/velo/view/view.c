@@ -138,9 +138,7 @@ const Option view_options[] = {
      up_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
      "light transport algorithm; auto: chosen by a short race when the image has 32 samples, "
-     "the "
-     "default where the "
-     "scene names none:",
+     "the default where the scene names none:",
      0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
      "largest number of bounces of a path"},
@@ -213,19 +211,15 @@ const Command view_command = {
     .summary = "see and steer a scene in the browser while it renders",
     .text =
         "Prints the address of a page and opens it in a browser. The page shows the scene "
-        "while it "
-        "renders,\n"
+        "while it renders,\n"
         "moves the camera, edits it in every spelling, shows ground truth, and saves cameras "
-        "and "
-        "images\n"
+        "and images\n"
         "(docs/view.md). The address has a random token; only this machine can reach it. "
-        "Through "
-        "ssh, the\n"
+        "Through ssh, the\n"
         "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.\n"
         "\n"
-        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose images "
-        "are "
-        "live: a slider\n"
+        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose "
+        "images are live: a slider\n"
         "moves d, e, zoom, s or roll, and image, formulas and the view from outside follow.",
     .examples =
         "velo view scenes/lecture/pinhole.pbrt\n"

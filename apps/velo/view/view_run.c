@@ -151,8 +151,7 @@ int view_run(const Arguments *arguments) {
     if (v[VIEW_LISTEN].given)
       report_warning(
           "--listen %s: whoever reaches this address and knows the token sees and steers the "
-          "scene; the "
-          "connection is not encrypted",
+          "scene; the connection is not encrypted",
           v[VIEW_LISTEN].text);
     printf("%s\n", server_address(server));
     fflush(stdout);

@@ -328,8 +328,7 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     if (d->not_finite == (uint64_t)p->width * p->height)
       result = vl_fail(error, VL_ERROR_SCENE,
                        "denoise: no pixel has a finite value and standard error; at least 2 "
-                       "samples per pixel are "
-                       "needed");
+                       "samples per pixel are needed");
   } else {
     vl_fail_memory(error);
   }

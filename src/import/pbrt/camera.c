@@ -127,17 +127,15 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
     return false;
   if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in which "
-                          "a trapezoid rises and "
-                          "falls",
+                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in "
+                          "which a trapezoid rises and falls",
                           dict->what);
   if (points) {
     size_t n = vl_param_count(points);
     if (curve || n % 2 || n < 4 || n > 2 * VL_SHUTTER_POINTS)
       return vl_import_fail(dict->import, VL_ERROR_SCENE, points->source,
                             "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how "
-                            "far open), instead of "
-                            "\"shuttercurve\"",
+                            "far open), instead of \"shuttercurve\"",
                             dict->what, (int)VL_SHUTTER_POINTS);
     def->shutter_points = (uint32_t)(n / 2);
     for (size_t i = 0; i < n; i++)

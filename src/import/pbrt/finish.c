@@ -83,9 +83,8 @@ static void note_rough_coats(vlImport *import) {
   }
   if (count)
     vl_import_warn(import, VL_LOG_DEBUG, first->source,
-                   "%u rough coat%s: pbrt-v4 shows such 2 to 8 %% too bright where lamps light "
-                   "them; velo does so with "
-                   "--imitate-pbrt",
+                   "%u rough coat%s: pbrt-v4 shows such 2 to 8 %% too bright where lamps "
+                   "light them; velo does so with --imitate-pbrt",
                    count, count == 1 ? "" : "s, of which this is the first");
 }
 

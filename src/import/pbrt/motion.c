@@ -44,8 +44,7 @@ static bool check_motion(vlImport *import, vlSource source, const vlMat4 ctm[2])
     return true;
   return vl_import_fail(import, VL_ERROR_SCENE, source,
                         "no motion leads from the transform at the start to that at the end: "
-                        "one is singular, not "
-                        "affine, or mirrors alone");
+                        "one is singular, not affine, or mirrors alone");
 }
 
 bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2],

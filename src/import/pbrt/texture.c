@@ -178,9 +178,8 @@ static bool finish(vlImport *import, uint32_t index) {
     if (vl_text_is(pending->kind, "ptex")) {
       if (!vl_import_unsupported(
               import, pending->source,
-              "texture \"ptex\": Ptex files are not supported (to convert: bake "
-              "it into an image over uv, "
-              "and name that by \"imagemap\")"))
+              "texture \"ptex\": Ptex files are not supported (to convert: bake it into an "
+              "image over uv, and name that by \"imagemap\")"))
         return false;
     } else if (!vl_import_unknown_kind(import, pending->source, &vl_texture_family,
                                        pending->kind)) {

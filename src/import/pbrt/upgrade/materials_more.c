@@ -134,8 +134,7 @@ bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
   if (texture) {
     vl_old_lose(file, s->line,
                 "translucent: a texture times \"reflect\" has no counterpart: the texture "
-                "alone is taken "
-                "where that is not black");
+                "alone is taken where that is not black");
     for (int k = 0; k < 2; k++) {
       double sum = share[k][0] + share[k][1] + share[k][2];
       if (!(sum > 0 ? vl_old_add(file, s, "\"texture %s\" \"%s\"", to[k], texture)

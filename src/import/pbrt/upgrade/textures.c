@@ -182,9 +182,8 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
   return vl_old_edit(file, s->names[0], "\"%s\"", name) &&
          vl_old_edit(file, s->names[1], "\"float\"") &&
          vl_old_after(file, s,
-                      "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" "
-                      "[ 1 1 1 ] "
-                      "\"texture amount\" \"%s\"",
+                      "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb "
+                      "tex2\" [ 1 1 1 ] \"texture amount\" \"%s\"",
                       s->name[0], name);
 }
 

@@ -221,10 +221,6 @@ bool vl_context_allows(const vlContext *context, const char *path) {
                            path); /* takes its mutex */
 }
 
-bool vl_context_has_sandbox(const vlContext *context) {
-  return context->sandbox.count > 0;
-}
-
 vlSandbox *vl_context_sandbox(vlContext *context) {
   return &context->sandbox;
 }

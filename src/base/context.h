@@ -27,7 +27,6 @@ bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken);
 /* Whether a scene may name this file. Symbolic links are resolved. True if there is no sandbox.
  */
 bool vl_context_allows(const vlContext *context, const char *path);
-bool vl_context_has_sandbox(const vlContext *context);
 /* Tests whether as many threads as the context has workers can be started in addition to the
  * workers. Libraries that start their own threads end the process if a thread cannot be
  * started. Errors: MEMORY. */

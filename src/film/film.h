@@ -1,7 +1,8 @@
 /* film/film.h: private interface of the film. Sums are exact (128-bit fixed point). Addition is
  * associative, so that no grouping of samples into tiles, passes, threads or machines changes a
- * bit (docs/decisions/0002-exact-film-sums.md). With filter importance sampling a sample
- * contributes to one pixel. Data flows samples -> sums -> image. */
+ * bit (docs/decisions/0002-exact-film-sums.md). A sample contributes to every pixel whose
+ * filter covers it (docs/decisions/0017-shared-samples.md); without shared samples
+ * (vlRenderDef.share_samples), to its own pixel. Data flows samples -> sums -> image. */
 #ifndef FILM_FILM_H
 #define FILM_FILM_H
 

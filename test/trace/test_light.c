@@ -128,6 +128,7 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
   vlTraceScratch *s = f->scratch;
   uint32_t done = 0;
   for (; done < TRIES; done += VL_BATCH) {
+    vlNumbers u;
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       s->at.surface.px[i] = f->p.x;
       s->at.surface.py[i] = f->p.y;
@@ -136,12 +137,12 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
       s->at.surface.nx[i] = f->n.x;
       s->at.surface.ny[i] = f->n.y;
       s->at.surface.nz[i] = f->n.z;
-      s->numbers.u0[i] = stat_float(&rng);
-      s->numbers.u1[i] = stat_float(&rng);
-      s->numbers.u2[i] = stat_float(&rng);
+      u.u0[i] = stat_float(&rng);
+      u.u1[i] = stat_float(&rng);
+      u.u2[i] = stat_float(&rng);
     }
-    vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u1,
-                    s->numbers.u2, s->numbers.u0, &s->light);
+    vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, u.u1, u.u2, u.u0,
+                    &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &s->light;
       if (!(l->pdf[i] > 0) || l->delta[i])

@@ -1,5 +1,5 @@
-/* A worker's memory by what the world has: at most 1 MB without media and subsurface materials,
- * and more only with them. */
+/* A worker's memory by what the world has: at most 0.95 MB without media and subsurface
+ * materials, and more only with them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,10 +8,10 @@
 
 #include <cmocka.h>
 
-#include "trace/stages.h"
+#include "trace/surface/probes.h"
 #include "velo/velo.h"
 
-typedef enum Has { NOTHING, MEDIUM, SUBSURFACE, HAS_COUNT } Has;
+typedef enum Has { NOTHING, MEDIUM, CHANNELS, SUBSURFACE, HAS_COUNT } Has;
 
 static vlWorld *make_world(vlContext *context, Has has) {
   vlScene *scene;
@@ -22,8 +22,10 @@ static vlWorld *make_world(vlContext *context, Has has) {
       vl_default_material_def(has == SUBSURFACE ? VL_MATERIAL_SUBSURFACE : VL_MATERIAL_DIFFUSE);
   vlShapeDef shape = vl_default_shape_def(VL_SHAPE_SPHERE);
   shape.material = vl_scene_add_material(scene, &material);
-  if (has == MEDIUM) {
+  if (has == MEDIUM || has == CHANNELS) {
     vlMediumDef medium = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
+    medium.rgb_absorption = has == CHANNELS;
+    medium.sigma_a = vl_spectrum_rgb(0.1f, 0.2f, 0.3f);
     shape.inside = vl_scene_add_medium(scene, &medium);
   }
   assert_int_not_equal(vl_scene_add_shape(scene, &shape).index, 0);
@@ -47,11 +49,14 @@ static void sizes(void **state) {
     vl_trace_scratch_begin(s, world);
     assert_int_equal(s->volume != NULL, has != NOTHING);
     assert_int_equal(s->subsurface != NULL, has == SUBSURFACE);
+    assert_int_equal(s->by_channel != NULL, has == CHANNELS);
+    assert_int_equal(s->at.shade.tint != NULL, has == CHANNELS);
     free(s);
     vl_world_destroy(world);
   }
-  assert_true(size[NOTHING] <= 1000000);
+  assert_true(size[NOTHING] <= 950000);
   assert_true(size[MEDIUM] == size[NOTHING] + sizeof(vlVolumeScratch));
+  assert_true(size[CHANNELS] == size[MEDIUM] + sizeof(vlByChannel));
   assert_true(size[SUBSURFACE] == size[MEDIUM] + sizeof(vlSubsurfaceScratch));
   vl_context_destroy(context);
 }

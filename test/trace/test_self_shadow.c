@@ -463,6 +463,7 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
                          uint32_t *tried) {
   uint32_t blocked = 0;
   for (int n = 0; n < LIGHTS; n += VL_BATCH) {
+    vlNumbers u;
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       double away[3], distance = s->size * small(rng, 6) * 1000;
       stat_direction(rng, away);
@@ -476,12 +477,12 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       t->at.surface.nx[i] = 0;
       t->at.surface.ny[i] = 0;
       t->at.surface.nz[i] = 1;
-      t->numbers.u0[i] = stat_float(rng);
-      t->numbers.u1[i] = stat_float(rng);
-      t->numbers.u2[i] = stat_float(rng);
+      u.u0[i] = stat_float(rng);
+      u.u1[i] = stat_float(rng);
+      u.u2[i] = stat_float(rng);
     }
-    vl_stage_lights(s->world, VL_BATCH, &t->at.paths, &t->at.surface, t->numbers.u1,
-                    t->numbers.u2, t->numbers.u0, &t->light);
+    vl_stage_lights(s->world, VL_BATCH, &t->at.paths, &t->at.surface, u.u1, u.u2, u.u0,
+                    &t->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &t->light;
       if (!(l->pdf[i] > 0))

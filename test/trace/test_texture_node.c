@@ -221,17 +221,18 @@ static void alpha_by_direction(void **state) {
 static void assert_light(Fixture *f, float expected) {
   vlTraceScratch *s = f->scratch;
   statRng rng = stat_rng(5);
+  vlNumbers u;
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     s->at.surface.px[i] = s->at.surface.py[i] = 0.2f;
     s->at.surface.pz[i] = 1;
     s->at.surface.nx[i] = s->at.surface.ny[i] = 0;
     s->at.surface.nz[i] = -1;
-    s->numbers.u0[i] = stat_float(&rng);
-    s->numbers.u1[i] = stat_float(&rng);
-    s->numbers.u2[i] = stat_float(&rng);
+    u.u0[i] = stat_float(&rng);
+    u.u1[i] = stat_float(&rng);
+    u.u2[i] = stat_float(&rng);
   }
-  vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u0,
-                  s->numbers.u1, s->numbers.u2, &s->light);
+  vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, u.u0, u.u1, u.u2,
+                  &s->light);
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     assert_true(s->light.pdf[i] > 0);
     float radiance = s->light.radiance[0][i] * s->light.pdf[i];

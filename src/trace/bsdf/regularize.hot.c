@@ -11,7 +11,7 @@ void vl_stage_regularize(const vlTracing *t, uint32_t n, vlVertices *at) {
     return;
   vlShade *sh = &at->shade;
   for (uint32_t i = 0; i < n; i++) {
-    if (!t->s->scattered[at->paths.lane[i]])
+    if (!t->scattered[at->paths.lane[i]])
       continue;
     const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
     if (!(m->traits & VL_MATERIAL_ROUGH))

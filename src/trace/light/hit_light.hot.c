@@ -61,7 +61,8 @@ bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
 }
 
 /* For rays that hit nothing, at most VL_SKY_BLOCK. */
-static void sky_hit(vlTracing *t, const vlPaths *rays, const uint32_t *lanes, uint32_t count,
+static void sky_hit(vlTracing *t, const vlPaths *rays, const vlVolumeRows *rows,
+                    const vlFlightEnds *ends, const uint32_t *lanes, uint32_t count,
                     vlAddLight *add) {
   for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
     vlSkyHits sky;
@@ -71,29 +72,29 @@ static void sky_hit(vlTracing *t, const vlPaths *rays, const uint32_t *lanes, ui
       for (int c = 0; c < 4; c++)
         met.radiance[c] = sky.radiance[c][j];
       met.pdf = sky.pdf[j];
-      add(t, rays, lanes[j], &met, true);
+      add(t, rays, rows, ends, lanes[j], &met, true);
     }
   }
 }
 
 void vl_stage_lights_hit(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits,
-                         const uint8_t *event, vlAddLight *add) {
+                         const vlVolumeRows *rows, const vlFlightEnds *ends, vlAddLight *add) {
   uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     vlHitLight met;
     if (hits->shape[i] != VL_NONE) {
       if (t->world->shapes.items[hits->shape[i]].first_light != VL_NONE &&
           vl_hit_emission(t->world, rays, hits, i, &met))
-        add(t, rays, i, &met, false);
+        add(t, rays, rows, ends, i, &met, false);
       continue;
     }
-    if (event && event[i] != VL_IN_SKY)
+    if (ends && ends->event[i] != VL_IN_SKY)
       continue;
     missed[count++] = i;
     if (count < VL_SKY_BLOCK)
       continue;
-    sky_hit(t, rays, missed, count, add);
+    sky_hit(t, rays, rows, ends, missed, count, add);
     count = 0;
   }
-  sky_hit(t, rays, missed, count, add);
+  sky_hit(t, rays, rows, ends, missed, count, add);
 }

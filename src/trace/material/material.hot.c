@@ -233,23 +233,23 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
   if (!m->principled || !m->principled->by_channel) {
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
-        shade->tint_rgb[c][i] = 1.0f;
-        shade->tint[c][i] = shade->reflectance[c][i];
+        shade->tint->rgb[c][i] = 1.0f;
+        shade->tint->at[c][i] = shade->reflectance[c][i];
       }
     return;
   }
   r->rgb = true;
-  vl_rows_albedo(r, m->reflectance, 1.0f, shade->tint_rgb);
+  vl_rows_albedo(r, m->reflectance, 1.0f, shade->tint->rgb);
   r->rgb = false;
   for (uint32_t i = r->first; i < r->last; i++) {
     float before[3], after[3];
     for (int k = 0; k < 3; k++) {
-      before[k] = r->s->passed[k][r->at->paths.lane[i]];
-      after[k] = before[k] * shade->tint_rgb[k][i];
+      before[k] = r->s->by_channel->passed[k][r->at->paths.lane[i]];
+      after[k] = before[k] * shade->tint->rgb[k][i];
     }
     for (int c = 0; c < 4; c++) {
       float whole = vl_channels_at(before, r->at->paths.lambda[c][i]);
-      shade->tint[c][i] =
+      shade->tint->at[c][i] =
           whole > 0.0f ? vl_channels_at(after, r->at->paths.lambda[c][i]) / whole : 0.0f;
     }
   }
@@ -280,7 +280,7 @@ static void evaluate(vlTextureRun *r, const vlWorldMaterial *m) {
     normal_map(r, m->normal_map);
   r->top = 0;
   parameters[m->bsdf](r, m);
-  if (r->world->by_channel)
+  if (r->at->shade.tint)
     tints(r, m);
 }
 

@@ -20,20 +20,19 @@ void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, 
   note(t, lane, vl_medium_beyond(&t->world->shapes.items[shape], g, vl_neg(d), medium), medium);
 }
 
-void vl_fit_surfaces(const vlTracing *t, uint32_t n) {
-  const vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->at.surface;
-  const vlPaths *p = &s->at.paths;
+void vl_fit_surfaces(const vlTracing *t, uint32_t n, const vlVertices *at,
+                     const vlVolumeRows *rows) {
+  const vlSurface *f = &at->surface;
+  const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++)
-    vl_fit_border(t, p->lane[i], s->at.hits.shape[i], vl_lane3(f->gx, f->gy, f->gz, i),
-                  vl_lane3(p->dx, p->dy, p->dz, i), s->volume->b.medium[i]);
+    vl_fit_border(t, p->lane[i], at->hits.shape[i], vl_lane3(f->gx, f->gy, f->gz, i),
+                  vl_lane3(p->dx, p->dy, p->dz, i), rows->medium[i]);
 }
 
 /* The medium from which shadow ray k meets the shape of its area light. `here`: if the shape is
  * no border. */
-static uint32_t before_light(const vlTracing *t, uint32_t k, uint32_t light_shape,
-                             uint32_t here) {
-  const vlShadowRays *q = &t->s->shadow;
+static uint32_t before_light(const vlTracing *t, const vlShadowRays *q, uint32_t k,
+                             uint32_t light_shape, uint32_t here) {
   vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
   float from = 0.999f * q->t_max[k], to = 1.001f * q->t_max[k], hit, time = q->time[k];
   uint32_t shape, prim, instance;
@@ -45,22 +44,22 @@ static uint32_t before_light(const vlTracing *t, uint32_t k, uint32_t light_shap
   return vl_medium_beyond(&t->world->shapes.items[shape], at.g, vl_neg(d), here);
 }
 
-void vl_fit_shadows(const vlTracing *t, uint32_t count) {
-  const vlVolumeScratch *v = t->s->volume;
-  const vlShadowRays *q = &t->s->shadow;
+void vl_fit_shadows(const vlTracing *t, uint32_t count, const vlLightSamples *samples,
+                    const vlShadowRays *q, const vlShadowFlights *f) {
   for (uint32_t k = 0; k < count; k++) {
-    float passes = vl_max(vl_max(v->shadow_beta[0][k], v->shadow_beta[1][k]),
-                          vl_max(v->shadow_beta[2][k], v->shadow_beta[3][k]));
+    float passes =
+        vl_max(vl_max(f->beta[0][k], f->beta[1][k]), vl_max(f->beta[2][k], f->beta[3][k]));
     if (q->occluded[k] || !(passes > 0.0f))
       continue; /* without transmittance, it ended on the way */
-    uint32_t number = t->s->light.light[v->from[k]], medium = v->shadow_medium[k];
+    uint32_t number = samples->light[f->from[k]], medium = f->medium[k];
     const vlWorldShape *shape = NULL;
     const vlWorldLight *light = &t->world->lights.items[number];
     if (light->shape != VL_NONE)
       shape = &t->world->shapes.items[light->shape];
     bool border = shape && shape->inside != shape->outside;
     note(t, q->lane[k],
-         border ? before_light(t, k, light->shape, medium) : t->def->fit->light_medium[number],
+         border ? before_light(t, q, k, light->shape, medium)
+                : t->def->fit->light_medium[number],
          medium);
   }
 }

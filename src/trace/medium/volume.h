@@ -4,6 +4,7 @@
 #define TRACE_MEDIUM_VOLUME_H
 
 #include "trace/medium/medium.h"
+#include "trace/medium/rows.h"
 #include "trace/stages.h"
 
 /* A shadow ray ends at this share of the way to its light. */
@@ -14,20 +15,21 @@ static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
 }
 
-/* Sets vlVolumeScratch.shadow_passed of shadow ray k, which leaves a vertex in a medium, or
- * surface lane i in a direction with cosine wi_z to the normal. */
-static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t k, uint32_t lane) {
+/* Sets `passed` of shadow ray k, which leaves a path's lane in a medium, or the vertex i on a
+ * surface in a direction with cosine wi_z to the normal. */
+static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t lane, uint32_t k,
+                                         vlShadowFlights *f) {
   for (int c = 0; t->world->by_channel && c < 3; c++)
-    t->s->volume->shadow_passed[c][k] = t->s->passed[c][lane];
+    f->passed[c][k] = t->passed[c][lane];
 }
-static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32_t i,
-                                          float wi_z) {
+static inline void vl_shadow_from_surface(const vlTracing *t, const vlVertices *at, uint32_t i,
+                                          float wi_z, uint32_t k, vlShadowFlights *f) {
   float passed[3];
   if (!t->world->by_channel)
     return;
-  vl_passed_on(t, &t->s->at, i, wi_z, passed);
+  vl_passed_on(t, at, i, wi_z, passed);
   for (int c = 0; c < 3; c++)
-    t->s->volume->shadow_passed[c][k] = passed[c];
+    f->passed[c][k] = passed[c];
 }
 
 static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b,
@@ -70,53 +72,70 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k);
 uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t medium);
 
 /* With vlTraceDef.fit: compare the medium of a path that arrives in direction d at a border, of
- * the n shaded lanes, and of the `count` shadow rays that have passed media, with the medium
+ * the n shaded vertices, and of the `count` shadow rays that have passed media, with the medium
  * that border or light names (fit.hot.c). */
 void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d,
                    uint32_t medium);
-void vl_fit_surfaces(const vlTracing *t, uint32_t n);
-void vl_fit_shadows(const vlTracing *t, uint32_t count);
+void vl_fit_surfaces(const vlTracing *t, uint32_t n, const vlVertices *at,
+                     const vlVolumeRows *rows);
+void vl_fit_shadows(const vlTracing *t, uint32_t count, const vlLightSamples *light,
+                    const vlShadowRays *q, const vlShadowFlights *f);
 
-/* Traces the n rays of vlTraceScratch.rays through media and interfaces to their events. depth:
- * number of the bounce; emission: add the emission of the media that the rays cross. Densities
- * go to volume.a. Ray origins stay at the last scattering. */
-void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
+/* Traces the n rays through media and interfaces to their events. depth: number of the bounce;
+ * emission: add the emission of the media that the rays cross. Densities, weights and media
+ * change in place; ray origins stay at the last scattering. */
+void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission, vlPaths *rays,
+                      vlVolumeRows *rows, vlHits *hits, vlFlightEnds *ends);
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order,
                        uint32_t n);
 /* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
 void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v,
                              uint32_t n); /* paths [0, n) */
-/* Copies the rays that scatter in media to volume.scattered and volume.c. The copies are
- * normalised and start at the scattering points, which are also written to s->at.surface for
- * light sampling. s->order gets the rays' indices. Returns the number of copies. */
-uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
+/* Copies those of the n rays that scatter in media, normalised and moved to the scattering
+ * points, which are also written to `points` for light sampling. Returns their number. */
+uint32_t vl_volume_gather(const vlTracing *t, uint32_t n, const vlPaths *rays,
+                          const vlVolumeRows *rows, const vlFlightEnds *ends,
+                          vlMediumVertices *to, vlSurface *points);
 /* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns
- * the number of paths that go on; volume.kept lists them. */
-uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* Sets the initial media of the n rays. medium: by lane; null: all paths start in the camera's
- * medium. */
-void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
-/* After scattering on surfaces: copies volume.b of the `count` vertices in s->order to
- * volume.a. */
-void vl_volume_go_on(vlTracing *t, uint32_t count);
-/* Appends the first `count` paths of volume.kept to the n rays. Returns their new number. */
-uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n);
-/* The flights of the `count` shadow rays that are not occluded, to volume.shadow_*. beta is the
- * transmittance; the path's densities are relative to the density of light sampling. */
-void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
-/* Adds the light sample of lane i as shadow ray number `count`, which starts at o. value, pdf:
- * of the BSDF or phase function. Returns the new count. */
-uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                               uint32_t i, vlVec3 o, const float value[4], float pdf,
-                               uint32_t medium, uint32_t count);
-/* Traces the shadow rays added by vl_volume_push_shadow and adds the radiance that arrives. */
-void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
+ * the number of paths that go on, which kept lists. */
+uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
+                                 vlMediumVertices *in, uint32_t *kept);
+/* Sets what n rays that set out have in media. medium: by lane; null: all paths start in the
+ * camera's medium. */
+void vl_volume_start(const vlTracing *t, uint32_t n, const uint32_t *medium, vlPaths *rays,
+                     vlVolumeRows *rows);
+/* After scattering on surfaces: what the `count` rays that leave the vertices in `order` have
+ * in media. at_rows: of the vertices. */
+void vl_volume_go_on(const vlTracing *t, uint32_t count, const vlVertices *at,
+                     const vlVolumeRows *at_rows, const uint32_t *order, const vlPaths *rays,
+                     vlVolumeRows *rows);
+/* Appends the `count` kept paths to the n rays. Returns their new number. */
+uint32_t vl_volume_append(const vlMediumVertices *in, const uint32_t *kept, uint32_t count,
+                          uint32_t n, vlPaths *rays, vlVolumeRows *rows);
+/* The flights of the `count` shadow rays that are not occluded. beta is the transmittance; the
+ * path's densities are relative to the density of light sampling. */
+void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth,
+                          const vlShadowRays *q, vlShadowFlights *f);
+/* Where the shadow ray of a light sample starts, and the value and density there of the BSDF or
+ * phase function. */
+typedef struct vlShadowStart {
+  vlVec3 o;
+  float value[4], pdf;
+  uint32_t medium;
+} vlShadowStart;
+/* Adds the light sample of vertex i as shadow ray number `count`. */
+void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                           const vlLightSamples *light, uint32_t i, const vlShadowStart *start,
+                           uint32_t count, vlShadowRays *q, vlShadowFlights *f);
+/* Traces `count` shadow rays of light samples and adds the radiance that arrives. */
+void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlLightSamples *light,
+                       uint32_t count, uint32_t depth, vlShadowRays *q, vlShadowFlights *f);
 
 /* The inverse of the mean density of ray i over the techniques that could have made it.
  * light_pdf: density of light sampling; 0 if light sampling could not make this path. */
-static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, float light_pdf) {
-  const vlVolumeRows *v = &t->s->volume->a;
+static inline float vl_volume_inverse_density(const vlTracing *t, const vlVolumeRows *v,
+                                              uint32_t i, float light_pdf) {
   float density[4];
   for (int c = 0; c < 4; c++)
     density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
@@ -125,18 +144,20 @@ static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, fl
 
 /* The mean density of shadow ray k over the channels and over light sampling and BSDF or phase
  * sampling (pdf; 0: light sampling alone). */
-static inline float vl_volume_shadow_density(const vlTracing *t, uint32_t k, float pdf) {
-  const vlVolumeScratch *v = t->s->volume;
+static inline float vl_volume_shadow_density(const vlTracing *t, const vlShadowFlights *f,
+                                             uint32_t k, float pdf) {
   float density[4];
   for (int c = 0; c < 4; c++)
-    density[c] =
-        v->density[c][k] * (v->shadow_l[c][k] * v->light_pdf[k] + v->shadow_u[c][k] * pdf);
+    density[c] = f->density[c][k] * (f->l[c][k] * f->light_pdf[k] + f->u[c][k] * pdf);
   return vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
 }
 
 /* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the
  * n rays; and the `count` shadow rays, after they were traced. */
-void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth);
-void vl_volume_record_shadows(vlTracing *t, uint32_t count);
+void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *rays,
+                             const vlVolumeRows *rows, const vlHits *hits,
+                             const vlFlightEnds *ends);
+void vl_volume_record_shadows(vlTracing *t, uint32_t count, const vlLightSamples *light,
+                              const vlShadowRays *q, const vlShadowFlights *f);
 
 #endif

@@ -3,13 +3,14 @@
 #include "trace/medium/volume.h"
 #include "trace/tracer/record.h"
 
-static void record_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met,
-                       bool sky) {
-  float inv = vl_volume_inverse_density(t, i, met->pdf);
+static void record_met(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
+  (void)ends;
+  float inv = vl_volume_inverse_density(t, rows, i, met->pdf);
   vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
                           .light_pdf = met->pdf,
                           .bsdf_pdf = p->pdf[i],
-                          .weight = inv / vl_volume_inverse_density(t, i, 0.0f),
+                          .weight = inv / vl_volume_inverse_density(t, rows, i, 0.0f),
                           .target = {p->dx[i], p->dy[i], p->dz[i]}};
   if (!sky) {
     c.target[0] = met->at.p.x;
@@ -22,57 +23,54 @@ static void record_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLi
   vl_record_light(t, p->lane[i], &c);
 }
 
-static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth) {
-  const vlPaths *p = &t->s->rays;
-  const vlVolumeScratch *x = t->s->volume;
+static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth, const vlPaths *p,
+                           const vlVolumeRows *rows, const vlHits *hits,
+                           const vlFlightEnds *x) {
   vlPathVertex *v = vl_record_arrival(t, p, i, depth);
   if (!v)
     return;
-  float inv = vl_volume_inverse_density(t, i, 0.0f);
+  float inv = vl_volume_inverse_density(t, rows, i, 0.0f);
   for (int c = 0; c < 4; c++)
     v->throughput[c] *= inv;
   if (x->event[i] == VL_ON_SURFACE)
-    vl_record_surface(t, p, &t->s->hits, i, v);
+    vl_record_surface(t, p, hits, i, v);
   if (x->event[i] != VL_IN_MEDIUM && x->event[i] != VL_AT_END)
     return;
   v->event = VL_PATH_MEDIUM;
   v->fate = VL_PATH_ABSORBED;
-  v->medium = x->a.medium[i] == VL_NONE ? 0 : x->a.medium[i] + 1;
+  v->medium = rows->medium[i] == VL_NONE ? 0 : rows->medium[i] + 1;
   v->distance = x->t[i];
   v->position[0] = p->ox[i] + x->t[i] * p->dx[i];
   v->position[1] = p->oy[i] + x->t[i] * p->dy[i];
   v->position[2] = p->oz[i] + x->t[i] * p->dz[i];
 }
 
-void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
-  const vlPaths *p = &t->s->rays;
-  const vlHits *h = &t->s->hits;
-  const vlVolumeScratch *v = t->s->volume;
+void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,
+                             const vlVolumeRows *rows, const vlHits *hits,
+                             const vlFlightEnds *ends) {
   for (uint32_t i = 0; i < n; i++) {
-    record_arrival(t, i, depth);
+    record_arrival(t, i, depth, p, rows, hits, ends);
     vlPathContribution from_medium = {
         .event = VL_PATH_LIGHT_MEDIUM, .type = "medium", .weight = 1.0f};
     float sum = 0.0f;
     for (int c = 0; c < 4; c++)
-      sum += from_medium.radiance[c] = v->given[c][i];
+      sum += from_medium.radiance[c] = ends->given[c][i];
     if (sum != 0.0f)
       vl_record_light(t, p->lane[i], &from_medium);
   }
-  vl_stage_lights_hit(t, n, p, h, v->event, record_met);
+  vl_stage_lights_hit(t, n, p, hits, rows, ends, record_met);
   if (depth >= t->def->max_depth)
     vl_record_depth(t, n, p);
 }
 
-void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
-  const vlShadowRays *q = &t->s->shadow;
-  const vlVolumeScratch *v = t->s->volume;
-  const vlLightSamples *l = &t->s->light;
+void vl_volume_record_shadows(vlTracing *t, uint32_t count, const vlLightSamples *l,
+                              const vlShadowRays *q, const vlShadowFlights *f) {
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = v->from[k];
+    uint32_t i = f->from[k];
     vlPathContribution c = {.event = VL_PATH_LIGHT_SAMPLED,
                             .occluded = q->occluded[k],
-                            .light_pdf = v->light_pdf[k],
-                            .bsdf_pdf = v->pdf[k],
+                            .light_pdf = f->light_pdf[k],
+                            .bsdf_pdf = f->pdf[k],
                             .target = {l->tx[i], l->ty[i], l->tz[i]}};
     vl_record_name_light(t->world, l->light[i], &c);
     c.distant = l->distant[i];
@@ -81,10 +79,10 @@ void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
       c.target[1] = l->wy[i];
       c.target[2] = l->wz[i];
     }
-    float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
-    c.weight = vl_volume_shadow_density(t, k, 0.0f) * inv;
+    float inv = 1.0f / vl_volume_shadow_density(t, f, k, f->pdf[k]);
+    c.weight = vl_volume_shadow_density(t, f, k, 0.0f) * inv;
     for (int m = 0; m < 4; m++)
-      c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * v->shadow_beta[m][k] * inv;
+      c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * f->beta[m][k] * inv;
     vl_record_light(t, q->lane[k], &c);
   }
 }

@@ -3,53 +3,48 @@
  * book 14.2.3). */
 #include "trace/medium/volume.h"
 
-uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                               uint32_t i, vlVec3 o, const float value[4], float pdf,
-                               uint32_t medium, uint32_t count) {
-  vlShadowRays *q = &t->s->shadow;
-  const vlLightSamples *l = &t->s->light;
-  vlVolumeScratch *v = t->s->volume;
+void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                           const vlLightSamples *l, uint32_t i, const vlShadowStart *start,
+                           uint32_t count, vlShadowRays *q, vlShadowFlights *f) {
   vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
   float length = VL_INFINITY;
   if (!l->distant[i]) { /* unit length: distances to interfaces are needed */
-    vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
+    vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), start->o);
     length = vl_length(to);
     w = vl_normalize(to);
   }
-  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+  vl_set_lane3(q->ox, q->oy, q->oz, count, start->o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, w);
   q->t_max[count] = length * VL_SHADOW_END;
   for (int c = 0; c < 4; c++) {
-    q->radiance[c][count] = p->beta[c][i] * value[c] * l->radiance[c][i] * l->pdf[i];
-    v->density[c][count] = rows->u[c][i];
+    q->radiance[c][count] = p->beta[c][i] * start->value[c] * l->radiance[c][i] * l->pdf[i];
+    f->density[c][count] = rows->u[c][i];
   }
-  v->light_pdf[count] = l->pdf[i];
-  v->pdf[count] = l->delta[i] ? 0.0f : pdf;
-  v->shadow_medium[count] = medium;
-  v->from[count] = i;
+  f->light_pdf[count] = l->pdf[i];
+  f->pdf[count] = l->delta[i] ? 0.0f : start->pdf;
+  f->medium[count] = start->medium;
+  f->from[count] = i;
   q->time[count] = vl_path_time(p, i);
   q->lane[count] = p->lane[i];
-  vl_shadow_from_medium(t, count, p->lane[i]);
-  return count + 1;
+  vl_shadow_from_medium(t, p->lane[i], count, f);
 }
 
 /* The block of `n` shadow rays from `first` on. Those that are not occluded and do not leave
  * the world through vacuum are open. */
-static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t first, uint32_t n,
+static void begin_block(const vlTracing *t, const vlPaths *p, const vlShadowRays *q,
+                        vlShadowFlights *v, vlTravel *k, uint32_t first, uint32_t n,
                         float *lambda[4]) {
-  const vlShadowRays *q = &t->s->shadow;
-  vlVolumeScratch *v = t->s->volume;
   vlFlights *f = &k->f;
   f->n = n;
   f->rays = (vlRays){q->ox + first, q->oy + first,    q->oz + first,
                      q->dx + first, q->dy + first,    q->dz + first,
-                     NULL,          q->t_max + first, t->s->rays.time ? q->time + first : NULL};
-  f->odds = v->shadow_odds + first;
+                     NULL,          q->t_max + first, p->time ? q->time + first : NULL};
+  f->odds = v->odds + first;
   for (int c = 0; c < 4; c++) {
-    f->beta[c] = v->shadow_beta[c] + first;
+    f->beta[c] = v->beta[c] + first;
     f->lambda[c] = lambda[c];
-    f->u[c] = v->shadow_u[c] + first;
-    f->l[c] = v->shadow_l[c] + first;
+    f->u[c] = v->u[c] + first;
+    f->l[c] = v->l[c] + first;
     for (uint32_t i = 0; i < n; i++)
       f->beta[c][i] = f->u[c][i] = f->l[c][i] = 1.0f;
   }
@@ -57,14 +52,14 @@ static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t fi
   for (uint32_t i = 0; i < n; i++) {
     f->odds[i] = 1.0f;
     if (q->occluded[first + i] ||
-        (v->shadow_medium[first + i] == VL_NONE && !t->world->has_interfaces))
+        (v->medium[first + i] == VL_NONE && !t->world->has_interfaces))
       continue;
     k->open[k->count++] = i;
     uint32_t path = f->path[i] = v->from[first + i];
     for (int c = 0; c < 4; c++)
       lambda[c][i] = p->lambda[c][path];
     for (int c = 0; t->world->by_channel && c < 3; c++)
-      f->passed[c][i] = v->shadow_passed[c][first + i];
+      f->passed[c][i] = v->passed[c][first + i];
     f->from[i] = 0.0f;
     f->first[i] = -1.0f;
     f->count[i] = 0;
@@ -119,7 +114,8 @@ static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
       f->beta[c][k->open[j]] = 0.0f;
 }
 
-void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
+void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth,
+                          const vlShadowRays *q, vlShadowFlights *f) {
   VL_ROW float lambda[4][VL_FLIGHTS] = {{0}};
   VL_ROW uint32_t ids[3][VL_FLIGHTS];
   VL_ROW float hit[VL_FLIGHTS];
@@ -136,28 +132,28 @@ void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32
   for (uint32_t i = 0; i < VL_FLIGHTS; i++)
     ids[0][i] = VL_NONE;
   for (uint32_t first = 0; first < count; first += VL_FLIGHTS) {
-    begin_block(t, p, &k, first, count - first < VL_FLIGHTS ? count - first : VL_FLIGHTS, rows);
-    pass_block(t, &k, t->s->volume->shadow_medium + first);
+    begin_block(t, p, q, f, &k, first, count - first < VL_FLIGHTS ? count - first : VL_FLIGHTS,
+                rows);
+    pass_block(t, &k, f->medium + first);
   }
   for (uint32_t i = 0; i < count; i++)
-    t->s->volume->shadow_odds[i] = vl_some_odds(t->s->volume->shadow_odds[i]);
+    f->odds[i] = vl_some_odds(f->odds[i]);
 }
 
-void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
-  vlShadowRays *q = &t->s->shadow;
-  const vlVolumeScratch *v = t->s->volume;
+void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlLightSamples *light,
+                       uint32_t count, uint32_t depth, vlShadowRays *q, vlShadowFlights *f) {
   vl_stage_occluded(t, count, p, q);
   t->batch->shadow_rays += count;
-  vl_volume_pass_media(t, p, count, depth);
+  vl_volume_pass_media(t, p, count, depth, q, f);
   if (t->def->fit)
-    vl_fit_shadows(t, count);
+    vl_fit_shadows(t, count, light, q, f);
   if (t->batch->recorder)
-    vl_volume_record_shadows(t, count);
+    vl_volume_record_shadows(t, count, light, q, f);
   for (uint32_t k = 0; k < count; k++) {
     if (q->occluded[k])
       continue;
-    float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
+    float inv = 1.0f / vl_volume_shadow_density(t, f, k, f->pdf[k]);
     for (int c = 0; c < 4; c++)
-      t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * v->shadow_beta[c][k] * inv;
+      t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * f->beta[c][k] * inv;
   }
 }

@@ -1,6 +1,6 @@
-/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and the
- * choice of mixed materials; and adds the radiance of lights that rays hit, with MIS weights
- * against light sampling (pbrt book 13.4). */
+/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and
+ * the choice of mixed materials; and adds the radiance of lights that rays hit, with MIS
+ * weights against light sampling (pbrt book 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
 #include "velo/material.h"
@@ -11,8 +11,11 @@
  * ---------------------------------------------------------------------------------------- */
 
 /* Adds the light's radiance with the weight of multiple importance sampling. */
-static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met,
+static void add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                          const vlFlightEnds *ends, uint32_t i, const vlHitLight *met,
                           bool sky) {
+  (void)rows;
+  (void)ends;
   (void)sky;
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   for (int c = 0; c < 4; c++)
@@ -26,7 +29,7 @@ vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
 }
 
 void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
-  vl_stage_lights_hit(t, n, rays, hits, NULL, add_hit_light);
+  vl_stage_lights_hit(t, n, rays, hits, NULL, NULL, add_hit_light);
 }
 
 /* ---- hits
@@ -127,7 +130,7 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
     vlHitLight met;
     if (world->shapes.items[h->shape[i]].first_light != VL_NONE &&
         vl_hit_emission(world, p, h, i, &met))
-      add_hit_light(t, p, i, &met, false);
+      add_hit_light(t, p, NULL, NULL, i, &met, false);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);

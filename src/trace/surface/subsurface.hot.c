@@ -15,22 +15,22 @@
 #include "math/warp.h"
 #include "trace/material/rows.h"
 #include "trace/medium/volume.h"
+#include "trace/surface/probes.h"
 #include "trace/tracer/record.h"
 #include "world/material/bssrdf.h"
 
 /* Largest number of crossings of one probe. */
 enum { MOST_CROSSINGS = 1024 };
 
-/* The entry point. */
+/* One entry. */
 typedef struct Entry {
   const vlBssrdfTable *table;
   vlVec3 p, n;
   float sigma[4], albedo[4];
 } Entry;
 
-static Entry entry_of(const vlTracing *t, uint32_t j) {
-  const vlSubsurfaceScratch *x = t->s->subsurface;
-  Entry e = {t->world->materials.items[x->material[j]].subsurface->table,
+static Entry entry_of(const vlWorld *world, const vlEntries *x, uint32_t j) {
+  Entry e = {world->materials.items[x->material[j]].subsurface->table,
              vl_lane3(x->px, x->py, x->pz, j),
              vl_lane3(x->nx, x->ny, x->nz, j),
              {0},
@@ -42,59 +42,61 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
   return e;
 }
 
-/* Copies the rays that entered a subsurface material to s->at.paths, as probes. Ray k comes
- * from vertex s->order[k]. Keeps a copy of all rays in the scratch memory. Returns the number
- * of probes.
- */
-static uint32_t take_refracted(vlTracing *t, uint32_t n) {
-  vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = s->subsurface;
-  const vlShade *sh = &s->at.shade;
-  const vlBsdfSamples *samples = &s->samples;
+/* Finds those of the n rays that entered a subsurface material; ray k comes from vertex
+ * order[k]. alive: by ray, 1 for the others. Returns the number of entries. */
+static uint32_t find_entries(const vlWorld *world, uint32_t n, const vlVertices *at,
+                             const vlBsdfSamples *samples, const uint32_t *order, vlEntries *to,
+                             uint8_t *alive) {
+  const vlSurface *f = &at->surface;
+  const vlShade *sh = &at->shade;
   uint32_t count = 0;
   for (uint32_t k = 0; k < n; k++) {
-    uint32_t i = s->order[k], material = s->at.hits.material[i];
-    bool in = t->world->materials.items[material].subsurface &&
+    uint32_t i = order[k], material = at->hits.material[i];
+    bool in = world->materials.items[material].subsurface &&
               (samples->flags[i] & VL_SAMPLED_TRANSMISSION);
-    x->alive[k] = !in;
+    alive[k] = !in;
     if (!in)
       continue;
     uint32_t j = count++;
-    x->place[j] = k;
-    x->material[j] = material;
-    x->px[j] = s->at.surface.px[i];
-    x->py[j] = s->at.surface.py[i];
-    x->pz[j] = s->at.surface.pz[i];
-    x->nx[j] = s->at.surface.nx[i];
-    x->ny[j] = s->at.surface.ny[i];
-    x->nz[j] = s->at.surface.nz[i];
+    to->path[j] = k;
+    to->material[j] = material;
+    to->px[j] = f->px[i];
+    to->py[j] = f->py[i];
+    to->pz[j] = f->pz[i];
+    to->nx[j] = f->nx[i];
+    to->ny[j] = f->ny[i];
+    to->nz[j] = f->nz[i];
     for (int c = 0; c < 4; c++) {
-      x->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
-      x->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
+      to->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
+      to->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
     }
-    x->entry_eta_scale[j] = samples->eta_scale[i];
-    x->medium[j] = s->volume->b.medium[i];
-  }
-  if (count == 0)
-    return 0;
-  x->paths = s->rays;
-  x->rows = s->volume->a;
-  vl_permute_paths(&x->paths, &s->at.paths, x->place, count);
-  vl_volume_permute(&x->rows, &s->volume->b, x->place, count);
-  for (uint32_t j = 0; j < count; j++) {
-    s->volume->b.medium[j] = x->medium[j]; /* the medium outside, to which the path returns */
-    s->at.paths.eta_scale[j] /= x->entry_eta_scale[j];
   }
   return count;
 }
 
-/* Sets probe j to a segment that extends `half` to either side of o. It is clipped to the
- * sphere around the world, so that ray origins are not needlessly far away. */
-static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, float half) {
-  vlSubsurfaceScratch *x = t->s->subsurface;
-  vlPaths *p = &t->s->at.paths;
-  const float *c = t->world->center;
-  float radius = 1.001f * t->world->radius;
+/* Starts the paths of n probes, which are those of the entries. rows has what the vertices have
+ * in media, and gets the same of the probes. */
+static void start_probes(uint32_t n, const vlPaths *rays, const vlVolumeRows *ray_rows,
+                         const vlEntries *x, const vlBsdfSamples *samples,
+                         const uint32_t *order, vlPaths *probes, vlVolumeRows *rows) {
+  uint32_t outside[VL_ROW_SIZE]; /* the medium to which the path returns */
+  for (uint32_t j = 0; j < n; j++)
+    outside[j] = rows->medium[order[x->path[j]]];
+  vl_permute_paths(rays, probes, x->path, n);
+  vl_volume_permute(ray_rows, rows, x->path, n);
+  for (uint32_t j = 0; j < n; j++) {
+    rows->medium[j] = outside[j];
+    probes->eta_scale[j] /= samples->eta_scale[order[x->path[j]]];
+  }
+}
+
+/* Sets the segment of probe j, which extends `half` to either side of o. It is clipped to the
+ * sphere around the world, so that ray origins are not needlessly far away. Returns its length.
+ */
+static float cut_probe(const vlWorld *world, vlPaths *p, uint32_t j, vlVec3 o, vlVec3 along,
+                       float half) {
+  const float *c = world->center;
+  float radius = 1.001f * world->radius;
   vlVec3 to = vl_sub(vl_vec3(c[0], c[1], c[2]), o);
   float middle = vl_dot(to, along),
         inside = radius * radius - vl_length2(vl_sub(to, vl_mul(along, middle)));
@@ -103,39 +105,36 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
   o = vl_add(o, vl_mul(along, start));
   vl_set_lane3(p->ox, p->oy, p->oz, j, o);
   vl_set_lane3(p->dx, p->dy, p->dz, j, along);
-  x->length[j] = end > start ? end - start : 0.0f;
+  return end > start ? end - start : 0.0f;
 }
 
-/* Samples the probes: origin and direction of s->at.paths, x->length (0: none). */
-static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
-  vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = s->subsurface;
-  vlPaths *p = &s->at.paths;
-  vlNumbers *u = &s->numbers;
+/* Samples the n probes: origins and directions of p, and lengths. */
+static void aim_probes(const vlTracing *t, uint32_t n, uint32_t dimension, const vlEntries *x,
+                       vlPaths *p, float *length) {
+  vlNumbers u;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE_AXIS,
-                     u->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE,
-                     u->u1, u->u2);
+                     u.u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE, u.u1,
+                     u.u2);
   for (uint32_t j = 0; j < n; j++) {
-    Entry e = entry_of(t, j);
+    Entry e = entry_of(t->world, x, j);
     int hero = vl_volume_hero(t, p, j);
     vlSpline albedo = vl_bssrdf_albedo(e.table, e.albedo[hero]);
-    float near = vl_bssrdf_sample(e.table, &albedo, u->u1[j]),
+    float near = vl_bssrdf_sample(e.table, &albedo, u.u1[j]),
           far = vl_bssrdf_sample(e.table, &albedo, 0.999f);
-    x->length[j] = x->t_min[j] = 0.0f;
-    x->found[j] = 0;
+    length[j] = 0.0f;
     if (!(e.sigma[hero] > 0.0f) || !(near >= 0.0f) || !(near < far))
       continue;
     vlFrame f = vl_frame_from_z(e.n);
-    vlVec3 along = u->u0[j] < 0.25f ? f.x : u->u0[j] < 0.5f ? f.y : f.z;
-    vlVec3 side = u->u0[j] < 0.25f ? f.y : u->u0[j] < 0.5f ? f.z : f.x;
-    vlVec3 other = u->u0[j] < 0.25f ? f.z : u->u0[j] < 0.5f ? f.x : f.y;
-    vlSinCos turn = vl_sincos_turn(u->u2[j]);
+    vlVec3 along = u.u0[j] < 0.25f ? f.x : u.u0[j] < 0.5f ? f.y : f.z;
+    vlVec3 side = u.u0[j] < 0.25f ? f.y : u.u0[j] < 0.5f ? f.z : f.x;
+    vlVec3 other = u.u0[j] < 0.25f ? f.z : u.u0[j] < 0.5f ? f.x : f.y;
+    vlSinCos turn = vl_sincos_turn(u.u2[j]);
     float inv = 1.0f / e.sigma[hero], half = __builtin_sqrtf((far - near) * (far + near)) * inv;
     vlVec3 o =
         vl_add(vl_mul(side, near * inv * turn.cos), vl_mul(other, near * inv * turn.sin));
     if (near * inv < 4.0f * t->world->radius)
-      cut_probe(t, j, vl_add(e.p, o), along, half);
+      length[j] = cut_probe(t->world, p, j, vl_add(e.p, o), along, half);
   }
 }
 
@@ -153,45 +152,38 @@ static float past_on_probe(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
                  t_min);
 }
 
-/* Records one crossing of probe j, whose ids are in s->at.hits. Returns false if it was the
- * last crossing. */
-static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
-  vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = s->subsurface;
-  vlHits *h = &s->at.hits;
-  if (h->shape[j] == VL_NONE)
-    return false;
-  vlVec3 o = vl_lane3(s->at.paths.ox, s->at.paths.oy, s->at.paths.oz, j),
-         d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, j);
-  vlPoint at = vl_hit_point(t->world, &s->at.paths, h, j);
-  if (vl_hit_material(t->world, &s->at.paths, h, j) == x->material[j]) {
-    uint32_t count = ++x->found[j];
-    float u =
-        vl_unit_float(vl_hash2(vl_volume_key(t, &s->at.paths, j, depth, VL_KEY_PROBE), count));
-    if (u * (float)count <
-        1.0f) { /* reservoir sampling: each crossing is kept with the same probability */
-      x->hits.shape[j] = h->shape[j];
-      x->hits.prim[j] = h->prim[j];
-      x->hits.instance[j] = h->instance[j];
-      x->hits.t[j] = h->t[j];
+/* Counts the crossing `met` of probe j, and may choose it. Returns where the probe goes on. */
+static float note_crossing(const vlTracing *t, uint32_t j, uint32_t depth, const vlEntries *x,
+                           const vlPaths *p, const vlHits *met, float t_min, vlProbes *to) {
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, j), d = vl_lane3(p->dx, p->dy, p->dz, j);
+  vlPoint at = vl_hit_point(t->world, p, met, j);
+  if (vl_hit_material(t->world, p, met, j) == x->material[j]) {
+    uint32_t count = ++to->found[j];
+    float u = vl_unit_float(vl_hash2(vl_volume_key(t, p, j, depth, VL_KEY_PROBE), count));
+    /* reservoir sampling: each crossing is kept with the same probability */
+    if (u * (float)count < 1.0f) {
+      to->chosen.shape[j] = met->shape[j];
+      to->chosen.prim[j] = met->prim[j];
+      to->chosen.instance[j] = met->instance[j];
+      to->chosen.t[j] = met->t[j];
     }
   }
-  x->t_min[j] = past_on_probe(&at, o, d, x->t_min[j]);
-  return x->t_min[j] < x->length[j];
+  return past_on_probe(&at, o, d, t_min);
 }
 
-/* Finds all crossings of the probes. Each batch of rays finds one crossing per probe. x->found
- * counts a probe's crossings; x->hits keeps one of them. */
-static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
-  vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = s->subsurface;
-  const vlPaths *p = &s->at.paths;
-  vlShadowRays *q = &s->shadow;
-  vlHits *to = &s->hits;
+/* Finds all crossings of the n probes. Each batch of rays finds one crossing per probe. q,
+ * hits, met: memory for the rays and what they hit, by ray and by probe. */
+static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntries *x,
+                          const vlPaths *p, vlProbes *to, vlShadowRays *q, vlHits *hits,
+                          vlHits *met) {
+  VL_ROW float from[VL_ROW_SIZE], t_min[VL_ROW_SIZE];
   uint32_t under_way[VL_BATCH], active = 0;
-  for (uint32_t j = 0; j < n; j++)
-    if (x->length[j] > 0.0f)
+  for (uint32_t j = 0; j < n; j++) {
+    t_min[j] = 0.0f;
+    to->found[j] = 0;
+    if (to->length[j] > 0.0f)
       under_way[active++] = j;
+  }
   for (int step = 0; active > 0 && step < MOST_CROSSINGS; step++) {
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
@@ -201,22 +193,26 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
       q->dx[k] = p->dx[j];
       q->dy[k] = p->dy[j];
       q->dz[k] = p->dz[j];
-      x->from[k] = x->t_min[j];
-      q->t_max[k] = x->length[j];
+      from[k] = t_min[j];
+      q->t_max[k] = to->length[j];
       q->time[k] = vl_path_time(p, j);
     }
     vlRays rays = {
-        q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, x->from, q->t_max, p->time ? q->time : NULL};
-    vl_accel_closest(t->world, active, &rays, false, to->shape, to->prim, to->instance, to->t);
+        q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, from, q->t_max, p->time ? q->time : NULL};
+    vl_accel_closest(t->world, active, &rays, false, hits->shape, hits->prim, hits->instance,
+                     hits->t);
     t->batch->bounce_rays += active;
     uint32_t left = 0;
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
-      s->at.hits.shape[j] = to->shape[k];
-      s->at.hits.prim[j] = to->prim[k];
-      s->at.hits.instance[j] = to->instance[k];
-      s->at.hits.t[j] = to->t[k];
-      if (note_crossing(t, j, depth))
+      if (hits->shape[k] == VL_NONE)
+        continue;
+      met->shape[j] = hits->shape[k];
+      met->prim[j] = hits->prim[k];
+      met->instance[j] = hits->instance[k];
+      met->t[j] = hits->t[k];
+      t_min[j] = note_crossing(t, j, depth, x, p, met, t_min[j], to);
+      if (t_min[j] < to->length[j])
         under_way[left++] = j;
     }
     active = left;
@@ -227,40 +223,40 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
  * -------------------------------------------------------------------------------------------------------
  */
 
-/* Copies the probes with a crossing to s->rays; x->entry has their probes. Returns their
- * number. */
-static uint32_t gather_exits(vlTracing *t, uint32_t n) {
-  vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = s->subsurface;
+/* Copies the probes with a crossing to the paths of exits, and computes their surfaces. probe:
+ * by exit, its probe. Returns their number. */
+static uint32_t gather_exits(const vlWorld *world, uint32_t n, const vlEntries *x,
+                             const vlProbes *probes, const vlPaths *from,
+                             const vlVolumeRows *from_rows, uint32_t *probe, vlPaths *exits,
+                             vlVolumeRows *rows, vlHits *hits, vlCorners *corners,
+                             vlSurface *surface) {
+  const vlHits *chosen = &probes->chosen;
   uint32_t count = 0;
   for (uint32_t j = 0; j < n; j++)
-    if (x->found[j])
-      x->entry[count++] = j;
-  vl_permute_paths(&s->at.paths, &s->rays, x->entry, count);
-  vl_volume_permute(&s->volume->b, &s->volume->a, x->entry, count);
+    if (probes->found[j])
+      probe[count++] = j;
+  vl_permute_paths(from, exits, probe, count);
+  vl_volume_permute(from_rows, rows, probe, count);
   for (uint32_t i = 0; i < count; i++) {
-    uint32_t j = x->entry[i];
-    s->at.hits.shape[i] = x->hits.shape[j];
-    s->at.hits.prim[i] = x->hits.prim[j];
-    s->at.hits.instance[i] = x->hits.instance[j];
-    s->at.hits.t[i] = x->hits.t[j];
-    s->at.hits.material[i] = x->material[j];
+    uint32_t j = probe[i];
+    hits->shape[i] = chosen->shape[j];
+    hits->prim[i] = chosen->prim[j];
+    hits->instance[i] = chosen->instance[j];
+    hits->t[i] = chosen->t[j];
+    hits->material[i] = x->material[j];
   }
   if (count)
-    vl_stage_surface(t->world, count, &s->rays, &s->at.hits, &s->corners, &s->at.surface);
+    vl_stage_surface(world, count, exits, hits, corners, surface);
   return count;
 }
 
-/* Computes the weight of exit i: the profile over the density of sampling the point. The hero's
- * weight goes to beta, the weights of the other wavelengths to u. A path with density 0 carries
- * no radiance. Lengths are in mean free paths of the hero wavelength. */
-static void weigh_exit(vlTracing *t, uint32_t i) {
-  vlTraceScratch *s = t->s;
-  vlPaths *p = &s->rays;
-  vlVolumeRows *rows = &s->volume->a;
-  const vlSurface *f = &s->at.surface;
-  uint32_t j = s->subsurface->entry[i];
-  Entry e = entry_of(t, j);
+/* Applies the weight of exit i, whose probe has `found` crossings: the profile over the density
+ * of sampling the point. The hero's weight goes to beta, the weights of the other wavelengths
+ * to u. A path with density 0 carries no radiance. Lengths are in mean free paths of the hero
+ * wavelength. */
+static void weigh_exit(const vlTracing *t, uint32_t i, const Entry *entry, uint32_t found,
+                       const vlSurface *f, vlPaths *p, vlVolumeRows *rows) {
+  const Entry e = *entry;
   int hero = vl_volume_hero(t, p, i);
   vlFrame frame = vl_frame_from_z(e.n);
   vlVec3 d = vl_sub(vl_lane3(f->px, f->py, f->pz, i), e.p),
@@ -284,7 +280,7 @@ static void weigh_exit(vlTracing *t, uint32_t i) {
     arrives[c] = area * vl_bssrdf_at(e.table, &albedo, r * e.sigma[c]);
     density[c] = area * sum / whole;
   }
-  float inv = density[hero] > 0.0f ? (float)s->subsurface->found[j] / density[hero] : 0.0f;
+  float inv = density[hero] > 0.0f ? (float)found / density[hero] : 0.0f;
   for (int c = 0; c < 4; c++) {
     p->beta[c][i] *= arrives[c] * inv;
     rows->u[c][i] *= density[hero] > 0.0f ? density[c] / density[hero] : 1.0f;
@@ -299,8 +295,8 @@ static float exit_value(const vlBssrdfTable *table, float cosine) {
   return table->eta * table->eta * passes * VL_INV_PI / table->leaves;
 }
 
-static const vlBssrdfTable *table_at(const vlTracing *t, uint32_t i) {
-  return t->world->materials.items[t->s->at.hits.material[i]].subsurface->table;
+static const vlBssrdfTable *table_at(const vlWorld *world, const vlHits *hits, uint32_t i) {
+  return world->materials.items[hits->material[i]].subsurface->table;
 }
 
 static bool carries(const vlPaths *p, uint32_t i) {
@@ -308,53 +304,53 @@ static bool carries(const vlPaths *p, uint32_t i) {
          0.0f;
 }
 
-static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
-  vlTraceScratch *s = t->s;
-  const vlPaths *p = &s->rays;
-  const vlSurface *f = &s->at.surface;
-  const vlLightSamples *l = &s->light;
-  vlVolumeRows *rows = &s->volume->a;
+/* Takes light samples at n exits, and adds the radiance of those that arrive. light, q,
+ * flights: memory for what is between. */
+static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
+                        const vlPaths *p, const vlVolumeRows *rows, const vlHits *hits,
+                        const vlSurface *f, vlLightSamples *light, vlShadowRays *q,
+                        vlShadowFlights *flights) {
   if (t->world->lights.count == 0)
     return;
-  vl_stage_light_samples(t, n, p, f, dimension, &s->light);
+  vl_stage_light_samples(t, n, p, f, dimension, light);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+    vlVec3 w = vl_lane3(light->wx, light->wy, light->wz, i),
+           g = vl_lane3(f->gx, f->gy, f->gz, i);
     float cosine = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
-    if (!(l->pdf[i] > 0.0f) || !(cosine > 0.0f) || !carries(p, i))
+    if (!(light->pdf[i] > 0.0f) || !(cosine > 0.0f) || !carries(p, i))
       continue;
-    float v = exit_value(table_at(t, i), cosine) * cosine;
-    const float value[4] = {v, v, v, v};
-    vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
-    const vlWorldShape *shape = &t->world->shapes.items[s->at.hits.shape[i]];
-    count = vl_volume_push_shadow(t, p, rows, i, o, value, cosine * VL_INV_PI,
-                                  vl_medium_beyond(shape, g, w, rows->medium[i]), count);
+    float v = exit_value(table_at(t->world, hits, i), cosine) * cosine;
+    const vlWorldShape *shape = &t->world->shapes.items[hits->shape[i]];
+    vlShadowStart start = {
+        vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w),
+        {v, v, v, v},
+        cosine * VL_INV_PI,
+        vl_medium_beyond(shape, g, w, rows->medium[i])};
+    vl_volume_push_shadow(t, p, rows, light, i, &start, count++, q, flights);
   }
-  vl_volume_shadows(t, p, count, depth);
+  vl_volume_shadows(t, p, light, count, depth, q, flights);
 }
 
-/* Samples the exits' next rays, and moves them to their paths' places. */
-static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
-  vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = s->subsurface;
-  vlPaths *p = &s->rays;
-  const vlSurface *f = &s->at.surface;
-  vlVolumeRows *rows = &s->volume->a;
-  vlNumbers *u = &s->numbers;
+/* Samples the next rays of n exits, in place. alive: by exit, 1 for those that go on. */
+static void leave(vlTracing *t, uint32_t n, uint32_t dimension, const vlHits *hits,
+                  const vlSurface *f, vlPaths *p, vlVolumeRows *rows, uint8_t *alive) {
+  vlNumbers u;
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV,
-                     u->u1, u->u2);
+                     u.u1, u.u2);
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t place = x->place[x->entry[i]];
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
     if (sum != sum)
       t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
-    vlVec3 local = vl_warp_cosine_hemisphere(u->u1[i], u->u2[i]);
-    if (!carries(p, i) || !(local.z > 0.0f))
+    vlVec3 local = vl_warp_cosine_hemisphere(u.u1[i], u.u2[i]);
+    alive[i] = carries(p, i) && local.z > 0.0f;
+    if (!alive[i])
       continue;
     vlVec3 nn = vl_lane3(f->nx, f->ny, f->nz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
     vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
     vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
-    float weight = exit_value(table_at(t, i), local.z) * VL_PI, pdf = local.z * VL_INV_PI;
+    float weight = exit_value(table_at(t->world, hits, i), local.z) * VL_PI,
+          pdf = local.z * VL_INV_PI;
     vl_set_lane3(p->ox, p->oy, p->oz, i, o);
     vl_set_lane3(p->dx, p->dy, p->dz, i, w);
     p->pdf[i] = pdf;
@@ -369,42 +365,70 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
       rows->l[c][i] = rows->u[c][i] / pdf;
     }
     rows->medium[i] =
-        vl_medium_beyond(&t->world->shapes.items[s->at.hits.shape[i]], g, w, rows->medium[i]);
-    vl_path_copy(p, i, &x->paths, place);
-    vl_volume_copy(rows, i, &x->rows, place);
-    x->alive[place] = 1;
+        vl_medium_beyond(&t->world->shapes.items[hits->shape[i]], g, w, rows->medium[i]);
+  }
+}
+
+/* The exits of the probes: their paths go on in s->subsurface->paths, at the places of the
+ * paths that have entered. */
+static void go_through(vlTracing *t, uint32_t probes, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = s->volume;
+  vlSubsurfaceScratch *x = s->subsurface;
+  vlHits *hits = &s->at.hits;
+  vlSurface *surface = &s->at.surface;
+  uint8_t alive[VL_ROW_SIZE];
+  uint32_t n = gather_exits(t->world, probes, &x->entries, &x->probes, &s->at.paths, &v->at,
+                            x->probe, &s->rays, &v->rays, hits, &s->corners, surface);
+  for (uint32_t i = 0; i < n; i++) {
+    Entry e = entry_of(t->world, &x->entries, x->probe[i]);
+    weigh_exit(t, i, &e, x->probes.found[x->probe[i]], surface, &s->rays, &v->rays);
+  }
+  if (t->batch->recorder)
+    vl_record_exits(t, n, &s->rays, hits, surface);
+  if (n) {
+    light_exits(t, n, depth, dimension, &s->rays, &v->rays, hits, surface, &s->light,
+                &s->shadow, &v->shadow);
+    leave(t, n, dimension, hits, surface, &s->rays, &v->rays, alive);
+  }
+  if (t->batch->recorder)
+    vl_record_left(t, n, &s->rays, alive);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t path = x->entries.path[x->probe[i]];
+    if (!alive[i])
+      continue;
+    vl_path_copy(&s->rays, i, &x->paths, path);
+    vl_volume_copy(&v->rays, i, &x->rows, path);
+    x->alive[path] = 1;
   }
 }
 
 uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = s->volume;
   vlSubsurfaceScratch *x = s->subsurface;
   uint32_t dimension = VL_DIM_SUBSURFACE + depth * VL_DIM_STRIDE;
-  uint32_t probes = take_refracted(t, n);
+  uint32_t probes =
+      find_entries(t->world, n, &s->at, &s->samples, s->order, &x->entries, x->alive);
   if (probes == 0)
     return n;
-  aim_probes(t, probes, dimension);
-  follow_probes(t, probes, depth);
+  x->paths = s->rays;
+  x->rows = v->rays;
+  start_probes(probes, &x->paths, &x->rows, &x->entries, &s->samples, s->order, &s->at.paths,
+               &v->at);
+  aim_probes(t, probes, dimension, &x->entries, &s->at.paths, x->probes.length);
+  follow_probes(t, probes, depth, &x->entries, &s->at.paths, &x->probes, &s->shadow, &s->hits,
+                &s->at.hits);
   if (t->batch->recorder)
-    vl_record_probes(t, probes);
-  uint32_t exits = gather_exits(t, probes);
-  for (uint32_t i = 0; i < exits; i++)
-    weigh_exit(t, i);
-  if (t->batch->recorder)
-    vl_record_exits(t, exits);
-  if (exits) {
-    light_exits(t, exits, depth, dimension);
-    leave(t, exits, dimension);
-  }
-  if (t->batch->recorder)
-    vl_record_left(t, exits);
+    vl_record_probes(t, probes, &s->at.paths, x->probes.found);
+  go_through(t, probes, depth, dimension);
   uint32_t count = 0;
   for (uint32_t k = 0; k < n; k++) {
     s->order[count] = k;
     count += x->alive[k];
   }
   vl_permute_paths(&x->paths, &s->rays, s->order, count);
-  vl_volume_permute(&x->rows, &s->volume->a, s->order, count);
+  vl_volume_permute(&x->rows, &v->rays, s->order, count);
   return count;
 }
 

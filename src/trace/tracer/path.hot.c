@@ -34,7 +34,7 @@ static vlBsdfParams params_of(const vlWorld *world, const vlVertices *at, uint32
   vlBsdfParams p;
   for (int c = 0; c < 4; c++) {
     p.reflectance[c] = from(s->reflectance[c], first);
-    p.tint[c] = world->by_channel ? s->tint[c] + first : NULL;
+    p.tint[c] = s->tint ? s->tint->at[c] + first : NULL;
     p.eta[c] = from(s->eta[c], first);
     p.k[c] = from(s->k[c], first);
     p.lambda[c] = world->def.color == VL_COLOR_RGB ? NULL : at->paths.lambda[c] + first;
@@ -92,18 +92,18 @@ void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
 void vl_stage_light_samples(const vlTracing *t, uint32_t n, const vlPaths *p,
                             const vlSurface *surface, uint32_t dimension,
                             vlLightSamples *light) {
-  vlNumbers *r = &t->s->numbers;
+  vlNumbers r;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT,
-                     r->u0);
+                     r.u0);
   /* The direct light at the first hit is a function of film point and light point: the four
    * numbers are drawn together (docs/tracers.md). Deeper vertices gain nothing from it. */
   if (dimension == VL_DIM_BOUNCE)
     t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_FIRST_LIGHT,
-                            VL_DIM_FILM, r->u1, r->u2);
+                            VL_DIM_FILM, r.u1, r.u2);
   else
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
-                       r->u1, r->u2);
-  vl_stage_lights(t->world, n, p, surface, r->u1, r->u2, r->u0, light);
+                       r.u1, r.u2);
+  vl_stage_lights(t->world, n, p, surface, r.u1, r.u2, r.u0, light);
 }
 
 /* Shadow rays for the light samples that contribute, in the order of the vertices, and their
@@ -204,11 +204,10 @@ static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, fl
 static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
                          const vlVertices *at, vlBsdfSamples *to) {
   const vlPaths *p = &at->paths;
-  vlNumbers *u = &t->s->numbers;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE,
-                     u->u0);
+  vlNumbers u;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE, u.u0);
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV,
-                     u->u1, u->u2);
+                     u.u1, u.u2);
   for (uint32_t first = 0; first < n;) {
     Run r = next_kind(t->world, &at->hits, first, n);
     vlBsdfParams params = params_of(t->world, at, first);
@@ -216,7 +215,7 @@ static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
     float *const weight[4] = {to->weight[0] + first, to->weight[1] + first,
                               to->weight[2] + first, to->weight[3] + first};
     t->bsdf->sample(r.kind, r.last - first, &params, directions(at->shade.wo, first),
-                    u->u0 + first, u->u1 + first, u->u2 + first, wi, weight, to->pdf + first,
+                    u.u0 + first, u.u1 + first, u.u2 + first, wi, weight, to->pdf + first,
                     to->flags + first, to->eta_scale + first);
     first = r.last;
   }
@@ -279,7 +278,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
                           const vlVertices *at, vlBsdfSamples *samples, uint32_t *order,
                           vlPaths *next) {
   const vlPaths *p = &at->paths;
-  float *u = t->s->numbers.u0, broken[VL_ROW_SIZE];
+  float u[VL_ROW_SIZE], broken[VL_ROW_SIZE];
   uint32_t alive[VL_ROW_SIZE], count = 0;
   sample_bsdfs(t, n, dimension, at, samples);
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE,

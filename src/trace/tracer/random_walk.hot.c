@@ -19,13 +19,13 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlSurface *f = &s->at.surface;
   const vlBsdfValues *bsdf = &s->values;
   vlPaths *next = &s->rays;
-  vlNumbers *u = &s->numbers;
+  vlNumbers u;
   VL_ROW float w[3][VL_ROW_SIZE];
   uint32_t count = 0;
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index,
-                     vl_bounce_dimension(depth) + VL_DIM_BSDF_UV, u->u1, u->u2);
+                     vl_bounce_dimension(depth) + VL_DIM_BSDF_UV, u.u1, u.u2);
   for (uint32_t i = 0; i < VL_PAD(n); i++)
-    vl_set_lane3(w[0], w[1], w[2], i, vl_warp_sphere(u->u1[i], u->u2[i]));
+    vl_set_lane3(w[0], w[1], w[2], i, vl_warp_sphere(u.u1[i], u.u2[i]));
   vl_stage_local(n, &s->at, w[0], w[1], w[2], s->values.wi);
   vl_stage_bsdf(t, n, &s->at, s->at.shade.wo, &s->values);
   for (uint32_t i = 0; i < n; i++) {

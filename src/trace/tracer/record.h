@@ -50,15 +50,16 @@ void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *ligh
 void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to);
 /* The n paths of p scatter in media: densities are normalised. */
 void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n);
-/* The same paths after the phase function was sampled; volume.kept lists the `count` paths that
- * go on. depth: as in vl_volume_phase_scatter. */
-void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
-                     uint32_t depth);
+/* The same paths after the phase function was sampled; kept lists the `count` paths that go on.
+ * depth: as in vl_volume_phase_scatter. */
+void vl_record_phase(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,
+                     const uint32_t *kept, uint32_t count);
 /* The n probes were followed: paths whose probe found no exit end. */
-void vl_record_probes(vlTracing *t, uint32_t n);
-/* The n paths of s->rays leave subsurface materials, at the surfaces of s->at. */
-void vl_record_exits(vlTracing *t, uint32_t n);
-/* The same paths after they left or ended. */
-void vl_record_left(vlTracing *t, uint32_t n);
+void vl_record_probes(vlTracing *t, uint32_t n, const vlPaths *p, const uint32_t *found);
+/* The n paths of p leave subsurface materials. */
+void vl_record_exits(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *hits,
+                     const vlSurface *surface);
+/* The same paths after they left or ended (alive). */
+void vl_record_left(vlTracing *t, uint32_t n, const vlPaths *p, const uint8_t *alive);
 
 #endif

@@ -117,8 +117,10 @@ void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *ligh
   to->vertex = path->vertex_count - 1;
 }
 
-static void record_hit(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met,
-                       bool sky) {
+static void record_hit(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
+  (void)rows;
+  (void)ends;
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
                           .light_pdf = met->pdf,
@@ -132,7 +134,7 @@ static void record_hit(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLi
 }
 
 void vl_record_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
-  vl_stage_lights_hit(t, n, rays, hits, NULL, record_hit);
+  vl_stage_lights_hit(t, n, rays, hits, NULL, NULL, record_hit);
 }
 
 void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVertices *at,
@@ -260,8 +262,8 @@ void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n) {
   }
 }
 
-void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
-                     uint32_t depth) {
+void vl_record_phase(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,
+                     const uint32_t *kept, uint32_t count) {
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v)
@@ -271,7 +273,7 @@ void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
     v->fate = most > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
   }
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = t->s->volume->kept[k];
+    uint32_t i = kept[k];
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v)
       continue;
@@ -281,23 +283,22 @@ void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
   }
 }
 
-void vl_record_probes(vlTracing *t, uint32_t n) {
+void vl_record_probes(vlTracing *t, uint32_t n, const vlPaths *p, const uint32_t *found) {
   for (uint32_t j = 0; j < n; j++) {
-    vlPathVertex *v = last_vertex(t, t->s->at.paths.lane[j]);
-    if (v && !t->s->subsurface->found[j])
+    vlPathVertex *v = last_vertex(t, p->lane[j]);
+    if (v && !found[j])
       v->fate = VL_PATH_ABSORBED;
   }
 }
 
-void vl_record_exits(vlTracing *t, uint32_t n) {
-  const vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->at.surface;
+void vl_record_exits(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *hits,
+                     const vlSurface *f) {
   for (uint32_t i = 0; i < n; i++) {
-    const vlPathVertex *entry = last_vertex(t, s->rays.lane[i]);
+    const vlPathVertex *entry = last_vertex(t, p->lane[i]);
     if (!entry)
       continue;
     const vlPathVertex before = *entry;
-    vlPathVertex *v = new_vertex(t, s->rays.lane[i]);
+    vlPathVertex *v = new_vertex(t, p->lane[i]);
     if (!v)
       continue;
     vlVec3 from = vl_vec3(before.position[0], before.position[1], before.position[2]);
@@ -305,7 +306,7 @@ void vl_record_exits(vlTracing *t, uint32_t n) {
     v->event = VL_PATH_EXIT;
     v->bounce = before.bounce;
     v->bsdf = "subsurface";
-    put_ids(&s->at.hits, i, v);
+    put_ids(hits, i, v);
     put3(v->position, at);
     v->distance = vl_length(way);
     if (v->distance > 0.0f)
@@ -315,16 +316,14 @@ void vl_record_exits(vlTracing *t, uint32_t n) {
     v->uv[0] = f->u[i];
     v->uv[1] = f->v[i];
     for (int c = 0; c < 4; c++)
-      v->throughput[c] = s->rays.beta[c][i];
+      v->throughput[c] = p->beta[c][i];
   }
 }
 
-void vl_record_left(vlTracing *t, uint32_t n) {
-  const vlSubsurfaceScratch *x = t->s->subsurface;
-  const vlPaths *p = &t->s->rays;
+void vl_record_left(vlTracing *t, uint32_t n, const vlPaths *p, const uint8_t *alive) {
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);
-    if (!v || !x->alive[x->place[x->entry[i]]])
+    if (!v || !alive[i])
       continue;
     v->fate = VL_PATH_ON;
     v->pdf = p->pdf[i];

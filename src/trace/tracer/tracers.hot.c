@@ -10,31 +10,28 @@ static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
   vlPaths *p = &t->s->rays;
   const vlTwoWay *way = t->def->two_way;
+  VL_ROW float u[VL_ROW_SIZE];
   bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
   t->s->rays.time = t->s->at.paths.time = b->time;
-  if (t->s->volume)
-    t->s->volume->scattered.time = b->time;
   if (b->lambda[0]) {
-    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH,
-                       t->s->numbers.u0);
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
     float shared = way ? way->shared : -1.0f;
     if (t->def->same_wavelengths && shared < 0.0f)
       shared = 0.5f;
     for (uint32_t i = 0; shared >= 0.0f && i < padded; i++)
-      t->s->numbers.u0[i] = shared;
+      u[i] = shared;
     if (connects)
-      vl_stage_groups(t, padded, t->s->numbers.u0);
+      vl_stage_groups(t, padded, u);
     const vlColorKernels *color = vl_color_kernels(t->def->isa);
     if (t->def->lambda_span > 0.0f)
-      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n,
-                                 t->s->numbers.u0, b->lambda, b->inv_pdf);
+      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, u, b->lambda,
+                                 b->inv_pdf);
     else
-      color->visible_wavelengths(b->n, t->s->numbers.u0, b->lambda, b->inv_pdf);
+      color->visible_wavelengths(b->n, u, b->lambda, b->inv_pdf);
   } else if (connects && way->inner.groups > 1) {
-    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH,
-                       t->s->numbers.u0);
-    vl_stage_groups(t, padded, t->s->numbers.u0);
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
+    vl_stage_groups(t, padded, u);
   }
   for (uint32_t i = 0; i < padded; i++) {
     p->ox[i] = b->ox[i];
@@ -53,7 +50,7 @@ static void start_paths(vlTracing *t) {
     p->py[i] = b->py[i];
     p->index[i] = b->index[i];
     p->lane[i] = i;
-    t->s->scattered[i] = 0;
+    t->scattered[i] = 0;
   }
   vl_passed_start(t, padded);
   for (int c = 0; c < 4; c++)
@@ -97,14 +94,14 @@ void vl_trace_raycast(vlTracing *t) {
 void vl_trace_ambient_occlusion(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
-  vlNumbers *u = &s->numbers;
+  vlNumbers u;
   uint32_t n = t->batch->n;
   vl_stage_hits(t, n, true, &s->rays, &s->hits);
   vl_stage_alpha(t, &s->hits);
   n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
   vl_stage_shade(t, n, &s->at);
   t->sampler->get_2d(t->def->sampler, n, s->at.paths.px, s->at.paths.py, s->at.paths.index,
-                     VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u->u1, u->u2);
+                     VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u.u1, u.u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 nn = vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i],
@@ -113,8 +110,8 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
     if (vl_dot(nn, d) > 0.0f)
       nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;
-    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(u->u1[i], u->u2[i])
-                          : vl_warp_hemisphere(u->u1[i], u->u2[i]);
+    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(u.u1[i], u.u2[i])
+                          : vl_warp_hemisphere(u.u1[i], u.u2[i]);
     vlVec3 w = vl_from_local(vl_frame_from_z(nn), local);
     vlVec3 o =
         vl_offset_origin(vl_vec3(s->at.surface.px[i], s->at.surface.py[i], s->at.surface.pz[i]),
@@ -150,7 +147,8 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     bool camera = depth == 0 && !t->light;
     if (media) {
-      vl_volume_travel(t, n, depth, depth < most && !t->light);
+      vl_volume_travel(t, n, depth, depth < most && !t->light, &s->rays, &media->rays, &s->hits,
+                       &media->ends);
     } else {
       vl_stage_hits(t, n, camera, &s->rays, &s->hits);
       if (camera)
@@ -164,12 +162,12 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
     n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
     if (n) {
       if (media)
-        vl_volume_permute(&media->a, &media->b, s->order, n);
+        vl_volume_permute(&media->rays, &media->at, s->order, n);
       vl_stage_shade(t, n, &s->at);
       n = steps->on_surfaces(t, n, depth);
     }
     if (media)
-      n = vl_volume_append(t, inside, n);
+      n = vl_volume_append(&media->scattered, media->kept, inside, n, &s->rays, &media->rays);
   }
 }
 
@@ -209,9 +207,8 @@ void vl_trace_light_path(vlTracing *t) {
 
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch,
                   vlTraceBatch *batch) {
-  vlTracing t = {
-      world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa),
-      NULL};
+  vlTracing t = vl_tracing_of(world, def, scratch, batch);
+  t.lanes = batch->two_way ? &batch->two_way->lanes : NULL;
   start_paths(&t);
   if (def->own) {
     vl_own_tracer(&t);

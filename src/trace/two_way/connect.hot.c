@@ -13,37 +13,38 @@
 
 enum { CANDIDATES = VL_CANDIDATES };
 
-void vl_stage_groups(vlTracing *t, uint32_t n, float *u) {
+void vl_stage_groups(const vlTracing *t, uint32_t n, float *u) {
   const vlTwoWay *way = t->def->two_way;
-  uint32_t *group = t->batch->two_way->group;
+  uint32_t *group = t->lanes->group;
   for (uint32_t i = 0; i < n; i++) {
     group[i] = (uint32_t)(u[i] * (float)way->inner.groups);
     u[i] = vl_group_wavelength(way, group[i]);
   }
 }
 
-static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
-  const vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->at.surface;
-  const vlTwoWayRows *r = t->batch->two_way;
-  float z = s->at.shade.wo[2][i];
+static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth,
+                            const vlTwoWayVertices *x) {
+  const vlVertices *at = x->at;
+  const vlSurface *f = &at->surface;
+  const vlWays *r = x->ways;
+  float z = at->shade.wo[2][i];
   vlEnd e = {.p = vl_lane3(f->px, f->py, f->pz, i),
              .g = vl_lane3(f->gx, f->gy, f->gz, i),
              .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
              .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
-             .diffuse = vl_is_inner_end(t, i),
+             .diffuse = vl_is_inner_end(t->world, at, i),
              .room = t->def->max_depth - depth - 1,
-             .air = vl_has_media(t) ? vl_air(t->world, s->volume->b.medium[i]) : 0};
+             .air = x->rows ? vl_air(t->world, x->rows->medium[i]) : 0};
   for (int c = 0; c < 4; c++)
-    e.tint[c] = s->at.paths.beta[c][i] * (e.diffuse ? s->at.shade.reflectance[c][i] : 1.0f);
+    e.tint[c] = at->paths.beta[c][i] * (e.diffuse ? at->shade.reflectance[c][i] : 1.0f);
   return e;
 }
 
-static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth) {
-  const vlVolumeScratch *v = t->s->volume;
-  const vlPaths *p = &v->scattered;
-  const vlTwoWayRows *r = t->batch->two_way;
-  uint32_t medium = v->c.medium[i];
+static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth,
+                           const vlTwoWayVertices *x) {
+  const vlPaths *p = x->paths;
+  const vlWays *r = x->ways;
+  uint32_t medium = x->rows->medium[i];
   vlEnd e = {.p = vl_lane3(p->ox, p->oy, p->oz, i),
              .n = vl_lane3(p->dx, p->dy, p->dz, i),
              .tint = {p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]},
@@ -61,7 +62,7 @@ static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth) {
  * and prefetches them. False: there are none. */
 static bool draw(const vlTracing *t, uint32_t lane, uint32_t seed, uint32_t at[CANDIDATES]) {
   const vlLightVertices *inner = &t->def->two_way->inner;
-  uint32_t group = t->batch->two_way->group[lane], first = inner->start[group];
+  uint32_t group = t->lanes->group[lane], first = inner->start[group];
   uint32_t count = inner->start[group + 1] - first;
   if (count == 0)
     return false;
@@ -122,7 +123,7 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertices *inner = &way->inner;
   float worth[CANDIDATES], u = vl_unit_float(vl_hash(seed)), sum = 0.0f, kept = 0.0f;
-  uint32_t chosen = VL_NONE, group = t->batch->two_way->group[lane];
+  uint32_t chosen = VL_NONE, group = t->lanes->group[lane];
   if (vl_has_media(t))
     vl_worths_in_media(t, e, at, worth);
   else
@@ -154,16 +155,16 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
 
 /* Candidates are drawn some lanes ahead of their use, since most of them are not in the cache.
  */
-void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen,
-                        float *factor) {
+void vl_choose_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
+                        const vlTwoWayVertices *x, uint32_t *chosen, float *factor) {
   enum { AHEAD = 8 };
   uint32_t at[AHEAD][CANDIDATES], seed[AHEAD];
   bool drawn[AHEAD];
-  const vlPaths *p = inside ? &t->s->volume->scattered : &t->s->at.paths;
+  const vlPaths *p = x->paths;
   for (uint32_t k = 0; k < n + AHEAD; k++) {
     uint32_t slot = k % AHEAD, i = k - AHEAD;
     if (k >= AHEAD && drawn[slot]) {
-      vlEnd e = inside ? end_in_medium(t, i, depth) : end_on_surface(t, i, depth);
+      vlEnd e = x->at ? end_on_surface(t, i, depth, x) : end_in_medium(t, i, depth, x);
       chosen[i] = choose(t, &e, p->lane[i], seed[slot], at[slot], &factor[i]);
     } else if (k >= AHEAD) {
       chosen[i] = VL_NONE;
@@ -173,124 +174,120 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
     seed[slot] =
         vl_hash3((uint32_t)p->px[k] ^ t->def->sampler->seed, (uint32_t)p->py[k], p->index[k]);
     seed[slot] = vl_hash2(seed[slot], depth);
-    drawn[slot] = (inside || !vl_all_specular(t->world, &t->s->at, k)) &&
+    drawn[slot] = !(x->at && vl_all_specular(t->world, x->at, k)) &&
                   draw(t, p->lane[k], seed[slot], at[slot]);
   }
 }
 
-void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3],
-                      uint32_t light, uint32_t count) {
+void vl_join_channels(const vlPaths *p, uint32_t i, const float eye[3], uint32_t light,
+                      uint32_t count, const vlTwoWayShadows *q) {
   float far[3];
   vl_unpack_passed(light, far);
-  for (int k = 0; t->s->volume && k < 3; k++)
-    t->s->volume->shadow_passed[k][count] = far[k] * eye[k];
+  for (int k = 0; q->flights && k < 3; k++)
+    q->flights->passed[k][count] = far[k] * eye[k];
   for (int c = 0; c < 4; c++)
-    t->s->shadow.radiance[c][count] *= vl_joined_factor(far, eye, p->lambda[c][i]);
+    q->rays->radiance[c][count] *= vl_joined_factor(far, eye, p->lambda[c][i]);
 }
 
-/* The same for surface lane i. The surface may attenuate light that crosses it towards the
- * vertex.
- */
-static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float wi_z,
-                              uint32_t count) {
-  const vlTraceScratch *s = t->s;
+/* The same for vertex i on a surface, which may attenuate light that crosses it towards the
+ * light path's vertex. */
+static void join_from_surface(const vlTracing *t, const vlVertices *at, uint32_t i,
+                              uint32_t vertex, float wi_z, uint32_t count,
+                              const vlTwoWayShadows *q) {
   float eye[3];
   if (!t->world->by_channel)
     return;
-  vl_passed_on(t, &s->at, i, wi_z, eye);
-  vl_join_channels(t, &s->at.paths, i, eye, t->def->two_way->inner.passed[vertex], count);
+  vl_passed_on(t, at, i, wi_z, eye);
+  vl_join_channels(&at->paths, i, eye, t->def->two_way->inner.passed[vertex], count, q);
 }
 
-/* Adds lane i's connection to a vertex as shadow ray `count`. */
-static void push(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
-  vlTraceScratch *s = t->s;
+/* The connection of vertex i in direction w. */
+static vlConnection connection(const vlTracing *t, uint32_t i, vlVec3 w, float factor,
+                               const vlTwoWayVertices *x, const vlBsdfValues *there,
+                               const vlBsdfValues *back) {
+  const vlSurface *f = &x->at->surface;
+  const vlWays *ways = x->ways;
+  vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+  const vlWorldShape *shape = &t->world->shapes.items[x->at->hits.shape[i]];
+  return (vlConnection){
+      .i = i,
+      .at = at,
+      .o = vl_offset_origin(at, g, f->offset[i], w),
+      .w = w,
+      .value = {there->value[0][i], there->value[1][i], there->value[2][i], there->value[3][i]},
+      .forth = there->pdf[i],
+      .ways = ways->a[i] * back->pdf[i] + ways->b[i] + t->def->two_way->merged,
+      .cosine = vl_abs(vl_dot(g, w)),
+      .factor = factor,
+      .medium = x->rows ? vl_medium_beyond(shape, g, w, x->rows->medium[i]) : VL_NONE};
+}
+
+/* Adds a connection to a vertex as shadow ray `count`, in worlds without media. */
+static void push(const vlTracing *t, const vlPaths *p, const vlConnection *c, uint32_t vertex,
+                 uint32_t count, const vlTwoWayShadows *shadows) {
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertex *x = &way->inner.vertices[vertex];
-  vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->at.surface;
-  vlShadowRays *q = &s->shadow;
-  vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-  vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i),
-         xg = vl_vec3(x->g[0], x->g[1], x->g[2]);
-  vlVec3 xp = vl_vec3(x->p[0], x->p[1], x->p[2]);
-  float inv2 = 1.0f / vl_length2(vl_sub(xp, at)), there = vl_abs(vl_dot(xg, w));
-  float back = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), w) * VL_INV_PI;
-  r->own[count] = way->connect;
-  r->others[count] =
-      inv2 * ((r->a[i] * r->back.pdf[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) +
-              x->back * s->values.pdf[i] * there);
-  float factor = r->factor[i];
-  factor *=
-      way->connect * there * inv2 * (x->alone && vl_hero_only(&s->at.paths, i) ? 0.25f : 1.0f);
-  for (int c = 0; c < 4; c++)
-    q->radiance[c][count] =
-        s->at.paths.beta[c][i] * s->values.value[c][i] * x->power[c] * factor;
-  vlVec3 o = vl_offset_origin(at, g, f->offset[i], w),
-         d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
-  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+  vlShadowRays *q = shadows->rays;
+  vlVec3 xg = vl_vec3(x->g[0], x->g[1], x->g[2]), xp = vl_vec3(x->p[0], x->p[1], x->p[2]);
+  uint32_t i = c->i;
+  float inv2 = 1.0f / vl_length2(vl_sub(xp, c->at)), there = vl_abs(vl_dot(xg, c->w));
+  float back = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), c->w) * VL_INV_PI;
+  shadows->strategies->own[count] = way->connect;
+  shadows->strategies->others[count] =
+      inv2 * (c->ways * back * c->cosine + x->back * c->forth * there);
+  float factor = c->factor;
+  factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(p, i) ? 0.25f : 1.0f);
+  for (int k = 0; k < 4; k++)
+    q->radiance[k][count] = p->beta[k][i] * c->value[k] * x->power[k] * factor;
+  vlVec3 d = vl_sub(vl_offset_end(xp, xg, x->offset, c->w, c->at), c->o);
+  vl_set_lane3(q->ox, q->oy, q->oz, count, c->o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = VL_ONE_MINUS_EPSILON;
-  q->time[count] = vl_path_time(&s->at.paths, i);
-  q->lane[count] = s->at.paths.lane[i];
+  q->time[count] = vl_path_time(p, i);
+  q->lane[count] = p->lane[i];
 }
 
-/* The same in worlds with media. */
-static void push_in_media(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
-  vlTraceScratch *s = t->s;
-  const vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->at.surface;
-  vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-  vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i);
-  const vlWorldShape *shape = &t->world->shapes.items[s->at.hits.shape[i]];
-  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])s->values.value;
-  vlConnection c = {.i = i,
-                    .at = at,
-                    .o = vl_offset_origin(at, g, f->offset[i], w),
-                    .w = w,
-                    .value = {value[0][i], value[1][i], value[2][i], value[3][i]},
-                    .forth = s->values.pdf[i],
-                    .ways = r->a[i] * r->back.pdf[i] + r->b[i] + t->def->two_way->merged,
-                    .cosine = vl_abs(vl_dot(g, w)),
-                    .factor = r->factor[i],
-                    .medium = vl_medium_beyond(shape, g, w, s->volume->b.medium[i])};
-  vl_push_connection(t, &s->at.paths, &s->volume->b, &c, vertex, count);
-}
-
-void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
-  vlTraceScratch *s = t->s;
-  vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->at.surface;
-  const vlLightVertices *inner = &t->def->two_way->inner;
-  if (depth + 2 > t->def->max_depth)
-    return;
+/* Directions from n vertices to those that they have chosen; along the normals where none.
+ * Returns the number of chosen ones. */
+static uint32_t aim(uint32_t n, const vlSurface *f, const vlLightVertices *inner,
+                    const uint32_t *chosen, float toward[3][VL_ROW_SIZE]) {
   uint32_t found = 0;
-  vl_choose_vertices(t, n, depth, false, r->first, r->factor);
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 w = vl_lane3(f->nx, f->ny, f->nz, i);
-    if (r->first[i] != VL_NONE) {
-      const float *p = inner->vertices[r->first[i]].p;
+    if (chosen[i] != VL_NONE) {
+      const float *p = inner->vertices[chosen[i]].p;
       w = vl_normalize(vl_sub(vl_vec3(p[0], p[1], p[2]), vl_lane3(f->px, f->py, f->pz, i)));
       found++;
     }
-    vl_set_lane3(r->toward[0], r->toward[1], r->toward[2], i, w);
+    vl_set_lane3(toward[0], toward[1], toward[2], i, w);
   }
-  if (!found)
+  return found;
+}
+
+void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x,
+                      vlBsdfValues *there, vlBsdfValues *back, const vlTwoWayShadows *q) {
+  VL_ROW float toward[3][VL_ROW_SIZE], factor[VL_ROW_SIZE];
+  uint32_t chosen[VL_ROW_SIZE], count = 0;
+  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])there->value;
+  if (depth + 2 > t->def->max_depth)
     return;
-  vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values,
-                          &r->back);
-  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])s->values.value;
-  uint32_t count = 0;
+  vl_choose_vertices(t, n, depth, x, chosen, factor);
+  if (!aim(n, &x->at->surface, &t->def->two_way->inner, chosen, toward))
+    return;
+  vl_stage_there_and_back(t, n, x->at, toward, there, back);
   for (uint32_t i = 0; i < n; i++) {
-    if (r->first[i] == VL_NONE)
+    if (chosen[i] == VL_NONE)
       continue;
     float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(sum > 0.0f) && sum == sum)
       continue;
-    if (vl_has_media(t))
-      push_in_media(t, i, r->first[i], count);
+    vlVec3 w = vl_lane3(toward[0], toward[1], toward[2], i);
+    vlConnection c = connection(t, i, w, factor[i], x, there, back);
+    if (q->flights)
+      vl_push_connection(t, x->paths, x->rows, &c, chosen[i], count, q);
     else
-      push(t, i, r->first[i], count);
-    join_from_surface(t, i, r->first[i], s->values.wi[2][i], count++);
+      push(t, x->paths, &c, chosen[i], count, q);
+    join_from_surface(t, x->at, i, chosen[i], there->wi[2][i], count++, q);
   }
-  vl_two_way_shadows(t, &s->at.paths, count, depth + VL_CONNECTION_KEY);
+  vl_two_way_shadows(t, x->paths, count, depth + VL_CONNECTION_KEY, q);
 }

@@ -83,12 +83,12 @@ float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected) 
   return expected < known ? vl_max(expected / known, LEAST_SURVIVAL) : 1.0f;
 }
 
-void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                        const vlConnection *c, uint32_t vertex, uint32_t count) {
+void vl_push_connection(const vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                        const vlConnection *c, uint32_t vertex, uint32_t count,
+                        const vlTwoWayShadows *shadows) {
   const vlLightVertex *x = &t->def->two_way->inner.vertices[vertex];
-  vlVolumeScratch *v = t->s->volume;
-  vlTwoWayRows *r = t->batch->two_way;
-  vlShadowRays *q = &t->s->shadow;
+  vlShadowRays *q = shadows->rays;
+  vlShadowFlights *f = shadows->flights;
   float connect = t->def->two_way->connect, gives, back, ways = x->back, cosine;
   vlVec3 end = vl_vec3(x->p[0], x->p[1], x->p[2]), n = vl_vec3(x->n[0], x->n[1], x->n[2]);
   float inv2 = 1.0f / vl_length2(vl_sub(end, c->at)), there = -vl_dot(n, c->w);
@@ -102,40 +102,42 @@ void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows
     back = there * VL_INV_PI;
     end = vl_offset_end(end, g, x->offset, c->w, c->at);
   }
-  r->own[count] = connect;
-  r->others[count] = inv2 * (c->ways * back * c->cosine + ways * c->forth * cosine);
+  shadows->strategies->own[count] = connect;
+  shadows->strategies->others[count] =
+      inv2 * (c->ways * back * c->cosine + ways * c->forth * cosine);
   float factor =
       c->factor * connect * gives * inv2 * (x->alone && vl_hero_only(p, c->i) ? 0.25f : 1.0f);
   for (int k = 0; k < 4; k++) {
     q->radiance[k][count] = p->beta[k][c->i] * c->value[k] * x->power[k] * factor;
-    v->density[k][count] = rows->u[k][c->i];
+    f->density[k][count] = rows->u[k][c->i];
   }
   vlVec3 d = vl_sub(end, c->o);
   float length = vl_length(d);
   d = vl_normalize(d);
   vl_set_lane3(q->ox, q->oy, q->oz, count, c->o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
-  q->t_max[count] = length * (1.0f - 0x1p-21f);
+  q->t_max[count] = length * VL_SHADOW_END;
   q->time[count] = vl_path_time(p, c->i);
   q->lane[count] = p->lane[c->i];
-  v->shadow_medium[count] = c->medium;
-  v->from[count] = c->i;
+  f->medium[count] = c->medium;
+  f->from[count] = c->i;
 }
 
-void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth) {
-  const vlVolumeScratch *v = t->s->volume;
-  const vlPaths *p = &v->scattered;
-  vlTwoWayRows *r = t->batch->two_way;
+void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *in,
+                           const vlTwoWayShadows *q) {
+  const vlPaths *p = in->paths;
+  const vlWays *ways = in->ways;
   const vlTwoWay *way = t->def->two_way;
-  uint32_t count = 0, *chosen = r->first;
+  uint32_t count = 0, chosen[VL_ROW_SIZE];
+  float factor[VL_ROW_SIZE];
   if (depth + 2 > t->def->max_depth)
     return;
-  vl_choose_vertices(t, n, depth, true, chosen, r->factor);
+  vl_choose_vertices(t, n, depth, in, chosen, factor);
   for (uint32_t i = 0; i < n; i++) {
     if (chosen[i] == VL_NONE)
       continue;
     const vlLightVertex *x = &way->inner.vertices[chosen[i]];
-    uint32_t medium = v->c.medium[i];
+    uint32_t medium = in->rows->medium[i], lane = p->lane[i];
     vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
     vlVec3 w = vl_normalize(vl_sub(vl_vec3(x->p[0], x->p[1], x->p[2]), at));
     float phase =
@@ -146,18 +148,16 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth) {
                       .w = w,
                       .value = {phase, phase, phase, phase},
                       .forth = phase,
-                      .ways = r->a[i] * phase + r->b[i] + way->merged_volume,
-                      .cosine = r->cosine[i],
-                      .factor = r->factor[i],
+                      .ways = ways->a[i] * phase + ways->b[i] + way->merged_volume,
+                      .cosine = ways->cosine[i],
+                      .factor = factor[i],
                       .medium = medium};
-    vl_push_connection(t, p, &v->c, &c, chosen[i], count);
+    vl_push_connection(t, p, in->rows, &c, chosen[i], count, q);
     if (t->world->by_channel) {
-      const vlTraceScratch *s = t->s;
-      const float eye[3] = {s->passed[0][p->lane[i]], s->passed[1][p->lane[i]],
-                            s->passed[2][p->lane[i]]};
-      vl_join_channels(t, p, i, eye, way->inner.passed[chosen[i]], count);
+      const float eye[3] = {t->passed[0][lane], t->passed[1][lane], t->passed[2][lane]};
+      vl_join_channels(p, i, eye, way->inner.passed[chosen[i]], count, q);
     }
     count++;
   }
-  vl_two_way_shadows(t, p, count, depth + VL_CONNECTION_KEY);
+  vl_two_way_shadows(t, p, count, depth + VL_CONNECTION_KEY, q);
 }

@@ -34,12 +34,12 @@ void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *a
  * -------------------------------------------------------------------------------------------------------
  */
 
-/* Writes the wavelengths of the batch's paths to rows 4..7, 1 / densities to rows 8..11. */
-static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
+/* Samples the wavelengths of the batch's paths. */
+static void wavelengths(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes *to) {
   const vlTwoWay *way = t->def->two_way;
-  float *u = t->s->numbers.u0;
-  float *const lambda[4] = {r->rows[4], r->rows[5], r->rows[6], r->rows[7]};
-  float *const inv_pdf[4] = {r->rows[8], r->rows[9], r->rows[10], r->rows[11]};
+  VL_ROW float u[VL_ROW_SIZE];
+  float *const lambda[4] = {to->lambda[0], to->lambda[1], to->lambda[2], to->lambda[3]};
+  float *const inv_pdf[4] = {to->inv_pdf[0], to->inv_pdf[1], to->inv_pdf[2], to->inv_pdf[3]};
   t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
   for (uint32_t i = 0; way->shared >= 0.0f && i < VL_PAD(b->n); i++)
     u[i] = way->shared;
@@ -58,32 +58,32 @@ static bool start_medium(const vlTracing *t, const vlEmission *e, uint32_t *medi
   return *medium == VL_NONE || !light->far;
 }
 
-static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
+/* Starts the batch's light paths. Returns their number: those that carry light. */
+static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes *lanes,
+                        vlPaths *p, vlLightStarts *starts) {
   const vlWorld *world = t->world;
-  vlTraceScratch *s = t->s;
-  vlPaths *p = &s->rays;
   uint32_t n = b->n, count = 0;
   bool rgb = world->def.color == VL_COLOR_RGB;
+  vlNumbers first;
+  VL_ROW float u2[VL_ROW_SIZE], v2[VL_ROW_SIZE];
   if (!rgb)
-    wavelengths(t, r, b);
-  float *u = s->numbers.u0, *u1 = s->numbers.u1, *v1 = s->numbers.u2, *u2 = r->lens[0],
-        *v2 = r->lens[1];
-  t->sampler->get_1d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_TIME, u);
-  t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_FILM, u1, v1);
+    wavelengths(t, b, lanes);
+  const float *u = first.u0, *u1 = first.u1, *v1 = first.u2;
+  t->sampler->get_1d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_TIME, first.u0);
+  t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_FILM, first.u1,
+                     first.u2);
   t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_LENS, u2, v2);
-  p->time = s->at.paths.time = b->time;
-  if (s->volume)
-    s->volume->scattered.time = b->time;
+  p->time = b->time;
   for (uint32_t i = 0; i < n; i++) {
     float lambda[4];
     for (int c = 0; c < 4; c++)
-      lambda[c] = rgb ? 0.0f : r->rows[4 + c][i];
+      lambda[c] = rgb ? 0.0f : lanes->lambda[c][i];
     vlEmission e =
         vl_emission_sample(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
     float most = vl_max(vl_max(e.flux[0], e.flux[1]), vl_max(e.flux[2], e.flux[3]));
     if (!e.valid || !(most > 0.0f) || !(most < VL_INFINITY))
       continue;
-    if (vl_has_media(t) && !start_medium(t, &e, &s->volume->shadow_medium[i]))
+    if (vl_has_media(t) && !start_medium(t, &e, &starts->medium[i]))
       continue;
     uint32_t k = count++;
     vl_set_lane3(p->ox, p->oy, p->oz, k, e.o);
@@ -100,56 +100,57 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     for (int c = 0; c < 4; c++) {
       p->beta[c][k] = 1.0f;
       p->lambda[c][k] = lambda[c];
-      r->flux[c][i] = e.flux[c];
+      lanes->flux[c][i] = e.flux[c];
     }
-    r->light[i] = e.light;
-    r->density[i] = e.density;
-    r->carry[i] =
-        e.delta ? 0.0f : 1.0f; /* without 1 / (density cosine), which arrive() applies */
-    vl_set_lane3(r->lx, r->ly, r->lz, i, e.at);
-    vl_set_lane3(r->lnx, r->lny, r->lnz, i, e.n);
-    r->a[k] = e.area_pdf; /* these three until the first vertex, for vl_show_lights */
-    r->b[k] = e.offset;
-    r->cosine[k] = e.side;
+    lanes->light[i] = e.light;
+    lanes->density[i] = e.density;
+    /* without 1 / (density cosine), which arrive() applies */
+    lanes->carry[i] = e.delta ? 0.0f : 1.0f;
+    vl_set_lane3(lanes->lx, lanes->ly, lanes->lz, i, e.at);
+    vl_set_lane3(lanes->lnx, lanes->lny, lanes->lnz, i, e.n);
+    starts->area_pdf[k] = e.area_pdf;
+    starts->offset[k] = e.offset;
+    starts->side[k] = e.side;
   }
   return count;
 }
 
-float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane,
-                          vlReceiver to, vlVec3 w) {
+float vl_light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVec3 w) {
+  const vlWorld *world = t->world;
+  const vlTwoWayLanes *x = t->lanes;
   vlVec3 p = to.p;
-  const vlWorldLight *light = &world->lights.items[r->light[lane]];
-  float pmf = vl_light_pmf(&world->tree, to, r->light[lane]);
+  const vlWorldLight *light = &world->lights.items[x->light[lane]];
+  float pmf = vl_light_pmf(&world->tree, to, x->light[lane]);
   if (light->delta)
     return pmf;
   if (light->far)
     return pmf * vl_infinite_pdf(world, light, p, w);
   vlPoint at;
   __builtin_memset(&at, 0, sizeof at);
-  at.p = vl_vec3(r->lx[lane], r->ly[lane], r->lz[lane]);
-  at.g = at.n = vl_vec3(r->lnx[lane], r->lny[lane], r->lnz[lane]);
+  at.p = vl_lane3(x->lx, x->ly, x->lz, lane);
+  at.g = at.n = vl_lane3(x->lnx, x->lny, x->lnz, lane);
   return pmf * vl_area_pdf(world, light, p, &at);
 }
 
-/* Sets a and b of the n shaded lanes: the strategies that begin on the light's side
- * (two_way.h). */
-static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
-  const vlSurface *f = &t->s->at.surface;
-  const vlPaths *p = &t->s->at.paths;
+/* Sets the strategies that begin on the light's side, of n vertices on surfaces. */
+static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at,
+                   const vlFlightEnds *ends, vlWays *to) {
+  const vlSurface *f = &at->surface;
+  const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
     float inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
-    r->cosine[i] = cosine;
-    r->b[i] = depth > 0 ? vl_linked(t, r, lane, f->t[i], inv) : 0.0f;
+    to->cosine[i] = cosine;
+    to->b[i] = depth > 0 ? vl_linked(t, ends, lane, f->t[i], inv) : 0.0f;
     if (depth == 0) {
-      float density = vl_light_density(t, r, lane, f->t[i]);
+      float density = vl_light_density(t, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
-      r->b[i] = inv / vl_last_odds(t, lane) *
-                vl_light_sample_pdf(t->world, r, lane, vl_receiver(f, i), w);
+      to->b[i] =
+          inv / vl_last_odds(ends, lane) * vl_light_sample_pdf(t, lane, vl_receiver(f, i), w);
     }
-    r->a[i] = r->carry[lane] * inv;
+    to->a[i] = t->lanes->carry[lane] * inv;
   }
 }
 
@@ -157,15 +158,17 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
  * -----------------------------------------------------------------------------------------------------
  */
 
-static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
-                          uint32_t depth) {
-  const vlPaths *p = &t->s->at.paths;
-  const vlSurface *f = &t->s->at.surface;
+static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
+                          const vlTwoWayVertices *v, vlPhoton *photons) {
+  const vlLightBatch *b = t->light;
+  const vlPaths *p = v->paths;
+  const vlSurface *f = &v->at->surface;
+  const vlWays *ways = v->ways;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (vl_all_specular(t->world, &t->s->at, i) || !(r->cosine[i] > 0.0f))
+    if (vl_all_specular(t->world, v->at, i) || !(ways->cosine[i] > 0.0f))
       continue;
-    vlPhoton *x = &r->photons[count];
+    vlPhoton *x = &photons[count];
     uint32_t lane = p->lane[i];
     x->p[0] = f->px[i];
     x->p[1] = f->py[i];
@@ -173,37 +176,42 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     x->w[0] = -p->dx[i];
     x->w[1] = -p->dy[i];
     x->w[2] = -p->dz[i];
-    float inv = 1.0f / r->cosine[i], sum = 0.0f;
+    float inv = 1.0f / ways->cosine[i], sum = 0.0f;
     for (int c = 0; c < 4; c++)
-      sum += x->power[c] = p->beta[c][i] * r->flux[c][lane] * inv;
-    x->a = r->a[i];
-    x->b = r->b[i];
+      sum += x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * inv;
+    x->a = ways->a[i];
+    x->b = ways->b[i];
     x->bounce = depth + 1;
     x->id = b->first + lane;
     x->alone = vl_hero_only(p, i);
-    x->passed = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
+    x->passed = vl_pack_passed(t, lane);
     x->medium = 0;
     count += sum > 0.0f && sum < VL_INFINITY;
   }
   if (count)
-    b->store(b->user, count, r->photons);
+    b->store(b->user, count, photons);
 }
 
 /* ---- vertices that camera paths connect to
  * ----------------------------------------------------------------------- */
 
-static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
-                           uint32_t depth) {
+/* passed: memory for vlPhoton.passed of the vertices. */
+static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
+                           const vlTwoWayVertices *v, vlLightVertex *vertices,
+                           uint32_t *passed) {
   const vlTwoWay *way = t->def->two_way;
-  const vlPaths *p = &t->s->at.paths;
-  const vlSurface *f = &t->s->at.surface;
-  const vlShade *sh = &t->s->at.shade;
+  const vlLightBatch *b = t->light;
+  const vlPaths *p = v->paths;
+  const vlSurface *f = &v->at->surface;
+  const vlShade *sh = &v->at->shade;
+  const vlWays *ways = v->ways;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i], path = b->first + lane;
-    if (path >= way->inner.paths || !vl_is_inner_end(t, i) || !(r->cosine[i] > 0.0f))
+    if (path >= way->inner.paths || !vl_is_inner_end(t->world, v->at, i) ||
+        !(ways->cosine[i] > 0.0f))
       continue;
-    vlLightVertex *x = &r->vertices[count];
+    vlLightVertex *x = &vertices[count];
     float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI,
           sum = 0.0f;
     x->p[0] = f->px[i];
@@ -216,74 +224,82 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
     x->n[1] = side * f->ny[i];
     x->n[2] = side * f->nz[i];
     for (int c = 0; c < 4; c++)
-      sum += x->power[c] =
-          p->beta[c][i] * r->flux[c][lane] * sh->reflectance[c][i] * rev / r->cosine[i];
-    x->back = r->a[i] * rev + r->b[i] + way->merged;
+      sum += x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * sh->reflectance[c][i] *
+                           rev / ways->cosine[i];
+    x->back = ways->a[i] * rev + ways->b[i] + way->merged;
     x->offset = f->offset[i];
     x->path = path & 0x3ffffu;
     x->bounce = (depth + 1) & 255u;
     x->alone = vl_hero_only(p, i);
     x->inside = 0;
-    x->air = vl_has_media(t) ? vl_air(t->world, t->s->volume->b.medium[i]) & 15u : 0;
-    r->first[count] = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
+    x->air = v->rows ? vl_air(t->world, v->rows->medium[i]) & 15u : 0;
+    passed[count] = vl_pack_passed(t, lane);
     count += sum > 0.0f && sum < VL_INFINITY;
   }
   if (count)
-    b->leave(b->user, count, r->vertices, r->first);
+    b->leave(b->user, count, vertices, passed);
 }
 
 /* ---- the next vertex
  * ---------------------------------------------------------------------------------------------
  */
 
-static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth,
-                        uint32_t dimension) {
-  vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->at.surface;
-  const vlPaths *p = &s->rays;
-  const vlBsdfSamples *samples = &s->samples;
-  uint32_t count =
-      vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
-  if (vl_has_media(t))
-    vl_volume_go_on(t, count);
-  vl_stage_reverse(t, n, &s->at, samples->wi, &r->back);
+/* Updates what the paths carry after scattering on surfaces, and makes the weights those of the
+ * adjoint BSDFs: the `count` rays leave the vertices in `order`. */
+static void carry_on(const vlTracing *t, uint32_t count, const vlVertices *at,
+                     const uint32_t *order, const vlBsdfSamples *samples,
+                     const vlBsdfValues *back, const vlWays *ways, vlPaths *rays) {
+  const vlSurface *f = &at->surface;
+  const vlPaths *p = rays;
+  vlTwoWayLanes *lanes = t->lanes;
   float merged = t->def->two_way->merged, connect = t->def->two_way->connect;
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = s->order[k], lane = p->lane[k];
+    uint32_t i = order[k], lane = p->lane[k];
     float cosine =
         vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, k), vl_lane3(f->gx, f->gy, f->gz, i)));
     float pdf = samples->pdf[i];
     bool specular = samples->flags[i] & VL_SAMPLED_SPECULAR;
-    r->carry[lane] = vl_carried(r, i, specular, pdf, merged, cosine);
-    r->link[lane] = !specular && vl_is_inner_end(t, i) && pdf > 0.0f ? connect / pdf : 0.0f;
+    lanes->carry[lane] = vl_carried(ways, i, back->pdf[i], specular, pdf, merged, cosine);
+    lanes->link[lane] =
+        !specular && vl_is_inner_end(t->world, at, i) && pdf > 0.0f ? connect / pdf : 0.0f;
     float z = vl_abs(samples->wi[2][i]),
-          bent = z > 0.0f ? vl_abs(s->at.shade.wo[2][i]) / z : 0.0f;
+          bent = z > 0.0f ? vl_abs(at->shade.wo[2][i]) / z : 0.0f;
     float turn =
-        r->cosine[i] > 0.0f ? bent * cosine / r->cosine[i] * samples->eta_scale[i] : 0.0f;
+        ways->cosine[i] > 0.0f ? bent * cosine / ways->cosine[i] * samples->eta_scale[i] : 0.0f;
     for (int c = 0; c < 4; c++)
-      s->rays.beta[c][k] *= turn;
-    s->rays.eta_scale[k] = 1.0f;
+      rays->beta[c][k] *= turn;
+    rays->eta_scale[k] = 1.0f;
   }
-  return count;
 }
 
 static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
   vlTwoWayRows *r = t->batch->two_way;
-  vlLightBatch *b = t->light;
+  const vlTwoWay *way = t->def->two_way;
+  const vlTwoWayVertices x = vl_two_way_at(t);
+  const vlTwoWayShadows q = vl_two_way_shadows_of(t);
   uint32_t dimension = vl_bounce_dimension(depth);
   bool last = depth + 1 == vl_light_bounces(t->def);
   if (vl_has_media(t))
-    vl_volume_normalise_all(t, &t->s->at.paths, &t->s->volume->b, n);
-  arrive(t, r, n, depth);
-  if (t->def->two_way->merge)
-    leave_photons(t, r, b, n, depth);
-  if (t->def->two_way->inner.paths && !last)
-    leave_vertices(t, r, b, n, depth);
-  vl_connect_to_camera(t, r, b, n, depth, dimension);
-  return last ? 0 : scatter(t, r, n, depth, dimension);
+    vl_volume_normalise_all(t, &s->at.paths, &s->volume->at, n);
+  arrive(t, n, depth, &s->at, vl_flight_ends(t), &r->ways);
+  if (way->merge)
+    leave_photons(t, n, depth, &x, r->photons);
+  if (way->inner.paths && !last)
+    leave_vertices(t, n, depth, &x, r->vertices, r->passed);
+  vl_connect_to_camera(t, n, depth, dimension, &x, &r->back, r->views, &r->splats, &q);
+  if (last)
+    return 0;
+  uint32_t count =
+      vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
+  if (vl_has_media(t))
+    vl_volume_go_on(t, count, &s->at, &s->volume->at, s->order, &s->rays, &s->volume->rays);
+  vl_stage_reverse(t, n, &s->at, s->samples.wi, &r->back);
+  carry_on(t, count, &s->at, s->order, &s->samples, &r->back, &r->ways, &s->rays);
+  return count;
 }
 
-void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch,
+void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s,
                      vlTwoWayRows *r, vlLightBatch *batch) {
   vlTraceDef own = *def;
   own.sampler = &def->two_way->sampler;
@@ -295,16 +311,18 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   rest.eyes = batch->eyes;
   rest.two_way = r;
   for (int c = 0; c < 4; c++)
-    rest.radiance[c] = r->rows[c];
-  vlTracing t = {
-      world, &own, scratch, &rest, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa),
-      batch};
+    rest.radiance[c] = r->unused[c];
+  vlTracing t = vl_tracing_of(world, &own, s, &rest);
+  t.lanes = &r->lanes;
+  t.light = batch;
   vl_passed_start(&t, batch->n);
-  uint32_t n = set_out(&t, r, batch);
+  s->at.paths.time = batch->time;
+  uint32_t n = set_out(&t, batch, &r->lanes, &s->rays, &r->starts);
   const vlBounceSteps steps = {NULL, vl_has_media(&t) ? vl_light_in_media : NULL, on_surfaces};
+  const vlTwoWayShadows q = vl_two_way_shadows_of(&t);
   if (vl_has_media(&t))
-    vl_volume_start(&t, n, scratch->volume->shadow_medium);
-  vl_show_lights(&t, r, batch, n);
+    vl_volume_start(&t, n, r->starts.medium, &s->rays, &s->volume->rays);
+  vl_show_lights(&t, n, &s->rays, &r->starts, r->views, &r->splats, &q);
   if (def->max_depth)
     vl_trace_bounces(&t, n, vl_light_bounces(def), &steps);
   batch->bounce_rays += rest.bounce_rays;

@@ -63,125 +63,122 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
   }
 }
 
-/* The weight of lane i's photon. If both paths have only the hero wavelength left, it includes
- * a factor 1/4, because each path carries the weight of all four wavelengths. */
-static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, float forth,
-                         float back) {
-  const vlTwoWay *way = t->def->two_way;
-  const vlTwoWayRows *r = t->batch->two_way;
-  float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
+/* The weight of a photon at vertex i. If both paths have only the hero wavelength left, it
+ * includes a factor 1/4, because each path carries the weight of all four wavelengths. */
+static float pair_weight(const vlTwoWay *way, const vlTwoWayVertices *v, uint32_t i,
+                         const vlPhoton *x, float forth, float back) {
+  const vlWays *ways = v->ways;
+  float others = ways->a[i] * back + ways->b[i] + x->a * forth + x->b;
   /* the weight H / (H + others), divided by H */
   float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
-  return x->alone && vl_hero_only(x->medium ? &t->s->volume->scattered : &t->s->at.paths, i)
-             ? 0.25f * weight
-             : weight;
+  return x->alone && vl_hero_only(v->paths, i) ? 0.25f * weight : weight;
 }
 
-/* The photon's power for camera path i. With attenuation by RGB channel, the transmittance of
- * the whole path is not the product of those of its two parts, so it is computed again. wi_z:
- * cosine of the photon's direction to the normal; not read in media. */
-static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float wi_z,
-                         float power[4]) {
+/* The photon's power for the camera path of vertex i. With attenuation by RGB channel, the
+ * transmittance of the whole path is not the product of those of its two parts, so it is
+ * computed again. wi_z: cosine of the photon's direction to the normal; not read in media. */
+static void joined_power(const vlTracing *t, const vlTwoWayVertices *v, uint32_t i,
+                         const vlPhoton *x, float wi_z, float power[4]) {
   for (int c = 0; c < 4; c++)
     power[c] = x->power[c];
   if (!t->world->by_channel)
     return;
-  const vlTraceScratch *s = t->s;
-  const vlPaths *p = x->medium ? &s->volume->scattered : &s->at.paths;
+  const vlPaths *p = v->paths;
   uint32_t lane = p->lane[i];
-  float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
-  if (!x->medium)
-    vl_passed_on(t, &s->at, i, wi_z, eye);
+  float light[3], eye[3] = {t->passed[0][lane], t->passed[1][lane], t->passed[2][lane]};
+  if (v->at)
+    vl_passed_on(t, v->at, i, wi_z, eye);
   vl_unpack_passed(x->passed, light);
   for (int c = 0; c < 4; c++)
     power[c] *= vl_joined_factor(light, eye, p->lambda[c][i]);
 }
 
-static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4]) {
-  const vlTraceScratch *s = t->s;
-  const vlShade *sh = &s->at.shade;
-  float zo = sh->wo[2][i], zi = x->w[0] * s->at.surface.nx[i] + x->w[1] * s->at.surface.ny[i] +
-                                x->w[2] * s->at.surface.nz[i];
+static void add_diffuse(const vlTracing *t, const vlTwoWayVertices *v, uint32_t i,
+                        const vlPhoton *x, float sum[4]) {
+  const vlShade *sh = &v->at->shade;
+  const vlSurface *f = &v->at->surface;
+  float zo = sh->wo[2][i], zi = x->w[0] * f->nx[i] + x->w[1] * f->ny[i] + x->w[2] * f->nz[i];
   if (!(zo * zi > 0.0f))
     return;
   float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
-  float weight = pair_weight(t, i, x, forth, back) * forth;
+  float weight = pair_weight(t->def->two_way, v, i, x, forth, back) * forth;
   float power[4];
-  joined_power(t, i, x, zi, power);
+  joined_power(t, v, i, x, zi, power);
   for (int c = 0; c < 4; c++)
     sum[c] += sh->reflectance[c][i] * power[c] * weight;
 }
 
-/* Adds the listed photons, one photon of every lane at a time. */
-static void add_listed(vlTracing *t, uint32_t n) {
-  vlTwoWayRows *r = t->batch->two_way;
-  vlTraceScratch *s = t->s;
-  const vlPaths *p = &s->at.paths;
+/* Adds the listed photons of n vertices, one photon of every vertex at a time, and empties the
+ * list. */
+static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMergeList *list,
+                       vlBsdfValues *there, vlBsdfValues *back) {
+  VL_ROW float toward[3][VL_ROW_SIZE]; /* where the photons came from */
+  const vlPaths *p = v->paths;
+  const vlSurface *f = &v->at->surface;
   const vlPhoton *photons = t->def->two_way->map.photons;
   uint32_t most = 0;
   for (uint32_t i = 0; i < n; i++)
-    most = r->count[i] > most ? r->count[i] : most;
+    most = list->count[i] > most ? list->count[i] : most;
   for (uint32_t round = 0; round < most; round++) {
     for (uint32_t i = 0; i < n; i++) {
-      bool has = round < r->count[i];
-      const float *w = has ? photons[r->pair[r->first[i] + round]].w : NULL;
-      r->toward[0][i] = has ? w[0] : s->at.surface.nx[i];
-      r->toward[1][i] = has ? w[1] : s->at.surface.ny[i];
-      r->toward[2][i] = has ? w[2] : s->at.surface.nz[i];
+      bool has = round < list->count[i];
+      const float *w = has ? photons[list->pair[list->first[i] + round]].w : NULL;
+      toward[0][i] = has ? w[0] : f->nx[i];
+      toward[1][i] = has ? w[1] : f->ny[i];
+      toward[2][i] = has ? w[2] : f->nz[i];
     }
-    vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values,
-                            &r->back);
+    vl_stage_there_and_back(t, n, v->at, (const float(*)[VL_ROW_SIZE])toward, there, back);
     for (uint32_t i = 0; i < n; i++) {
-      if (round >= r->count[i])
+      if (round >= list->count[i])
         continue;
-      const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
-      float weight = pair_weight(t, i, x, s->values.pdf[i], r->back.pdf[i]), power[4];
-      joined_power(t, i, x, s->values.wi[2][i], power);
+      const vlPhoton *x = &photons[list->pair[list->first[i] + round]];
+      float weight = pair_weight(t->def->two_way, v, i, x, there->pdf[i], back->pdf[i]),
+            power[4];
+      joined_power(t, v, i, x, there->wi[2][i], power);
       for (int c = 0; c < 4; c++)
         t->batch->radiance[c][p->lane[i]] +=
-            p->beta[c][i] * s->values.value[c][i] * power[c] * weight;
+            p->beta[c][i] * there->value[c][i] * power[c] * weight;
     }
   }
   for (uint32_t i = 0; i < n; i++)
-    r->count[i] = 0;
+    list->count[i] = 0;
 }
 
 static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) {
   bool apart = t->def->two_way->apart;
-  return t->def->max_depth - (depth - (apart ? t->batch->two_way->smooth[lane] : 0));
+  return t->def->max_depth - (depth - (apart ? t->lanes->smooth[lane] : 0));
 }
 
-void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
+void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *v,
+                    vlBsdfValues *there, vlBsdfValues *back, vlMergeList *list) {
   const vlPhotonMap *map = &t->def->two_way->map;
-  vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->at.surface;
-  const vlPaths *p = &s->at.paths;
-  vlTwoWayRows *r = t->batch->two_way;
+  const vlVertices *at = v->at;
+  const vlSurface *f = &at->surface;
+  const vlPaths *p = v->paths;
   uint32_t listed = 0;
   if (!map->buckets)
     return;
   for (uint32_t i = 0; i < n; i++)
-    r->count[i] = 0;
+    list->count[i] = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (vl_all_specular(t->world, &s->at, i))
+    if (vl_all_specular(t->world, at, i))
       continue;
-    bool diffuse =
-        t->world->materials.items[s->at.hits.material[i]].kind == VL_MATERIAL_DIFFUSE;
+    bool diffuse = t->world->materials.items[at->hits.material[i]].kind == VL_MATERIAL_DIFFUSE;
     float sum[4] = {0, 0, 0, 0};
     Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0,
                            most_bounces(t, p->lane[i], depth));
-    r->first[i] = listed;
+    list->first[i] = listed;
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       if (diffuse) {
-        add_diffuse(t, i, &map->photons[j], sum);
+        add_diffuse(t, v, i, &map->photons[j], sum);
         continue;
       }
       if (listed == VL_MERGE_PAIRS) {
-        add_listed(t, n);
-        listed = r->first[i] = 0;
+        add_listed(t, n, v, list, there, back);
+        listed = list->first[i] = 0;
       }
-      r->pair[listed++] = j;
-      r->count[i]++;
+      list->pair[listed++] = j;
+      list->count[i]++;
       t->batch->merge_work += LISTED_WORK;
     }
     t->batch->merge_work += near.seen;
@@ -189,17 +186,16 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
       t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * sum[c];
   }
   if (listed)
-    add_listed(t, n);
+    add_listed(t, n, v, list, there, back);
 }
 
-void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
+void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *v) {
   const vlPhotonMap *map = &t->def->two_way->map;
-  const vlVolumeScratch *v = t->s->volume;
-  const vlPaths *p = &v->scattered;
+  const vlPaths *p = v->paths;
   if (!map->buckets)
     return;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = p->lane[i], medium = v->c.medium[i];
+    uint32_t lane = p->lane[i], medium = v->rows->medium[i];
     float sum[4] = {0, 0, 0, 0}, g = t->world->media.items[medium].g;
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     Near near = near_start(map, vl_lane3(p->ox, p->oy, p->oz, i), 1 + medium,
@@ -207,8 +203,8 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       const vlPhoton *x = &map->photons[j];
       float phase = vl_phase(g, vl_dot(d, vl_vec3(x->w[0], x->w[1], x->w[2])));
-      float weight = pair_weight(t, i, x, phase, phase) * phase, power[4];
-      joined_power(t, i, x, 0.0f, power);
+      float weight = pair_weight(t->def->two_way, v, i, x, phase, phase) * phase, power[4];
+      joined_power(t, v, i, x, 0.0f, power);
       for (int c = 0; c < 4; c++)
         sum[c] += power[c] * weight;
     }

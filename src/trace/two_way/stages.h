@@ -6,84 +6,44 @@
 #include "math/ggx.h"
 #include "trace/medium/volume.h"
 #include "trace/stages.h"
-#include "trace/two_way/two_way.h"
+#include "trace/two_way/rows.h"
 
-enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
+/* The shadow rays of a two-way tracer, with what media (null in worlds without) and weights
+ * need to know of them. */
+typedef struct vlTwoWayShadows {
+  vlShadowRays *rays;
+  vlShadowFlights *flights;
+  vlStrategies *strategies;
+} vlTwoWayShadows;
 
-/* Working memory of the two-way tracers. The first rows are indexed by lane, the path's element
- * of the batch, which sorting does not change. */
-typedef struct vlTwoWayRows {
-  VL_ROW float carry[VL_ROW_SIZE];   /* (S + H) cos / fwd of the previous vertex; two_way.h */
-  VL_ROW float flux[4][VL_ROW_SIZE]; /* initial flux of a light path; its beta starts from 1 */
-  VL_ROW float link[VL_ROW_SIZE]; /* C / fwd of the previous vertex, or 0 if the edge from there
-                                     cannot be a connection */
-  VL_ROW uint32_t group[VL_ROW_SIZE];  /* of a camera path: its group; vlLightVertices */
-  VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices not counted as bounces: vlTwoWay.apart */
-  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray; its
-                                          light   is in `light` */
-  VL_ROW uint32_t light[VL_ROW_SIZE];
-  VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE],
-      lz[VL_ROW_SIZE]; /* point on the light, or direction of an infinite light */
-  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE],
-      lnz[VL_ROW_SIZE];              /* the light's normal at this point */
-  VL_ROW float area[3][VL_ROW_SIZE]; /* of a camera path of one's own camera:
-                                        vlCameraSample.area; 0: not connected */
-  /* The following rows are indexed by element of the sorted batch. */
-  VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
-  VL_ROW float cosine[VL_ROW_SIZE]; /* cosine between incoming ray and geometric normal; in
-                                       media: the extinction */
-  vlBsdfValues back;                /* vl_stage_reverse */
-  union {
-    struct {                               /* camera paths */
-      VL_ROW float toward[3][VL_ROW_SIZE]; /* world: towards the vertex of a connection, or
-                                              where a photon came from */
-      VL_ROW float factor[VL_ROW_SIZE];    /* vl_choose_vertices */
-      /* by light sample: its density by the BSDF; the density of light paths that arrive from
-       * there
-       */
-      VL_ROW float light_pdf[VL_ROW_SIZE], light_ways[VL_ROW_SIZE];
-    };
-    struct {                             /* light paths */
-      VL_ROW float lens[2][VL_ROW_SIZE]; /* while they start: random numbers */
-      /* of connections to the camera: local direction; density of camera rays' first vertex;
-       * end of the ray; point on the lens */
-      VL_ROW float wi[3][VL_ROW_SIZE], per_square[VL_ROW_SIZE], end[VL_ROW_SIZE],
-          weight[VL_ROW_SIZE], eye[3][VL_ROW_SIZE];
-      VL_ROW float splat_lambda[4][VL_ROW_SIZE], splat_inv_pdf[4][VL_ROW_SIZE];
-    };
-  };
-  VL_ROW float x[VL_ROW_SIZE],
-      y[VL_ROW_SIZE]; /* film points: first of lanes, later of splats */
-  VL_ROW float own[VL_ROW_SIZE],
-      others[VL_ROW_SIZE]; /* by shadow ray: density of this strategy and of the others */
-  VL_ROW float rows[12][VL_ROW_SIZE]; /* value, wavelength and 1 / PDF of splats, 4 rows each;
-                                         also wavelengths of the batch */
-  VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
-  vlCameraSample views[VL_BATCH]; /* vl_look_from */
-  uint32_t pair[VL_MERGE_PAIRS];  /* photon indices, grouped by lane */
-  union {
-    vlPhoton photons[VL_BATCH];
-    vlLightVertex vertices[VL_BATCH];
-  };
-} vlTwoWayRows;
+/* Vertices of paths, on surfaces or in media. */
+typedef struct vlTwoWayVertices {
+  const vlPaths *paths;
+  const vlVolumeRows *rows; /* null in worlds without media */
+  const vlVertices *at;     /* null: the vertices are in media */
+  const vlWays *ways;
+} vlTwoWayVertices;
 
 void vl_bidirectional_tracer(vlTracing *t);
 void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch,
                      vlTwoWayRows *rows, vlLightBatch *batch);
-/* Adds the radiance of the photons near the n shaded lanes. depth: bounces of the camera path
- * so far. */
-void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth);
-void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
+/* Adds the radiance of the photons near n vertices on surfaces or in media. depth: bounces of
+ * the camera path so far. there, back, list: memory for what is between. */
+void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x,
+                    vlBsdfValues *there, vlBsdfValues *back, vlMergeList *list);
+void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x);
 /* Assigns camera paths to groups by the numbers u that sample their wavelengths, and replaces u
  * by the group's. */
-void vl_stage_groups(vlTracing *t, uint32_t n, float *u);
-/* Connects each of the n shaded lanes to a vertex of a light path. */
-void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth);
-/* The same for n camera paths that scatter in media. */
-void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth);
+void vl_stage_groups(const vlTracing *t, uint32_t n, float *u);
+/* Connects each of n vertices on surfaces to a vertex of a light path. there, back: memory for
+ * what is between. */
+void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x,
+                      vlBsdfValues *there, vlBsdfValues *back, const vlTwoWayShadows *q);
+/* The same for vertices in media. */
+void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x,
+                           const vlTwoWayShadows *q);
 
-/* The end of a connection on the camera path: lane i of the shaded surfaces, or of the paths
- * that scatter in media. */
+/* The end of a connection on the camera path. */
 typedef struct vlEnd {
   vlVec3 p, g, n; /* n: shading normal on the side of wo; in media, the direction of flight */
   float tint[4];  /* throughput; on diffuse surfaces times the reflectance */
@@ -92,11 +52,11 @@ typedef struct vlEnd {
   bool diffuse;
   uint32_t room;             /* largest number of bounces that a light path may have */
   bool inside;               /* in a medium; then: */
-  float a, dense, asymmetry; /* vlTwoWayRows; vl_medium_extinction; g of the phase function */
+  float a, dense, asymmetry; /* vlWays; vl_medium_extinction; g of the phase function */
   uint32_t air;              /* with media: vl_air of the medium before the vertex */
 } vlEnd;
 
-/* What the shadow ray of a connection needs to know of lane i of the camera paths p. */
+/* What the shadow ray of a connection needs to know of vertex i of the camera paths. */
 typedef struct vlConnection {
   uint32_t i;
   vlVec3 at, o, w; /* the vertex, the ray's origin, the direction (unit) */
@@ -108,10 +68,11 @@ typedef struct vlConnection {
   uint32_t medium; /* the medium in which the ray starts */
 } vlConnection;
 
-/* Chooses a vertex for each of n lanes, or VL_NONE. inside: the lanes scatter in media. factor:
- * 1 / (the vertex's probability * light paths). */
-void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen,
-                        float *factor);
+/* Chooses a light path's vertex, or VL_NONE, for each of n vertices. factor: 1 / (its
+ * probability
+ * * light paths). */
+void vl_choose_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
+                        const vlTwoWayVertices *x, uint32_t *chosen, float *factor);
 enum {
   VL_CANDIDATES = 8,
   VL_CONNECTION_KEY = 1 << 20
@@ -124,13 +85,14 @@ void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL
  * this much. */
 float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected);
 /* Adds the connection to a vertex as shadow ray `count`. */
-void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                        const vlConnection *c, uint32_t vertex, uint32_t count);
+void vl_push_connection(const vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                        const vlConnection *c, uint32_t vertex, uint32_t count,
+                        const vlTwoWayShadows *q);
 /* With attenuation by RGB channel, multiplies shadow ray `count` of camera path i so that the
- * transmittance is that of the whole path. eye: vlTraceScratch.passed up to the connection;
- * light: that of the light path, packed. Starts the ray's own passed. */
-void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3],
-                      uint32_t light, uint32_t count);
+ * transmittance is that of the whole path. eye: vlTracing.passed up to the connection; light:
+ * that of the light path, packed. Starts the ray's own passed. */
+void vl_join_channels(const vlPaths *p, uint32_t i, const float eye[3], uint32_t light,
+                      uint32_t count, const vlTwoWayShadows *q);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
 /* Light paths have at most so many bounces: longer ones carry almost nothing, and would need
@@ -144,30 +106,29 @@ uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth);
 uint32_t vl_light_in_media(vlTracing *t, uint32_t n, uint32_t depth);
 /* Traces the `count` shadow rays of light samples and adds the radiance that arrives, with
  * weight own / (own + odds * others). */
-void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
-/* Connects the n shaded lanes to the camera. Visible vertices become splats. */
-void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
-                          uint32_t depth, uint32_t dimension);
-/* Traces the shadow rays towards the camera. Those that arrive become splats with weight own /
- * (own
- * + odds * others). */
-void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
-                       uint32_t count, uint32_t depth);
+void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth,
+                        const vlTwoWayShadows *q);
+/* Connects n vertices on surfaces to the camera. Visible vertices become splats. back, views,
+ * splats: memory for what is between. */
+void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
+                          const vlTwoWayVertices *x, vlBsdfValues *back, vlCameraSample *views,
+                          vlSplatRows *splats, const vlTwoWayShadows *q);
+/* Traces the shadow rays of the paths p towards the camera. Those that arrive become splats
+ * with weight own / (own + odds * others). */
+void vl_two_way_splats(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth,
+                       vlSplatRows *splats, const vlTwoWayShadows *q);
 /* Density with which next-event estimation would have sampled the light that this lane's path
  * came from. */
-float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane,
-                          vlReceiver to, vlVec3 w);
+float vl_light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVec3 w);
 
 /* For perspective cameras. */
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
-/* For cameras of one's own: fills rows->views, by lane of the n points. For others it does
- * nothing.
- */
-void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float *x,
-                  const float *y, const float *z);
-/* For cameras of one's own: fills rows->area, by which the n camera paths of the batch weigh
- * light paths. */
-void vl_measure_camera_rays(const vlTracing *t);
+/* For cameras of one's own: fills the views of n points. For others it does nothing. */
+void vl_look_from(const vlTracing *t, uint32_t n, const float *x, const float *y,
+                  const float *z, vlCameraSample *views);
+/* For cameras of one's own: fills vlTwoWayLanes.area, by which the camera paths of the batch
+ * weigh light paths. views: memory. */
+void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views);
 
 /* The BSDFs of n vertices for paths that come from wi (local) and leave in direction wo:
  * back->pdf is the density of sampling wo, back->value is f(wi, wo) |cos wo|. */
@@ -180,12 +141,12 @@ void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *a
                              vlBsdfValues *back);
 
 /* (S + H) cos / fwd of vertex i (two_way.h), from which a path goes on with this density and
- * cosine. */
-static inline float vl_carried(const vlTwoWayRows *r, uint32_t i, bool specular, float pdf,
-                               float merged, float cosine) {
+ * cosine. back: density of the way back. */
+static inline float vl_carried(const vlWays *ways, uint32_t i, float back, bool specular,
+                               float pdf, float merged, float cosine) {
   if (specular)
-    return r->a[i] * cosine;
-  return pdf > 0.0f ? (r->a[i] * r->back.pdf[i] + r->b[i] + merged) * cosine / pdf : 0.0f;
+    return ways->a[i] * cosine;
+  return pdf > 0.0f ? (ways->a[i] * back + ways->b[i] + merged) * cosine / pdf : 0.0f;
 }
 
 /* A ray that leaves a light. */
@@ -223,7 +184,8 @@ static inline float vl_shown(const vlTwoWay *way, uint32_t light, float area_pdf
              : 0.0f;
 }
 /* Shows the points at which the n light paths start to the camera. */
-void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n);
+void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightStarts *starts,
+                    vlCameraSample *views, vlSplatRows *splats, const vlTwoWayShadows *q);
 
 /* Whether the BSDF of lane i is all specular, so that the vertex cannot be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlVertices *at, uint32_t i) {
@@ -242,26 +204,45 @@ static inline bool vl_all_specular(const vlWorld *world, const vlVertices *at, u
 }
 
 /* Whether camera paths connect to a light path's vertex on the surface of lane i. */
-static inline bool vl_is_inner_end(const vlTracing *t, uint32_t i) {
-  return t->world->materials.items[t->s->at.hits.material[i]].bsdf == VL_BSDF_DIFFUSE;
+static inline bool vl_is_inner_end(const vlWorld *world, const vlVertices *at, uint32_t i) {
+  return world->materials.items[at->hits.material[i]].bsdf == VL_BSDF_DIFFUSE;
 }
 
 static inline bool vl_has_media(const vlTracing *t) {
   return t->world->media.count > 0;
 }
-/* The odds (vlFlight.odds) of the path's last flight. */
-static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
-  return vl_has_media(t) ? t->s->volume->odds[lane] : 1.0f;
+/* The rays' flights, and what vertices on surfaces have in media; null in worlds without. */
+static inline vlFlightEnds *vl_flight_ends(const vlTracing *t) {
+  return vl_has_media(t) ? &t->s->volume->ends : NULL;
+}
+static inline vlTwoWayShadows vl_two_way_shadows_of(const vlTracing *t) {
+  vlTwoWayRows *r = t->batch->two_way;
+  return (vlTwoWayShadows){&t->s->shadow, vl_has_media(t) ? &t->s->volume->shadow : NULL,
+                           &r->strategies};
+}
+/* The vertices of a bounce, on surfaces and in media. */
+static inline vlTwoWayVertices vl_two_way_at(const vlTracing *t) {
+  const vlTraceScratch *s = t->s;
+  return (vlTwoWayVertices){&s->at.paths, vl_has_media(t) ? &s->volume->at : NULL, &s->at,
+                            &t->batch->two_way->ways};
+}
+static inline vlTwoWayVertices vl_two_way_scattered(const vlTracing *t) {
+  const vlMediumVertices *in = &t->s->volume->scattered;
+  return (vlTwoWayVertices){&in->paths, &in->rows, NULL, &t->batch->two_way->ways};
+}
+/* The odds (vlFlight.odds) of the path's last flight. ends: null without media. */
+static inline float vl_last_odds(const vlFlightEnds *ends, uint32_t lane) {
+  return ends ? ends->odds[lane] : 1.0f;
 }
 static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
 }
 /* What connections over the path's last flight add to S (two_way.h). inv: 1 / cosine, or 1 /
  * extinction. Bounded, so that products with it are finite. */
-static inline float vl_linked(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane,
+static inline float vl_linked(const vlTracing *t, const vlFlightEnds *ends, uint32_t lane,
                               float distance, float inv) {
-  float linked = r->link[lane] * distance * distance * inv;
-  return vl_has_media(t) ? vl_min(linked / t->s->volume->odds[lane], 1e25f) : linked;
+  float linked = t->lanes->link[lane] * distance * distance * inv;
+  return ends ? vl_min(linked / ends->odds[lane], 1e25f) : linked;
 }
 /* 1 + a uniform medium, if this is below 16; else 0. It tells whether the ends of a connection
  * are in the same air. */
@@ -269,19 +250,20 @@ static inline uint32_t vl_air(const vlWorld *world, uint32_t medium) {
   return medium < 15 && world->media.items[medium].uniform ? medium + 1 : 0;
 }
 /* vl_emission_density of a light path's first ray, after `distance`. */
-static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane,
-                                     float distance) {
-  return t->world->lights.items[r->light[lane]].at_point
-             ? r->density[lane] / (distance * distance)
-             : r->density[lane];
+static inline float vl_light_density(const vlTracing *t, uint32_t lane, float distance) {
+  const vlTwoWayLanes *x = t->lanes;
+  return t->world->lights.items[x->light[lane]].at_point
+             ? x->density[lane] / (distance * distance)
+             : x->density[lane];
 }
 
 /* The sample of point i (of vl_look_from), which belongs to a path's lane. u, v: random numbers
  * for the lens. */
-static inline vlCameraSample vl_view_of(const vlTracing *t, const vlTwoWayRows *r, uint32_t i,
-                                        uint32_t lane, vlVec3 at, float u, float v) {
+static inline vlCameraSample vl_view_of(const vlTracing *t, const vlCameraSample *views,
+                                        uint32_t i, uint32_t lane, vlVec3 at, float u,
+                                        float v) {
   const vlCameraView *eye = vl_eye_of(t, lane);
-  return eye->look ? r->views[i] : vl_sample_camera(eye, at, u, v);
+  return eye->look ? views[i] : vl_sample_camera(eye, at, u, v);
 }
 
 /* Solid angle of a pixel in a direction whose cosine with the camera's axis is c. At depth 1
@@ -295,7 +277,7 @@ static inline float vl_eye_pixel(const vlTracing *t, uint32_t lane, vlVec3 d, fl
   const vlCameraView *eye = vl_eye_of(t, lane);
   if (!eye->look)
     return vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
-  const float(*area)[VL_ROW_SIZE] = t->batch->two_way->area;
+  const float(*area)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])t->lanes->area;
   float at = vl_abs(area[0][lane] + distance * (area[1][lane] + distance * area[2][lane])) /
              (distance * distance);
   return at < VL_INFINITY ? at : 0.0f; /* not for NaN */
@@ -316,14 +298,16 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
 /* What of shadow ray k arrives, after vl_volume_pass_media if there are media. passes: one
  * factor per wavelength; scale: a common factor, which includes the MIS weight. Returns false
  * if nothing arrives. */
-bool vl_two_way_arrives(const vlTracing *t, vlTwoWayRows *r, uint32_t k, float passes[4],
-                        float *scale);
+bool vl_two_way_arrives(const vlTracing *t, uint32_t k, float passes[4], float *scale,
+                        const vlTwoWayShadows *q);
 
-/* Packs vlTraceScratch.passed of a light path into 32 bits, for a photon. Only ratios matter,
+/* Packs vlTracing.passed of a light path into 32 bits, for a photon. Only ratios matter,
  * so the largest value counts as 1, and 2 bits give its index. The other two are stored as -512
  * ln(ratio) in 15 bits each, which is exact to 0.1 % down to e^-64. */
-static inline uint32_t vl_pack_passed(const vlTraceScratch *s, uint32_t lane) {
-  const float p[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
+static inline uint32_t vl_pack_passed(const vlTracing *t, uint32_t lane) {
+  if (!t->world->by_channel)
+    return 0;
+  const float p[3] = {t->passed[0][lane], t->passed[1][lane], t->passed[2][lane]};
   uint32_t largest = p[0] >= p[1]   ? (p[0] >= p[2] ? 0 : 2)
                      : p[1] >= p[2] ? 1
                                     : 2,
@@ -343,7 +327,7 @@ static inline void vl_unpack_passed(uint32_t packed, float p[3]) {
         vl_exp((float)(packed >> (2 + 15 * (k - 1)) & 32767u) * (-1.0f / 512.0f));
 }
 /* The factor on two joined paths that attenuate by RGB channel, a and b as
- * vlTraceScratch.passed: the transmittance at a wavelength of the whole path over the product
+ * vlTracing.passed: the transmittance at a wavelength of the whole path over the product
  * of those of its parts. */
 static inline float vl_joined_factor(const float a[3], const float b[3], float lambda) {
   float both[3] = {a[0] * b[0], a[1] * b[1], a[2] * b[2]};

@@ -88,9 +88,9 @@ typedef struct vlPhoton {
                            light; from 1 */
   uint32_t alone : 1; /* only the hero wavelength is left, and carries the weight of all four */
   uint32_t id;        /* unique in a pass, and independent of the order of work */
-  uint32_t passed; /* vlTraceScratch.passed, packed (stages.h); only with vlWorld.by_channel */
-  uint32_t medium; /* 1 + the medium of the vertex; power is then divided by sigma_s. 0: on a
-                      surface */
+  uint32_t passed;    /* vlTracing.passed, packed (stages.h); only with vlWorld.by_channel */
+  uint32_t medium;    /* 1 + the medium of the vertex; power is then divided by sigma_s. 0: on a
+                         surface */
 } vlPhoton;
 _Static_assert(sizeof(vlPhoton) == 64, "a photon is one cache line");
 

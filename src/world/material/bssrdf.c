@@ -47,16 +47,15 @@ static double phase(double cosine, double g) {
 }
 
 /* Optical depths of sample points along the beam, distributed by its attenuation. */
-enum { MOST_POINTS = 1000 };
+enum { POINTS = 100 };
 typedef struct Beam {
-  int n;
-  double depth[MOST_POINTS];
+  double depth[POINTS];
 } Beam;
 
-static Beam make_beam(int n) {
-  Beam b = {n < MOST_POINTS ? n : MOST_POINTS, {0}};
-  for (int i = 0; i < b.n; i++)
-    b.depth[i] = -vl_precise_log(1 - (i + 0.5) / b.n);
+static Beam make_beam(void) {
+  Beam b;
+  for (int i = 0; i < POINTS; i++)
+    b.depth[i] = -vl_precise_log(1 - (i + 0.5) / POINTS);
   return b;
 }
 
@@ -72,7 +71,7 @@ static double multiple(double albedo, double g, double eta, double r, const Beam
   double f1 = moment1(eta), f2 = moment2(eta);
   double extrapolated = -2 * diffusion * (1 + 3 * f2) / (1 - 2 * f1);
   double by_fluence = 0.25 * (1 - 2 * f1), by_flux = 0.5 * (1 - 3 * f2), sum = 0;
-  for (int i = 0; i < beam->n; i++) {
+  for (int i = 0; i < POINTS; i++) {
     double z = beam->depth[i] / sigma_t, mirrored = 2 * extrapolated - z;
     double d = sqrt(r * r + z * z), m = sqrt(r * r + mirrored * mirrored),
            ed = vl_exp_double(-tr * d), em = vl_exp_double(-tr * m);
@@ -85,29 +84,24 @@ static double multiple(double albedo, double g, double eta, double r, const Beam
                           (d + z)); /* Habel's empirical correction close to the beam */
     sum += near * reduced * reduced * (fluence * by_fluence + flux * by_flux);
   }
-  return sum / beam->n;
+  return sum / POINTS;
 }
 
 /* Single scattering. Only points from which light can leave at distance r contribute. */
 static double single(double albedo, double g, double eta, double r, const Beam *beam) {
   double critical = r * sqrt(eta > 1 ? eta * eta - 1 : 0), sum = 0;
-  for (int i = 0; i < beam->n; i++) {
+  for (int i = 0; i < POINTS; i++) {
     double z = critical + beam->depth[i], d = sqrt(r * r + z * z), cosine = z / d;
     sum += albedo * vl_exp_double(-(d + critical)) / (d * d) * phase(cosine, g) *
            (1 - reflected_inside(cosine, eta)) * cosine;
   }
-  return sum / beam->n;
-}
-
-double vl_bssrdf_profile(double albedo, double g, double eta, double r, int samples) {
-  Beam beam = make_beam(samples);
-  return single(albedo, g, eta, r, &beam) + multiple(albedo, g, eta, r, &beam);
+  return sum / POINTS;
 }
 
 static void fill_row(void *user, uint32_t row, uint32_t worker) {
   vlBssrdfTable *t = user;
   (void)worker;
-  Beam beam = make_beam(100);
+  Beam beam = make_beam();
   double albedo = (double)t->albedo[row], g = (double)t->g, eta = (double)t->eta;
   for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++) {
     double r = (double)t->radius[k], ring = 0;

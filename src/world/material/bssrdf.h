@@ -33,9 +33,6 @@ typedef struct vlBssrdfTable {
 /* Fills a table, on all workers. eta > 0: index inside over index outside. -1 < g < 1: mean
  * cosine of scattering. */
 void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *table);
-/* R(r) for one albedo by direct integration with `samples` points along the beam (at most
- * 1000). The table is built with 100. */
-double vl_bssrdf_profile(double albedo, double g, double eta, double r, int samples);
 
 /* ---- splines
  * -----------------------------------------------------------------------------------------------------

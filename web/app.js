@@ -107,6 +107,7 @@ const display = app.display = new Display(byId("display"), app);
 const overlay = new Overlay(byId("overlays"), app);
 const compare = new Compare(byId("compare"), app);
 new Save(byId("save"), app);
+byId("save").hidden = engineName() === "browser"; // it has no folder to save into
 const outside = app.outside = new Outside(app);
 screen.onplace = () => { overlay.draw(); compare.draw(); };
 const inspector = new Inspector(byId("pixel"), app);

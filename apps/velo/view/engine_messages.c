@@ -232,8 +232,8 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
         break;
       case MESSAGE_SAVE:
       case MESSAGE_COMMAND:
-        if (e->def.lecture)
-          post_refusal(e, client, m, "the lecture's page saves nothing");
+        if (e->def.lecture || e->def.stepwise)
+          post_refusal(e, client, m, "this page saves nothing");
         else
           add_task(e, client, m, e->tasks, &e->task_count);
         break;

@@ -4,11 +4,20 @@ import { make } from "../dom.js";
 import { sliderValue, withSlider } from "./sliders.js";
 import { words } from "./words.js";
 
+// A part of an address as text; what is no proper code stays as it is.
+export function decoded(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
 const short = (value) => String(Number(Number(value).toPrecision(6)));
 
 // Of a hash: { name, values }, null if it leads to no figure.
 export function parseHash(hash) {
-  const [name, query] = decodeURIComponent(hash.replace(/^#/, "")).split("?");
+  const [name, query] = decoded(hash.replace(/^#/, "")).split("?");
   return name ? { name, values: Object.fromEntries(new URLSearchParams(query ?? "")) } : null;
 }
 
@@ -61,17 +70,16 @@ export function attachLinks(root, { figures, drawn }, language) {
 
   const apply = (figure, values) => {
     const { set, complaints } = readValues(figure, values, language);
+    figure.element.querySelector(".complaint")?.remove(); // of the link before; messages of the engine have a line of their own
+    if (complaints.length) figure.element.append(make("p", { class: "error complaint", role: "status", textContent: complaints.join(" ") }));
     if (figure.drawing) {
       figure.set({ ...figure.drawing.state, ...set }, true);
-      figure.element.querySelector(".complaint")?.remove();
-      if (complaints.length) figure.element.append(make("p", { class: "error complaint", role: "status", textContent: complaints.join(" ") }));
       return;
     }
     const ready = () => {
       let camera = figure.camera;
       for (const [name, value] of Object.entries(set)) if (sliderValue(camera, name) !== undefined) camera = withSlider(camera, name, value);
       figure.set(camera, true);
-      if (complaints.length) figure.complain(complaints.join(" "));
     };
     const view = figure.views.find((button) => button.dataset.view === values.view);
     const scene = view ? `${figure.folder}${view.dataset.view}.pbrt` : figure.scene;

@@ -1,5 +1,6 @@
 // web/lecture/main.js: the page of velo view --lecture: the lecture in one of its languages, with velo as the renderer.
 import { Live } from "./live.js";
+import { decoded } from "./links.js";
 import { openLecture } from "./page.js";
 import { attachScroll } from "./scroll.js";
 
@@ -31,7 +32,7 @@ async function open(language, place) {
   await Promise.all([...root.querySelectorAll("img")].map((image) => image.decode().catch(() => 0)));
   const heading = place && root.querySelectorAll(":scope > :is(h1, h2, h3)")[place.index];
   if (heading) scrollBy(0, heading.getBoundingClientRect().top - place.top);
-  else if (!lecture.follow() && location.hash) document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
+  else if (!lecture.follow() && location.hash) document.getElementById(decoded(location.hash.slice(1)))?.scrollIntoView();
 }
 
 function choose(language) {

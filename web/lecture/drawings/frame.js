@@ -80,7 +80,7 @@ const pixel = {
     let html = `<image x="${LEFT[0]}" y="${LEFT[1]}" width="${LEFT[2]}" height="${LEFT[3]}" preserveAspectRatio="none" class="pixels" href="${pictureOf(s.d)}"/>`;
     const left = LEFT[0] + k * s.c, bottom = LEFT[1] + LEFT[3] - k * s.r;
     html += rectangle(...LEFT, "window") + rectangle(left, bottom - k, k, k, "picked") + circle([left + k * s.p_x, bottom - k * s.p_y], 3.5, "dot");
-    html += label([LEFT[0], 48], say("click a pixel", "cliccare un pixel"), "name") + label([left + k / 2, 318], `c = ${s.c}`, "name", "middle") + label([346, bottom - k / 2 + 5], `r = ${s.r}`, "name");
+    html += label([LEFT[0], 48], say("click a pixel", "un clic sceglie il pixel"), "name") + label([left + k / 2, 318], `c = ${s.c}`, "name", "middle") + label([346, bottom - k / 2 + 5], `r = ${s.r}`, "name");
     html += arrow([LEFT[0] - 9, 300], [LEFT[0] - 9, 250], "axis-v") + arrow([LEFT[0], 330], [LEFT[0] + 50, 330], "axis-u");
     // from outside
     const on = (a, b) => add(add(add(eye, scale(frame.w, -s.d)), scale(frame.u, a)), scale(frame.v, b)), spot = on(x, y);

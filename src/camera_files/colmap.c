@@ -84,15 +84,24 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   return wrong_line(file, path, lines->line, error.message);
 }
 
+/* Loads a file into *text, which is to be freed. */
+static vlResult open_lines(const vlCameraFile *file, const char *path, char **text,
+                           Lines *lines) {
+  size_t size;
+  vlResult result = vl_colmap_load(file, path, text, &size);
+  if (result == VL_OK)
+    *lines = (Lines){*text, *text + size, 0};
+  return result;
+}
+
 /* Reads the camera with this id, or the first camera if id is null. */
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id,
                              vlCameraRecord *record) {
   char *text;
-  size_t size;
-  vlResult result = vl_colmap_load(file, path, &text, &size);
+  Lines lines;
+  vlResult result = open_lines(file, path, &text, &lines);
   if (result != VL_OK)
     return result;
-  Lines lines = {text, text + size, 0};
   bool found = false;
   for (char *line; result == VL_OK && !found && (line = next_line(&lines));) {
     double number;
@@ -132,11 +141,10 @@ static vlResult read_image_line(const vlCameraFile *file, const char *path, uint
 static vlResult read_images(const vlCameraFile *file, const char *path, double *id,
                             vlCameraRecord *record) {
   char *text;
-  size_t size;
-  vlResult result = vl_colmap_load(file, path, &text, &size);
+  Lines lines;
+  vlResult result = open_lines(file, path, &text, &lines);
   if (result != VL_OK)
     return result;
-  Lines lines = {text, text + size, 0};
   bool taken = false;
   record->frames = 0;
   for (char *line; result == VL_OK && (line = next_line(&lines));) {

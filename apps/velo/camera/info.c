@@ -83,10 +83,7 @@ static void print_json(const char *path, const vlCameraRecord *record, const vlC
   }
   json_number(&json, "pixel_footprint", info->footprint);
   json_number(&json, "outside", c->outside);
-  json_begin(&json, "world_from_camera", '[');
-  for (int i = 0; i < 16; i++)
-    json_number(&json, NULL, c->world_from_camera[i]);
-  json_end(&json, ']');
+  json_numbers(&json, "world_from_camera", c->world_from_camera, 16);
   json_end(&json, '}');
   putchar('\n');
 }

@@ -370,10 +370,7 @@ void paths_put_json(Json *json, const PathsReport *r) {
   json_integer(json, "samples", all->samples);
   json_integer(json, "counted", all->count);
   json_integer(json, "dropped", all->dropped);
-  json_begin(json, "mean", '[');
-  for (int i = 0; i < 3; i++)
-    json_number(json, NULL, all->mean[i]);
-  json_end(json, ']');
+  json_numbers(json, "mean", all->mean, 3);
   json_seen(json, r);
   json_begin(json, "paths", '[');
   for (uint32_t k = 0; k < r->shown; k++)

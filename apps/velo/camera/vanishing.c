@@ -79,10 +79,7 @@ static void say_json(const char *path, const vlCamera *c, const vlVanishingPoint
   }
   json_end(&json, '}');
   if (v->has_horizon) {
-    json_begin(&json, "horizon", '[');
-    for (int i = 0; i < 3; i++)
-      json_number(&json, NULL, v->horizon[i]);
-    json_end(&json, ']');
+    json_numbers(&json, "horizon", v->horizon, 3);
   }
   json_end(&json, '}');
   putchar('\n');
@@ -296,10 +293,7 @@ static void say_camera(const vlCameraDef *d, bool as_json) {
     json_number(&json, "focal", d->fx);
     json_number(&json, "cx", d->cx);
     json_number(&json, "cy", d->cy);
-    json_begin(&json, "world_from_camera", '[');
-    for (int i = 0; i < 16; i++)
-      json_number(&json, NULL, d->world_from_camera[i]);
-    json_end(&json, ']');
+    json_numbers(&json, "world_from_camera", d->world_from_camera, 16);
     json_end(&json, '}');
     putchar('\n');
     return;

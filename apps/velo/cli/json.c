@@ -94,6 +94,20 @@ void json_integer(Json *json, const char *key, int64_t number) {
   fprintf(json->out, "%lld", (long long)number);
 }
 
+void json_numbers(Json *json, const char *key, const double *numbers, uint32_t count) {
+  json_begin(json, key, '[');
+  for (uint32_t i = 0; i < count; i++)
+    json_number(json, NULL, numbers[i]);
+  json_end(json, ']');
+}
+
+void json_integers(Json *json, const char *key, const uint32_t *numbers, uint32_t count) {
+  json_begin(json, key, '[');
+  for (uint32_t i = 0; i < count; i++)
+    json_integer(json, NULL, numbers[i]);
+  json_end(json, ']');
+}
+
 void json_bool(Json *json, const char *key, bool value) {
   put_key(json, key);
   fputs(value ? "true" : "false", json->out);

@@ -21,6 +21,9 @@ void json_number(Json *json, const char *key, double number);
 /* avoids a clash with jansson's json_integer, which the library links */
 #define json_integer json_put_integer
 void json_integer(Json *json, const char *key, int64_t number);
+/* Arrays. */
+void json_numbers(Json *json, const char *key, const double *numbers, uint32_t count);
+void json_integers(Json *json, const char *key, const uint32_t *numbers, uint32_t count);
 void json_bool(Json *json, const char *key, bool value);
 
 /* The shortest decimal that reads back as the same number. */

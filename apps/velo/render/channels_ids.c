@@ -23,16 +23,9 @@ static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t 
   }
 }
 
-static void put_numbers(Json *json, const char *key, const double *numbers, int count) {
-  json_begin(json, key, '[');
-  for (int i = 0; i < count; i++)
-    json_number(json, NULL, numbers[i]);
-  json_end(json, ']');
-}
-
 /* x, y, width, height, as in COCO. */
 static void put_corners(Json *json, const char *key, const double c[4]) {
-  put_numbers(json, key, (const double[4]){c[0], c[1], c[2] - c[0], c[3] - c[1]}, 4);
+  json_numbers(json, key, (const double[4]){c[0], c[1], c[2] - c[0], c[3] - c[1]}, 4);
 }
 static void put_pixels(Json *json, const char *key, const uint32_t c[4]) {
   put_corners(json, key, (const double[4]){c[0], c[1], c[2], c[3]});
@@ -53,10 +46,10 @@ static void put_box(Json *json, const vlIdBox *b, bool instance) {
     return;
   json_begin(json, "box3d", '{');
   json_text(json, "space", instance || b->grouped ? "group" : "world");
-  put_numbers(json, "low", b->low, 3);
-  put_numbers(json, "high", b->high, 3);
+  json_numbers(json, "low", b->low, 3);
+  json_numbers(json, "high", b->high, 3);
   if (instance)
-    put_numbers(json, "world_from_group", b->world_from_box, 16);
+    json_numbers(json, "world_from_group", b->world_from_box, 16);
   json_end(json, '}');
 }
 

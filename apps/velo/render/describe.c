@@ -53,10 +53,7 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
   json_text(&json, "scene", job->path);
   json_integer(&json, "width", c->width);
   json_integer(&json, "height", c->height);
-  json_begin(&json, "crop", '[');
-  for (int i = 0; i < 4; i++)
-    json_integer(&json, NULL, job->defs->film.crop[i]);
-  json_end(&json, ']');
+  json_integers(&json, "crop", job->defs->film.crop, 4);
   json_integer(&json, "spp", render->spp);
   json_number(&json, "time_limit", render->time_limit);
   json_integer(&json, "seed", render->seed);
@@ -75,10 +72,7 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
   json_number(&json, NULL, c->cx);
   json_number(&json, NULL, c->cy);
   json_end(&json, ']');
-  json_begin(&json, "world_from_camera", '[');
-  for (int i = 0; i < 16; i++)
-    json_number(&json, NULL, c->world_from_camera[i]);
-  json_end(&json, ']');
+  json_numbers(&json, "world_from_camera", c->world_from_camera, 16);
   json_integer(&json, "triangles", (int64_t)f->world.triangles);
   json_integer(&json, "primitives", (int64_t)f->world.primitives);
   json_integer(&json, "instances", (int64_t)f->world.instances);

@@ -221,13 +221,6 @@ static void print_text(const Facts *f) {
   }
 }
 
-static void json_box(Json *json, const char *key, const double v[3]) {
-  json_begin(json, key, '[');
-  for (int k = 0; k < 3; k++)
-    json_number(json, NULL, v[k]);
-  json_end(json, ']');
-}
-
 static void json_location(Json *json, const vlSource *source) {
   if (source->file)
     json_text(json, "file", source->file);
@@ -283,15 +276,12 @@ static void json_defs(Json *json, const vlSceneDefs *defs) {
   json_bool(json, "missing", defs->camera_missing);
   json_text(json, "projection", vl_projection_name(defs->camera.projection));
   eye_of(&defs->camera, eye);
-  json_box(json, "eye", eye);
+  json_numbers(json, "eye", eye, 3);
   json_end(json, '}');
   json_begin(json, "film", '{');
   json_integer(json, "width", defs->film.width);
   json_integer(json, "height", defs->film.height);
-  json_begin(json, "crop", '[');
-  for (int i = 0; i < 4; i++)
-    json_integer(json, NULL, defs->film.crop[i]);
-  json_end(json, ']');
+  json_integers(json, "crop", defs->film.crop, 4);
   json_integer(json, "spp", defs->render.spp);
   json_text(json, "tracer", kind_name("tracers", (int)defs->render.tracer));
   json_integer(json, "max_depth", defs->render.max_depth);
@@ -354,8 +344,8 @@ static void print_json(const Facts *f) {
   json_number(&json, "seconds", f->seconds);
   json_begin(&json, "bounds", '[');
   if (f->low[0] <= f->high[0]) {
-    json_box(&json, NULL, f->low);
-    json_box(&json, NULL, f->high);
+    json_numbers(&json, NULL, f->low, 3);
+    json_numbers(&json, NULL, f->high, 3);
   }
   json_end(&json, ']');
   json_defs(&json, defs);

@@ -7,21 +7,14 @@
 
 static const double degrees = 180.0 / 3.14159265358979323846;
 
-static void put_numbers(Json *json, const char *key, const double *values, uint32_t count) {
-  json_begin(json, key, '[');
-  for (uint32_t i = 0; i < count; i++)
-    json_number(json, NULL, values[i]);
-  json_end(json, ']');
-}
-
 static void put_pose(Json *json, const ViewCamera *camera) {
   const CameraPose pose = camera_pose(camera);
-  put_numbers(json, "eye", pose.eye, 3);
-  put_numbers(json, "lookat", pose.lookat, 3);
-  put_numbers(json, "up", pose.up, 3);
+  json_numbers(json, "eye", pose.eye, 3);
+  json_numbers(json, "lookat", pose.lookat, 3);
+  json_numbers(json, "up", pose.up, 3);
   json_number(json, "roll", pose.roll * degrees);
-  put_numbers(json, "world_from_camera", camera->made.world_from_camera, 16);
-  put_numbers(json, "camera_from_world", camera->made.camera_from_world, 16);
+  json_numbers(json, "world_from_camera", camera->made.world_from_camera, 16);
+  json_numbers(json, "camera_from_world", camera->made.camera_from_world, 16);
 }
 
 /* The angle between the rays of two points of the film, degrees; NaN: one has none. */
@@ -88,10 +81,10 @@ static void put_projection(Json *json, const ViewCamera *camera) {
   json_text(json, "projection", vl_projection_name(def->projection));
   if (def->projection != VL_PROJECTION_OWN)
     json_text(json, "kind", kinds[def->projection]);
-  put_numbers(json, "shape", camera->made.shape, 2);
+  json_numbers(json, "shape", camera->made.shape, 2);
   json_number(json, "max_angle", def->max_angle * degrees);
   json_text(json, "distortion", distortions[def->distortion]);
-  put_numbers(json, "coefficients", def->distortion_coefficients, def->distortion_count);
+  json_numbers(json, "coefficients", def->distortion_coefficients, def->distortion_count);
   json_number(json, "outside", camera->made.outside);
 }
 

@@ -26,10 +26,7 @@ static void put_vanishing(Json *json, const vlCamera *camera, const double up[3]
   json_end(json, ']');
   if (!points.has_horizon)
     return;
-  json_begin(json, "horizon", '[');
-  for (int i = 0; i < 3; i++)
-    json_number(json, NULL, points.horizon[i]);
-  json_end(json, ']');
+  json_numbers(json, "horizon", points.horizon, 3);
 }
 
 /* Boxes of the objects, those with the most pixels first as long as there is room. */

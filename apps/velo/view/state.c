@@ -31,10 +31,7 @@ char *state_text(const ViewState *s) {
   json_integer(json, "channel", s->channel);
   json_bool(json, "can_undo", s->can_undo);
   json_bool(json, "can_redo", s->can_redo);
-  json_begin(json, "crop", '[');
-  for (int i = 0; i < 4; i++)
-    json_integer(json, NULL, s->crop[i]);
-  json_end(json, ']');
+  json_integers(json, "crop", s->crop, 4);
   json_number(json, "exposure", s->exposure);
   json_integer(json, "view", s->view);
   json_begin(json, "bounds", '[');

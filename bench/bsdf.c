@@ -9,7 +9,8 @@
 #include <time.h>
 
 #include "base/context.h"
-#include "trace/bsdf/bsdf.h"
+#include "material/bsdf.hot.h"
+#include "material/bsdf_kind.h"
 
 /* The same kernels for one lane, without padding and vectors (VL_SCALAR, CMakeLists.txt). */
 extern const vlBsdfKernels vl_bsdf_kernel_table_scalar;

@@ -34,16 +34,6 @@ typedef enum vlMaterialKind {
 #undef VL_KIND
 } vlMaterialKind;
 
-/** Traits of kinds of materials (vlKindRow.traits). */
-enum {
-  VL_MATERIAL_OPAQUE = 1, /**< transmits no light */
-  VL_MATERIAL_METAL = 2,  /**< a conductor: its colour is the colour of its specular reflection,
-                             and  it has no albedo */
-  VL_MATERIAL_ROUGH = 4,  /**< has a microfacet distribution with an alpha */
-  VL_MATERIAL_REFRACTS = 8, /**< a closed shape of this material refracts light */
-  VL_MATERIAL_ABSENT = 16   /**< not a visible surface; it only separates media */
-};
-
 /** The principled material: glTF 2.0's metallic-roughness with its KHR_materials extensions;
  * docs/principled.md has the formulas. Its base colour is vlMaterialDef.reflectance. Its index
  * of refraction is vlMaterialDef.eta, one number; 0 means infinite, that is full reflection.

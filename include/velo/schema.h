@@ -143,6 +143,16 @@ typedef enum vlFilmKind {
 #undef VL_KIND
 } vlFilmKind;
 
+/** Traits of materials. */
+enum {
+  VL_MATERIAL_OPAQUE = 1, /**< transmits no light */
+  VL_MATERIAL_METAL = 2,  /**< a conductor: its colour is the colour of its specular reflection,
+                             and  it has no albedo */
+  VL_MATERIAL_ROUGH = 4,  /**< has a microfacet distribution with an alpha */
+  VL_MATERIAL_REFRACTS = 8, /**< a closed shape of this material refracts light */
+  VL_MATERIAL_ABSENT = 16   /**< not a visible surface; it only separates media */
+};
+
 /** Traits of lights. */
 enum {
   VL_LIGHT_TRAIT_AT_POINT = 1, /**< it emits from one point */

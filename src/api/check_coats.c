@@ -3,10 +3,10 @@
 #include <math.h>
 
 #include "color/color.h"
+#include "material/coat.h"
 #include "math/ggx.h"
 #include "scene/check.h"
 #include "velo/material.h"
-#include "world/material/coat.h"
 
 /* A coat's loss depends only on these numbers, so it is computed once for all coats that have
  * the same numbers. */
@@ -33,8 +33,7 @@ static bool index_of(const vlMaterialDef *m, float *eta) {
     return true;
   if (vl_spectrum_dense(&m->eta.value, VL_ROLE_UNBOUNDED, dense, NULL) != VL_OK)
     return false;
-  *eta = vl_dense_at(dense,
-                     589.3f); /* the same wavelength (nm) as in world/material/materials.c */
+  *eta = vl_dense_at(dense, 589.3f); /* the same wavelength (nm) as in material/compile.c */
   return true;
 }
 

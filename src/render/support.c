@@ -62,7 +62,7 @@ static bool is_hair(const vlWorld *world, uint32_t material) {
   return is_hair(world, m->mix[0]) || is_hair(world, m->mix[1]);
 }
 
-/* The BSDF of hair (trace/bsdf/hair.hot.c) is not symmetric: absorption, refraction and the
+/* The BSDF of hair (material/hair.hot.c) is not symmetric: absorption, refraction and the
  * tilt of the scales follow from the direction of the camera. Light paths would need its
  * adjoint. */
 static bool has_hair(Scene *s) {

@@ -107,18 +107,4 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r,
   return at;
 }
 
-/* Evaluates the BSDF parameters of material m from its textures, over a run of lanes. Each BSDF
- * kind has one function. */
-typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
-#define VL_DECLARE_PARAMETERS(NAME, name) vlParametersFn vl_parameters_##name;
-VL_BSDF_KINDS(VL_DECLARE_PARAMETERS)
-
-/* Parts of the functions above. vl_stage_layers runs after eta, k and roughness are evaluated;
- * the parts for translucent, subsurface and hair run after the reflectance. The coat's normal
- * of the principled material stays in world space until vl_stage_coat_frames. */
-vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair,
-    vl_stage_principled;
-void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first,
-                          uint32_t last);
-
 #endif

@@ -10,7 +10,7 @@
 #ifndef TRACE_ROWS_H
 #define TRACE_ROWS_H
 
-#include "trace/bsdf/bsdf.h"
+#include "material/bsdf.hot.h"
 #include "trace/surface/offset.h"
 #include "trace/trace.h"
 
@@ -109,7 +109,7 @@ typedef struct vlShade {
   VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
   const vlCoatTable *coat[VL_ROW_SIZE];
   VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* rows that depend on the kind;
-                                                  trace/bsdf/bsdf.h names them */
+                                                  material/bsdf.hot.h names them */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
   const vlMeasured *measured[VL_ROW_SIZE];
 } vlShade;
@@ -122,7 +122,7 @@ typedef struct vlVertices {
   vlShade shade;
 } vlVertices;
 
-/* The BSDFs for given directions; trace/bsdf/bsdf.h says what value and pdf are. */
+/* The BSDFs for given directions; material/bsdf.hot.h says what value and pdf are. */
 typedef struct vlBsdfValues {
   VL_ROW float wi[3][VL_ROW_SIZE]; /* local */
   VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE];

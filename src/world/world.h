@@ -12,12 +12,12 @@
 #include "base/array.h"
 #include "base/cancel.h"
 #include "color/color.h"
+#include "material/coat.h"
+#include "material/measured_tables.h"
 #include "texture/node.h"
 #include "velo/world.h"
 #include "world/accel/accel.h"
 #include "world/light/environment_lookup.h"
-#include "world/material/coat.h"
-#include "world/material/measured.h"
 #include "world/medium/medium.h"
 #include "world/part.h"
 
@@ -154,6 +154,7 @@ typedef enum vlSmooth {
 typedef struct vlWorldMaterial {
   uint32_t kind; /* vlMaterialKind */
   uint32_t bsdf; /* vlBsdfKind */
+  bool diffuse;  /* bsdf is VL_BSDF_DIFFUSE */
   vlSmooth smooth;
   uint32_t traits; /* bits of the kind, such as VL_MATERIAL_OPAQUE */
   const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned
@@ -163,6 +164,7 @@ typedef struct vlWorldMaterial {
                       viewer's  side count */
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
+  bool mixed; /* a mix of the materials mix[0] and mix[1], which come before it */
   uint32_t mix[2];
   /* nothing: an interface, or a mix of interfaces only. presence: of a mix with an interface
    * among its parts, the node of the share that is not interface; shapes have it as an alpha

@@ -3,7 +3,7 @@
  * slabs against the transmittance of glass of known thickness. */
 #include "render/gltf_shots.h"
 
-#include "world/material/principled.h"
+#include "material/principled.h"
 
 /* ---- albedos, without velo's tables
  * ------------------------------------------------------------------------------ */

@@ -1,10 +1,10 @@
 /* The subsurface material: thick solids under a white sky have the given reflectance; light
  * that enters around a block's edge, against an integral over the lit side; white solids; and
  * changes that must not affect the image. */
+#include "material/bssrdf.h"
 #include "shots.h"
 #include "velo/medium.h"
 #include "velo/texture.h"
-#include "world/material/bssrdf.h"
 
 static vlMaterialDef body(float sigma_a, float sigma_s) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_SUBSURFACE);

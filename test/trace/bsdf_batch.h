@@ -6,8 +6,9 @@
 
 #include <string.h>
 
+#include "material/bsdf.hot.h"
+#include "material/bsdf_kind.h"
 #include "statistics.h"
-#include "trace/bsdf/bsdf.h"
 
 enum { BATCH = 1024 };
 

@@ -10,9 +10,9 @@
 
 #include "bsdf_state.h"
 #include "color/color.h"
+#include "material/measured_lookup.h"
 #include "math/ggx.h"
 #include "measured_file.h"
-#include "world/material/measured_lookup.h"
 
 static vlMeasured *measure(const State *s, const mfSurface *metal, bool rgb) {
   const char *path = VELO_BINARY_DIR "/measured.bsdf";

@@ -12,8 +12,8 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
+#include "material/bssrdf.h"
 #include "statistics.h"
-#include "world/material/bssrdf.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,8 +10,8 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
+#include "material/coat.h"
 #include "statistics.h"
-#include "world/material/coat.h"
 
 #define PI 3.14159265358979323846
 enum { BINS = 4, KEPT = 12 };

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 #include "../trace/measured_file.h"
+#include "material/measured_tables.h"
 #include "render/shots.h"
 #include "trace/bsdf_batch.h"
-#include "world/material/measured.h"
 #include "world/world.h"
 
 static const char path[] = VELO_BINARY_DIR "/damaged.bsdf";

@@ -1,9 +1,9 @@
 /* tools/albedo_tables: computes the principled material's tables
- * (src/world/material/principled.h) by quadrature and writes them as C. Called by the build:
+ * (src/material/principled.h) by quadrature and writes them as C. Called by the build:
  * albedo_tables FILE.c */
 #include <stdio.h>
 
-#include "world/material/principled.h"
+#include "material/principled.h"
 
 #include "math/ggx.h"
 
@@ -172,9 +172,8 @@ int main(int argc, char **argv) {
   for (int side = 0; side < 2; side++)
     for (uint32_t i = 0; i < VL_LOSS_ETA; i++)
       fill_losses(&t, side, i);
-  fprintf(
-      file,
-      "/* Written by tools/albedo_tables. */\n#include \"world/material/principled.h\"\n\n");
+  fprintf(file,
+          "/* Written by tools/albedo_tables. */\n#include \"material/principled.h\"\n\n");
   fprintf(file, "const vlPrincipledTables vl_principled_tables = {");
   write_table(file, "a", t.a);
   write_table(file, "b", t.b);

@@ -8,11 +8,11 @@
  *
  * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the
  * ray decides mixed materials. */
+#include "material/bssrdf.h"
+#include "material/measured_lookup.h"
 #include "trace/ground_truth/scratch.h"
-#include "velo/material.h"
+#include "velo/schema.h"
 #include "velo/shape.h"
-#include "world/material/bssrdf.h"
-#include "world/material/measured_lookup.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 
@@ -344,8 +344,8 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
     uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed))
       k++;
-    bool seen = world->materials.items[world->shapes.items[shape].material].kind !=
-                VL_MATERIAL_INTERFACE;
+    bool seen = !(world->materials.items[world->shapes.items[shape].material].traits &
+                  VL_MATERIAL_ABSENT);
     if (k == to->count && seen) {
       to->object[k] = object;
       to->instance[k] = placed;

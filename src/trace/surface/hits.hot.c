@@ -3,7 +3,7 @@
  * weights against light sampling (pbrt book 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
-#include "velo/material.h"
+#include "velo/schema.h"
 #include "velo/shape.h"
 #include "world/accel/local_ray.h"
 
@@ -64,9 +64,8 @@ static float presence_of(const vlWorld *world, uint32_t material, const vlTextur
  * sampler dimension. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
-  while (world->materials.items[material].kind ==
-         VL_MATERIAL_MIX) { /* the materials of a mix have smaller indices than the mix, so the
-                               loop ends */
+  while (world->materials.items[material].mixed) { /* the materials of a mix have smaller
+                               indices than the mix, so the loop ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
@@ -120,8 +119,8 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
   const vlWorld *world = t->world;
   float t_min = 0;
   for (int step = 0; h->shape[i] != VL_NONE; step++) {
-    if (world->materials.items[world->shapes.items[h->shape[i]].material].kind !=
-        VL_MATERIAL_INTERFACE)
+    if (!(world->materials.items[world->shapes.items[h->shape[i]].material].traits &
+          VL_MATERIAL_ABSENT))
       return;
     if (step == 1024)
       h->shape[i] = VL_NONE; /* a bound; no ray crosses so many interfaces */

@@ -1,5 +1,5 @@
 /* trace/surface/subsurface.hot.c: subsurface scattering: light that enters a surface and leaves
- * it elsewhere, with the profiles of world/material/bssrdf.h and pbrt's estimator (pbrt book,
+ * it elsewhere, with the profiles of material/bssrdf.h and pbrt's estimator (pbrt book,
  * 3rd edition, 15.4). This stage processes the paths that have entered a subsurface material,
  * before volume.hot.c traces them further:
  *
@@ -11,13 +11,13 @@
  * tangents. The hero wavelength's profile samples a probe's distance from the entry point. The
  * density of an exit point is the sum over all three directions, and is computed for each
  * wavelength. */
+#include "material/bssrdf.h"
+#include "material/rows.hot.h"
 #include "math/fresnel.h"
 #include "math/warp.h"
-#include "trace/material/rows.h"
 #include "trace/medium/volume.h"
 #include "trace/surface/probes.h"
 #include "trace/tracer/record.h"
-#include "world/material/bssrdf.h"
 
 /* Largest number of crossings of one probe. */
 enum { MOST_CROSSINGS = 1024 };

@@ -1,5 +1,6 @@
 /* trace/tracer/record.hot.c: see record.h. */
 #include "trace/tracer/record.h"
+#include "material/bsdf_kind.h"
 #include "texture/node_kind.h"
 #include "velo/texture.h"
 #include "world/light/light_kind.h"

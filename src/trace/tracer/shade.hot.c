@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "texture/run.hot.h"
+#include "material/rows.hot.h"
 
 /* ---- sorting
  * -----------------------------------------------------------------------------------------------------

@@ -8,7 +8,6 @@
  * every lane. In media a ball of radius r replaces the disk. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
-#include "velo/material.h"
 
 enum { LISTED_WORK = 32 }; /* a photon with a BSDF takes as long as so many visited ones */
 
@@ -163,7 +162,7 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVert
   for (uint32_t i = 0; i < n; i++) {
     if (vl_all_specular(t->world, at, i))
       continue;
-    bool diffuse = t->world->materials.items[at->hits.material[i]].kind == VL_MATERIAL_DIFFUSE;
+    bool diffuse = t->world->materials.items[at->hits.material[i]].diffuse;
     float sum[4] = {0, 0, 0, 0};
     Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0,
                            most_bounces(t, p->lane[i], depth));

@@ -205,7 +205,7 @@ static inline bool vl_all_specular(const vlWorld *world, const vlVertices *at, u
 
 /* Whether camera paths connect to a light path's vertex on the surface of lane i. */
 static inline bool vl_is_inner_end(const vlWorld *world, const vlVertices *at, uint32_t i) {
-  return world->materials.items[at->hits.material[i]].bsdf == VL_BSDF_DIFFUSE;
+  return world->materials.items[at->hits.material[i]].diffuse;
 }
 
 static inline bool vl_has_media(const vlTracing *t) {

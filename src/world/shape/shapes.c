@@ -7,7 +7,7 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
-#include "velo/material.h"
+#include "velo/schema.h"
 #include "world/shape/displace.h"
 #include "world/shape/moving.h"
 #include "world/shape/share.h"
@@ -39,8 +39,7 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
                               vlWorldShape *s, vlError *error) {
   const vlWorldMaterial *m = &world->materials.items[s->material];
   int32_t presence = m->presence, whole = s->alpha, none;
-  for (; m->kind == VL_MATERIAL_MIX;
-       m = &world->materials.items[s->material]) { /* a part that is all there is */
+  for (; m->mixed; m = &world->materials.items[s->material]) { /* a part that is all there is */
     const vlWorldMaterial *first = &world->materials.items[m->mix[0]],
                           *second = &world->materials.items[m->mix[1]];
     if (!first->nothing && !second->nothing)
@@ -149,7 +148,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   vlResult cut = cut_interface(world, scene, def, s, error);
   if (cut != VL_OK)
     return cut;
-  s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
+  s->pass_shadow = world->materials.items[s->material].traits & VL_MATERIAL_ABSENT;
   world->has_subsurface =
       world->has_subsurface || world->materials.items[s->material].has_subsurface;
   s->radius = def->radius;

@@ -1,0 +1,51 @@
+/* material/local.hot.h: small inline functions and the entry points that the BSDF files share.
+ * Each kind has one pair of entry points per instruction set; table.hot.c collects them.
+ *
+ * Every kernel is one loop over the padded batch. To vectorise, it computes both outcomes of
+ * each choice and selects one. Array pointers are copied to local variables, so that the
+ * compiler does not reload them. Padding lanes may hold any values. If wo lies in the surface
+ * (z = 0), the value is 0 and there is no sample. For a wo from below, wo and wi are mirrored
+ * at the surface, z -> -z: each BSDF here is symmetric in z, dielectrics with eta -> 1/eta. */
+#ifndef MATERIAL_LOCAL_HOT_H
+#define MATERIAL_LOCAL_HOT_H
+
+#include "material/bsdf.hot.h"
+#include "math/fresnel.h"
+#include "math/ggx.h"
+#include "math/warp.h"
+
+/* The count of a padded batch, written so that the compiler sees a multiple of the vector width
+ * and makes no remainder loop. */
+#ifndef VL_SCALAR
+#define VL_WHOLE(count) ((count) & ~15u)
+#else
+#define VL_WHOLE(count) (count)
+#endif
+
+typedef void vlBsdfEval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                        vlBsdfDirections wi, float *const value[4], float *pdf);
+typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                          const float *u_lobe, const float *u, const float *v,
+                          vlBsdfDirections wi, float *const weight[4], float *pdf,
+                          uint32_t *flags, float *eta_scale);
+/* Declares the kernels of a kind: in the file that defines them, and for all in table.hot.c. */
+#define VL_BSDF_DECLARE(name)       \
+  vlBsdfEval vl_bsdf_##name##_eval; \
+  vlBsdfSample vl_bsdf_##name##_sample;
+
+/* Samples a cosine-weighted direction around +z. u, v: uniform in [0, 1). z is always above 0,
+ * so that no sample is lost. */
+static inline vlVec3 vl_cosine_direction(float u, float v) {
+  vlDiskPoint d = vl_warp_disk(u, v);
+  float z2 = (1.0f - d.r) * (1.0f + d.r);
+  return vl_vec3(
+      d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f)); /* z is at least VL_MIN_FRACTION */
+}
+
+/* Reflects wo about the normal h; oh: the dot product of wo and h. */
+static inline vlVec3 vl_reflect(vlVec3 wo, vlVec3 h, float oh) {
+  float s = 2.0f * oh;
+  return vl_vec3(s * h.x - wo.x, s * h.y - wo.y, s * h.z - wo.z);
+}
+
+#endif

@@ -1,0 +1,34 @@
+/* material/material.case.h: what the tests of materials must know of a kind beyond its row:
+ * typical and extreme parameters, and what is known of the light that the material scatters
+ * with them (test/conformance/materials.h). */
+#ifndef MATERIAL_MATERIAL_CASE_H
+#define MATERIAL_MATERIAL_CASE_H
+
+#include <stdbool.h>
+
+#include "velo/material.h"
+
+typedef struct MaterialVariant {
+  const char *parameters; /* null ends the list */
+  double albedo[3];       /* known mean weight at the first angle; 0: not known */
+  double
+      reflected; /* known share of the weight that stays on the side of the eye; 0: not known */
+  bool refracts; /* radiance changes with the square of the index: no law of energy, none of
+                    reciprocity */
+  bool both_sides; /* light from below is scattered, too: reciprocity over the whole sphere */
+  bool one_way;    /* not reciprocal */
+  bool
+      walks; /* the BSDF is estimated by random walks: its means are compared, not its values */
+} MaterialVariant;
+
+enum { MATERIAL_VARIANTS = 5 };
+typedef struct MaterialCase {
+  MaterialVariant variants[MATERIAL_VARIANTS];
+} MaterialCase;
+
+/* Declares the case of each kind, which is in the file of the kind: material/NAME.case.c. */
+#define MATERIAL_CASE(NAME, name) extern const MaterialCase name##_material;
+VL_MATERIAL_KINDS(MATERIAL_CASE)
+#undef MATERIAL_CASE
+
+#endif

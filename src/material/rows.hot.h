@@ -1,0 +1,49 @@
+/* material/rows.hot.h: evaluation of material parameters over a run of lanes; private to the
+ * hot files of material and to subsurface.hot.c. Results go to lanes [r->first, r->last)
+ * of the rows. */
+#ifndef MATERIAL_ROWS_HOT_H
+#define MATERIAL_ROWS_HOT_H
+
+#include "texture/run.hot.h"
+
+/* Evaluates the BSDF parameters of material m from its textures, over a run of lanes. Each BSDF
+ * kind has one function. */
+typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
+/* Those of kinds whose inputs others have, too. */
+vlParametersFn vl_parameters_diffuse, vl_parameters_conductor, vl_parameters_dielectric;
+
+/* Parts of the functions above. vl_stage_layers runs after eta, k and roughness are evaluated;
+ * the parts for translucent, subsurface and hair run after the reflectance. The coat's normal
+ * of the principled material stays in world space until vl_stage_coat_frames. */
+vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair,
+    vl_stage_principled;
+void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first,
+                          uint32_t last);
+
+/* Evaluates a spectrum texture at the four wavelengths. */
+static inline void vl_rows_spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
+  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
+  vl_texture_spectrum(r, node, out);
+}
+
+/* Evaluates a spectrum texture times scale, clamped to [0, 1]. */
+static inline void vl_rows_albedo(vlTextureRun *r, int32_t node, float scale,
+                                  float rows[][VL_ROW_SIZE]) {
+  vl_rows_spectrum(r, node, rows);
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = r->first; i < r->last; i++)
+      rows[c][i] = vl_clamp(scale * rows[c][i], 0.0f, 1.0f);
+}
+
+/* Evaluates a roughness texture to the microfacets' alpha. If the material has pbrt's
+ * remaproughness, alpha is the square root of the roughness. */
+static inline void vl_row_alpha(vlTextureRun *r, const vlWorldMaterial *m, int32_t node,
+                                float *alpha) {
+  vl_texture_float(r, node, alpha);
+  for (uint32_t i = r->first; i < r->last; i++) {
+    float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
+    alpha[i] = m->remap ? __builtin_sqrtf(x) : x;
+  }
+}
+
+#endif

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "material/bsdf_names.h"
 #include "material/compile.h"
 #include "math/ggx.h"
 #include "schema/schema.h"
@@ -24,6 +25,10 @@ vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *flo
     r = vl_material_float(b, floats[i].input, floats[i].node);
   return r;
 }
+
+#define NAME(NAME, name) [VL_BSDF_##NAME] = #name,
+const char *const vl_bsdf_names[] = {VL_BSDF_KINDS(NAME)};
+#undef NAME
 
 /* ---- coats
  * -------------------------------------------------------------------------------------------------------

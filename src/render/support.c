@@ -3,7 +3,6 @@
 #include "render/support.h"
 
 #include "render/camera_view.h"
-#include "velo/material.h"
 #include "velo/shape.h"
 
 #define BIT VL_TRACER_BIT
@@ -57,8 +56,8 @@ static bool has_curves(Scene *s) {
 
 static bool is_hair(const vlWorld *world, uint32_t material) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  if (m->kind != VL_MATERIAL_MIX)
-    return m->kind == VL_MATERIAL_HAIR;
+  if (!m->mixed)
+    return m->no_cosine; /* hair is the only such material */
   return is_hair(world, m->mix[0]) || is_hair(world, m->mix[1]);
 }
 

@@ -6,7 +6,6 @@
 
 #include "scene/scene.h"
 #include "velo/check.h"
-#include "velo/material.h"
 
 struct vlCheck {
   vlContext *context;
@@ -40,9 +39,7 @@ void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong medi
  */
 
 /* The material of a shape; null: the default diffuse material. */
-static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {
-  return id.index ? &check->scene->materials.items[id.index - 1] : NULL;
-}
+const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id);
 /* Gives the textures that a material reads directly, at most VL_CHECK_INPUTS. Id 0: none. */
 enum { VL_CHECK_INPUTS = 48 };
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);

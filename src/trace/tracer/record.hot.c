@@ -1,6 +1,6 @@
 /* trace/tracer/record.hot.c: see record.h. */
 #include "trace/tracer/record.h"
-#include "material/bsdf_kind.h"
+#include "material/bsdf_names.h"
 #include "texture/node_kind.h"
 #include "velo/texture.h"
 #include "world/light/light_kind.h"
@@ -194,15 +194,12 @@ static void put_texture(const vlWorld *world, int32_t node, vlPathVertex *v) {
 }
 
 void vl_record_shaded(vlTracing *t, uint32_t n, const vlVertices *at) {
-#define NAME(K, k) [VL_BSDF_##K] = #k,
-  static const char *const names[] = {VL_BSDF_KINDS(NAME)};
-#undef NAME
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, at->paths.lane[i]);
     if (!v)
       continue;
     const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
-    v->bsdf = names[m->bsdf];
+    v->bsdf = vl_bsdf_names[m->bsdf];
     put3(v->shading, vl_lane3(at->surface.nx, at->surface.ny, at->surface.nz, i));
     put_texture(t->world, m->reflectance, v);
     for (int c = 0; c < 4; c++) {

@@ -46,7 +46,7 @@ static void zsobol_2d(INPUT, float *u, float *v) {
   vl_zsobol(1, s, n, px, py, index, dimension, u, v);
 }
 
-/* In chunks; `call` has the chunk c, whose first lane is k. */
+/* Body of a function: in chunks; `call` has the chunk c, whose first lane is k. */
 #define IN_CHUNKS(call)                                               \
   uint32_t seed = vl_dimension_seed(s, dimension, 0);                 \
   vlSamplerChunk chunk, *c = &chunk;                                  \
@@ -55,26 +55,39 @@ static void zsobol_2d(INPUT, float *u, float *v) {
     vl_sampler_chunk(s, m, px + k, py + k, index + k, seed, c);       \
     call;                                                             \
   }
-#define CHUNKS_1D(name, call)              \
-  static void name##_1d(INPUT, float *u) { \
-    IN_CHUNKS(call)                        \
-  }
-#define CHUNKS_2D(name, call)                        \
-  static void name##_2d(INPUT, float *u, float *v) { \
-    IN_CHUNKS(call)                                  \
-  }
-
-CHUNKS_1D(regular, vl_cells_1d(0, s, c, u + k))
-CHUNKS_2D(regular, vl_grid_2d(0, s, c, u + k, v + k))
-CHUNKS_1D(stratified, vl_cells_1d(1, s, c, u + k))
-CHUNKS_2D(stratified, vl_grid_2d(1, s, c, u + k, v + k))
-CHUNKS_1D(nrooks, vl_cells_1d(1, s, c, u + k))
-CHUNKS_2D(nrooks, vl_nrooks_2d(s, c, u + k, v + k))
-CHUNKS_1D(multi_jittered, vl_cells_1d(1, s, c, u + k))
-CHUNKS_2D(multi_jittered, vl_multi_jittered_2d(s, c, u + k, v + k))
-CHUNKS_1D(hammersley, vl_cells_1d(1, s, c, u + k))
-CHUNKS_2D(hammersley, vl_hammersley_2d(s, c, u + k, v + k))
-CHUNKS_1D(halton, vl_halton_1d(s, c, dimension, u + k))
+static void regular_1d(INPUT, float *u) {
+  IN_CHUNKS(vl_cells_1d(0, s, c, u + k))
+}
+static void regular_2d(INPUT, float *u, float *v) {
+  IN_CHUNKS(vl_grid_2d(0, s, c, u + k, v + k))
+}
+static void stratified_1d(INPUT, float *u) {
+  IN_CHUNKS(vl_cells_1d(1, s, c, u + k))
+}
+static void stratified_2d(INPUT, float *u, float *v) {
+  IN_CHUNKS(vl_grid_2d(1, s, c, u + k, v + k))
+}
+static void nrooks_1d(INPUT, float *u) {
+  IN_CHUNKS(vl_cells_1d(1, s, c, u + k))
+}
+static void nrooks_2d(INPUT, float *u, float *v) {
+  IN_CHUNKS(vl_nrooks_2d(s, c, u + k, v + k))
+}
+static void multi_jittered_1d(INPUT, float *u) {
+  IN_CHUNKS(vl_cells_1d(1, s, c, u + k))
+}
+static void multi_jittered_2d(INPUT, float *u, float *v) {
+  IN_CHUNKS(vl_multi_jittered_2d(s, c, u + k, v + k))
+}
+static void hammersley_1d(INPUT, float *u) {
+  IN_CHUNKS(vl_cells_1d(1, s, c, u + k))
+}
+static void hammersley_2d(INPUT, float *u, float *v) {
+  IN_CHUNKS(vl_hammersley_2d(s, c, u + k, v + k))
+}
+static void halton_1d(INPUT, float *u) {
+  IN_CHUNKS(vl_halton_1d(s, c, dimension, u + k))
+}
 static void halton_2d(INPUT, float *u, float *v) {
   halton_1d(s, n, px, py, index, dimension, u);
   halton_1d(s, n, px, py, index, dimension + 1, v);
@@ -86,12 +99,35 @@ static void get_1d(INPUT, float *u) {
     return;
   }
   uint32_t count = VL_PAD(n);
-#define CASE(K, k)                                 \
-  case VL_SAMPLER_##K:                             \
-    k##_1d(s, count, px, py, index, dimension, u); \
-    return;
-  switch ((vlSamplerKind)s->kind) { VL_SAMPLER_KINDS(CASE) }
-#undef CASE
+  switch ((vlSamplerKind)s->kind) {
+    case VL_SAMPLER_INDEPENDENT:
+      independent_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_REGULAR:
+      regular_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_STRATIFIED:
+      stratified_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_NROOKS:
+      nrooks_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_MULTI_JITTERED:
+      multi_jittered_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_HAMMERSLEY:
+      hammersley_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_HALTON:
+      halton_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_SOBOL:
+      sobol_1d(s, count, px, py, index, dimension, u);
+      return;
+    case VL_SAMPLER_ZSOBOL:
+      zsobol_1d(s, count, px, py, index, dimension, u);
+      return;
+  }
 }
 
 static void get_2d(INPUT, float *u, float *v) {
@@ -100,12 +136,35 @@ static void get_2d(INPUT, float *u, float *v) {
     return;
   }
   uint32_t count = VL_PAD(n);
-#define CASE(K, k)                                    \
-  case VL_SAMPLER_##K:                                \
-    k##_2d(s, count, px, py, index, dimension, u, v); \
-    return;
-  switch ((vlSamplerKind)s->kind) { VL_SAMPLER_KINDS(CASE) }
-#undef CASE
+  switch ((vlSamplerKind)s->kind) {
+    case VL_SAMPLER_INDEPENDENT:
+      independent_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_REGULAR:
+      regular_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_STRATIFIED:
+      stratified_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_NROOKS:
+      nrooks_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_MULTI_JITTERED:
+      multi_jittered_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_HAMMERSLEY:
+      hammersley_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_HALTON:
+      halton_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_SOBOL:
+      sobol_2d(s, count, px, py, index, dimension, u, v);
+      return;
+    case VL_SAMPLER_ZSOBOL:
+      zsobol_2d(s, count, px, py, index, dimension, u, v);
+      return;
+  }
 }
 
 static void get_2d_with(INPUT, uint32_t with, float *u, float *v) {

@@ -214,35 +214,7 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
     vl_own_tracer(&t);
     return;
   }
-  switch ((vlTracer)def->tracer) {
-    case VL_TRACER_PATH:
-      vl_trace_path(&t);
-      break;
-    case VL_TRACER_RAYCAST:
-      vl_trace_raycast(&t);
-      break;
-    case VL_TRACER_AMBIENT_OCCLUSION:
-      vl_trace_ambient_occlusion(&t);
-      break;
-    case VL_TRACER_VOLPATH:
-      vl_trace_volpath(&t);
-      break;
-    case VL_TRACER_BIDIRECTIONAL:
-      vl_trace_bidirectional(&t);
-      break;
-    case VL_TRACER_MERGING:
-      vl_trace_merging(&t);
-      break;
-    case VL_TRACER_SPPM:
-      vl_trace_sppm(&t);
-      break;
-    case VL_TRACER_LIGHT_PATH:
-      vl_trace_light_path(&t);
-      break;
-    case VL_TRACER_RANDOM_WALK:
-      vl_trace_random_walk(&t);
-      break;
-  }
+  vl_trace_kind(&t, (vlTracer)def->tracer);
 }
 
 const vlTraceKernels vl_trace_kernel_table = {trace, vl_light_tracer, vl_light_media};

@@ -70,9 +70,7 @@ static void fail(const char *what, const char *detail) {
   exit(1);
 }
 
-/* ---- errors of images
- * --------------------------------------------------------------------------------------------
- */
+/* ---- errors of images -------------------------------------------------------------------- */
 
 static vlImage *load(const Bench *b, const char *path) {
   vlImage *image;
@@ -121,9 +119,7 @@ static Error compare(const vlImage *a, const vlImage *reference, bool pair) {
   return (Error){{rest / (double)(pixels - left_out), sum / (double)pixels, diff.flip}};
 }
 
-/* ---- running
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- running ----------------------------------------------------------------------------- */
 
 /* Appends the words of a text. %o is replaced by `image` and %n by `name`. */
 static void add_words(char **words, int *count, const char *text, const char *image,
@@ -222,9 +218,7 @@ static void render_pairs(Bench *b, const Scene *scene) {
   vl_image_destroy(reference);
 }
 
-/* ---- statistics
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- statistics -------------------------------------------------------------------------- */
 
 /* 97.5 % quantile of Student's t distribution. */
 static double student(int freedom) {
@@ -268,9 +262,7 @@ static void judge(const Bench *b, Scene *scene) {
   }
 }
 
-/* ---- results
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- results ----------------------------------------------------------------------------- */
 
 static void print_text(FILE *out, const char *text) {
   fputc('"', out);
@@ -352,9 +344,7 @@ static void print_scene(const Scene *s) {
   fflush(stdout);
 }
 
-/* ---- the command line
- * --------------------------------------------------------------------------------------------
- */
+/* ---- the command line -------------------------------------------------------------------- */
 
 static void add_scene(Bench *b, const char *text) {
   if (b->count == SCENES)

@@ -33,8 +33,7 @@ enum {
   SIZE = 512
 };
 
-/* ---- the scene: lumpy spheres in a room with a lamp
- * -------------------------------------------------------------- */
+/* ---- the scene: lumpy spheres in a room with a lamp -------------------------------------- */
 
 static vlMaterialId diffuse(vlScene *scene, float r, float g, float b) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
@@ -108,9 +107,7 @@ static void build_scene(vlScene *scene) {
   add_quad(scene, top, grey, emission);
 }
 
-/* ---- the record
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the record -------------------------------------------------------------------------- */
 
 typedef struct Chunk {
   int kind;
@@ -145,9 +142,7 @@ static void record(void *user, int kind, uint32_t n, const vlRays *rays) {
   pthread_mutex_unlock(&r->mutex);
 }
 
-/* ---- bare Embree
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- bare Embree ------------------------------------------------------------------------- */
 
 typedef struct Bare {
   const Record *record;
@@ -267,9 +262,7 @@ static double time_bare(vlContext *context, const Record *r, const vlWorld *worl
   return vl_seconds() - start;
 }
 
-/* ---- the renderer
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- the renderer ------------------------------------------------------------------------ */
 
 static vlRenderStats render_once(vlContext *context, const vlWorld *world,
                                  const vlSceneDefs *defs) {

@@ -1,5 +1,5 @@
-/* allocator: velo inside a program that counts its memory: an allocator of its own, a limit,
- * and a log. The program prints the most bytes that velo held; at the end it holds none.
+/* allocator: velo inside a program that counts its memory: an allocator of its own, a limit, and a log. The program
+ * prints the most bytes that velo held; at the end it holds none.
  *
  *   allocator SCENE IMAGE
  *   build/release/bin/example_allocator examples/corner.pbrt examples/allocator.jpg
@@ -19,21 +19,18 @@ static void *allocate(void *user, size_t size) {
 
 static void release(void *user, void *block) {
   (void)user;
-  if (block)
-    atomic_fetch_sub(&blocks, 1);
+  if (block) atomic_fetch_sub(&blocks, 1);
   free(block);
 }
 
 static void print(void *user, vlLogLevel level, const vlError *where, const char *message) {
   (void)user, (void)where;
-  if (level <= VL_LOG_WARNING)
-    fprintf(stderr, "%s\n", message);
+  if (level <= VL_LOG_WARNING) fprintf(stderr, "%s\n", message);
 }
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
@@ -58,9 +55,8 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
   must(vl_film_create(context, &defs->film, &film), &error);

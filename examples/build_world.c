@@ -1,9 +1,8 @@
-/* build_world: builds a world with velo's public API, as the lecture's World::build does, and
- * renders it: a pinhole camera with eye (300, 400, 500), lookat (0, 0, -50) and view-plane
- * distance 400, three spheres on a plane, one lamp.
+/* build_world: builds a world with velo's public API, as the lecture's World::build does, and renders it: a pinhole
+ * camera with eye (300, 400, 500), lookat (0, 0, -50) and view-plane distance 400, three spheres on a plane, one lamp.
  *
- *   build_world IMAGE [IMAGE...]     the suffix selects the format: .exr is linear, .png is for
- * displays build/release/bin/example_build_world examples/build_world.jpg
+ *   build_world IMAGE [IMAGE...]     the suffix selects the format: .exr is linear, .png is for displays
+ *   build/release/bin/example_build_world examples/build_world.jpg
  *
  * To compile it against an installed velo:
  *   cc -std=c17 build_world.c $(pkg-config --cflags --libs velo) -o build_world
@@ -15,8 +14,7 @@
 
 /* Checks the result of a call: on an error, prints one line and exits. */
 static void must(vlResult result, const char *what, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "build_world: %s: %s%s%s\n", what, vl_result_name(result), error ? ": " : "",
           error ? error->message : "");
   exit(1);
@@ -36,8 +34,7 @@ static vlMaterialId add_metal(vlScene *scene, const char *eta, const char *k, fl
   return vl_scene_add_material(scene, &def);
 }
 
-static void add_sphere(vlScene *scene, float x, float y, float z, float radius,
-                       vlMaterialId material) {
+static void add_sphere(vlScene *scene, float x, float y, float z, float radius, vlMaterialId material) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   def.radius = radius;
   def.z_min = -radius;
@@ -51,8 +48,7 @@ static void add_sphere(vlScene *scene, float x, float y, float z, float radius,
 
 /* The plane y = height: a square of side 2 size, as two triangles. */
 static void add_plane(vlScene *scene, float height, float size, vlMaterialId material) {
-  const float positions[] = {-size, height, -size, -size, height, size,
-                             size,  height, size,  size,  height, -size};
+  const float positions[] = {-size, height, -size, -size, height, size, size, height, size, size, height, -size};
   const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.vertices = 4;
@@ -97,8 +93,7 @@ static void build(vlScene *scene) {
   add_light(scene, ground);
 }
 
-/* The lecture's set_eye, set_lookat, set_viewdistance and compute_uvw: one description,
- * compiled once. */
+/* The lecture's set_eye, set_lookat, set_viewdistance and compute_uvw: one description, compiled once. */
 static vlCamera pinhole(uint32_t width, uint32_t height, double zoom) {
   vlCameraDef def = vl_default_camera_def(width, height);
   const double eye[3] = {300, 400, 500}, lookat[3] = {0, 0, -50};
@@ -111,8 +106,7 @@ static vlCamera pinhole(uint32_t width, uint32_t height, double zoom) {
   const char *warning = NULL;
   vlError error = {0};
   must(vl_camera_make(&def, &camera, &warning, &error), "camera", &error);
-  if (warning)
-    fprintf(stderr, "build_world: camera: %s\n", warning);
+  if (warning) fprintf(stderr, "build_world: camera: %s\n", warning);
   return camera;
 }
 
@@ -131,8 +125,7 @@ int main(int count, char **arguments) {
   vlScene *scene = NULL;
   must(vl_scene_create(context, &scene), "scene", NULL);
   build(scene);
-  must(vl_scene_result(scene, &error), "scene",
-       &error); /* the scene remembers its first error */
+  must(vl_scene_result(scene, &error), "scene", &error); /* the scene remembers its first error */
 
   vlWorld *world = NULL;
   vlBuildDef build_def = vl_default_build_def();
@@ -154,10 +147,9 @@ int main(int count, char **arguments) {
   vlImage *image = NULL;
   vlDevelopDef develop_def = vl_default_develop_def();
   must(vl_film_develop(film, &develop_def, &image), "develop", NULL);
-  for (int i = 1; i < count; i++)
-    must(vl_image_write(image, arguments[i], NULL, &error), arguments[i], &error);
-  printf("%u x %u pixels, %u samples each, %.2f s\n", (unsigned)WIDTH, (unsigned)HEIGHT,
-         (unsigned)stats.spp, stats.seconds);
+  for (int i = 1; i < count; i++) must(vl_image_write(image, arguments[i], NULL, &error), arguments[i], &error);
+  printf("%u x %u pixels, %u samples each, %.2f s\n", (unsigned)WIDTH, (unsigned)HEIGHT, (unsigned)stats.spp,
+         stats.seconds);
 
   vl_image_destroy(image);
   vl_film_destroy(film);

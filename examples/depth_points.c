@@ -1,6 +1,5 @@
-/* depth_points: depth becomes points in space: the depth of each pixel's centre (ground truth),
- * and the ray through it, give the point that it sees. The image shows the points from the
- * side; they are also written to IMAGE.ply.
+/* depth_points: depth becomes points in space: the depth of each pixel's centre (ground truth), and the ray through it,
+ * give the point that it sees. The image shows the points from the side; they are also written to IMAGE.ply.
  *
  *   depth_points SCENE IMAGE
  *   build/release/bin/example_depth_points examples/corner.pbrt examples/depth_points.jpg
@@ -12,8 +11,7 @@
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
@@ -34,9 +32,8 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
   must(vl_film_create(context, &defs->film, &film), &error);
@@ -57,23 +54,18 @@ int main(int count, char **arguments) {
   char path[4096];
   snprintf(path, sizeof path, "%s.ply", arguments[2]);
   FILE *file = fopen(path, "w");
-  if (!file)
-    return 1;
+  if (!file) return 1;
   fprintf(
       file,
-      "ply\nformat ascii 1.0\nelement vertex %u\nproperty float x\nproperty float y\nproperty "
-      "float z\nend_header\n",
+      "ply\nformat ascii 1.0\nelement vertex %u\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
       width * height);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++) {
       double o[3], d[3], p[3], place[2], t = vl_image_get(depth, x, y, 0);
-      if (!vl_camera_unproject(&camera, x + 0.5, y + 0.5, o, d) || t > 1e6)
-        t = 0; /* a pixel that sees nothing */
-      for (int i = 0; i < 3; i++)
-        p[i] = o[i] + t * d[i];
+      if (!vl_camera_unproject(&camera, x + 0.5, y + 0.5, o, d) || t > 1e6) t = 0; /* a pixel that sees nothing */
+      for (int i = 0; i < 3; i++) p[i] = o[i] + t * d[i];
       fprintf(file, "%.6g %.6g %.6g\n", p[0], p[1], p[2]);
-      if (t == 0 || !vl_camera_project(&side, p, place, NULL) || place[0] < 0 || place[1] < 0)
-        continue;
+      if (t == 0 || !vl_camera_project(&side, p, place, NULL) || place[0] < 0 || place[1] < 0) continue;
       uint32_t at = (uint32_t)place[1] * width + (uint32_t)place[0];
       for (uint32_t c = 0; c < 3 && place[0] < width && place[1] < height; c++)
         pixels[3 * at + c] = vl_image_get(color, x, y, c);

@@ -1,5 +1,5 @@
-/* edit_render: changes a scene and renders it again: gold becomes red plaster, one ball is
- * hidden. The second world shares with the first what has not changed. The image shows both.
+/* edit_render: changes a scene and renders it again: gold becomes red plaster, one ball is hidden. The second world
+ * shares with the first what has not changed. The image shows both.
  *
  *   edit_render SCENE IMAGE
  *   build/release/bin/example_edit_render examples/corner.pbrt examples/edit_render.jpg
@@ -10,15 +10,13 @@
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
 
 /* The left and the right image side by side; the caller destroys the result. */
-static vlImage *join(vlContext *context, const vlImage *left, const vlImage *right,
-                     vlError *error) {
+static vlImage *join(vlContext *context, const vlImage *left, const vlImage *right, vlError *error) {
   uint32_t width = vl_image_width(left), height = vl_image_height(left);
   vlImageDef def = vl_default_image_def(2 * width, height, 3);
   vlImage *both;
@@ -26,8 +24,7 @@ static vlImage *join(vlContext *context, const vlImage *left, const vlImage *rig
   float *to = vl_image_pixels(both);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < 2 * width; x++)
-      for (uint32_t c = 0; c < 3; c++)
-        *to++ = vl_image_get(x < width ? left : right, x % width, y, c);
+      for (uint32_t c = 0; c < 3; c++) *to++ = vl_image_get(x < width ? left : right, x % width, y, c);
   return both;
 }
 
@@ -47,9 +44,8 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
   must(vl_film_create(context, &defs->film, &film), &error);
@@ -57,14 +53,12 @@ int main(int count, char **arguments) {
   must(vl_film_develop(film, &defs->develop, &before), &error);
   const vlMaterialDef *material;
   for (uint32_t i = 1; (material = vl_scene_material(scene, (vlMaterialId){i})); i++) {
-    if (material->kind != VL_MATERIAL_CONDUCTOR)
-      continue;
+    if (material->kind != VL_MATERIAL_CONDUCTOR) continue;
     vlMaterialDef plaster = vl_default_material_def(VL_MATERIAL_DIFFUSE);
     plaster.reflectance = vl_spectrum_input(vl_spectrum_rgb(0.7f, 0.1f, 0.05f));
     must(vl_scene_set_material(scene, (vlMaterialId){i}, &plaster, &error), &error);
   }
-  uint32_t shapes =
-      vl_scene_id_count(scene, VL_ID_OBJECT); /* the ball that the file describes last */
+  uint32_t shapes = vl_scene_id_count(scene, VL_ID_OBJECT); /* the ball that the file describes last */
   must(vl_scene_show_shape(scene, (vlShapeId){shapes}, false, &error), &error);
   first = world;
   vlBuildDef build = defs->build;

@@ -1,6 +1,5 @@
-/* film_halves: a film in two halves: each has half of the samples, as if two machines had
- * rendered them; merged they have the bytes of one render of all samples. The film files are
- * IMAGE.1.film, IMAGE.2.film and IMAGE.film.
+/* film_halves: a film in two halves: each has half of the samples, as if two machines had rendered them; merged they
+ * have the bytes of one render of all samples. The film files are IMAGE.1.film, IMAGE.2.film and IMAGE.film.
  *
  *   film_halves SCENE IMAGE
  *   build/release/bin/example_film_halves examples/corner.pbrt examples/film_halves.jpg
@@ -11,8 +10,7 @@
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
@@ -33,9 +31,8 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
   char names[2][4096], whole[4096];
   uint32_t spp = defs->render.spp;
   must(vl_world_build(scene, &defs->build, &world, &error), &error);

@@ -1,5 +1,5 @@
-/* own_camera: a camera of one's own: a fisheye that sees half of all directions in the largest
- * circle of the image (docs/own-code.md). The scene's camera keeps its place and its size.
+/* own_camera: a camera of one's own: a fisheye that sees half of all directions in the largest circle of the image
+ * (docs/own-code.md). The scene's camera keeps its place and its size.
  *
  *   own_camera SCENE IMAGE
  *   build/release/bin/example_own_camera examples/corner.pbrt examples/own_camera.jpg
@@ -13,11 +13,9 @@ static void rays_of(void *user, const vlOwnFilmPoints *points, const vlOwnRays *
   const double *widest = user; /* angle from the axis at the edge of the circle */
   double half = 0.5 * fmin(points->width, points->height);
   for (uint32_t i = 0; i < points->count; i++) {
-    double x = (points->x[i] - 0.5 * points->width) / half,
-           y = (points->y[i] - 0.5 * points->height) / half;
+    double x = (points->x[i] - 0.5 * points->width) / half, y = (points->y[i] - 0.5 * points->height) / half;
     double r = hypot(x, y), angle = r * *widest;
-    if (r > 1)
-      continue; /* no ray: black and transparent */
+    if (r > 1) continue; /* no ray: black and transparent */
     rays->dx[i] = r > 0 ? sin(angle) * x / r : 0;
     rays->dy[i] = r > 0 ? sin(angle) * y / r : 0;
     rays->dz[i] = cos(angle);
@@ -26,16 +24,14 @@ static void rays_of(void *user, const vlOwnFilmPoints *points, const vlOwnRays *
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
 
 int main(int count, char **arguments) {
   static double right_angle = 1.5707963267948966;
-  static const vlOwnCamera fisheye = {
-      .name = "my fisheye", .rays = rays_of, .user = &right_angle};
+  static const vlOwnCamera fisheye = {.name = "my fisheye", .rays = rays_of, .user = &right_angle};
   if (count != 3) {
     fprintf(stderr, "usage: own_camera SCENE IMAGE\n");
     return 2;
@@ -51,10 +47,9 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
-  defs->camera.own = &fisheye; /* the rest of the camera stays: place, size, shutter */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
+  defs->camera.own = &fisheye;                          /* the rest of the camera stays: place, size, shutter */
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
   must(vl_film_create(context, &defs->film, &film), &error);

@@ -1,5 +1,5 @@
-/* own_tracer: a tracer of one's own: light that reaches the camera straight from lamps, or by
- * at most two surfaces (docs/own-code.md).
+/* own_tracer: a tracer of one's own: light that reaches the camera straight from lamps, or by at most two surfaces
+ * (docs/own-code.md).
  *
  *   own_tracer SCENE IMAGE
  *   build/release/bin/example_own_tracer examples/corner.pbrt examples/own_tracer.jpg
@@ -23,10 +23,8 @@ static void radiance_of(void *user, vlTrace *trace, const vlOwnPaths *paths) {
     for (int c = 0; c < 4; c++)
       for (uint32_t i = 0; i < paths->count; i++) {
         beta[c][i] = bounce ? beta[c][i] * next.weight[c][i] : 1;
-        if (bounce == 0 || next.specular[i])
-          paths->radiance[c][i] += beta[c][i] * hits.emission[c][i];
-        if (!occluded[i])
-          paths->radiance[c][i] += beta[c][i] * bsdf[c][i] * lights.radiance[c][i];
+        if (bounce == 0 || next.specular[i]) paths->radiance[c][i] += beta[c][i] * hits.emission[c][i];
+        if (!occluded[i]) paths->radiance[c][i] += beta[c][i] * bsdf[c][i] * lights.radiance[c][i];
       }
     vl_trace_bounce(trace, bounce, &next);
   }
@@ -34,8 +32,7 @@ static void radiance_of(void *user, vlTrace *trace, const vlOwnPaths *paths) {
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
@@ -57,9 +54,8 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
   defs->render.own_tracer = &two_surfaces;
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);

@@ -1,5 +1,5 @@
-/* stereo: the two eyes of a stereo pair, side by side. Their windows show the same rectangle at
- * the distance of convergence.
+/* stereo: the two eyes of a stereo pair, side by side. Their windows show the same rectangle at the distance of
+ * convergence.
  *
  *   stereo SCENE IMAGE
  *   build/release/bin/example_stereo examples/corner.pbrt examples/stereo.jpg
@@ -10,15 +10,13 @@
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
 
 /* The left and the right image side by side; the caller destroys the result. */
-static vlImage *join(vlContext *context, const vlImage *left, const vlImage *right,
-                     vlError *error) {
+static vlImage *join(vlContext *context, const vlImage *left, const vlImage *right, vlError *error) {
   uint32_t width = vl_image_width(left), height = vl_image_height(left);
   vlImageDef def = vl_default_image_def(2 * width, height, 3);
   vlImage *both;
@@ -26,8 +24,7 @@ static vlImage *join(vlContext *context, const vlImage *left, const vlImage *rig
   float *to = vl_image_pixels(both);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < 2 * width; x++)
-      for (uint32_t c = 0; c < 3; c++)
-        *to++ = vl_image_get(x < width ? left : right, x % width, y, c);
+      for (uint32_t c = 0; c < 3; c++) *to++ = vl_image_get(x < width ? left : right, x % width, y, c);
   return both;
 }
 
@@ -47,11 +44,9 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
-  defs->camera.stereo =
-      (vlStereo){.mode = VL_STEREO_OFF_AXIS, .interocular = 0.2, .convergence = 4.5};
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
+  defs->camera.stereo = (vlStereo){.mode = VL_STEREO_OFF_AXIS, .interocular = 0.2, .convergence = 4.5};
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_stereo(&defs->camera, &eyes[0], &eyes[1], NULL, &error), &error);
   must(vl_film_create(context, &defs->film, &film), &error);

@@ -1,5 +1,5 @@
-/* thousand_frames: a camera goes round the scene in 1000 small frames. World and film are made
- * once. The image is a sheet of 40 of the frames.
+/* thousand_frames: a camera goes round the scene in 1000 small frames. World and film are made once. The image is a
+ * sheet of 40 of the frames.
  *
  *   thousand_frames SCENE IMAGE
  *   build/release/bin/example_thousand_frames examples/corner.pbrt examples/thousand_frames.jpg
@@ -13,8 +13,7 @@ enum { FRAMES = 1000, WIDTH = 48, HEIGHT = 32, COLUMNS = 8, ROWS = 5 };
 
 /* Of a call that fails: one line, and the end of the program. */
 static void must(vlResult result, const vlError *error) {
-  if (result == VL_OK)
-    return;
+  if (result == VL_OK) return;
   fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
   exit(1);
 }
@@ -35,9 +34,8 @@ int main(int count, char **arguments) {
   must(vl_context_create(&def, &context), &error);
   must(vl_scene_create(context, &scene), &error);
   must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
-  must(vl_scene_complete(scene, NULL, &error),
-       &error);                             /* adds a camera and light if the file has none */
-  vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings */
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
   vlImageDef sheet_def = vl_default_image_def(COLUMNS * WIDTH, ROWS * HEIGHT, 3);
   vlImage *sheet;
   defs->film = vl_default_film_def(WIDTH, HEIGHT);
@@ -52,22 +50,18 @@ int main(int count, char **arguments) {
   for (uint32_t frame = 0; frame < FRAMES; frame++) {
     double turn = 6.283185307179586 * frame / FRAMES,
            eye[3] = {1.5 * sin(turn), 1.5 + 0.5 * sin(2 * turn), 4 + cos(turn)};
-    for (int i = 0; i < 3; i++)
-      defs->camera.eye[i] = eye[i];
+    for (int i = 0; i < 3; i++) defs->camera.eye[i] = eye[i];
     must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
     defs->render.seed = frame;
     vl_film_clear(film);
     must(vl_render(world, &camera, film, &defs->render, NULL, &error), &error);
     uint32_t place = frame / (FRAMES / (COLUMNS * ROWS));
-    if (frame % (FRAMES / (COLUMNS * ROWS)))
-      continue; /* a program would write the frame, or learn from it */
+    if (frame % (FRAMES / (COLUMNS * ROWS))) continue; /* a program would write the frame, or learn from it */
     must(vl_film_develop(film, &defs->develop, &image), &error);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
-      uint32_t x = place % COLUMNS * WIDTH + i % WIDTH,
-               y = place / COLUMNS * HEIGHT + i / WIDTH;
+      uint32_t x = place % COLUMNS * WIDTH + i % WIDTH, y = place / COLUMNS * HEIGHT + i / WIDTH;
       for (uint32_t c = 0; c < 3; c++)
-        pixels[3 * (y * COLUMNS * WIDTH + x) + c] =
-            vl_image_get(image, i % WIDTH, i / WIDTH, c);
+        pixels[3 * (y * COLUMNS * WIDTH + x) + c] = vl_image_get(image, i % WIDTH, i / WIDTH, c);
     }
     vl_image_destroy(image);
   }

@@ -19,8 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- random numbers: splitmix64 (Steele et al. 2014)
- * ------------------------------------------------------------- */
+/* ---- random numbers: splitmix64 (Steele et al. 2014) ------------------------------------- */
 
 typedef struct statRng {
   uint64_t state;
@@ -53,8 +52,7 @@ static inline void stat_direction(statRng *rng, double d[3]) {
   d[0] = r * cos(phi), d[1] = r * sin(phi), d[2] = z;
 }
 
-/* ---- the chi-square distribution
- * --------------------------------------------------------------------------------- */
+/* ---- the chi-square distribution --------------------------------------------------------- */
 
 /* Q(a, x) = Gamma(a, x) / Gamma(a): series below x = a + 1, Lentz's continued fraction above
  * (DLMF 8.7.1, 8.9.2). */
@@ -181,8 +179,7 @@ static inline double stat_correlation(const float *a, const float *b, size_t n) 
   return saa > 0 && sbb > 0 ? sab / sqrt(saa * sbb) : 0.0;
 }
 
-/* ---- densities over a rectangle
- * ---------------------------------------------------------------------------------- */
+/* ---- densities over a rectangle ---------------------------------------------------------- */
 
 typedef double statDensity(void *user, double x, double y);
 
@@ -271,8 +268,7 @@ static inline statResult stat_grid_test(statGrid *g, statDensity *density, void 
   return r;
 }
 
-/* ---- densities over the sphere
- * ----------------------------------------------------------------------------------- */
+/* ---- densities over the sphere ----------------------------------------------------------- */
 
 /* pdf per solid angle at unit direction d. */
 typedef double statSpherePdf(void *user, const double d[3]);

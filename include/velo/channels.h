@@ -144,8 +144,7 @@ VL_API vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
                                    const vlChannelsDef *def, vlImage **floats, vlImage **ids,
                                    vlError *error);
 
-/* ---- meaning of the ids
- * ---------------------------------------------------------------------------------------- */
+/* ---- meaning of the ids ------------------------------------------------------------------ */
 
 /** The kinds of ids. */
 typedef enum vlIdKind { VL_ID_OBJECT, VL_ID_MATERIAL, VL_ID_INSTANCE } vlIdKind;

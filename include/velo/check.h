@@ -12,9 +12,7 @@
 extern "C" {
 #endif
 
-/* ---- findings
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- findings ---------------------------------------------------------------------------- */
 
 /** Kinds of findings. */
 typedef enum vlFindingKind {
@@ -87,8 +85,7 @@ VL_API uint32_t vl_check_count(const vlCheck *check);
 /** Finding `index`, from 0; lives as long as the check and the scene; null past the end. */
 VL_API const vlFinding *vl_check_finding(const vlCheck *check, uint32_t index);
 
-/* ---- loading with diagnosis
- * ------------------------------------------------------------------------------------- */
+/* ---- loading with diagnosis -------------------------------------------------------------- */
 
 /** Receives a problem of a file, on the calling thread. Its code is what loading would have
  * returned; VL_OK: a remark on something valid that may be unintended. `problem` lives until
@@ -101,8 +98,7 @@ typedef void vlProblemFn(void *user, const vlError *problem);
 VL_API vlResult vl_scene_diagnose(vlScene *scene, const char *path, const vlLoadDef *def,
                                   vlProblemFn *tell, void *user, vlError *error);
 
-/* ---- contents of a scene
- * ---------------------------------------------------------------------------------------- */
+/* ---- contents of a scene ----------------------------------------------------------------- */
 
 /** A light: a vlLightDef, or a shape that emits light, with all its faces. */
 typedef struct vlLightInfo {

@@ -10,9 +10,7 @@
 extern "C" {
 #endif
 
-/* ---- aperture images
- * --------------------------------------------------------------------------------------------
- */
+/* ---- aperture images --------------------------------------------------------------------- */
 
 /** An image of the aperture. It never changes. Any number of cameras may share it, and it must
  * outlive them. */
@@ -31,8 +29,7 @@ VL_API vlResult vl_aperture_create_named(vlContext *context, const char *name,
 /** Null is allowed. */
 VL_API void vl_aperture_destroy(vlAperture *aperture);
 
-/* ---- lenses of many elements
- * ------------------------------------------------------------------------------------ */
+/* ---- lenses of many elements ------------------------------------------------------------- */
 
 /** A surface of a lens. radius: radius of curvature, positive if the centre is on the film's
  * side; 0 for the aperture stop. thickness: distance along the axis to the next surface. ior:
@@ -96,8 +93,7 @@ VL_API void vl_optics_def(const vlOptics *optics, vlOpticsDef *def, vlLensSurfac
 /** Fills *info. */
 VL_API void vl_optics_info(const vlOptics *optics, vlOpticsInfo *info);
 
-/* ---- the lens of a camera
- * --------------------------------------------------------------------------------------- */
+/* ---- the lens of a camera ---------------------------------------------------------------- */
 
 /** The description of a lens (vlCameraDef.lens). It adds to lens_radius and focus_distance of
  * vlCameraDef. */

@@ -18,9 +18,7 @@
 extern "C" {
 #endif
 
-/* ---- film
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- film -------------------------------------------------------------------------------- */
 
 /** The accumulated samples of an image. Only one thread at a time may use a film. Its context
  * must outlive it. */
@@ -108,9 +106,7 @@ VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlIm
  */
 VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 
-/* ---- render
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- render ------------------------------------------------------------------------------ */
 
 /** The state of a render. */
 typedef struct vlProgress {
@@ -245,8 +241,7 @@ VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *
 VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film,
                                  const vlRenderDef *def);
 
-/* ---- how the image of a scene is taken
- * -------------------------------------------------------------------------- */
+/* ---- how the image of a scene is taken --------------------------------------------------- */
 
 /** The coordinate system of the ground truth channels that the scene's file requests (pbrt's
  * gbuffer film). NONE: it requests no channels. */

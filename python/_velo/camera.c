@@ -4,9 +4,7 @@
 
 #include "module.h"
 
-/* ---- making
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- making ------------------------------------------------------------------------------ */
 
 static PyObject *camera_wrap(const vlCameraDef *def, const vlCamera *compiled,
                              const char *warning, PyObject *keep) {
@@ -258,8 +256,7 @@ static PyObject *camera_replace(Camera *self, PyObject *keywords) {
   return result;
 }
 
-/* ---- changes of the compiled camera
- * ------------------------------------------------------------------------------ */
+/* ---- changes of the compiled camera ------------------------------------------------------ */
 
 static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made,
                                const vlError *error) {
@@ -336,8 +333,7 @@ static PyObject *camera_stereo(Camera *self, PyObject *unused) {
                        with_compiled(self, VL_OK, &eyes[1], NULL));
 }
 
-/* ---- projection of arrays
- * ---------------------------------------------------------------------------------------- */
+/* ---- projection of arrays ---------------------------------------------------------------- */
 
 static bool read_rows(PyObject *object, const char *what, size_t columns, Numbers *n) {
   if (!numbers_read_any(object, 'd', what, n))
@@ -402,9 +398,7 @@ static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
   return own_check(own_of_camera(&self->camera)) ? PyFloat_FromDouble(angle) : NULL;
 }
 
-/* ---- members
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- members ----------------------------------------------------------------------------- */
 
 static PyObject *numbers_tuple(const double *values, int count) {
   PyObject *tuple = PyTuple_New(count);
@@ -463,9 +457,7 @@ static PyObject *camera_get(Camera *self, PyObject *name) {
   return result;
 }
 
-/* ---- camera files
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- camera files ------------------------------------------------------------------------ */
 
 static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, PyObject *frame,
                      PyObject *drop, const char **drops) {

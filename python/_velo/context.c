@@ -22,9 +22,7 @@ PyObject *call_package(const char *name, const char *format, ...) {
   return result;
 }
 
-/* ---- exceptions
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- exceptions -------------------------------------------------------------------------- */
 
 static PyObject *raise_error(vlResult result, const char *message, const char *file,
                              unsigned line, unsigned column) {
@@ -59,9 +57,7 @@ PyObject *raise_usage(const char *format, ...) {
   return raise_error(VL_ERROR_ARGUMENT, text, NULL, 0, 0);
 }
 
-/* ---- calls
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- calls ------------------------------------------------------------------------------- */
 
 bool context_is_ours(const Context *context) {
   return context && context->context && context->pid == (long)getpid();
@@ -99,9 +95,7 @@ void call_end(Call *call) {
     *call->busy = false;
 }
 
-/* ---- contexts
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- contexts ---------------------------------------------------------------------------- */
 
 static void log_message(void *user, vlLogLevel level, const vlError *where,
                         const char *message) {

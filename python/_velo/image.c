@@ -28,8 +28,7 @@ static vlImage *open_image(Image *self) {
   return self->image;
 }
 
-/* ---- buffers: rows, columns, channels
- * ---------------------------------------------------------------------------- */
+/* ---- buffers: rows, columns, channels ---------------------------------------------------- */
 
 static const char *const formats[] = {"B", "H", "e", "f", "I"};
 static const Py_ssize_t sizes[] = {1, 2, 2, 4, 4};
@@ -120,9 +119,7 @@ static PyObject *image_plane(Image *self, PyObject *arguments) {
   return (PyObject *)plane;
 }
 
-/* ---- new images
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- new images -------------------------------------------------------------------------- */
 
 static const char *const encodings[] = {"linear", "srgb", "gamma", NULL};
 
@@ -265,8 +262,7 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
   Py_RETURN_NONE;
 }
 
-/* ---- views and comparison
- * ---------------------------------------------------------------------------------------- */
+/* ---- views and comparison ---------------------------------------------------------------- */
 
 static PyObject *image_view(Image *self, PyObject *arguments) {
   static const char *const views[] = {"standard", "khronos_neutral", "agx", "raw", NULL};
@@ -331,9 +327,7 @@ static PyObject *image_denoise(Image *self, PyObject *denoiser) {
   return done == VL_OK ? image_object(self->context, clean) : raise_result(done, &error);
 }
 
-/* ---- attributes
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- attributes -------------------------------------------------------------------------- */
 
 static PyObject *image_attributes(Image *self, void *unused) {
   static const int counts[] = {1, 1, 0, 2, 3, 9, 16, 4, 8, 1, 16, 0};

@@ -36,8 +36,7 @@ static long running_pid;
 static bool shutting_down;
 static pthread_t shutter; /* the thread that ends the interpreter; only if shutting_down */
 
-/* ---- the thread of the call
- * -------------------------------------------------------------------------------------- */
+/* ---- the thread of the call -------------------------------------------------------------- */
 
 static void *run_body(void *argument) {
   Waiting *w = argument;
@@ -81,8 +80,7 @@ static bool start(pthread_t *thread, Waiting *w) {
   return started;
 }
 
-/* ---- the thread of Python
- * ---------------------------------------------------------------------------------------- */
+/* ---- the thread of Python ---------------------------------------------------------------- */
 
 static PyObject *state_object(const Waiting *w, int question) {
   if (question == STEP) {

@@ -12,9 +12,7 @@
 #include <velo/setting.h>
 #include <velo/velo.h>
 
-/* ---- objects
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- objects ----------------------------------------------------------------------------- */
 
 typedef struct Context {
   PyObject_HEAD vlContext *context;
@@ -115,8 +113,7 @@ void *make_object(int type);
 void free_object(PyObject *self);
 bool is_object(PyObject *object, int type);
 
-/* ---- calls of the library
- * ---------------------------------------------------------------------------------------- */
+/* ---- calls of the library ---------------------------------------------------------------- */
 
 /* A call of the library without the GIL. */
 typedef struct Call {
@@ -173,9 +170,7 @@ PyObject *raise_usage(const char *format, ...);
  * must be. */
 PyObject *raise_value(const char *what, PyObject *value, const char *format, ...);
 
-/* ---- the caller's numbers and texts
- * -------------------------------------------------------------------------------
- */
+/* ---- the caller's numbers and texts ------------------------------------------------------ */
 
 enum { MOST_PIXELS = 1 << 24 }; /* of a side of a camera's image */
 
@@ -212,9 +207,7 @@ const char *keep_path(PyObject *keep, PyObject *value, const char *what);
  */
 bool check_memory(const Context *context, uint64_t bytes, const char *what);
 
-/* ---- values
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- values ------------------------------------------------------------------------------ */
 
 /* Numbers of a buffer or of nested sequences, as doubles, floats or uint32s. */
 typedef struct Numbers {
@@ -278,8 +271,7 @@ Own *own_read(PyObject *value, vlOwnKind kind, const char *what);
  * own may be null. */
 bool own_check(const Own *own);
 
-/* ---- functions of the files
- * -------------------------------------------------------------------------------------- */
+/* ---- functions of the files -------------------------------------------------------------- */
 
 PyObject *image_object(Context *context,
                        vlImage *image); /* takes the image, also when it fails */

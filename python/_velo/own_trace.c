@@ -30,9 +30,7 @@ void own_radiance(void *user, vlTrace *trace, const vlOwnPaths *p) {
   PyGILState_Release(state);
 }
 
-/* ---- questions
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- questions --------------------------------------------------------------------------- */
 
 enum { ROW = VL_OWN_BATCH * sizeof(float) };
 typedef enum Question {

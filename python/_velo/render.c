@@ -4,9 +4,7 @@
 
 #include "module.h"
 
-/* ---- settings
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- settings ---------------------------------------------------------------------------- */
 
 static void settings_dealloc(Settings *self) {
   Py_XDECREF(self->keep);
@@ -211,9 +209,7 @@ PyType_Spec settings_spec = {"velo._velo.Settings", sizeof(Settings), 0,
                              Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
                              settings_slots};
 
-/* ---- renders
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- renders ----------------------------------------------------------------------------- */
 
 typedef struct Rendering {
   const vlWorld *world;

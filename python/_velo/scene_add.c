@@ -283,9 +283,7 @@ static bool check_lengths(const vlShapeDef *d, PyObject *keywords) {
   return true;
 }
 
-/* ---- adding
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- adding ------------------------------------------------------------------------------ */
 
 const char *const family_names[] = {"textures", "materials", "media",     "emission", "lights",
                                     "shapes",   "groups",    "instances", NULL};

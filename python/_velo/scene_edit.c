@@ -50,9 +50,7 @@ static PyObject *outcome(vlResult result, const vlError *error) {
   Py_RETURN_NONE;
 }
 
-/* ---- changes
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- changes ----------------------------------------------------------------------------- */
 
 static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def *def,
                         vlError *error) {
@@ -215,9 +213,7 @@ PyObject *scene_remove(Scene *self, PyObject *object) {
   return outcome(vl_scene_remove_instance(self->scene, (vlInstanceId){index}, &error), &error);
 }
 
-/* ---- handles
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- handles ----------------------------------------------------------------------------- */
 
 /* Whether the scene has an object of this index; *past: it has none from this one on. */
 static bool exists(const vlScene *scene, const vlSceneInfo *info, Family family, uint32_t index,

@@ -10,9 +10,7 @@ bool keep_object(PyObject *keep, PyObject *object) {
   return object && PyList_Append(keep, object) == 0;
 }
 
-/* ---- names
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- names ------------------------------------------------------------------------------- */
 
 /* Compares letters and digits only, whatever their case: "blackman-harris" is
  * "BLACKMAN_HARRIS". */
@@ -136,9 +134,7 @@ const vlParameter *find_parameter(const vlParameter *rows, size_t count, const c
   return found;
 }
 
-/* ---- spectra and ids
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- spectra and ids --------------------------------------------------------------------- */
 
 /* An attribute. The name is interned, since the interpreter's cache of methods keeps the str.
  */
@@ -255,9 +251,7 @@ static uint32_t handle_index(const Scene *scene, PyObject *value, const char *fa
   return handle->index;
 }
 
-/* ---- members
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- members ----------------------------------------------------------------------------- */
 
 static bool set_input(const Target *t, const vlParameter *p, PyObject *value, char *place,
                       bool spectrum) {

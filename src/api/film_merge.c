@@ -39,8 +39,7 @@ typedef struct Merge {
   vlError *error;
 } Merge;
 
-/* ---- which films belong together
- * --------------------------------------------------------------------------------- */
+/* ---- which films belong together --------------------------------------------------------- */
 
 typedef struct Difference {
   vlError *error;
@@ -154,8 +153,7 @@ static const vlFilmTexts *choose_texts(const Merge *m) {
   return least;
 }
 
-/* ---- samples of a block
- * ------------------------------------------------------------------------------------------ */
+/* ---- samples of a block ------------------------------------------------------------------ */
 
 static bool contains(const vlSampleSpan *a, uint32_t n, const vlSampleSpan *b, uint32_t m) {
   uint32_t i = 0;
@@ -329,9 +327,7 @@ static vlResult merge_block(Merge *m) {
   return VL_OK;
 }
 
-/* ---- the call
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the call ---------------------------------------------------------------------------- */
 
 static vlResult merge_opened(Merge *m, const char *output) {
   const vlFilmShape *shape = &m->parts[0].reader.shape;

@@ -23,9 +23,7 @@ vlReceiptDef vl_default_receipt_def(void) {
   return (vlReceiptDef){.cookie = VL_COOKIE_RECEIPT, .focus_distance = VL_UNSET};
 }
 
-/* ---- making
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- making ------------------------------------------------------------------------------ */
 
 static bool put_velo(json_t *tree, const char *commit) {
   json_t *velo = json_object();
@@ -224,9 +222,7 @@ vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt 
   return receipt_of(context, tree, good ? text_of(context, tree) : NULL, receipt, error);
 }
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size,
                           vlReceipt **receipt, vlError *error) {

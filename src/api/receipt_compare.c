@@ -111,9 +111,7 @@ static void compare_member(Comparison *c, const char *thing, const vlReceipt *th
     differ_value(c, NULL, name, old, new);
 }
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 /* Both lists are sorted by path, so one walk along both finds all differences. */
 static void compare_files(Comparison *c, const vlReceipt *then, const vlReceipt *now) {
@@ -137,9 +135,7 @@ static void compare_files(Comparison *c, const vlReceipt *then, const vlReceipt 
   }
 }
 
-/* ---- all
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- all --------------------------------------------------------------------------------- */
 
 static void compare_velo(Comparison *c, const vlReceipt *then, const vlReceipt *now,
                          uint32_t parts) {

@@ -22,8 +22,7 @@
 #include <sys/socket.h>
 #include <sys/syscall.h>
 
-/* ---- Landlock (linux/landlock.h; Documentation/userspace-api/landlock.rst of Linux)
- * ------------------------------ */
+/* ---- Landlock (linux/landlock.h; Documentation/userspace-api/landlock.rst of Linux) ------ */
 
 enum {
   CREATE_RULESET = 444,
@@ -148,9 +147,7 @@ static uint32_t confine_files(const char *const *read, uint32_t read_count,
   return good ? (uint32_t)version : 0;
 }
 
-/* ---- seccomp
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- seccomp ----------------------------------------------------------------------------- */
 
 #if defined(__x86_64__)
 #define NATIVE AUDIT_ARCH_X86_64

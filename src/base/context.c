@@ -31,9 +31,8 @@ struct vlContext {
   vlPool pool;
 };
 
-/* ---- memory: a header of 64 bytes before each block holds its size, so that the count is
- * exact
- * ------------------- */
+/* Memory: a header of 64 bytes before each block holds its size, so that the count is
+ * exact. */
 
 enum { HEADER = 64 };
 typedef struct BlockHeader {
@@ -152,9 +151,7 @@ size_t vl_context_memory(const vlContext *context, size_t *peak) {
   return atomic_load(&context->held);
 }
 
-/* ---- log
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- log --------------------------------------------------------------------------------- */
 
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format,
             ...) {
@@ -168,9 +165,7 @@ void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const ch
   pthread_mutex_unlock(&context->log_mutex);
 }
 
-/* ---- workers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- workers ----------------------------------------------------------------------------- */
 
 static void *wait_turn(void *mutex) {
   pthread_mutex_lock(mutex);
@@ -212,9 +207,7 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, voi
   vl_parallel_for_at(context, &(vlLoopDef){0}, count, body, loop_user);
 }
 
-/* ---- the sandbox
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the sandbox ------------------------------------------------------------------------- */
 
 bool vl_context_allows(const vlContext *context, const char *path) {
   return vl_sandbox_allows((vlSandbox *)(uintptr_t)&context->sandbox,
@@ -229,8 +222,7 @@ uint64_t vl_context_max_texture_pixels(const vlContext *context) {
   return context->def.max_texture_pixels;
 }
 
-/* ---- creation and destruction
- * ------------------------------------------------------------------------------------ */
+/* ---- creation and destruction ------------------------------------------------------------ */
 
 vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);

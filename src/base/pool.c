@@ -79,9 +79,7 @@ static void give_way(vlPool *pool, const vlLoop *loop) {
   }
 }
 
-/* ---- threads
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- threads ----------------------------------------------------------------------------- */
 
 static void *pool_thread(void *argument) {
   Slot slot = *(Slot *)argument;

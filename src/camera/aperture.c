@@ -15,9 +15,7 @@
 static const double pi = 3.14159265358979323846;
 enum { LARGEST = 4096, NAMED = 256 };
 
-/* ---- blades
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- blades ------------------------------------------------------------------------------ */
 
 void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   memset(blades, 0, sizeof *blades);
@@ -47,9 +45,7 @@ void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const 
   }
 }
 
-/* ---- images
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 struct vlAperture {
   vlContext *context;
@@ -201,9 +197,7 @@ void vl_aperture_destroy(vlAperture *a) {
   VL_FREE(context, a->values, a->rows, a->columns, a);
 }
 
-/* ---- pbrt's names
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- pbrt's names ------------------------------------------------------------------------ */
 
 /* Whether the point is inside the polygon (even-odd rule). */
 static bool inside(const double (*corners)[2], int count, double x, double y) {

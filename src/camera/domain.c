@@ -14,8 +14,7 @@
 enum { DEGREE = 8, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
 static const double pi = 3.14159265358979323846;
 
-/* ---- where a radial distortion folds: the first root of a polynomial
- * --------------------------------------------- */
+/* ---- where a radial distortion folds: the first root of a polynomial --------------------- */
 
 static double value_at(const double *p, int degree, double s) {
   double value = 0.0;
@@ -72,8 +71,7 @@ static double radial_fold(const vlDistortionMap *m) {
   return sqrt(first);
 }
 
-/* ---- the general case: along 64 directions, the first point with a determinant <= 0
- * ------------------------------ */
+/* ---- the general case: along 64 directions, the first point with a determinant <= 0 ------ */
 
 /* Lower bound of the tilt's w. There the sensor is seen edge-on, and a point lies 1e6 focal
  * lengths away. */
@@ -125,8 +123,7 @@ static double fold_radius(const vlDistortionMap *m, double most) {
   return radius < most ? 0.998 * radius : radius; /* margin for folds between the directions */
 }
 
-/* ---- number of Newton steps
- * -------------------------------------------------------------------------------------- */
+/* ---- number of Newton steps -------------------------------------------------------------- */
 
 /* Returns the number of Newton steps that invert the distortion of (x, y), or MAX_STEPS + 1 if
  * they fail. */
@@ -182,9 +179,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
   return steps + 1;
 }
 
-/* ---- the image
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the image --------------------------------------------------------------------------- */
 
 /* Returns, for a lens of many elements, the fraction of the image in film rings that no light
  * reaches. */

@@ -29,9 +29,7 @@ typedef struct Pen {
   VL_ARRAY(vlDrawingLabel) labels;
 } Pen;
 
-/* ---- primitives
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- primitives -------------------------------------------------------------------------- */
 
 static bool wanted(const Pen *p, vlDrawingPart part) {
   return p->def->parts >> part & 1;
@@ -103,9 +101,7 @@ static void axis_of(const vlCamera *c, int i, double axis[3]) {
     axis[k] /= sqrt(length);
 }
 
-/* ---- the view surface
- * --------------------------------------------------------------------------------------------
- */
+/* ---- the view surface -------------------------------------------------------------------- */
 
 /* The point at `depth` on the ray of film point (x, y): depth along the view direction if the
  * surface is flat, else distance from the ray's origin. Negative depth: behind the eye. */
@@ -248,8 +244,7 @@ static void edges(Pen *p, vlDrawingPart part, double from, double to) {
   }
 }
 
-/* ---- the parts of one camera
- * ------------------------------------------------------------------------------------- */
+/* ---- the parts of one camera ------------------------------------------------------------- */
 
 static void draw_eye(Pen *p) {
   const vlCamera *c = p->camera;
@@ -399,9 +394,7 @@ static void draw_small(Pen *p) {
   draw_eye(p);
 }
 
-/* ---- the call
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the call ---------------------------------------------------------------------------- */
 
 vlDrawingDef vl_default_drawing_def(void) {
   return (vlDrawingDef){.cookie = VL_COOKIE_DRAWING,

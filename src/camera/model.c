@@ -162,8 +162,7 @@ bool vl_camera_sees_ahead(vlProjection kind) {
   return vl_projection_row(kind)->traits & VL_PROJECTION_AHEAD;
 }
 
-/* ---- COLMAP's models (sensor/models.h of COLMAP; parameters in its order)
- * ---------------------------------------- */
+/* ---- COLMAP's models (sensor/models.h of COLMAP; parameters in its order) ---------------- */
 
 typedef struct {
   const char *name;

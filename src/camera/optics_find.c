@@ -116,9 +116,7 @@ void vl_optics_find_pupils(vlOptics *o) {
   }
 }
 
-/* ---- chief rays
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- chief rays -------------------------------------------------------------------------- */
 
 /* Computes x at the stop for the ray from the film radius to x = p at the rear surface. It
  * ignores apertures; they are tested once the chief ray is found. */

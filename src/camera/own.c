@@ -74,9 +74,7 @@ void vl_own_world_rays(const vlCameraCompiled *c, uint32_t n, const double *x, c
   }
 }
 
-/* ---- making
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- making ------------------------------------------------------------------------------ */
 
 static bool is_name(const char *name) {
   size_t size = name ? strlen(name) : 0;

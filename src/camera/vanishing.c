@@ -101,9 +101,7 @@ bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3],
   return true;
 }
 
-/* ---- the inverse
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the inverse ------------------------------------------------------------------------- */
 
 vlVanishingDef vl_default_vanishing_def(uint32_t width, uint32_t height) {
   return (vlVanishingDef){.cookie = VL_COOKIE_VANISHING,

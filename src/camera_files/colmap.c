@@ -164,9 +164,7 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
   return result;
 }
 
-/* ---- many images
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- many images ------------------------------------------------------------------------- */
 
 typedef struct {
   double id;
@@ -330,9 +328,7 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   return read_cameras(file, cameras, NULL, record);
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, const char **model,
                              double p[12], uint32_t *count) {

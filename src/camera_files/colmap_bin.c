@@ -124,9 +124,7 @@ vlResult vl_colmap_load(const vlCameraFile *file, const char *path, char **text,
   return VL_OK;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void put_whole(vlCameraText *text, uint64_t value, uint32_t count) {
   char bytes[8];

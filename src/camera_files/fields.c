@@ -8,9 +8,7 @@
 
 #include "math/elementary.h"
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 const char *const vl_camera_matrix_names[4] = {"fx", "fy", "cx", "cy"};
 
@@ -103,9 +101,7 @@ void vl_camera_set_flipped(vlCameraDef *def, const double m[16]) {
   vl_camera_flip_axes(m, def->world_from_camera);
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 /* The values that every form can name, computed from the camera. */
 typedef struct {

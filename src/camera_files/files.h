@@ -31,9 +31,7 @@ typedef struct vlCameraFile {
       *ordinal; /* number of the camera to read, which overrides the def; may be null */
 } vlCameraFile;
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -135,9 +133,7 @@ vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t
 vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key,
                          const double k[9], vlCameraDef *def);
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 typedef struct vlCameraText {
   vlContext *context;
@@ -217,9 +213,7 @@ vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def);
  * coefficients after it are 0. Returns false if the model is not one of OpenCV's. */
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 
-/* ---- lenses
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- lenses ------------------------------------------------------------------------------ */
 
 /* Sets fx, fy, cx, cy from values for which the centre of the first pixel is (0, 0). */
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
@@ -234,8 +228,7 @@ void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
 /* The family of a camera's lens, with its coefficients. */
 vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
 
-/* ---- rotations: row-major 3 x 3
- * ---------------------------------------------------------------------------------- */
+/* ---- rotations: row-major 3 x 3 ---------------------------------------------------------- */
 
 void vl_rotation_from_vector(const double v[3], double r[9]);
 void vl_rotation_to_vector(const double r[9], double v[3]);
@@ -258,9 +251,7 @@ void vl_camera_flip_axes(const double m[16], double result[16]);
 void vl_camera_flip_columns(const double m[16], double x, double y, double z,
                             double result[16]);
 
-/* ---- dialects
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- dialects ---------------------------------------------------------------------------- */
 
 typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree,
                                   vlCameraRecord *record);

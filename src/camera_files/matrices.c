@@ -23,9 +23,7 @@ static const Api apis[] = {{"opengl", VL_CAMERA_DIALECT_OPENGL, false, -1.0, fal
                            {"d3d", VL_CAMERA_DIALECT_D3D, false, 0.0, true, true}};
 enum { API_COUNT = VL_LENGTH(apis) };
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 /* A string that must be one of two words. */
 static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key,
@@ -211,9 +209,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 /* Projection matrix from view space (x right, y up, z back) to clip space, for column vectors.
  */

@@ -14,9 +14,7 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 typedef struct {
   const vlCameraFile *file;
@@ -413,9 +411,7 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void put_float(vlCameraText *text, const char *name, double value) {
   vl_camera_put(text, "    <float name=\"%s\" value=\"%.17g\"/>\n", name, value + 0.0);

@@ -135,7 +135,7 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, vlCamera
 }
 
 /* ---- names: of the calibration program (today and in version 2), and those that scripts use
- * ---------------------- */
+ * ---- */
 
 static const char *const matrix_names[] = {"camera_matrix", "cameraMatrix",     "Camera_Matrix",
                                            "CameraMatrix",  "intrinsic_matrix", "K",
@@ -259,9 +259,7 @@ static bool is_opencv(const json_t *tree) {
          vl_camera_has(tree, "image_width");
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 /* The lens as both dialects write it: coefficients, and whether it is a fisheye. */
 vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14],

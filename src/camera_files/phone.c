@@ -12,9 +12,7 @@ static void set_arkit_pose(const double m[16], vlCameraDef *d) {
   vl_camera_set_flipped(d, m);
 }
 
-/* ---- Record3D
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- Record3D ---------------------------------------------------------------------------- */
 
 static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
                               vlCameraRecord *record) {
@@ -71,9 +69,7 @@ const vlCameraFormat vl_format_record3d = {
     .read = read_record3d,
     .not_written = "it describes a recording of a phone"};
 
-/* ---- Polycam
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- Polycam ----------------------------------------------------------------------------- */
 
 static vlResult read_polycam(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
@@ -108,9 +104,7 @@ const vlCameraFormat vl_format_polycam = {
         "  \"t_20\": $flipped@8, \"t_21\": $flipped@9, \"t_22\": $flipped@10, \"t_23\": "
         "$flipped@11\n}\n"};
 
-/* ---- 3D Scanner App
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- 3D Scanner App ---------------------------------------------------------------------- */
 
 static vlResult read_scanner(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {

@@ -38,9 +38,7 @@ static void set_lens(const Lens *lens, vlCameraDef *d) {
   memcpy(d->distortion_coefficients, thin, sizeof thin);
 }
 
-/* ---- XMP
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- XMP --------------------------------------------------------------------------------- */
 
 static const json_t *description_of(const json_t *tree) {
   const char *tag = vl_camera_text(tree, "<");
@@ -169,9 +167,7 @@ static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record
   return VL_OK;
 }
 
-/* ---- CSV
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- CSV --------------------------------------------------------------------------------- */
 
 enum {
   NAME,

@@ -14,9 +14,7 @@ static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
   vl_camera_set_opencv(d, k, count);
 }
 
-/* ---- calib.io
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- calib.io ---------------------------------------------------------------------------- */
 
 static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key,
                            bool needed, double *value) {
@@ -103,9 +101,7 @@ const vlCameraFormat vl_format_calibio = {
     .read = read_calibio,
     .not_written = "it is the result of a calibration, with its statistics"};
 
-/* ---- nuScenes
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- nuScenes ---------------------------------------------------------------------------- */
 
 static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
                               vlCameraRecord *record) {
@@ -147,9 +143,7 @@ const vlCameraFormat vl_format_nuscenes = {
     .read = read_nuscenes,
     .not_written = "it is a table of a dataset, with keys of other tables"};
 
-/* ---- CMU Panoptic
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- CMU Panoptic ------------------------------------------------------------------------ */
 
 static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
                               vlCameraRecord *record) {
@@ -191,9 +185,7 @@ const vlCameraFormat vl_format_panoptic = {
         "   \"K\": [$K:3],\n   \"distCoef\": [$k],\n   \"R\": [$R:3],\n   \"t\": "
         "[$t:1]}\n]}\n"};
 
-/* ---- Nerfies
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- Nerfies ----------------------------------------------------------------------------- */
 
 static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {

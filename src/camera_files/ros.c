@@ -33,9 +33,7 @@ static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraR
   return result;
 }
 
-/* ---- .ini
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- .ini -------------------------------------------------------------------------------- */
 
 typedef struct {
   const vlCameraFile *file;
@@ -146,9 +144,7 @@ static bool is_ros(const json_t *tree) {
           (vl_camera_has(tree, "distortion_model") || (d && vl_camera_has(tree, "width"))));
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void put_rows(vlCameraText *text, const char *name, const double *m, int rows,
                      int columns) {

@@ -33,9 +33,7 @@ static vlMat4 rigid(const double r[9], const double t[3]) {
   return m;
 }
 
-/* ---- DepthAI
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- DepthAI ----------------------------------------------------------------------------- */
 
 static const json_t *depthai_camera(const json_t *list, double socket) {
   const json_t *pair;
@@ -130,9 +128,7 @@ const vlCameraFormat vl_format_depthai = {
     .read = read_depthai,
     .not_written = "it is the factory calibration of a device"};
 
-/* ---- Azure Kinect
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- Azure Kinect ------------------------------------------------------------------------ */
 
 static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
                             vlCameraRecord *record) {
@@ -193,9 +189,7 @@ const vlCameraFormat vl_format_kinect = {
     .read = read_kinect,
     .not_written = "it is the factory calibration of a device"};
 
-/* ---- RealSense
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- RealSense --------------------------------------------------------------------------- */
 
 static bool is_stream(const json_t *object) {
   return vl_camera_has(object, "ppx") && vl_camera_has(object, "ppy") &&

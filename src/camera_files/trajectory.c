@@ -89,9 +89,7 @@ vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file,
   return VL_OK;
 }
 
-/* ---- which file
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- which file -------------------------------------------------------------------------- */
 
 /* Adds a camera with its pose as a frame. */
 static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraRecord *record,
@@ -174,9 +172,7 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
                                    : result;
 }
 
-/* ---- the public face
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- the public face --------------------------------------------------------------------- */
 
 vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def,
                             vlTrajectory **trajectory, vlError *error) {

@@ -12,9 +12,8 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- transforms: matrices for column vectors; the first operation of an order is the
- * outermost
- * ------------------- */
+/* Transforms: matrices for column vectors; the first operation of an order is the
+ * outermost. */
 
 typedef struct {
   const vlCameraFile *file;
@@ -102,9 +101,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
   return VL_OK;
 }
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 /* Refuses values that change with time. */
 static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
@@ -277,9 +274,7 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 /* Names in USD consist of letters, digits and _. */
 static void put_name(vlCameraText *text, const char *name) {

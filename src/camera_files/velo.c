@@ -20,9 +20,7 @@ static const char *projection_key(vlProjection kind) {
 }
 static const char *const distortions[] = {"none", "opencv", "radial", "thin-prism"};
 
-/* ---- fields
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- fields ------------------------------------------------------------------------------ */
 
 typedef struct Field Field;
 typedef void Put(vlCameraText *text, const Field *field, const vlCameraDef *def);
@@ -168,9 +166,7 @@ static void list_fields(Fields *fields) {
   }
 }
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 static vlResult check_names(const vlCameraFile *file, const json_t *tree,
                             const Fields *fields) {
@@ -354,9 +350,7 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree,
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void put_fov_axis(vlCameraText *text, const Field *field, const vlCameraDef *d) {
   if (!vl_is_unset(d->fov))

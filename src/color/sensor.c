@@ -30,9 +30,7 @@ static double sampled(const float *v, int count, int stride, int lambda) {
   return t > 0.0 ? a + t * ((double)v[(i + 1) * stride] - a) : a;
 }
 
-/* ---- daylight
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- daylight ---------------------------------------------------------------------------- */
 
 void vl_daylight_xy(double t, double xy[2]) {
   double x = t <= 7000.0
@@ -66,9 +64,7 @@ void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]) {
   }
 }
 
-/* ---- the matrix
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the matrix -------------------------------------------------------------------------- */
 
 /* Response of three curves to a patch (null: white) under a light; curve k's value at nm i is
  * curves[k][i * stride]. */

@@ -63,9 +63,7 @@ bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
   return false;
 }
 
-/* ---- bytes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- bytes ------------------------------------------------------------------------------- */
 
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size) {
   if (bytes->full || !VL_RESERVE(context, &bytes->data, size + 1)) {
@@ -89,9 +87,7 @@ void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
                                          : sizeof text - 1);
 }
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size) {
   return vl_path_join(x->path, name, path, size) ||
@@ -180,9 +176,7 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
   return fine;
 }
 
-/* ---- the face
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the face ---------------------------------------------------------------------------- */
 
 static void start(vlExport *x, bool dry) {
   x->dry = dry;

@@ -65,9 +65,7 @@ typedef struct vlExport {
   vlBytes text;
 } vlExport;
 
-/* ---- export.c
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- export.c ---------------------------------------------------------------------------- */
 
 void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Stores the error if it is the first one. Always returns false. */
@@ -96,9 +94,7 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data,
                     size_t *size);
 
-/* ---- values.c
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- values.c ---------------------------------------------------------------------------- */
 
 /* Converts the input to linear sRGB. Lights are divided by their luminance, as in the tracer. A
  * textured input gives the mean of its texture if that is easily computed. */
@@ -120,9 +116,7 @@ float vl_export_mean_square(vlExport *x, const vlFloatInput *input);
 /* GGX alpha from the roughness of a pbrt material. */
 float vl_export_alpha(vlExport *x, const vlMaterialDef *m, const vlFloatInput *roughness);
 
-/* ---- meshes.c
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- meshes.c ---------------------------------------------------------------------------- */
 
 /* A shape as triangles. vl_export_free_mesh frees the blocks in `own`. The function returns
  * false when there is no mesh; it has then reported an error or counted a loss. */
@@ -142,9 +136,7 @@ bool vl_export_make_uvs(vlExport *x, const vlShapeDef *d, uint32_t last, vlExpor
  * was loaded. */
 void vl_export_lose_choices(vlExport *x);
 
-/* ---- glTF, pbrt
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- glTF, pbrt -------------------------------------------------------------------------- */
 
 bool vl_export_gltf(vlExport *x);
 /* Appends bytes to the buffer and returns the index of their bufferView. target 0: the

@@ -57,9 +57,7 @@ static inline size_t vl_film_most_data(const vlFilmDef *def) {
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
 
-/* ---- header
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- header ------------------------------------------------------------------------------ */
 
 /* What a header has beside the shape: JSON texts, each of which may be null. */
 typedef struct vlFilmTexts {
@@ -79,9 +77,7 @@ char *vl_film_attributes_make(vlContext *context, const vlImage *image);
 vlResult vl_film_attributes_set(const char *path, const char *text, vlImage *image,
                                 vlError *error);
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 typedef struct vlFilmReader {
   vlContext *context;
@@ -116,18 +112,14 @@ vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
 /* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
 
-/* ---- merging
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- merging ----------------------------------------------------------------------------- */
 
 /* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file.
  * to_end, from_end: the indices behind their last samples. */
 void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, uint32_t to_end,
                        const void *from, uint32_t from_end);
 
-/* ---- earlier formats
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- earlier formats --------------------------------------------------------------------- */
 
 /* The size of a block's data in a file of format 1 or 2. compared: it has a comparison, and
  * means with it. */
@@ -137,9 +129,7 @@ size_t vl_film_old_data_size(const vlFilmDef *def, uint32_t format, size_t pixel
  * vl_film_most_data bytes. */
 void vl_film_convert_old_data(const vlFilmDef *def, size_t pixels, void *data);
 
-/* ---- locks
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- locks ------------------------------------------------------------------------------- */
 
 struct vlFilmLock {
   vlContext *context;
@@ -150,9 +140,7 @@ struct vlFilmLock {
 vlResult vl_film_lock_write(vlContext *context, const char *path, vlFilmLock **lock,
                             vlError *error);
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 /* The number of samples of a block. */
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);

@@ -39,9 +39,7 @@ static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
 }
 
-/* ---- making
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- making ------------------------------------------------------------------------------ */
 
 static json_t *number(double value) {
   return isinf(value) ? json_string("infinity") : json_real(value);
@@ -116,9 +114,7 @@ char *vl_film_header_make(vlContext *context, const vlFilmShape *shape,
   return text;
 }
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 static vlResult wrong(const char *path, const char *what, vlError *error) {
   return vl_fail(error, VL_ERROR_SCENE,

@@ -196,9 +196,7 @@ vlResult vl_film_reader_crc(vlFilmReader *r, uint32_t *crc, vlError *error) {
   return get(r, crc, sizeof *crc, r->data_at + r->head.data_size, error);
 }
 
-/* ---- values
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- values ------------------------------------------------------------------------------ */
 
 static bool within(vlInt128 value, uint64_t samples, int bits) {
   vlInt128 most = (vlInt128)samples << bits;

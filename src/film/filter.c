@@ -8,8 +8,7 @@
 
 #include "base/context.h"
 
-/* ---- elementary functions by their series: + - * / only
- * ---------------------------------------------------------- */
+/* ---- elementary functions by their series: + - * / only ---------------------------------- */
 
 /* 1/k: divisions in the series would be slow */
 static const double INVERSE[26] = {
@@ -40,9 +39,7 @@ static double sinc(double x) {
   return fabs(x) < 1e-9 ? 1.0 : series_sin_pi(x) / (3.14159265358979323846 * x);
 }
 
-/* ---- shapes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- shapes ------------------------------------------------------------------------------ */
 
 static double mitchell(double b, double c, double x) { /* on [0, 2] */
   if (x < 1.0)
@@ -102,9 +99,7 @@ double vl_filter_value(const vlPixelFilter *filter, int axis, double x) {
   return 0.0;
 }
 
-/* ---- tables
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- tables ------------------------------------------------------------------------------ */
 
 typedef struct Shape {
   const vlPixelFilter *filter;
@@ -307,9 +302,7 @@ static bool in_range(float x, float low, float high) {
   return x > low && x <= high; /* false for NaN */
 }
 
-/* ---- the whole table
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- the whole table --------------------------------------------------------------------- */
 
 static bool is_valid(const vlPixelFilter *filter) {
 #define COUNT(K, k) +1

@@ -116,9 +116,7 @@ bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other) {
   return true;
 }
 
-/* ---- develop
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- develop ----------------------------------------------------------------------------- */
 
 /* "S0.374,688nm": the middle of the bucket. The decimal sign is a comma, since a point
  * separates layers. */

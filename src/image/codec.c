@@ -112,9 +112,7 @@ void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel
     }
 }
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   *image = NULL;
@@ -250,9 +248,7 @@ vlResult vl_image_read_channels(vlContext *context, const char *path, const char
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 vlWriteDef vl_default_write_def(void) {
   return (vlWriteDef){

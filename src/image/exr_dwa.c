@@ -106,8 +106,7 @@ void vl_dwa_make_curve(uint16_t *curve) {
   }
 }
 
-/* ---- which channel is where
- * -------------------------------------------------------------------------------------- */
+/* ---- which channel is where -------------------------------------------------------------- */
 
 typedef struct Rule {
   char suffix[129];
@@ -206,9 +205,7 @@ static size_t lay_out(Dwa *d) {
   return lossy * ((d->width + 7) / 8) * ((d->height + 7) / 8);
 }
 
-/* ---- streams
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- streams ----------------------------------------------------------------------------- */
 
 static bool inflate_exactly(const uint8_t *from, size_t from_size, void *to, size_t size) {
   uLongf length = size;
@@ -246,9 +243,7 @@ static bool expand_runs(const uint8_t *from, size_t from_size, uint8_t *to, size
   return out == size;
 }
 
-/* ---- the DCT
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- the DCT ----------------------------------------------------------------------------- */
 
 static const uint8_t ZIGZAG[64] = {
     0,  1,  5,  6,  14, 15, 27, 28, 2,  4,  7,  13, 16, 26, 29, 42, 3,  8,  12, 17, 25, 30,
@@ -389,9 +384,7 @@ static bool unpack_channels(Dwa *d) {
   return true;
 }
 
-/* ---- a chunk
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- a chunk ----------------------------------------------------------------------------- */
 
 static vlResult unpack_streams(Dwa *d, const uint64_t *head, const uint8_t *p) {
   const uint64_t unknown_packed = head[2], ac_packed = head[3], dc_packed = head[4],

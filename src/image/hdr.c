@@ -176,9 +176,7 @@ vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void to_rgbe(const float rgb[3], uint8_t out[4]) {
   float v[3], peak = 0.0f;

@@ -219,9 +219,7 @@ uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]) {
   return count;
 }
 
-/* ---- values as light
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- values as light --------------------------------------------------------------------- */
 
 size_t vl_image_row_size(const vlImage *image) {
   return (size_t)image->width * image->channels * vl_pixel_size(image->type);
@@ -330,9 +328,7 @@ vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32
   return VL_OK;
 }
 
-/* ---- attributes
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- attributes -------------------------------------------------------------------------- */
 
 static vlImageAttribute *find_attribute(const vlImage *image, const char *name) {
   for (size_t i = 0; i < image->attributes.count; i++)

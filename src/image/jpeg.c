@@ -175,9 +175,7 @@ vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image) {
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void destination_start(j_compress_ptr c) {
   Jpeg *j = (Jpeg *)(void *)c->err;

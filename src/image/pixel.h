@@ -9,8 +9,7 @@
 
 #include "velo/image.h"
 
-/* ---- half floats (IEEE 754 binary16)
- * ----------------------------------------------------------------------------- */
+/* ---- half floats (IEEE 754 binary16) ----------------------------------------------------- */
 
 static inline float vl_half_to_float(uint16_t h) {
   uint32_t sign = (uint32_t)(h & 0x8000u) << 16, exponent = (h >> 10) & 31u,
@@ -51,9 +50,7 @@ static inline uint16_t vl_float_to_half(float f) {
   return (uint16_t)(sign | (magnitude - 0x38000000u) >> 13);
 }
 
-/* ---- curves
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- curves ------------------------------------------------------------------------------ */
 
 /* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives 0.
  */

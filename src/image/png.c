@@ -166,9 +166,7 @@ vlResult vl_png_read(const vlImageFile *file, vlImage **image) {
   return result;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 static void swap_row(const uint16_t *from, const vlImage *image, const uint32_t *channel,
                      uint32_t count, uint8_t *line) {

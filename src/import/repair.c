@@ -121,9 +121,7 @@ bool vl_repair_mesh(vlContext *context, vlRepairs *repairs, const vlShapeDef *de
   return true;
 }
 
-/* ---- the report
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the report -------------------------------------------------------------------------- */
 
 static const char *plural(uint64_t count) {
   return count == 1 ? "" : "s";

@@ -34,9 +34,7 @@ typedef struct vlBssrdfTable {
  * cosine of scattering. */
 void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *table);
 
-/* ---- splines
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- splines ----------------------------------------------------------------------------- */
 
 /* Weights of the four nodes from `first` on. Nodes outside the table have weight zero. */
 typedef struct vlSpline {
@@ -129,9 +127,7 @@ static inline float vl_spline_solve(vlSplinePiece p, float u, int integral, floa
   return t;
 }
 
-/* ---- lookups
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- lookups ----------------------------------------------------------------------------- */
 
 static inline vlSpline vl_bssrdf_albedo(const vlBssrdfTable *table, float albedo) {
   return vl_spline_at(table->albedo, VL_BSSRDF_ALBEDOS, albedo);

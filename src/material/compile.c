@@ -30,9 +30,7 @@ vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *flo
 const char *const vl_bsdf_names[] = {VL_BSDF_KINDS(NAME)};
 #undef NAME
 
-/* ---- coats
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- coats ------------------------------------------------------------------------------- */
 
 static float alpha_of(float roughness, bool remap) {
   return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
@@ -164,8 +162,7 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
   return VL_OK;
 }
 
-/* ---- what several kinds have
- * ------------------------------------------------------------------------------------- */
+/* ---- what several kinds have ------------------------------------------------------------- */
 
 vlResult vl_material_roughness(const vlMaterialBuild *b) {
   const vlMaterialFloat floats[] = {{b->def->u_roughness, &b->m->u_roughness},
@@ -234,8 +231,7 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
   return VL_OK;
 }
 
-/* ---- a function per kind
- * ----------------------------------------------------------------------------------------- */
+/* ---- a function per kind ----------------------------------------------------------------- */
 
 vlResult vl_compile_diffuse_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIFFUSE;

@@ -150,9 +150,7 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
   }
 }
 
-/* ---- lobes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- lobes ------------------------------------------------------------------------------- */
 
 /* The lobes from which directions are sampled, with the probabilities of the coat's reflection,
  * the base under the coat, and a cosine lobe. */
@@ -253,9 +251,7 @@ static vlVec3 draw(const Layers *l, const Lobes *lobes, vlVec3 o, float lobe, fl
   return vl_cosine_direction(u, v);
 }
 
-/* ---- kernels
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- kernels ----------------------------------------------------------------------------- */
 
 /* f cos between o and w, which both point up, without the delta. */
 static void scattered(const Layers *l, vlVec3 o, vlVec3 w, uint32_t seed, float value[4]) {

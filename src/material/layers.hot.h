@@ -59,9 +59,7 @@ static inline float layers_pass(float distance, vlVec3 w) {
   return distance > 0.0f ? vl_exp(-distance / vl_max(z, VL_MIN_FRACTION)) : 1.0f;
 }
 
-/* ---- the coat
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the coat ---------------------------------------------------------------------------- */
 
 typedef struct Step {
   vlVec3 w;
@@ -136,9 +134,7 @@ static inline float coat_reflection(const Layers *l, vlVec3 o, vlVec3 w, float *
          vl_ggx_shadowing(o.z, lo, w.z, li);
 }
 
-/* ---- the base
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the base ---------------------------------------------------------------------------- */
 
 /* f of the base between o and i, which both point up. The base must not be a mirror. */
 static inline void base_eval(const Layers *l, vlVec3 o, vlVec3 i, float f[4], float *pdf) {

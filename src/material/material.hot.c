@@ -14,8 +14,7 @@
  * tangent is mostly rounding error. */
 #define PARALLEL 1e-12f
 
-/* ---- bump and normal maps: both change the shading normal and dpdu
- * ----------------------------------------------- */
+/* ---- bump and normal maps: both change the shading normal and dpdu ----------------------- */
 
 static vlVec3 facing(vlVec3 n, vlVec3 side) {
   return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
@@ -125,9 +124,7 @@ static void normal_map(vlTextureRun *r, int32_t image) {
   }
 }
 
-/* ---- parameters
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- parameters -------------------------------------------------------------------------- */
 
 static void reflectance(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;

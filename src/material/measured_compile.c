@@ -12,9 +12,7 @@
 #include "material/tensor.h"
 #include "math/elementary.h"
 
-/* ---- the file's fields
- * -------------------------------------------------------------------------------------------
- */
+/* ---- the file's fields ------------------------------------------------------------------- */
 
 enum { PHI, THETA, NDF, SIGMA, VNDF, LUMINANCE, SPECTRA, LAMBDA, JACOBIAN, FIELDS };
 static const struct {
@@ -118,9 +116,7 @@ static vlResult check(Source *s, vlError *error) {
   return r;
 }
 
-/* ---- tables
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- tables ------------------------------------------------------------------------------ */
 
 static float *copy_values(const vlTensorField *f, float **room) {
   float *to = *room;
@@ -186,9 +182,7 @@ static void find_symmetry(vlMeasured *m) {
   m->side_y = vl_precise_sin((first + last) / 2) < 0 ? -1.0f : 1.0f;
 }
 
-/* ---- spectra
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- spectra ----------------------------------------------------------------------------- */
 
 /* Contribution of each measured wavelength to the channels of sRGB under daylight, 3 numbers
  * each. The spectrum is interpolated linearly between the measured wavelengths. A white surface

@@ -95,9 +95,7 @@ static inline float vl_schlick_weight(float cosine) {
   return m2 * m2 * m;
 }
 
-/* ---- sheen
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- sheen ------------------------------------------------------------------------------- */
 
 /* Smaller alphas are clamped to this. */
 #define VL_SHEEN_ALPHA 0.005f

@@ -3,9 +3,7 @@
  * lobes. Table lookups are scalar because they do not vectorise. */
 #include "material/principled.hot.h"
 
-/* ---- thin film
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- thin film --------------------------------------------------------------------------- */
 
 /* Reflectance of two parallel interfaces for one polarisation, with all reflections between
  * them.
@@ -58,8 +56,7 @@ static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel
   return sum * (1.0f / 3.0f);
 }
 
-/* ---- directional albedos
- * ----------------------------------------------------------------------------------------- */
+/* ---- directional albedos ----------------------------------------------------------------- */
 
 /* The isotropic alpha whose single scattering loses about the same energy. */
 static inline float base_alpha(float x, float y) {
@@ -217,8 +214,7 @@ static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const fl
   }
 }
 
-/* ---- multiple scattering in a transmissive solid's surface
- * ------------------------------------------------------- */
+/* ---- multiple scattering in a transmissive solid's surface ------------------------------- */
 
 /* Kulla and Conty 2017, extended to a boundary that transmits light. m(w) is the fraction of
  * energy that single scattering loses for direction w, M its mean over the cosine-weighted

@@ -14,9 +14,7 @@ static void share(vlTextureRun *r, int32_t node, float *row) {
     row[i] = vl_clamp(row[i], 0.0f, 1.0f);
 }
 
-/* ---- normals
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- normals ----------------------------------------------------------------------------- */
 
 /* The normal of a tangent-space normal map. Its green axis is along dpdv, as in glTF (up in the
  * image). */
@@ -78,9 +76,7 @@ static void turn_tangent(vlTextureRun *r, const float *angle) {
   }
 }
 
-/* ---- parameters
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- parameters -------------------------------------------------------------------------- */
 
 static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL_ROW_SIZE]) {
   uint32_t first = r->first, last = r->last;

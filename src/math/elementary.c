@@ -14,8 +14,7 @@ typedef struct Pair {
   double high, low;
 } Pair;
 
-/* ---- arithmetic of pairs
- * ----------------------------------------------------------------------------------------- */
+/* ---- arithmetic of pairs ----------------------------------------------------------------- */
 
 /* a + b, exactly. Requires |a| >= |b| or a = 0. */
 static Pair sum_ordered(double a, double b) {
@@ -72,8 +71,7 @@ static Pair one(double x) {
   return (Pair){x, 0.0};
 }
 
-/* ---- exponential and logarithm
- * ----------------------------------------------------------------------------------- */
+/* ---- exponential and logarithm ----------------------------------------------------------- */
 
 /* ln 2 as the sum of three parts. The first two have 40 bits, so their products with integers
  * below 2^13 are exact. */
@@ -208,9 +206,7 @@ double vl_precise_hypot(double x, double y) {
   return square_root(add(product(x, x), product(y, y))).high;
 }
 
-/* ---- angles
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- angles ------------------------------------------------------------------------------ */
 
 /* pi / 2 as the sum of four parts. The first three have 33 bits, so their products with
  * integers up to 2^20 are exact. */

@@ -15,8 +15,7 @@
 #define VL_INV_2PI 0.15915494309189533577f
 #define VL_INV_4PI 0.07957747154594766788f
 
-/* ---- unit disk: density 1 / pi
- * ----------------------------------------------------------------------------------- */
+/* ---- unit disk: density 1 / pi ----------------------------------------------------------- */
 
 /* Concentric squares to concentric circles (Shirley and Chiu 1997). r: signed distance from the
  * centre. */
@@ -45,8 +44,7 @@ static inline vlVec2 vl_unwarp_disk(float x, float y) {
                   vl_clamp(0.5f * (b + 1.0f), 0.0f, 1.0f)};
 }
 
-/* ---- hemisphere and sphere
- * --------------------------------------------------------------------------------------- */
+/* ---- hemisphere and sphere --------------------------------------------------------------- */
 
 /* Density cos(theta) / pi (Malley's method). z is accurate to the last bits near the horizon
  * too.
@@ -94,8 +92,7 @@ static inline vlVec2 vl_unwarp_sphere(vlVec3 w) {
   return (vlVec2){vl_clamp(0.5f * (1.0f - w.z), 0.0f, 1.0f), a < 0.0f ? a + 1.0f : a};
 }
 
-/* ---- triangle: density 1 / area
- * ---------------------------------------------------------------------------------- */
+/* ---- triangle: density 1 / area ---------------------------------------------------------- */
 
 /* Barycentric coordinates of the first two corners (Heitz 2019, "A Low-Distortion Map Between
  * Triangle and Square"). */
@@ -110,8 +107,7 @@ static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
   return (vlVec2){upper ? 2.0f * less : sum, upper ? sum : 2.0f * less};
 }
 
-/* ---- spherical triangle: density 1 / solid angle
- * ----------------------------------------------------------------- */
+/* ---- spherical triangle: density 1 / solid angle ----------------------------------------- */
 
 /* A spherical triangle seen from the origin. After Arvo 1995, "Stratified Sampling of Spherical
  * Triangles", but without computing angles. c' = cos(s) a + sin(s) t lies on the arc from a to

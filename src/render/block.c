@@ -186,8 +186,7 @@ void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   add_to_film(r, w, n);
 }
 
-/* ---- blocks whose pixels share samples
- * --------------------------------------------------------------------------- */
+/* ---- blocks whose pixels share samples --------------------------------------------------- */
 
 /* The block's pixels inside the crop window; false: there are none in this pass. */
 static bool shared_block(const vlRenderRun *r, uint32_t block, vlSharedBlock *b) {

@@ -13,9 +13,7 @@
 enum Row { OBJECT = VL_FILM_ROWS, MATERIAL, INSTANCE, DISTANCE, ROWS };
 _Static_assert((int)ROWS <= (int)VL_CHANNEL_ROWS, "rows are shared");
 
-/* ---- tallies
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- tallies ----------------------------------------------------------------------------- */
 
 static void tally_clear(vlTally *t) {
   t->count = 0;
@@ -57,9 +55,7 @@ static vlTallyEntry *tally_best(vlTally *t) {
   return best;
 }
 
-/* ---- samples
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- samples ----------------------------------------------------------------------------- */
 
 /* State of counting one pixel's samples, for the choice of a film point or for Cryptomatte. */
 typedef struct Count {
@@ -207,8 +203,7 @@ static vlSampleHit hit_of(const vlChannelPass *p, vlChannelWorker *w, uint32_t i
   return hit;
 }
 
-/* ---- pixels with samples of their own
- * ---------------------------------------------------------------------------- */
+/* ---- pixels with samples of their own ---------------------------------------------------- */
 
 static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t n) {
   if (n == 0)
@@ -244,8 +239,7 @@ static void count_own(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint
   flush(p, w, c, n);
 }
 
-/* ---- pixels that share samples (reconstruct.h)
- * ------------------------------------------------------------------- */
+/* ---- pixels that share samples (reconstruct.h) ------------------------------------------- */
 
 /* A square of pixels, from x0, y0 on, and its samples [first, first + count). With its border
  * it has `width` x `height` pixels. w->hits holds them sample by sample, row by row. */

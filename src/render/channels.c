@@ -12,8 +12,7 @@
 #include "base/unset.h"
 #include "render/channel_pass.h"
 
-/* ---- which channels there are
- * ------------------------------------------------------------------------------------ */
+/* ---- which channels there are ------------------------------------------------------------ */
 
 static const struct Channel {
   const char *name;
@@ -69,9 +68,7 @@ vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height) {
                          .time = VL_UNSET};
 }
 
-/* ---- validation
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- validation -------------------------------------------------------------------------- */
 
 static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlError *error) {
   bool counts =
@@ -135,9 +132,7 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
   return check_film(camera, def, error);
 }
 
-/* ---- images
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 /* Names of the requested channels of one kind. Cryptomatte's are pairs of ranks, two in a
  * layer. */
@@ -220,9 +215,7 @@ static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
   return copy_errors_to(p, true, VL_INDEX_FEATURES, FEATURES, error);
 }
 
-/* ---- the pass
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the pass ---------------------------------------------------------------------------- */
 
 static vlResult make_workers(vlChannelPass *p, vlError *error) {
   vlContext *context = p->world->context;

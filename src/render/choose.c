@@ -89,8 +89,7 @@ typedef struct Race {
   double least; /* added to base^2, so that black pixels do not count too much */
 } Race;
 
-/* ---- the size of the race
- * ---------------------------------------------------------------------------------------- */
+/* ---- the size of the race ---------------------------------------------------------------- */
 
 /* Whether paths that merge can find light that others do not: through or by smooth surfaces. */
 static bool has_smooth(const vlWorld *world) {
@@ -153,9 +152,7 @@ static bool looks_past(const vlWorld *world, vlTracer tracer) {
          tracers->rows[tracer]->traits & VL_TRACER_TRAIT_NO_MEDIA;
 }
 
-/* ---- running
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- running ----------------------------------------------------------------------------- */
 
 static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *trial,
                          vlError *error) {
@@ -183,9 +180,7 @@ static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *t
   return result;
 }
 
-/* ---- errors
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- errors ------------------------------------------------------------------------------ */
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -361,9 +356,7 @@ static vlResult measure(Race *race, vlTracerChoice *choice, vlError *error) {
   return result;
 }
 
-/* ---- the choice
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the choice -------------------------------------------------------------------------- */
 
 void vl_choose_by_work(vlTracerChoice *choice, double samples) {
   vlTracerTrial *trials = choice->trials;

@@ -9,9 +9,7 @@
 #include "base/free.h"
 #include "world/world.h"
 
-/* ---- the hash
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the hash ---------------------------------------------------------------------------- */
 
 static uint32_t rotate(uint32_t x, int bits) {
   return x << bits | x >> (32 - bits);
@@ -47,9 +45,7 @@ uint32_t vl_cryptomatte_hash(const char *name) {
   return exponent == 0 || exponent == 255 ? h ^ 1u << 23 : h;
 }
 
-/* ---- names
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- names ------------------------------------------------------------------------------- */
 
 enum { NAME_PART = 200, NAME_SIZE = NAME_PART + 32 };
 
@@ -157,9 +153,7 @@ void vl_cryptomatte_close(vlContext *context, vlCryptomatte *c) {
   VL_FREE(context, c->hash, c->tries, (void *)c->seen);
 }
 
-/* ---- the header
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the header -------------------------------------------------------------------------- */
 
 /* Writes {"name":"0123abcd",...}; to may be null. Returns its length in bytes. */
 static size_t write_manifest(const vlWorld *world, const vlCryptomatte *c, char *to) {

@@ -35,9 +35,7 @@ typedef struct Call {
   size_t vertex_count, vertex_room, contribution_count, contribution_room;
 } Call;
 
-/* ---- memory
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- memory ------------------------------------------------------------------------------ */
 
 static size_t round_up(size_t size) {
   return (size + 63) & ~(size_t)63;
@@ -89,9 +87,7 @@ static void *grow(vlContext *context, void *items, size_t size, size_t count, si
   return larger;
 }
 
-/* ---- one batch
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- one batch --------------------------------------------------------------------------- */
 
 static const float *row(const Call *c, int r) {
   return c->worker.rows + (size_t)r * VL_ROW_SIZE;
@@ -241,9 +237,7 @@ static vlResult trace_all(Call *c, uint32_t first, uint32_t count, vlError *erro
   return result;
 }
 
-/* ---- the result
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the result -------------------------------------------------------------------------- */
 
 static bool is_finite(const vlPath *path) {
   const float most = 0x1p40f; /* as in film.h */
@@ -319,9 +313,7 @@ void vl_pixel_paths_destroy(vlPixelPaths *paths) {
   vl_free(block->context, block);
 }
 
-/* ---- the call
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the call ---------------------------------------------------------------------------- */
 
 static vlResult check(const vlFilmDef *film, const vlRenderDef *def, uint32_t x, uint32_t y,
                       uint32_t count, vlError *error) {

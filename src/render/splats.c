@@ -16,9 +16,7 @@ static void add(vlSplatSum *sum, float value) {
     atomic_fetch_add_explicit(&sum->high, high, memory_order_relaxed);
 }
 
-/* ---- adding
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- adding ------------------------------------------------------------------------------ */
 
 /* The pixels of the crop window, along one axis and from its edge, whose filter covers a film
  * point. */

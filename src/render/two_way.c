@@ -102,9 +102,7 @@ void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch) 
   run->workers[worker].scratch = scratch;
 }
 
-/* ---- splats
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- splats ------------------------------------------------------------------------------ */
 
 static void splat(void *user, uint32_t n, const float *x, const float *y, const float *odds,
                   float *const value[4], float *const lambda[4], float *const inv_pdf[4]) {
@@ -139,9 +137,7 @@ void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int3
   vl_splats_take(&run->splats, n, px, py, weight, r, g, b);
 }
 
-/* ---- light paths
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- light paths ------------------------------------------------------------------------- */
 
 static void store(void *user, uint32_t n, const vlPhoton *photons) {
   Worker *w = user;
@@ -418,9 +414,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
   }
 }
 
-/* ---- creation
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- creation ---------------------------------------------------------------------------- */
 
 static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
   uint32_t threads = vl_context_threads(run->context);

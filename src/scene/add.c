@@ -46,9 +46,7 @@ static bool out_of_memory(vlScene *scene) {
   return false;
 }
 
-/* ---- textures
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- textures ---------------------------------------------------------------------------- */
 
 static bool all_finite(const float *numbers, size_t count) {
   for (size_t i = 0; i < count; i++)
@@ -117,9 +115,7 @@ vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def) {
   return add_texture(scene, def, true);
 }
 
-/* ---- materials
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- materials --------------------------------------------------------------------------- */
 
 static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
   for (int i = 0; i < 2; i++) {
@@ -187,9 +183,7 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   return (vlMaterialId){(uint32_t)scene->materials.count};
 }
 
-/* ---- light
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- light ------------------------------------------------------------------------------- */
 
 vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   const vlEmissionId none = {0};

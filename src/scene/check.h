@@ -34,9 +34,7 @@ void vl_check_meshes(
 void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong media of nested
                                          solids, reversed portals */
 
-/* ---- helpers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- helpers ----------------------------------------------------------------------------- */
 
 /* The material of a shape; null: the default diffuse material. */
 const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id);

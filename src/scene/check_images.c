@@ -16,9 +16,7 @@
 #include "velo/medium.h"
 #include "velo/texture.h"
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   if (vl_context_allows(c->context, path) && access(path, R_OK) == 0)
@@ -68,9 +66,7 @@ static void look_for_files(vlCheck *c) {
       file_is_there(c, s->media.items[i].path, s->media.items[i].source);
 }
 
-/* ---- greatest values
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- greatest values --------------------------------------------------------------------- */
 
 /* The largest value of a spectrum as a reflectance: over the RGB channels, or over all
  * wavelengths.
@@ -284,9 +280,7 @@ static void check_albedo(vlCheck *c) {
   vl_free(c->context, known);
 }
 
-/* ---- lights
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- lights ------------------------------------------------------------------------------ */
 
 static bool is_dark(const vlSpectrum *s, float scale, bool image) {
   return scale == 0.0f || (!image && !(spectrum_max(s) > 0.0f));

@@ -23,9 +23,7 @@ static bool box_holds(const Box *b, const double p[3]) {
   return in;
 }
 
-/* ---- the camera
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the camera -------------------------------------------------------------------------- */
 
 static void eye_of(const vlCameraDef *d, double eye[3]) {
   for (int k = 0; k < 3; k++)
@@ -203,9 +201,7 @@ static void check_camera(vlCheck *c, const Box *boxes, const Box *groups) {
   }
 }
 
-/* ---- media
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- media ------------------------------------------------------------------------------- */
 
 enum { MAX_SOLIDS = 128, SAMPLES = 64 };
 
@@ -292,9 +288,7 @@ static void check_media(vlCheck *c, const Box *boxes) {
   vl_free(c->context, solids);
 }
 
-/* ---- portals
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- portals ----------------------------------------------------------------------------- */
 
 /* The plane of a portal. Points at a positive height see the sky through it
  * (vlLightDef.portal). */

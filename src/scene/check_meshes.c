@@ -14,9 +14,7 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-/* ---- degenerate
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- degenerate -------------------------------------------------------------------------- */
 
 static bool has_no_area(const float *p, const uint32_t *f) {
   if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0])
@@ -59,9 +57,7 @@ static void check_degenerate(vlCheck *c, const vlShapeDef *d) {
   tell_share(c, d, no_length, d->vertices, "vertex normals have no length");
 }
 
-/* ---- uv
- * ----------------------------------------------------------------------------------------------------------
- */
+/* ---- uv ---------------------------------------------------------------------------------- */
 
 /* Flags: what a texture and its inputs read from a mesh. */
 enum { NEEDS_UV = 1, NEEDS_COLORS = 16 }; /* the flag of uv set k is NEEDS_UV << k */
@@ -160,9 +156,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
     tell_lack(c, d, NEEDS_UV, "its area light", "the image");
 }
 
-/* ---- solids
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- solids ------------------------------------------------------------------------------ */
 
 static bool is_solid(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);

@@ -63,9 +63,7 @@ static void face_normal(const double p[3][3], double n[3]) {
   vl_cross3(a, b, n);
 }
 
-/* ---- rays
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- rays -------------------------------------------------------------------------------- */
 
 static bool meets_box(const double low[3], const double high[3], const double o[3],
                       const double d[3], double t_max) {
@@ -171,9 +169,7 @@ static void aim(Survey *s, const vlExtent *box, const double eye[3]) {
   }
 }
 
-/* ---- the meshes
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the meshes -------------------------------------------------------------------------- */
 
 /* Makes the boxes of a shape's blocks, a little larger than their faces. False: memory is
  * exhausted. */
@@ -259,9 +255,7 @@ static bool survey_meshes(const vlScene *scene, Survey *s) {
   return s->count > 0;
 }
 
-/* ---- the shell
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the shell --------------------------------------------------------------------------- */
 
 static bool is_opaque(const vlScene *scene, const vlShapeDef *d) {
   if (d->alpha.texture.index || d->alpha.value < 1)
@@ -444,9 +438,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
   return ok;
 }
 
-/* ---- the opening
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the opening ------------------------------------------------------------------------- */
 
 /* Whether the face's plane separates the eye from the middle. A face of an inward shell must
  * also show the eye its back: what stands in a room, and is a part of the same mesh, stays. */

@@ -20,9 +20,7 @@ vlCompleteDef vl_default_complete_def(void) {
       .cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};
 }
 
-/* ---- the camera
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the camera -------------------------------------------------------------------------- */
 
 /* The view frustum. sides: offset of each side plane, which is the maximum over all points of x
  * - z tan(half angle) for the right side, and likewise for the others. */
@@ -169,9 +167,7 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
   set_camera(scene, v->up, fov, eye, lookat);
 }
 
-/* ---- closed models
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- closed models ----------------------------------------------------------------------- */
 
 /* Lets camera and light into a closed model. */
 static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent *box,
@@ -222,9 +218,7 @@ static void tell_camera(const vlScene *scene, const char *view, const vlExtent *
          box->high[2] - box->low[2]);
 }
 
-/* ---- the ground
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the ground -------------------------------------------------------------------------- */
 
 /* Opacity over v of a disk, which is 1 in the middle: opaque around the model, transparent at
  * the rim. */
@@ -293,9 +287,7 @@ static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool 
   return vl_scene_add_shape(scene, &disk).index != 0;
 }
 
-/* ---- the steps
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the steps --------------------------------------------------------------------------- */
 
 /* The studio is the fill light of the scene's own lamps: 0.3 times their light. */
 static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDef *def) {

@@ -13,9 +13,7 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-/* ---- defs
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- defs -------------------------------------------------------------------------------- */
 
 #define ITEM(scene, array, id)                                 \
   ((scene) && (id).index && (id).index <= (scene)->array.count \
@@ -57,9 +55,7 @@ vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo
   return VL_OK;
 }
 
-/* ---- checks
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- checks ------------------------------------------------------------------------------ */
 
 static vlResult check(const vlScene *scene, bool found, const char *what, vlError *error) {
   vl_error_clear(error);
@@ -80,9 +76,7 @@ static vlResult take_error(vlScene *scene, vlError *error) {
   return result;
 }
 
-/* ---- replacing a def
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- replacing a def --------------------------------------------------------------------- */
 
 /* A def that is set again keeps its image, which another object may then have, too. */
 static bool is_used(const vlScene *scene, const vlImage *image) {
@@ -239,9 +233,7 @@ vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *d
   SET_AND_MARK(scene, medium_marks, set_medium, id, def, error);
 }
 
-/* ---- shapes, lights
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- shapes, lights ---------------------------------------------------------------------- */
 
 static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool shown,
                      vlError *error) {
@@ -286,9 +278,7 @@ vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId 
   return VL_OK;
 }
 
-/* ---- instances
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- instances --------------------------------------------------------------------------- */
 
 static vlResult find_instance(vlScene *scene, vlInstanceId id, vlSceneInstance **instance,
                               vlError *error) {

@@ -33,9 +33,7 @@ bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], doub
   return l > 0 && f > 1e-12 && isfinite(l + f);
 }
 
-/* ---- the studio
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the studio -------------------------------------------------------------------------- */
 
 static float ramp(float x, float from, float to) {
   float t = (x - from) / (to - from);
@@ -104,9 +102,7 @@ static void fill_sky(vlImage *image) {
   }
 }
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 /* Converts an image over longitude and latitude. A pixel of the result is the mean of 2 x 2
  * lookups, each interpolated between four pixels. */
@@ -192,9 +188,7 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
   return ok;
 }
 
-/* ---- the light
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the light --------------------------------------------------------------------------- */
 
 static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *sky) {
   vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);

@@ -53,9 +53,7 @@ void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
   vl_free(s->context, boxes);
 }
 
-/* ---- areas
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- areas ------------------------------------------------------------------------------- */
 
 static double triangle_area(const double p[3][3]) {
   double e[2][3], n[3];
@@ -95,9 +93,7 @@ static double shape_area(const vlShapeDef *d) {
   return sum;
 }
 
-/* ---- lights
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- lights ------------------------------------------------------------------------------ */
 
 double vl_light_def_luminance(const vlSpectrum *s) {
   float dense[VL_LAMBDA_COUNT];

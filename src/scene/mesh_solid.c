@@ -43,9 +43,7 @@ static uint64_t hash_point(const double p[3]) {
   return h;
 }
 
-/* ---- gathering
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- gathering --------------------------------------------------------------------------- */
 
 /* Transforms a shape's vertices to group space and welds them. welded[i]: the corner that
  * vertex i becomes. */
@@ -144,9 +142,7 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
   return fine;
 }
 
-/* ---- edges
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- edges ------------------------------------------------------------------------------- */
 
 typedef struct Edge {
   uint32_t a, b, face; /* a < b; face: one of its faces */
@@ -262,9 +258,7 @@ static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool
   return fine;
 }
 
-/* ---- parts
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- parts ------------------------------------------------------------------------------- */
 
 static uint32_t root_of(uint32_t *parent, uint32_t i) {
   while (parent[i] != i)

@@ -73,9 +73,7 @@ vlResult vl_scene_id_info(const vlScene *scene, vlIdKind kind, uint32_t id, vlId
   return VL_OK;
 }
 
-/* ---- choices
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- choices ----------------------------------------------------------------------------- */
 
 bool vl_scene_add_choice(vlScene *scene, vlChoiceKind kind, const char *name, double seconds) {
   if (!vl_scene_copy_string(scene, &name))

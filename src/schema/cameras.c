@@ -13,9 +13,7 @@ const char *const vl_camera_stereo_eyes[] = {"both", "left", "right", NULL};
 const char *const vl_camera_shutter_curves[] = {"box", "triangle", "trapezoid", NULL};
 const char *const vl_camera_readout_directions[] = {"down", "up", "right", "left", NULL};
 
-/* ---- pbrt's cameras
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- pbrt's cameras ---------------------------------------------------------------------- */
 
 #define PBRT                                                                                  \
   WORD("frameaspectratio", DOUBLE, screen_min_x,                                              \
@@ -67,9 +65,7 @@ static const vlParameter realistic_parameters[] = {
 VL_KIND_ROW(realistic, .name = "realistic",
             .description = "a lens of many elements, simulated surface by surface")
 
-/* ---- velo's words
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- velo's words ------------------------------------------------------------------------ */
 
 static const vlParameter pinhole_parameters[] = {PINHOLE};
 VL_KIND_ROW(pinhole, .name = "pinhole",
@@ -96,9 +92,7 @@ static const vlParameter colmap_parameters[] = {
           "parameters of the camera model, in COLMAP's order")};
 VL_KIND_ROW(colmap, .name = "colmap", .description = "one of COLMAP's camera models")
 
-/* ---- the settings of cameras, in calls and messages
- * ---------------------------------------------------------------
- */
+/* ---- the settings of cameras, in calls and messages -------------------------------------- */
 
 static const char *const projections[] = {
 #define NAME(NAME, name) #name,

@@ -63,8 +63,7 @@ vlLoadDef vl_default_load_def(void) {
   return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
 }
 
-/* ---- the settings of an image
- * ------------------------------------------------------------------------------------ */
+/* ---- the settings of an image ------------------------------------------------------------ */
 
 vlBuildDef vl_default_build_def(void) {
   return (vlBuildDef){.cookie = VL_COOKIE_BUILD,

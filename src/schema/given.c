@@ -11,8 +11,7 @@
 #include "base/text.h"
 #include "base/unset.h"
 
-/* ---- what a value must be
- * ---------------------------------------------------------------------------------------- */
+/* ---- what a value must be ---------------------------------------------------------------- */
 
 static bool has_range(const vlParameter *row) {
   return (row->low != 0 || row->high != 0) && !(row->flags & VL_PARAMETER_CLAMPED);
@@ -115,8 +114,7 @@ static void put_rule(const vlParameter *row, double factor, char *rule, size_t s
   }
 }
 
-/* ---- whether it is that
- * ------------------------------------------------------------------------------------------ */
+/* ---- whether it is that ------------------------------------------------------------------ */
 
 bool vl_in_range(const vlParameter *row, double x) {
   if ((row->flags & VL_PARAMETER_UNSET) && vl_is_unset(x))
@@ -199,9 +197,7 @@ static bool fits(const vlParameter *row, const vlGiven *given, double factor, do
   return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && vl_in_range(row, *number);
 }
 
-/* ---- messages
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- messages ---------------------------------------------------------------------------- */
 
 static void put_value(const vlParameter *row, const vlGiven *given, char *value, size_t size) {
   bool unit = given->factor != 0 && given->factor != 1 && row->unit;

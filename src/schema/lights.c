@@ -121,8 +121,7 @@ vlLightDef vl_default_light_def(vlLightKind kind) {
   return def;
 }
 
-/* ---- power, a function per kind
- * ---------------------------------------------------------------------------------- */
+/* ---- power, a function per kind ---------------------------------------------------------- */
 
 typedef double Power(const vlLightDef *def, double luminance, double radius);
 
@@ -171,9 +170,7 @@ double vl_light_power(const vlLightDef *def, double luminance, double radius) {
   return def->power > 0 ? def->power : powers[def->kind](def, luminance, radius);
 }
 
-/* ---- what shapes emit
- * --------------------------------------------------------------------------------------------
- */
+/* ---- what shapes emit -------------------------------------------------------------------- */
 
 #undef PARAMETER
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlEmissionDef, __VA_ARGS__)

@@ -54,9 +54,7 @@ const char *vl_parameter_label(const vlParameter *p) {
   return p->name ? p->name : vl_setting_keyword(p);
 }
 
-/* ---- defaults
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- defaults ---------------------------------------------------------------------------- */
 
 static vlSpectrum default_spectrum(const vlParameter *p) {
   if (p->text)
@@ -138,9 +136,7 @@ void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def) {
     vl_row_set_defaults(own, def);
 }
 
-/* ---- members
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- members ----------------------------------------------------------------------------- */
 
 _Static_assert(sizeof(vlWrap) == sizeof(int), "choices are stored as int");
 

@@ -9,10 +9,9 @@
 #include "velo/setting.h"
 #include "velo/spectrum.h"
 
-/* ---- for the files that hold rows
- * -------------------------------------------------------------------------------- Each writes,
- * per kind, an array `NAME_parameters` and VL_KIND_ROW(NAME, ...); the list of kinds then makes
- * the table, so that a kind without a row does not compile. */
+/* For the files that hold rows. Each writes, per kind, an array `NAME_parameters` and
+ * VL_KIND_ROW(NAME, ...); the list of kinds then makes the table, so that a kind without a row
+ * does not compile. */
 
 /* Initialises a parameter of type VL_PARAMETER_##TYPE, stored in the member `path` of Def.
  * file_name may be NULL. VL_DEFAULT, VL_RANGE or VL_FROM and further initialisers may follow.
@@ -77,9 +76,7 @@
 /* For the size of a table with one entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
 #define VL_COUNT_KIND(NAME, name) +1
 
-/* ---- families
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- families ---------------------------------------------------------------------------- */
 
 extern const vlKindFamily vl_material_family, vl_texture_family, vl_pixel_filter_family;
 extern const vlKindFamily vl_light_family;    /* vlLightDef */
@@ -133,9 +130,7 @@ size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most
 /* The parameter that has this name or alias in files. Null: none. */
 const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
-/* ---- defs
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- defs -------------------------------------------------------------------------------- */
 
 /* Sets the members that the row describes to their defaults. Other members are unchanged. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);

@@ -25,9 +25,7 @@
 #define SPP_MOST 16777216
 #define SIDE_MOST 65536
 
-/* ---- renders
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- renders ----------------------------------------------------------------------------- */
 
 static const char *const tracers[] = {VL_TRACER_KINDS(NAME) NULL};
 static const char *const samplers[] = {VL_SAMPLER_KINDS(NAME) NULL};
@@ -126,9 +124,7 @@ static const vlParameter render_parameters[] = {
 };
 VL_KIND_ROW(render, .name = "render", .description = "how an image is rendered")
 
-/* ---- scenes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- scenes ------------------------------------------------------------------------------ */
 
 #define LOAD(TYPE, ...) VL_PARAMETER(TYPE, vlLoadDef, NULL, __VA_ARGS__)
 static const vlParameter load_parameters[] = {
@@ -176,9 +172,7 @@ static const vlParameter complete_parameters[] = {
 VL_KIND_ROW(complete, .name = "complete",
             .description = "what a scene gets that lacks camera, light or ground")
 
-/* ---- images
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 static const char *const modes[] = {"centre", "nearest", "coverage", NULL};
 static const vlParameter channels_parameters[] = {
@@ -200,8 +194,7 @@ static const vlParameter write_parameters[] = {
 };
 VL_KIND_ROW(write, .name = "write", .description = "how an image is written")
 
-/* ---- contexts, and the program
- * ----------------------------------------------------------------------------------- */
+/* ---- contexts, and the program ----------------------------------------------------------- */
 
 static const vlParameter context_parameters[] = {
     VL_PARAMETER(COUNT, vlContextDef, NULL, threads, "number of worker threads",
@@ -235,9 +228,7 @@ static const vlParameter program_parameters[] = {
 };
 VL_KIND_ROW(program, .name = "program", .description = "what is turned into other settings")
 
-/* ---- finding them
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- finding them ------------------------------------------------------------------------ */
 
 /* The parameters of cameras are in cameras.c. */
 #define camera_row vl_camera_settings_row

@@ -143,9 +143,7 @@ VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, 
 #define ROW(NAME, name) [VL_SHAPE_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_shape_family, VL_SHAPE_KINDS, ROW, "shapes", "shape", "Shape")
 
-/* ---- boxes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- boxes ------------------------------------------------------------------------------- */
 
 static void round_box(const vlShapeDef *d, double z0, double z1, double low[3],
                       double high[3]) {

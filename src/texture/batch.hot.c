@@ -6,8 +6,7 @@
 #include "texture/node_kind.h"
 #include "texture/run.hot.h"
 
-/* ---- point functions over a run
- * ---------------------------------------------------------------------------------- */
+/* ---- point functions over a run ---------------------------------------------------------- */
 
 typedef float PointFloat(const vlTextureNode *node, vlTexturePoint at);
 
@@ -128,9 +127,7 @@ static inline __attribute__((always_inline)) const float *point_share(vlTextureR
     mix_spectra(r, node, point_share(r, node, value), out); \
     break;
 
-/* ---- floats
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- floats ------------------------------------------------------------------------------ */
 
 /* Mixes the two inputs of a node by the share of the second. */
 static void mix_floats(vlTextureRun *r, const vlTextureNode *node, const float *share,
@@ -209,9 +206,7 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   r->top = top;
 }
 
-/* ---- spectra
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- spectra ----------------------------------------------------------------------------- */
 
 static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float *const out[4]) {
   for (int c = 0; c < 4; c++) {

@@ -14,9 +14,7 @@
  * their scratch rows, since each level needs rows of its own. */
 enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
 
-/* ---- constant spectra
- * --------------------------------------------------------------------------------------------
- */
+/* ---- constant spectra -------------------------------------------------------------------- */
 
 vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role,
                              vlSpectral *result, vlError *error) {
@@ -51,9 +49,7 @@ vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpect
   return vl_spectrum_dense(spectrum, role, dense, error);
 }
 
-/* ---- nodes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- nodes ------------------------------------------------------------------------------- */
 
 typedef struct Compile {
   vlWorld *world;

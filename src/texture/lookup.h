@@ -86,9 +86,7 @@ static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float 
   }
 }
 
-/* ---- images
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 /* Maps an integer texel coordinate into the image by the wrap mode. -1: outside the image
  * (black).

@@ -102,9 +102,7 @@ static inline uint32_t vl_bounce_dimension(uint32_t depth) {
   return VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
 }
 
-/* ---- stages
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- stages ------------------------------------------------------------------------------ */
 
 /* Finds the closest hits of n rays: ids and materials. Rays pass through interfaces, whose
  * emission is added; for a mixed material, one of its materials is chosen. camera: the rays are

@@ -10,9 +10,7 @@
 #include "world/part.h"
 #include "world/world.h"
 
-/* ---- parts (part.h)
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- parts (part.h) ---------------------------------------------------------------------- */
 
 vlPart *vl_part_add(vlWorld *world) {
   vlPart **slot = VL_PUSH(world->context, &world->parts);
@@ -41,9 +39,7 @@ void vl_part_drop_last(vlWorld *world) {
   vl_part_release(world->parts.items[--world->parts.count]);
 }
 
-/* ---- memory of a world
- * -------------------------------------------------------------------------------------------
- */
+/* ---- memory of a world ------------------------------------------------------------------- */
 
 void *vl_world_block(vlWorld *world, size_t count, size_t size) {
   void **slot = world->part ? VL_PUSH(world->context, &world->part->blocks)
@@ -63,9 +59,7 @@ bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float
   return true;
 }
 
-/* ---- building
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- building ---------------------------------------------------------------------------- */
 
 vlResult vl_world_step(const vlWorld *world, const char *name, double fraction,
                        vlError *error) {

@@ -21,9 +21,7 @@
 #include "world/medium/medium.h"
 #include "world/part.h"
 
-/* ---- shapes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- shapes ------------------------------------------------------------------------------ */
 
 typedef struct vlWorldShape {
   uint32_t kind;        /* vlShapeKind */
@@ -95,9 +93,7 @@ typedef struct vlWorldInstance {
   float error[4];
 } vlWorldInstance;
 
-/* ---- materials
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- materials --------------------------------------------------------------------------- */
 
 /* Inputs of the principled material, as indices of float nodes and spectrum nodes. The flags
  * has_* are false for lobes whose weight is always 0. */
@@ -195,9 +191,7 @@ typedef struct vlWorldCoat {
   uint32_t depth; /* max_depth of the materials that share the table */
 } vlWorldCoat;
 
-/* ---- lights
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- lights ------------------------------------------------------------------------------ */
 
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
@@ -271,9 +265,7 @@ typedef struct vlWorldOrigin {
   vlSource source;
 } vlWorldOrigin;
 
-/* ---- the whole
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------- */
 
 struct vlWorld {
   vlContext *context;

@@ -71,9 +71,7 @@ static void distort_plainly(const DistortionCase *d, double x, double y, double 
   at[1] = y * radial + p1 * (s + 2 * y * y) + 2 * p2 * x * y + prism[2] * s + prism[3] * s * s;
 }
 
-/* ---- the laws
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the laws ---------------------------------------------------------------------------- */
 
 enum { FILM_WIDTH = 96, FILM_HEIGHT = 64, FILM_POINTS = 24 * 16 };
 
@@ -225,9 +223,7 @@ static void check_file(const char *family, const char *kind, const vlCameraDef *
     broken(family, kind, "its file gives other rays, %d of %d", differ, 3 * FILM_POINTS);
 }
 
-/* ---- files of scenes
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- files of scenes --------------------------------------------------------------------- */
 
 static void count_camera_loss(void *user, const char *what, uint64_t count) {
   (void)what;
@@ -417,9 +413,7 @@ static void laws_of_distortions(void **state) {
   expect_no_failures();
 }
 
-/* ---- settings
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- settings ---------------------------------------------------------------------------- */
 
 /* Puts another value than the default into a member; false: it has no number. */
 static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {

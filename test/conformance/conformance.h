@@ -38,9 +38,7 @@ static char folder[40] = "/tmp/velo_conformance_XXXXXX";
  * Case diffuse_case`. */
 #define CASE_OF(NAME, name) &name##_case,
 
-/* ---- failures
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- failures ---------------------------------------------------------------------------- */
 
 /* Counts and prints the laws that a kind breaks, so that one run names them all. */
 static int failures;
@@ -62,9 +60,7 @@ static void expect_no_failures(void) {
   assert_int_equal(found, 0);
 }
 
-/* ---- text
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- text -------------------------------------------------------------------------------- */
 
 /* The whole scene: each `%s` of the form stands for `"kind" parameters`. */
 static void scene_text(char text[TEXT], const char *form, const char *kind,
@@ -82,9 +78,7 @@ static void scene_text(char text[TEXT], const char *form, const char *kind,
   strcat(text, form);
 }
 
-/* ---- images
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   vlScene *scene = NULL;
@@ -136,9 +130,7 @@ static bool render_text(const char *text, float pixels[PIXELS], vlError *error) 
   return render_in(context, text, pixels, error);
 }
 
-/* ---- estimates
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- estimates --------------------------------------------------------------------------- */
 
 /* A mean with its standard error. */
 typedef struct Mean {
@@ -167,9 +159,7 @@ static bool mean_is(const Mean *a, double known, double slack) {
   return fabs(mean_of(a) - known) <= 5 * sqrt(variance_of_mean(a)) + slack;
 }
 
-/* ---- asking the world
- * --------------------------------------------------------------------------------------------
- */
+/* ---- asking the world -------------------------------------------------------------------- */
 
 /* A function that asks the world through the functions of velo/trace.h. Called once for each
  * batch of 1024 paths, on one thread; `batch` counts them. */
@@ -241,9 +231,7 @@ static void even_direction(uint32_t i, uint32_t count, double turn, double d[3])
   d[2] = z;
 }
 
-/* ---- forms of scenes
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- forms of scenes --------------------------------------------------------------------- */
 
 #define HEAD                                                                                \
   "LookAt 0 1.5 4 0 .4 0 0 1 0 Camera \"perspective\" \"float fov\" 40\n"                   \

@@ -104,9 +104,7 @@ static const LightCase projection_light = {
 #define LIGHT_CASE(NAME, name) &name##_light,
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
 
-/* ---- asking
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- asking ------------------------------------------------------------------------------ */
 
 typedef struct LightLaws {
   double x, z; /* the point of the floor */
@@ -242,9 +240,7 @@ static void laws_of_lights(void **state) {
   expect_no_failures();
 }
 
-/* ---- shapes that emit
- * --------------------------------------------------------------------------------------------
- */
+/* ---- shapes that emit -------------------------------------------------------------------- */
 
 static const char *const emissions[] = {
     "\"rgb L\" [1 2 3] \"float scale\" 2",

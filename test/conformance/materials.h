@@ -12,9 +12,7 @@
 #define MATERIAL_CASE(NAME, name) &name##_material,
 static const MaterialCase *const material_cases[] = {VL_MATERIAL_KINDS(MATERIAL_CASE)};
 
-/* ---- asking
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- asking ------------------------------------------------------------------------------ */
 
 /* Directions of the eye: angles from the normal; those above pi / 2 are below the square. */
 static const double material_angles[] = {0.2, 1.1, PI - 0.6};
@@ -152,9 +150,7 @@ static void ask_material(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) 
     ask_reciprocity(m, trace, probe->batch, eye);
 }
 
-/* ---- the laws
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the laws ---------------------------------------------------------------------------- */
 
 static void judge_material(const MaterialLaws *m) {
   const MaterialVariant *v = m->variant;

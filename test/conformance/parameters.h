@@ -15,9 +15,7 @@
 
 enum { VALUES = 3 };
 
-/* ---- cases
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- cases ------------------------------------------------------------------------------- */
 
 static bool same_name(const char *a, const char *b) {
   return a == b || (a && b && strcmp(a, b) == 0);
@@ -60,8 +58,7 @@ static const ParameterCase *find_case(const char *family, const char *kind,
   return found;
 }
 
-/* ---- the text of a scene
- * ----------------------------------------------------------------------------------------- */
+/* ---- the text of a scene ----------------------------------------------------------------- */
 
 /* Appends the parameters of `base`, which semicolons separate, except the one with that name
  * (null: all). */
@@ -152,9 +149,7 @@ static bool append_value(char text[TEXT], const vlParameter *p, bool floats, int
   return true;
 }
 
-/* ---- families
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- families ---------------------------------------------------------------------------- */
 
 /* The form of a family's scenes: %s stands for `"kind" parameters`. */
 typedef struct Family {
@@ -204,8 +199,7 @@ static const char *form_of(const Family *family, const vlKindRow *row) {
   return lamp ? lamps : family->form;
 }
 
-/* ---- written and read again
- * -------------------------------------------------------------------------------------- */
+/* ---- written and read again -------------------------------------------------------------- */
 
 /* Counts what a format cannot hold. */
 static void count_loss(void *user, const char *what, uint64_t count) {
@@ -273,8 +267,7 @@ static void check_text(const char *family, const char *kind, const char *name, c
            difference(pixels, other));
 }
 
-/* ---- the effect of a parameter
- * ----------------------------------------------------------------------------------- */
+/* ---- the effect of a parameter ----------------------------------------------------------- */
 
 /* Whether the image changes with the parameter. */
 static bool has_effect(const char *family, const char *form, const char *kind, const char *base,
@@ -330,8 +323,7 @@ static void check_parameter(const Family *family, const vlKindRow *row, const vl
            effect ? "has an effect after all" : "changes nothing");
 }
 
-/* ---- textures of parameters
- * -------------------------------------------------------------------------------------- */
+/* ---- textures of parameters -------------------------------------------------------------- */
 
 static bool takes_texture(const vlParameter *p) {
   bool input = p->type == VL_PARAMETER_FLOAT_INPUT || p->type == VL_PARAMETER_SPECTRUM_INPUT ||

@@ -6,9 +6,7 @@
 
 #include "conformance.h"
 
-/* ---- samplers
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- samplers ---------------------------------------------------------------------------- */
 
 enum { SETS = 64, SET = 64, SIDE = 8 }; /* pixels; samples of each; cells along a side */
 
@@ -164,9 +162,7 @@ static void laws_of_samplers(void **state) {
   expect_no_failures();
 }
 
-/* ---- filters
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- filters ----------------------------------------------------------------------------- */
 
 /* The formulas, written apart from the library; x: distance from the centre, pixels. */
 typedef double FilterShape(double x, double radius);

@@ -104,9 +104,7 @@ static const ShapeCase curves_shape = {{
 #define SHAPE_CASE(NAME, name) &name##_shape,
 static const ShapeCase *const shape_cases[] = {VL_SHAPE_KINDS(SHAPE_CASE)};
 
-/* ---- asking
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- asking ------------------------------------------------------------------------------ */
 
 enum { MOST_CROSSINGS = 8 };
 

@@ -37,9 +37,7 @@ static Mean mean_image(const char *text, const char *tracer, uint32_t spp) {
   " \"string filename\" \"x.pfm\"\n"                                            \
   "Sampler \"independent\" Integrator \"volpath\" \"integer maxdepth\" 200\n"
 
-/* ---- media
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- media ------------------------------------------------------------------------------- */
 
 /* The medium fills a box from -1 to 1, seen along z by parallel rays that all cross it from
  * front to back. */
@@ -163,9 +161,7 @@ static void laws_of_media(void **state) {
   expect_no_failures();
 }
 
-/* ---- tracers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- tracers ----------------------------------------------------------------------------- */
 
 /* A plate that reflects half of the light, turned by 60 degrees from the eye. */
 #define PLATE \

@@ -99,9 +99,7 @@ static void bright_colours_are_scaled(void **state) {
   assert_true(scaled > 0 && scaled < N);
 }
 
-/* ---- error sums
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- error sums -------------------------------------------------------------------------- */
 
 static vlFilm *film_of(int first, int last, vlContext *own) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);

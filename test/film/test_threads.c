@@ -70,8 +70,7 @@ static void assert_same_files(const char *a, const char *b) {
   assert_memory_equal(x, y, n);
 }
 
-/* ---- a render with checkpoints
- * ----------------------------------------------------------------------------------- */
+/* ---- a render with checkpoints ----------------------------------------------------------- */
 
 /* Writes a film after each pass. A thread waits for the disk while the next pass renders. */
 typedef struct Keeper {
@@ -145,8 +144,7 @@ static void a_kept_render_continues(void **state) {
   vl_film_destroy(whole);
 }
 
-/* ---- shards and merges at the same time
- * -------------------------------------------------------------------------- */
+/* ---- shards and merges at the same time -------------------------------------------------- */
 
 typedef struct Shard {
   const char *name;

@@ -94,9 +94,7 @@ static void test_damaged(void **state) {
   end_context(context);
 }
 
-/* ---- promises
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- promises ---------------------------------------------------------------------------- */
 
 static void put_be32(uint8_t *p, uint32_t v) {
   p[0] = (uint8_t)(v >> 24);
@@ -232,8 +230,7 @@ static void test_not_images(void **state) {
   end_context(context);
 }
 
-/* ---- OpenEXR files made byte by byte
- * ----------------------------------------------------------------------------- */
+/* ---- OpenEXR files made byte by byte ----------------------------------------------------- */
 
 typedef struct Bytes {
   uint8_t data[4096];

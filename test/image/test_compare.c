@@ -94,8 +94,7 @@ static void test_extremes(void **state) {
   end_context(context);
 }
 
-/* ---- the paper's formulas
- * ---------------------------------------------------------------------------------------- */
+/* ---- the paper's formulas ---------------------------------------------------------------- */
 
 enum { W = 24, H = 18 };
 typedef double Plane[H][W];

@@ -5,9 +5,7 @@
 #include "velo/render.h"
 #include "velo/shape.h"
 
-/* ---- the file
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the file ---------------------------------------------------------------------------- */
 
 static void containers(void **state) {
   (void)state;
@@ -126,9 +124,7 @@ static void modes(void **state) {
   free(g);
 }
 
-/* ---- the tree
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the tree ---------------------------------------------------------------------------- */
 
 static void poses(void **state) {
   (void)state;
@@ -276,9 +272,7 @@ static void morph_and_skin(void **state) {
   free(g);
 }
 
-/* ---- tangents
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- tangents ---------------------------------------------------------------------------- */
 
 /* Two squares side by side, the right one's image mirrored; a normal map asks for tangents. The
  * vertices between them are shared and must be split. */
@@ -325,8 +319,7 @@ static void tangents(void **state) {
   free(g);
 }
 
-/* ---- cameras, variants, extensions
- * ------------------------------------------------------------------------------- */
+/* ---- cameras, variants, extensions ------------------------------------------------------- */
 
 static void cameras(void **state) {
   (void)state;

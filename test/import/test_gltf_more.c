@@ -17,9 +17,7 @@ static void is_near(double a, double b, double most) {
     fail_msg("%.9g is not %.9g", a, b);
 }
 
-/* ---- time
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- time -------------------------------------------------------------------------------- */
 
 static void motion(void **state) {
   (void)state;
@@ -83,9 +81,7 @@ static void motion(void **state) {
   free(g);
 }
 
-/* ---- scenes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- scenes ------------------------------------------------------------------------------ */
 
 static void scenes(void **state) {
   (void)state;
@@ -113,9 +109,7 @@ static void scenes(void **state) {
   free(g);
 }
 
-/* ---- extensions
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- extensions -------------------------------------------------------------------------- */
 
 static void put_packed(Gltf *g, int offset, size_t size, const char *mode, size_t count,
                        size_t stride) {
@@ -192,9 +186,7 @@ static void lacking(void **state) {
   free(g);
 }
 
-/* ---- images
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 /* Each texture its own uv set and transform, and WebP before the other image. */
 static void textures(void **state) {

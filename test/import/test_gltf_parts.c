@@ -16,9 +16,7 @@ static void is_near(double a, double b, double most) {
     fail_msg("%.9g is not %.9g", a, b);
 }
 
-/* ---- colours
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- colours ----------------------------------------------------------------------------- */
 
 /* COLOR_0: VEC3 or VEC4 of floats, normalised bytes or shorts; three are opaque. The colours
  * are linear. */
@@ -100,9 +98,7 @@ static void vertex_alpha(void **state) {
   free(g);
 }
 
-/* ---- packed numbers
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- packed numbers ---------------------------------------------------------------------- */
 
 static void put_packed(Gltf *g, const unsigned char *data, size_t size, const char *filter,
                        size_t count, size_t stride) {
@@ -180,9 +176,7 @@ static void filters(void **state) {
   }
 }
 
-/* ---- animation
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- animation --------------------------------------------------------------------------- */
 
 static void pointers(void **state) {
   (void)state;
@@ -214,9 +208,7 @@ static void pointers(void **state) {
   free(g);
 }
 
-/* ---- surroundings
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- surroundings ------------------------------------------------------------------------ */
 
 /* Six faces in the order +x -x +y -y +z -z, as OpenGL's cube maps have them (specification 4.6,
  * table 8.19): each of a colour, a quarter at its image's top left in white. What is seen along
@@ -278,9 +270,7 @@ static void faces(void **state) {
   free(g);
 }
 
-/* ---- variants
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- variants ---------------------------------------------------------------------------- */
 
 /* Without a choice, and for a variant that a primitive does not name: the primitive's own
  * material.
@@ -313,9 +303,7 @@ static void variants(void **state) {
   free(g);
 }
 
-/* ---- anisotropy
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- anisotropy -------------------------------------------------------------------------- */
 
 /* Red and green of the texture are the direction, from -1 to 1: it becomes an angle modulo pi,
  * plus the rotation. A mesh without normals gets flat ones, and tangents along u. */

@@ -182,8 +182,7 @@ static UNUSED void assert_ratio(const char *what, double value, double expected,
   assert_near(what, value, expected, tolerance * fabs(expected));
 }
 
-/* ---- things to put on the stage
- * ---------------------------------------------------------------------------------- */
+/* ---- things to put on the stage ---------------------------------------------------------- */
 
 static UNUSED vlMaterialId add_diffuse(Stage *s, float r, float g, float b) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);

@@ -210,8 +210,7 @@ static void closed_mesh_is_tight(void **state) {
   }
 }
 
-/* ---- white furnaces: what loses no light cannot be seen before a white sky
- * --------------------------------------- */
+/* ---- white furnaces: what loses no light cannot be seen before a white sky --------------- */
 
 static void furnace(const char *what, vlMaterialDef *def, bool mesh) {
   Bench b = begin();

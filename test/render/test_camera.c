@@ -2,9 +2,7 @@
  * projection, exposure time, crop; also depths and tracers of a render. */
 #include "render/shots.h"
 
-/* ---- lens
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- lens -------------------------------------------------------------------------------- */
 
 /* A small bright square out of focus becomes a uniformly bright disk of radius lens_radius *
  * |1/z - 1/focus| * fx pixels. */
@@ -126,8 +124,7 @@ static void exposure_and_crop(void **state) {
     image_free(&p[k]);
 }
 
-/* ---- depths and tracers
- * ------------------------------------------------------------------------------------------ */
+/* ---- depths and tracers ------------------------------------------------------------------ */
 
 /* In a closed emissive sphere depth n holds the first n + 1 terms of a geometric series. */
 static void depths(void **state) {

@@ -7,9 +7,7 @@
 
 enum { SIZE = 48 };
 
-/* ---- given numbers
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- given numbers ----------------------------------------------------------------------- */
 
 typedef struct Given {
   double error[VL_MOST_TRIALS], cost[VL_MOST_TRIALS], missing[VL_MOST_TRIALS];
@@ -67,9 +65,7 @@ static void by_numbers(void **state) {
   }
 }
 
-/* ---- a room
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- a room ------------------------------------------------------------------------------ */
 
 /* A closed room, with a lamp in a tube that is open above. */
 static Stage room(vlContext *context) {

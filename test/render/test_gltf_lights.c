@@ -37,9 +37,7 @@ static Image lamp_image(const char *node, const char *light) {
   return p;
 }
 
-/* ---- lamps
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- lamps ------------------------------------------------------------------------------- */
 
 static void point_and_spot(void **state) {
   (void)state;
@@ -88,9 +86,7 @@ static void directional(void **state) {
   }
 }
 
-/* ---- surfaces that emit light
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- surfaces that emit light ------------------------------------------------------------ */
 
 static void write_image(vlContext *context, const char *path, uint32_t width,
                         const uint8_t *rgb) {
@@ -199,8 +195,7 @@ static void emissive_image(void **state) {
     image_free(&p[i]);
 }
 
-/* ---- colours, coverage, uv sets
- * ---------------------------------------------------------------------------------- */
+/* ---- colours, coverage, uv sets ---------------------------------------------------------- */
 
 static void painted_walls(void **state) {
   (void)state;

@@ -5,8 +5,7 @@
 
 #include "material/principled.h"
 
-/* ---- albedos, without velo's tables
- * ------------------------------------------------------------------------------ */
+/* ---- albedos, without velo's tables ------------------------------------------------------ */
 
 /* The albedo of GGX microfacets with single scattering for F0 and F90, integrated in double
  * over the half vectors that are visible from o (Heitz 2018). */
@@ -58,9 +57,7 @@ static const char *pbr(double base, double metal, double rough, const char *more
   return text;
 }
 
-/* ---- balls
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- balls ------------------------------------------------------------------------------- */
 
 static void metallic_roughness(void **state) {
   (void)state;
@@ -150,9 +147,7 @@ static void glass(void **state) {
   expect_shot("dispersion", &shot, 1, 1, 1, 0.015);
 }
 
-/* ---- walls
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- walls ------------------------------------------------------------------------------- */
 
 static void normal_incidence(void **state) {
   (void)state;
@@ -239,9 +234,7 @@ static void film(void **state) {
   assert_true(fabs(rgb[0] - rgb[2]) > 0.02); /* it has a colour */
 }
 
-/* ---- slabs
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- slabs ------------------------------------------------------------------------------- */
 
 /* Glass 1 thick in front of a white room: F + (1 - F)^2 a / (1 - F a), a = colour^(1 /
  * attenuationDistance).

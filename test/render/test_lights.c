@@ -154,9 +154,7 @@ static void photometric_scale(void **state) {
   }
 }
 
-/* ---- area lights
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- area lights ------------------------------------------------------------------------- */
 
 /* The image shows the light itself: one-sided, two-sided, reversed. */
 static void sides(void **state) {
@@ -265,9 +263,7 @@ static void image_on_a_light(void **state) {
   remove(path);
 }
 
-/* ---- the sky
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- the sky ----------------------------------------------------------------------------- */
 
 /* The equal-area octahedral map of the book (3.8.3), in double, written from its definition. */
 static void square_to_sphere(double u, double v, double d[3]) {
@@ -409,8 +405,7 @@ static void illuminance_of_a_imaged_sky(void **state) {
   }
 }
 
-/* ---- choosing among many
- * ----------------------------------------------------------------------------------------- */
+/* ---- choosing among many ----------------------------------------------------------------- */
 
 static void light_samplers_agree(void **state) {
   (void)state;

@@ -21,9 +21,7 @@ static void add_ball(Stage *s, vlMaterialId material) {
   vl_scene_add_shape(s->scene, &def);
 }
 
-/* ---- mixes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- mixes ------------------------------------------------------------------------------- */
 
 static vlMaterialId add_mix(Stage *s, vlMaterialId a, vlMaterialId b, float amount) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_MIX);
@@ -159,8 +157,7 @@ static void mix_of_a_mix_with_an_interface(void **state) {
   }
 }
 
-/* ---- bump and normal maps
- * ---------------------------------------------------------------------------------------- */
+/* ---- bump and normal maps ---------------------------------------------------------------- */
 
 /* A wall seen straight on, lit by a sun from `from`; the map bends its normal. */
 static Stage wall_stage(const double from[3]) {
@@ -263,9 +260,7 @@ static void displacements(void **state) {
   image_free(&p[0]), image_free(&p[1]);
 }
 
-/* ---- interfaces
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- interfaces -------------------------------------------------------------------------- */
 
 /* Boxes, balls and sheets of interface between everything and a near area light: the image must
  * not notice. */
@@ -320,8 +315,7 @@ static void far_plane_behind_an_interface(void **state) {
   image_free(&p);
 }
 
-/* ---- glass that splits colours
- * ----------------------------------------------------------------------------------- */
+/* ---- glass that splits colours ----------------------------------------------------------- */
 
 /* A thin white strip seen through a wedge whose thick side is on the left. Rays are refracted
  * to the left, blue ones more, so the strip's image moves to the right, its blue part farther

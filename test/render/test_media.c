@@ -29,9 +29,7 @@ static vlMediumDef white_medium(int kind) {
   return def;
 }
 
-/* ---- white furnaces
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- white furnaces ---------------------------------------------------------------------- */
 
 /* Grey ones vanish but for rounding; of coloured ones paths carry more of this and less of
  * that. */
@@ -80,9 +78,7 @@ static void furnace_in_glass(void **state) {
   image_free(&p);
 }
 
-/* ---- absorption
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- absorption -------------------------------------------------------------------------- */
 
 /* Beer's law: the sky through the middle of a ball of fog: homogeneous, on a grid, and
  * scattering without return. */
@@ -118,9 +114,7 @@ static void beer(void **state) {
   }
 }
 
-/* ---- single scattering
- * -------------------------------------------------------------------------------------------
- */
+/* ---- single scattering ------------------------------------------------------------------- */
 
 static double phase(double g, double cosine) {
   return (1 - g * g) / (4 * M_PI * pow(1 + g * g - 2 * g * cosine, 1.5));
@@ -161,9 +155,7 @@ static void single_scattering(void **state) {
   }
 }
 
-/* ---- emission
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- emission ---------------------------------------------------------------------------- */
 
 static void emissive(void **state) {
   (void)state;
@@ -258,8 +250,7 @@ static void imaged_lamp(void **state) {
     assert_ratio("imaged lamp", half[1][k], half[0][k], 1e-3);
 }
 
-/* ---- what must not show
- * ------------------------------------------------------------------------------------------ */
+/* ---- what must not show ------------------------------------------------------------------ */
 
 static Image rich(vlContext *context, const void *what) {
   (void)what;

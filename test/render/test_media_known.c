@@ -31,9 +31,7 @@ static Stage narrow(uint32_t spp, vlColorMode color) {
  * 106.86. */
 static const double RAW = 106.856895;
 
-/* ---- equilibrium
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- equilibrium ------------------------------------------------------------------------- */
 
 /* Kirchhoff: what absorbs and gives out by one temperature, before a sky of it, adds what it
  * takes; scattering changes nothing. Whatever the density, in glass or not. */
@@ -87,8 +85,7 @@ static void equilibrium(void **state) {
       }
 }
 
-/* ---- media within media
- * ------------------------------------------------------------------------------------------ */
+/* ---- media within media ------------------------------------------------------------------ */
 
 /* The camera in the innermost of three shells: the sky through all of them; each kind in each
  * place. */
@@ -143,8 +140,7 @@ static void lamp_in_shell(void **state) {
   assert_ratio("lamp in a shell", mean[1] / mean[0], exp(-0.5 * (2 + 6) - 0.3 * 4), 2e-3);
 }
 
-/* ---- grids, turned and stretched
- * --------------------------------------------------------------------------------- */
+/* ---- grids, turned and stretched --------------------------------------------------------- */
 
 /* A box of density 1 to 3 along its x, which the world stretches twofold and turns to the line
  * of sight: coefficients are the world's. Between cell centres linear, outside of them towards
@@ -225,8 +221,7 @@ static void rgb_grids(void **state) {
   }
 }
 
-/* ---- emissive and scattering
- * ------------------------------------------------------------------------------------- */
+/* ---- emissive and scattering ------------------------------------------------------------- */
 
 /* A thin ball of little albedo: emission along the ray, and once scattered emission, which is
  * small but known to order: the whole lies between none scattered and all of it coming from an
@@ -268,9 +263,7 @@ static void emissive_fog(void **state) {
   }
 }
 
-/* ---- NanoVDB
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- NanoVDB ----------------------------------------------------------------------------- */
 
 /* A cube of 128^3 voxels of side 1/2 and density 7, starting at (74, 0, 0). A ray goes through
  * its middle; the medium is unchanged, rotated, and stretched along the ray. */

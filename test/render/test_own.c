@@ -15,9 +15,7 @@
 #include "velo/projection.h"
 #include "velo/trace.h"
 
-/* ---- an own camera that is velo's perspective camera
- * ---------------------------------------------------------------
- */
+/* ---- an own camera that is velo's perspective camera ------------------------------------- */
 
 static vlCameraDef small_def(const vlOwnCamera *own) {
   vlCameraDef def = vl_default_camera_def(SMALL_WIDTH, SMALL_HEIGHT);
@@ -162,9 +160,7 @@ static void ground_truth(void **state) {
   stage_close(&s);
 }
 
-/* ---- rays that are none
- * -------------------------------------------------------------------------------------------
- */
+/* ---- rays that are none ------------------------------------------------------------------ */
 
 /* The left quarter has no rays, the next one NaN, the third a weight of 1/2. */
 static void quarters(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {
@@ -283,9 +279,7 @@ static void wrong_cameras(void **state) {
   assert_string_equal(vl_projection_name(VL_PROJECTION_OWN), "own");
 }
 
-/* ---- samplers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- samplers ---------------------------------------------------------------------------- */
 
 /* velo's independent sampler, by its own formula, would need its hash: any hash does here. */
 static float hashed(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
@@ -386,9 +380,7 @@ static void wrong_samplers(void **state) {
   stage_close(&s);
 }
 
-/* ---- tracers
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- tracers ----------------------------------------------------------------------------- */
 
 /* What a tracer of at most max_depth bounces gives, by light samples alone; lamps are seen at
  * first and in mirrors. */
@@ -606,9 +598,7 @@ static void wrong_tracers(void **state) {
   stage_close(&s);
 }
 
-/* ---- names
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- names ------------------------------------------------------------------------------- */
 
 static vlResult render_part(const Stage *s, const vlWorld *world, const vlOwnCamera *own,
                             const vlOwnSampler *sampler, uint32_t first, uint32_t spp,

@@ -23,9 +23,7 @@ static void assert_same(const char *what, Image *a, Image *b, double share, doub
   image_free(b);
 }
 
-/* ---- instances
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- instances --------------------------------------------------------------------------- */
 
 enum { MESH, SMOOTH_MESH, SPHERE, PART_SPHERE, DISK, CYLINDER, PATCH, KINDS };
 static const char *const kind_name[KINDS] = {
@@ -158,8 +156,7 @@ static void one_group_many_places(void **state) {
   assert_same("three places", &p[0], &p[1], 0.02, 2e-3);
 }
 
-/* ---- shapes that are other shapes
- * -------------------------------------------------------------------------------- */
+/* ---- shapes that are other shapes -------------------------------------------------------- */
 
 static void fine_mesh_is_the_sphere(void **state) {
   (void)state;
@@ -253,9 +250,7 @@ static void flat_patch_is_two_triangles(void **state) {
   }
 }
 
-/* ---- alpha
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- alpha ------------------------------------------------------------------------------- */
 
 static vlTextureId checks(Stage *s, float su, float sv, float a, float b) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);

@@ -88,9 +88,7 @@ static double straight(double eta) {
   return (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1));
 }
 
-/* ---- thick and wide
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- thick and wide ---------------------------------------------------------------------- */
 
 /* A wall under a white sky: what its surface reflects, and of the rest the body's share. Probes
  * reach 0.999 of it. */
@@ -162,9 +160,7 @@ static void rough(void **state) {
               0.012); /* microfacets lose some */
 }
 
-/* ---- white bodies
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- white bodies ------------------------------------------------------------------------ */
 
 /* Balls that give back all, some larger than their mean free path, some not: never brighter
  * than the sky. */
@@ -195,9 +191,7 @@ static void white(void **state) {
   }
 }
 
-/* ---- round a corner
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- round a corner ---------------------------------------------------------------------- */
 
 /* A block's front at z = -3 ends at x = 0; its side there is lit by a sun that grazes the
  * front. What is seen of the front at x = -a has come in by the side: an integral over it. Half
@@ -244,9 +238,7 @@ static void corner(void **state) {
   }
 }
 
-/* ---- small triangles
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- small triangles --------------------------------------------------------------------- */
 
 /* A ball in which light goes far; probes start far outside of it, because another object makes
  * the world wide. */
@@ -278,9 +270,7 @@ static void fine_mesh(void **state) {
   image_free(&mesh);
 }
 
-/* ---- others
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- others ------------------------------------------------------------------------------ */
 
 /* A body in a medium: light goes through it on both sides of its way through the body. */
 static void in_fog(void **state) {
@@ -472,9 +462,7 @@ static void refused(void **state) {
   }
 }
 
-/* ---- memory
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- memory ------------------------------------------------------------------------------ */
 
 typedef struct Purse {
   long left; /* allocations that still succeed */

@@ -65,9 +65,7 @@ static vlTextureDef grey(vlTextureKind kind, double a, double b) {
   return def;
 }
 
-/* ---- nodes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- nodes ------------------------------------------------------------------------------- */
 
 static void constants_scale_and_mix(void **state) {
   (void)state;
@@ -209,9 +207,7 @@ static void doubling_is_refused(void **state) {
   stage_close(&s);
 }
 
-/* ---- images
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 /* 4 x 2 texels, told apart by their red and green; rows from the top. */
 static const float texels[24] = {0.1f, 0.1f, 0.5f, 0.3f, 0.1f, 0.5f, 0.5f, 0.1f,
@@ -333,8 +329,7 @@ static void encodings_and_floats(void **state) {
   remove(path);
 }
 
-/* ---- mappings: an image whose red is s and whose green is t
- * ----------------------------------------------------- */
+/* ---- mappings: an image whose red is s and whose green is t ------------------------------ */
 
 static void mappings(void **state) {
   (void)state;

@@ -77,9 +77,7 @@ static void assert_image(const char *what, vlColorMode mode, Image *p,
   assert_color(what, mode, seen, expected);
 }
 
-/* ---- sheets and solids
- * -------------------------------------------------------------------------------------------
- */
+/* ---- sheets and solids ------------------------------------------------------------------- */
 
 /* n sheets, or n / 2 solids, of two colours in turns. */
 static void stack_of(int n, bool sheets, const float *const colors[2], vlColorMode mode,
@@ -155,9 +153,7 @@ static void with_absorption(void **state) {
   }
 }
 
-/* ---- textures
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- textures ---------------------------------------------------------------------------- */
 
 /* Sheets whose colour is an image: blue on the left, amber on the right. `mixed`: the image is
  * one half of a mix whose other half is white. */
@@ -238,8 +234,7 @@ static void spectra_multiply(void **state) {
   assert_color("two sheets of a spectrum", VL_COLOR_SPECTRAL, seen[0], seen[1]);
 }
 
-/* ---- partial transmission
- * ---------------------------------------------------------------------------------------- */
+/* ---- partial transmission ---------------------------------------------------------------- */
 
 /* Half of the base transmits, half is matt. A lamp far behind n sheets is seen through the half
  * that transmits, (c / 2)^n; before a white sky a sheet shows c, half of it reflected. */
@@ -269,9 +264,7 @@ static void half(void **state) {
     }
 }
 
-/* ---- rough glass
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- rough glass ------------------------------------------------------------------------- */
 
 /* The camera stands in a ball of rough glass, a lamp outside of it in a grey room; both sides
  * may be full of media that absorb by channel. Light samples, splats and photons join paths
@@ -326,9 +319,7 @@ static void rough_glass(void **state) {
     }
 }
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 /* Three slabs of glass in an OBJ file: MTL's Tf. */
 static void slabs_of_mtl(void **state) {

@@ -57,9 +57,7 @@ static const Row rows[] = {
 #include "render/agreeing.h"
 };
 
-/* ---- rendering
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- rendering --------------------------------------------------------------------------- */
 
 typedef struct Scene {
   vlContext *context;
@@ -114,9 +112,7 @@ static vlImage *render(const Scene *s, vlTracer tracer, uint32_t spp, uint32_t s
   return image;
 }
 
-/* ---- comparing
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- comparing --------------------------------------------------------------------------- */
 
 typedef struct Means {
   double mean[PARTS][CHANNELS],

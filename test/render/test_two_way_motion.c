@@ -119,8 +119,7 @@ static void blurred_alike(void **state) {
   image_free(&path);
 }
 
-/* ---- connections of inner vertices
- * ------------------------------------------------------------------------------- */
+/* ---- connections of inner vertices ------------------------------------------------------- */
 
 /* A red and a blue board that move one after the other over the lamp's tube and reflect most of
  * its light. */

@@ -308,9 +308,7 @@ static void large_mesh(void **state) {
   free(v);
 }
 
-/* ---- out of memory
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- out of memory ----------------------------------------------------------------------- */
 
 static vlResult fill(vlContext *from, void *user) {
   (void)user;

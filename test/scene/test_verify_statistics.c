@@ -60,9 +60,7 @@ static void test_compare(void **state) {
   assert_true(d.p == 1 && d.z == 0);
 }
 
-/* ---- false alarms
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- false alarms ------------------------------------------------------------------------ */
 
 /* The mean of `draws` radiances of mean 1. NORMAL: as of a smooth image. SKEWED: log-normal,
  * variance e^4 - 1 = 54, as of indirect light. PARETO: of index 1.6, without a variance. RARE:

@@ -29,8 +29,7 @@ static int end(void **state) {
   return left != 0;
 }
 
-/* ---- defs of any family
- * ------------------------------------------------------------------------------------------ */
+/* ---- defs of any family ------------------------------------------------------------------ */
 
 typedef union Def {
   vlLightDef light;
@@ -86,9 +85,7 @@ static void each(void (*visit)(const Family *, int kind)) {
       visit(&families[f], (int)k);
 }
 
-/* ---- defaults
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- defaults ---------------------------------------------------------------------------- */
 
 static void is_accepted(const Family *family, int kind) {
   Def def;
@@ -116,9 +113,7 @@ static void defaults(void **state) {
   each(is_accepted);
 }
 
-/* ---- ranges
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- ranges ------------------------------------------------------------------------------ */
 
 /* A number just outside of an end of the range; false: that end has none. */
 static bool beyond(const vlParameter *p, bool high, double *x) {
@@ -177,8 +172,7 @@ static void ranges(void **state) {
   each(has_ranges);
 }
 
-/* ---- what a kind does not read
- * ----------------------------------------------------------------------------------- */
+/* ---- what a kind does not read ----------------------------------------------------------- */
 
 static void dropped(void **state) {
   (void)state;

@@ -139,8 +139,7 @@ static double world_disk(const Fixture *f, const vlEmission *e) {
   return M_PI * (double)f->world->radius * (double)f->world->radius;
 }
 
-/* ---- points and what is far away
- * --------------------------------------------------------------------------------- */
+/* ---- points and what is far away --------------------------------------------------------- */
 
 static void points(void **state) {
   (void)state;
@@ -291,9 +290,7 @@ static void portal(void **state) {
   end(f);
 }
 
-/* ---- surfaces
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- surfaces ---------------------------------------------------------------------------- */
 
 static vlEmissionId emission(Fixture *f, bool two_sided) {
   vlEmissionDef def = vl_default_emission_def();

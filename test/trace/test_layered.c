@@ -93,9 +93,7 @@ static void put(Batch *b, uint32_t i, const Stack *t, uint32_t seed) {
   b->seed[i] = seed;
 }
 
-/* ---- against nature
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- against nature ---------------------------------------------------------------------- */
 
 enum { CELLS = 13 }; /* 3 rings of 4 sectors, and the whole */
 typedef struct {
@@ -233,8 +231,7 @@ static void walks_are_natures(void **state) {
     }
 }
 
-/* ---- against the closed form
- * ------------------------------------------------------------------------------------- */
+/* ---- against the closed form ------------------------------------------------------------- */
 
 static void diffuse_base_is_the_closed_form(void **state) {
   const State *s = *state;
@@ -289,8 +286,7 @@ static void diffuse_base_is_the_closed_form(void **state) {
   }
 }
 
-/* ---- furnace, reciprocity, agreement
- * ----------------------------------------------------------------------------- */
+/* ---- furnace, reciprocity, agreement ----------------------------------------------------- */
 
 static void white_furnace(void **state) {
   const State *s = *state;

@@ -21,9 +21,7 @@
 
 enum { RAYS = 4000, LIGHTS = 4 * VL_BATCH };
 
-/* ---- shapes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- shapes ------------------------------------------------------------------------------ */
 
 typedef struct Kind {
   const char *name;
@@ -85,9 +83,7 @@ static vlShapeDef shape_of(const Kind *k) {
   return def;
 }
 
-/* ---- transforms
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- transforms -------------------------------------------------------------------------- */
 
 /* m = a b */
 static void multiply(const double a[16], const double b[16], double m[16]) {
@@ -164,9 +160,7 @@ static void linear_map(Map map, statRng *rng, double m[16]) {
   }
 }
 
-/* ---- worlds
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- worlds ------------------------------------------------------------------------------ */
 
 typedef enum Place { PLACED, INSTANCED, MOVING, PLACES } Place;
 static const char *const place_names[] = {"", "instance of a ", "moving "};
@@ -297,9 +291,7 @@ static void destroy(Scene *s) {
   vl_context_destroy(s->context);
 }
 
-/* ---- rays that leave
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- rays that leave --------------------------------------------------------------------- */
 
 /* 10^-k, k uniform in [0, most). */
 static double small(statRng *rng, double most) {
@@ -454,8 +446,7 @@ static void interfaces_are_passed_once(void **state) {
   check_all(passing, 500000);
 }
 
-/* ---- rays that arrive at lights
- * ---------------------------------------------------------------------------------- */
+/* ---- rays that arrive at lights ---------------------------------------------------------- */
 
 /* Shadow rays to light samples, from points at all distances outside. media: as tracers of
  * media cast them. */
@@ -530,9 +521,7 @@ static void lights_are_seen(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-/* ---- light paths
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- light paths ------------------------------------------------------------------------- */
 
 static void light_paths_leave(void **state) {
   (void)state;

@@ -62,9 +62,7 @@ static vlShapeDef triangle(void) {
   return def;
 }
 
-/* ---- both evaluators
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- both evaluators --------------------------------------------------------------------- */
 
 /* least 1: white. */
 static vlImage *image_of(Fixture *f, statRng *rng, float least) {
@@ -169,8 +167,7 @@ static void same_bits(void **state) {
   end(&f);
 }
 
-/* ---- who asks for single points
- * ---------------------------------------------------------------------------------- */
+/* ---- who asks for single points ---------------------------------------------------------- */
 
 /* Number of shapes hit: 0 or 1. */
 static int hits(const Fixture *f, float ox, float oy, float oz, float dx, float dy, float dz) {

@@ -23,9 +23,7 @@ static float random_signed(void) {
   return (float)(seed >> 8) * 0x1p-23f - 1;
 }
 
-/* ---- worlds
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- worlds ------------------------------------------------------------------------------ */
 
 typedef struct Made {
   vlContext *context;
@@ -110,9 +108,7 @@ static void make_room(Made *m, float shift) {
   build(m);
 }
 
-/* ---- rays
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- rays -------------------------------------------------------------------------------- */
 
 static float o_[3][RAYS], d_[3][RAYS], end_[RAYS];
 static uint32_t shape_[2][RAYS], prim_[2][RAYS], instance_[2][RAYS];
@@ -279,9 +275,7 @@ static void broken_rays(void **state) {
   close_scene(&m);
 }
 
-/* ---- which worlds
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- which worlds ------------------------------------------------------------------------ */
 
 static bool is_few(int boxes, int balls, bool instance, float opacity) {
   Made m = {0};

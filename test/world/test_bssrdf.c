@@ -40,8 +40,7 @@ static void assert_within(const char *what, double value, double expected, doubl
     fail_msg("%s: %.7g, expected %.7g within %.2g", what, value, expected, tolerance);
 }
 
-/* ---- integrals of its own
- * ---------------------------------------------------------------------------------------- */
+/* ---- integrals of its own ---------------------------------------------------------------- */
 
 /* n: index on the side of the light over that beyond */
 static double fresnel(double cosine, double n) {
@@ -107,8 +106,7 @@ static void integrals(void **state) {
   }
 }
 
-/* ---- what is read from it
- * ---------------------------------------------------------------------------------------- */
+/* ---- what is read from it ---------------------------------------------------------------- */
 
 static void sums(void **state) {
   (void)state;

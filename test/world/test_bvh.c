@@ -25,9 +25,7 @@
 enum { BATCH = 1024 };
 #define EPSILON 0x1p-24 /* relative rounding error of a float */
 
-/* ---- rays
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- rays -------------------------------------------------------------------------------- */
 
 static float o_[3][BATCH], d_[3][BATCH], start_[BATCH], end_[BATCH], time_[BATCH];
 static const vlRays all_rays = {o_[0], o_[1], o_[2], d_[0], d_[1], d_[2], start_, end_, time_};
@@ -108,9 +106,7 @@ static void make_rays(const vlWorld *w, Way way) {
   }
 }
 
-/* ---- comparison
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- comparison -------------------------------------------------------------------------- */
 
 typedef struct Hits {
   uint32_t shape[BATCH], prim[BATCH], instance[BATCH];
@@ -206,11 +202,9 @@ static Met met_triangle(const vlWorld *w, const Hits *h, uint32_t k) {
                    1e-6 * (1 + far * longest / twice_area)};
 }
 
-/* ---- the judge
- * ---------------------------------------------------------------------------------------------------
- * What a ray meets, without a tree and in double, with bounds of the rounding errors of the
- * accelerators' arithmetic (bvh.hot.c). A hit is certain if these errors cannot undo it, and
- * possible if they can make it. */
+/* The judge: what a ray meets, without a tree and in double, with bounds of the rounding errors
+ * of the accelerators' arithmetic (bvh.hot.c). A hit is certain if these errors cannot undo it,
+ * and possible if they can make it. */
 
 typedef struct Verdict {
   double certain;  /* a hit that lets no ray pass is met no later than here; infinity: none is

@@ -71,8 +71,7 @@ static vlWorld *build(vlContext *context, const Hair *h, vlCurveKind kind, uint3
   return world;
 }
 
-/* ---- brute force, in shape space
- * --------------------------------------------------------------------------------- */
+/* ---- brute force, in shape space --------------------------------------------------------- */
 
 typedef struct Found {
   bool hit, doubtful; /* so near an edge that rounding decides */
@@ -159,9 +158,7 @@ static Found brute_force(const Hair *h, vlCurveKind kind, const double o[3],
   return f;
 }
 
-/* ---- the comparison
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- the comparison ---------------------------------------------------------------------- */
 
 static void to_shape(const double p[3], bool vector, double r[3]) {
   const double *m = stretched;

@@ -69,8 +69,7 @@ static uint64_t offset_of(const mfFile *file, const char *name) {
   return offset;
 }
 
-/* ---- damages with a name
- * --------------------------------------------------------------------------------------- */
+/* ---- damages with a name ----------------------------------------------------------------- */
 
 static void set(mfFile *file, size_t at, uint64_t value, size_t size) {
   memcpy(file->bytes + at, &value, size);
@@ -222,9 +221,7 @@ static void damages(void **state) {
   remove(path);
 }
 
-/* ---- damages without
- * -------------------------------------------------------------------------------------------
- */
+/* ---- damages without --------------------------------------------------------------------- */
 
 /* A few hundred files with flipped bits, lost and repeated pieces, extreme numbers: each gives
  * an error with the file's name, or a material with finite values. */
@@ -320,9 +317,7 @@ static void no_memory(void **state) {
   remove(path);
 }
 
-/* ---- in a scene
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- in a scene -------------------------------------------------------------------------- */
 
 /* A ball of brushed metal under a lamp and a sky; another in the back has the same file. */
 static Image ball(const mfSurface *metal, bool measured, bool rgb) {

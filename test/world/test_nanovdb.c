@@ -184,9 +184,7 @@ static void shaken(void **state) {
   free(grid);
 }
 
-/* ---- memory
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- memory ------------------------------------------------------------------------------ */
 
 static void share_lower_nodes(
     unsigned char *g) { /* all 32768 children are one node: 512 MB of bricks */

@@ -175,9 +175,7 @@ static void add_all(state *s) {
   }
 }
 
-/* ---- colour spaces
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- colour spaces ----------------------------------------------------------------------- */
 
 static void invert(const double m[9], double r[9]) {
   double c[9];
@@ -246,9 +244,7 @@ static void make_spaces(const state *s, space spaces[SPACE_COUNT]) {
   make_space(s, &spaces[3], aces, "illum-acesD60");
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 void write_floats(FILE *file, const float *v, int count, int stride) {
   for (int i = 0; i < count; i++) {

@@ -170,8 +170,7 @@ static void fit(const problem *q, const double rgb[3], double z, double scale, p
   }
 }
 
-/* ---- the walk over the nodes
- * ------------------------------------------------------------------------------------- */
+/* ---- the walk over the nodes ------------------------------------------------------------- */
 
 enum { NX = VL_RGB_TABLE_XY, NZ = VL_RGB_TABLE_Z };
 

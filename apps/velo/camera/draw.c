@@ -74,9 +74,7 @@ static int parse_parts(const char *text, uint32_t *parts) {
   return -1;
 }
 
-/* ---- options
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- options ----------------------------------------------------------------------------- */
 
 static int read_options(State *s, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
@@ -129,9 +127,7 @@ static int read_options(State *s, const Arguments *arguments) {
   return -1;
 }
 
-/* ---- the cameras
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the cameras ------------------------------------------------------------------------- */
 
 static int load(State *s, const Command *command, const Arguments *arguments) {
   const char *path = arguments->operands[0];
@@ -156,9 +152,7 @@ static int load(State *s, const Command *command, const Arguments *arguments) {
   return -1;
 }
 
-/* ---- what is drawn
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- what is drawn ----------------------------------------------------------------------- */
 
 /* Two of the seen points, above and below the middle of the image, and none far behind the
  * others.

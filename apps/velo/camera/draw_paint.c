@@ -46,9 +46,7 @@ static bool in_front(const Outside *o, const double pixel[2], double z) {
   return z <= 1.004 * scene_depth(o, pixel[0], pixel[1]);
 }
 
-/* ---- lines
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- lines ------------------------------------------------------------------------------- */
 
 /* Which pieces of lines are drawn. */
 typedef enum Pieces { SEEN, HIDDEN } Pieces;
@@ -113,9 +111,7 @@ static void draw_dots(const Canvas *c, const vlDrawing *d, vlDrawingPart part) {
   }
 }
 
-/* ---- faces
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- faces ------------------------------------------------------------------------------- */
 
 /* The point of the face's plane that is seen at a pixel of the drawing. */
 static bool face_point(const Canvas *c, double x, double y, double point[3]) {
@@ -198,9 +194,7 @@ static void draw_faces(Canvas *c, const vlDrawing *d, vlDrawingPart part) {
   overlay_paint(c->overlay, s->color, s->fill);
 }
 
-/* ---- labels
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- labels ------------------------------------------------------------------------------ */
 
 static bool is_image(const vlDrawingLabel *l) {
   return strchr(l->text, '\'') != NULL;

@@ -11,8 +11,7 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- what the camera sees
- * ---------------------------------------------------------------------------------------- */
+/* ---- what the camera sees ---------------------------------------------------------------- */
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -78,8 +77,7 @@ void draw_forget(Seen *seen) {
   memset(seen, 0, sizeof *seen);
 }
 
-/* ---- the outside camera
- * ------------------------------------------------------------------------------------------ */
+/* ---- the outside camera ------------------------------------------------------------------ */
 
 /* The axis of the world that is nearest to the camera's up, as a level horizon needs it. */
 static void choose_up(const vlCamera *of, double up[3]) {
@@ -189,8 +187,7 @@ vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Se
   return vl_camera_make(&camera, &outside->camera, NULL, error);
 }
 
-/* ---- the rendered scene
- * ------------------------------------------------------------------------------------------ */
+/* ---- the rendered scene ------------------------------------------------------------------ */
 
 /* Exposes the image and puts it over white. pale: its opacity. */
 static void put_on_paper(vlImage *image, double ev, double pale) {

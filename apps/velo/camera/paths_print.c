@@ -46,9 +46,7 @@ static uint32_t id_of(const PathsReport *r, uint32_t channel) {
   return ((const uint32_t *)vl_image_const_pixels(r->traced->ids))[channel];
 }
 
-/* ---- text
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- text -------------------------------------------------------------------------------- */
 
 static void print_what(const PathsReport *r, vlIdKind kind, const char *word, uint32_t id) {
   vlIdInfo info = info_of(r->world, kind, id);
@@ -205,9 +203,7 @@ void paths_print_text(const PathsReport *r) {
   }
 }
 
-/* ---- JSON
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- JSON -------------------------------------------------------------------------------- */
 
 static void json_floats(Json *json, const char *key, const float *values, int count) {
   json_begin(json, key, '[');

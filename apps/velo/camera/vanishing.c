@@ -34,9 +34,7 @@ enum {
 static const double pi = 3.14159265358979323846;
 static const char *const axis_names[3] = {"x", "y", "z"};
 
-/* ---- output
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- output ------------------------------------------------------------------------------ */
 
 static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
   static const char *const kinds[] = {"parallel projection", "one-point perspective",
@@ -106,9 +104,7 @@ static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
            c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "none" : "no line in the image");
 }
 
-/* ---- what is drawn
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- what is drawn ----------------------------------------------------------------------- */
 
 /* Two unit vectors orthogonal to d and to each other. */
 static void basis_of(const double d[3], double a[3], double b[3]) {
@@ -265,9 +261,7 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
   return status;
 }
 
-/* ---- the inverse
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the inverse ------------------------------------------------------------------------- */
 
 /* Parses "xz" or "-xyz": the axis of each point; a minus means the negative direction. */
 static bool parse_axes(const char *text, vlVanishingDef *def) {

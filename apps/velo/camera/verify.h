@@ -6,8 +6,7 @@
 #include "velo/camera.h"
 #include "velo/world.h"
 
-/* ---- verify_model.c: the independent projection
- * ------------------------------------------------------------------ */
+/* ---- verify_model.c: the independent projection ------------------------------------------ */
 
 typedef struct VerifyModel {
   vlCameraDef def; /* coefficients as in the file */
@@ -21,7 +20,7 @@ bool verify_knows(const VerifyModel *model);
 bool verify_project(const VerifyModel *model, const double point[3], double pixel[2]);
 
 /* ---- verify_corners.c: corners of a chessboard in an image, without knowing where they are
- * ----------------------- */
+ * ---- */
 
 typedef struct Image {
   int width, height; /* rows from the top; the first pixel's centre is (0.5, 0.5) */
@@ -40,8 +39,7 @@ int corners_find(const Image *image, Corner *corners, int room);
  * chessboard corner. */
 bool corner_refine(const Image *image, double reach, Corner *corner);
 
-/* ---- verify_target.c: the board and where it stands
- * -------------------------------------------------------------- */
+/* ---- verify_target.c: the board and where it stands -------------------------------------- */
 
 enum { TARGET_MAX = 9, MARKER_BITS = 16 };
 
@@ -78,8 +76,7 @@ vlResult target_build(vlContext *context, const Target *target, const Placement 
 int target_read_marker(const Target *target, int i, int j, const Image *image,
                        double corners[4][2]);
 
-/* ---- verify_run.c: pose after pose
- * ------------------------------------------------------------------------------- */
+/* ---- verify_run.c: pose after pose ------------------------------------------------------- */
 
 enum { VERIFY_POSES = 1000, COVERAGE = 8 };
 

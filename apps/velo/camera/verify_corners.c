@@ -16,9 +16,7 @@
 
 enum { BLUR = 4, REACH = 9, UNKNOWNS = 9 };
 
-/* ---- finding
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- finding ----------------------------------------------------------------------------- */
 
 static float at(const Image *p, int x, int y) {
   x = x < 0 ? 0 : x >= p->width ? p->width - 1 : x;
@@ -90,9 +88,7 @@ int corners_find(const Image *image, Corner *corners, int room) {
   return count;
 }
 
-/* ---- refining, first
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- refining, first --------------------------------------------------------------------- */
 
 /* Gradients by Scharr's 3 x 3 differences at whole pixels. The weights are symmetric about the
  * current estimate of the corner. */
@@ -134,8 +130,7 @@ static bool right_angles(const Image *p, double reach, Corner *corner) {
   return true;
 }
 
-/* ---- refining, then: nine unknowns
- * ------------------------------------------------------------------------------- */
+/* ---- refining, then: nine unknowns ------------------------------------------------------- */
 
 enum { MEAN, CONTRAST, SHARPNESS, X, Y, TURN1, TURN2, BEND1, BEND2 };
 

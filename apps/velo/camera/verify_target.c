@@ -20,9 +20,7 @@ double random_unit(Random *random) { /* splitmix64 */
   return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/* ---- markers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- markers ----------------------------------------------------------------------------- */
 
 static unsigned quarter_turn(unsigned code) {
   unsigned turned = 0;
@@ -125,9 +123,7 @@ int target_read_marker(const Target *target, int i, int j, const Image *image, d
   return code == marker_code(marker_of(target, i, j));
 }
 
-/* ---- size and pose
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- size and pose ----------------------------------------------------------------------- */
 
 double target_choose(Target *target, const vlCamera *camera) {
   double side = sqrt((double)camera->width * camera->height) / (target->charuco ? 16.0 : 20.0);
@@ -206,9 +202,7 @@ void target_point(const Target *target, const Placement *placement, double i, do
                                (j - middle) * placement->y[a]);
 }
 
-/* ---- geometry
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- geometry ---------------------------------------------------------------------------- */
 
 typedef struct Quads {
   const Target *target;

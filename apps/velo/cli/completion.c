@@ -9,8 +9,7 @@
 const Choice shell_choices[] = {
     {"bash", SHELL_BASH}, {"zsh", SHELL_ZSH}, {"fish", SHELL_FISH}, {NULL, 0}};
 
-/* ---- what completes a value
- * -------------------------------------------------------------------------------------- */
+/* ---- what completes a value -------------------------------------------------------------- */
 
 typedef enum Values { VALUES_UNKNOWN, VALUES_NAMES, VALUES_FILES, VALUES_FOLDERS } Values;
 
@@ -60,8 +59,7 @@ static void put_families(void) {
     printf("%s%s", i ? " " : "", family->name);
 }
 
-/* ---- words of the commands
- * --------------------------------------------------------------------------------------- */
+/* ---- words of the commands --------------------------------------------------------------- */
 
 /* Length of a command's first word. */
 static int first_length(const Command *command) {
@@ -134,9 +132,7 @@ static void put_clause(const char *text, const char *escaped, bool fish) {
   }
 }
 
-/* ---- bash
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- bash -------------------------------------------------------------------------------- */
 
 static const char bash_head[] =
     "# bash completion of velo; written by `velo help --completion bash`\n"
@@ -256,9 +252,7 @@ static void print_bash(const Command *const *commands, int count, const Command 
   fputs(bash_tail, stdout);
 }
 
-/* ---- zsh
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- zsh --------------------------------------------------------------------------------- */
 
 static void zsh_option(const Option *o) {
   bool repeated =
@@ -376,9 +370,7 @@ static void print_zsh(const Command *const *commands, int count, const Command *
   printf("  esac\n}\n_velo \"$@\"\n");
 }
 
-/* ---- fish
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- fish -------------------------------------------------------------------------------- */
 
 static const char fish_head[] =
     "# fish completion of velo; written by `velo help --completion fish`\n"

@@ -11,9 +11,7 @@
 
 enum { LINE_WIDTH = 76 };
 
-/* ---- text
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- text -------------------------------------------------------------------------------- */
 
 static void put_escaped(char c, bool minus) {
   switch (c) {
@@ -126,9 +124,7 @@ static void put_prose(const char *text, const char *paragraph) {
     printf(".EE\n");
 }
 
-/* ---- parts of a page
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- parts of a page --------------------------------------------------------------------- */
 
 /* Prints the title line and the section NAME. name: "image diff"; empty: the program. */
 static void put_title(const char *name, const char *summary) {
@@ -197,9 +193,7 @@ static void put_exit_status(void) {
   }
 }
 
-/* ---- pages
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- pages ------------------------------------------------------------------------------- */
 
 void manual_print_command(const Command *command) {
   put_title(command->name, command->summary);

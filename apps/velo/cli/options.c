@@ -12,9 +12,7 @@
 #include "cli/kinds.h"
 #include "cli/report.h"
 
-/* ---- the nearest name
- * --------------------------------------------------------------------------------------------
- */
+/* ---- the nearest name -------------------------------------------------------------------- */
 
 enum { LONGEST_NAME = 40 };
 
@@ -79,9 +77,7 @@ const char *choice_name(const Choice *choices, int value) {
   return "?";
 }
 
-/* ---- values
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- values ------------------------------------------------------------------------------ */
 
 /* Reads a decimal number that extends to `end` (null: the end of the text). Hexadecimal, inf
  * and nan are rejected. */
@@ -167,9 +163,7 @@ static int bad_value(const Option *option, const char *text, const char *wanted)
   return report_usage("--%s %s; it is \"%s\"", option->name, wanted, text);
 }
 
-/* ---- values of rows
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- values of rows ---------------------------------------------------------------------- */
 
 /* The setting whose name or alias is the option's. */
 static const vlParameter *setting_of(const char *name) {
@@ -343,9 +337,7 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
   return -1;
 }
 
-/* ---- the line
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the line ---------------------------------------------------------------------------- */
 
 static const Option *find_option(const Command *command, const char *name, size_t length,
                                  char letter) {

@@ -53,9 +53,7 @@ bool check_is_hit(const Check *c) {
   return vector_length(v) != 0;
 }
 
-/* ---- what there is
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- what there is ----------------------------------------------------------------------- */
 
 /* Index of the first of the channels "N." + "XYZ" when all exist in consecutive order;
  * otherwise -1. */
@@ -189,9 +187,7 @@ static void check_all(Check *c) {
   check_finish_flow(c);
 }
 
-/* ---- the command
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the command ------------------------------------------------------------------------- */
 
 static void print_result(const Check *c, const Arguments *arguments, double threshold) {
   if (!arguments->values[CHECK_JSON].given) {

@@ -10,9 +10,7 @@
 
 static const char *const types[3] = {"CryptoObject", "CryptoMaterial", "CryptoInstance"};
 
-/* ---- the manifest
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- the manifest ------------------------------------------------------------------------ */
 
 /* Reads a JSON string into `to` (of `size`); null when invalid. \u is not needed: manifests are
  * UTF-8. */
@@ -124,9 +122,7 @@ void check_free_mattes(Check *c) {
     free(c->mattes[k].known);
 }
 
-/* ---- a pixel
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- a pixel ----------------------------------------------------------------------------- */
 
 /* Sums the coverages and checks the ids: known to the manifest, each once, with coverage, in
  * descending order of coverage. */

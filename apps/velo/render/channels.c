@@ -17,9 +17,7 @@ const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
                                        {"coverage", VL_CHANNEL_MODE_COVERAGE},
                                        {NULL, 0}};
 
-/* ---- which
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- which ------------------------------------------------------------------------------- */
 
 static int read_one(const char *name, uint32_t *channels) {
   static const struct {
@@ -100,9 +98,7 @@ int channels_choose(Channels *c, const Arguments *arguments) {
   return -1;
 }
 
-/* ---- the pass
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the pass ---------------------------------------------------------------------------- */
 
 /* A camera of another image size is resized with the same framing, as the image's own camera
  * is. */

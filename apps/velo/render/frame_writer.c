@@ -42,9 +42,7 @@ void frame_image_free(FrameImage *image) {
   }
 }
 
-/* ---- one image
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- one image --------------------------------------------------------------------------- */
 
 /* Renames "Z" to "right.Z" and "N.X" to "N.right.X". In the first view, names without a dot
  * stay.
@@ -235,9 +233,7 @@ static int write_image(FrameWriter *w, FrameImage *p) {
   return status;
 }
 
-/* ---- the thread
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the thread -------------------------------------------------------------------------- */
 
 static void *work(void *user) {
   FrameWriter *w = user;

@@ -24,9 +24,7 @@ bool frames_wanted(const Arguments *arguments, const Job *job) {
   return job && job->defs->camera.stereo.mode != VL_STEREO_NONE;
 }
 
-/* ---- the command line
- * --------------------------------------------------------------------------------------------
- */
+/* ---- the command line -------------------------------------------------------------------- */
 
 int frames_check(const Arguments *arguments, Outputs *outputs) {
   const OptionValue *v = arguments->values;
@@ -66,9 +64,7 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
   return -1;
 }
 
-/* ---- cameras
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- cameras ----------------------------------------------------------------------------- */
 
 /* Shares the film of an earlier camera with the same film def, or makes one. */
 static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
@@ -236,8 +232,7 @@ void frames_free(Frames *frames) {
   vl_trajectory_destroy(frames->rig);
 }
 
-/* ---- one after the other
- * ----------------------------------------------------------------------------------------- */
+/* ---- one after the other ----------------------------------------------------------------- */
 
 uint32_t frames_count(const Frames *frames) {
   uint32_t poses = (frames->last - frames->first) / frames->step + 1;
@@ -315,9 +310,7 @@ vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camer
   return put_camera(frames, frame, &frame->camera->middle, camera, error);
 }
 
-/* ---- names
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- names ------------------------------------------------------------------------------- */
 
 static int compare_paths(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);

@@ -66,9 +66,7 @@ const Choice shard_choices[] = {{"samples", 0}, {"tiles", 1}, {NULL, 0}};
 const Choice isa_choices[] = {
     {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
-/* ---- overrides
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- overrides --------------------------------------------------------------------------- */
 
 /* File, line and column of the camera. The name is copied, since the scene's string ends with
  * the scene. */

@@ -9,9 +9,7 @@
 #include "cli/report.h"
 #include "render/progress.h"
 
-/* ---- the process
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the process ------------------------------------------------------------------------- */
 
 /* Bytes of resident memory of the process. */
 static uint64_t process_resident(void) {
@@ -24,8 +22,7 @@ static uint64_t process_resident(void) {
   return pages[1] * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-/* ---- who needs how much
- * ------------------------------------------------------------------------------------------ */
+/* ---- who needs how much ------------------------------------------------------------------ */
 
 void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes) {
   if (!bytes)
@@ -100,9 +97,7 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   memory_add(plan, "writing", writing(context, outputs, width, height, values));
 }
 
-/* ---- does it fit
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- does it fit ------------------------------------------------------------------------- */
 
 void memory_list(const MemoryPlan *plan, char *text, size_t size) {
   text[0] = 0;

@@ -83,9 +83,7 @@ static const Need needs_of[MAX_OPTIONS] = {
     [RENDER_REGULARIZE] = NEED_LIGHT_SAMPLES,
 };
 
-/* ---- when it is there
- * --------------------------------------------------------------------------------------------
- */
+/* ---- when it is there -------------------------------------------------------------------- */
 
 /* What the tests look at. */
 typedef struct Facts {
@@ -248,9 +246,7 @@ static const struct {
     [NEED_LIGHT_SAMPLES] = {has_light_samples, "this tracer samples no lights"},
 };
 
-/* ---- the check
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the check --------------------------------------------------------------------------- */
 
 static int report_option(const Facts *f, const Option *option, Need need) {
   const bool strict = f->v[RENDER_STRICT_OPTIONS].given;

@@ -122,9 +122,7 @@ int outputs_check_folders(const Outputs *outputs) {
   return -1;
 }
 
-/* ---- names
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- names ------------------------------------------------------------------------------- */
 
 /* Joins the first `keep` bytes of the path and `tail`. Keeps fewer bytes if the name would be
  * too long. */
@@ -181,9 +179,7 @@ const char *output_written(const Outputs *outputs, int i, OutputStage stage, cha
   return stage != OUTPUT_FINISHED && output_part_path(path, part, size) ? part : path;
 }
 
-/* ---- writing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------- */
 
 /* Reports when an output fails for the first time, and when it works again. */
 static void report_progress_failure(Outputs *outputs, int i, vlResult result,

@@ -43,9 +43,7 @@ int race_plan(Render *render, const Arguments *arguments) {
   return -1;
 }
 
-/* ---- the race
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the race ---------------------------------------------------------------------------- */
 
 static bool on_progress(void *user, const vlProgress *now) {
   (void)user;

@@ -32,9 +32,7 @@ bool receipt_option_counts(const Arguments *arguments, int option) {
   return true;
 }
 
-/* ---- the command
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the command ------------------------------------------------------------------------- */
 
 /* Words of the command that makes an image: in one order whatever the order of the command
  * line, and always with the number of samples, so that the same image has the same command. */
@@ -91,9 +89,7 @@ static void find_words(Words *w, const Arguments *arguments, const Job *job,
   }
 }
 
-/* ---- the receipt
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the receipt ------------------------------------------------------------------------- */
 
 /* The settings with the camera of this image: the pose of its frame, its eye. */
 static vlSceneDefs defs_of(const Job *job, const ReceiptImage *which) {

@@ -8,9 +8,7 @@
 #include "cli/report.h"
 #include "render/receipt.h"
 
-/* ---- the command
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the command ------------------------------------------------------------------------- */
 
 static int fail_command(const char *path, const char *why) {
   return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s",
@@ -56,9 +54,7 @@ void receipt_take_names(Arguments *arguments, const Arguments *given) {
   arguments->folder_count = given->folder_count;
 }
 
-/* ---- differences
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- differences ------------------------------------------------------------------------- */
 
 /* The first differences are named in one line; the rest are counted. */
 typedef struct Difference {

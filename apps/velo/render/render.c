@@ -54,9 +54,7 @@ static void choose_output(Render *render, const char *scene_path, const char *as
   render->outputs.count = 1;
 }
 
-/* ---- ground truth
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- ground truth ------------------------------------------------------------------------ */
 
 static void warn_of_channels(const Render *render) {
   const Channels *c = &render->channels;
@@ -76,8 +74,7 @@ static void warn_of_alpha(const Render *render) {
                      render->outputs.paths[i]);
 }
 
-/* ---- steps: each returns -1 to go on, else the exit code
- * --------------------------------------------------------- */
+/* ---- steps: each returns -1 to go on, else the exit code --------------------------------- */
 
 static void set_up_reports(const Arguments *arguments) {
   const OptionValue *v = arguments->values;

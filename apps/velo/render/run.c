@@ -14,9 +14,7 @@
  */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 static int write_image(Render *render, OutputStage stage) {
   vlDevelopDef develop = vl_default_develop_def();
@@ -163,9 +161,7 @@ static int render_channels(Render *render) {
   return status;
 }
 
-/* ---- the result
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- the result -------------------------------------------------------------------------- */
 
 static void report_not_finite(const vlRenderStats *stats) {
   if (stats->not_finite)

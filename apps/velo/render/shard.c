@@ -49,9 +49,7 @@ int shard_check(const Arguments *arguments) {
   return -1;
 }
 
-/* ---- tiles
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- tiles ------------------------------------------------------------------------------- */
 
 /* Divides a rectangle of blocks into `count` parts of about the same area and keeps only part
  * `index`, counted from 0. */
@@ -107,9 +105,7 @@ static int take_tiles(const OptionValue *v, vlFilmDef *film) {
   return -1;
 }
 
-/* ---- both
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- both -------------------------------------------------------------------------------- */
 
 bool tracer_has_light_paths(vlTracer tracer) {
   return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING ||

@@ -18,8 +18,7 @@ enum { VERIFY_TRIAL = 3 };
 enum { VERIFY_REFERENCE_SHARES = 3 };
 enum { VERIFY_MOST_RUNS = 24, VERIFY_MOST_MATERIALS = 32, VERIFY_MOST_NOTES = 16 };
 
-/* ---- verify_plan.c: what is rendered, and what is compared with what
- * --------------------------------------------- */
+/* ---- verify_plan.c: what is rendered, and what is compared with what --------------------- */
 
 /* Where the scene is: as in its file; shifted, turned, scaled; or all of these. Its camera is
  * always moved with it. */
@@ -126,8 +125,7 @@ bool verify_has_light(VerifyLights lights, vlLightKind kind);
 /* Whether emissive surfaces are in the group. */
 bool verify_has_surfaces(VerifyLights lights);
 
-/* ---- verify_run.c: renders the runs
- * ------------------------------------------------------------------------------ */
+/* ---- verify_run.c: renders the runs ------------------------------------------------------ */
 
 /* Finds where the scene's copies are, and the cells: renders ground truth. */
 vlResult verify_prepare(Verify *v, vlError *error);
@@ -145,8 +143,7 @@ uint32_t verify_seed(const Verify *v, int look, uint32_t replicate);
  */
 void verify_take_means(const Verify *v, const vlImage *image, double *row);
 
-/* ---- verify_reference.c: renders by the reference renderer
- * ------------------------------------------------------- */
+/* ---- verify_reference.c: renders by the reference renderer ------------------------------- */
 
 /* Finds the program: path (null: not given), the environment variable VELO_REFERENCE,
  * velo-reference beside this program. Sets v->reference or v->unreferenced. -1, or the exit
@@ -159,9 +156,7 @@ vlResult verify_reference_try(Verify *v, VerifyRun *run, vlError *error);
  * that takes too long is left out, too. VL_CANCELLED after a signal. */
 vlResult verify_reference(Verify *v, VerifyRun *run, int look, vlError *error);
 
-/* ---- verify_compare.c
- * --------------------------------------------------------------------------------------------
- */
+/* ---- verify_compare.c -------------------------------------------------------------------- */
 
 /* Whether the cell is compared for this run. Runs with a part of the lights have one cell, the
  * image, which then counts in the family of lights. */
@@ -176,9 +171,7 @@ vlResult verify_first(Verify *v);
 /* Judges the marks by the second look. */
 void verify_second(Verify *v);
 
-/* ---- verify_report.c
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- verify_report.c --------------------------------------------------------------------- */
 
 void verify_print(const Verify *v);
 void verify_print_json(const Verify *v);

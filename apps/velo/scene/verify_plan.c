@@ -39,8 +39,7 @@ bool verify_has_surfaces(VerifyLights lights) {
   return lights == VERIFY_ALL || lights == VERIFY_NOT_SMALL || lights == VERIFY_SURFACES;
 }
 
-/* ---- what the scene has
- * ------------------------------------------------------------------------------------------ */
+/* ---- what the scene has ------------------------------------------------------------------ */
 
 /* What decides which light of the scene the tracers find, besides what they do not support
  * (vl_tracer_lacks). */
@@ -108,9 +107,7 @@ static Features find_features(Verify *v) {
   return f;
 }
 
-/* ---- the runs
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the runs ---------------------------------------------------------------------------- */
 
 static int add(Verify *v, VerifyRun run) {
   if (v->run_count == VERIFY_MOST_RUNS)

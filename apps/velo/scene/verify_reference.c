@@ -24,8 +24,7 @@ enum { MOST_CHILDREN = 64 };
 /* Seconds of a look after which the reference renderer is stopped. */
 static const double longest[2] = {40, 100};
 
-/* ---- finding the program
- * ----------------------------------------------------------------------------------------- */
+/* ---- finding the program ----------------------------------------------------------------- */
 
 /* Options that change what is rendered, which the reference renderer does not have. */
 static const char *other_scene(const Arguments *arguments) {
@@ -73,9 +72,7 @@ int verify_reference_find(Verify *v, const Arguments *arguments, const OptionVal
   return -1;
 }
 
-/* ---- one look
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- one look ---------------------------------------------------------------------------- */
 
 typedef struct Child {
   pid_t pid;

@@ -131,9 +131,7 @@ void verify_print(const Verify *v) {
          v->compared);
 }
 
-/* ---- JSON
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- JSON -------------------------------------------------------------------------------- */
 
 static void put_difference(Json *json, const char *key, const VerifyDifference *d) {
   json_begin(json, key, '{');

@@ -12,9 +12,7 @@
 
 enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096, LEAST_MET = 100 };
 
-/* ---- poses
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- poses ------------------------------------------------------------------------------- */
 
 /* p' = scale * turn(p) + shift. turn: about the axis (1, 2, 3), by `angle`. */
 static void make_similarity(double scale, double angle, const double shift[3], double m[16]) {
@@ -84,9 +82,7 @@ static vlResult move_camera(const Verify *v, VerifyPose pose, vlCamera *camera,
   return vl_camera_travel(&v->camera, open, close, v->camera.pose_times, camera, error);
 }
 
-/* ---- lights
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- lights ------------------------------------------------------------------------------ */
 
 static vlResult choose_lights(Verify *v, VerifyLights lights, vlError *error) {
   vlResult result = VL_OK;
@@ -108,9 +104,7 @@ static vlResult choose_lights(Verify *v, VerifyLights lights, vlError *error) {
   return result;
 }
 
-/* ---- worlds
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- worlds ------------------------------------------------------------------------------ */
 
 typedef struct Set {
   vlWorld *world;
@@ -142,9 +136,7 @@ static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *er
   return result;
 }
 
-/* ---- cells
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- cells ------------------------------------------------------------------------------- */
 
 static void make_blocks(Verify *v) {
   for (uint32_t y = 0; y < v->height; y++)
@@ -273,9 +265,7 @@ vlResult verify_prepare(Verify *v, vlError *error) {
   return result;
 }
 
-/* ---- renders
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- renders ----------------------------------------------------------------------------- */
 
 static bool on_progress(void *user, const vlProgress *now) {
   (void)user;
@@ -375,9 +365,7 @@ static vlResult count_rays(Verify *v, VerifyRun *run, const Set *set, vlFilm *fi
   return result;
 }
 
-/* ---- all runs
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- all runs ---------------------------------------------------------------------------- */
 
 /* Moved copies have as many rays as the scene in its own pose. */
 static bool takes_part(const VerifyRun *run, int look) {

@@ -19,9 +19,7 @@ static void note_units(const vlCameraDef *def, CameraUnits *units) {
     units->sensor_mm = def->sensor_width_mm;
 }
 
-/* ---- the focal length
- * --------------------------------------------------------------------------------------------
- */
+/* ---- the focal length -------------------------------------------------------------------- */
 
 /* Replaces a window in scene units by the principal point. */
 static void drop_window(const ViewCamera *now, vlCameraDef *def) {
@@ -152,8 +150,7 @@ static bool set_skew(Edit *e, const MessageField *f) {
   return one(f, &e->def->skew);
 }
 
-/* ---- projection and distortion
- * ----------------------------------------------------------------------------------- */
+/* ---- projection and distortion ----------------------------------------------------------- */
 
 /* Parameters with which a projection starts, where its own defaults do not do: a field of view
  * over the image's smaller side (0: none), and the numbers of its shape. */
@@ -238,9 +235,7 @@ static bool set_coefficients(Edit *e, const MessageField *f) {
   return true;
 }
 
-/* ---- pose
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- pose -------------------------------------------------------------------------------- */
 
 static bool three(const MessageField *f, double value[3], bool *given) {
   if (f->count != 3)
@@ -265,9 +260,7 @@ static bool set_roll(Edit *e, const MessageField *f) {
   return e->pose.given = true;
 }
 
-/* ---- lens
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- lens -------------------------------------------------------------------------------- */
 
 static bool set_lens_radius(Edit *e, const MessageField *f) {
   e->def->lens.f_number = VL_UNSET;
@@ -332,9 +325,7 @@ static bool set_exposure_time(Edit *e, const MessageField *f) {
   return f->count == 1 && one(f, &e->def->exposure_time);
 }
 
-/* ---- all fields
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- all fields -------------------------------------------------------------------------- */
 
 /* In the order in which the fields of one message are applied. */
 static const struct {

@@ -56,9 +56,7 @@ void engine_clients(void *user, uint32_t count) {
   pthread_mutex_unlock(&e->lock);
 }
 
-/* ---- the camera
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the camera -------------------------------------------------------------------------- */
 
 static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const char *why) {
   JsonText text;
@@ -131,9 +129,7 @@ static void step_history(Engine *e, const ViewMessage *m) {
   engine_post_state(e, 0);
 }
 
-/* ---- settings
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- settings ---------------------------------------------------------------------------- */
 
 static bool set_channel(Engine *e, const char *name) {
   if (strcmp(name, "image") == 0) {

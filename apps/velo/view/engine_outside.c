@@ -123,8 +123,7 @@ void engine_cameras(Engine *e, const Task *task) {
   vl_drawing_destroy(drawing);
 }
 
-/* ---- the scene from outside
- * -------------------------------------------------------------------------------------- */
+/* ---- the scene from outside -------------------------------------------------------------- */
 
 /* Bytes as base64 (RFC 4648); null: no memory. */
 static char *to_base64(const uint8_t *data, size_t size) {

@@ -62,9 +62,7 @@ bool engine_race_due(const Engine *e, uint32_t spp) {
   return plan(e, spp, &defs) != RACE_NONE && race_samples(&defs) > e->raced_for;
 }
 
-/* ---- the successor
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- the successor ----------------------------------------------------------------------- */
 
 static const vlTracerTrial *find_trial(const Engine *e, const vlTracerChoice *choice,
                                        ViewTracer tracer) {
@@ -131,9 +129,7 @@ bool engine_succeed(Engine *e) {
   return true;
 }
 
-/* ---- the race
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the race ---------------------------------------------------------------------------- */
 
 static void post_note(Engine *e, const char *line) {
   JsonText text;

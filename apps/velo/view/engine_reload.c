@@ -24,8 +24,7 @@ void engine_report(void *user, const char *kind, const vlError *what) {
   json_text_post(&text, e->server, 0);
 }
 
-/* ---- the lecture's scenes
- * ---------------------------------------------------------------------------------------- */
+/* ---- the lecture's scenes ---------------------------------------------------------------- */
 
 bool engine_load_choice(Engine *e) {
   pthread_mutex_lock(&e->lock);
@@ -75,9 +74,7 @@ void *engine_load_chosen(void *user) {
   }
 }
 
-/* ---- the render thread
- * -------------------------------------------------------------------------------------------
- */
+/* ---- the render thread ------------------------------------------------------------------- */
 
 /* Whether two cameras are described by the same numbers. */
 static bool same_pose(const ViewCamera *a, const ViewCamera *b) {

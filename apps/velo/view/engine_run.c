@@ -61,9 +61,7 @@ bool engine_interrupted(Engine *engine) {
   return stop;
 }
 
-/* ---- frames
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- frames ------------------------------------------------------------------------------ */
 
 void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels,
                     uint32_t scale) {
@@ -99,9 +97,7 @@ static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
   e->frame_seconds += engine_thread_seconds() - used;
 }
 
-/* ---- coarse images
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- coarse images ----------------------------------------------------------------------- */
 
 /* Notes the time of one sample in a mean of the last ones. */
 static void note_speed(double *sample_seconds, const vlRenderStats *stats, double seconds) {
@@ -152,9 +148,7 @@ static uint32_t first_scale(const Engine *e) {
   return scale;
 }
 
-/* ---- ground truth
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- ground truth ------------------------------------------------------------------------ */
 
 /* Flow and whether the other camera sees the point, in one image. Null: no memory. */
 static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage *hidden) {
@@ -207,9 +201,7 @@ static bool render_channel(Engine *e) {
   return result != VL_CANCELLED;
 }
 
-/* ---- the whole image
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- the whole image --------------------------------------------------------------------- */
 
 vlFilm *engine_make_film(Engine *e) {
   vlFilmDef def = e->model.job.defs->film;
@@ -325,9 +317,7 @@ static bool render_film(Engine *e) {
   return true;
 }
 
-/* ---- the work
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the work ---------------------------------------------------------------------------- */
 
 /* Takes over what is wanted. Returns whether the image begins anew. */
 static bool take_wanted(Engine *e) {

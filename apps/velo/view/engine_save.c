@@ -55,9 +55,7 @@ static int choice_value(const Choice *choices, const char *name, int otherwise) 
   return otherwise;
 }
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------- */
 
 static void save_camera(Engine *e, const Task *task, const char *wanted, const char *dialect) {
   char name[NAME_SIZE];
@@ -137,9 +135,7 @@ void engine_save(Engine *e, const Task *task) {
   engine_refuse(e, task, "only cameras and images can be saved");
 }
 
-/* ---- the command
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the command ------------------------------------------------------------------------- */
 
 /* Writes a word so that a shell reads it as one. */
 static void put_word(FILE *out, const char *word) {

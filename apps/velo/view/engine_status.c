@@ -14,8 +14,7 @@ void json_text_post(JsonText *json, Server *server, uint32_t client) {
   free(text);
 }
 
-/* ---- the error of the image
- * -------------------------------------------------------------------------------------- */
+/* ---- the error of the image -------------------------------------------------------------- */
 
 static double display_value(double linear) {
   double x = linear > 0 ? linear < 1 ? linear : 1 : 0;

@@ -23,9 +23,7 @@ static ViewCamera present_camera(Engine *e) {
   return camera;
 }
 
-/* ---- a pixel
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- a pixel ----------------------------------------------------------------------------- */
 
 static void put_values(Json *json, const char *key, const vlImage *image,
                        const char *const *names, int count) {

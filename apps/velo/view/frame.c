@@ -114,9 +114,7 @@ void frame_drop(ViewFrame *frame) {
   free(frame);
 }
 
-/* ---- the message
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the message ------------------------------------------------------------------------- */
 
 static bool same_form(const ViewFrame *a, const ViewFrame *b) {
   return b && a->width == b->width && a->height == b->height && a->x0 == b->x0 &&

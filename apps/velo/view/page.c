@@ -30,9 +30,7 @@ struct Server {
 static Server server;
 static Engine *engine;
 
-/* ---- the server
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the server -------------------------------------------------------------------------- */
 
 void server_post(Server *s, uint32_t client, const char *text) {
   (void)s;
@@ -87,8 +85,7 @@ EMSCRIPTEN_KEEPALIVE int velo_page_work(void) {
   return engine_work(engine);
 }
 
-/* ---- the lecture's scenes, which are files of the instance
- * ------------------------------------------------------- */
+/* ---- the lecture's scenes, which are files of the instance ------------------------------- */
 
 const char lecture_first_scene[] = "scenes/lecture/pinhole.pbrt";
 
@@ -118,9 +115,7 @@ char *lecture_text(const char *scene) {
   return out && fclose(out) == 0 ? text : NULL;
 }
 
-/* ---- the command
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the command ------------------------------------------------------------------------- */
 
 int view_run(const Arguments *arguments) {
   const OptionValue *v = arguments->values;

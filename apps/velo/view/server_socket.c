@@ -114,9 +114,7 @@ static void end(struct lws *wsi, Connection *connection) {
   server->calls.clients(server->calls.user, kept);
 }
 
-/* ---- sending
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- sending ----------------------------------------------------------------------------- */
 
 /* Whether there is something to send; the caller holds the lock. */
 static bool has_work(const Server *server, const Client *client) {
@@ -199,9 +197,7 @@ static int send_next(struct lws *wsi, Connection *connection) {
   return 0;
 }
 
-/* ---- receiving
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- receiving --------------------------------------------------------------------------- */
 
 /* A reason has at most 123 bytes of UTF-8. */
 static int refuse(struct lws *wsi, enum lws_close_status status, const char *why) {

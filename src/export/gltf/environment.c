@@ -36,8 +36,7 @@ typedef struct Cube {
   uint32_t level;    /* the level that rows are made of */
 } Cube;
 
-/* ---- what a direction sees
- * --------------------------------------------------------------------------------------- */
+/* ---- what a direction sees --------------------------------------------------------------- */
 
 /* Radiance of an octahedral map, interpolated bilinearly. Beyond an edge of the square lies the
  * edge's other half. */
@@ -164,9 +163,7 @@ static bool add_sky(Cube *cube, const vlLightDef *d) {
   return vl_export_fail(cube->x, VL_ERROR_MEMORY, "out of memory");
 }
 
-/* ---- the cube
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the cube ---------------------------------------------------------------------------- */
 
 static const float *texel_at(const Level *level, vlVec3 d) {
   float s, t;
@@ -288,9 +285,7 @@ static bool make_levels(Cube *cube) {
   return true;
 }
 
-/* ---- the file
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the file ---------------------------------------------------------------------------- */
 
 /* The irradiance's coefficients up to l = 2 (Ramamoorthi and Hanrahan 2001), in the order of l
  * and m. */

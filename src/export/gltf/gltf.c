@@ -55,9 +55,7 @@ json_int_t vl_gltf_put_view(vlExport *x, const void *data, size_t size, int targ
   return vl_gltf_put(x, "bufferViews", view);
 }
 
-/* ---- meshes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- meshes ------------------------------------------------------------------------------ */
 
 static json_int_t put_floats(vlExport *x, const float *values, size_t count,
                              uint32_t components, bool bounds) {
@@ -242,9 +240,7 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   return indices >= 0;
 }
 
-/* ---- nodes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- nodes ------------------------------------------------------------------------------- */
 
 static json_t *node_of(const double m[16]) {
   static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -383,9 +379,7 @@ static bool put_scene(vlExport *x) {
   return fine;
 }
 
-/* ---- the files
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the files --------------------------------------------------------------------------- */
 
 static void put_little(vlExport *x, vlBytes *bytes, uint32_t v) {
   const unsigned char four[4] = {(unsigned char)v, (unsigned char)(v >> 8),

@@ -14,9 +14,7 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-/* ---- inputs
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- inputs ------------------------------------------------------------------------------ */
 
 static json_t *extension(vlExport *x, json_t *material, const char *name) {
   json_t *all = json_object_get(material, "extensions"), *one = json_object_get(all, name);
@@ -85,9 +83,7 @@ static void put_normal(vlExport *x, json_t *to, const char *key, vlTextureId id,
   json_object_set_new(to, key, info);
 }
 
-/* ---- the base
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the base ---------------------------------------------------------------------------- */
 
 static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha,
                          double *factor) {
@@ -184,9 +180,7 @@ static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
   set_number(volume, "attenuationDistance", 1.0 / (double)most);
 }
 
-/* ---- principled
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- principled -------------------------------------------------------------------------- */
 
 static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef *p) {
   float sheen[3];
@@ -264,9 +258,7 @@ static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m
   put_normal(x, material, "normalTexture", p->normal, p->normal_scale);
 }
 
-/* ---- others
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- others ------------------------------------------------------------------------------ */
 
 static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
                       double coverage) {
@@ -372,9 +364,7 @@ static Put *const puts_of_kind[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
     [VL_MATERIAL_DIFFUSE_TRANSMISSION] = put_leaf,
     [VL_MATERIAL_SUBSURFACE] = put_subsurface};
 
-/* ---- emission
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- emission ---------------------------------------------------------------------------- */
 
 static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) {
   float rgb[3];
@@ -406,9 +396,7 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) 
                over);
 }
 
-/* ---- the whole
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------- */
 
 static const vlMaterialDef *material_of(const vlExport *x, const vlShapeDef *d) {
   const vlMaterialDef *m =

@@ -13,9 +13,7 @@ const char *vl_pbrt_film_kind(const vlSceneDefs *defs) {
   return vl_kind_row(&vl_film_family, (int)kind_of(defs))->name;
 }
 
-/* ---- parameters
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- parameters -------------------------------------------------------------------------- */
 
 static void put_number(vlExport *x, const vlParameter *p, double value) {
   const double k = p->factor != 0 ? 1 / p->factor : 1;

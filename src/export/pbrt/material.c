@@ -6,9 +6,7 @@
 #include "velo/material.h"
 #include "velo/texture.h"
 
-/* ---- principled
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- principled -------------------------------------------------------------------------- */
 
 static bool is_on(const vlFloatInput *input) {
   return input->texture.index || input->value > 0;
@@ -164,9 +162,7 @@ static bool put_principled(vlExport *x, const vlMaterialDef *m, uint32_t id) {
   return true;
 }
 
-/* ---- pbrt's own
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- pbrt's own -------------------------------------------------------------------------- */
 
 /* Of alternative parameters, only the one that has an effect is written, even if it has its
  * default. */

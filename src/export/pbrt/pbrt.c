@@ -58,9 +58,7 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
   PUT(" \"rgb %s\" [%.9g %.9g %.9g]", name, (double)rgb[0], (double)rgb[1], (double)rgb[2]);
 }
 
-/* ---- before the world
- * --------------------------------------------------------------------------------------------
- */
+/* ---- before the world -------------------------------------------------------------------- */
 
 static void put_options(vlExport *x) {
   const vlRenderDef *render = &x->scene->defs.render;
@@ -186,9 +184,7 @@ static void put_tracer(vlExport *x) {
   PUT("\n");
 }
 
-/* ---- lights
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- lights ------------------------------------------------------------------------------ */
 
 /* Writes the light's transform. It includes the position when pbrt's kind has no "from". */
 static void put_transform(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
@@ -225,9 +221,7 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
   return true;
 }
 
-/* ---- the whole
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------- */
 
 static bool put_groups(vlExport *x) {
   const vlScene *s = x->scene;

@@ -109,9 +109,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
   return fine;
 }
 
-/* ---- worked images
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- worked images ----------------------------------------------------------------------- */
 
 /* How the values of an image are changed. */
 typedef struct Change {
@@ -284,9 +282,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
   return true;
 }
 
-/* ---- textures
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- textures ---------------------------------------------------------------------------- */
 
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]);
 static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change,
@@ -368,9 +364,7 @@ bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth,
          put_texture(x, input->texture.index, as_is, depth, result->texture);
 }
 
-/* ---- inputs
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- inputs ------------------------------------------------------------------------------ */
 
 bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared,
                             vlPbrtInput *result) {

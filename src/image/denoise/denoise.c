@@ -28,9 +28,7 @@ vlDenoiseDef vl_default_denoise_def(void) {
   return (vlDenoiseDef){.cookie = VL_COOKIE_DENOISE};
 }
 
-/* ---- channels
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- channels ---------------------------------------------------------------------------- */
 
 static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChannels *to,
                               vlError *error) {
@@ -64,9 +62,7 @@ static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChanne
   return VL_OK;
 }
 
-/* ---- planes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- planes ------------------------------------------------------------------------------ */
 
 static uint32_t tiles_across(const vlDenoisePlanes *p) {
   return (p->width + VL_DENOISE_TILE_X - 1) / VL_DENOISE_TILE_X;
@@ -194,9 +190,7 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
       fill(&d->planes, index_of(&d->planes, x, y));
 }
 
-/* ---- outliers
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- outliers ---------------------------------------------------------------------------- */
 
 static float mean3(float *const plane[COLOR], ptrdiff_t at) {
   return (plane[0][at] + plane[1][at] + plane[2][at]) * (1.0f / 3.0f);
@@ -256,9 +250,7 @@ static void scale_row(void *user, uint32_t y, uint32_t worker) {
   }
 }
 
-/* ---- the border
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the border -------------------------------------------------------------------------- */
 
 static ptrdiff_t mirror(ptrdiff_t i, uint32_t size) {
   ptrdiff_t last = (ptrdiff_t)size - 1;
@@ -288,9 +280,7 @@ static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
   }
 }
 
-/* ---- the fit
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- the fit ----------------------------------------------------------------------------- */
 
 static void fit_tile(void *user, uint32_t index, uint32_t worker) {
   const Denoise *d = user;
@@ -349,9 +339,7 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
   return result;
 }
 
-/* ---- the call
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the call ---------------------------------------------------------------------------- */
 
 /* Makes the image for the result, with the alpha and the attributes of the input. */
 static vlResult make_clean(const vlImage *image, int alpha, vlImage **clean) {

@@ -30,9 +30,7 @@ static const float
     RIDGE_FEATURE = 1e-3f,
     RIDGE_PLACE = 3e-2f; /* ridge terms lambda of features and positions, per unit of weight */
 
-/* ---- weights
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- weights ----------------------------------------------------------------------------- */
 
 /* For each pixel of the tile and of a margin of P pixels: the squared difference from the pixel
  * at the offset (dx, dy) minus the variance of that difference, divided by a multiple of this
@@ -95,9 +93,7 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, u
   }
 }
 
-/* ---- the fit
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- the fit ----------------------------------------------------------------------------- */
 
 /* Normal equations of N pixels of a row. a: the lower triangle of the symmetric matrix, row by
  * row; the unknowns are the slopes of the features, of x and of y, then the constant. b: the

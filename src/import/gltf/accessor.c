@@ -180,9 +180,7 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *from, si
   return a;
 }
 
-/* ---- reading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------- */
 
 static float read_float(const uint8_t *p, uint32_t type, bool normalized) {
   int8_t b;

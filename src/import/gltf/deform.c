@@ -5,9 +5,7 @@
 #include "import/gltf/gltf.h"
 #include "math/double3.h"
 
-/* ---- morph targets
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- morph targets ----------------------------------------------------------------------- */
 
 /* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are
  * `stride` floats apart.
@@ -65,9 +63,7 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
   return true;
 }
 
-/* ---- skins
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- skins ------------------------------------------------------------------------------- */
 
 static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
   return g->closing ? &node->keys[VL_GLTF_KEYS - 1] : &node->world;

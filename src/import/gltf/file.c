@@ -163,9 +163,7 @@ void vl_gltf_close(vlGltf *g) {
           g->images, g->meshes);
 }
 
-/* ---- uris
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- uris -------------------------------------------------------------------------------- */
 
 static int base64_digit(char c) {
   if (c >= 'A' && c <= 'Z')
@@ -258,9 +256,7 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uin
   return vl_scene_copy_string(g->scene, path);
 }
 
-/* ---- buffers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- buffers ----------------------------------------------------------------------------- */
 
 static bool read_buffer(vlGltf *g, size_t i) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "buffers", i);

@@ -201,9 +201,7 @@ const json_t *vl_gltf_extension(const json_t *object, const char *name);
 /* Element i of an array at the root, for example nodes[3]. The caller must have checked i. */
 const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 
-/* ---- files (file.c)
- * ----------------------------------------------------------------------------------------------
- */
+/* ---- files (file.c) ---------------------------------------------------------------------- */
 
 bool vl_gltf_open(vlGltf *g);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
@@ -219,8 +217,7 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t 
 bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uint8_t **data,
                  size_t *size, const char **path);
 
-/* ---- extensions (extension.c)
- * ------------------------------------------------------------------------------------ */
+/* ---- extensions (extension.c) ------------------------------------------------------------ */
 
 bool vl_gltf_check_extensions(vlGltf *g);
 bool vl_gltf_reads_extension(const char *name);
@@ -229,8 +226,7 @@ vlShortText vl_gltf_extension_text(const char *name);
 /* names.c: warns of members whose name is nearly a name of the format. */
 void vl_gltf_check_names(vlGltf *g);
 
-/* ---- arrays (accessor.c)
- * ----------------------------------------------------------------------------------------- */
+/* ---- arrays (accessor.c) ----------------------------------------------------------------- */
 
 /* The accessor, checked; null after an error. */
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *at, size_t index);
@@ -248,8 +244,7 @@ float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
  * to the file's size. */
 bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes);
 
-/* ---- the tree (node.c, animation.c)
- * ------------------------------------------------------------------------------ */
+/* ---- the tree (node.c, animation.c) ------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
 bool vl_gltf_animate(vlGltf *g); /* applies the animations at g->time */
@@ -282,9 +277,7 @@ bool vl_gltf_count_unread(vlGltf *g);
 bool vl_gltf_list_choices(vlGltf *g);
 double vl_gltf_animation_end(const vlGltf *g, size_t animation);
 
-/* ---- names (label.c)
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- names (label.c) --------------------------------------------------------------------- */
 
 /* Where the file describes a shape. node is SIZE_MAX for a shape of a group, material -1 for
  * the default one. */
@@ -300,9 +293,7 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label
 /* Labels the instance that was added last. */
 void vl_gltf_label_instance(vlGltf *g, size_t node);
 
-/* ---- meshes
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- meshes ------------------------------------------------------------------------------ */
 
 /* A primitive as triangles. Its arrays are blocks of the context. */
 typedef struct vlGltfPrimitive {
@@ -347,9 +338,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
  * none. Vertices are split where tangents differ. */
 bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
 
-/* ---- materials
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- materials --------------------------------------------------------------------------- */
 
 /* The material `index` (-1: the default material) for a primitive with or without vertex
  * colours. Null after an error.
@@ -383,9 +372,7 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, const json_t *json,
                     vlGltfMaterial *result);
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 
-/* ---- lights, cameras
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- lights, cameras --------------------------------------------------------------------- */
 
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t light);
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *at);

@@ -67,9 +67,7 @@ bool vl_gltf_once(vlGltf *g, uint32_t bit) {
   return first;
 }
 
-/* ---- members
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- members ----------------------------------------------------------------------------- */
 
 static const char *kind_of(const json_t *value) {
   switch (json_typeof(value)) {

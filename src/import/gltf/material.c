@@ -19,9 +19,7 @@ typedef struct Reader {
   bool colors; /* the mesh has vertex colours */
 } Reader;
 
-/* ---- parameters
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- parameters -------------------------------------------------------------------------- */
 
 /* A factor in [0, 1] times a channel of a texture. */
 static bool channel(const Reader *r, const vlGltfLocation *at, const json_t *json,
@@ -86,9 +84,7 @@ static bool normal_input(const Reader *r, const vlGltfLocation *at, const json_t
   return true;
 }
 
-/* ---- coverage
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- coverage ---------------------------------------------------------------------------- */
 
 /* Reads the coverage: the base colour's fourth channel, interpreted by alphaMode. */
 static bool read_alpha(const Reader *r, const vlGltfLocation *at, const json_t *json,
@@ -124,9 +120,7 @@ static bool read_alpha(const Reader *r, const vlGltfLocation *at, const json_t *
   return r->result->alpha.texture.index != 0;
 }
 
-/* ---- the base
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the base ---------------------------------------------------------------------------- */
 
 static bool read_metallic_roughness(const Reader *r, float base[4]) {
   const json_t *json;
@@ -167,9 +161,7 @@ static bool read_specular_glossiness(const Reader *r, const json_t *json, float 
                          &p->roughness.texture);
 }
 
-/* ---- extensions
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- extensions -------------------------------------------------------------------------- */
 
 static const json_t *extension(const Reader *r, const char *name) {
   return vl_gltf_extension(r->json, name);
@@ -294,9 +286,7 @@ static bool read_transmission(const Reader *r) {
   return p->thin_walled || vl_gltf_volume(r->g, at, volume, r->result);
 }
 
-/* ---- emission
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- emission ---------------------------------------------------------------------------- */
 
 static bool add_emission(const Reader *r, const vlGltfLocation *at, const json_t *json,
                          const char *texture_key, const float color[4], float strength) {
@@ -339,9 +329,7 @@ static bool read_unlit(const Reader *r) {
          add_emission(r, at, json, "baseColorTexture", base, 1.0f);
 }
 
-/* ---- the whole
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------- */
 
 static bool read_material(const Reader *r) {
   float base[4] = {1, 1, 1, 1};

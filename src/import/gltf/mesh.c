@@ -106,9 +106,7 @@ static bool choose_material(vlGltf *g, const vlGltfLocation *at, const json_t *p
   return true;
 }
 
-/* ---- the shape
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the shape --------------------------------------------------------------------------- */
 
 /* Applies a singular pose to the vertices, since it cannot be a transform of the scene. */
 static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {

@@ -127,9 +127,7 @@ bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
          json_object_get(json_array_get(json_object_get(json, "primitives"), 0), "targets");
 }
 
-/* ---- drawing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- drawing ----------------------------------------------------------------------------- */
 
 /* Poses of EXT_mesh_gpu_instancing relative to the node; null and count 0 when absent. */
 static bool read_instances(vlGltf *g, const vlGltfLocation *node_at, const json_t *node,

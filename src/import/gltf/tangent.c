@@ -203,9 +203,7 @@ static void add_corner(const Maker *m, uint32_t c, double *sums) {
     sums[3 * (size_t)m->group[c] + (size_t)i] += angle * t[i];
 }
 
-/* ---- the new vertices
- * --------------------------------------------------------------------------------------------
- */
+/* ---- the new vertices -------------------------------------------------------------------- */
 
 static float *gather(vlContext *context, const float *rows, size_t width, const uint32_t *from,
                      size_t count, bool *ok) {

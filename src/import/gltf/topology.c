@@ -21,9 +21,7 @@ void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p) {
   memset(p, 0, sizeof *p);
 }
 
-/* ---- points and lines
- * --------------------------------------------------------------------------------------------
- */
+/* ---- points and lines -------------------------------------------------------------------- */
 
 typedef struct NewMesh { /* room for the vertices and faces to be made */
   vlGltfPrimitive made;
@@ -194,9 +192,7 @@ static bool make_solids(vlGltf *g, const vlGltfLocation *at, uint32_t mode,
   return true;
 }
 
-/* ---- triangles
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- triangles --------------------------------------------------------------------------- */
 
 bool vl_gltf_triangles(vlGltf *g, const vlGltfLocation *at, uint32_t mode, uint32_t *indices,
                        size_t count, vlGltfPrimitive *p) {

@@ -20,9 +20,7 @@ static void flush(vlGltf *g, vlScene *kept, uint32_t *reported) {
   vl_error_clear(e);
 }
 
-/* ---- accessors
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- accessors --------------------------------------------------------------------------- */
 
 static void check_bounds(vlGltf *g, size_t index, const float *values, size_t count,
                          uint32_t components, uint32_t *reported) {
@@ -63,9 +61,7 @@ static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
   g->spent = spent;
 }
 
-/* ---- what nothing uses
- * -------------------------------------------------------------------------------------------
- */
+/* ---- what nothing uses ------------------------------------------------------------------- */
 
 static void report_unused(vlGltf *g, const char *array, size_t index, uint32_t *reported) {
   if (++*reported <= MOST)

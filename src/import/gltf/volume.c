@@ -36,9 +36,7 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, const json_t *json,
   return result->inside.index != 0;
 }
 
-/* ---- anisotropy
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- anisotropy -------------------------------------------------------------------------- */
 
 /* Converts a texture whose red and green channels are the tangent's direction to one of its
  * angle. Angles that differ by pi are equivalent, but their mean is meaningless: the new

@@ -20,9 +20,7 @@ static bool is_word(const char *word, size_t n, const char *name) {
   return strlen(name) == n && strncasecmp(word, name, n) == 0;
 }
 
-/* ---- images
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 static bool exists(const char *path) {
   struct stat info;
@@ -178,9 +176,7 @@ static bool read_map(vlObj *obj, vlMtl *m, vlMtlMapKind kind) {
   return true;
 }
 
-/* ---- numbers
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- numbers ----------------------------------------------------------------------------- */
 
 static bool read_color(vlObj *obj, const char *name, float color[3]) {
   double v[3];
@@ -286,9 +282,7 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
   return true; /* Ka, map_Ka, decal, disp, refl, ...: not used */
 }
 
-/* ---- the file
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the file ---------------------------------------------------------------------------- */
 
 static bool read_library(vlObj *obj, char *name) {
   char path[4096];

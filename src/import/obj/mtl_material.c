@@ -100,8 +100,7 @@ static bool normal_or_bump_map(vlObj *obj, const vlMtl *m, vlMaterialDef *def) {
   return def->displacement.texture.index != 0;
 }
 
-/* ---- which kind of thing it is
- * ----------------------------------------------------------------------------------- */
+/* ---- which kind of thing it is ----------------------------------------------------------- */
 
 static float brightest(const float c[3]) {
   return fmaxf(c[0], fmaxf(c[1], c[2]));

@@ -13,9 +13,7 @@
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
 enum { REPORTED_CURVES = 1, REPORTED_UNKNOWN = 2 };
 
-/* ---- errors
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- errors ------------------------------------------------------------------------------ */
 
 bool vl_obj_fail(vlObj *obj, const char *format, ...) {
   char text[500];
@@ -39,9 +37,7 @@ bool vl_obj_fail_memory(vlObj *obj) {
   return false;
 }
 
-/* ---- statements
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- statements -------------------------------------------------------------------------- */
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -138,9 +134,7 @@ static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most,
          vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
 }
 
-/* ---- vertices
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- vertices ---------------------------------------------------------------------------- */
 
 static float linear_from_srgb(double v) {
   double x = v < 0 ? 0 : v > 1 ? 1 : v;
@@ -221,9 +215,7 @@ static bool read_normal(vlObj *obj) {
   return true;
 }
 
-/* ---- faces
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- faces ------------------------------------------------------------------------------- */
 
 /* Reads an index: from 1 upwards, or from -1 downwards, counted from the last element. *index
  * 0: the field is empty. */
@@ -336,9 +328,7 @@ static bool read_face(vlObj *obj) {
   return true;
 }
 
-/* ---- what faces are of
- * -------------------------------------------------------------------------------------------
- */
+/* ---- what faces are of ------------------------------------------------------------------- */
 
 uint32_t vl_obj_material(vlObj *obj, const char *name) {
   uint32_t hash = 2166136261u;

@@ -14,9 +14,7 @@ static bool stopped(vlObj *obj, size_t done) {
   return done % 65536 == 0 && vl_scene_stopped(obj->scene, 1);
 }
 
-/* ---- normals
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- normals ----------------------------------------------------------------------------- */
 
 static const float *position(const vlObj *obj, uint32_t v) {
   return obj->positions.items + 3 * (size_t)(v - 1);
@@ -136,9 +134,7 @@ static bool make_normals(vlObj *obj) {
   return fine;
 }
 
-/* ---- parts
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- parts ------------------------------------------------------------------------------- */
 
 /* Triangle numbers sorted by part. */
 static bool sort_by_part(vlObj *obj, uint32_t **order) {

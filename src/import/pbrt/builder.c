@@ -153,9 +153,7 @@ static void note_space(vlImport *import, const vlStatement *s) {
     s->params->list.items[i]->space = import->state.space;
 }
 
-/* ---- statements
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- statements -------------------------------------------------------------------------- */
 
 static bool in_right_part(vlImport *import, const vlStatement *s) {
   const Rule rule = rule_of(s->directive);
@@ -319,9 +317,7 @@ static bool go_on(void *user, double fraction) {
                            0.5 * fraction); /* then the meshes of other files are read */
 }
 
-/* ---- a whole file
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- a whole file ------------------------------------------------------------------------ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
   for (size_t i = 0; i < count; i++)

@@ -195,8 +195,7 @@ struct vlImport {
 };
 enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 
-/* ---- errors, warnings, copies (report.c)
- * ------------------------------------------------------------------------- */
+/* ---- errors, warnings, copies (report.c) ------------------------------------------------- */
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 bool vl_import_fail_memory(vlImport *import);
@@ -277,9 +276,7 @@ bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[
 bool vl_import_finish_motion(
     vlImport *import); /* places moving groups inside objects, once all instances are known */
 
-/* ---- parts
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- parts ------------------------------------------------------------------------------- */
 bool vl_import_camera(vlImport *import); /* applies the directives before WorldBegin to the
                                             scene's defs; the camera follows the film */
 bool vl_import_film(vlImport *import);

@@ -7,8 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* ---- doubles and pairs of them
- * ----------------------------------------------------------------------------------- */
+/* ---- doubles and pairs of them ----------------------------------------------------------- */
 
 static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                        1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -51,9 +50,7 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   return v + (left - error) == v + (left + error);
 }
 
-/* ---- whole numbers
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- whole numbers ----------------------------------------------------------------------- */
 
 /* 767 digits decide on which side of the midpoint between two doubles a number lies. Of the
  * digits beyond MOST_DIGITS only one fact matters: whether any of them is not 0. */

@@ -67,9 +67,7 @@ size_t vl_param_count(const vlParam *param) {
          param->bools.count;
 }
 
-/* ---- questions
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- questions --------------------------------------------------------------------------- */
 
 /* Accepted types as text: "float" or "float, texture". */
 static const char *wanted_types(uint32_t bits, char *text, size_t size) {

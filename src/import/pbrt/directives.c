@@ -28,9 +28,7 @@ static bool take_number(vlParserFile *file, const char *directive, double *value
                        directive, vl_parse_show(&token).text);
 }
 
-/* ---- directives
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- directives -------------------------------------------------------------------------- */
 
 typedef enum Form {
   ALONE,
@@ -46,7 +44,7 @@ typedef enum Form {
   IMPORT
 } Form;
 typedef struct Keyword {
-  const char *name;
+  const char *name = NULL;
   Form form;
   vlDirective directive;
   uint32_t count; /* numbers */
@@ -209,7 +207,7 @@ static bool read_media(vlParserFile *file, vlStatement *s) {
 static bool read_import(vlParserFile *file, const Keyword *k, const vlToken *at,
                         vlStatement *s) {
   vlToken where = vl_parse_peek(file);
-  const char *name;
+  const char *name = NULL;
   if (!take_string(file, k->name, "a file name", &name))
     return false;
   if (k->form == INCLUDE)
@@ -275,9 +273,7 @@ static bool read_directive(vlParserFile *file, const vlToken *token) {
   return fine;
 }
 
-/* ---- a block
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- a block ----------------------------------------------------------------------------- */
 
 /* After an error: skips to the next directive when the target wants to continue. Invalid tokens
  * are not skipped. */

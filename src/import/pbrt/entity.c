@@ -5,8 +5,7 @@
 #include "import/pbrt/builder.h"
 #include "velo/shape.h"
 
-/* ---- parameters that outlive their directive
- * -------------------------------------------------------------------- */
+/* ---- parameters that outlive their directive --------------------------------------------- */
 
 /* Moves the statement's parameters to `to`. The scene keeps the file names of the parameters'
  * sources. */
@@ -23,9 +22,7 @@ static bool keep_source(vlImport *import, vlSource *source) {
   return vl_scene_copy_source(import->scene, source);
 }
 
-/* ---- state
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- state ------------------------------------------------------------------------------- */
 
 bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
@@ -57,9 +54,7 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   return fine || vl_import_fail_memory(import);
 }
 
-/* ---- objects
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- objects ----------------------------------------------------------------------------- */
 
 /* An object may be instanced before it is defined: its group is made at the first use. */
 static vlObject *find_object(vlImport *import, const char *name, vlSource source) {
@@ -115,9 +110,7 @@ bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
   return object && vl_import_add_instance(import, object->group, import->state.ctm, s->source);
 }
 
-/* ---- what waits
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- what waits -------------------------------------------------------------------------- */
 
 static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target,
                               bool is_texture) {

@@ -12,8 +12,7 @@
  * or more. */
 enum { MAX_DEPTH = 64, MAX_REPEATED_MEGABYTES = 1024, LEAST_BYTES = 256, MAX_PATH = 4096 };
 
-/* ---- files that were read
- * --------------------------------------------------------------------------------------- */
+/* ---- files that were read ---------------------------------------------------------------- */
 
 static uint64_t key_of(const struct stat *info) {
   uint64_t h = ((uint64_t)info->st_ino ^ (uint64_t)info->st_dev * 0x9e3779b97f4a7c15u) *
@@ -50,9 +49,7 @@ static bool remember(vlParser *parser, const struct stat *info, bool *again) {
   return true;
 }
 
-/* ---- a file
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- a file ------------------------------------------------------------------------------ */
 
 /* Whether a file of this depth and size may be read. *skip: it is left out instead. */
 static bool within_limits(vlParser *parser, vlParserFile *parent, vlSource at, uint32_t depth,

@@ -162,9 +162,7 @@ bool vl_import_film(vlImport *import) {
   return vl_dict_done(&dict);
 }
 
-/* ---- options
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- options ----------------------------------------------------------------------------- */
 
 /* pbrt compares option names without case, blanks, dashes and underscores. */
 static void normalise(const char *name, char *result, size_t size) {

@@ -6,9 +6,7 @@
 #include "velo/material.h"
 #include "velo/shape.h"
 
-/* ---- the end
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the end ----------------------------------------------------------------------------- */
 
 static bool link_shape(vlImport *import, const vlShapeLink *link) {
   vlShapeDef *shape = &import->scene->shapes.items[link->shape];

@@ -50,9 +50,7 @@ static bool make_level(vlContext *context, Level *l, uint32_t vertices, uint32_t
   return false;
 }
 
-/* ---- walks
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- walks ------------------------------------------------------------------------------- */
 
 static uint32_t corner(const Level *l, uint32_t face, uint32_t vertex) {
   const uint32_t *v = &l->v[3 * (size_t)face];
@@ -105,9 +103,7 @@ static uint32_t valence(const Level *l, uint32_t vertex) {
   return n;
 }
 
-/* ---- masks
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- masks ------------------------------------------------------------------------------- */
 
 static float beta(uint32_t n) {
   return n == 3 ? 3.0f / 16.0f : 3.0f / (8.0f * (float)n);
@@ -140,8 +136,7 @@ static void weight_border(const Level *l, uint32_t vertex, float weight, float r
   memcpy(result, sum, sizeof sum);
 }
 
-/* ---- the mesh as given
- * ------------------------------------------------------------------------------------------ */
+/* ---- the mesh as given ------------------------------------------------------------------- */
 
 typedef struct Edge {
   uint32_t a, b, at; /* a < b; at: 3 face + k, or NONE when both faces are known */
@@ -212,9 +207,7 @@ static vlResult first_level(vlContext *context, uint32_t vertices, const float *
   return VL_OK;
 }
 
-/* ---- one step
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- one step ---------------------------------------------------------------------------- */
 
 /* Assigns an index to the new vertex on each edge of each face. */
 static uint32_t number_edges(const Level *l, uint32_t *odd) {
@@ -315,9 +308,7 @@ static bool refine(vlContext *context, Level *l) {
   return true;
 }
 
-/* ---- the limit
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the limit --------------------------------------------------------------------------- */
 
 static void push_to_limit(const Level *l, float *limit) {
   for (uint32_t i = 0; i < l->vertices; i++) {

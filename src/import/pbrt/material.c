@@ -22,8 +22,7 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
   return true;
 }
 
-/* ---- what a table cannot say
- * ------------------------------------------------------------------------------------- */
+/* ---- what a table cannot say ------------------------------------------------------------- */
 
 /* The parameters of one material: its row, and which of them the file gives. */
 typedef struct Reading {
@@ -136,9 +135,7 @@ static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
     [VL_MATERIAL_HAIR] = finish_hair,
     [VL_MATERIAL_SUBSURFACE] = finish_subsurface};
 
-/* ---- materials
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- materials --------------------------------------------------------------------------- */
 
 static bool read_material(vlDict *dict, vlMaterialDef *def) {
   enum { MOST = 64 };

@@ -10,9 +10,7 @@
 #include "velo/medium.h"
 #include "velo/shape.h"
 
-/* ---- parameters
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- parameters -------------------------------------------------------------------------- */
 
 bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption,
                                  vlSpectrum *scattering, bool *given) {
@@ -192,9 +190,7 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
          vl_import_fail_memory(import);
 }
 
-/* ---- who lies in them
- * -------------------------------------------------------------------------------------------
- */
+/* ---- who lies in them -------------------------------------------------------------------- */
 
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source) {
   const char *inside = target == 's' && import->state.inside ? import->state.inside : "";

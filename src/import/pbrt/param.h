@@ -55,9 +55,7 @@ void vl_param_free(vlContext *context, vlParam *param);
 void vl_param_list_free(vlContext *context, vlParamList *params);
 size_t vl_param_count(const vlParam *param); /* number of values of any type */
 
-/* ---- questions
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- questions --------------------------------------------------------------------------- */
 
 typedef struct vlImport vlImport;
 

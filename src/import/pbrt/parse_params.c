@@ -4,9 +4,7 @@
 #include "base/text.h"
 #include "import/pbrt/parser.h"
 
-/* ---- errors
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- errors ------------------------------------------------------------------------------ */
 
 vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
   return (vlSource){file->path, token->line, token->column};
@@ -40,9 +38,7 @@ vlShownToken vl_parse_show(const vlToken *token) {
   return s;
 }
 
-/* ---- tokens
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- tokens ------------------------------------------------------------------------------ */
 
 vlToken vl_parse_peek(vlParserFile *file) {
   if (!file->has_token) {
@@ -64,9 +60,7 @@ bool vl_parse_is_word(const vlToken *token, const char *word) {
          memcmp(token->text, word, token->length) == 0;
 }
 
-/* ---- parameters
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- parameters -------------------------------------------------------------------------- */
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t';

@@ -6,9 +6,7 @@
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 
-/* ---- errors
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- errors ------------------------------------------------------------------------------ */
 
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...) {
   char text[512];
@@ -211,8 +209,7 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
   return false;
 }
 
-/* ---- copies of parameters
- * --------------------------------------------------------------------------------------- */
+/* ---- copies of parameters ---------------------------------------------------------------- */
 
 static bool copy_bytes(vlContext *context, const void *from, size_t count, size_t size,
                        void *items, size_t *n, size_t *capacity) {

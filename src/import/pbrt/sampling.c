@@ -36,9 +36,7 @@ static void skip_ignored(vlDict *dict, const vlKindRow *row) {
   }
 }
 
-/* ---- sampler
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- sampler ----------------------------------------------------------------------------- */
 
 static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   uint32_t x = 4, y = 4;
@@ -95,9 +93,7 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   return vl_dict_done(&dict);
 }
 
-/* ---- pixel filter
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- pixel filter ------------------------------------------------------------------------ */
 
 static bool read_filter(vlImport *import, vlSceneDefs *s) {
   const vlChoice *choice = &import->filter;
@@ -115,9 +111,7 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
   return vl_import_parameters(&dict, row, &s->film.filter, false, NULL) && vl_dict_done(&dict);
 }
 
-/* ---- integrator
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- integrator -------------------------------------------------------------------------- */
 
 /* Reads the maximal path length and limits it to MOST. Longer paths do not contribute visibly.
  */

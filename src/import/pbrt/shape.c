@@ -182,9 +182,7 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def) {
   return true;
 }
 
-/* ---- shapes enter
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- shapes enter ------------------------------------------------------------------------ */
 
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
   vlShapeId id = vl_scene_adopt_shape(import->scene, def);

@@ -4,9 +4,7 @@
 #include "import/pbrt/builder.h"
 #include "math/double3.h"
 
-/* ---- transforms
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- transforms -------------------------------------------------------------------------- */
 
 static void set_ctm(vlImport *import, vlMat4 m) {
   for (int i = 0; i < 2; i++)
@@ -101,9 +99,7 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
                                 &import->coordinate_systems);
 }
 
-/* ---- the stack
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the stack --------------------------------------------------------------------------- */
 
 bool vl_import_push(vlImport *import, char kind, vlSource source) {
   if (import->stack.count > 100000)

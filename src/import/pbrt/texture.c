@@ -31,8 +31,7 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
   return true;
 }
 
-/* ---- what a table cannot say
- * ------------------------------------------------------------------------------------- */
+/* ---- what a table cannot say ------------------------------------------------------------- */
 
 /* The parameters of one texture: its row, and which of them the file gives. */
 typedef struct Reading {
@@ -126,9 +125,7 @@ typedef bool Rule(const Reading *r, vlTextureDef *def);
 static Rule *const rules[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
     [VL_TEXTURE_IMAGE] = finish_image, [VL_TEXTURE_DIRECTION_MIX] = finish_direction_mix};
 
-/* ---- textures
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- textures ---------------------------------------------------------------------------- */
 
 static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pending) {
   enum { MOST = 64 };

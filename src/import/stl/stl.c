@@ -27,9 +27,7 @@ static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
   return false;
 }
 
-/* ---- binary
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- binary ------------------------------------------------------------------------------ */
 
 static uint32_t little32(const char *at) {
   const unsigned char *b = (const unsigned char *)at;
@@ -53,9 +51,7 @@ static bool read_binary(Stl *s, uint64_t count) {
   return true;
 }
 
-/* ---- text
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- text -------------------------------------------------------------------------------- */
 
 static bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';

@@ -16,8 +16,7 @@
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 
-/* ---- distance, in double
- * ----------------------------------------------------------------------------------------- */
+/* ---- distance, in double ----------------------------------------------------------------- */
 
 typedef struct Exact {
   double x, y, z;
@@ -99,9 +98,7 @@ static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *bat
              : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
 }
 
-/* ---- albedo
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- albedo ------------------------------------------------------------------------------ */
 
 static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.at.surface;
@@ -168,9 +165,7 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
   }
 }
 
-/* ---- the batch
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- the batch --------------------------------------------------------------------------- */
 
 static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
   for (uint32_t i = 0; i < batch->n; i++) {
@@ -260,9 +255,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def,
   }
 }
 
-/* ---- ids only
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- ids only ---------------------------------------------------------------------------- */
 
 static void hits(const vlWorld *world, const vlGroundTruthDef *def,
                  vlGroundTruthScratch *scratch, const vlGroundTruthHits *to) {

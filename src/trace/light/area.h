@@ -6,9 +6,7 @@
 #include "math/warp.h"
 #include "trace/stages.h"
 
-/* ---- triangles
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- triangles --------------------------------------------------------------------------- */
 
 /* Corners of a triangle, relative to the point from which it is seen. */
 typedef struct vlTriangleSeen {
@@ -55,8 +53,7 @@ static inline float vl_solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n
   return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
 }
 
-/* ---- spheres seen from outside
- * ----------------------------------------------------------------------------------- */
+/* ---- spheres seen from outside ----------------------------------------------------------- */
 
 static inline int vl_outside_sphere(vlVec3 to_center, float radius) {
   return vl_length2(to_center) > radius * radius * 1.0001f;

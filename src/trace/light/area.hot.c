@@ -98,9 +98,7 @@ static void spheres(uint32_t padded, Block *restrict b) {
   }
 }
 
-/* ---- radiance
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- radiance ---------------------------------------------------------------------------- */
 
 /* Computes the radiance of lanes [first, last) from the same spectrum. */
 static void radiance_of(const vlSpectral *s, uint32_t first, uint32_t last, Block *restrict b) {

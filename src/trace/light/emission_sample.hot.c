@@ -99,9 +99,7 @@ float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t l
   return choice_of(way, light) * point_density(world, &world->lights.items[light], at);
 }
 
-/* ---- area lights
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- area lights ------------------------------------------------------------------------- */
 
 typedef struct Spot {
   vlVec3 p, n;
@@ -192,9 +190,7 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   out->valid = true;
 }
 
-/* ---- infinite lights
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- infinite lights --------------------------------------------------------------------- */
 
 /* Samples a direction of an infinite light with the density vl_infinite_pdf. */
 static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light,

@@ -45,9 +45,7 @@ static uint32_t fill_lanes(Block *b, const uint32_t *lanes, uint32_t count) {
   return padded;
 }
 
-/* ---- radiance
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- radiance ---------------------------------------------------------------------------- */
 
 static inline float scaled(float scale, float value) {
   float y = scale * value;
@@ -101,9 +99,7 @@ static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmi
   illuminate(&e->spectrum, padded, b);
 }
 
-/* ---- light samples
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- light samples ----------------------------------------------------------------------- */
 
 /* Converts positions s, t to directions. */
 static void directions(const vlEnvironment *env, uint32_t padded, Block *restrict b) {
@@ -165,8 +161,7 @@ void vl_sample_environment(const vlWorld *world, const vlWorldLight *light,
   }
 }
 
-/* ---- rays that hit nothing
- * --------------------------------------------------------------------------------------- */
+/* ---- rays that hit nothing --------------------------------------------------------------- */
 
 /* Converts the rays' directions to positions s, t. */
 static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t padded,

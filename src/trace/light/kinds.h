@@ -54,8 +54,7 @@ typedef struct vlEmissionQuery {
 VL_WORLD_LIGHT_KINDS(VL_LIGHT_KIND_FUNCTIONS)
 #undef VL_LIGHT_KIND_FUNCTIONS
 
-/* ---- many lanes at once
- * ------------------------------------------------------------------------------------------ */
+/* ---- many lanes at once ------------------------------------------------------------------ */
 
 /* Largest number of lanes for the functions below. With it, their data stays in the L1 cache.
  */
@@ -85,9 +84,7 @@ void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurfa
 void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths,
                         const uint32_t *lanes, uint32_t count, vlSkyHits *out);
 
-/* ---- lights at a point
- * -------------------------------------------------------------------------------------------
- */
+/* ---- lights at a point ------------------------------------------------------------------- */
 
 static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
   return vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
@@ -138,8 +135,7 @@ static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, floa
                                           : 0.0f;
 }
 
-/* ---- lights infinitely far away
- * ---------------------------------------------------------------------------------- */
+/* ---- lights infinitely far away ---------------------------------------------------------- */
 
 /* Area of a disk that covers the world. */
 static inline float vl_light_disk(const vlWorld *world) {

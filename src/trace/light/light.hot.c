@@ -43,9 +43,7 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
     out[c] *= vl_spectral_at(&e->spectrum, c, lambda[c]);
 }
 
-/* ---- the sky
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- the sky ----------------------------------------------------------------------------- */
 
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d,
                     const float lambda[4], float out[4]) {
@@ -75,9 +73,7 @@ float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o,
   return env->cells[vl_environment_at(env, st.x, st.y)].pdf * (0.25f * VL_INV_PI);
 }
 
-/* ---- area lights
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- area lights ------------------------------------------------------------------------- */
 
 typedef struct Sample {
   vlVec3 p, n;  /* point and normal on the light */
@@ -243,8 +239,7 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from,
   return vl_solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
 }
 
-/* ---- one sample per lane
- * ----------------------------------------------------------------------------------------- */
+/* ---- one sample per lane ----------------------------------------------------------------- */
 
 void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
   const vlWorld *world = q->world;
@@ -323,9 +318,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
     out->radiance[c][i] = sample.radiance[c] * inv;
 }
 
-/* ---- many lanes
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- many lanes -------------------------------------------------------------------------- */
 
 /* Lanes that wait until there are enough of them to be sampled together. */
 typedef struct Group {

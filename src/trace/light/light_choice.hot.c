@@ -48,9 +48,7 @@ static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, flo
   d->by_light->lane[d->by_light->count++] = i;
 }
 
-/* ---- one level
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- one level --------------------------------------------------------------------------- */
 
 /* One level of one lane's descent, from the node whose children are a and b. *second: 1 if the
  * lane goes to the second child. If neither child has importance, pmf becomes 0. */
@@ -106,9 +104,7 @@ static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
   }
 }
 
-/* ---- the descent
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- the descent ------------------------------------------------------------------------- */
 
 /* Starts the descent. Lanes that choose a light without bounds are done; the others start at
  * the root. */

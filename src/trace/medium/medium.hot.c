@@ -4,8 +4,7 @@
  * scattering is deterministic. */
 #include "trace/medium/medium.h"
 
-/* ---- absorption by channel
- * --------------------------------------------------------------------------------------- */
+/* ---- absorption by channel --------------------------------------------------------------- */
 
 /* Applies absorption by channel of linear sRGB over a length to lane i. The transmittance of a
  * wavelength over the whole path so far is T = sum_i share_i(lambda) passed_i. Each call
@@ -26,9 +25,7 @@ static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlights *f
     f->passed[k][i] = left[k];
 }
 
-/* ---- uniform media
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- uniform media ----------------------------------------------------------------------- */
 
 /* The lanes of a block that fly through one uniform medium. */
 typedef struct Segments {
@@ -227,9 +224,7 @@ static void fly_uniform(const vlTracing *t, uint32_t medium, vlFlights *f, bool 
   }
 }
 
-/* ---- any medium
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- any medium -------------------------------------------------------------------------- */
 
 static vlFlight take(const vlTracing *t, const vlFlights *f, uint32_t i) {
   vlFlight r = {.hero = vl_volume_hero(t, f->paths, f->path[i]),

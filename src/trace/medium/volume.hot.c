@@ -15,8 +15,7 @@
 #include "trace/surface/probes.h"
 #include "trace/tracer/record.h"
 
-/* ---- weights and densities
- * --------------------------------------------------------------------------------------- */
+/* ---- weights and densities --------------------------------------------------------------- */
 
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order,
                        uint32_t n) {
@@ -69,8 +68,7 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
   }
 }
 
-/* ---- lights that rays hit
- * ---------------------------------------------------------------------------------------- */
+/* ---- lights that rays hit ---------------------------------------------------------------- */
 
 static void add_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
@@ -81,8 +79,7 @@ static void add_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
     t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * inv;
 }
 
-/* ---- scattering in media
- * ----------------------------------------------------------------------------------------- */
+/* ---- scattering in media ----------------------------------------------------------------- */
 
 /* Takes light samples at the points of n vertices in media, and adds the radiance of those that
  * arrive. light, q, flights: memory for what is between. */
@@ -197,8 +194,7 @@ static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   return on;
 }
 
-/* ---- scattering on surfaces
- * -------------------------------------------------------------------------------------- */
+/* ---- scattering on surfaces -------------------------------------------------------------- */
 
 /* Makes the shadow rays of all n light samples, each at the place of its lane, as
  * vl_volume_push_shadow does. lit: 1 for those that contribute. */
@@ -309,9 +305,7 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   return t->world->has_subsurface ? vl_stage_subsurface(t, count, depth) : count;
 }
 
-/* ---- the tracer
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the tracer -------------------------------------------------------------------------- */
 
 uint32_t vl_volume_append(const vlMediumVertices *in, const uint32_t *kept, uint32_t count,
                           uint32_t n, vlPaths *rays, vlVolumeRows *rows) {

@@ -26,8 +26,7 @@ static void independent_2d(const vlSampler *s, uint32_t n, const int32_t *px, co
   }
 }
 
-/* ---- the kinds: functions of one and of two dimensions
- * ----------------------------------------------------------- */
+/* ---- the kinds: functions of one and of two dimensions ----------------------------------- */
 
 #define INPUT                                                                                  \
   const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index, \

@@ -79,8 +79,7 @@ VL_SAMPLER_INLINE void vl_zsobol(const int pair, const vlSampler *s, uint32_t n,
     vl_zsobol_lanes(pair, 1, seed, shift, n, px, py, index, u, v);
 }
 
-/* ---- a pair that is drawn with another one
- * ----------------------------------------------------------------------- */
+/* ---- a pair that is drawn with another one ----------------------------------------------- */
 
 /* Columns of the generator matrices of Sobol's third and fourth dimension, bit-reversed:
  * primitive polynomials x^2 + x + 1 and x^3 + x + 1, initial direction numbers 1, 3 and 1, 3, 1

@@ -7,8 +7,7 @@
 #include "velo/shape.h"
 #include "world/accel/local_ray.h"
 
-/* ---- lights that rays hit
- * ---------------------------------------------------------------------------------------- */
+/* ---- lights that rays hit ---------------------------------------------------------------- */
 
 /* Adds the light's radiance with the weight of multiple importance sampling. */
 static void add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
@@ -32,9 +31,7 @@ void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHi
   vl_stage_lights_hit(t, n, rays, hits, NULL, NULL, add_hit_light);
 }
 
-/* ---- hits
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- hits -------------------------------------------------------------------------------- */
 
 /* Vertex attributes (uv sets, colours) at the hit of a path's ray; not used for other shapes
  * than triangles. */

@@ -16,9 +16,7 @@ static inline float vl_abs_dot(vlVec3 a, vlVec3 b) {
   return vl_abs(a.x * b.x) + vl_abs(a.y * b.y) + vl_abs(a.z * b.z);
 }
 
-/* ---- bounds
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- bounds ------------------------------------------------------------------------------ */
 
 /* The offset of a point b0 p0 + b1 p1 + b2 p2 of a triangle with normal g. corner_error: bound
  * of the error of each corner's coordinates. The first term is pbrt's bound of the point's
@@ -60,9 +58,7 @@ static inline float vl_point_offset(const vlSurfacePoint *q) {
   return 2.0f * VL_GAMMA(7) * (float)rounded + (float)(error + q->off);
 }
 
-/* ---- starts and ends
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- starts and ends --------------------------------------------------------------------- */
 
 /* The next float in the direction of d's sign: x rounded towards +inf (d > 0) or -inf (d < 0).
  */

@@ -219,9 +219,7 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntr
   }
 }
 
-/* ---- exits
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- exits ------------------------------------------------------------------------------- */
 
 /* Copies the probes with a crossing to the paths of exits, and computes their surfaces. probe:
  * by exit, its probe. Returns their number. */
@@ -432,9 +430,7 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
   return count;
 }
 
-/* ---- the material
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- the material ------------------------------------------------------------------------ */
 
 /* Computes extinction and albedo for a run of lanes, either from absorption and scattering, or
  * from the reflectance of a thick solid and the mean free path. */

@@ -37,9 +37,7 @@ static uint32_t lanes_of(const vlTrace *w, const vlTraceRays *r) {
   return r->count < w->batch.n ? r->count : w->batch.n;
 }
 
-/* ---- hits
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- hits -------------------------------------------------------------------------------- */
 
 static void start(vlTrace *w, const vlTraceRays *r, uint32_t count) {
   vlPaths *p = &w->t.s->rays;
@@ -146,9 +144,7 @@ static void occluded(vlTrace *w, const vlTraceRays *r, uint8_t *result) {
       result[i] = 0;
 }
 
-/* ---- from the hits
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- from the hits ----------------------------------------------------------------------- */
 
 static vlVec3 origin_towards(const vlSurface *f, uint32_t k, vlVec3 d) {
   return vl_offset_origin(vl_lane3(f->px, f->py, f->pz, k), vl_lane3(f->gx, f->gy, f->gz, k),
@@ -265,9 +261,7 @@ static void bounce(vlTrace *w, uint32_t number, vlTraceBounce *out) {
 
 static const vlTraceQueries queries = {find_hits, occluded, leave, lights, bsdf, bounce};
 
-/* ---- the tracer
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the tracer -------------------------------------------------------------------------- */
 
 static void make_rays(const vlTracing *t, vlTraceRays *r) {
   const vlTraceBatch *b = t->batch;

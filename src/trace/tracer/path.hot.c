@@ -3,9 +3,7 @@
  * batch. */
 #include "trace/tracer/record.h"
 
-/* ---- runs of one BSDF
- * --------------------------------------------------------------------------------------------
- */
+/* ---- runs of one BSDF -------------------------------------------------------------------- */
 
 /* A run of lanes that share a BSDF kind, with parameter rows shifted to the run's start. A run
  * may start at any lane, because a lane's result does not depend on its place in the vector
@@ -50,9 +48,7 @@ static vlBsdfParams params_of(const vlWorld *world, const vlVertices *at, uint32
   return p;
 }
 
-/* ---- direct light
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- direct light ------------------------------------------------------------------------ */
 
 void vl_stage_local(uint32_t n, const vlVertices *at, const float *wx, const float *wy,
                     const float *wz, float wi[3][VL_ROW_SIZE]) {
@@ -176,8 +172,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension, const vlV
         t->batch->radiance[c][shadow->lane[k]] += shadow->radiance[c][k];
 }
 
-/* ---- the next direction
- * ------------------------------------------------------------------------------------------ */
+/* ---- the next direction ------------------------------------------------------------------ */
 
 /* Width and spread of the cone that leaves a surface. Specular reflection and transmission
  * change the spread by the curvature perpendicular to the plane of incidence (Coddington's
@@ -300,9 +295,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   return count;
 }
 
-/* ---- the path tracer
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- the path tracer --------------------------------------------------------------------- */
 
 static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPaths *rays = &t->s->rays;

@@ -36,8 +36,7 @@ void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertice
 /* The paths of the n rays end because they have their largest number of bounces. */
 void vl_record_depth(vlTracing *t, uint32_t n, const vlPaths *rays);
 
-/* ---- media and subsurface materials
- * ------------------------------------------------------------------------------ */
+/* ---- media and subsurface materials ------------------------------------------------------ */
 
 /* vl_record_arrival adds a vertex to the path of ray i: the ray left the scene; null if there
  * is no room. vl_record_surface makes it the surface that the ray hits. */

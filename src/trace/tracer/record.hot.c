@@ -42,9 +42,7 @@ static void put_ids(const vlHits *h, uint32_t i, vlPathVertex *v) {
   v->primitive = h->prim[i] + 1;
 }
 
-/* ---- arrivals
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- arrivals ---------------------------------------------------------------------------- */
 
 vlPathVertex *vl_record_arrival(vlTracing *t, const vlPaths *p, uint32_t i, uint32_t bounce) {
   vlPathVertex *v = new_vertex(t, p->lane[i]);
@@ -90,9 +88,7 @@ void vl_record_depth(vlTracing *t, uint32_t n, const vlPaths *rays) {
   }
 }
 
-/* ---- light
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- light ------------------------------------------------------------------------------- */
 
 void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to) {
 #define NAME(K, k) [VL_WL_##K] = #k,
@@ -162,9 +158,7 @@ void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVe
   }
 }
 
-/* ---- scattering
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- scattering -------------------------------------------------------------------------- */
 
 /* The first image of a texture node and its inputs; null if none. */
 static const char *image_of(const vlWorld *world, int32_t node) {
@@ -244,8 +238,7 @@ void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertice
   }
 }
 
-/* ---- media and subsurface materials
- * ------------------------------------------------------------------------------ */
+/* ---- media and subsurface materials ------------------------------------------------------ */
 
 void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {

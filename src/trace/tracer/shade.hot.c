@@ -5,9 +5,7 @@
 
 #include "material/rows.hot.h"
 
-/* ---- sorting
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- sorting ----------------------------------------------------------------------------- */
 
 enum { BLOCK = 8, PATH_ROWS = offsetof(vlPaths, time) / sizeof(float[VL_ROW_SIZE]) };
 _Static_assert(PATH_ROWS * sizeof(float[VL_ROW_SIZE]) == offsetof(vlPaths, time),
@@ -122,9 +120,7 @@ uint32_t vl_stage_sort(const vlWorld *world, uint32_t n, const vlPaths *rays,
   return count;
 }
 
-/* ---- shading
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- shading ----------------------------------------------------------------------------- */
 
 void vl_stage_shade(const vlTracing *t, uint32_t n, vlVertices *at) {
   vlTraceScratch *s = t->s;

@@ -137,9 +137,7 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
         t->batch->radiance[c][s->at.paths.lane[i]] += q->radiance[c][i];
 }
 
-/* ---- bounces
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- bounces ----------------------------------------------------------------------------- */
 
 void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps) {
   vlTraceScratch *s = t->s;
@@ -171,9 +169,7 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
   }
 }
 
-/* ---- the others
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the others -------------------------------------------------------------------------- */
 
 void vl_trace_volpath(vlTracing *t) {
   if (t->world->media.count > 0 || t->world->has_subsurface)

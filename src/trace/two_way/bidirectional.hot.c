@@ -3,8 +3,7 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-/* ---- lights that paths hit
- * --------------------------------------------------------------------------------------- */
+/* ---- lights that paths hit --------------------------------------------------------------- */
 
 /* density: density of the light paths that arrive at this point. */
 static float hit_weight(const vlTracing *t, const vlPaths *p, const vlFlightEnds *ends,
@@ -57,9 +56,7 @@ static void add_later(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
   add_radiance(t, p, rows, i, met->radiance, hit_weight(t, p, ends, i, met->pdf, density));
 }
 
-/* ---- one vertex
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- one vertex -------------------------------------------------------------------------- */
 
 /* Sets the strategies that begin on the camera's side, of n vertices on surfaces. */
 static void weigh(const vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at,
@@ -200,9 +197,7 @@ static void end_long(const vlTracing *t, uint32_t n, uint32_t depth, const vlPat
   }
 }
 
-/* ---- the tracer
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the tracer -------------------------------------------------------------------------- */
 
 static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;

@@ -30,9 +30,7 @@ void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *a
   vl_stage_reverse(t, n, at, (const float(*)[VL_ROW_SIZE])there->wi, back);
 }
 
-/* ---- start
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- start ------------------------------------------------------------------------------- */
 
 /* Samples the wavelengths of the batch's paths. */
 static void wavelengths(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes *to) {
@@ -154,9 +152,7 @@ static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlVerti
   }
 }
 
-/* ---- photons
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- photons ----------------------------------------------------------------------------- */
 
 static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
                           const vlTwoWayVertices *v, vlPhoton *photons) {
@@ -192,8 +188,7 @@ static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
     b->store(b->user, count, photons);
 }
 
-/* ---- vertices that camera paths connect to
- * ----------------------------------------------------------------------- */
+/* ---- vertices that camera paths connect to ----------------------------------------------- */
 
 /* passed: memory for vlPhoton.passed of the vertices. */
 static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
@@ -240,9 +235,7 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
     b->leave(b->user, count, vertices, passed);
 }
 
-/* ---- the next vertex
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- the next vertex --------------------------------------------------------------------- */
 
 /* Updates what the paths carry after scattering on surfaces, and makes the weights those of the
  * adjoint BSDFs: the `count` rays leave the vertices in `order`. */

@@ -48,9 +48,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   return count;
 }
 
-/* ---- camera paths
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- camera paths ------------------------------------------------------------------------ */
 
 /* Sets the strategies that begin on the camera's side, of n vertices. */
 static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlMediumVertices *in,
@@ -124,9 +122,7 @@ uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   return scatter(t, n, depth, dimension, ways, &v->scattered, v->kept);
 }
 
-/* ---- light paths
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- light paths ------------------------------------------------------------------------- */
 
 /* Sets the strategies that begin on the light's side, of n vertices. */
 static void arrive_from_light(const vlTracing *t, uint32_t n, uint32_t depth,

@@ -78,9 +78,7 @@ static bool is_usual(const float o[3], const float d[3], float farthest) {
  */
 static const uint32_t bits[W] = {1, 2, 4, 8, 16, 32, 64, 128};
 
-/* ---- boxes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- boxes ------------------------------------------------------------------------------- */
 
 /* The children whose boxes the ray meets, one bit each. begin: where. */
 static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, float high,
@@ -114,9 +112,7 @@ static inline void interpolate(const vlBvhNode *node, float time, vlBvhBoxes *to
       from[k] * (1.0f - time) + later[k] * time;
 }
 
-/* ---- triangles
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- triangles --------------------------------------------------------------------------- */
 
 static inline float dot(float ax, float ay, float az, float bx, float by, float bz) {
   return ax * bx + (ay * by + az * bz);
@@ -234,9 +230,7 @@ static bool meet_shape(Query *q, vlBvhItem at, bool any) {
   return any;
 }
 
-/* ---- trees
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- trees ------------------------------------------------------------------------------- */
 
 static bool walk(Query *q, const vlBvh *tree, const float o[3], const float d[3], bool any);
 

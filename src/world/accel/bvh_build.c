@@ -241,9 +241,7 @@ static void find_boxes(void *user, uint32_t index, uint32_t worker) {
   }
 }
 
-/* ---- splits
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- splits ------------------------------------------------------------------------------ */
 
 static inline int bin_at(const Primitive *p, int axis, float low, float scale) {
   int bin = (int)((p->low[axis] + p->high[axis] - low) * scale);
@@ -349,9 +347,7 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
   return count;
 }
 
-/* ---- nodes
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- nodes ------------------------------------------------------------------------------- */
 
 /* Sets the boxes of child k. No ray meets the box of a null range; it is finite, for products
  * with 0. */

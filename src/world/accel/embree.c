@@ -92,9 +92,7 @@ static inline uint32_t index_of(const vlWorld *world, uint32_t inst) {
   return inst == VL_NONE ? VL_NONE : inst - world->groups.items[0].count;
 }
 
-/* ---- filters
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- filters ----------------------------------------------------------------------------- */
 
 static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsigned i,
                            bool shadow) {
@@ -192,9 +190,7 @@ static void learn_occluder(const struct RTCFilterFunctionNArguments *args) {
                          *hit_row(args->hit, args->N, PRIM, i));
 }
 
-/* ---- user geometry
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- user geometry ----------------------------------------------------------------------- */
 
 static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   const AccelGeometry *g = args->geometryUserPtr;
@@ -256,9 +252,7 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
   }
 }
 
-/* ---- building
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- building ---------------------------------------------------------------------------- */
 
 static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
   rtcSetGeometryUserPrimitiveCount(geometry, count);
@@ -586,9 +580,7 @@ void vl_embree_destroy(vlAccel *a) {
     rtcReleaseDevice(a->device);
 }
 
-/* ---- tracing
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- tracing ----------------------------------------------------------------------------- */
 
 /* Macros that hide the difference between the queries of Embree 3 and 4. */
 /* Camera rays in a packet: as many as fit into the vectors of the widest set without fused

@@ -79,9 +79,7 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
-/* ---- infinite lights
- * ---------------------------------------------------------------------------------------------
- */
+/* ---- infinite lights --------------------------------------------------------------------- */
 
 /* Makes the distribution over the cells, or shares that of the previous world. */
 static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean,

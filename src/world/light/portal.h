@@ -70,8 +70,7 @@ static inline vlPortalWindow vl_portal_whole(const vlPortal *portal) {
   return (vlPortalWindow){0, 0, portal->size, portal->size};
 }
 
-/* ---- the light of windows
- * ---------------------------------------------------------------------------------------- */
+/* ---- the light of windows ---------------------------------------------------------------- */
 
 static inline uint32_t vl_portal_index(const vlPortal *portal, double x) {
   uint32_t i = x > 0 ? (uint32_t)x : 0;

@@ -12,9 +12,7 @@
 #include "world/medium/medium_lookup.h"
 #include "world/world.h"
 
-/* ---- spectra
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- spectra ----------------------------------------------------------------------------- */
 
 static bool is_zero(const vlSpectral *s) {
   if (s->scale == 0)
@@ -114,9 +112,7 @@ float *vl_medium_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32_
   return majorants;
 }
 
-/* ---- all
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- all --------------------------------------------------------------------------------- */
 
 vlResult vl_compile_medium_homogeneous(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
                                        vlError *error) {

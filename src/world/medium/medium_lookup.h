@@ -10,9 +10,7 @@
 #include "world/medium/grid_lookup.h"
 #include "world/world.h"
 
-/* ---- emission
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- emission ---------------------------------------------------------------------------- */
 
 /* Planck's law divided by its maximum, as for blackbody spectra (color/spectrum.c). lambda in
  * nm, temperature in kelvin. */
@@ -42,8 +40,7 @@ static inline void vl_medium_blackbody(const vlWorldMedium *m, const float lambd
     le[c] = scale * vl_blackbody_at(lambda[c], kelvin);
 }
 
-/* ---- the medium at a point
- * --------------------------------------------------------------------------------------- */
+/* ---- the medium at a point --------------------------------------------------------------- */
 
 /* Trilinear lookup in a grid of colours, times scale. Each colour is converted to a spectrum
  * before interpolation. */
@@ -181,9 +178,7 @@ static inline float vl_medium_extinction(const vlWorldMedium *m, vlVec3 p) {
   return vl_extinction_of(&at);
 }
 
-/* ---- majorants
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- majorants --------------------------------------------------------------------------- */
 
 /* Traversal of the majorant grid by a ray (Amanatides and Woo 1987; pbrt book 11.4.2). */
 typedef struct vlMajorantWalk {

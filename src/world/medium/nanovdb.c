@@ -59,8 +59,7 @@ static float float_at(const Tree *t, pnanovdb_address_t a) {
   return pnanovdb_read_float(t->buffer, a);
 }
 
-/* ---- which blocks there are
- * -------------------------------------------------------------------------------------- */
+/* ---- which blocks there are -------------------------------------------------------------- */
 
 static vlResult add_block(Tree *t, const int32_t at[3], uint64_t node, float value) {
   if (node == 0 && value == t->background)
@@ -141,9 +140,7 @@ static vlResult list_root(Tree *t, pnanovdb_root_handle_t root) {
   return VL_OK;
 }
 
-/* ---- their bricks
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- their bricks ------------------------------------------------------------------------ */
 
 static vlResult add_tile(Tree *t, float value, uint32_t *entry) {
   if (!isfinite(value))
@@ -239,9 +236,7 @@ static vlResult build_table(Tree *t, vlSparseGrid *g) {
   return VL_OK;
 }
 
-/* ---- the grid
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- the grid ---------------------------------------------------------------------------- */
 
 /* Moves a growing array into a block owned by the world. */
 static bool give(vlWorld *world, void *items, void *result_pointer) {

@@ -107,9 +107,7 @@ static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], do
   }
 }
 
-/* ---- meeting a ray
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- meeting a ray ----------------------------------------------------------------------- */
 
 typedef struct Search {
   const vlWorldShape *shape;
@@ -319,8 +317,7 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   return hit->t > t_min && hit->t < t_max;
 }
 
-/* ---- what it is like there
- * --------------------------------------------------------------------------------------- */
+/* ---- what it is like there --------------------------------------------------------------- */
 
 static void scale_to(double v[3], double length) {
   double l = vl_normalize3(v);

@@ -45,9 +45,7 @@ static void release(Cutter *c) {
   vl_free(c->context, c->edges);
 }
 
-/* ---- edges
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- edges ------------------------------------------------------------------------------- */
 
 static size_t slot_of(const Edge *edges, size_t capacity, uint64_t key) {
   uint64_t h = key * 0x9e3779b97f4a7c15u;
@@ -115,9 +113,7 @@ static bool middle_of(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
   return true;
 }
 
-/* ---- cutting
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- cutting ----------------------------------------------------------------------------- */
 
 static double length2(const Cutter *c, uint32_t a, uint32_t b) {
   const float *p = c->p.items + 3 * (size_t)a, *q = c->p.items + 3 * (size_t)b;

@@ -157,9 +157,7 @@ void vl_mesh_bounds(const vlWorldShape *shape, uint32_t corners, uint32_t prim, 
     }
 }
 
-/* ---- triangles
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- triangles --------------------------------------------------------------------------- */
 
 static vlResult triangles_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
                                   const vlMat4 *from_group, vlWorldShape *shape,

@@ -12,9 +12,7 @@
 #include "velo/shape.h"
 #include "world/shape/surface_point.h"
 
-/* ---- when
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- when -------------------------------------------------------------------------------- */
 
 float vl_world_time(const vlWorld *world, double seconds) {
   if (!world->moves)
@@ -64,9 +62,7 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   return 0;
 }
 
-/* ---- instances
- * ---------------------------------------------------------------------------------------------------
- */
+/* ---- instances --------------------------------------------------------------------------- */
 
 /* The exact motion in double precision: one segment between each pair of consecutive keys of
  * the scene. */
@@ -259,9 +255,7 @@ void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *mov
   }
 }
 
-/* ---- vertices
- * ----------------------------------------------------------------------------------------------------
- */
+/* ---- vertices ---------------------------------------------------------------------------- */
 
 float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time) {
   vlTimeStep k = vl_time_step(time, s->steps);
@@ -276,9 +270,7 @@ float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time)
   return worst;
 }
 
-/* ---- following a point
- * -------------------------------------------------------------------------------------------
- */
+/* ---- following a point ------------------------------------------------------------------- */
 
 static void map(const float m[12], const double p[3], double q[3]) {
   for (int i = 0; i < 3; i++)

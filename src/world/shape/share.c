@@ -8,9 +8,7 @@
 #include "scene/scene.h"
 #include "velo/shape.h"
 
-/* ---- comparison
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- comparison -------------------------------------------------------------------------- */
 
 enum { ARRAYS = 13 };
 typedef struct Arrays {
@@ -75,9 +73,7 @@ bool vl_shape_same(const vlWorld *world, size_t i, const vlWorld *previous, size
   return world->shape_parts[i] || same_numbers(a, b);
 }
 
-/* ---- reuse
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- reuse ------------------------------------------------------------------------------- */
 
 /* Gives *s the geometry of another shape. */
 static void take(const vlWorldShape *from, vlWorldShape *s) {
@@ -117,9 +113,7 @@ bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldS
   return true;
 }
 
-/* ---- search
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- search ------------------------------------------------------------------------------ */
 
 /* A hash table of the previous world's shapes with parts. */
 struct vlShapeSearch {

@@ -66,8 +66,7 @@ double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoi
   return functions[shape->kind]->pdf(shape, prim, point->p);
 }
 
-/* ---- bounds and area, also of triangles
- * -------------------------------------------------------------------------- */
+/* ---- bounds and area, also of triangles -------------------------------------------------- */
 
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
   if (shape->kind == VL_SHAPE_TRIANGLES) {

@@ -7,8 +7,7 @@
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-/* ---- errors and reports
- * ------------------------------------------------------------------------------------------ */
+/* ---- errors and reports ------------------------------------------------------------------ */
 
 bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
                  const char *format, ...) {
@@ -60,9 +59,7 @@ void vl_old_note(vlOldStatement *s, const char *format, ...) {
  * before them. */
 static const uint32_t AFTER = 0x80000000u;
 
-/* ---- edits
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- edits ------------------------------------------------------------------------------- */
 
 static bool edit_text(vlOldFile *file, vlOldSpan span, const char *text) {
   vlContext *context = file->u->context;
@@ -207,8 +204,7 @@ bool vl_old_rename(vlOldFile *file, vlOldStatement *s, size_t i, const char *nam
   return vl_old_edit(file, s->names[i], "\"%s\"", name);
 }
 
-/* ---- a finished statement
- * ---------------------------------------------------------------------------------------- */
+/* ---- a finished statement ---------------------------------------------------------------- */
 
 /* Removes a parameter with the blanks before it. */
 static bool cut_param(vlOldFile *file, const vlOldParam *p) {

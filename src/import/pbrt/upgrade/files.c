@@ -86,9 +86,7 @@ bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam
   return vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
 
-/* ---- Include
- * -----------------------------------------------------------------------------------------------------
- */
+/* ---- Include ----------------------------------------------------------------------------- */
 
 static const vlOldInclude *find_include(vlUpgrade *u, const char *path) {
   for (size_t i = 0; i < u->includes.count; i++)

@@ -34,9 +34,7 @@ static const vlOldRow infinite[] = {{"L"},           {"mapname", VL_OLD_RENAME, 
                                     COMMON,          {0}};
 static const vlOldRow area[] = {{"L"}, {"twosided"}, SAMPLES, COMMON, {0}};
 
-/* ---- the factor
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- the factor -------------------------------------------------------------------------- */
 
 /* The pairs of a sampled spectrum; the caller frees both arrays. */
 static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths,
@@ -154,9 +152,7 @@ static double blackbody_scale(vlOldFile *file, vlOldParam *p) {
   return p->number[1];
 }
 
-/* ---- images
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- images ------------------------------------------------------------------------------ */
 
 static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool around,
                        const double factor[3]) {

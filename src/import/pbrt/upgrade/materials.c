@@ -96,9 +96,7 @@ static const vlOldRow disney[] = {{"metallic"},  {"roughness"}, {"eta"},
                                   {"clearcoat"}, BUMP,          {0}};
 static const vlOldRow mix[] = {{"materials"}, {"amount"}, {0}};
 
-/* ---- rules
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- rules ------------------------------------------------------------------------------- */
 
 /* Oren and Nayar's roughness; zero has no effect. */
 static bool matte_rule(vlOldFile *file, vlOldStatement *s) {

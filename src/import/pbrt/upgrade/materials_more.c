@@ -37,9 +37,7 @@ static bool amount_text(vlOldFile *file, vlOldStatement *s, const vlOldParam *p,
   return true;
 }
 
-/* ---- uber
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- uber -------------------------------------------------------------------------------- */
 
 /* The statement becomes a named material, and the material itself a mix of it with nothing. */
 static bool mix_with_nothing(vlOldFile *file, vlOldStatement *s, const vlOldParam *opacity) {
@@ -102,9 +100,7 @@ bool vl_old_uber(vlOldFile *file, vlOldStatement *s) {
   return opaque || mix_with_nothing(file, s, opacity);
 }
 
-/* ---- translucent
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- translucent ------------------------------------------------------------------------- */
 
 bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
   double kd[3] = {0.25, 0.25, 0.25}, share[2][3] = {{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}};
@@ -155,9 +151,7 @@ bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-/* ---- mix
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- mix --------------------------------------------------------------------------------- */
 
 /* pbrt-v3's amount weighs the first material, pbrt-v4's the second: the names change places. */
 bool vl_old_mix(vlOldFile *file, vlOldStatement *s) {
@@ -191,9 +185,7 @@ bool vl_old_mix(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-/* ---- disney
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- disney ------------------------------------------------------------------------------ */
 
 static bool rename_if(vlOldStatement *s, const char *from, const char *to) {
   vlOldParam *p = vl_old_find(s, from);

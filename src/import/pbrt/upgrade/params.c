@@ -62,9 +62,7 @@ const char *vl_old_text(double value, char text[32]) {
   return text;
 }
 
-/* ---- types
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- types ------------------------------------------------------------------------------- */
 
 static const char *const types[][2] = {{"color", "rgb"},
                                        {"point", "point3"},
@@ -136,9 +134,7 @@ bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-/* ---- rows
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- rows -------------------------------------------------------------------------------- */
 
 static bool is_open(const vlOldParam *p) {
   return !p->dropped && p->new_name == p->name;

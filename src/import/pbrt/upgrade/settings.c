@@ -9,9 +9,7 @@
 #define BOUNDS \
   { "pixelbounds", VL_OLD_LOSE, "give the film's \"pixelbounds\"" }
 
-/* ---- camera
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- camera ------------------------------------------------------------------------------ */
 
 #define SHUTTER                                              \
   {"shutteropen"}, {"shutterclose"}, {"frameaspectratio"}, { \
@@ -88,9 +86,7 @@ bool vl_old_camera(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, cameras, "perspective");
 }
 
-/* ---- film
- * --------------------------------------------------------------------------------------------------------
- */
+/* ---- film -------------------------------------------------------------------------------- */
 
 static const vlOldRow film[] = {{"xresolution"},
                                 {"yresolution"},
@@ -121,8 +117,7 @@ bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, films, "rgb");
 }
 
-/* ---- sampler, filter, accelerator
- * -------------------------------------------------------------------------------- */
+/* ---- sampler, filter, accelerator -------------------------------------------------------- */
 
 static const vlOldRow sampler[] = {{"pixelsamples"},
                                    {"xsamples"},
@@ -205,9 +200,7 @@ bool vl_old_accelerator(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, accelerators, "bvh");
 }
 
-/* ---- integrator
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- integrator -------------------------------------------------------------------------- */
 
 #define LIGHTS                                              \
   {"lightsamplestrategy", VL_OLD_RENAME, "lightsampler"}, { \
@@ -281,9 +274,7 @@ bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, integrators, "path");
 }
 
-/* ---- media
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- media ------------------------------------------------------------------------------- */
 
 #define SUBSTANCE                                \
   {"preset"}, {"sigma_a"}, {"sigma_s"}, {"g"}, { \
@@ -308,9 +299,7 @@ bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
   return vl_old_edit(file, type->span[0], "\"%s\"", kind->to);
 }
 
-/* ---- WorldBegin
- * --------------------------------------------------------------------------------------------------
- */
+/* ---- WorldBegin -------------------------------------------------------------------------- */
 
 bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   file->u->has_world = true;

@@ -41,9 +41,7 @@ static bool is_spectrum(const vlOldStatement *s) {
   return !vl_text_is(s->name[1], "float");
 }
 
-/* ---- scale
- * -------------------------------------------------------------------------------------------------------
- */
+/* ---- scale ------------------------------------------------------------------------------- */
 
 /* Whether the input is a constant of one number; an input that is not given is 1. */
 static bool one_number(const vlOldParam *p, double *value) {
@@ -120,9 +118,7 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-/* ---- others
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- others ------------------------------------------------------------------------------ */
 
 static bool image_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *trilinear = vl_old_find(s, "trilinear"), *gamma = vl_old_find(s, "gamma"),
@@ -217,9 +213,7 @@ static const vlOldKind kinds[] = {
     {"ptex", "ptex", ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
     {0}};
 
-/* ---- float copies
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- float copies ------------------------------------------------------------------------ */
 
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture) {
   vlUpgrade *u = file->u;

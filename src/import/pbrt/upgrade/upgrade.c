@@ -17,9 +17,7 @@
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/detect.h"
 
-/* ---- directives without a table
- * -----------------------------------------------------------------------------------
- */
+/* ---- directives without a table ---------------------------------------------------------- */
 
 static bool remove_it(vlOldFile *file, vlOldStatement *s) {
   vl_old_note(s, "left out");
@@ -91,9 +89,7 @@ const vlOldWord vl_old_words[] = {
     {"Texture", VL_OLD_PARAMS, 3, vl_old_texture},
     {NULL, VL_OLD_PLAIN, 0, NULL}};
 
-/* ---- a file
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- a file ------------------------------------------------------------------------------ */
 
 static bool read_all(vlOldFile *file) {
   vlTokenizer tokens;
@@ -184,9 +180,7 @@ static bool write_files(vlUpgrade *u, const char *text) {
   return true;
 }
 
-/* ---- the interface
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- the interface ----------------------------------------------------------------------- */
 
 static bool folder_of(const char *path, char result[4096]) {
   char folder[4096], real[PATH_MAX];

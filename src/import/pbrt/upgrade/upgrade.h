@@ -132,9 +132,7 @@ typedef struct vlOldFile {
   VL_ARRAY(vlOldBlock) blocks;
 } vlOldFile;
 
-/* ---- statements (document.c)
- * --------------------------------------------------------------------------------------
- */
+/* ---- statements (document.c) ------------------------------------------------------------- */
 
 typedef enum vlOldForm {
   VL_OLD_PLAIN,   /* names, then no more */
@@ -159,9 +157,7 @@ typedef struct vlTokenizer vlTokenizer;
 bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *end);
 void vl_old_free(vlOldFile *file, vlOldStatement *s);
 
-/* ---- edits and reports (edit.c)
- * ------------------------------------------------------------------------------------
- */
+/* ---- edits and reports (edit.c) ---------------------------------------------------------- */
 
 bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
                  const char *format, ...) __attribute__((format(printf, 5, 6)));
@@ -193,9 +189,7 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s);
 /* The new text of a span; the caller frees it. Null: out of memory. */
 char *vl_old_render(vlOldFile *file, vlOldSpan span);
 
-/* ---- parameters (params.c)
- * -----------------------------------------------------------------------------------------
- */
+/* ---- parameters (params.c) --------------------------------------------------------------- */
 
 vlOldParam *vl_old_find(vlOldStatement *s,
                         const char *name); /* the last one that is not dropped; null: none */
@@ -240,9 +234,7 @@ typedef struct vlOldKind {
 /* The row of a kind; null for unknown kinds. The table ends with a null name. */
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name);
 
-/* ---- rules
- * ---------------------------------------------------------------------------------------------------------
- */
+/* ---- rules ------------------------------------------------------------------------------- */
 
 vlOldRule vl_old_material, vl_old_named_material;                         /* materials.c */
 vlOldRule vl_old_disney, vl_old_uber, vl_old_translucent, vl_old_mix;     /* materials_more.c */
@@ -265,9 +257,7 @@ void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s);
 /* Shapes that pbrt-v4 does not have, as triangles (quadrics.c). */
 vlOldRule vl_old_mesh_of_shape;
 
-/* ---- files (files.c, environment.c)
- * -------------------------------------------------------------------------------
- */
+/* ---- files (files.c, environment.c) ------------------------------------------------------ */
 
 /* What the new scene says for a file that the old one names. False after an error. */
 bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result,

@@ -44,7 +44,7 @@ typedef enum Form {
   IMPORT
 } Form;
 typedef struct Keyword {
-  const char *name = NULL;
+  const char *name;
   Form form;
   vlDirective directive;
   uint32_t count; /* numbers */

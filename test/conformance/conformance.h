@@ -149,14 +149,34 @@ static double variance_of_mean(const Mean *m) {
   double variance = m->count > 1 ? (m->squares / m->count - mean * mean) / (m->count - 1) : 0;
   return variance > 0 ? variance : 0;
 }
-/* Whether two means differ by chance: 5 standard errors, and `slack` for what is not exact.
- * NaN: no. */
-static bool mean_agrees(const Mean *a, const Mean *b, double slack) {
-  return fabs(mean_of(a) - mean_of(b)) <=
-         5 * sqrt(variance_of_mean(a) + variance_of_mean(b)) + slack;
+/* How far a law looks, in the unit of what it compares. */
+typedef struct Sight {
+  double slack; /* what is not exact in the comparison itself */
+  double least; /* the least mistake that must be found */
+} Sight;
+
+/* A value with its standard error against what it must be. It is broken if they differ by more
+ * than 5 standard errors and the slack. The law itself is broken where it would miss the least
+ * mistake in more than one of a thousand runs: 5 + 3.1 standard errors and the slack exceed it.
+ */
+static void check_value(const char *family, const char *kind, const char *what, double value,
+                        double error, double known, Sight sight) {
+  const double by_chance = 5;
+  const double power = 3.1;
+  if (!(fabs(value - known) <= by_chance * error + sight.slack))
+    broken(family, kind, "%s: %.4f +- %.4f, not %.4f", what, value, error, known);
+  if (!((by_chance + power) * error + sight.slack <= sight.least))
+    broken(family, kind, "%s: %.4f +- %.4f is too noisy to find a mistake of %.4f", what, value,
+           error, sight.least);
 }
-static bool mean_is(const Mean *a, double known, double slack) {
-  return fabs(mean_of(a) - known) <= 5 * sqrt(variance_of_mean(a)) + slack;
+static void check_mean(const char *family, const char *kind, const char *what, const Mean *mean,
+                       double known, Sight sight) {
+  check_value(family, kind, what, mean_of(mean), sqrt(variance_of_mean(mean)), known, sight);
+}
+static void check_same_mean(const char *family, const char *kind, const char *what,
+                            const Mean *mean, const Mean *other, Sight sight) {
+  check_value(family, kind, what, mean_of(mean),
+              sqrt(variance_of_mean(mean) + variance_of_mean(other)), mean_of(other), sight);
 }
 
 /* ---- asking the world -------------------------------------------------------------------- */

@@ -31,7 +31,10 @@ static int teardown(void **state) {
   return 0;
 }
 
-int main(void) {
+/* An argument names the laws to be tried, as "laws_of_*" does. */
+int main(int argc, char **argv) {
+  if (argc > 1)
+    cmocka_set_test_filter(argv[1]);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parameters_of_all_families),
       cmocka_unit_test(textures_of_parameters),
@@ -45,6 +48,7 @@ int main(void) {
       cmocka_unit_test(settings_of_cameras),
       cmocka_unit_test(laws_of_samplers),
       cmocka_unit_test(laws_of_filters),
+      cmocka_unit_test(filters_of_light_paths),
       cmocka_unit_test(laws_of_media),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(hostile_defs),

@@ -7,16 +7,16 @@
 #include "conformance.h"
 #include "velo/medium.h"
 
-/* The mean of green over the image, each pixel a number of its own. */
-static Mean mean_image(const char *text, const char *tracer, uint32_t spp) {
+/* The image of the scene by a tracer (null: the scene's own) and with a pixel filter. */
+static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilterKind filter,
+                               uint32_t spp) {
   vlError error = {0};
-  Mean mean = {0};
   vlScene *scene = load_text(context, text, &error);
   if (!scene)
     fail_msg("%s\n%s", error.message, text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->build.color = VL_COLOR_RGB;
-  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->film.filter = vl_default_pixel_filter(filter);
   defs->render.spp = spp;
   const vlKindFamily *family = vl_kind_family_find("tracers");
   for (uint32_t k = 0; tracer && k < family->kind_count; k++)
@@ -25,10 +25,28 @@ static Mean mean_image(const char *text, const char *tracer, uint32_t spp) {
   vlImage *image = render_scene(context, scene, &error);
   if (!image)
     fail_msg("%s\n%s", error.message, text);
+  return image;
+}
+
+static vlImage *image_of(const char *text, const char *tracer, uint32_t spp) {
+  return filtered_image(text, tracer, VL_PIXEL_FILTER_BOX, spp);
+}
+
+/* The mean of green over the image, each pixel a number of its own. */
+static Mean mean_of_image(const vlImage *image) {
+  Mean mean = {0};
   for (uint32_t y = 0; y < vl_image_height(image); y++)
     for (uint32_t x = 0; x < vl_image_width(image); x++)
       mean_add(&mean, (double)vl_image_get(image, x, y, 1));
-  vl_image_destroy(image);
+  return mean;
+}
+/* The mean of the differences of their pixels, whose true values may differ from each other. */
+static Mean mean_difference(const vlImage *image, const vlImage *other) {
+  Mean mean = {0};
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = 0; x < vl_image_width(image); x++)
+      mean_add(&mean,
+               (double)vl_image_get(image, x, y, 1) - (double)vl_image_get(other, x, y, 1));
   return mean;
 }
 
@@ -47,6 +65,8 @@ static const char *const medium_form =
     "MediumInterface \"m\" \"\" Material \"interface\"\n"
     "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer "
     "indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n";
+
+enum { MEDIUM_SPP = 384 };
 
 typedef struct MediumCase {
   const char *shape;    /* parameters of all variants */
@@ -108,18 +128,23 @@ static const MediumCase nanovdb_medium = {
 #define MEDIUM_CASE(NAME, name) &name##_medium,
 static const MediumCase *const medium_cases[] = {VL_MEDIUM_KINDS(MEDIUM_CASE)};
 
-static Mean mean_medium(const char *kind, const MediumCase *c, const char *parameters,
-                        uint32_t spp) {
+static vlImage *image_of_medium(const char *kind, const MediumCase *c, const char *parameters) {
   static char text[TEXT];
   char all[2000];
   snprintf(all, sizeof all, "%s%s", c->shape, parameters);
   scene_text(text, medium_form, kind, all);
-  return mean_image(text, NULL, spp);
+  return image_of(text, NULL, MEDIUM_SPP);
+}
+static Mean mean_medium(const char *kind, const MediumCase *c, const char *parameters) {
+  vlImage *image = image_of_medium(kind, c, parameters);
+  Mean mean = mean_of_image(image);
+  vl_image_destroy(image);
+  return mean;
 }
 
 /* The light that passes without being scattered, where the medium scatters what it absorbs by
  * `absorbs`: no bounce. */
-static Mean mean_unscattered(const char *kind, const MediumCase *c) {
+static vlImage *image_unscattered(const char *kind, const MediumCase *c) {
   static char text[TEXT];
   char all[2000];
   snprintf(all, sizeof all, "%s%s", c->shape, c->absorbs);
@@ -129,87 +154,159 @@ static Mean mean_unscattered(const char *kind, const MediumCase *c) {
   char *depth = strstr(text, "maxdepth\" 200");
   assert_non_null(depth);
   memcpy(strstr(depth, "200"), "  0", 3);
-  return mean_image(text, NULL, 32);
+  return image_of(text, NULL, MEDIUM_SPP);
+}
+
+static void check_medium(const char *name, const MediumCase *c) {
+  const Sight sight = {.slack = 2e-3, .least = 0.02};
+  Mean kept = mean_medium(name, c, c->scatters);
+  check_mean("media", name, "light that is kept", &kept, 1, sight);
+  if (c->glows) {
+    Mean balance = mean_medium(name, c, c->glows);
+    check_mean("media", name, "glow and surroundings", &balance, c->glow > 0 ? c->glow : 1,
+               sight);
+  }
+  vlImage *absorbing = image_of_medium(name, c, c->absorbs);
+  vlImage *scattering = image_unscattered(name, c);
+  Mean passes = mean_of_image(absorbing);
+  Mean more = mean_difference(scattering, absorbing);
+  vl_image_destroy(absorbing);
+  vl_image_destroy(scattering);
+  if (c->transmittance > 0)
+    check_mean("media", name, "light that passes", &passes, c->transmittance, sight);
+  check_mean("media", name, "light that is not scattered, beyond what is not absorbed", &more,
+             0, sight);
+  if (!(mean_of(&passes) < 0.98 && mean_of(&passes) > 0.001))
+    broken("media", name, "lets %.4f of the light pass", mean_of(&passes));
 }
 
 static void laws_of_media(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("media");
   for (uint32_t k = 0; k < family->kind_count; k++) {
-    const MediumCase *c = medium_cases[k];
-    const char *name = family->rows[k]->name;
-    assert_non_null(c->scatters);
-    Mean kept = mean_medium(name, c, c->scatters, 32);
-    if (!mean_is(&kept, 1, 2e-3))
-      broken("media", name, "keeps %.4f of the light", mean_of(&kept));
-    Mean balance = c->glows ? mean_medium(name, c, c->glows, 32) : kept;
-    double glow = c->glow > 0 ? c->glow : 1;
-    if (c->glows && !mean_is(&balance, glow, 2e-3))
-      broken("media", name, "glows with %.4f of its surroundings' light, not %.4f",
-             mean_of(&balance), glow);
-    Mean passes = mean_medium(name, c, c->absorbs, 16);
-    if (c->transmittance > 0 && !mean_is(&passes, c->transmittance, 2e-3))
-      broken("media", name, "lets %.4f of the light pass, not %.4f", mean_of(&passes),
-             c->transmittance);
-    Mean unscattered = mean_unscattered(name, c);
-    if (!mean_agrees(&unscattered, &passes, 2e-3))
-      broken("media", name, "absorbs 1 - %.4f of the light, but scatters 1 - %.4f",
-             mean_of(&passes), mean_of(&unscattered));
-    if (!(mean_of(&passes) < 0.98 && mean_of(&passes) > 0.001))
-      broken("media", name, "lets %.4f of the light pass", mean_of(&passes));
+    assert_non_null(medium_cases[k]->scatters);
+    check_medium(family->rows[k]->name, medium_cases[k]);
   }
   expect_no_failures();
 }
 
 /* ---- tracers ----------------------------------------------------------------------------- */
 
-/* A plate that reflects half of the light, turned by 60 degrees from the eye. */
+/* A plate that reflects half of the light, turned by 60 degrees from the eye; its normal is
+ * (0, -.866, .5). */
 #define PLATE \
-  "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-.1 .1 -.1 " \
-  ".1]\n" VIEW("12") \
+  "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-1.2 1.2 -1.2 " \
+  "1.2]\n" VIEW("12") \
   "WorldBegin Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5] AttributeBegin Rotate 60 1 0 0\n"   \
-  "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] AttributeEnd\n"
+  "Shape \"bilinearmesh\" \"point3 P\" [-2 -4 0 2 -4 0 -2 4 0 2 4 0] AttributeEnd\n"
 
 static const char *const below_sky = PLATE "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
-/* The plate's normal is (0, -.866, .5). A ball of radius .5, two away along it, and radiance 4.
- */
+/* A ball of radius .5, two away along the normal, and radiance 4. */
 static const char *const below_lamp = PLATE
     "Translate 0 -1.7320508 1 AreaLightSource \"diffuse\" \"rgb L\" [4 4 4] Material "
     "\"diffuse\" "
     "\"rgb "
     "reflectance\" [0 0 0] Shape \"sphere\" \"float radius\" .5\n";
 
+enum { PLATE_SIDE = 12, PLATE_STEPS = 8 };
+
+/* The part of the hemisphere, by the cosine, that the ball covers from the plate's point at
+ * (x, y) of the eye's plane: (r / d)^2 cos. */
+static double ball_share(double x, double y) {
+  const double to[3] = {-x, -1.7320508 - y, 1 - 1.7320508 * y};
+  double d2 = to[0] * to[0] + to[1] * to[1] + to[2] * to[2];
+  double cosine = (-0.8660254 * to[1] + 0.5 * to[2]) / sqrt(d2);
+  return 0.25 / d2 * cosine;
+}
+
+/* The mean of that over a pixel. */
+static double ball_share_of_pixel(uint32_t column, uint32_t row) {
+  double sum = 0;
+  for (int j = 0; j < PLATE_STEPS; j++)
+    for (int i = 0; i < PLATE_STEPS; i++)
+      sum += ball_share(2.4 * ((column + (i + 0.5) / PLATE_STEPS) / PLATE_SIDE - 0.5),
+                        2.4 * (0.5 - (row + (j + 0.5) / PLATE_STEPS) / PLATE_SIDE));
+  return sum / (PLATE_STEPS * PLATE_STEPS);
+}
+
+/* The radiance of the plate: `even` of a sky of 1 or of the eye, and `ball` times the share of
+ * the hemisphere that the ball covers. */
+typedef struct Plate {
+  double even, ball;
+} Plate;
+
 typedef struct TracerCase {
-  double sky, lamp; /* the plate's mean radiance */
-  uint32_t spp;     /* 0: 64 */
+  Plate sky, lamp;
+  uint32_t spp; /* 0: 64 */
+  double least; /* the least mistake that must be found, of the mean; 0: .03 */
 } TracerCase;
 
-/* below a sky of 1: half of it. Below the ball: .5 * 4 (.5 / 2)^2 */
-#define TRANSPORT \
-  { .sky = 0.5, .lamp = 0.125 }
-static const TracerCase path_tracer = TRANSPORT;
+/* Below a sky of 1: half of it. Below the ball: half of 4 times its share. */
+#define TRANSPORT .sky = {.even = 0.5}, .lamp = {.ball = 2}
+static const TracerCase path_tracer = {TRANSPORT};
 static const TracerCase raycast_tracer = {
-    .sky = 0.25, .lamp = 0.25}; /* the reflectance times the cosine to the eye */
+    .sky = {.even = 0.25},
+    .lamp = {.even = 0.25}}; /* the reflectance times the cosine to the eye */
 static const TracerCase ambient_occlusion_tracer = {
-    .sky = 1, .lamp = 1 - 0.0625}; /* the ball hides a 16th */
-static const TracerCase volpath_tracer = TRANSPORT;
-static const TracerCase bidirectional_tracer = TRANSPORT;
-static const TracerCase merging_tracer = TRANSPORT;
-static const TracerCase sppm_tracer = TRANSPORT;
-static const TracerCase light_path_tracer = {.sky = 0.5, .lamp = 0.125, .spp = 512};
-static const TracerCase random_walk_tracer = {.sky = 0.5, .lamp = 0.125, .spp = 1024};
+    .spp = 320, .sky = {.even = 1}, .lamp = {.even = 1, .ball = -1}};
+static const TracerCase volpath_tracer = {TRANSPORT};
+static const TracerCase bidirectional_tracer = {TRANSPORT, .spp = 128};
+static const TracerCase merging_tracer = {TRANSPORT, .spp = 128};
+static const TracerCase sppm_tracer = {TRANSPORT, .spp = 128};
+static const TracerCase light_path_tracer = {TRANSPORT, .spp = 512};
+static const TracerCase random_walk_tracer = {TRANSPORT, .spp = 8192,
+                                              .least = 0.1}; /* it finds the ball by chance */
 
 #define TRACER_CASE(NAME, name) &name##_tracer,
 static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 
-static void check_tracer(const char *name, const char *variant, const char *text, double known,
-                         uint32_t spp) {
-  Mean mean = mean_image(text, name, spp);
-  if (!mean_is(&mean, known, 0.005 * known))
-    broken("tracers", name, "%s: %.4f +- %.4f, not %.4f", variant, mean_of(&mean),
-           sqrt(variance_of_mean(&mean)), known);
-  if (!(sqrt(variance_of_mean(&mean)) < 0.02 * known))
-    broken("tracers", name, "%s: too noisy a test", variant);
+/* The mean over the image of what a pixel is beyond its known value, over the mean known. */
+static void check_tracer(const char *name, const char *variant, const char *text, Plate plate,
+                         const TracerCase *c) {
+  vlImage *image = image_of(text, name, c->spp ? c->spp : 64);
+  double least = c->least > 0 ? c->least : 0.03;
+  Mean off = {0};
+  Mean known = {0};
+  for (uint32_t y = 0; y < PLATE_SIDE; y++)
+    for (uint32_t x = 0; x < PLATE_SIDE; x++) {
+      double value = plate.even + plate.ball * ball_share_of_pixel(x, y);
+      mean_add(&known, value);
+      mean_add(&off, (double)vl_image_get(image, x, y, 1) - value);
+    }
+  vl_image_destroy(image);
+  double scale = mean_of(&known);
+  check_mean("tracers", name, variant, &off, 0, (Sight){0.001 * scale, least * scale});
+}
+
+/* Light paths add their light to the pixels around the point where the camera sees their end,
+ * by the filter: the image of an even plate stays as bright, where no light comes from beyond
+ * the image's edge. A pixel's filter takes light from its neighbours, so pixels are not
+ * independent; images of other seeds are. */
+static void check_splats(const char *name, vlPixelFilterKind kind) {
+  enum { EDGE = 4, SEEDS = 24 };
+  Mean off = {0};
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
+    char text[TEXT];
+    const char *rest = strstr(below_sky, "WorldBegin");
+    snprintf(text, sizeof text, "%.*s Sampler \"independent\" \"integer seed\" %u\n%s",
+             (int)(rest - below_sky), below_sky, seed + 1, rest);
+    vlImage *image = filtered_image(text, "lightpath", kind, 64);
+    double sum = 0;
+    for (uint32_t y = EDGE; y < PLATE_SIDE - EDGE; y++)
+      for (uint32_t x = EDGE; x < PLATE_SIDE - EDGE; x++)
+        sum += (double)vl_image_get(image, x, y, 1);
+    vl_image_destroy(image);
+    mean_add(&off, sum / ((PLATE_SIDE - 2 * EDGE) * (PLATE_SIDE - 2 * EDGE)));
+  }
+  check_mean("filters", name, "light paths", &off, 0.5, (Sight){1e-3, 0.05 * 0.5});
+}
+
+static void filters_of_light_paths(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("filters");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    check_splats(family->rows[k]->name, (vlPixelFilterKind)k);
+  expect_no_failures();
 }
 
 static void laws_of_tracers(void **state) {
@@ -218,16 +315,16 @@ static void laws_of_tracers(void **state) {
   const vlKindFamily *family = vl_kind_family_find("tracers");
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const char *name = family->rows[k]->name;
-    uint32_t spp = tracer_cases[k]->spp ? tracer_cases[k]->spp : 64;
-    check_tracer(name, "sky", below_sky, tracer_cases[k]->sky, spp);
-    check_tracer(name, "lamp", below_lamp, tracer_cases[k]->lamp, spp);
+    const TracerCase *c = tracer_cases[k];
+    check_tracer(name, "sky", below_sky, c->sky, c);
+    check_tracer(name, "lamp", below_lamp, c->lamp, c);
     if (k != VL_TRACER_AMBIENT_OCCLUSION)
       continue;
     const char *rest = strstr(below_lamp, "WorldBegin");
     snprintf(uniform, sizeof uniform,
              "%.*s Integrator \"ambientocclusion\" \"bool cossample\" false\n%s",
              (int)(rest - below_lamp), below_lamp, rest);
-    check_tracer(name, "uniform", uniform, tracer_cases[k]->lamp, spp);
+    check_tracer(name, "uniform", uniform, c->lamp, c);
   }
   expect_no_failures();
 }

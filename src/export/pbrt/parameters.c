@@ -65,54 +65,37 @@ static void put_spectrum(vlExport *x, const vlParameter *p, const vlPbrtInput *i
     vl_pbrt_put_color(x, p->name, input);
 }
 
-static void put_float3(vlExport *x, const vlParameter *p, const float v[3]) {
-  PUT(" \"vector3 %s\" [%.9g %.9g %.9g]", p->name, (double)v[0], (double)v[1], (double)v[2]);
-}
-
 static void put(vlExport *x, const vlParameter *p, const void *def, bool spectrum,
                 const vlPbrtParameter *prepared) {
-  const void *at = (const char *)def + p->offset;
-  double k = p->factor != 0 ? 1 / p->factor : 1;
-  vlPbrtInput input = prepared->input;
+  const vlPbrtInput *input = &prepared->input;
   switch (p->type) {
-    case VL_PARAMETER_BOOL:
-    case VL_PARAMETER_COUNT:
-    case VL_PARAMETER_CHOICE:
-    case VL_PARAMETER_SPECTRUM:
-      vl_pbrt_parameter(x, p, def);
-      break;
-    case VL_PARAMETER_FLOAT:
-      PUT(" \"float %s\" [%.9g]", p->name, k * (double)*(const float *)at);
-      break;
-    case VL_PARAMETER_DOUBLE:
-      PUT(" \"float %s\" [%.17g]", p->name, k * *(const double *)at);
-      break;
-    case VL_PARAMETER_FLOAT3:
-      put_float3(x, p, at);
-      break;
-    case VL_PARAMETER_DOUBLE3:
-      break; /* only cameras have parameters of this type */
-    case VL_PARAMETER_STRING:
-      PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at);
-      break;
     case VL_PARAMETER_FILE:
       PUT(" \"string %s\" \"%s\"", p->name, prepared->file);
       break;
     case VL_PARAMETER_EITHER_INPUT:
       if (spectrum)
-        vl_pbrt_put_color(x, p->name, &input);
+        vl_pbrt_put_color(x, p->name, input);
       else
-        vl_pbrt_put_number(x, p->name, &input);
+        vl_pbrt_put_number(x, p->name, input);
       break;
     case VL_PARAMETER_FLOAT_INPUT:
-      input.number *= (float)k;
-      vl_pbrt_put_number(x, p->name, &input);
+      vl_pbrt_put_number(x, p->name, input);
       break;
     case VL_PARAMETER_SPECTRUM_INPUT:
-      put_spectrum(x, p, &input);
+      put_spectrum(x, p, input);
       break;
+    case VL_PARAMETER_BOOL:
+    case VL_PARAMETER_COUNT:
+    case VL_PARAMETER_FLOAT:
+    case VL_PARAMETER_DOUBLE:
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_DOUBLE3:
+    case VL_PARAMETER_CHOICE:
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_SPECTRUM:
     case VL_PARAMETER_TEXTURE:
     case VL_PARAMETER_BLOCK:
+      vl_pbrt_parameter(x, p, def);
       break;
   }
 }

@@ -8,6 +8,10 @@ static double in_files(const vlParameter *p, double value) {
   return p->factor != 0 ? value / p->factor : value;
 }
 
+static const char *vector_type(const vlParameter *p) {
+  return p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3";
+}
+
 void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
   const void *at = (const char *)def + p->offset;
   const float *v = at;
@@ -26,12 +30,12 @@ void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
       PUT(" \"float %s\" [%.17g]", p->name, in_files(p, *(const double *)at));
       break;
     case VL_PARAMETER_FLOAT3:
-      PUT(" \"point3 %s\" [%.9g %.9g %.9g]", p->name, (double)v[0], (double)v[1], (double)v[2]);
+      PUT(" \"%s %s\" [%.9g %.9g %.9g]", vector_type(p), p->name, (double)v[0], (double)v[1],
+          (double)v[2]);
       break;
     case VL_PARAMETER_DOUBLE3: {
       const double *d = at;
-      PUT(" \"%s %s\" [%.17g %.17g %.17g]",
-          p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3", p->name, d[0], d[1], d[2]);
+      PUT(" \"%s %s\" [%.17g %.17g %.17g]", vector_type(p), p->name, d[0], d[1], d[2]);
       break;
     }
     case VL_PARAMETER_CHOICE:

@@ -150,6 +150,51 @@ static void check_def(const vlKindFamily *family, int kind, const vlParameter *p
   }
 }
 
+/* Enough triangles for a tree (few are tried one by one). */
+#define STRIP                                                                                     \
+  "Translate 0 .1 0 Shape \"trianglemesh\" \"point3 P\" [-1 0 0 0 0 0 1 0 0 -1 1 0 0 1 0 1 1 0] " \
+  "\"integer indices\" [0 1 3 1 4 3 1 2 4 2 5 4]\n"
+#define STRIPS STRIP STRIP STRIP STRIP STRIP STRIP STRIP STRIP
+#define ROWS STRIPS STRIPS STRIPS STRIPS
+
+/* What the library accepts of a camera, it renders: rays that are not finite hit nothing, with
+ * each accelerator. */
+static void render_camera(const vlParameter *p, double number) {
+  static const vlAccelerator accelerators[] = {VL_ACCELERATOR_EMBREE, VL_ACCELERATOR_BVH};
+  for (size_t i = 0; i < sizeof accelerators / sizeof *accelerators; i++) {
+    vlError error = {0};
+    vlScene *scene =
+        load_text(context, HEAD "WorldBegin " LIGHTS " Material \"diffuse\" " ROWS, &error);
+    assert_non_null(scene);
+    vlSceneDefs *defs = vl_scene_defs(scene);
+    defs->build.accelerator = accelerators[i];
+    defs->camera = vl_default_camera_def(WIDTH, WIDTH);
+    defs->camera.eye[2] = 4;
+    defs->camera.focus_distance = 3;
+    put_number(p, (char *)&defs->camera, number);
+    vlImage *image = render_scene(context, scene, &error);
+    for (uint32_t k = 0; image && k < WIDTH * WIDTH; k++)
+      if (!isfinite(vl_image_get(image, k % WIDTH, k / WIDTH, 1)))
+        broken("cameras", p->member, "%g: pixel %u is not finite", number, k);
+    if (!image && !error.message[0])
+      broken("cameras", p->member, "%g: no image and no message", number);
+    vl_image_destroy(image);
+  }
+}
+
+static void hostile_cameras(void **state) {
+  (void)state;
+  static const double numbers[] = {1e300, -1e300, 1e160, 1e39, -1e19, 1e-300, 5e-324};
+  const vlKindRow *camera = vl_settings(VL_SETTING_CAMERA);
+  for (uint32_t k = 0; k < camera->parameter_count; k++)
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+      const vlParameter *p = &camera->parameters[k];
+      if (p->type == VL_PARAMETER_DOUBLE || p->type == VL_PARAMETER_DOUBLE3)
+        render_camera(p, numbers[i]);
+    }
+  expect_no_failures();
+}
+
 static void hostile_defs(void **state) {
   (void)state;
   static const char *const of_defs[] = {"materials", "textures", "lights",  "emission",

@@ -52,6 +52,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_media),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(hostile_defs),
+      cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

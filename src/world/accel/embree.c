@@ -628,15 +628,21 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
   *shape = (uint32_t)(vl_accel_shape(world, number, geom, prim_out) - world->shapes.items);
 }
 
-/* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only
- * cameras, and media around them, can be that far away, because the extent of the world is
- * limited (shapes.c). */
-static bool is_near(const vlRays *r, uint32_t i) {
-  return fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
+/* Embree accepts neither NaN nor origins beyond its range, and may end the process. Such rays
+ * miss everything. Only cameras, and media around them, can be that far away, because the
+ * extent of the world is limited (shapes.c); directions that are NaN come from cameras whose
+ * numbers are too large for a double. */
+static bool is_sound(const vlRays *r, uint32_t i) {
+  const float far = 1.8e18f;
+  bool near = fabsf(r->ox[i]) < far && fabsf(r->oy[i]) < far && fabsf(r->oz[i]) < far;
+  bool turned = fabsf(r->dx[i]) < far && fabsf(r->dy[i]) < far && fabsf(r->dz[i]) < far;
+  bool from = !r->t_min || r->t_min[i] >= 0.0f;
+  bool to = !r->t_max || r->t_max[i] == r->t_max[i];
+  return near && turned && from && to;
 }
 
-/* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays too far away,
- * are not valid. */
+/* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays that Embree
+ * does not accept, are not valid. */
 static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r,
                         uint32_t first, uint32_t n) {
   uint32_t at[PACKET];
@@ -659,9 +665,11 @@ static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r
     q->ray.flags[k] = 0;
     q->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     q->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    if (!is_near(r, i)) { /* Embree may check lanes that are not valid; this one hits nothing */
+    if (!is_sound(r,
+                  i)) { /* Embree may check lanes that are not valid; this one hits nothing */
       valid[k] = 0;
       q->ray.org_x[k] = q->ray.org_y[k] = q->ray.org_z[k] = 0.0f;
+      q->ray.dir_x[k] = q->ray.dir_y[k] = q->ray.dir_z[k] = 1.0f;
       q->ray.tnear[k] = q->ray.tfar[k] = INFINITY;
     }
   }
@@ -723,7 +731,7 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (is_near(rays, i))
+    if (is_sound(rays, i))
       INTERSECT1(world->accel.scene, &q);
     t[i] = query.q.nearest ? nearest.t : q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i],
@@ -740,7 +748,7 @@ void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays,
       continue;
     struct RTCRay q;
     fill_ray(&q, rays, i);
-    if (is_near(rays, i))
+    if (is_sound(rays, i))
       OCCLUDED1(world->accel.scene, &q);
     occluded[i] = q.tfar < 0;
   }

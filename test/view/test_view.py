@@ -2,10 +2,12 @@
 """velo view, through a WebSocket client: frames, edits of the camera, refusals, files, copied commands, who may come in,
 malformed messages, pages that come and go."""
 import base64
+import itertools
 import json
 import math
 import os
 import random
+import re
 import shlex
 import shutil
 import socket
@@ -359,6 +361,85 @@ def frame_equals_file(page, folder, words):
     check("frame_is_the_image", page.form[:2] == (width, height) and worst <= 2 ** -11 * 1.001, worst, page.form, width, height)
 
 
+# ---- hostile values of settings ----
+
+HOSTILE = (2**32 + 8, -1, 1.5, 1e300, -1e300, 1e-300, "", "8", "x" * 10000, True, [1, 2], {})
+RAW = ("NaN", "Infinity", "-Infinity", "1e999")  # not JSON
+CHANGES = itertools.count(1000)
+SPELLED = {"view_distance": "d", "pixel_size": "s", "near_plane": "near", "far_plane": "far"}
+
+
+def setting_rows(group):
+    """Names and types of the rows of a group of settings."""
+    text = subprocess.run([VELO, "scene", "kinds", "settings"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    part = text.split(f"**`{group}`**")[1].split("\n**`")[0]
+    return re.findall(r"^\| `(\w+)` \| (\w+) ", part, re.M)
+
+
+def reply(view, page, text):
+    """What one message brings: (page, sentence, state). A page that was hung up on is replaced; its sentence is the reason."""
+    change = next(CHANGES)  # a state that greets a new page has the number of an older edit
+    page.send_raw(1, text.replace("CHANGE", str(change)).encode())
+    while True:
+        message = page.receive(60)
+        if isinstance(message, tuple):
+            page.close()
+            return Page(view), message[2], None
+        if isinstance(message, dict) and message["type"] == "refused":
+            return page, message["message"], None
+        if isinstance(message, dict) and message["type"] == "state" and message.get("change") == change:
+            return page, "", message
+
+
+def test_settings(view, page):
+    """Every setting that a page can send, by its row, has hostile values: refused with one sentence that names it, or a state of finite
+    numbers. The server stays up, also while it renders what it accepted."""
+    camera = [("camera", SPELLED.get(name, name), kind) for name, kind in setting_rows("camera")]
+    own = [("settings", name, kind) for name, kind in setting_rows("program") + setting_rows("render")
+           if name in ("exposure", "show", "spp", "samples", "x", "y")]
+    problems, tried, names = [], 0, set()
+    for message, name, kind in camera + own:
+        for value in [json.dumps(v) for v in HOSTILE] + list(RAW):
+            member = f'"set":{{"{name}":{value}}}' if message == "camera" else f'"{name}":{value}'
+            page, sentence, state = reply(view, page, f'{{"type":"{message}","change":CHANGE,{member}}}')
+            if "unknown field" in sentence:
+                break
+            tried += 1
+            names.add(name)
+            number = kind in ("float", "integer")
+            wrong = value in RAW or (number and not re.match(r"-?[0-9]", value))
+            said = name in sentence or name.replace("_", " ") in sentence or (value in RAW and "JSON" in sentence)
+            if wrong and not said:
+                problems.append((name, value[:20], sentence))
+            if len(sentence) > 1000 or "\n" in sentence:
+                problems.append((name, value[:20], len(sentence)))
+            if state and re.search(r"NaN|Infinity", json.dumps(state["camera"])):
+                problems.append((name, value[:20], "not finite"))
+            if state and tried % 4 == 0:
+                page.wait_frame()
+            if state:
+                page, sentence, state = reply(view, page, '{"type":"reset","change":CHANGE}')
+    page, sentence, state = reply(view, page, '{"type":"settings","change":CHANGE,"spp":64,"exposure":0}')
+    check("settings", not problems and len(names) > 25 and tried > 400, problems[:5], len(names), tried)
+    check("settings_server_stays", view.process.poll() is None and state, sentence)
+    return page
+
+
+def test_long(view):
+    """A message of 10^9 bytes is refused when its first bytes are too many."""
+    page = Page(view)
+    sent = 0
+    try:
+        page.socket.sendall(bytes([0x81, 0x80 | 127]) + struct.pack("!Q", 10**9) + bytes(4))
+        while sent < 10**9:
+            page.socket.sendall(b"x" * 10**6)
+            sent += 10**6
+    except OSError:
+        pass
+    check("long", sent < 10**9 and closed(page)[1] in (1009, 0), sent)
+    page.close()
+
+
 # ---- malformed messages, many pages ----
 
 def closed(page):
@@ -592,6 +673,8 @@ def main():
         test_tasks(page)
         test_files(page, folder)
         page.close()
+        test_settings(view, Page(view)).close()
+        test_long(view)
         test_malformed(view)
         test_many(view)
     finally:

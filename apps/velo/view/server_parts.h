@@ -37,6 +37,8 @@ typedef struct Client {
   size_t message_size, message_sent;
   char *received; /* the parts of a message so far */
   size_t received_size;
+  enum lws_close_status refused; /* not 0: the page is hung up on, for the reason `why` */
+  char why[121];
 } Client;
 
 struct Server {

@@ -114,6 +114,30 @@ static void end(struct lws *wsi, Connection *connection) {
   server->calls.clients(server->calls.user, kept);
 }
 
+/* ---- refusing ---------------------------------------------------------------------------- */
+
+/* Ends the connection when the next bytes can be sent: in the midst of a frame that waits for a
+ * slow link, the reason would be lost. What arrives until then is not read. A reason has at
+ * most 123 bytes of UTF-8. */
+static int refuse(struct lws *wsi, Client *client, enum lws_close_status status,
+                  const char *why) {
+  size_t length = strlen(why);
+  if (length > sizeof client->why - 1)
+    length = sizeof client->why - 1;
+  while (length > 0 && ((unsigned char)why[length] & 0xc0) == 0x80)
+    length--;
+  memcpy(client->why, why, length);
+  client->why[length] = 0;
+  client->refused = status;
+  lws_callback_on_writable(wsi);
+  return 0;
+}
+
+static int hang_up(struct lws *wsi, Client *client) {
+  lws_close_reason(wsi, client->refused, (unsigned char *)client->why, strlen(client->why));
+  return -1;
+}
+
 /* ---- sending ----------------------------------------------------------------------------- */
 
 /* Whether there is something to send; the caller holds the lock. */
@@ -170,6 +194,8 @@ static int send_next(struct lws *wsi, Connection *connection) {
   Server *server = server_of(wsi);
   if (!client)
     return -1;
+  if (client->refused)
+    return hang_up(wsi, client);
   bool good = true;
   Text *text = NULL;
   pthread_mutex_lock(&server->lock);
@@ -199,17 +225,6 @@ static int send_next(struct lws *wsi, Connection *connection) {
 
 /* ---- receiving --------------------------------------------------------------------------- */
 
-/* A reason has at most 123 bytes of UTF-8. */
-static int refuse(struct lws *wsi, enum lws_close_status status, const char *why) {
-  size_t length = strlen(why);
-  if (length > 120)
-    length = 120;
-  while (length > 0 && ((unsigned char)why[length] & 0xc0) == 0x80)
-    length--;
-  lws_close_reason(wsi, status, (unsigned char *)why, length);
-  return -1;
-}
-
 static void take_over(Server *server, Client *client) {
   bool free_seat = server->def.steering;
   pthread_mutex_lock(&server->lock);
@@ -225,7 +240,7 @@ static int handle(struct lws *wsi, Client *client, const char *text, size_t size
   static ViewMessage message; /* the server's thread alone uses it */
   char why[VL_GIVEN_MESSAGE];
   if (!message_parse(text, size, &message, why))
-    return refuse(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
+    return refuse(wsi, client, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
   if (message.kind == MESSAGE_SEEN) {
     if (message.serial == client->waits_for)
       client->waits_for = 0;
@@ -242,10 +257,12 @@ static int receive(struct lws *wsi, Connection *connection, const char *in, size
   Client *client = connection->client;
   if (!client)
     return -1;
+  if (client->refused)
+    return 0;
   if (lws_frame_is_binary(wsi))
-    return refuse(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text is expected");
+    return refuse(wsi, client, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text is expected");
   if (client->received_size + size > MESSAGE_LARGEST)
-    return refuse(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
+    return refuse(wsi, client, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
   char *larger = realloc(client->received, client->received_size + size + 1);
   if (!larger)
     return -1;

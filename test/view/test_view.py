@@ -419,7 +419,7 @@ def test_settings(view, page):
                 page.wait_frame()
             if state:
                 page, sentence, state = reply(view, page, '{"type":"reset","change":CHANGE}')
-    page, sentence, state = reply(view, page, '{"type":"settings","change":CHANGE,"spp":64,"exposure":0}')
+    page, sentence, state = reply(view, page, '{"type":"settings","change":CHANGE,"spp":3,"exposure":0}')
     check("settings", not problems and len(names) > 25 and tried > 400, problems[:5], len(names), tried)
     check("settings_server_stays", view.process.poll() is None and state, sentence)
     return page

@@ -134,8 +134,7 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, vlCamera
   return result;
 }
 
-/* ---- names: of the calibration program (today and in version 2), and those that scripts use
- * ---- */
+/* Names: of the calibration program (today and in version 2), and those that scripts use. */
 
 static const char *const matrix_names[] = {"camera_matrix", "cameraMatrix",     "Camera_Matrix",
                                            "CameraMatrix",  "intrinsic_matrix", "K",

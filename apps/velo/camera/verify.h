@@ -19,8 +19,7 @@ bool verify_knows(const VerifyModel *model);
  * camera, or no finite result. Folds of the distortion are not detected. */
 bool verify_project(const VerifyModel *model, const double point[3], double pixel[2]);
 
-/* ---- verify_corners.c: corners of a chessboard in an image, without knowing where they are
- * ---- */
+/* verify_corners.c: corners of a chessboard in an image, without knowing where they are. */
 
 typedef struct Image {
   int width, height; /* rows from the top; the first pixel's centre is (0.5, 0.5) */

@@ -259,9 +259,11 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load,
   char *data = NULL;
   size_t size = 0;
   bool ok = vl_import_plain_read(scene, path, &data, &size);
-  s.at = data;
-  s.end = data + size;
-  ok = ok && read(&s);
+  if (ok) {
+    s.at = data;
+    s.end = data + size;
+    ok = read(&s);
+  }
   vl_free(context, data);
   VL_ARRAY_FREE(context, &s.indices);
   VL_ARRAY_FREE(context, &s.corners);

@@ -141,9 +141,11 @@ vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
   char *data = NULL;
   size_t size = 0;
   bool ok = vl_import_plain_read(scene, path, &data, &size);
-  s.at = data;
-  s.end = data + size;
-  ok = ok && read(&s);
+  if (ok) {
+    s.at = data;
+    s.end = data + size;
+    ok = read(&s);
+  }
   vl_free(scene->context, data);
   size_t vertices = s.positions.count / 3;
   uint32_t *indices = ok ? vl_alloc_array(scene->context, vertices + 1, sizeof *indices) : NULL;

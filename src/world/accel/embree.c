@@ -665,8 +665,8 @@ static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r
     q->ray.flags[k] = 0;
     q->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     q->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    if (!is_sound(r,
-                  i)) { /* Embree may check lanes that are not valid; this one hits nothing */
+    if (!is_sound(r, i)) {
+      /* Embree may check lanes that are not valid; this one hits nothing */
       valid[k] = 0;
       q->ray.org_x[k] = q->ray.org_y[k] = q->ray.org_z[k] = 0.0f;
       q->ray.dir_x[k] = q->ray.dir_y[k] = q->ray.dir_z[k] = 1.0f;

@@ -256,8 +256,8 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
       result = vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(errno));
     } else if (got == 0) {
       break;
-    } else if ((used += (size_t)got) ==
-               capacity) { /* pipes have no size; after a full block there may be more */
+    } else if ((used += (size_t)got) == capacity) {
+      /* pipes have no size; after a full block there may be more */
       char probe;
       ssize_t more = read(fd, &probe, 1);
       if (more <= 0)

@@ -102,8 +102,8 @@ static void end(struct lws *wsi, Connection *connection) {
     if (server->clients[i] != client)
       server->clients[kept++] = server->clients[i];
   server->client_count = kept;
-  if (client->steers &&
-      kept) { /* the page that has looked on for the longest time steers now */
+  if (client->steers && kept) {
+    /* the page that has looked on for the longest time steers now */
     heir = server->clients[0];
     heir->steers = true;
   }

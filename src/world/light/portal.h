@@ -134,8 +134,8 @@ static inline vlVec3 vl_portal_sample(const vlPortal *portal, const vlPortalWind
     return vl_vec3(0, 0, 0);
   double wanted = from + (double)u * (to - from);
   uint32_t low = vl_portal_index(portal, w->x0), high = vl_portal_index(portal, w->x1);
-  while (low <
-         high) { /* binary search for the first column whose right side is past the target */
+  while (low < high) {
+    /* binary search for the first column whose right side is past the target */
     uint32_t middle = (low + high) / 2;
     if (vl_portal_left(portal, middle + 1, w) > wanted)
       high = middle;

@@ -63,9 +63,8 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
   double roots[2];
   int count = 0;
   double scale = fabs(b) + fabs(c);
-  if (fabs(a) <=
-      1e-14 *
-          scale) { /* the equation is linear: a is only rounding error, about 100 times 1e-16 */
+  if (fabs(a) <= 1e-14 * scale) {
+    /* the equation is linear: a is only rounding error, about 100 times 1e-16 */
     if (b != 0)
       roots[count++] = -c / b;
   } else {

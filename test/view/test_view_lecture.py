@@ -204,6 +204,16 @@ def test_page(b, view):
     numbers = b.wait(f"velo.lecture.figures[{n}].pixel.r === 100 && velo.lecture.figures[{n}].pixel.c === 100 && [...velo.lecture.figures[{n}].element.querySelectorAll('.numbers')].at(-1).dataset.text")
     check("click_pixel", numbers.startswith("d = (−99.5, −99.5, −500)"), numbers)
     b.wait("velo.live.outside.point && velo.live.outside.drawing.lines.some(l => l[0] === 'projector')")
+    # the same by keyboard: after Enter the arrow keys move the pixel, and after Escape they turn the camera again
+    camera = b.run("(({ width, height, eye }) => ({ width, height, eye }))(velo.live.local)")
+    for key, shift in (("Enter", "false"), ("ArrowLeft", "false"), ("ArrowUp", "true")):
+        b.run(f"velo.live.canvas.dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}', shiftKey: {shift}, cancelable: true }}))")
+    picked = b.run(f"velo.lecture.figures[{n}].pixel")
+    check("keyboard_pixel", picked == {"r": camera["height"] - 1 - camera["height"] // 2 + 10, "c": camera["width"] // 2 - 1} and
+          b.run("velo.live.local.eye.join()") == ",".join("%g" % x for x in camera["eye"]), picked)
+    for key in ("Escape", "ArrowUp"):
+        b.run(f"velo.live.canvas.dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}', cancelable: true }}))")
+    b.wait(f"velo.live.local.eye.join() !== '{','.join('%g' % x for x in camera['eye'])}'")
     # the Panini projection has its own slider, and d is there for perspective alone
     n = make_live(b, "wide_perspective")
     shown = f"velo.lecture.figures[{n}].rows.filter(r => !r.row.hidden).map(r => r.slider.name).join()"

@@ -1,12 +1,13 @@
 // web/lecture/drag.js: dragging a live image turns the camera round lookat, as on the page of velo view; with Ctrl or
-// Shift it looks round or moves sideways. A click picks a pixel. Arrow keys turn, too. The wheel and vertical strokes of a finger scroll.
+// Shift it looks round or moves sideways. A click picks a pixel. Arrow keys turn, too; after Enter they move the picked pixel,
+// by 10 with Shift, until Enter or Escape. The wheel and vertical strokes of a finger scroll.
 import * as steer from "../steer.js";
 
 const ARROWS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 // live: state, null while velo loads; camera(), edit(set), next() before a gesture, screen.factor().
 export function attachDrag(canvas, live) {
-  let last = null, moved = 0;
+  let last = null, moved = 0, picked = null; // picked: the pixel that arrow keys move
   canvas.tabIndex = 0;
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button !== 0 || !live.state) return;
@@ -33,10 +34,24 @@ export function attachDrag(canvas, live) {
     last = null;
   });
   canvas.addEventListener("pointercancel", () => { last = null; });
+  canvas.addEventListener("blur", () => { picked = null; });
   canvas.addEventListener("keydown", (event) => {
     const way = ARROWS[event.key];
-    if (!way || !live.state || event.ctrlKey || event.altKey || event.metaKey) return;
-    live.edit((event.shiftKey ? steer.look : steer.orbit)(live.camera(), 0.06 * way[0], 0.06 * way[1]));
+    if (!live.state || event.ctrlKey || event.altKey || event.metaKey) return;
+    const { width, height } = live.camera();
+    if (event.key === "Enter" || (event.key === "Escape" && picked)) {
+      picked = picked ? null : [Math.floor(width / 2), Math.floor(height / 2)];
+      if (picked) live.pick(...picked);
+      event.preventDefault();
+      event.stopPropagation();
+      return;
+    }
+    if (!way) return;
+    if (picked) {
+      const step = event.shiftKey ? 10 : 1;
+      picked = [Math.min(width - 1, Math.max(0, picked[0] - step * way[0])), Math.min(height - 1, Math.max(0, picked[1] - step * way[1]))];
+      live.pick(...picked);
+    } else live.edit((event.shiftKey ? steer.look : steer.orbit)(live.camera(), 0.06 * way[0], 0.06 * way[1]));
     event.preventDefault();
   });
 }

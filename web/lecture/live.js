@@ -11,7 +11,7 @@ const WORDS = {
   en: {
     steered: "another page steers",
     away: "velo has ended or cannot be reached; trying again",
-    image: "Click: a pixel's ray. Drag: turn round lookat. Shift: sideways. Ctrl: look round. Arrow keys turn",
+    image: "Click: a pixel's ray. Drag: turn round lookat. Shift: sideways. Ctrl: look round. Arrow keys turn; after Enter they move a pixel",
     outside: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Ctrl and wheel: nearer, farther",
     status: (s) => `${s.spp} of ${s.target} samples per pixel`,
     engine: { server: "Rendered by velo view.", browser: "Rendered by velo in this page (WebAssembly)." },
@@ -23,7 +23,7 @@ const WORDS = {
   it: {
     steered: "un'altra pagina ha il comando",
     away: "velo è terminato o non è raggiungibile; nuovo tentativo",
-    image: "Clic: il raggio di un pixel. Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce",
+    image: "Clic: il raggio di un pixel. Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce; dopo Invio le frecce spostano un pixel",
     outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
     status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
     engine: { server: "Immagini calcolate da velo view.", browser: "Immagini calcolate da velo in questa pagina (WebAssembly)." },

@@ -279,6 +279,7 @@ test("world_build_runs", () => {
   const changed = (from, to) => runBuild(code.replace(from, to), say).error?.join(": ");
   assert.equal(changed("set_viewdistance(400)", "set_viewdistence(400)"), "6: no method set_viewdistence");
   assert.equal(changed("set_eye(300, 400, 500)", "set_eye(300, 400)"), "4: set_eye takes 3 numbers");
+  assert.equal(changed("(400)", "()"), "6: set_viewdistance takes one number");
   assert.match(changed(/.*compute_uvw.*\n/, ""), /compute_uvw is missing/);
   assert.match(changed(/.*set_camera.*\n/, ""), /set_camera is missing/);
   assert.match(changed("(400);", "(400)"), /^6: .*semicolon/);

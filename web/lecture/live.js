@@ -21,16 +21,16 @@ const WORDS = {
     reasons: { webgl: "this browser has no WebGL2", wasm: "this browser has no WebAssembly with vector instructions", memory: "the browser has too little memory" },
   },
   it: {
-    steered: "un'altra pagina ha il comando",
+    steered: "la camera è controllata da un'altra pagina",
     away: "velo è terminato o non è raggiungibile; nuovo tentativo",
-    image: "Clic: il raggio di un pixel. Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce; dopo Invio le frecce spostano un pixel",
-    outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
+    image: "Clic: il raggio di un pixel. Trascinando si gira attorno a lookat; con Maiusc ci si sposta di lato, con Ctrl si ruota lo sguardo. Le frecce fanno girare; dopo Invio spostano il pixel",
+    outside: "Trascinate l'osservatore: cambia e. Il view plane: cambia d. Altrove: gira la vista. Ctrl e rotella: più vicino, più lontano",
     status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
     engine: { server: "Immagini calcolate da velo view.", browser: "Immagini calcolate da velo in questa pagina (WebAssembly)." },
     hash: (hash) => `SHA-256 dell'immagine: ${hash}`,
     printed: (why) => `Le figure restano quelle stampate: ${why}.`,
-    lost: "Il browser ha tolto alla pagina ciò che disegna l'immagine: finché non torna, la figura è quella stampata.",
-    reasons: { webgl: "questo browser non ha WebGL2", wasm: "questo browser non ha WebAssembly con istruzioni vettoriali", memory: "il browser ha troppo poca memoria" },
+    lost: "Il browser ha sottratto alla pagina la risorsa grafica che disegna l'immagine: finché non la restituisce, la figura è quella stampata.",
+    reasons: { webgl: "questo browser non ha WebGL2", wasm: "questo browser non ha WebAssembly con istruzioni vettoriali", memory: "la memoria del browser non basta" },
   },
 };
 const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far", "exposure_time"];

@@ -30,8 +30,8 @@ const uvw = {
     html += handle("eye", P(eye)) + handle("lookat", P(lookat)) + label(plus(P(eye), [-12, 24]), "e", "name") + label(plus(P(lookat), [10, 22]), "l", "name");
     html += rectangle(440, 60, 250, 187.5, "window") + label([565, 46], say("the image", "l'immagine"), "", "middle");
     if (!frame) {
-      const words = Math.hypot(...sub(eye, lookat)) < 1e-9 ? [say("e = l: no view direction", "e = l: nessuna direzione"), say("w cannot be computed", "w non si può calcolare")]
-        : [say("up is parallel to w:", "up è parallelo a w:"), say("up × w = 0, no u, no v", "up × w = 0: niente u, niente v")];
+      const words = Math.hypot(...sub(eye, lookat)) < 1e-9 ? [say("e = l: no view direction", "e = l: manca la direzione"), say("w cannot be computed", "w non si può calcolare")]
+        : [say("up is parallel to w:", "up è parallelo a w:"), say("up × w = 0, no u, no v", "up × w = 0: u e v non esistono")];
       return html + label([565, 148], words[0], "name", "middle") + label([565, 172], words[1], "name", "middle");
     }
     const at = (p) => { const q = onPlane(p, eye, frame, d); return q && [565 + (125 / 72) * q[0], 153.75 - (125 / 72) * q[1]]; };
@@ -105,7 +105,7 @@ const pixel = {
     const { x, y, d, hit, frame } = this.ray(s), sum = add(add(scale(frame.u, x), scale(frame.v, y)), scale(frame.w, -s.d));
     const term = (value) => (value < 0 ? " − " : " + ") + w.number(Math.abs(value));
     return [`x_v = s (c − h_res / 2 + p_x) = ${S} (${s.c} − ${H} / 2 + ${w.number(s.p_x)}) = ${w.number(x, 2)}`, `y_v = s (r − v_res / 2 + p_y) = ${S} (${s.r} − ${V} / 2 + ${w.number(s.p_y)}) = ${w.number(y, 2)}`,
-            `**d** = ${w.number(x, 2)} **u**${term(y)} **v**${term(-s.d)} **w** = ${w.vector(sum, 1)}`, `**d** / ‖**d**‖ = ${w.vector(d, 4)}`, hit.object ? `t = ${w.number(hit.t, 1)}` : `"${say("the ray hits nothing", "il raggio non incontra niente")}"`];
+            `**d** = ${w.number(x, 2)} **u**${term(y)} **v**${term(-s.d)} **w** = ${w.vector(sum, 1)}`, `**d** / ‖**d**‖ = ${w.vector(d, 4)}`, hit.object ? `t = ${w.number(hit.t, 1)}` : `"${say("the ray hits nothing", "il raggio non incontra nulla")}"`];
   },
 };
 

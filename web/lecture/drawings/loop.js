@@ -50,7 +50,7 @@ const loop = {
     html += cells.join("");
     const { r, c } = stepOf(s, Math.min(s.pixel, columnsOf(s) * V - 1));
     html += rectangle(x0 + k * c, y0 - k * (r + 1), k, k, "picked") + label([x0 + k * (c + 0.5), y0 + 22], `c = ${c}`, "name", "middle") + label([x0 - 8, y0 - k * (r + 0.5) + 5], `r = ${r}`, "name", "end");
-    html += label([x0 + (k * H) / 2, 18], say("the window: rows from below", "la finestra: le righe salgono"), "small", "middle");
+    html += label([x0 + (k * H) / 2, 18], say("the window: rows from below", "la finestra: righe dal basso"), "small", "middle");
     return html + (s.columns === "<=" ? label([584, y0 + 42], say("column hres lies outside the window", "la colonna hres è fuori dalla finestra"), "name", "end") : "");
   },
   numbers(s, w) {
@@ -136,7 +136,7 @@ const samples = {
     const L = points.filter((p) => this.inside(s, p)).length / points.length, grey = (value) => Math.round(255 * value ** (1 / 2.2));
     for (const [y, value, text] of [[80, L, say("the pixel's colour", "colore del pixel")], [230, coverage(s).area, say("exact", "esatto")]])
       html += `<rect x="410" y="${y}" width="110" height="110" fill="rgb(${grey(value)},${grey(value)},${grey(value)})" class="own framed"/>` + label([465, y - 8], text, "", "middle");
-    return html + label([200, 26], say("one pixel; filled: the ray hits the object", "un pixel; pieni: il raggio colpisce l'oggetto"), "small", "middle");
+    return html + label([200, 26], say("one pixel; filled: the ray hits the object", "un pixel; punti pieni: il raggio colpisce l'oggetto"), "small", "middle");
   },
   numbers(s, w) {
     const points = samplePoints(s), k = points.filter((p) => this.inside(s, p)).length, { area } = coverage(s);
@@ -169,7 +169,7 @@ export function runBuild(code, say) {
     const call = text.match(/^(?:\w+->)?(\w+)\((.*)\);$/);
     if (!call || !(call[1] in METHODS)) return fail(call ? say(`no method ${call[1]}`, `nessun metodo ${call[1]}`) : say("not a call of a method; is the semicolon missing?", "non è la chiamata di un metodo; manca il punto e virgola?"));
     const numbers = call[2].split(",").map((word) => Number(word.trim() || NaN)), count = METHODS[call[1]];
-    if (count && (numbers.length !== count || numbers.some(Number.isNaN))) return fail(say(`${call[1]} takes ${count} numbers`, `${call[1]} vuole ${count} numeri`));
+    if (count && (numbers.length !== count || numbers.some(Number.isNaN))) return fail(say(`${call[1]} takes ${count === 1 ? "one number" : `${count} numbers`}`, `${call[1]} richiede ${count === 1 ? "un numero" : `${count} numeri`}`));
     const one = { set_viewdistance: "d", set_zoom: "zoom", set_roll: "roll", set_exposure_time: "exposure" }[call[1]], three = { set_eye: "eye", set_lookat: "lookat", set_up: "up" }[call[1]];
     if (three) p[three] = numbers;
     if (one && one !== "roll" && !(numbers[0] > 0)) return fail(say("the number must be greater than 0", "il numero deve essere maggiore di 0"));
@@ -182,7 +182,7 @@ export function runBuild(code, say) {
     if (call[1] === "set_camera") camera = p;
   }
   if (!camera) return { camera: null, world, error: [lines.length, say("set_camera is missing", "manca set_camera")] };
-  if (!frame) return { camera: null, world, error: [lines.length, say("compute_uvw is missing: there is no u, v, w", "manca compute_uvw: u, v, w non ci sono")] };
+  if (!frame) return { camera: null, world, error: [lines.length, say("compute_uvw is missing: there is no u, v, w", "manca compute_uvw: u, v, w non sono definiti")] };
   return { camera: { ...camera, lookat: add(camera.eye, scale(add(frame.lookat, scale(frame.eye, -1)), 1)), up: frame.up, roll: frame.roll }, world, error: null };
 }
 

@@ -164,7 +164,7 @@ const frustum = {
     html += arrow(P(eye), P([0, 0, -60]), "axis-w") + handle("near", P([0, -t * s.near, -s.near])) + handle("far", P([0, -t * s.far, -s.far]));
     html += label(add2(P(near[3]), [0, -8]), "near", "near-name", "middle") + label(add2(P(far[3]), [0, -8]), "far", "near-name", "middle");
     return html + label(add2(P(eye), [0, 22]), "e", "name", "middle") + `<circle class="dot" cx="${P(eye)[0]}" cy="${P(eye)[1]}" r="5"/>` +
-      label([12, 390], say("solid: seen; dashed: cut away", "continuo: visibile; tratteggiato: tagliato via"), "small");
+      label([12, 390], say("solid: seen; dashed: cut away", "linea continua: visibile; tratteggio: escluso"), "small");
   },
   drag(s, name, step) {
     const view = outsideView(s, [0, 0, -240], 0.62, [310, 210]), along = view.move([0, -Math.tan((s.fov * Math.PI) / 360), -1], step);

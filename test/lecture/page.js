@@ -281,6 +281,7 @@ test("world_build_runs", () => {
   assert.equal(changed("set_eye(300, 400, 500)", "set_eye(300, 400)"), "4: set_eye takes 3 numbers");
   assert.equal(changed("(400)", "()"), "6: set_viewdistance takes one number");
   assert.match(changed(/.*compute_uvw.*\n/, ""), /compute_uvw is missing/);
+  assert.match(changed("set_eye(300, 400, 500)", "set_eye(0, 400, -50)"), /^7: .*parallel to up/);
   assert.match(changed(/.*set_camera.*\n/, ""), /set_camera is missing/);
   assert.match(changed("(400);", "(400)"), /^6: .*semicolon/);
   assert.match(changed("(400)", "(0)"), /greater than 0/);

@@ -2,7 +2,7 @@
 // with its resolution, pixel size and samples; the samples of one pixel; World::build, edited and run.
 import { make } from "../../dom.js";
 import { add, scale, unit } from "../../vec.js";
-import { circle, label, line, polygon, rectangle } from "../svg.js";
+import { circle, frameOf, label, line, polygon, rectangle } from "../svg.js";
 import { PINHOLE, WORLD, display, imageAddress, renderScene, traceRay } from "../trace.js";
 
 const image = (frame, address) => `<image x="${frame[0]}" y="${frame[1]}" width="${frame[2]}" height="${frame[3]}" preserveAspectRatio="none" class="pixels" href="${address}"/>`;
@@ -178,6 +178,7 @@ export function runBuild(code, say) {
       if (!(numbers[3] > 0)) return fail(say("the radius must be greater than 0", "il raggio deve essere maggiore di 0"));
       world.push({ centre: numbers.slice(0, 3), radius: numbers[3], color: numbers.slice(4) });
     }
+    if (call[1] === "compute_uvw" && !frameOf(p.eye, p.lookat, p.up)) return fail(say("eye - lookat is 0 or parallel to up: no u, v", "eye − lookat è nullo o parallelo a up: u, v non sono definiti"));
     if (call[1] === "compute_uvw") frame = { eye: p.eye, lookat: p.lookat, up: p.up, roll: p.roll };
     if (call[1] === "set_camera") camera = p;
   }

@@ -38,7 +38,8 @@ static inline vlVec3 vl_normalize(vlVec3 a) {
   float s = l > 0.0f ? 1.0f / __builtin_sqrtf(l) : 0.0f;
   return vl_mul(a, s);
 }
-/* Element i of three arrays. */
+/* Element i of three arrays. Loops that must vectorise index the arrays themselves: gcc does
+ * not vectorise through this. */
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
 }

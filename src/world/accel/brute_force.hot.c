@@ -93,18 +93,12 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 m = vl_cross(vl_sub(vl_lane3(k->ox, k->oy, k->oz, i), center),
-                        vl_lane3(k->dx, k->dy, k->dz, i));
+    vlVec3 m = vl_cross(vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), center),
+                        vl_vec3(k->dx[i], k->dy[i], k->dz[i]));
     k->mx[i] = m.x;
     k->my[i] = m.y;
     k->mz[i] = m.z;
   }
-}
-
-static inline __attribute__((always_inline)) Crossing cross_ray(const Block *k, uint32_t i,
-                                                                Face q) {
-  return cross_face(q, vl_lane3(k->ox, k->oy, k->oz, i), vl_lane3(k->dx, k->dy, k->dz, i),
-                    vl_lane3(k->mx, k->my, k->mz, i));
 }
 
 /* The nearest crossing of each ray with face j, if it is nearer than that so far. */
@@ -113,7 +107,9 @@ static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
   uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    Crossing at = cross_ray(k, i, q);
+    Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]),
+                             vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+                             vl_vec3(k->mx[i], k->my[i], k->mz[i]));
     Crossing near = {k->height[i], k->speed[i]};
     int nearer = is_between(at, k->low[i], near);
     k->height[i] = nearer ? at.height : near.height;
@@ -128,7 +124,9 @@ static void cross_any(Block *k, const vlBruteForce *b, uint32_t j) {
   uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    Crossing at = cross_ray(k, i, q);
+    Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]),
+                             vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+                             vl_vec3(k->mx[i], k->my[i], k->mz[i]));
     Crossing end = {k->height[i], 1.0f};
     k->id[i] = is_between(at, k->low[i], end) ? 0 : k->id[i];
   }
@@ -141,8 +139,8 @@ static void cross_few(Block *k, const vlBruteForce *b, bool any) {
   _Alignas(64) float height[VL_BRUTE_FACES], speed[VL_BRUTE_FACES];
   uint32_t padded = VL_PAD(b->faces);
   for (uint32_t i = 0; i < k->n; i++) {
-    vlVec3 o = vl_lane3(k->ox, k->oy, k->oz, i), d = vl_lane3(k->dx, k->dy, k->dz, i),
-           m = vl_lane3(k->mx, k->my, k->mz, i);
+    vlVec3 o = vl_vec3(k->ox[i], k->oy[i], k->oz[i]), d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           m = vl_vec3(k->mx[i], k->my[i], k->mz[i]);
     /* must vectorise */
     VL_SIMD for (uint32_t j = 0; j < padded; j++) {
       Crossing at = cross(side_of(at3(b->edge[0], j), at3(b->moment[0], j), d, m),
@@ -175,8 +173,8 @@ static void approach(const Block *k, const float sphere[4], int32_t *near) {
   uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_lane3(k->dx, k->dy, k->dz, i),
-           w = vl_sub(c, vl_lane3(k->ox, k->oy, k->oz, i));
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           w = vl_sub(c, vl_vec3(k->ox[i], k->oy[i], k->oz[i]));
     float away = vl_length2(w), radius2 = 1.002f * sphere[3] + 1e-10f * away;
     int meets = vl_length2(vl_cross(w, d)) <= radius2 * vl_length2(d);
     near[i] = meets & ((vl_dot(w, d) >= 0.0f) | (away <= radius2));
@@ -186,9 +184,9 @@ static void approach(const Block *k, const float sphere[4], int32_t *near) {
 /* Whether ray i, which meets the quadrilateral j, does so in its second triangle. */
 static bool is_second(const Block *k, const vlBruteForce *b, uint32_t j, uint32_t i) {
   const float *e = b->diagonal_edge[j], *m = b->diagonal_moment[j];
-  vlVec3 d = vl_lane3(k->dx, k->dy, k->dz, i);
+  vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
   float side = side_of(vl_vec3(e[0], e[1], e[2]), vl_vec3(m[0], m[1], m[2]), d,
-                       vl_lane3(k->mx, k->my, k->mz, i));
+                       vl_vec3(k->mx[i], k->my[i], k->mz[i]));
   float facing = vl_dot(at3(b->normal, j), d);
   return facing < 0.0f ? side < 0.0f : side > 0.0f;
 }

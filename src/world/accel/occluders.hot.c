@@ -38,8 +38,8 @@ static void load(Block *k, const vlOccluders *o, const vlRays *r, uint32_t first
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_lane3(k->dx, k->dy, k->dz, i),
-           from = vl_sub(vl_lane3(k->ox, k->oy, k->oz, i), center);
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           from = vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), center);
     k->steep[i] = STEEP * __builtin_sqrtf(vl_length2(d));
     k->high[i] = vl_length2(from) < reach2 ? k->high[i] : -1.0f;
     k->blocked[i] = 0;
@@ -57,8 +57,8 @@ static void test_face(Block *k, const vlOccluder *f, float clear) {
   uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_lane3(k->dx, k->dy, k->dz, i),
-           from = vl_sub(vl_lane3(k->ox, k->oy, k->oz, i), corner);
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           from = vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), corner);
     vlVec3 q = vl_cross(from, d);
     float facing = vl_dot(normal, d), sign = facing < 0.0f ? -1.0f : 1.0f,
           speed = sign * facing;

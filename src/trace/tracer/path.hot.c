@@ -203,6 +203,9 @@ static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE, u.u0);
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV,
                      u.u1, u.u2);
+  /* runs are padded to whole lanes */
+  for (uint32_t i = n; i < n + VL_LANES && i < VL_ROW_SIZE; i++)
+    u.u0[i] = u.u1[i] = u.u2[i] = 0.0f;
   for (uint32_t first = 0; first < n;) {
     Run r = next_kind(t->world, &at->hits, first, n);
     vlBsdfParams params = params_of(t->world, at, first);

@@ -37,7 +37,9 @@ static float number(void) {
 }
 static void direction(Arrays *a, int first, uint32_t i) {
   float z = 2 * number() - 1, phi = 6.2831853f * number(), r = sqrtf(1 - z * z);
-  a->in[first][i] = r * cosf(phi), a->in[first + 1][i] = r * sinf(phi), a->in[first + 2][i] = z;
+  a->in[first][i] = r * cosf(phi);
+  a->in[first + 1][i] = r * sinf(phi);
+  a->in[first + 2][i] = z;
 }
 
 /* One pass of lanes [first, first + n). what: 1 evaluation, 2 sample */
@@ -97,8 +99,10 @@ int main(int argc, char **argv) {
   for (uint32_t i = 0; i < n; i++) {
     for (int j = 0; j < 24; j++)
       a->in[j][i] = number();
-    for (int c = 0; c < 4; c++)
-      a->in[4 + c][i] += 0.2f, a->in[8 + c][i] *= 5;
+    for (int c = 0; c < 4; c++) {
+      a->in[4 + c][i] += 0.2f;
+      a->in[8 + c][i] *= 5;
+    }
     a->in[12][i] = a->in[13][i] = 0.1f;
     a->in[14][i] = 1.5f;
     a->coat[i] = coat;

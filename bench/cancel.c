@@ -79,8 +79,10 @@ static bool measure(vlContext *context, const char *path) {
     pthread_join(thread, NULL);
     vl_cancel_clear(w.cancel);
     late[k] = w.end > asked ? w.end - asked : 0;
-    if (late[k] > worst)
-      worst = late[k], worst_at = wait;
+    if (late[k] > worst) {
+      worst = late[k];
+      worst_at = wait;
+    }
   }
   vl_cancel_destroy(w.cancel);
   if (w.failed)
@@ -96,8 +98,10 @@ static bool measure(vlContext *context, const char *path) {
 
 int main(int argc, char **argv) {
   vlContext *context = NULL;
-  if (argc < 2)
-    return fprintf(stderr, "usage: bench_cancel SCENE ...\n"), 2;
+  if (argc < 2) {
+    fprintf(stderr, "usage: bench_cancel SCENE ...\n");
+    return 2;
+  }
   if (vl_context_create(NULL, &context) != VL_OK)
     return 1;
   bool fine = true;

@@ -93,7 +93,7 @@ static Error compare(const vlImage *a, const vlImage *reference, bool pair) {
   int from[3], to[3];
   static const char *const names[3] = {"R", "G", "B"};
   for (int c = 0; c < 3; c++) {
-    from[c] = vl_image_find_channel(a, names[c]),
+    from[c] = vl_image_find_channel(a, names[c]);
     to[c] = vl_image_find_channel(reference, names[c]);
     if (from[c] < 0 || to[c] < 0)
       fail("an image lacks R, G or B", "");
@@ -113,8 +113,10 @@ static Error compare(const vlImage *a, const vlImage *reference, bool pair) {
         worst[i] += (p - q) * (p - q) / ((base * base + 0.01) * (pair ? 6 : 3));
     }
   qsort(worst, pixels, sizeof *worst, descending);
-  for (size_t i = 0; i < pixels; i++)
-    sum += worst[i], rest += i >= left_out ? worst[i] : 0;
+  for (size_t i = 0; i < pixels; i++) {
+    sum += worst[i];
+    rest += i >= left_out ? worst[i] : 0;
+  }
   free(worst);
   return (Error){{rest / (double)(pixels - left_out), sum / (double)pixels, diff.flip}};
 }
@@ -132,10 +134,13 @@ static void add_words(char **words, int *count, const char *text, const char *im
       const char *part = at[0] == '%' && at[1] == 'o'   ? image
                          : at[0] == '%' && at[1] == 'n' ? name
                                                         : NULL;
-      if (part)
-        n += (size_t)snprintf(whole + n, sizeof whole - n, "%s", part), at++;
-      else
-        whole[n++] = *at, whole[n] = 0;
+      if (part) {
+        n += (size_t)snprintf(whole + n, sizeof whole - n, "%s", part);
+        at++;
+      } else {
+        whole[n++] = *at;
+        whole[n] = 0;
+      }
     }
     if (*count < WORDS - 16)
       words[(*count)++] = strdup(whole);
@@ -162,8 +167,10 @@ static double run(const Bench *b, const Side *side, const Scene *scene, uint32_t
   const char *const fixed[] = {"render", scene->file, "--quiet", "-t", "1", "--seed", text};
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++)
     words[count++] = strdup(fixed[i]);
-  if (scene->size[0])
-    words[count++] = strdup("--resolution"), words[count++] = strdup(scene->size);
+  if (scene->size[0]) {
+    words[count++] = strdup("--resolution");
+    words[count++] = strdup(scene->size);
+  }
   if (!strstr(side->text, "%o"))
     add_words(words, &count, "-o %o", image, scene->name);
   add_words(words, &count, b->both, image, scene->name);
@@ -257,7 +264,8 @@ static void judge(const Bench *b, Scene *scene) {
       x[i] = log((m == 2 ? e * e : e) * b->sides[0].seconds[i] / b->sides[1].seconds[i]);
     }
     double mean = mean_of(x, b->pairs, &half);
-    scene->efficiency[m] = exp(mean), scene->low[m] = exp(mean - half),
+    scene->efficiency[m] = exp(mean);
+    scene->low[m] = exp(mean - half);
     scene->high[m] = exp(mean + half);
   }
 }

@@ -208,12 +208,18 @@ static uint64_t bare_packets(const vlWorld *world, const Chunk *c) {
     for (uint32_t k = 0; k < PACKET; k++) {
       uint32_t i = first + k < c->n ? first + k : c->n - 1;
       valid[k] = first + k < c->n ? -1 : 0;
-      q.ray.org_x[k] = c->ray[0][i], q.ray.org_y[k] = c->ray[1][i],
+      q.ray.org_x[k] = c->ray[0][i];
+      q.ray.org_y[k] = c->ray[1][i];
       q.ray.org_z[k] = c->ray[2][i];
-      q.ray.dir_x[k] = c->ray[3][i], q.ray.dir_y[k] = c->ray[4][i],
+      q.ray.dir_x[k] = c->ray[3][i];
+      q.ray.dir_y[k] = c->ray[4][i];
       q.ray.dir_z[k] = c->ray[5][i];
-      q.ray.tnear[k] = c->ray[6][i], q.ray.tfar[k] = c->ray[7][i];
-      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.flags[k] = 0, q.ray.id[k] = i;
+      q.ray.tnear[k] = c->ray[6][i];
+      q.ray.tfar[k] = c->ray[7][i];
+      q.ray.time[k] = 0;
+      q.ray.mask[k] = (unsigned)-1;
+      q.ray.flags[k] = 0;
+      q.ray.id[k] = i;
       q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     rtcIntersect8(valid, scene CLOSEST(&q));
@@ -229,10 +235,18 @@ static uint64_t bare_single(const vlWorld *world, const Chunk *c) {
   uint64_t sum = 0;
   for (uint32_t i = 0; i < c->n; i++) {
     struct RTCRayHit q;
-    q.ray.org_x = c->ray[0][i], q.ray.org_y = c->ray[1][i], q.ray.org_z = c->ray[2][i];
-    q.ray.dir_x = c->ray[3][i], q.ray.dir_y = c->ray[4][i], q.ray.dir_z = c->ray[5][i];
-    q.ray.tnear = c->ray[6][i], q.ray.tfar = c->ray[7][i];
-    q.ray.time = 0, q.ray.mask = (unsigned)-1, q.ray.id = i, q.ray.flags = 0;
+    q.ray.org_x = c->ray[0][i];
+    q.ray.org_y = c->ray[1][i];
+    q.ray.org_z = c->ray[2][i];
+    q.ray.dir_x = c->ray[3][i];
+    q.ray.dir_y = c->ray[4][i];
+    q.ray.dir_z = c->ray[5][i];
+    q.ray.tnear = c->ray[6][i];
+    q.ray.tfar = c->ray[7][i];
+    q.ray.time = 0;
+    q.ray.mask = (unsigned)-1;
+    q.ray.id = i;
+    q.ray.flags = 0;
     q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     if (c->kind == 2) {
       rtcOccluded1(scene ANY(&q.ray));
@@ -287,7 +301,9 @@ static bool make_scene(vlScene *scene, const char *file, vlError *error) {
     return vl_scene_load(scene, file, NULL, error) == VL_OK;
   build_scene(scene);
   defs->camera = vl_default_camera_def(SIZE, SIZE);
-  defs->camera.eye[0] = 0, defs->camera.eye[1] = 0.5, defs->camera.eye[2] = 16;
+  defs->camera.eye[0] = 0;
+  defs->camera.eye[1] = 0.5;
+  defs->camera.eye[2] = 16;
   memset(defs->camera.lookat, 0, sizeof defs->camera.lookat);
   defs->camera.fov = 0.7;
   defs->film = vl_default_film_def(SIZE, SIZE);

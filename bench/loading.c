@@ -151,8 +151,10 @@ static int by_value(const void *a, const void *b) {
 
 int main(int argc, char **argv) {
   enum { ROUNDS = 5 };
-  if (argc != 2)
-    return fprintf(stderr, "usage: bench_loading FOLDER\n"), 2;
+  if (argc != 2) {
+    fprintf(stderr, "usage: bench_loading FOLDER\n");
+    return 2;
+  }
   double ratio[ROUNDS];
   Result velo = {0}, embree = {0}, bytes;
   for (int i = 0; i < ROUNDS;

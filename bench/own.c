@@ -69,9 +69,11 @@ int main(int count, char **arguments) {
   for (int turn = 0; turn < TURNS * WAYS; turn++) {
     int way = turn % WAYS;
     vlCameraDef def = vl_default_camera_def(WIDTH, HEIGHT);
-    for (int i = 0; i < 3; i++)
-      def.eye[i] = defs->camera.eye[i], def.lookat[i] = defs->camera.lookat[i],
+    for (int i = 0; i < 3; i++) {
+      def.eye[i] = defs->camera.eye[i];
+      def.lookat[i] = defs->camera.lookat[i];
       def.up[i] = defs->camera.up[i];
+    }
     def.has_matrix = defs->camera.has_matrix;
     for (int i = 0; i < 16; i++)
       def.world_from_camera[i] = defs->camera.world_from_camera[i];

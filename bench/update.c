@@ -46,8 +46,9 @@ static void add_sheet(vlScene *scene, vlGroupId group, uint32_t side, float size
     for (uint32_t j = 0; j <= side; j++) {
       uint32_t v = i * (side + 1) + j;
       float x = (float)j / (float)side - 0.5f, z = (float)i / (float)side - 0.5f;
-      p[3 * v] = size * x, p[3 * v + 1] = 0.03f * size * sinf(40 * x) * cosf(33 * z),
-            p[3 * v + 2] = size * z;
+      p[3 * v] = size * x;
+      p[3 * v + 1] = 0.03f * size * sinf(40 * x) * cosf(33 * z);
+      p[3 * v + 2] = size * z;
       if (i == side || j == side)
         continue;
       const uint32_t quad[6] = {v, v + 1, v + side + 1, v + 1, v + side + 2, v + side + 1};
@@ -55,8 +56,10 @@ static void add_sheet(vlScene *scene, vlGroupId group, uint32_t side, float size
       to += 6;
     }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = (uint32_t)vertices, def.faces = (uint32_t)faces;
-  def.positions = p, def.indices = f;
+  def.vertices = (uint32_t)vertices;
+  def.faces = (uint32_t)faces;
+  def.positions = p;
+  def.indices = f;
   def.group = group;
   def.material = (vlMaterialId){1};
   vl_scene_add_shape(scene, &def);
@@ -103,7 +106,8 @@ static vlWorld *time_edits(vlScene *scene, vlWorld *world, const char *name,
     def.previous = world;
     vlWorld *next = NULL;
     check(vl_world_build(scene, &def, &next, &error), &error);
-    t[k] = wall() - start, c[k] = cpu() - used;
+    t[k] = wall() - start;
+    c[k] = cpu() - used;
     vl_world_destroy(world);
     world = next;
   }
@@ -126,7 +130,8 @@ static void change_material(vlScene *scene, int turn) {
 }
 
 static void change_nothing(vlScene *scene, int turn) {
-  (void)scene, (void)turn;
+  (void)scene;
+  (void)turn;
 }
 
 typedef struct Render {

@@ -24,7 +24,8 @@ static void release(void *user, void *block) {
 }
 
 static void print(void *user, vlLogLevel level, const vlError *where, const char *message) {
-  (void)user, (void)where;
+  (void)user;
+  (void)where;
   if (level <= VL_LOG_WARNING) fprintf(stderr, "%s\n", message);
 }
 

@@ -49,7 +49,9 @@ static inline double stat_double(statRng *rng) {
 static inline void stat_direction(statRng *rng, double d[3]) {
   double z = 1.0 - 2.0 * stat_double(rng), phi = 6.283185307179586 * stat_double(rng),
          r = sqrt(fmax(0.0, 1.0 - z * z));
-  d[0] = r * cos(phi), d[1] = r * sin(phi), d[2] = z;
+  d[0] = r * cos(phi);
+  d[1] = r * sin(phi);
+  d[2] = z;
 }
 
 /* ---- the chi-square distribution --------------------------------------------------------- */
@@ -129,8 +131,10 @@ static inline statResult stat_chi2(statCell *cells, size_t count, unsigned const
   double mean = 0; /* of the cells with a positive expectation */
   size_t some = 0;
   for (size_t i = 0; i < count; i++)
-    if (cells[i].expected > 1e-6)
-      mean += cells[i].expected, some++;
+    if (cells[i].expected > 1e-6) {
+      mean += cells[i].expected;
+      some++;
+    }
   mean = some ? mean / (double)some : 0;
   for (size_t i = 0; i < count; i++) {
     if (!(cells[i].expected >= 0.0) || cells[i].expected > 1e300)
@@ -169,12 +173,17 @@ static inline statResult stat_chi2_uniform(const uint32_t *counts, size_t count)
 /* Pearson's correlation of two columns. */
 static inline double stat_correlation(const float *a, const float *b, size_t n) {
   double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-  for (size_t i = 0; i < n; i++)
-    sa += a[i], sb += b[i];
-  sa /= (double)n, sb /= (double)n;
+  for (size_t i = 0; i < n; i++) {
+    sa += a[i];
+    sb += b[i];
+  }
+  sa /= (double)n;
+  sb /= (double)n;
   for (size_t i = 0; i < n; i++) {
     double x = a[i] - sa, y = b[i] - sb;
-    saa += x * x, sbb += y * y, sab += x * y;
+    saa += x * x;
+    sbb += y * y;
+    sab += x * y;
   }
   return saa > 0 && sbb > 0 ? sab / sqrt(saa * sbb) : 0.0;
 }
@@ -224,11 +233,17 @@ typedef struct statGrid {
 static inline statGrid *stat_grid_new(uint32_t nx, uint32_t ny, double x0, double x1, double y0,
                                       double y1) {
   statGrid *g = calloc(1, sizeof *g + sizeof(double) * nx * ny);
-  g->nx = nx, g->ny = ny, g->x0 = x0, g->x1 = x1, g->y0 = y0, g->y1 = y1;
+  g->nx = nx;
+  g->ny = ny;
+  g->x0 = x0;
+  g->x1 = x1;
+  g->y0 = y0;
+  g->y1 = y1;
   return g;
 }
 static inline void stat_grid_reject(statGrid *g) {
-  g->tries++, g->rejected++;
+  g->tries++;
+  g->rejected++;
 }
 static inline void stat_grid_add(statGrid *g, double x, double y) {
   if (!(x >= g->x0 && x <= g->x1 && y >= g->y0 && y <= g->y1)) {
@@ -237,7 +252,8 @@ static inline void stat_grid_add(statGrid *g, double x, double y) {
   }
   uint32_t i = (uint32_t)((x - g->x0) / (g->x1 - g->x0) * g->nx),
            j = (uint32_t)((y - g->y0) / (g->y1 - g->y0) * g->ny);
-  i = i < g->nx ? i : g->nx - 1, j = j < g->ny ? j : g->ny - 1;
+  i = i < g->nx ? i : g->nx - 1;
+  j = j < g->ny ? j : g->ny - 1;
   g->tries++;
   g->counts[(size_t)j * g->nx + i]++;
 }

@@ -59,9 +59,15 @@ static bool set_k(vlCameraDef *def, PyObject *value) {
   double k[9];
   if (!numbers_copy(value, "K", 9, k))
     return false;
-  if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
-    return raise_value("K", value, "[fx skew cx; 0 fy cy; 0 0 1]"), false;
-  def->fx = k[0], def->skew = k[1], def->cx = k[2], def->fy = k[4], def->cy = k[5];
+  if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+    raise_value("K", value, "[fx skew cx; 0 fy cy; 0 0 1]");
+    return false;
+  }
+  def->fx = k[0];
+  def->skew = k[1];
+  def->cx = k[2];
+  def->fy = k[4];
+  def->cy = k[5];
   return true;
 }
 
@@ -89,8 +95,10 @@ static bool set_shutter(vlCameraDef *def, PyObject *value) {
     raise_value("shutter", value, "a list of at most %d pairs of time and opening",
                 VL_SHUTTER_POINTS);
   const double *pairs = n.data;
-  for (size_t i = 0; fine && i < n.shape[0]; i++)
-    def->shutter_at[i] = pairs[2 * i], def->shutter_value[i] = pairs[2 * i + 1];
+  for (size_t i = 0; fine && i < n.shape[0]; i++) {
+    def->shutter_at[i] = pairs[2 * i];
+    def->shutter_value[i] = pairs[2 * i + 1];
+  }
   if (fine)
     def->shutter_points = (uint32_t)n.shape[0];
   numbers_release(&n);
@@ -112,7 +120,8 @@ static bool set_colmap(vlCameraDef *def, PyObject *keep, PyObject *value) {
     fine = done == VL_OK || raise_result(done, &error) != NULL;
     numbers_release(&n);
   }
-  Py_XDECREF(model), Py_XDECREF(parameters);
+  Py_XDECREF(model);
+  Py_XDECREF(parameters);
   return fine;
 }
 
@@ -131,8 +140,10 @@ static int set_special(vlCameraDef *def, PyObject *keep, const char *name, PyObj
     fine = numbers_copy(value, name, 16, other.world_from_camera);
     vlError error = {0};
     vlResult done = fine ? vl_camera_make(&other, &inverse, NULL, &error) : VL_OK;
-    if (done != VL_OK)
-      return raise_result(done, &error), -1;
+    if (done != VL_OK) {
+      raise_result(done, &error);
+      return -1;
+    }
     if (fine)
       memcpy(def->world_from_camera, inverse.camera_from_world,
              sizeof inverse.camera_from_world);
@@ -249,8 +260,10 @@ static PyObject *camera_new(PyObject *module, PyObject *arguments) {
 static PyObject *camera_replace(Camera *self, PyObject *keywords) {
   vlCameraDef def = self->def;
   PyObject *keep = PyList_New(0);
-  if (!keep || (self->keep && !keep_object(keep, self->keep)) || !PyDict_Check(keywords))
-    return Py_XDECREF(keep), NULL;
+  if (!keep || (self->keep && !keep_object(keep, self->keep)) || !PyDict_Check(keywords)) {
+    Py_XDECREF(keep);
+    return NULL;
+  }
   PyObject *result = set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
   Py_XDECREF(keep);
   return result;
@@ -265,7 +278,8 @@ static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made
   if (done != VL_OK)
     return raise_result(done, error);
   vlCameraDef def = self->def;
-  def.width = made->width, def.height = made->height;
+  def.width = made->width;
+  def.height = made->height;
   def.has_matrix = true;
   memcpy(def.world_from_camera, made->world_from_camera, sizeof def.world_from_camera);
   return camera_wrap(&def, made, NULL, self->keep);
@@ -279,8 +293,13 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
 #define UNSET(field) def->field = VL_UNSET;
     FOCAL(UNSET)
 #undef UNSET
-    def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy,
-    def->skew = made->skew;
+    {
+      def->fx = made->fx;
+      def->fy = made->fy;
+      def->cx = made->cx;
+      def->cy = made->cy;
+      def->skew = made->skew;
+    }
   }
   return result;
 }
@@ -291,8 +310,10 @@ static PyObject *camera_resize(Camera *self, PyObject *arguments) {
   if (!PyArg_ParseTuple(arguments, "OO:_resize", &width, &height) ||
       !read_size(width, height, MOST_PIXELS, size))
     return NULL;
-  if (size[0] == self->camera.width && size[1] == self->camera.height)
-    return Py_INCREF((PyObject *)self), (PyObject *)self;
+  if (size[0] == self->camera.width && size[1] == self->camera.height) {
+    Py_INCREF((PyObject *)self);
+    return (PyObject *)self;
+  }
   vlCamera made;
   vlResult done = vl_camera_resize(&self->camera, size[0], size[1], &made);
   return with_pixels(self, done, &made);
@@ -341,7 +362,8 @@ static bool read_rows(PyObject *object, const char *what, size_t columns, Number
   if (n->count % columns == 0 && (n->dimensions == 0 || n->shape[n->dimensions - 1] == columns))
     return true;
   numbers_release(n);
-  return raise_usage("%s: an array of rows of %zu numbers", what, columns), false;
+  raise_usage("%s: an array of rows of %zu numbers", what, columns);
+  return false;
 }
 
 /* _project(points): pixels, z, valid as bytearrays. */
@@ -542,8 +564,10 @@ static PyObject *camera_write(Camera *self, PyObject *arguments) {
                         &dialect, &text, &drop) ||
       !(name = keep_text(keep, text, "name")) ||
       !file_def(&def, keep, dialect, Py_None, drop, drops) ||
-      !(file = keep_path(keep, path, "path")))
-    return Py_XDECREF(keep), NULL;
+      !(file = keep_path(keep, path, "path"))) {
+    Py_XDECREF(keep);
+    return NULL;
+  }
   vlCameraRecord record = {.camera = self->def, .frames = 1};
   if (strlen(name) >= sizeof record.name) {
     Py_DECREF(keep);
@@ -551,8 +575,10 @@ static PyObject *camera_write(Camera *self, PyObject *arguments) {
   }
   memcpy(record.name, name, strlen(name));
   Call call;
-  if (!call_begin(&call, context, NULL))
-    return Py_DECREF(keep), NULL;
+  if (!call_begin(&call, context, NULL)) {
+    Py_DECREF(keep);
+    return NULL;
+  }
   vlError error = {0};
   vlResult done = vl_camera_write(context->context, file, &def, &record, &error);
   call_end(&call);

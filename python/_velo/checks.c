@@ -252,8 +252,10 @@ PyObject *unknown_name(PyObject *module, PyObject *arguments) {
 }
 
 const char *keep_text(PyObject *keep, PyObject *value, const char *what) {
-  if (!PyUnicode_Check(value))
-    return raise_value(what, value, "a str"), NULL;
+  if (!PyUnicode_Check(value)) {
+    raise_value(what, value, "a str");
+    return NULL;
+  }
   PyObject *bytes = PyUnicode_AsUTF8String(value);
   const char *text = bytes && keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
   bool whole = text && strlen(text) == (size_t)PyBytes_Size(bytes);
@@ -262,7 +264,8 @@ const char *keep_text(PyObject *keep, PyObject *value, const char *what) {
     return text;
   if (!text && !(PyErr_Occurred() && unfit()))
     return NULL;
-  return raise_value(what, value, "text that UTF-8 can hold, without zeros"), NULL;
+  raise_value(what, value, "text that UTF-8 can hold, without zeros");
+  return NULL;
 }
 
 bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *what,
@@ -284,9 +287,12 @@ Py_ssize_t sequence_size(PyObject *value, const char *what, Py_ssize_t low, Py_s
     return size;
   if (sequence && size < 0 && !unfit())
     return -1;
-  if (low == high)
-    return raise_value(what, value, "a list of %zd items", low), -1;
-  return raise_value(what, value, "a list of %zd to %zd items", low, high), -1;
+  if (low == high) {
+    raise_value(what, value, "a list of %zd items", low);
+    return -1;
+  }
+  raise_value(what, value, "a list of %zd to %zd items", low, high);
+  return -1;
 }
 
 const char *keep_path(PyObject *keep, PyObject *value, const char *what) {
@@ -298,8 +304,10 @@ const char *keep_path(PyObject *keep, PyObject *value, const char *what) {
   }
   const char *text = keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
   Py_XDECREF(bytes);
-  if (text && !*text)
-    return raise_value(what, value, "a path, not empty"), NULL;
+  if (text && !*text) {
+    raise_value(what, value, "a path, not empty");
+    return NULL;
+  }
   return text;
 }
 
@@ -308,8 +316,10 @@ bool check_memory(const Context *context, uint64_t bytes, const char *what) {
     return false;
   const char *who;
   uint64_t held = vl_context_memory(context->context, NULL), most = vl_memory_limit(&who);
-  if (context->max_memory && context->max_memory < most)
-    most = context->max_memory, who = "max_memory allows";
+  if (context->max_memory && context->max_memory < most) {
+    most = context->max_memory;
+    who = "max_memory allows";
+  }
   if (held + bytes <= most)
     return true;
   char text[256];

@@ -64,8 +64,10 @@ bool context_is_ours(const Context *context) {
 }
 
 bool context_check(const Context *context) {
-  if (!context || !context->context)
-    return raise_usage("the context is closed"), false;
+  if (!context || !context->context) {
+    raise_usage("the context is closed");
+    return false;
+  }
   if (context->pid != (long)getpid()) {
     PyObject *error = call_package("fork_error", "()");
     if (error)
@@ -80,8 +82,10 @@ bool call_begin(Call *call, const Context *context, bool *busy) {
   *call = (Call){0};
   if (!context_check(context))
     return false;
-  if (busy && *busy)
-    return raise_usage("another thread is using this object"), false;
+  if (busy && *busy) {
+    raise_usage("another thread is using this object");
+    return false;
+  }
   if (busy)
     *busy = true;
   call->busy = busy;

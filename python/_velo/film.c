@@ -27,12 +27,14 @@ static void film_dealloc(Film *self) {
 
 /* False with an exception: closed, or a render adds to it. */
 static bool readable(Film *self) {
-  if (!self->film)
-    return raise_usage("the film is closed"), false;
-  if (self->busy && open_film != self)
-    return raise_usage(
-               "a render is adding to the film: read it after a pass (progress.pass_done)"),
-           false;
+  if (!self->film) {
+    raise_usage("the film is closed");
+    return false;
+  }
+  if (self->busy && open_film != self) {
+    raise_usage("a render is adding to the film: read it after a pass (progress.pass_done)");
+    return false;
+  }
   return true;
 }
 
@@ -96,8 +98,10 @@ static PyObject *film_write(Film *self, PyObject *path) {
   const char *file = keep ? keep_path(keep, path, "path") : NULL;
   Call call;
   bool own = !self->busy;
-  if (!file || !readable(self) || !call_begin(&call, self->context, own ? &self->busy : NULL))
-    return Py_XDECREF(keep), NULL;
+  if (!file || !readable(self) || !call_begin(&call, self->context, own ? &self->busy : NULL)) {
+    Py_XDECREF(keep);
+    return NULL;
+  }
   vlError error = {0};
   vlResult done = vl_film_write(self->film, NULL, file, &error);
   call_end(&call);

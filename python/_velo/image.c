@@ -23,8 +23,10 @@ static void image_dealloc(Image *self) {
 }
 
 static vlImage *open_image(Image *self) {
-  if (!self->image)
-    return raise_usage("the image is closed"), NULL;
+  if (!self->image) {
+    raise_usage("the image is closed");
+    return NULL;
+  }
   return self->image;
 }
 
@@ -231,27 +233,38 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
   PyObject *images, *path, *keywords, *keep = PyList_New(0);
   const vlImage *list[64];
   if (!keep || !PyArg_ParseTuple(arguments, "O!OO!:image_write", &PyList_Type, &images, &path,
-                                 &PyDict_Type, &keywords))
-    return Py_XDECREF(keep), NULL;
+                                 &PyDict_Type, &keywords)) {
+    Py_XDECREF(keep);
+    return NULL;
+  }
   vlWriteDef def = vl_default_write_def();
   const Target target = {(char *)&def, keep, NULL, false};
   const char *file = keep_path(keep, path, "path");
   Py_ssize_t count = PyList_Size(images);
-  if (!file || !set_parameters(&target, VL_SETTING_WRITE, "option of an image file", keywords))
-    return Py_DECREF(keep), NULL;
-  if (count < 1 || count > 64)
-    return Py_DECREF(keep), raise_usage("1 to 64 images");
+  if (!file ||
+      !set_parameters(&target, VL_SETTING_WRITE, "option of an image file", keywords)) {
+    Py_DECREF(keep);
+    return NULL;
+  }
+  if (count < 1 || count > 64) {
+    Py_DECREF(keep);
+    return raise_usage("1 to 64 images");
+  }
   Context *context = NULL;
   for (Py_ssize_t i = 0; i < count; i++) {
     PyObject *item = PyList_GetItem(images, i);
-    if (!is_object(item, TYPE_IMAGE) || !open_image((Image *)item))
-      return Py_DECREF(keep), PyErr_Occurred() ? NULL : raise_usage("expected an Image");
+    if (!is_object(item, TYPE_IMAGE) || !open_image((Image *)item)) {
+      Py_DECREF(keep);
+      return PyErr_Occurred() ? NULL : raise_usage("expected an Image");
+    }
     list[i] = ((Image *)item)->image;
     context = ((Image *)item)->context;
   }
   Call call;
-  if (!call_begin(&call, context, NULL))
-    return Py_DECREF(keep), NULL;
+  if (!call_begin(&call, context, NULL)) {
+    Py_DECREF(keep);
+    return NULL;
+  }
   vlError error = {0};
   vlResult done = count == 1 ? vl_image_write(list[0], file, &def, &error)
                              : vl_image_write_layers(list, (uint32_t)count, file, &def, &error);

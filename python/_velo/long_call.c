@@ -113,8 +113,10 @@ static void wait(Waiting *w) {
   struct timespec until;
   clock_gettime(CLOCK_MONOTONIC, &until);
   until.tv_nsec += POLL;
-  if (until.tv_nsec >= 1000000000L)
-    until.tv_nsec -= 1000000000L, until.tv_sec++;
+  if (until.tv_nsec >= 1000000000L) {
+    until.tv_nsec -= 1000000000L;
+    until.tv_sec++;
+  }
   sem_clockwait(&w->wake, CLOCK_MONOTONIC, &until);
 }
 
@@ -160,8 +162,10 @@ bool long_call_fail(const Own *own, PyObject *error) {
     for (size_t i = 0; i < sizeof w->call->own / sizeof *w->call->own; i++) {
       if (w->call->own[i] != own)
         continue;
-      if (!w->call->error)
-        Py_INCREF(error), w->call->error = error;
+      if (!w->call->error) {
+        Py_INCREF(error);
+        w->call->error = error;
+      }
       vl_cancel_request(w->call->cancel);
       any = true;
       break;
@@ -175,8 +179,10 @@ bool long_call_begin(LongCall *call, const Context *context, PyObject *callback)
   *call = (LongCall){.callback = callback == Py_None ? NULL : callback};
   if (!context_check(context))
     return false;
-  if (call->callback && !PyCallable_Check(call->callback))
-    return raise_value("progress", callback, "callable, or None"), false;
+  if (call->callback && !PyCallable_Check(call->callback)) {
+    raise_value("progress", callback, "callable, or None");
+    return false;
+  }
   call->context = context;
   vlResult result = vl_cancel_create(context->context, &call->cancel);
   if (result != VL_OK)
@@ -203,16 +209,22 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   Call call;
   *result = VL_ERROR_MEMORY;
   c->waiting = &w;
-  if (running_pid != (long)getpid())
-    running = NULL, running_pid = (long)getpid();
+  if (running_pid != (long)getpid()) {
+    running = NULL;
+    running_pid = (long)getpid();
+  }
   if (shutting_down)
     wait_for_the_end();
-  if (shutting_down)
-    return raise_usage("the interpreter is shutting down"), false;
+  if (shutting_down) {
+    raise_usage("the interpreter is shutting down");
+    return false;
+  }
   w.next = running;
   running = &w;
-  if (!call_begin(&call, c->context, busy))
-    return forget(&w), false;
+  if (!call_begin(&call, c->context, busy)) {
+    forget(&w);
+    return false;
+  }
   sem_init(&w.wake, 0, 0);
   sem_init(&w.answered, 0, 0);
   bool started = start(&thread, &w);
@@ -247,7 +259,8 @@ void long_call_end(LongCall *call) {
 
 /* A callback that does not return is not waited for longer than this. */
 PyObject *shut_down(PyObject *module, PyObject *unused) {
-  (void)module, (void)unused;
+  (void)module;
+  (void)unused;
   const int MOST = 5000; /* ms */
   shutter = pthread_self();
   shutting_down = true;

@@ -45,7 +45,8 @@ static PyObject *set_type(PyObject *module, PyObject *arguments) {
 }
 
 static PyObject *version(PyObject *module, PyObject *unused) {
-  (void)module, (void)unused;
+  (void)module;
+  (void)unused;
   return PyUnicode_FromString(vl_version()->text);
 }
 
@@ -61,15 +62,18 @@ static PyObject *texts(const char *(*name)(uint32_t)) {
 }
 
 static PyObject *spectrum_names(PyObject *module, PyObject *unused) {
-  (void)module, (void)unused;
+  (void)module;
+  (void)unused;
   return texts(vl_spectrum_name);
 }
 static PyObject *sensor_names(PyObject *module, PyObject *unused) {
-  (void)module, (void)unused;
+  (void)module;
+  (void)unused;
   return texts(vl_sensor_name);
 }
 static PyObject *channel_names(PyObject *module, PyObject *unused) {
-  (void)module, (void)unused;
+  (void)module;
+  (void)unused;
   return texts(vl_channel_name);
 }
 

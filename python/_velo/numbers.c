@@ -17,10 +17,11 @@ static bool store(double value, char type, const char *what, char *result) {
     float single = (float)value;
     memcpy(result, &single, sizeof single);
   } else {
-    if (!(value >= 0 && value <= 4294967295.0) || value != (double)(uint32_t)value)
-      return raise_usage("%s: %.15g is not an index: a whole number from 0 to 4294967295", what,
-                         value),
-             false;
+    if (!(value >= 0 && value <= 4294967295.0) || value != (double)(uint32_t)value) {
+      raise_usage("%s: %.15g is not an index: a whole number from 0 to 4294967295", what,
+                  value);
+      return false;
+    }
     uint32_t whole = (uint32_t)value;
     memcpy(result, &whole, sizeof whole);
   }
@@ -68,11 +69,14 @@ static bool from_buffer(PyObject *object, char type, const char *what, Numbers *
   if (PyObject_GetBuffer(object, &n->view, PyBUF_FULL_RO) < 0) {
     PyErr_Clear();
     n->view.obj = NULL;
-    return raise_usage("%s: the buffer cannot be read", what), false;
+    raise_usage("%s: the buffer cannot be read", what);
+    return false;
   }
   char format = plain_format(&n->view);
-  if (n->view.ndim > 4)
-    return raise_usage("%s has more than four dimensions", what), false;
+  if (n->view.ndim > 4) {
+    raise_usage("%s has more than four dimensions", what);
+    return false;
+  }
   n->dimensions = n->view.ndim;
   n->count = 1;
   for (int i = 0; i < n->view.ndim; i++) {
@@ -122,31 +126,44 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
     int read = to_double(object, &value);
     if (read < 0)
       return false;
-    if (!read)
-      return raise_value(what, object, "numbers"), false;
-    if (depth != n->dimensions && g->count)
-      return raise_usage("%s: its rows differ in length", what), false;
+    if (!read) {
+      raise_value(what, object, "numbers");
+      return false;
+    }
+    if (depth != n->dimensions && g->count) {
+      raise_usage("%s: its rows differ in length", what);
+      return false;
+    }
     n->dimensions = depth;
-    if (g->count == MOST_LISTED)
-      return raise_usage("%s: more than %d numbers: give an array", what, MOST_LISTED), false;
+    if (g->count == MOST_LISTED) {
+      raise_usage("%s: more than %d numbers: give an array", what, MOST_LISTED);
+      return false;
+    }
     if (g->count == g->room) {
       size_t room = g->room ? 2 * g->room : 64;
       char *more = realloc(g->data, room * size);
-      if (!more)
-        return PyErr_NoMemory(), false;
-      g->data = more, g->room = room;
+      if (!more) {
+        PyErr_NoMemory();
+        return false;
+      }
+      g->data = more;
+      g->room = room;
     }
     return store(value, type, what, g->data + size * g->count++);
   }
-  if (depth >= 4 || !PySequence_Check(object) || PyUnicode_Check(object))
-    return raise_value(what, object, "numbers: an array or nested lists"), false;
+  if (depth >= 4 || !PySequence_Check(object) || PyUnicode_Check(object)) {
+    raise_value(what, object, "numbers: an array or nested lists");
+    return false;
+  }
   Py_ssize_t length = sequence_size(object, what, 0, MOST_LISTED);
   if (length < 0)
     return false;
   if (n->shape[depth] == 0)
     n->shape[depth] = (size_t)length;
-  if (n->shape[depth] != (size_t)length)
-    return raise_usage("%s: its rows differ in length", what), false;
+  if (n->shape[depth] != (size_t)length) {
+    raise_usage("%s: its rows differ in length", what);
+    return false;
+  }
   for (Py_ssize_t i = 0; i < length; i++) {
     PyObject *item = PySequence_GetItem(object, i);
     bool fine = item && flatten(item, type, what, depth + 1, n, g);
@@ -159,8 +176,10 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
 
 bool numbers_read_any(PyObject *object, char type, const char *what, Numbers *n) {
   *n = (Numbers){0};
-  if (PyBytes_Check(object))
-    return raise_value(what, object, "numbers: an array or nested lists"), false;
+  if (PyBytes_Check(object)) {
+    raise_value(what, object, "numbers: an array or nested lists");
+    return false;
+  }
   if (PyObject_CheckBuffer(object)) {
     if (from_buffer(object, type, what, n))
       return true;

@@ -9,8 +9,10 @@
 /* ---- calls ------------------------------------------------------------------------------- */
 
 static PyObject *view_of(const Column *c) {
-  if (!c->data)
-    return Py_INCREF(Py_None), Py_None;
+  if (!c->data) {
+    Py_INCREF(Py_None);
+    return Py_None;
+  }
   return PyMemoryView_FromMemory((char *)(uintptr_t)c->data, (Py_ssize_t)(c->count * c->size),
                                  c->written ? PyBUF_WRITE : PyBUF_READ);
 }
@@ -44,7 +46,8 @@ bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain,
   PyErr_NormalizeException(&type, &value, &trace);
   if (trace)
     PyException_SetTraceback(value, trace);
-  Py_XDECREF(type), Py_XDECREF(trace);
+  Py_XDECREF(type);
+  Py_XDECREF(trace);
   if (!long_call_fail(own, value)) {
     if (own->error)
       Py_XDECREF(value);
@@ -131,8 +134,10 @@ static PyObject *own_new(PyObject *module, PyObject *arguments) {
     self->kind = (vlOwnKind)found;
     Py_INCREF(function);
     self->function = function;
-    if (other != Py_None)
-      Py_INCREF(other), self->pixels = other;
+    if (other != Py_None) {
+      Py_INCREF(other);
+      self->pixels = other;
+    }
     self->camera = (vlOwnCamera){self->name, rays, self->pixels ? pixels : NULL, lens, self};
     self->sampler = (vlOwnSampler){self->name, numbers, self};
     self->tracer = (vlOwnTracer){self->name, own_radiance, self};

@@ -38,8 +38,10 @@ static PyObject *scene_settings(PyObject *module, PyObject *object) {
     return NULL;
   self->defs = *vl_scene_defs(scene->scene);
   self->keep = PyList_New(0);
-  if (!self->keep || !keep_object(self->keep, object))
-    return Py_DECREF((PyObject *)self), NULL;
+  if (!self->keep || !keep_object(self->keep, object)) {
+    Py_DECREF((PyObject *)self);
+    return NULL;
+  }
   return (PyObject *)self;
 }
 
@@ -57,7 +59,8 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
     PyObject *names = PyList_New(0);
     if (names && !append_settings(names, VL_SETTING_RENDER))
       Py_CLEAR(names);
-    return raise_unknown("keyword of render", name, names), NULL;
+    raise_unknown("keyword of render", name, names);
+    return NULL;
   }
   if (strcmp(row->member, "render.tracer") == 0 && is_object(value, TYPE_OWN)) {
     Own *own = own_read(value, VL_OWN_TRACER, "tracer");
@@ -167,14 +170,17 @@ static PyObject *settings_copy(Settings *self, PyObject *unused) {
     return NULL;
   copy->defs = self->defs;
   copy->keep = PyList_New(0);
-  if (!copy->keep || !keep_object(copy->keep, (PyObject *)self))
-    return Py_DECREF((PyObject *)copy), NULL;
+  if (!copy->keep || !keep_object(copy->keep, (PyObject *)self)) {
+    Py_DECREF((PyObject *)copy);
+    return NULL;
+  }
   return (PyObject *)copy;
 }
 
 /* names(): all keywords. */
 static PyObject *settings_names(Settings *self, PyObject *unused) {
-  (void)self, (void)unused;
+  (void)self;
+  (void)unused;
   PyObject *names = PyList_New(0);
   if (names && !append_settings(names, VL_SETTING_RENDER))
     Py_CLEAR(names);
@@ -247,7 +253,7 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   if (!long_call_begin(&call, world->context, callback))
     return NULL;
   call.film = film;
-  call.own[0] = own_of_camera(&camera->camera),
+  call.own[0] = own_of_camera(&camera->camera);
   call.own[1] = own_of_sampler(&settings->defs.render);
   call.own[2] = own_of_tracer(&settings->defs.render);
   Rendering r = {.world = world->world,
@@ -326,13 +332,14 @@ static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None))
     return NULL;
-  call.own[0] = own_of_camera(&camera->camera),
+  call.own[0] = own_of_camera(&camera->camera);
   call.own[1] = own_of_sampler(&settings->defs.render);
   Choosing c = {.world = world->world,
                 .camera = &camera->camera,
                 .film = settings->defs.film,
                 .def = settings->defs.render};
-  c.def.spp = spp, c.def.cancel = call.cancel;
+  c.def.spp = spp;
+  c.def.cancel = call.cancel;
   bool busy = false;
   world->users++;
   vlResult done;
@@ -364,8 +371,10 @@ static vlResult run_channels(void *user) {
 static bool other_camera(PyObject *object, const char *what, const vlCamera **camera) {
   if (object == Py_None)
     return true;
-  if (!is_object(object, TYPE_CAMERA))
-    return raise_value(what, object, "a velo.Camera, or None"), false;
+  if (!is_object(object, TYPE_CAMERA)) {
+    raise_value(what, object, "a velo.Camera, or None");
+    return false;
+  }
   *camera = &((Camera *)object)->camera;
   return true;
 }
@@ -424,8 +433,10 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
   if (!long_call_begin(&call, world->context, Py_None))
     return NULL;
   def->cancel = call.cancel;
-  call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(def->render);
-  call.own[2] = own_of_camera(def->forward), call.own[3] = own_of_camera(def->backward);
+  call.own[0] = own_of_camera(&camera->camera);
+  call.own[1] = own_of_sampler(def->render);
+  call.own[2] = own_of_camera(def->forward);
+  call.own[3] = own_of_camera(def->backward);
   world->users++;
   vlResult done;
   bool fine = long_call_run(&call, film == Py_None ? NULL : &((Film *)film)->busy, run_channels,
@@ -524,11 +535,15 @@ static PyObject *boxes(PyObject *module, PyObject *arguments) {
   memcpy(b.def.crop, settings->defs.film.crop, sizeof b.def.crop);
   const uint64_t pixels =
       (uint64_t)(b.def.crop[2] - b.def.crop[0]) * (b.def.crop[3] - b.def.crop[1]);
-  if (!check_memory(world->context, 8 * pixels, "boxes"))
-    return PyMem_Free(list), NULL;
+  if (!check_memory(world->context, 8 * pixels, "boxes")) {
+    PyMem_Free(list);
+    return NULL;
+  }
   LongCall call;
-  if (!long_call_begin(&call, world->context, Py_None))
-    return PyMem_Free(list), NULL;
+  if (!long_call_begin(&call, world->context, Py_None)) {
+    PyMem_Free(list);
+    return NULL;
+  }
   b.def.cancel = call.cancel;
   call.own[0] = own_of_camera(&camera->camera);
   world->users++;

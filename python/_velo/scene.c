@@ -4,10 +4,14 @@
 #include "module.h"
 
 bool scene_open(const Scene *self) {
-  if (!self->scene)
-    return raise_usage("the scene is closed"), false;
-  if (self->busy)
-    return raise_usage("another thread is using the scene"), false;
+  if (!self->scene) {
+    raise_usage("the scene is closed");
+    return false;
+  }
+  if (self->busy) {
+    raise_usage("another thread is using the scene");
+    return false;
+  }
   return context_check(self->context);
 }
 
@@ -35,8 +39,10 @@ static PyObject *scene_new(PyTypeObject *type, PyObject *arguments, PyObject *ke
   self->context = context;
   self->scene = scene;
   self->keep = PyList_New(0);
-  if (!self->keep)
-    return Py_DECREF((PyObject *)self), NULL;
+  if (!self->keep) {
+    Py_DECREF((PyObject *)self);
+    return NULL;
+  }
   return (PyObject *)self;
 }
 
@@ -106,8 +112,10 @@ static PyObject *scene_complete(Scene *self, PyObject *keywords) {
   Call call;
   if (!keep || !PyDict_Check(keywords) || !scene_open(self) ||
       !set_parameters(&target, VL_SETTING_COMPLETE, "keyword of load", keywords) ||
-      !call_begin(&call, self->context, &self->busy))
-    return Py_XDECREF(keep), NULL;
+      !call_begin(&call, self->context, &self->busy)) {
+    Py_XDECREF(keep);
+    return NULL;
+  }
   vlError error = {0};
   vlResult done = vl_scene_complete(self->scene, &def, &error);
   call_end(&call);
@@ -136,8 +144,12 @@ static PyObject *scene_save(Scene *self, PyObject *arguments) {
   Call call;
   if (!keep || !losses || !PyArg_ParseTuple(arguments, "OO:_save", &path, &flag) ||
       !read_flag(flag, "strict", &strict) || !scene_open(self) ||
-      !(file = keep_path(keep, path, "path")) || !call_begin(&call, self->context, &self->busy))
-    return Py_XDECREF(keep), Py_XDECREF(losses), NULL;
+      !(file = keep_path(keep, path, "path")) ||
+      !call_begin(&call, self->context, &self->busy)) {
+    Py_XDECREF(keep);
+    Py_XDECREF(losses);
+    return NULL;
+  }
   def.strict = strict;
   def.lost = lost;
   def.lost_user = losses;
@@ -183,7 +195,8 @@ static PyObject *scene_set_camera(Scene *self, PyObject *object) {
   vlSceneDefs *defs = vl_scene_defs(self->scene);
   defs->camera = camera->def;
   defs->camera_missing = false;
-  defs->film.width = camera->def.width, defs->film.height = camera->def.height;
+  defs->film.width = camera->def.width;
+  defs->film.height = camera->def.height;
   const uint32_t whole[4] = {0, 0, camera->def.width, camera->def.height};
   memcpy(defs->film.crop, whole, sizeof whole);
   Py_RETURN_NONE;

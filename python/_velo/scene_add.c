@@ -6,8 +6,10 @@
 
 /* The numbers of an array, which live until the call ends; null with an exception. */
 static const Numbers *array(Adding *a, PyObject *value, char type, const char *what) {
-  if (a->array_count == MOST_ARRAYS)
-    return raise_usage("too many arrays"), NULL;
+  if (a->array_count == MOST_ARRAYS) {
+    raise_usage("too many arrays");
+    return NULL;
+  }
   Numbers *n = &a->arrays[a->array_count];
   if (!numbers_read(value, type, what, n))
     return NULL;
@@ -21,10 +23,14 @@ bool read_handle(const Scene *scene, PyObject *value, const char *family, const 
   if (value == Py_None)
     return true;
   const Handle *h = (const Handle *)value;
-  if (!is_object(value, TYPE_HANDLE) || strcmp(h->family, family) != 0)
-    return raise_value(what, value, "one of the scene's %s", family), false;
-  if (h->scene != scene)
-    return raise_usage("%s is part of another scene", what), false;
+  if (!is_object(value, TYPE_HANDLE) || strcmp(h->family, family) != 0) {
+    raise_value(what, value, "one of the scene's %s", family);
+    return false;
+  }
+  if (h->scene != scene) {
+    raise_usage("%s is part of another scene", what);
+    return false;
+  }
   *index = h->index;
   return true;
 }
@@ -34,8 +40,10 @@ static bool handle(const Adding *a, PyObject *value, const char *family, const c
 }
 
 static bool image_of(PyObject *value, const char *what, const vlImage **image) {
-  if (!is_object(value, TYPE_IMAGE) || !((Image *)value)->image)
-    return raise_value(what, value, "a velo.Image that is not closed"), false;
+  if (!is_object(value, TYPE_IMAGE) || !((Image *)value)->image) {
+    raise_value(what, value, "a velo.Image that is not closed");
+    return false;
+  }
   *image = ((Image *)value)->image;
   return true;
 }
@@ -62,11 +70,15 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
   } else if (IS("data")) {
     /* an int would be a number of zeros, a list is one by one */
     PyObject *bytes = PyObject_CheckBuffer(value) ? PyBytes_FromObject(value) : NULL;
-    if (!bytes)
-      return raise_value(name, value, "bytes"), -1;
+    if (!bytes) {
+      raise_value(name, value, "bytes");
+      return -1;
+    }
     fine = keep_object(a->keep, bytes);
-    if (fine)
-      d->data = PyBytes_AsString(bytes), d->data_size = (size_t)PyBytes_Size(bytes);
+    if (fine) {
+      d->data = PyBytes_AsString(bytes);
+      d->data_size = (size_t)PyBytes_Size(bytes);
+    }
     Py_DECREF(bytes);
   } else if (IS("tint")) {
     fine = floats_copy(value, name, 4, d->tint);
@@ -152,13 +164,18 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
     const Numbers *n = array(a, value, 'f', name);
     if (!n)
       return -1;
-    if (n->dimensions != (grids[i].per == 3 ? 4 : 3) || (grids[i].per == 3 && n->shape[3] != 3))
-      return raise_usage("%s: an array of nz x ny x nx%s", name,
-                         grids[i].per == 3 ? " x 3" : ""),
-             -1;
-    if (d->nx > 1 && (d->nx != n->shape[2] || d->ny != n->shape[1] || d->nz != n->shape[0]))
-      return raise_usage("%s: the grids differ in size", name), -1;
-    d->nz = (uint32_t)n->shape[0], d->ny = (uint32_t)n->shape[1], d->nx = (uint32_t)n->shape[2];
+    if (n->dimensions != (grids[i].per == 3 ? 4 : 3) ||
+        (grids[i].per == 3 && n->shape[3] != 3)) {
+      raise_usage("%s: an array of nz x ny x nx%s", name, grids[i].per == 3 ? " x 3" : "");
+      return -1;
+    }
+    if (d->nx > 1 && (d->nx != n->shape[2] || d->ny != n->shape[1] || d->nz != n->shape[0])) {
+      raise_usage("%s: the grids differ in size", name);
+      return -1;
+    }
+    d->nz = (uint32_t)n->shape[0];
+    d->ny = (uint32_t)n->shape[1];
+    d->nx = (uint32_t)n->shape[2];
     memcpy((char *)d + grids[i].offset, &n->data, sizeof n->data);
     return 1;
   }
@@ -228,8 +245,10 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
     size_t per = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
     if (!n)
       return -1;
-    if (n->count % per || n->count / per > 0x7fffffff)
-      return raise_usage("indices: %zu numbers per face", per), -1;
+    if (n->count % per || n->count / per > 0x7fffffff) {
+      raise_usage("indices: %zu numbers per face", per);
+      return -1;
+    }
     d->faces = (uint32_t)(n->count / per);
     d->indices = n->data;
     return 1;
@@ -240,8 +259,10 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
     const Numbers *n = array(a, value, arrays[i].type, name);
     if (!n)
       return -1;
-    if (n->count % arrays[i].per || n->count / arrays[i].per > 0x7fffffff)
-      return raise_usage("%s: %zu numbers per element", name, arrays[i].per), -1;
+    if (n->count % arrays[i].per || n->count / arrays[i].per > 0x7fffffff) {
+      raise_usage("%s: %zu numbers per element", name, arrays[i].per);
+      return -1;
+    }
     memcpy((char *)d + arrays[i].offset, &n->data, sizeof n->data);
     uint32_t count = (uint32_t)(n->count / arrays[i].per);
     if (IS("positions"))
@@ -276,9 +297,10 @@ static bool check_lengths(const vlShapeDef *d, PyObject *keywords) {
       wanted = 2 * (size_t)d->faces;
     size_t got = n.count / pers[i];
     numbers_release(&n);
-    if (got != wanted)
-      return raise_usage("%s: %zu elements are needed, it has %zu", names[i], wanted, got),
-             false;
+    if (got != wanted) {
+      raise_usage("%s: %zu elements are needed, it has %zu", names[i], wanted, got);
+      return false;
+    }
   }
   return true;
 }

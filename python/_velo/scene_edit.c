@@ -8,11 +8,15 @@
 static int family_of(const Scene *self, PyObject *object, uint32_t *index) {
   if (!scene_open(self))
     return -1;
-  if (!is_object(object, TYPE_HANDLE))
-    return raise_value("handle", object, "a velo.Handle of the scene"), -1;
+  if (!is_object(object, TYPE_HANDLE)) {
+    raise_value("handle", object, "a velo.Handle of the scene");
+    return -1;
+  }
   const Handle *h = (const Handle *)object;
-  if (h->scene != self)
-    return raise_usage("the handle is part of another scene"), -1;
+  if (h->scene != self) {
+    raise_usage("the handle is part of another scene");
+    return -1;
+  }
   int family = 0;
   while (strcmp(family_names[family], h->family) != 0)
     family++;
@@ -109,16 +113,22 @@ static PyObject *set_instance(Scene *self, uint32_t index, PyObject *keywords) {
 static void change_kind(Family family, int kind, bool spectrum, Def *def) {
   const Def old = *def;
   default_def(family, kind, spectrum, def);
-  if (family == TEXTURES)
-    def->texture.name = old.texture.name, def->texture.source = old.texture.source;
-  if (family == MATERIALS)
-    def->material.name = old.material.name, def->material.source = old.material.source;
+  if (family == TEXTURES) {
+    def->texture.name = old.texture.name;
+    def->texture.source = old.texture.source;
+  }
+  if (family == MATERIALS) {
+    def->material.name = old.material.name;
+    def->material.source = old.material.source;
+  }
   if (family == EMISSION)
     def->emission.source = old.emission.source;
   if (family == LIGHTS)
     def->light.source = old.light.source;
-  if (family == MEDIA)
-    def->medium.name = old.medium.name, def->medium.source = old.medium.source;
+  if (family == MEDIA) {
+    def->medium.name = old.medium.name;
+    def->medium.source = old.medium.source;
+  }
 }
 
 /* _set(handle, kind or None, keywords) */

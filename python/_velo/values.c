@@ -128,8 +128,10 @@ const vlParameter *find_parameter(const vlParameter *rows, size_t count, const c
   int best = 0;
   for (size_t i = 0; i < count; i++) {
     int fit = fits(&rows[i], name);
-    if (fit > best)
-      best = fit, found = &rows[i];
+    if (fit > best) {
+      best = fit;
+      found = &rows[i];
+    }
   }
   return found;
 }
@@ -186,8 +188,10 @@ static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s
                       .count = (uint32_t)n[0].count,
                       .wavelengths = (const float *)(const void *)data[0],
                       .values = (const float *)(const void *)data[1]};
-    for (int i = 0; i < 2; i++)
-      numbers_release(&n[i]), Py_XDECREF(pairs[i]);
+    for (int i = 0; i < 2; i++) {
+      numbers_release(&n[i]);
+      Py_XDECREF(pairs[i]);
+    }
   } else if (fine && k == VL_SPECTRUM_BLACKBODY) {
     double kelvin = 0;
     fine = read_row(value, what, &positive, &kelvin);
@@ -202,7 +206,10 @@ static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s
     s->space = (vlColorSpace)place;
     s->scale = (float)factor;
   }
-  Py_XDECREF(kind), Py_XDECREF(value), Py_XDECREF(scale), Py_XDECREF(space);
+  Py_XDECREF(kind);
+  Py_XDECREF(value);
+  Py_XDECREF(scale);
+  Py_XDECREF(space);
   return fine;
 }
 
@@ -227,10 +234,10 @@ bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *w
     *s = vl_spectrum_constant((float)number);
     return true;
   }
-  if (!PySequence_Check(value) && !PyObject_CheckBuffer(value))
-    return raise_value(what, value,
-                       "a number, three numbers, a spectrum's name or a velo.Spectrum"),
-           false;
+  if (!PySequence_Check(value) && !PyObject_CheckBuffer(value)) {
+    raise_value(what, value, "a number, three numbers, a spectrum's name or a velo.Spectrum");
+    return false;
+  }
   float rgb[3];
   if (!floats_copy(value, what, 3, rgb))
     return false;
@@ -242,12 +249,15 @@ bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *w
 static uint32_t handle_index(const Scene *scene, PyObject *value, const char *family,
                              const char *what) {
   const Handle *handle = (const Handle *)value;
-  if (strcmp(handle->family, family) != 0)
-    return raise_usage("%s: this is one of the scene's %s, not of its %s", what, handle->family,
-                       family),
-           UINT32_MAX;
-  if (!scene || handle->scene != scene)
-    return raise_usage("%s is part of another scene", what), UINT32_MAX;
+  if (strcmp(handle->family, family) != 0) {
+    raise_usage("%s: this is one of the scene's %s, not of its %s", what, handle->family,
+                family);
+    return UINT32_MAX;
+  }
+  if (!scene || handle->scene != scene) {
+    raise_usage("%s is part of another scene", what);
+    return UINT32_MAX;
+  }
   return handle->index;
 }
 
@@ -275,8 +285,10 @@ static bool set_input(const Target *t, const vlParameter *p, PyObject *value, ch
   int read = to_double(value, &number);
   if (read < 0)
     return false;
-  if (!read)
-    return raise_value(what, value, "a number or a texture"), false;
+  if (!read) {
+    raise_value(what, value, "a number or a texture");
+    return false;
+  }
   if (!read_row(value, what, p, &number))
     return false;
   input->value = (float)number;
@@ -335,8 +347,10 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
     case VL_PARAMETER_TEXTURE: {
       vlTextureId id = {0};
       if (value != Py_None) {
-        if (!is_object(value, TYPE_HANDLE))
-          return raise_value(what, value, "a texture of the scene"), false;
+        if (!is_object(value, TYPE_HANDLE)) {
+          raise_value(what, value, "a texture of the scene");
+          return false;
+        }
         id.index = handle_index(t->scene, value, "textures", what);
         if (id.index == UINT32_MAX)
           return false;
@@ -345,7 +359,8 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
       return true;
     }
     case VL_PARAMETER_BLOCK:
-      return raise_usage("%s cannot be set by a keyword", what), false;
+      raise_usage("%s cannot be set by a keyword", what);
+      return false;
   }
   return false;
 }

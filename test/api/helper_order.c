@@ -27,7 +27,8 @@ static void run_loop(void *user, uint32_t count, vlParallelFn *body, void *loop_
   for (uint32_t i = count; i > 1 && *state > 1; i--) {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     uint32_t k = (uint32_t)(*state >> 33) % i, kept = order[i - 1];
-    order[i - 1] = order[k], order[k] = kept;
+    order[i - 1] = order[k];
+    order[k] = kept;
   }
   for (uint32_t i = 0; i < count; i++)
     body(loop_user, order[i], (uint32_t)(order[i] * 2654435761u >> 16) % WORKERS);
@@ -54,8 +55,10 @@ static bool find_tracer(const char *name, vlTracer *tracer) {
   if (strcmp(name, "-") == 0)
     return true;
   for (uint32_t k = 0; k < tracers->kind_count; k++)
-    if (tracers->rows[k]->name && strcmp(tracers->rows[k]->name, name) == 0)
-      return *tracer = (vlTracer)k, true;
+    if (tracers->rows[k]->name && strcmp(tracers->rows[k]->name, name) == 0) {
+      *tracer = (vlTracer)k;
+      return true;
+    }
   return false;
 }
 
@@ -71,7 +74,8 @@ static vlResult render(vlContext *context, vlScene *scene, char **words, vlError
   if (!find_tracer(words[5], &defs->render.tracer))
     return VL_ERROR_ARGUMENT;
   vlFilmDef def = defs->film;
-  def.width = width, def.height = height;
+  def.width = width;
+  def.height = height;
   memcpy(def.crop, ((uint32_t[]){0, 0, width, height}), sizeof def.crop);
   vlResult result = vl_world_build(scene, &defs->build, &world, error);
   if (result == VL_OK)
@@ -103,7 +107,8 @@ int main(int count, char **words) {
   vlError error = {0};
   vlContextDef def = vl_default_context_def();
   def.threads = WORKERS;
-  def.parallel_for = run_loop, def.parallel_for_user = &state;
+  def.parallel_for = run_loop;
+  def.parallel_for_user = &state;
   vlResult result = vl_context_create(&def, &context);
   if (result != VL_OK)
     return fail("context", result, &error);

@@ -43,8 +43,10 @@ static void set_up(Stage *s, uint32_t threads) {
   memset(s, 0, sizeof *s);
   vlContextDef def = vl_default_context_def();
   def.threads = threads;
-  if (threads == 1)
-    def.parallel_for = run_loop, def.parallel_for_user = &s->runner;
+  if (threads == 1) {
+    def.parallel_for = run_loop;
+    def.parallel_for_user = &s->runner;
+  }
   assert_int_equal(vl_context_create(&def, &s->context), VL_OK);
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(s->context, &scene), VL_OK);

@@ -42,9 +42,11 @@ static void add_sheet(vlScene *scene, vlGroupId group, double y, vlMaterialId ma
     for (uint32_t j = 0; j <= SIDE; j++) {
       uint32_t v = i * (SIDE + 1) + j;
       double x = (double)j / SIDE - 0.5, z = (double)i / SIDE - 0.5;
-      p[3 * v] = (float)x, p[3 * v + 1] = (float)(y + 0.05 * sin(20 * x) * cos(17 * z)),
-            p[3 * v + 2] = (float)z;
-      uv[2 * v] = (float)j / SIDE, uv[2 * v + 1] = (float)i / SIDE;
+      p[3 * v] = (float)x;
+      p[3 * v + 1] = (float)(y + 0.05 * sin(20 * x) * cos(17 * z));
+      p[3 * v + 2] = (float)z;
+      uv[2 * v] = (float)j / SIDE;
+      uv[2 * v + 1] = (float)i / SIDE;
       if (i == SIDE || j == SIDE)
         continue;
       const uint32_t quad[6] = {v, v + 1, v + SIDE + 1, v + 1, v + SIDE + 2, v + SIDE + 1};
@@ -52,8 +54,11 @@ static void add_sheet(vlScene *scene, vlGroupId group, double y, vlMaterialId ma
       to += 6;
     }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = (SIDE + 1) * (SIDE + 1), def.faces = 2 * SIDE * SIDE;
-  def.positions = p, def.uvs = uv, def.indices = f;
+  def.vertices = (SIDE + 1) * (SIDE + 1);
+  def.faces = 2 * SIDE * SIDE;
+  def.positions = p;
+  def.uvs = uv;
+  def.indices = f;
   def.group = group;
   def.material = material;
   def.alpha.texture = alpha;
@@ -90,7 +95,8 @@ static Things make_scene(vlContext *context) {
   t.image = vl_scene_add_texture(t.scene, &texture);
   vlTextureDef mask = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
   mask.su = mask.sv = 9;
-  mask.float_a = vl_float_input(1), mask.float_b = vl_float_input(0.4f);
+  mask.float_a = vl_float_input(1);
+  mask.float_b = vl_float_input(0.4f);
   t.mask = vl_scene_add_texture(t.scene, &mask);
   vlMaterialDef paint = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
   paint.reflectance.texture = t.image;
@@ -99,7 +105,9 @@ static Things make_scene(vlContext *context) {
   vlGroupId group = vl_scene_add_group(t.scene, "kites");
   add_sheet(t.scene, group, 0, t.paint, t.mask);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  ball.radius = 0.1f, ball.z_min = -0.1f, ball.z_max = 0.1f;
+  ball.radius = 0.1f;
+  ball.z_min = -0.1f;
+  ball.z_max = 0.1f;
   ball.group = group;
   t.first = vl_scene_add_shape(t.scene, &ball);
   for (int i = 0; i < 3; i++) {
@@ -366,11 +374,14 @@ static void media_change(void **state) {
   Things t = make_scene(context);
   vlError error;
   vlMediumDef fog = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-  fog.sigma_s = vl_spectrum_constant(2), fog.sigma_a = vl_spectrum_constant(0.5f);
+  fog.sigma_s = vl_spectrum_constant(2);
+  fog.sigma_a = vl_spectrum_constant(0.5f);
   vlMediumId id = vl_scene_add_medium(t.scene, &fog);
   vlMaterialDef surface = vl_default_material_def(VL_MATERIAL_INTERFACE);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  ball.radius = 1, ball.z_min = -1, ball.z_max = 1;
+  ball.radius = 1;
+  ball.z_min = -1;
+  ball.z_max = 1;
   ball.material = vl_scene_add_material(t.scene, &surface);
   ball.inside = id;
   assert_true(vl_scene_add_shape(t.scene, &ball).index > 0);
@@ -383,7 +394,8 @@ static void media_change(void **state) {
   assert_memory_not_equal(a, b, sizeof a);
   const float density[8] = {1, 4, 0, 2, 3, 1, 5, 0};
   fog = vl_default_medium_def(VL_MEDIUM_GRID);
-  fog.nx = fog.ny = fog.nz = 2, fog.density = density;
+  fog.nx = fog.ny = fog.nz = 2;
+  fog.density = density;
   assert_int_equal(vl_scene_set_medium(t.scene, id, &fog, &error), VL_OK);
   vlWorld *three = compare(context, t.scene, two, a);
   assert_memory_not_equal(a, b, sizeof a);

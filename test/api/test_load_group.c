@@ -81,8 +81,12 @@ static void test_same_geometry(void **state) {
   vlImage *images[2] = {NULL, NULL};
   vlCameraDef def = vl_default_camera_def(48, 36);
   def.fov = 0.8;
-  def.eye[0] = 1, def.eye[1] = 0.8, def.eye[2] = 4;
-  def.lookat[0] = 0.8, def.lookat[1] = 0.8, def.lookat[2] = 0;
+  def.eye[0] = 1;
+  def.eye[1] = 0.8;
+  def.eye[2] = 4;
+  def.lookat[0] = 0.8;
+  def.lookat[1] = 0.8;
+  def.lookat[2] = 0;
   vlCamera camera;
   assert_int_equal(vl_camera_make(&def, &camera, NULL, NULL), VL_OK);
   for (int i = 0; i < 2; i++) {
@@ -103,8 +107,10 @@ static void test_same_geometry(void **state) {
     hits += i % 4 == 0 && a[i] < 100;
   }
   assert_true(hits > 100);
-  for (int i = 0; i < 2; i++)
-    vl_image_destroy(images[i]), vl_scene_destroy(scenes[i]);
+  for (int i = 0; i < 2; i++) {
+    vl_image_destroy(images[i]);
+    vl_scene_destroy(scenes[i]);
+  }
   remove(path);
   vl_context_destroy(context);
 }

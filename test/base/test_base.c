@@ -381,7 +381,8 @@ static void names_of_files_are_short(void **state) {
   memset(argument, 'x', sizeof argument);
   argument[200] = 0;
   assert_string_equal(vl_argument_text(argument).text, argument);
-  argument[200] = 'x', argument[201] = 0;
+  argument[200] = 'x';
+  argument[201] = 0;
   snprintf(shown, sizeof shown, "%.200s\u2026", argument);
   assert_string_equal(vl_argument_text(argument).text, shown);
   for (int i = 0; i < 100; i++)

@@ -163,7 +163,8 @@ typedef struct Side {
 } Side;
 
 static void meet(void *user, uint32_t index, uint32_t worker) {
-  (void)index, (void)worker;
+  (void)index;
+  (void)worker;
   Side *side = user;
   atomic_store(&side->meeting->here[side->index], 1);
   while (!atomic_load(&side->meeting->here[1 - side->index]))
@@ -202,13 +203,15 @@ typedef struct Race {
 } Race;
 
 static void low_task(void *user, uint32_t index, uint32_t worker) {
-  (void)index, (void)worker;
+  (void)index;
+  (void)worker;
   atomic_fetch_add(&((Race *)user)->low, 1);
   nanosleep(&(struct timespec){0, 1000000}, NULL);
 }
 
 static void high_task(void *user, uint32_t index, uint32_t worker) {
-  (void)index, (void)worker;
+  (void)index;
+  (void)worker;
   Race *race = user;
   if (atomic_fetch_add(&race->high, 1) == 0)
     race->low_before = atomic_load(&race->low);

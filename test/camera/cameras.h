@@ -33,7 +33,9 @@ static inline double next_between(uint64_t *state, double low, double high) {
 }
 
 static inline void set3(double v[3], double x, double y, double z) {
-  v[0] = x, v[1] = y, v[2] = z;
+  v[0] = x;
+  v[1] = y;
+  v[2] = z;
 }
 
 static inline vlCamera make_or_fail(const vlCameraDef *def) {
@@ -65,7 +67,11 @@ static inline vlCamera camera_of(int index) {
   switch (index) {
     case 1:
       def = vl_default_camera_def(641, 479);
-      def.fx = 812.5, def.fy = 790.25, def.skew = 1.75, def.cx = 300.125, def.cy = 250.5;
+      def.fx = 812.5;
+      def.fy = 790.25;
+      def.skew = 1.75;
+      def.cx = 300.125;
+      def.cy = 250.5;
       set3(def.eye, -1000, 2000, 500);
       set3(def.lookat, 0, -100, 0);
       def.roll = RADIANS(33);
@@ -76,26 +82,33 @@ static inline vlCamera camera_of(int index) {
       def = vl_default_camera_def(320, 200);
       def.has_matrix = true;
       memcpy(def.world_from_camera, m, sizeof m);
-      def.fov = RADIANS(60), def.fov_axis = VL_FOV_HORIZONTAL;
+      def.fov = RADIANS(60);
+      def.fov_axis = VL_FOV_HORIZONTAL;
       break;
     }
     case 3:
       def = vl_default_camera_def(200, 300);
       def.projection = VL_PROJECTION_ORTHOGRAPHIC;
-      def.pixel_size = 0.25, def.zoom = 2;
+      def.pixel_size = 0.25;
+      def.zoom = 2;
       set3(def.eye, 10, 20, 30);
       set3(def.lookat, 1, 2, 3);
       break;
     case 4:
       def = vl_default_camera_def(300, 200);
       def.projection = VL_PROJECTION_ORTHOGRAPHIC;
-      def.screen_min_x = -1, def.screen_max_x = 5, def.screen_min_y = -2, def.screen_max_y = 2;
+      def.screen_min_x = -1;
+      def.screen_max_x = 5;
+      def.screen_min_y = -2;
+      def.screen_max_y = 2;
       def.roll = RADIANS(-10);
       break;
     case 5:
       def = vl_default_camera_def(7680, 4320);
       def.fov = RADIANS(20);
-      def.screen_min_x = -1.5, def.screen_max_x = 1.9, def.screen_min_y = -0.8,
+      def.screen_min_x = -1.5;
+      def.screen_max_x = 1.9;
+      def.screen_min_y = -0.8;
       def.screen_max_y = 1.1;
       set3(def.eye, 0.1, 0.2, 0.3);
       set3(def.lookat, -3, 0.25, 1);

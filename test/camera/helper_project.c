@@ -17,7 +17,10 @@ int main(void) {
   while (fread(h, sizeof h, 1, stdin) == 1) {
     bool fisheye = h[0] != 0.0;
     vlCameraDef def = vl_default_camera_def((uint32_t)h[1], (uint32_t)h[2]);
-    def.fx = h[3], def.fy = h[4], def.cx = h[5], def.cy = h[6];
+    def.fx = h[3];
+    def.fy = h[4];
+    def.cx = h[5];
+    def.cy = h[6];
     if (fisheye)
       def.projection = VL_PROJECTION_EQUIDISTANT;
     def.distortion = fisheye ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
@@ -39,14 +42,22 @@ int main(void) {
         fread(points, 3 * sizeof *points, n, stdin) != n)
       return 1;
     vl_camera_project_batch(&camera, n, points, pixels, z, valid);
-    out[0] = camera.outside, out[1] = camera.distortion.radius;
+    out[0] = camera.outside;
+    out[1] = camera.distortion.radius;
     for (size_t i = 0; i < n; i++) {
       double *o = out + 2 + 4 * i;
-      o[0] = pixels[2 * i], o[1] = pixels[2 * i + 1], o[2] = z[i], o[3] = valid[i];
+      o[0] = pixels[2 * i];
+      o[1] = pixels[2 * i + 1];
+      o[2] = z[i];
+      o[3] = valid[i];
     }
     if (fwrite(out, sizeof *out, 4 * n + 2, stdout) != 4 * n + 2)
       return 1;
-    free(points), free(out), free(pixels), free(z), free(valid);
+    free(points);
+    free(out);
+    free(pixels);
+    free(z);
+    free(valid);
   }
   return 0;
 }

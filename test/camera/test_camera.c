@@ -83,13 +83,21 @@ static void ways_in_agree(void **state) {
   way[n++].fx = f;
   way[n++].fy = f;
   way[n++].view_distance = f;
-  way[n].view_distance = 5, way[n].zoom = 2, way[n++].pixel_size = 0.02;
-  way[n].focal_mm = 36 * f / w, way[n++].sensor_width_mm = 36;
-  way[n].fov = 2 * atan(h / 2 / f), way[n++].fov_axis = VL_FOV_VERTICAL;
-  way[n].fov = 2 * atan(w / 2 / f), way[n++].fov_axis = VL_FOV_HORIZONTAL;
-  way[n].fov = 2 * atan(sqrt(w * w + h * h) / 2 / f), way[n++].fov_axis = VL_FOV_DIAGONAL;
-  way[n].fov = 2 * atan(h / 2 / f), way[n++].fov_axis = VL_FOV_SMALLER;
-  way[n].fov = 2 * atan(w / 2 / f), way[n++].fov_axis = VL_FOV_LARGER;
+  way[n].view_distance = 5;
+  way[n].zoom = 2;
+  way[n++].pixel_size = 0.02;
+  way[n].focal_mm = 36 * f / w;
+  way[n++].sensor_width_mm = 36;
+  way[n].fov = 2 * atan(h / 2 / f);
+  way[n++].fov_axis = VL_FOV_VERTICAL;
+  way[n].fov = 2 * atan(w / 2 / f);
+  way[n++].fov_axis = VL_FOV_HORIZONTAL;
+  way[n].fov = 2 * atan(sqrt(w * w + h * h) / 2 / f);
+  way[n++].fov_axis = VL_FOV_DIAGONAL;
+  way[n].fov = 2 * atan(h / 2 / f);
+  way[n++].fov_axis = VL_FOV_SMALLER;
+  way[n].fov = 2 * atan(w / 2 / f);
+  way[n++].fov_axis = VL_FOV_LARGER;
   assert_int_equal(n, 10);
   vlCameraDef all = way[5];
   for (int i = 0; i < n; i++) {
@@ -101,10 +109,15 @@ static void ways_in_agree(void **state) {
         all.fx = f;
       if (i == 1)
         all.fy = f;
-      if (i == 3)
-        all.view_distance = 5, all.zoom = 2, all.pixel_size = 0.02;
-      if (i == 4)
-        all.focal_mm = way[4].focal_mm, all.sensor_width_mm = 36;
+      if (i == 3) {
+        all.view_distance = 5;
+        all.zoom = 2;
+        all.pixel_size = 0.02;
+      }
+      if (i == 4) {
+        all.focal_mm = way[4].focal_mm;
+        all.sensor_width_mm = 36;
+      }
     }
   }
   /* all at once, one of them written with few digits */
@@ -113,11 +126,13 @@ static void ways_in_agree(void **state) {
   assert_true(c.fx == f);
 
   vlCameraDef portrait = vl_default_camera_def(480, 640);
-  portrait.fov = 2 * atan(h / 2 / f), portrait.fov_axis = VL_FOV_SMALLER;
+  portrait.fov = 2 * atan(h / 2 / f);
+  portrait.fov_axis = VL_FOV_SMALLER;
   assert_true(fabs(make_or_fail(&portrait).fx - f) < 1e-9);
   portrait.fov_axis = VL_FOV_HORIZONTAL;
   assert_true(fabs(make_or_fail(&portrait).fx - f) < 1e-9);
-  portrait.fov = 2 * atan(w / 2 / f), portrait.fov_axis = VL_FOV_LARGER;
+  portrait.fov = 2 * atan(w / 2 / f);
+  portrait.fov_axis = VL_FOV_LARGER;
   assert_true(fabs(make_or_fail(&portrait).fx - f) < 1e-9);
 
   vlCameraDef nothing = vl_default_camera_def(640, 480);
@@ -130,11 +145,17 @@ static void screen_window(void **state) {
   (void)state;
   vlCameraDef plain = vl_default_camera_def(600, 400), def = plain;
   plain.fov = def.fov = RADIANS(40);
-  def.screen_min_x = -1.5, def.screen_max_x = 1.5, def.screen_min_y = -1, def.screen_max_y = 1;
+  def.screen_min_x = -1.5;
+  def.screen_max_x = 1.5;
+  def.screen_min_y = -1;
+  def.screen_max_y = 1;
   vlCamera a = make_or_fail(&plain), b = make_or_fail(&def);
   assert_true(fabs(a.fx / b.fx - 1) < 1e-15 && fabs(a.fy / b.fy - 1) < 1e-15 && b.cx == 300 &&
               b.cy == 200);
-  def.screen_min_x = 0, def.screen_max_x = 6, def.screen_min_y = -3, def.screen_max_y = 1;
+  def.screen_min_x = 0;
+  def.screen_max_x = 6;
+  def.screen_min_y = -3;
+  def.screen_max_y = 1;
   b = make_or_fail(&def);
   /* the view axis goes through x = 0 (the left side) and y = 0, a quarter from the top */
   assert_true(fabs(a.fx / b.fx - 2) < 1e-15 && fabs(a.fy / b.fy - 2) < 1e-15 && b.cx == 0 &&
@@ -172,7 +193,8 @@ static void lecture_basis(void **state) {
 static void roll_turns_clockwise(void **state) {
   (void)state;
   vlCameraDef def = vl_default_camera_def(100, 100);
-  def.view_distance = 50, def.roll = RADIANS(90);
+  def.view_distance = 50;
+  def.roll = RADIANS(90);
   vlCamera c = make_or_fail(&def);
   /* the camera turned clockwise by a quarter: its right hand points down, so what is above
    * appears at the left */
@@ -199,8 +221,10 @@ static void up_parallel_to_the_view(void **state) {
     const char *warning = NULL;
     vlError error;
     set3(def.eye, 1, 2, 3);
-    for (int i = 0; i < 3; i++)
-      def.lookat[i] = def.eye[i] + looks[k][i], def.up[i] = -2 * looks[k][i];
+    for (int i = 0; i < 3; i++) {
+      def.lookat[i] = def.eye[i] + looks[k][i];
+      def.up[i] = -2 * looks[k][i];
+    }
     assert_int_equal(vl_camera_make(&def, &c, &warning, &error), VL_OK);
     assert_non_null(warning);
     assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);
@@ -232,7 +256,8 @@ static void resize_keeps_the_framing(void **state) {
   def.fov = RADIANS(50);
   c = make_or_fail(&def);
   assert_int_equal(vl_camera_resize(&c, 300, 900, &square), VL_OK);
-  def.width = 300, def.height = 900;
+  def.width = 300;
+  def.height = 900;
   vlCamera direct = make_or_fail(&def);
   assert_true(fabs(square.fx - direct.fx) < 1e-11 && square.cx == 150 && square.cy == 450);
   assert_int_equal(vl_camera_resize(&c, 0, 4, &square), VL_ERROR_ARGUMENT);

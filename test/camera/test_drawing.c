@@ -34,7 +34,8 @@ static vlCamera pinhole(void) {
   const double eye[3] = {1, 2, 3}, lookat[3] = {1, 2, -10};
   memcpy(def.eye, eye, sizeof eye);
   memcpy(def.lookat, lookat, sizeof lookat);
-  def.view_distance = 5, def.pixel_size = 0.1;
+  def.view_distance = 5;
+  def.pixel_size = 0.1;
   vlCamera camera;
   assert_int_equal(vl_camera_make(&def, &camera, NULL, NULL), VL_OK);
   return camera;
@@ -63,11 +64,15 @@ static void near3(const double a[3], double x, double y, double z) {
 static void of_a_pinhole(void **state) {
   (void)state;
   vlCamera camera = pinhole();
-  camera.near_plane = 2, camera.far_plane = 20;
+  camera.near_plane = 2;
+  camera.far_plane = 20;
   const double points[3] = {3, 3,
                             -17}; /* depth 20: its image is a quarter as far from the axis */
   vlDrawingDef def = vl_default_drawing_def();
-  def.plane = 5, def.grid = 10, def.points = points, def.point_count = 1;
+  def.plane = 5;
+  def.grid = 10;
+  def.points = points;
+  def.point_count = 1;
   def.parts |= 1u << VL_DRAWING_FILM;
   vlDrawing *d = draw(&camera, 1, &def);
   assert_int_equal(count_of(d, VL_DRAWING_WINDOW), 4);
@@ -94,26 +99,42 @@ static void of_a_pinhole(void **state) {
   int found = 0;
   for (uint32_t i = 0; i < d->label_count; i++) {
     const vlDrawingLabel *l = &d->labels[i];
-    if (strcmp(l->text, "P'") == 0)
-      near3(l->at, 1.5, 2.25, -2), found++;
-    if (strcmp(l->text, "P") == 0)
-      near3(l->at, 3, 3, -17), found++;
-    if (strcmp(l->text, "e") == 0)
-      near3(l->at, 1, 2, 3), found++;
-    if (strcmp(l->text, "d") == 0)
-      near3(l->at, 1, 2, 0.5), found++;
-    if (strcmp(l->text, "u") == 0)
-      assert_true(l->at[0] > 1 && l->at[1] == 2), found++;
-    if (strcmp(l->text, "v") == 0)
-      assert_true(l->at[1] > 2), found++;
-    if (strcmp(l->text, "w") == 0)
-      assert_true(l->at[2] > 3), found++;
+    if (strcmp(l->text, "P'") == 0) {
+      near3(l->at, 1.5, 2.25, -2);
+      found++;
+    }
+    if (strcmp(l->text, "P") == 0) {
+      near3(l->at, 3, 3, -17);
+      found++;
+    }
+    if (strcmp(l->text, "e") == 0) {
+      near3(l->at, 1, 2, 3);
+      found++;
+    }
+    if (strcmp(l->text, "d") == 0) {
+      near3(l->at, 1, 2, 0.5);
+      found++;
+    }
+    if (strcmp(l->text, "u") == 0) {
+      assert_true(l->at[0] > 1 && l->at[1] == 2);
+      found++;
+    }
+    if (strcmp(l->text, "v") == 0) {
+      assert_true(l->at[1] > 2);
+      found++;
+    }
+    if (strcmp(l->text, "w") == 0) {
+      assert_true(l->at[2] > 3);
+      found++;
+    }
   }
   assert_int_equal(found, 7);
   bool behind = false; /* on the film the image is upside down */
   for (uint32_t i = 0; i < d->line_count; i++)
-    if (d->lines[i].part == VL_DRAWING_PROJECTOR && d->lines[i].to[2] > 7.9)
-      near3(d->lines[i].to, 0.5, 1.75, 8), behind = true;
+    if (d->lines[i].part == VL_DRAWING_PROJECTOR && d->lines[i].to[2] > 7.9) {
+      near3(d->lines[i].to, 0.5, 1.75, 8);
+      behind = true;
+    }
   assert_true(behind);
   vl_drawing_destroy(d);
 }
@@ -145,7 +166,8 @@ static void of_curved_projections(void **state) {
 static void of_a_distorted_lens(void **state) {
   (void)state;
   vlCameraDef camera_def = vl_default_camera_def(80, 60);
-  camera_def.distortion = VL_DISTORTION_RADIAL, camera_def.distortion_count = 1;
+  camera_def.distortion = VL_DISTORTION_RADIAL;
+  camera_def.distortion_count = 1;
   camera_def.distortion_coefficients[0] = -0.1;
   camera_def.fx = camera_def.fy = 60;
   vlCamera camera;
@@ -157,7 +179,8 @@ static void of_a_distorted_lens(void **state) {
     if (l->part != VL_DRAWING_WINDOW || fabs(l->from[1]) < fabs(l->from[0]) * 0.9)
       continue;
     assert_true(fabs(l->from[2] + 1) < 1e-9);
-    least = fmin(least, fabs(l->from[1])), most = fmax(most, fabs(l->from[1]));
+    least = fmin(least, fabs(l->from[1]));
+    most = fmax(most, fabs(l->from[1]));
   }
   assert_true(least < 0.52 && most > 0.52 && most < 0.7);
   vl_drawing_destroy(d);
@@ -188,7 +211,8 @@ static void wrong_defs(void **state) {
   const double bad[3] = {0, NAN, 0};
   assert_int_equal(vl_camera_outline(context, &camera, 0, &def, &d, NULL), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_camera_outline(context, NULL, 1, &def, &d, NULL), VL_ERROR_ARGUMENT);
-  def.points = bad, def.point_count = 1;
+  def.points = bad;
+  def.point_count = 1;
   assert_int_equal(vl_camera_outline(context, &camera, 1, &def, &d, NULL), VL_ERROR_ARGUMENT);
   def = vl_default_drawing_def();
   def.plane = 0;

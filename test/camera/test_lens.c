@@ -94,7 +94,8 @@ static void image_is_density(void **state) {
   vlAperture *a = NULL;
   assert_int_equal(vl_aperture_create(context, W, H, values, &a, NULL), VL_OK);
   draw(3);
-  u[0] = v[0] = 0, u[1] = v[1] = 0.99999994f;
+  u[0] = v[0] = 0;
+  u[1] = v[1] = 0.99999994f;
   vl_aperture_points(a, N, u, v, x, y);
   static double counts[W * H * PARTS * PARTS], expected[W * H * PARTS * PARTS];
   memset(counts, 0, sizeof counts);
@@ -148,7 +149,8 @@ static void named_images(void **state) {
 static void shapes_are_turned_and_squeezed(void **state) {
   (void)state;
   vlCameraDef def = vl_default_camera_def(64, 64);
-  def.lens_radius = 0.5, def.focus_distance = 3;
+  def.lens_radius = 0.5;
+  def.focus_distance = 3;
   def.lens.ratio = 2;
   vlCamera camera = make_or_fail(&def);
   vlCameraCompiled c;
@@ -179,21 +181,28 @@ static void tilted_plane_is_sharp(void **state) {
     double focus = next_between(&seed, 2, 9), normal[3], through[3] = {0, 0, focus};
     def.focus_distance = focus;
     if (hinge) {
-      def.fov = 0.7, def.lens.f_number = 2, def.lens_radius = 0, def.lens.unit_mm = 10;
-      def.fov_axis = VL_FOV_HORIZONTAL, def.focal_mm = 50;
+      def.fov = 0.7;
+      def.lens.f_number = 2;
+      def.lens_radius = 0;
+      def.lens.unit_mm = 10;
+      def.fov_axis = VL_FOV_HORIZONTAL;
+      def.focal_mm = 50;
       def.lens.lens_tilt_x = next_between(&seed, -0.15, 0.15);
       def.lens.lens_tilt_y = k % 8 == 2 ? 0 : next_between(&seed, -0.15, 0.15);
       if (k % 16 == 6)
         def.focus_distance = VL_UNSET; /* infinity: the plane is parallel to the axis */
       double f = 5;                    /* scene units */
-      normal[0] = sin(def.lens.lens_tilt_y) / f, normal[1] = sin(def.lens.lens_tilt_x) / f,
+      normal[0] = sin(def.lens.lens_tilt_y) / f;
+      normal[1] = sin(def.lens.lens_tilt_x) / f;
       normal[2] = 1 / focus;
       if (k % 16 == 6)
         normal[2] = 0;
     } else {
-      def.lens.tilt_x = next_between(&seed, -0.5, 0.5),
+      def.lens.tilt_x = next_between(&seed, -0.5, 0.5);
       def.lens.tilt_y = next_between(&seed, -0.5, 0.5);
-      normal[0] = tan(def.lens.tilt_y), normal[1] = tan(def.lens.tilt_x), normal[2] = 1;
+      normal[0] = tan(def.lens.tilt_y);
+      normal[1] = tan(def.lens.tilt_x);
+      normal[2] = 1;
     }
     vlCamera camera = make_or_fail(&def);
     if (hinge)
@@ -265,11 +274,15 @@ enum { HINGES = 200, SPREAD = 32 };
 
 static vlCamera tilted_lens(uint64_t *seed, double *focus, double n[3]) {
   vlCameraDef def = vl_default_camera_def(600, 400);
-  def.focal_mm = 50, def.sensor_width_mm = 36, def.lens.f_number = 2, def.lens.unit_mm = 10;
+  def.focal_mm = 50;
+  def.sensor_width_mm = 36;
+  def.lens.f_number = 2;
+  def.lens.unit_mm = 10;
   def.focus_distance = *focus = next_between(seed, 8, 40);
-  def.lens.lens_tilt_x = next_between(seed, 0.02, 0.2),
+  def.lens.lens_tilt_x = next_between(seed, 0.02, 0.2);
   def.lens.lens_tilt_y = next_between(seed, -0.2, 0.2);
-  n[0] = sin(def.lens.lens_tilt_y), n[1] = sin(def.lens.lens_tilt_x);
+  n[0] = sin(def.lens.lens_tilt_y);
+  n[1] = sin(def.lens.lens_tilt_x);
   n[2] = sqrt(1 - n[0] * n[0] - n[1] * n[1]);
   return make_or_fail(&def);
 }
@@ -294,8 +307,9 @@ static void three_planes_share_a_line(void **state) {
       double t =
           (two.ox - one.ox) /
           (one.dx / one.dz - two.dx / two.dz); /* the depth at which both have the same x */
-      meet[point][0] = one.ox + t * one.dx / one.dz,
-      meet[point][1] = one.oy + t * one.dy / one.dz, meet[point][2] = t;
+      meet[point][0] = one.ox + t * one.dx / one.dz;
+      meet[point][1] = one.oy + t * one.dy / one.dz;
+      meet[point][2] = t;
       for (int i = 0; i < SPREAD; i++) {
         vlLensPoint l = {(float)cos(i), (float)sin(i)};
         vlCameraLocal r = vl_lens_refract(&c, pin, l);
@@ -361,7 +375,9 @@ static void batches_hold_the_lens(void **state) {
   static int32_t px[CHUNK], py[CHUNK];
   for (int k = 0; k < 3; k++) {
     vlCameraDef def = vl_default_camera_def(320, 240);
-    def.lens_radius = 0.1, def.focus_distance = 4, def.lens.blades = 6;
+    def.lens_radius = 0.1;
+    def.focus_distance = 4;
+    def.lens.blades = 6;
     if (k < 2)
       def.lens.tilt_x = 0.4;
     if (k == 1)
@@ -375,9 +391,11 @@ static void batches_hold_the_lens(void **state) {
     vl_camera_compile(&camera, &c);
     uint64_t seed = 8;
     draw(9);
-    for (int i = 0; i < CHUNK; i++)
-      film[i] = 0.5f, px[i] = 80 + (int)(next_unit(&seed) * 160),
+    for (int i = 0; i < CHUNK; i++) {
+      film[i] = 0.5f;
+      px[i] = 80 + (int)(next_unit(&seed) * 160);
       py[i] = 60 + (int)(next_unit(&seed) * 120);
+    }
     const vlIsa sets[] = {VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4};
     for (int set = 0; set < 3; set++) {
       vlIsa got;
@@ -410,7 +428,9 @@ static void batches_hold_the_lens(void **state) {
 static void f_number_and_focus_point(void **state) {
   (void)state;
   vlCameraDef def = vl_default_camera_def(360, 240);
-  def.focal_mm = 50, def.sensor_width_mm = 36, def.lens.f_number = 2;
+  def.focal_mm = 50;
+  def.sensor_width_mm = 36;
+  def.lens.f_number = 2;
   set3(def.eye, 1, 2, 3);
   set3(def.lookat, 1, 2, -3);
   set3(def.lens.focus_point, 4, 0, -1.5);
@@ -420,7 +440,9 @@ static void f_number_and_focus_point(void **state) {
   def.lens_radius = 0.0125; /* agrees */
   make_or_fail(&def);
   /* only the sensor's width is given: the focal length follows from the field of view */
-  def.focal_mm = VL_UNSET, def.fov = 2 * atan(18.0 / 50), def.fov_axis = VL_FOV_HORIZONTAL;
+  def.focal_mm = VL_UNSET;
+  def.fov = 2 * atan(18.0 / 50);
+  def.fov_axis = VL_FOV_HORIZONTAL;
   assert_true(fabs(make_or_fail(&def).lens_radius - 0.0125) < 1e-12);
   /* the tilted plane contains the point, too; spheres of focus have the point's distance as
    * radius
@@ -428,7 +450,9 @@ static void f_number_and_focus_point(void **state) {
   def.lens.tilt_x = 0.3;
   camera = make_or_fail(&def);
   assert_true(fabs(camera.focus_distance - (4.5 + tan(0.3) * 2)) < 1e-12);
-  def.lens.tilt_x = 0, def.lens_radius = 0, def.projection = VL_PROJECTION_EQUIDISTANT;
+  def.lens.tilt_x = 0;
+  def.lens_radius = 0;
+  def.projection = VL_PROJECTION_EQUIDISTANT;
   camera = make_or_fail(&def);
   assert_true(fabs(camera.focus_distance - sqrt(9 + 4 + 4.5 * 4.5)) < 1e-12);
 }
@@ -436,13 +460,17 @@ static void f_number_and_focus_point(void **state) {
 static void exposure_by_the_cameras_numbers(void **state) {
   (void)state;
   vlCameraDef def = vl_default_camera_def(360, 240);
-  def.lens.f_number = 16, def.lens.iso = 100, def.lens.seconds = 0.01;
+  def.lens.f_number = 16;
+  def.lens.iso = 100;
+  def.lens.seconds = 0.01;
   vlCamera camera = make_or_fail(&def);
   /* sunny 16: EV 14.64 */
   double ev = log2(16.0 * 16 / 0.01);
   assert_true(fabs(camera.exposure_time * 1.2 * exp2(ev) - 1) < 1e-12);
   assert_true(camera.lens_radius == 0); /* without a focal length it speaks of exposure alone */
-  def.lens.seconds = VL_UNSET, def.shutter_open = 1, def.shutter_close = 1.02;
+  def.lens.seconds = VL_UNSET;
+  def.shutter_open = 1;
+  def.shutter_close = 1.02;
   assert_true(fabs(make_or_fail(&def).exposure_time / camera.exposure_time - 2) < 1e-12);
 }
 
@@ -452,16 +480,22 @@ static void vignetting_is_cos4(void **state) {
   static int32_t px[16], py[16];
   for (int k = 0; k < 2; k++) {
     vlCameraDef def = vl_default_camera_def(300, 200);
-    def.lens.vignetting = true, def.fov = 1;
-    if (k)
-      def.distortion = VL_DISTORTION_RADIAL, def.distortion_count = 1,
+    def.lens.vignetting = true;
+    def.fov = 1;
+    if (k) {
+      def.distortion = VL_DISTORTION_RADIAL;
+      def.distortion_count = 1;
       def.distortion_coefficients[0] = -0.05;
+    }
     vlCamera camera = make_or_fail(&def);
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     assert_true(vl_camera_weighted(&c));
-    for (int i = 0; i < 16; i++)
-      film[i] = 0.25f, px[i] = 17 * i + 3, py[i] = 11 * i;
+    for (int i = 0; i < 16; i++) {
+      film[i] = 0.25f;
+      px[i] = 17 * i + 3;
+      py[i] = 11 * i;
+    }
     vlCameraSamples s = {film, film, px, py, film, film, film};
     vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5],
                       rows[6], rows[7], rows[8], rows[9], rows[10]};
@@ -481,12 +515,16 @@ static void planes_of_the_orthographic_fisheye(void **state) {
     def.projection = k ? VL_PROJECTION_FOV : VL_PROJECTION_SINE;
     if (k)
       def.shape[0] = 0.9;
-    def.near_plane = 2, def.far_plane = 5;
+    def.near_plane = 2;
+    def.far_plane = 5;
     vlCamera camera = make_or_fail(&def);
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
-    for (int i = 0; i < 16; i++)
-      film[i] = 0.25f, px[i] = 60 + 10 * i, py[i] = 80 + 9 * i;
+    for (int i = 0; i < 16; i++) {
+      film[i] = 0.25f;
+      px[i] = 60 + 10 * i;
+      py[i] = 80 + 9 * i;
+    }
     vlCameraSamples s = {film, film, px, py, film, film, film};
     vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5],
                       rows[6], rows[7], rows[8], rows[9], NULL};
@@ -500,7 +538,8 @@ static void planes_of_the_orthographic_fisheye(void **state) {
 static void pixels_of_focus_move_with_the_size(void **state) {
   (void)state;
   vlCameraDef def = vl_default_camera_def(300, 200);
-  def.lens.focus_pixel[0] = 75, def.lens.focus_pixel[1] = 150;
+  def.lens.focus_pixel[0] = 75;
+  def.lens.focus_pixel[1] = 150;
   vlCamera camera = make_or_fail(&def), larger;
   assert_true(camera.lens.focus_pixel[0] == 75);
   assert_int_equal(vl_camera_resize(&camera, 600, 400, &larger), VL_OK);
@@ -574,7 +613,8 @@ static void no_memory(void **state) {
   vlResult result = VL_ERROR_MEMORY;
   for (int at = 0; result != VL_OK; at++) {
     vlAperture *a;
-    calls = 0, fails_at = at;
+    calls = 0;
+    fails_at = at;
     assert_true(at < 20);
     result = vl_aperture_create_named(c, "star", &a, NULL);
     if (result == VL_OK)

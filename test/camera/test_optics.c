@@ -18,7 +18,9 @@ static const char single[] = VELO_SOURCE_DIR "/scenes/cameras/lenses/single_50mm
 static vlOptics *load(const char *path, double aperture, double focus,
                       const vlAperture *image) {
   vlOpticsDef def = vl_default_optics_def();
-  def.aperture_diameter = aperture, def.focus_distance = focus, def.aperture = image;
+  def.aperture_diameter = aperture;
+  def.focus_distance = focus;
+  def.aperture = image;
   vlOptics *optics = NULL;
   vlError error = {0};
   if (vl_optics_load(context, path, &def, &optics, &error) != VL_OK)
@@ -105,8 +107,10 @@ static bool plain_trace(const vlOptics *o, double p[3], double d[3]) {
         p[a] += t * d[a];
       double n[3] = {p[0], p[1], p[2] - centre}, length = norm3(n);
       double cosine = 0;
-      for (int a = 0; a < 3; a++)
-        n[a] /= length, cosine += n[a] * d[a];
+      for (int a = 0; a < 3; a++) {
+        n[a] /= length;
+        cosine += n[a] * d[a];
+      }
       if (cosine < 0)
         for (int a = 0; a < 3; a++)
           n[a] = -n[a];
@@ -137,10 +141,12 @@ static struct {
 
 static void draw(uint64_t seed, const vlCamera *camera) {
   for (int i = 0; i < N; i++) {
-    s.px[i] = (int32_t)(next_unit(&seed) * camera->width),
+    s.px[i] = (int32_t)(next_unit(&seed) * camera->width);
     s.py[i] = (int32_t)(next_unit(&seed) * camera->height);
-    s.film_x[i] = (float)next_unit(&seed), s.film_y[i] = (float)next_unit(&seed);
-    s.u[i] = (float)next_unit(&seed) * 0.9999f, s.v[i] = (float)next_unit(&seed) * 0.9999f;
+    s.film_x[i] = (float)next_unit(&seed);
+    s.film_y[i] = (float)next_unit(&seed);
+    s.u[i] = (float)next_unit(&seed) * 0.9999f;
+    s.v[i] = (float)next_unit(&seed) * 0.9999f;
   }
 }
 
@@ -187,13 +193,19 @@ static void batches_obey_snell(void **state) {
                         -pitch * (s.py[i] + (double)s.film_y[i] - 120), 0};
       const vlPupil *p = &o->pupils[(int)(hypot(film[0], film[1]) / o->half * VL_PUPILS)];
       double a = 2.0 * s.u[i] - 1, b = 2.0 * s.v[i] - 1, r, phi, along, across;
-      if (fabs(a) > fabs(b))
-        r = a, phi = M_PI / 4 * (b / a);
-      else
-        r = b, phi = M_PI / 2 - M_PI / 4 * (a / b);
-      if (p->fill > 0)
-        a = p->fill * r * cos(phi), b = p->fill * r * sin(phi);
-      along = (p->x0 + p->x1) / 2 + (p->x1 - p->x0) / 2 * a, across = p->y1 * b;
+      if (fabs(a) > fabs(b)) {
+        r = a;
+        phi = M_PI / 4 * (b / a);
+      } else {
+        r = b;
+        phi = M_PI / 2 - M_PI / 4 * (a / b);
+      }
+      if (p->fill > 0) {
+        a = p->fill * r * cos(phi);
+        b = p->fill * r * sin(phi);
+      }
+      along = (p->x0 + p->x1) / 2 + (p->x1 - p->x0) / 2 * a;
+      across = p->y1 * b;
       double f = hypot(film[0], film[1]), c = film[0] / f, w = film[1] / f;
       double d[3] = {c * along - w * across - film[0], w * along + c * across - film[1],
                      o->info.film_distance};
@@ -228,8 +240,11 @@ static void focuses_where_it_says(void **state) {
     vlOptics *o = load(double_gauss, 4, distances[k], NULL);
     vlCamera camera = camera_with(o, 3600, 2400);
     draw(4, &camera);
-    for (int i = 0; i < N; i++)
-      s.px[i] = 1800, s.py[i] = 1200, s.film_x[i] = s.film_y[i] = 0;
+    for (int i = 0; i < N; i++) {
+      s.px[i] = 1800;
+      s.py[i] = 1200;
+      s.film_x[i] = s.film_y[i] = 0;
+    }
     run(VL_ISA_BASE, &camera, s.out[0]);
     double spread[3] = {0, 0, 0};
     for (int i = 0; i < N; i++)
@@ -257,8 +272,11 @@ static void brightness(void **state) {
     draw(6, &camera);
     double mean[2] = {0, 0};
     for (int corner = 0; corner < 2; corner++) {
-      for (int i = 0; i < N; i++)
-        s.px[i] = corner ? 0 : 150, s.py[i] = corner ? 0 : 100, s.film_x[i] = s.film_y[i] = 0;
+      for (int i = 0; i < N; i++) {
+        s.px[i] = corner ? 0 : 150;
+        s.py[i] = corner ? 0 : 100;
+        s.film_x[i] = s.film_y[i] = 0;
+      }
       run(VL_ISA_BASE, &camera, s.out[0]);
       for (int i = 0; i < N; i++)
         mean[corner] += s.out[0][10][i] / N;
@@ -297,8 +315,10 @@ static void both_ways(void **state) {
     double pixels[2 * 300], origins[3 * 300], directions[3 * 300], points[3 * 300],
         back[2 * 300], z[300], worst = 0;
     uint8_t valid[300];
-    for (int i = 0; i < 300; i++)
-      pixels[2 * i] = next_unit(&seed) * 720, pixels[2 * i + 1] = next_unit(&seed) * 480;
+    for (int i = 0; i < 300; i++) {
+      pixels[2 * i] = next_unit(&seed) * 720;
+      pixels[2 * i + 1] = next_unit(&seed) * 480;
+    }
     vl_camera_unproject_batch(&camera, 300, pixels, origins, directions, valid);
     for (int i = 0; i < 300; i++) {
       double o1[3], d1[3];
@@ -340,10 +360,12 @@ static double paraxial(const vlOptics *o, double *front, double *rear) {
       m[1][k] -= power * m[0][k]; /* index times angle */
       m[0][k] += step / behind * m[1][k];
     }
-    before = behind, length += step;
+    before = behind;
+    length += step;
   }
   double f = -1 / m[1][0];
-  *front = f * (1 - m[1][1]), *rear = length - f * (1 - m[0][0]);
+  *front = f * (1 - m[1][1]);
+  *rear = length - f * (1 - m[0][0]);
   return f;
 }
 
@@ -388,8 +410,11 @@ static void image_in_the_stop(void **state) {
     vlCamera camera = camera_with(k ? o : round, 300, 200);
     for (uint64_t seed = 1; seed < 9; seed++) {
       draw(seed, &camera);
-      for (int i = 0; i < N; i++)
-        s.px[i] = 150, s.py[i] = 100, s.film_x[i] = s.film_y[i] = 0;
+      for (int i = 0; i < N; i++) {
+        s.px[i] = 150;
+        s.py[i] = 100;
+        s.film_x[i] = s.film_y[i] = 0;
+      }
       run(VL_ISA_BASE, &camera, s.out[0]);
       for (int i = 0; i < N; i++)
         mean[k] += s.out[0][10][i] / N / 8;
@@ -425,8 +450,10 @@ static void corners_of_the_opening_count(void **state) {
         for (int i = 0; i < N; i++) {
           double angle = 2 * M_PI * k / 16, x = 300 + 40 * cos(angle),
                  y = 300 + 40 * sin(angle);
-          s.px[i] = (int32_t)x, s.py[i] = (int32_t)y;
-          s.film_x[i] = (float)(x - s.px[i]), s.film_y[i] = (float)(y - s.py[i]);
+          s.px[i] = (int32_t)x;
+          s.py[i] = (int32_t)y;
+          s.film_x[i] = (float)(x - s.px[i]);
+          s.film_y[i] = (float)(y - s.py[i]);
         }
         run(VL_ISA_BASE, &camera, s.out[0]);
         for (int i = 0; i < N; i++)
@@ -466,8 +493,11 @@ static void irradiance_in_the_middle(void **state) {
     double mean = 0, exact = M_PI * low * low, number = o->info.f_number;
     for (uint64_t seed = 1; seed < 129; seed++) {
       draw(seed, &camera);
-      for (int i = 0; i < N; i++)
-        s.px[i] = 150, s.py[i] = 100, s.film_x[i] = s.film_y[i] = 0;
+      for (int i = 0; i < N; i++) {
+        s.px[i] = 150;
+        s.py[i] = 100;
+        s.film_x[i] = s.film_y[i] = 0;
+      }
       run(VL_ISA_BASE, &camera, s.out[0]);
       for (int i = 0; i < N; i++)
         mean += s.out[0][10][i] / N / 128;

@@ -27,10 +27,14 @@ static vlCameraDef model_def(int index) {
       d.projection = VL_PROJECTION_EQUIDISTANT;
       break;
     case 2:
-      d.projection = VL_PROJECTION_EQUISOLID, d.fov = 2 * pi, d.fov_axis = VL_FOV_DIAGONAL;
+      d.projection = VL_PROJECTION_EQUISOLID;
+      d.fov = 2 * pi;
+      d.fov_axis = VL_FOV_DIAGONAL;
       break;
     case 3:
-      d.projection = VL_PROJECTION_STEREOGRAPHIC, d.fov = 4.5, d.fov_axis = VL_FOV_HORIZONTAL;
+      d.projection = VL_PROJECTION_STEREOGRAPHIC;
+      d.fov = 4.5;
+      d.fov_axis = VL_FOV_HORIZONTAL;
       break;
     case 4:
       d.projection = VL_PROJECTION_SINE;
@@ -40,7 +44,10 @@ static vlCameraDef model_def(int index) {
       break;
     case 6:
       d.projection = VL_PROJECTION_EQUIRECTANGULAR;
-      d.screen_min_x = -2, d.screen_max_x = 1, d.screen_min_y = -0.5, d.screen_max_y = 1.4;
+      d.screen_min_x = -2;
+      d.screen_max_x = 1;
+      d.screen_min_y = -0.5;
+      d.screen_max_y = 1.4;
       break;
     case 7:
       d.projection = VL_PROJECTION_EQUAL_AREA;
@@ -49,59 +56,99 @@ static vlCameraDef model_def(int index) {
       d.projection = VL_PROJECTION_CYLINDRICAL;
       break;
     case 9:
-      d.projection = VL_PROJECTION_CUBE, d.width = 600, d.height = 100;
+      d.projection = VL_PROJECTION_CUBE;
+      d.width = 600;
+      d.height = 100;
       break;
     case 10:
-      d.projection = VL_PROJECTION_PANINI, d.fov = 4, d.fov_axis = VL_FOV_HORIZONTAL;
+      d.projection = VL_PROJECTION_PANINI;
+      d.fov = 4;
+      d.fov_axis = VL_FOV_HORIZONTAL;
       break;
     case 11:
-      d.projection = VL_PROJECTION_PANINI, d.shape[0] = 0.5, d.fov = 3,
+      d.projection = VL_PROJECTION_PANINI;
+      d.shape[0] = 0.5;
+      d.fov = 3;
       d.fov_axis = VL_FOV_HORIZONTAL;
       break;
     case 12:
-      d.projection = VL_PROJECTION_PANINI, d.shape[0] = 3;
+      d.projection = VL_PROJECTION_PANINI;
+      d.shape[0] = 3;
       break;
     case 13:
-      d.projection = VL_PROJECTION_FOV, d.shape[0] = 0.9;
+      d.projection = VL_PROJECTION_FOV;
+      d.shape[0] = 0.9;
       break;
     case 14:
-      d.projection = VL_PROJECTION_DIVISION, d.shape[0] = -0.3, d.fov = 3.6;
+      d.projection = VL_PROJECTION_DIVISION;
+      d.shape[0] = -0.3;
+      d.fov = 3.6;
       break;
     case 15:
-      d.projection = VL_PROJECTION_DIVISION, d.shape[0] = 0.1;
+      d.projection = VL_PROJECTION_DIVISION;
+      d.shape[0] = 0.1;
       break;
     case 16:
-      d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 0.8, d.fov = 3.5;
+      d.projection = VL_PROJECTION_UNIFIED;
+      d.shape[0] = 0.8;
+      d.fov = 3.5;
       break;
     case 17:
-      d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 1.7, d.fov = 3.5;
+      d.projection = VL_PROJECTION_UNIFIED;
+      d.shape[0] = 1.7;
+      d.fov = 3.5;
       break;
     case 18:
-      d.projection = VL_PROJECTION_EUCM, d.shape[0] = 0.6, d.shape[1] = 1.1, d.fov = 3.3;
+      d.projection = VL_PROJECTION_EUCM;
+      d.shape[0] = 0.6;
+      d.shape[1] = 1.1;
+      d.fov = 3.3;
       break;
     case 19:
-      d.projection = VL_PROJECTION_DOUBLE_SPHERE, d.shape[0] = -0.2, d.shape[1] = 0.58,
+      d.projection = VL_PROJECTION_DOUBLE_SPHERE;
+      d.shape[0] = -0.2;
+      d.shape[1] = 0.58;
       d.fov = 3.3;
       break;
     case 20:
-      d.projection = VL_PROJECTION_DOUBLE_SPHERE, d.shape[0] = 0.3, d.shape[1] = 0.4;
+      d.projection = VL_PROJECTION_DOUBLE_SPHERE;
+      d.shape[0] = 0.3;
+      d.shape[1] = 0.4;
       break;
     case 21: /* OpenCV, all fourteen, full intrinsics */
-      d.fx = 500, d.fy = 510, d.cx = 300, d.cy = 250, d.skew = 0.7;
-      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 14,
+      d.fx = 500;
+      d.fy = 510;
+      d.cx = 300;
+      d.cy = 250;
+      d.skew = 0.7;
+      d.distortion = VL_DISTORTION_OPENCV;
+      d.distortion_count = 14;
       memcpy(k, opencv, sizeof opencv);
       break;
     case 22: /* strong barrel that does not fold within the image */
-      d.fx = 500, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 5, k[0] = -0.3,
-      k[1] = 0.1, k[4] = 0.02;
+      d.fx = 500;
+      d.distortion = VL_DISTORTION_OPENCV;
+      d.distortion_count = 5;
+      k[0] = -0.3;
+      k[1] = 0.1;
+      k[4] = 0.02;
       break;
     case 23: /* pincushion */
-      d.fx = 600, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = 0.4,
+      d.fx = 600;
+      d.distortion = VL_DISTORTION_OPENCV;
+      d.distortion_count = 4;
+      k[0] = 0.4;
       k[1] = 0.2;
       break;
     case 24: /* OpenCV fisheye */
-      d.fx = 210, d.projection = VL_PROJECTION_EQUIDISTANT, d.distortion = VL_DISTORTION_RADIAL;
-      d.distortion_count = 4, k[0] = 0.03, k[1] = -0.02, k[2] = 0.004, k[3] = -0.0003;
+      d.fx = 210;
+      d.projection = VL_PROJECTION_EQUIDISTANT;
+      d.distortion = VL_DISTORTION_RADIAL;
+      d.distortion_count = 4;
+      k[0] = 0.03;
+      k[1] = -0.02;
+      k[2] = 0.004;
+      k[3] = -0.0003;
       break;
     case 25: { /* COLMAP's thin prism fisheye */
       const double p[12] = {220,  225,   310,  240,   0.02, -0.01,
@@ -115,22 +162,36 @@ static vlCameraDef model_def(int index) {
       break;
     }
     case 27: /* unified with distortion: Mei's whole model */
-      d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 0.9, d.fx = 400;
-      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = -0.2, k[1] = 0.04,
+      d.projection = VL_PROJECTION_UNIFIED;
+      d.shape[0] = 0.9;
+      d.fx = 400;
+      d.distortion = VL_DISTORTION_OPENCV;
+      d.distortion_count = 4;
+      k[0] = -0.2;
+      k[1] = 0.04;
       k[2] = 1e-3;
       break;
     case 28: /* folds inside the image */
-      d.fx = 300, d.distortion = VL_DISTORTION_RADIAL, d.distortion_count = 1, k[0] = -0.4;
+      d.fx = 300;
+      d.distortion = VL_DISTORTION_RADIAL;
+      d.distortion_count = 1;
+      k[0] = -0.4;
       break;
     case 29: /* folds, with tangential terms */
-      d.fx = 300, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4;
-      k[0] = -0.4, k[2] = 0.02, k[3] = 0.01;
+      d.fx = 300;
+      d.distortion = VL_DISTORTION_OPENCV;
+      d.distortion_count = 4;
+      k[0] = -0.4;
+      k[2] = 0.02;
+      k[3] = 0.01;
       break;
     case 30:
-      d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.pixel_size = 0.01;
+      d.projection = VL_PROJECTION_ORTHOGRAPHIC;
+      d.pixel_size = 0.01;
       break;
     case 31:
-      d.projection = VL_PROJECTION_EQUIDISTANT, d.fov = 2 * pi;
+      d.projection = VL_PROJECTION_EQUIDISTANT;
+      d.fov = 2 * pi;
       break;
     default:
       break;
@@ -203,10 +264,14 @@ static void back_and_there(void **state) {
       double z = next_between(&random, -1, 1), phi = next_between(&random, -pi, pi),
              s = sqrt(1 - z * z);
       double d[3] = {s * cos(phi), s * sin(phi), z}, p[3], o[3], e[3], pixel[2], depth;
-      if (i == 0)
-        d[0] = d[1] = 0, d[2] = -1;
-      if (i == 1)
-        d[0] = d[1] = 0, d[2] = 1;
+      if (i == 0) {
+        d[0] = d[1] = 0;
+        d[2] = -1;
+      }
+      if (i == 1) {
+        d[0] = d[1] = 0;
+        d[2] = 1;
+      }
       for (int a = 0; a < 3; a++) {
         const double *m = camera.world_from_camera + 4 * a;
         p[a] = m[0] * d[0] + m[1] * d[1] + m[2] * d[2];
@@ -255,7 +320,10 @@ static void batches_are_single_calls(void **state) {
       for (int a = 0; a < 3; a++)
         points[3 * i + a] = next_between(&random, -9, 9);
     }
-    pixels[0] = NAN, pixels[3] = INFINITY, points[0] = NAN, points[4] = INFINITY;
+    pixels[0] = NAN;
+    pixels[3] = INFINITY;
+    points[0] = NAN;
+    points[4] = INFINITY;
     vl_camera_unproject_batch(&camera, N, pixels, o, d, seen);
     vl_camera_project_batch(&camera, N, points, back, z, landed);
     for (int i = 0; i < N; i++) {
@@ -287,14 +355,17 @@ static void rays_of_all_sets(void **state) {
   double worst = 0;
   for (int k = 0; k < 2 * MODELS; k++) {
     vlCamera camera = model(k / 2);
-    if (k & 1)
-      camera.lens_radius = 0.1, camera.focus_distance = 5;
-    camera.near_plane = 0.5, camera.far_plane = 90;
+    if (k & 1) {
+      camera.lens_radius = 0.1;
+      camera.focus_distance = 5;
+    }
+    camera.near_plane = 0.5;
+    camera.far_plane = 90;
     uint64_t random = 3;
     for (int i = 0; i < N; i++) {
       for (int a = 0; a < 5; a++)
         in[a][i] = (float)next_unit(&random) * 0.9999f;
-      px[0][i] = (int32_t)(next_unit(&random) * camera.width),
+      px[0][i] = (int32_t)(next_unit(&random) * camera.width);
       px[1][i] = (int32_t)(next_unit(&random) * camera.height);
     }
     vlCameraCompiled c;
@@ -351,14 +422,17 @@ static void lens_focuses(void **state) {
   enum { N = 64 };
   for (int k = 0; k < MODELS; k++) {
     vlCamera camera = model(k);
-    camera.lens_radius = 0.2, camera.focus_distance = 5;
+    camera.lens_radius = 0.2;
+    camera.focus_distance = 5;
     float film[N], u[N], v[N], time[N] = {0}, out[10][N];
     int32_t px[N], py[N];
     uint64_t random = 41;
     for (int i = 0; i < N; i++) {
-      film[i] = 0.25f, px[i] = (int32_t)(0.6 * camera.width),
+      film[i] = 0.25f;
+      px[i] = (int32_t)(0.6 * camera.width);
       py[i] = (int32_t)(0.55 * camera.height);
-      u[i] = (float)next_unit(&random) * 0.9999f, v[i] = (float)next_unit(&random) * 0.9999f;
+      u[i] = (float)next_unit(&random) * 0.9999f;
+      v[i] = (float)next_unit(&random) * 0.9999f;
     }
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
@@ -375,8 +449,10 @@ static void lens_focuses(void **state) {
       p[a] = o[a] + reach * d[a];
     for (int i = 0; i < N; i++) {
       double to[3], along = 0, off = 0;
-      for (int a = 0; a < 3; a++)
-        to[a] = p[a] - out[a][i], along += to[a] * out[3 + a][i];
+      for (int a = 0; a < 3; a++) {
+        to[a] = p[a] - out[a][i];
+        along += to[a] * out[3 + a][i];
+      }
       for (int a = 0; a < 3; a++)
         off += pow(to[a] - along * out[3 + a][i], 2);
       if (!(along > 0 && sqrt(off) < 1e-5))
@@ -428,8 +504,10 @@ static void solid_angles(void **state) {
       if (!ok)
         continue;
       double a[3], b[3], n[3];
-      for (int j = 0; j < 3; j++)
-        a[j] = d[1][j] - d[0][j], b[j] = d[3][j] - d[2][j];
+      for (int j = 0; j < 3; j++) {
+        a[j] = d[1][j] - d[0][j];
+        b[j] = d[3][j] - d[2][j];
+      }
       for (int j = 0; j < 3; j++)
         n[j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
       double quad = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (4 * h * h);
@@ -448,7 +526,8 @@ static void framing_and_image_circles(void **state) {
    * empty
    */
   vlCameraDef def = vl_default_camera_def(600, 400);
-  def.projection = VL_PROJECTION_EQUISOLID, def.fov = pi;
+  def.projection = VL_PROJECTION_EQUISOLID;
+  def.fov = pi;
   vlCamera c = make_or_fail(&def);
   assert_true(fabs(c.fy * 2 * sin(pi / 4) - 200) < 1e-9);
   assert_true(vl_camera_unproject(&c, 300, 0.001, o, d) &&
@@ -466,7 +545,9 @@ static void framing_and_image_circles(void **state) {
               !vl_camera_unproject(&c, -1, -1, o, d));
   /* an image circle of its own; behind it points do not land */
   def = vl_default_camera_def(600, 400);
-  def.projection = VL_PROJECTION_EQUIDISTANT, def.fx = 100, def.max_angle = 1;
+  def.projection = VL_PROJECTION_EQUIDISTANT;
+  def.fx = 100;
+  def.max_angle = 1;
   c = make_or_fail(&def);
   assert_true(vl_camera_unproject(&c, 399.9, 200, o, d) &&
               !vl_camera_unproject(&c, 400.1, 200, o, d));
@@ -498,7 +579,9 @@ static void framing_and_image_circles(void **state) {
               pixel[1] > 99.8);
   /* Panini keeps verticals straight */
   def = vl_default_camera_def(600, 400);
-  def.projection = VL_PROJECTION_PANINI, def.fov = 2.5, def.fov_axis = VL_FOV_HORIZONTAL;
+  def.projection = VL_PROJECTION_PANINI;
+  def.fov = 2.5;
+  def.fov_axis = VL_FOV_HORIZONTAL;
   c = make_or_fail(&def);
   double column = 0;
   for (int i = -3; i <= 3; i++) {
@@ -537,18 +620,22 @@ static void folding_is_found(void **state) {
   c = model(23);
   assert_true(c.distortion.radius >= 1e3 && c.outside == 0);
   def = vl_default_camera_def(640, 480);
-  def.fx = 400, def.distortion = VL_DISTORTION_OPENCV, def.distortion_count = 8;
+  def.fx = 400;
+  def.distortion = VL_DISTORTION_OPENCV;
+  def.distortion_count = 8;
   def.distortion_coefficients[5] = -0.25;
   assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);
   assert_true(fabs(c.distortion.radius - 2) < 1e-9);
   /* the general search agrees with the polynomial's root when the tangential terms vanish */
   def = model_def(29);
-  def.distortion_coefficients[2] = 1e-12, def.distortion_coefficients[3] = 0;
+  def.distortion_coefficients[2] = 1e-12;
+  def.distortion_coefficients[3] = 0;
   assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);
   assert_true(fabs(c.distortion.radius / sqrt(1 / 1.2) - 1) < 0.003);
   /* zero coefficients are no distortion, and no other image */
   def = vl_default_camera_def(640, 480);
-  def.distortion = VL_DISTORTION_OPENCV, def.distortion_count = 5;
+  def.distortion = VL_DISTORTION_OPENCV;
+  def.distortion_count = 5;
   c = make_or_fail(&def);
   assert_true(c.distortion.steps == 0);
 }

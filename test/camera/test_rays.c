@@ -48,7 +48,8 @@ static vlIsa isas(int index) {
 
 static void same_float(float a, float b) {
   uint32_t x, y;
-  memcpy(&x, &a, 4), memcpy(&y, &b, 4);
+  memcpy(&x, &a, 4);
+  memcpy(&y, &b, 4);
   if (x != y)
     fail_msg("%.9g (%08x) is not %.9g (%08x)", a, x, b, y);
 }
@@ -73,7 +74,8 @@ static void slides_formula_to_the_last_bit(void **state) {
     vlCameraDef def = vl_default_camera_def(hres, vres);
     set3(def.eye, 0, 0, views[k].e);
     set3(def.lookat, 0, 0, views[k].e - 1);
-    def.view_distance = d, def.pixel_size = s;
+    def.view_distance = d;
+    def.pixel_size = s;
     vlCamera camera = make_or_fail(&def);
     for (int m = 0; m < 3; m++)
       for (int set = 0; isas(set) != VL_ISA_AUTO; set++)
@@ -139,9 +141,12 @@ static void same_bits_on_all_instruction_sets(void **state) {
     sets++;
   for (int k = 0; k < 2 * CAMERA_COUNT; k++) {
     vlCamera camera = camera_of(k / 2);
-    if (k & 1)
-      camera.lens_radius = 0.3, camera.focus_distance = k == 1 ? INFINITY : 7.5;
-    camera.near_plane = 0.5, camera.far_plane = 100;
+    if (k & 1) {
+      camera.lens_radius = 0.3;
+      camera.focus_distance = k == 1 ? INFINITY : 7.5;
+    }
+    camera.near_plane = 0.5;
+    camera.far_plane = 100;
     random_samples(&camera, 99);
     run(VL_ISA_BASE, &camera, N, &rays);
     for (int set = 1; set < sets; set++) {
@@ -151,10 +156,12 @@ static void same_bits_on_all_instruction_sets(void **state) {
     /* nor do a ray's bits depend on its place in the batch or on the batch's length */
     const Rays whole = rays;
     for (int i = 0; i < N - 37; i++) {
-      samples.pixel_x[i] = samples.pixel_x[i + 37],
+      samples.pixel_x[i] = samples.pixel_x[i + 37];
       samples.pixel_y[i] = samples.pixel_y[i + 37];
-      samples.film_x[i] = samples.film_x[i + 37], samples.film_y[i] = samples.film_y[i + 37];
-      samples.lens_u[i] = samples.lens_u[i + 37], samples.lens_v[i] = samples.lens_v[i + 37];
+      samples.film_x[i] = samples.film_x[i + 37];
+      samples.film_y[i] = samples.film_y[i + 37];
+      samples.lens_u[i] = samples.lens_u[i + 37];
+      samples.lens_v[i] = samples.lens_v[i + 37];
       samples.time[i] = samples.time[i + 37];
     }
     for (int set = 0; set < sets; set++) {
@@ -180,11 +187,14 @@ static void thin_lens_focuses(void **state) {
       def.projection = projection ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
       set3(def.eye, 1, 2, 3);
       set3(def.lookat, 4, -2, -9);
-      def.lens_radius = 0.25, def.focus_distance = infinite ? VL_UNSET : 6;
+      def.lens_radius = 0.25;
+      def.focus_distance = infinite ? VL_UNSET : 6;
       vlCamera camera = make_or_fail(&def);
       random_samples(&camera, 5);
       for (int i = 0; i < N; i++) {
-        samples.pixel_x[i] = 310, samples.pixel_y[i] = 40, samples.film_x[i] = 0.25f,
+        samples.pixel_x[i] = 310;
+        samples.pixel_y[i] = 40;
+        samples.film_x[i] = 0.25f;
         samples.film_y[i] = 0.75f;
       }
       run(VL_ISA_BASE, &camera, N, &rays);
@@ -217,12 +227,15 @@ static void disk_map_is_exact_enough(void **state) {
       float u = i / 256.0f, v = j / 256.0f;
       vlLensPoint p = vl_lens_disk(u, v);
       double a = 2.0 * u - 1, b = 2.0 * v - 1, r, phi;
-      if (a == 0 && b == 0)
+      if (a == 0 && b == 0) {
         r = phi = 0;
-      else if (fabs(a) > fabs(b))
-        r = a, phi = 0.78539816339744831 * (b / a);
-      else
-        r = b, phi = 1.5707963267948966 - 0.78539816339744831 * (a / b);
+      } else if (fabs(a) > fabs(b)) {
+        r = a;
+        phi = 0.78539816339744831 * (b / a);
+      } else {
+        r = b;
+        phi = 1.5707963267948966 - 0.78539816339744831 * (a / b);
+      }
       assert_true(fabs(p.x - r * cos(phi)) < 5e-7 && fabs(p.y - r * sin(phi)) < 5e-7);
     }
 }
@@ -233,8 +246,10 @@ static void near_and_far_planes(void **state) {
   (void)state;
   for (int k = 0; k < 2 * CAMERA_COUNT; k++) {
     vlCamera camera = camera_of(k / 2);
-    camera.near_plane = 2, camera.far_plane = 50;
-    camera.lens_radius = k & 1 ? 0.1 : 0, camera.focus_distance = 9;
+    camera.near_plane = 2;
+    camera.far_plane = 50;
+    camera.lens_radius = k & 1 ? 0.1 : 0;
+    camera.focus_distance = 9;
     random_samples(&camera, 17);
     run(VL_ISA_BASE, &camera, N, &rays);
     for (int i = 0; i < N; i++) {
@@ -256,7 +271,9 @@ static void near_and_far_planes(void **state) {
 static void shutter_and_footprint(void **state) {
   (void)state;
   vlCameraDef def = vl_default_camera_def(100, 100);
-  def.shutter_open = 2, def.shutter_close = 6, def.view_distance = 200;
+  def.shutter_open = 2;
+  def.shutter_close = 6;
+  def.view_distance = 200;
   vlCamera camera = make_or_fail(&def);
   random_samples(&camera, 1);
   run(VL_ISA_BASE, &camera, N, &rays);

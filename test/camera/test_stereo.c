@@ -17,9 +17,16 @@ static const double pi = 3.14159265358979323846;
 
 static vlCameraDef stereo_def(vlStereoMode mode) {
   vlCameraDef def = vl_default_camera_def(640, 480);
-  def.fx = 500, def.fy = 510, def.cx = 310, def.cy = 250;
-  def.eye[0] = 0.3, def.eye[1] = -0.2, def.eye[2] = 1;
-  def.lookat[0] = 1, def.lookat[1] = 0.5, def.lookat[2] = -3;
+  def.fx = 500;
+  def.fy = 510;
+  def.cx = 310;
+  def.cy = 250;
+  def.eye[0] = 0.3;
+  def.eye[1] = -0.2;
+  def.eye[2] = 1;
+  def.lookat[0] = 1;
+  def.lookat[1] = 0.5;
+  def.lookat[2] = -3;
   def.roll = 0.4;
   def.stereo = (vlStereo){mode, 0.2, mode == VL_STEREO_PARALLEL ? VL_UNSET : 2.5};
   return def;
@@ -141,7 +148,10 @@ static void omnidirectional_goes_both_ways(void **state) {
                                 VL_PROJECTION_EQUAL_AREA, VL_PROJECTION_CUBE};
   for (int k = 0; k < 4; k++) {
     vlCameraDef def = panorama(kinds[k]);
-    def.eye[0] = 4, def.eye[1] = -2, def.eye[2] = 0.5, def.roll = 0.2;
+    def.eye[0] = 4;
+    def.eye[1] = -2;
+    def.eye[2] = 0.5;
+    def.roll = 0.2;
     vlCamera between, eyes[2];
     make_three(&def, &between, eyes);
     enum { N = 700 };
@@ -200,8 +210,10 @@ static void batches_agree(void **state) {
   for (int round = 0; round < 4; round++) {
     vlCameraDef def =
         panorama(round & 1 ? VL_PROJECTION_CYLINDRICAL : VL_PROJECTION_EQUIRECTANGULAR);
-    if (round & 2)
-      def.lens_radius = 0.01, def.focus_distance = 2;
+    if (round & 2) {
+      def.lens_radius = 0.01;
+      def.focus_distance = 2;
+    }
     vlCamera between, eyes[2];
     make_three(&def, &between, eyes);
     enum { N = 320 };
@@ -209,8 +221,9 @@ static void batches_agree(void **state) {
     static int32_t px[N], py[N];
     for (int i = 0; i < N; i++) {
       half[i] = 0.5f;
-      film[0][i] = (float)i / N, film[1][i] = 0.25f;
-      px[i] = (int32_t)((unsigned)i * 7919u % between.width),
+      film[0][i] = (float)i / N;
+      film[1][i] = 0.25f;
+      px[i] = (int32_t)((unsigned)i * 7919u % between.width);
       py[i] = (int32_t)((unsigned)i * 104729u % between.height);
     }
     vlCameraCompiled c;
@@ -332,7 +345,8 @@ static void the_cross_of_a_cube(void **state) {
   assert_false(vl_camera_unproject(&c, 950, 50, o, a));
   vlCameraDef wrong = vl_default_camera_def(400, 300);
   vlError error;
-  wrong.projection = VL_PROJECTION_CUBE, wrong.shape[0] = 0.5;
+  wrong.projection = VL_PROJECTION_CUBE;
+  wrong.shape[0] = 0.5;
   assert_int_equal(vl_camera_make(&wrong, &c, NULL, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "layout"));
 }

@@ -32,8 +32,10 @@ static void draw(const vlCamera *camera, uint64_t seed) {
   for (int i = 0; i < N; i++) {
     pixel[0][i] = (int32_t)(next_unit(&seed) * camera->width);
     pixel[1][i] = (int32_t)(next_unit(&seed) * camera->height);
-    for (int k = 0; k < 2; k++)
-      film[k][i] = 0.5f, lens[k][i] = (float)next_unit(&seed) * 0.999f;
+    for (int k = 0; k < 2; k++) {
+      film[k][i] = 0.5f;
+      lens[k][i] = (float)next_unit(&seed) * 0.999f;
+    }
     when[i] = (float)next_unit(&seed) * 0.99999994f;
   }
 }
@@ -51,8 +53,10 @@ static double curve_at(const vlCameraDef *d, double x) {
 
 static void set_curve(vlCameraDef *d, uint32_t n, const double *at_value) {
   d->shutter_points = n;
-  for (uint32_t i = 0; i < n; i++)
-    d->shutter_at[i] = at_value[2 * i], d->shutter_value[i] = at_value[2 * i + 1];
+  for (uint32_t i = 0; i < n; i++) {
+    d->shutter_at[i] = at_value[2 * i];
+    d->shutter_value[i] = at_value[2 * i + 1];
+  }
 }
 
 static const double triangle[] = {0, 0, 0.5, 1, 1, 0},
@@ -69,7 +73,8 @@ static void curves_are_sampled_exactly(void **state) {
   enum { CELLS = 50 };
   for (size_t k = 0; k < sizeof curves / sizeof *curves; k++) {
     vlCameraDef def = vl_default_camera_def(64, 48);
-    def.shutter_open = 3, def.shutter_close = 5;
+    def.shutter_open = 3;
+    def.shutter_close = 5;
     set_curve(&def, curves[k].n, curves[k].points);
     vlCamera camera = make_or_fail(&def);
     double seen[CELLS] = {0}, expected[CELLS], area = 0;
@@ -120,7 +125,9 @@ static void rows_are_read_in_turn(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
     vlCameraDef def = vl_default_camera_def(64, 48);
-    def.shutter_open = 10, def.shutter_close = 10.25, def.readout = 4,
+    def.shutter_open = 10;
+    def.shutter_close = 10.25;
+    def.readout = 4;
     def.readout_direction = (vlReadout)k;
     vlCamera camera = make_or_fail(&def);
     draw(&camera, (uint64_t)k);
@@ -141,19 +148,31 @@ static void rows_are_read_in_turn(void **state) {
 
 static vlCameraDef moving_def(int k) {
   vlCameraDef def = vl_default_camera_def(640, 480);
-  set3(def.eye, 1, 2, 3), set3(def.lookat, 0, 0.5, -4);
-  set3(def.eye_close, 1.5, 1, 3.2), set3(def.lookat_close, 3, 0.1, -4);
+  set3(def.eye, 1, 2, 3);
+  set3(def.lookat, 0, 0.5, -4);
+  set3(def.eye_close, 1.5, 1, 3.2);
+  set3(def.lookat_close, 3, 0.1, -4);
   def.roll_close = 0.4;
-  def.shutter_open = 2, def.shutter_close = 2.5, def.readout = k == 1 ? 0.5 : 0;
-  def.fov = 0.8, def.near_plane = 0.5, def.far_plane = 30;
-  if (k == 2)
-    def.projection = VL_PROJECTION_EQUIDISTANT, def.fov = 3;
-  if (k == 3)
-    def.projection = VL_PROJECTION_ORTHOGRAPHIC, def.fov = VL_UNSET;
+  def.shutter_open = 2;
+  def.shutter_close = 2.5;
+  def.readout = k == 1 ? 0.5 : 0;
+  def.fov = 0.8;
+  def.near_plane = 0.5;
+  def.far_plane = 30;
+  if (k == 2) {
+    def.projection = VL_PROJECTION_EQUIDISTANT;
+    def.fov = 3;
+  }
+  if (k == 3) {
+    def.projection = VL_PROJECTION_ORTHOGRAPHIC;
+    def.fov = VL_UNSET;
+  }
   if (k == 4)
     set_curve(&def, 4, trapezoid);
-  if (k == 5)
-    def.pose_times[0] = 2.2, def.pose_times[1] = 2.3; /* rests before and after */
+  if (k == 5) {
+    def.pose_times[0] = 2.2;
+    def.pose_times[1] = 2.3;
+  } /* rests before and after */
   return def;
 }
 
@@ -236,8 +255,10 @@ static void nonsense_is_refused(void **state) {
       def.shutter_points = 17;
     if (k == 7)
       set3(def.eye_close, 0, 0, -1); /* where it looks */
-    if (k == 8)
-      def.has_matrix = def.has_matrix_close = true, def.world_from_camera_close[0] = -1;
+    if (k == 8) {
+      def.has_matrix = def.has_matrix_close = true;
+      def.world_from_camera_close[0] = -1;
+    }
     vlCamera camera;
     vlError error;
     assert_int_equal(vl_camera_make(&def, &camera, NULL, &error), VL_ERROR_ARGUMENT);

@@ -14,7 +14,8 @@ static vlCameraDef random_def(uint64_t *seed) {
        next_between(seed, -9, 9));
   d.roll = next_between(seed, -3, 3);
   d.fx = d.fy = next_between(seed, 200, 2000);
-  d.cx = next_between(seed, 0, 640), d.cy = next_between(seed, 0, 480);
+  d.cx = next_between(seed, 0, 640);
+  d.cy = next_between(seed, 0, 480);
   return d;
 }
 
@@ -37,7 +38,8 @@ static void test_lines_meet(void **state) {
       d.fx = d.fy = next_between(&seed, 50, 200);
     if (n % 10 == 0) { /* a lens that bends, too */
       static const double k[4] = {-0.1, 0.01, 1e-3, -1e-3};
-      d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4;
+      d.distortion = VL_DISTORTION_OPENCV;
+      d.distortion_count = 4;
       memcpy(d.distortion_coefficients, k, sizeof k);
       d.skew = 3.0;
     }
@@ -178,7 +180,8 @@ static void test_there_and_back(void **state) {
       fail_msg("%s", error.message);
     same_camera(&d, &back);
     def.count = 2;
-    def.cx = d.cx, def.cy = d.cy;
+    def.cx = d.cx;
+    def.cy = d.cy;
     if (vl_camera_from_vanishing_points(&def, &back, &error) != VL_OK)
       fail_msg("%s", error.message);
     same_camera(&d, &back);
@@ -198,22 +201,29 @@ static void wrong(const vlVanishingDef *def, const char *words) {
 static void test_wrong(void **state) {
   (void)state;
   vlVanishingDef def = vl_default_vanishing_def(640, 480);
-  def.points[0][0] = 900, def.points[0][1] = 240, def.points[1][0] = 700,
+  def.points[0][0] = 900;
+  def.points[0][1] = 240;
+  def.points[1][0] = 700;
   def.points[1][1] = 240;
   wrong(&def, "less than 90 degrees apart"); /* both right of the centre */
   def.points[1][0] = 320;
   wrong(&def, "less than 90 degrees apart");
   def.count = 3;
-  def.points[1][0] = -500, def.points[2][0] = 0, def.points[2][1] = 240;
+  def.points[1][0] = -500;
+  def.points[2][0] = 0;
+  def.points[2][1] = 240;
   wrong(&def, "on one line");
   def.points[2][0] = 900;
   wrong(&def, "on one line"); /* the same twice */
-  def.points[2][0] = 890, def.points[2][1] = 250;
+  def.points[2][0] = 890;
+  def.points[2][1] = 250;
   wrong(&def, "less than 90 degrees"); /* an obtuse triangle */
-  def.points[2][0] = 300, def.points[2][1] = NAN;
+  def.points[2][0] = 300;
+  def.points[2][1] = NAN;
   wrong(&def, "number 3 is not finite");
   def.points[2][1] = 2000;
-  def.cx = 320, def.cy = 20;
+  def.cx = 320;
+  def.cy = 20;
   wrong(&def, "is given");
   def.cy = VL_UNSET;
   wrong(&def, "principal point");

@@ -56,19 +56,24 @@ static vlCameraRecord random_camera(uint64_t *seed, int holds) {
   d->fx = next_between(seed, 0.3, 4) * w;
   d->fy = holds & ASPECT ? d->fx * next_between(seed, 0.6, 1.6) : d->fx;
   /* Mitsuba's thin lens has its axis in the middle */
-  if ((holds & (flat ? FLAT_SHIFT : SHIFT)) && !(lensed && !(holds & ASPECT)))
-    d->cx = next_between(seed, -0.2, 1.2) * w, d->cy = next_between(seed, -0.2, 1.2) * h;
+  if ((holds & (flat ? FLAT_SHIFT : SHIFT)) && !(lensed && !(holds & ASPECT))) {
+    d->cx = next_between(seed, -0.2, 1.2) * w;
+    d->cy = next_between(seed, -0.2, 1.2) * h;
+  }
   if (holds & SKEW)
     d->skew = next_between(seed, -9, 9);
-  if (lensed)
-    d->lens_radius = next_between(seed, 0.001, 0.2),
+  if (lensed) {
+    d->lens_radius = next_between(seed, 0.001, 0.2);
     d->focus_distance = next_between(seed, 0.5, 20);
+  }
   if ((holds & PLANES) && next_unit(seed) < 0.5)
     d->near_plane = next_between(seed, 0.01, 1);
   if ((holds & PLANES) && next_unit(seed) < 0.5)
     d->far_plane = next_between(seed, 10, 1000);
-  if ((holds & TIME) && next_unit(seed) < 0.5)
-    d->shutter_open = 0.25, d->shutter_close = next_between(seed, 1, 2);
+  if ((holds & TIME) && next_unit(seed) < 0.5) {
+    d->shutter_open = 0.25;
+    d->shutter_close = next_between(seed, 1, 2);
+  }
   if (holds & EXPOSURE)
     d->exposure_time = next_between(seed, 0.1, 9);
   if ((holds & SCALE) && next_unit(seed) < 0.3) { /* a pose that mirrors and scales */
@@ -190,7 +195,8 @@ static void test_lens_and_time(void **state) {
     vlCameraDef *d = &r.camera;
     d->projection = VL_PROJECTION_PERSPECTIVE;
     d->fx = d->fy = VL_UNSET;
-    d->focal_mm = next_between(&seed, 10, 90), d->sensor_width_mm = 36;
+    d->focal_mm = next_between(&seed, 10, 90);
+    d->sensor_width_mm = 36;
     d->exposure_time = 1.0;
     d->lens = (vlLensDef){.f_number = next_between(&seed, 1, 9),
                           .unit_mm = next_between(&seed, 1, 2000),
@@ -203,15 +209,24 @@ static void test_lens_and_time(void **state) {
                           .vignetting = true,
                           .iso = 100,
                           .seconds = n & 1 ? 0.01 : VL_UNSET};
-    d->lens_radius = 0.0, d->focus_distance = next_between(&seed, 1, 5);
-    if (n & 2)
-      d->lens.focus_pixel[0] = 3.5, d->lens.focus_pixel[1] = 4.25, d->focus_distance = VL_UNSET;
-    if (n & 4)
-      d->lens.lens_tilt_x = 0.0, d->lens.tilt_y = 0.2;
+    d->lens_radius = 0.0;
+    d->focus_distance = next_between(&seed, 1, 5);
+    if (n & 2) {
+      d->lens.focus_pixel[0] = 3.5;
+      d->lens.focus_pixel[1] = 4.25;
+      d->focus_distance = VL_UNSET;
+    }
+    if (n & 4) {
+      d->lens.lens_tilt_x = 0.0;
+      d->lens.tilt_y = 0.2;
+    }
     d->shutter_points = 3;
-    for (int i = 0; i < 3; i++)
-      d->shutter_at[i] = 0.5 * i, d->shutter_value[i] = next_between(&seed, 0.1, 1);
-    d->readout = 0.02, d->readout_direction = VL_READOUT_LEFT;
+    for (int i = 0; i < 3; i++) {
+      d->shutter_at[i] = 0.5 * i;
+      d->shutter_value[i] = next_between(&seed, 0.1, 1);
+    }
+    d->readout = 0.02;
+    d->readout_direction = VL_READOUT_LEFT;
     if (d->has_matrix) {
       d->has_matrix_close = true;
       memcpy(d->world_from_camera_close, d->world_from_camera, sizeof d->world_from_camera);
@@ -219,7 +234,8 @@ static void test_lens_and_time(void **state) {
     } else {
       set3(d->eye_close, 1, 2, 3);
     }
-    d->pose_times[0] = 0.1, d->pose_times[1] = 0.7;
+    d->pose_times[0] = 0.1;
+    d->pose_times[1] = 0.7;
     d->stereo = (vlStereo){VL_STEREO_OFF_AXIS, 0.07, 3.0};
     d->stereo_eye = n & 8 ? VL_EYE_LEFT : VL_EYE_BOTH;
     vlCamera one = {0}, two = {0};
@@ -249,7 +265,8 @@ static void test_lens_and_time(void **state) {
           d->lens.ratio = 2.0;
           break;
         case 2:
-          d->lens.focus_pixel[0] = d->lens.focus_pixel[1] = 3.0, d->focus_distance = VL_UNSET;
+          d->lens.focus_pixel[0] = d->lens.focus_pixel[1] = 3.0;
+          d->focus_distance = VL_UNSET;
           break;
         case 3:
           d->lens.tilt_x = 0.1;
@@ -258,7 +275,9 @@ static void test_lens_and_time(void **state) {
           d->lens.vignetting = true;
           break;
         case 5:
-          d->shutter_points = 2, d->shutter_at[1] = 1.0, d->shutter_value[0] = 1.0;
+          d->shutter_points = 2;
+          d->shutter_at[1] = 1.0;
+          d->shutter_value[0] = 1.0;
           break;
         case 6:
           d->readout = 0.1;
@@ -288,8 +307,11 @@ static void test_gltf_extras(void **state) {
   uint64_t seed = 5;
   vlCameraRecord r = random_camera(&seed, all[0].holds);
   r.camera.projection = VL_PROJECTION_EQUIDISTANT;
-  r.camera.shutter_open = 0.0, r.camera.shutter_close = 1.0, r.camera.exposure_time = 1.0;
-  r.camera.lens_radius = 0.1, r.camera.focus_distance = 4.0;
+  r.camera.shutter_open = 0.0;
+  r.camera.shutter_close = 1.0;
+  r.camera.exposure_time = 1.0;
+  r.camera.lens_radius = 0.1;
+  r.camera.focus_distance = 4.0;
   lens(&r.camera, VL_DISTORTION_RADIAL, 4, k);
   vlCameraFileDef def = vl_default_camera_file_def();
   vlError error;
@@ -352,7 +374,8 @@ static void test_gltf_example(void **state) {
   char glb[2048] = "glTF\2\0\0\0????????JSON";
   size_t n = strlen(text);
   memset(glb + 8, 0, 8);
-  glb[12] = (char)(n & 255), glb[13] = (char)(n >> 8);
+  glb[12] = (char)(n & 255);
+  glb[13] = (char)(n >> 8);
   memcpy(glb + 16, "JSON", 4);
   memcpy(glb + 20, text, n);
   r = read_with(put_bytes("x.glb", glb, 20 + n), NULL);
@@ -466,7 +489,8 @@ static void test_matrices_land_on_the_pixel(void **state) {
   for (int k = 4; k < 7; k++)
     for (int n = 0; n < 50; n++) {
       vlCameraRecord r = random_camera(&seed, all[k].holds);
-      r.camera.near_plane = 0.5, r.camera.far_plane = 50.0;
+      r.camera.near_plane = 0.5;
+      r.camera.far_plane = 50.0;
       (void)through(&r, &all[k]);
       vlCamera c = make_or_fail(&r.camera);
       FILE *file = fopen(path_of(all[k].file), "r");
@@ -478,8 +502,10 @@ static void test_matrices_land_on_the_pixel(void **state) {
         char *at = strstr(text, i ? "\"view_matrix\": [" : "\"projection_matrix\": [");
         assert_non_null(at);
         at = strchr(at, '[') + 1;
-        for (int j = 0; j < 16; j++)
-          m[i][j] = strtod(at, &at), at += strspn(at, ", \n");
+        for (int j = 0; j < 16; j++) {
+          m[i][j] = strtod(at, &at);
+          at += strspn(at, ", \n");
+        }
       }
       double o[3], v[3], px = next_between(&seed, 0, c.width),
                          py = next_between(&seed, 0, c.height);
@@ -585,7 +611,8 @@ static void test_refusals(void **state) {
                        VL_ERROR_UNSUPPORTED);
       if (!strstr(error.message, fields[f].field))
         fail_msg("%s: %s", fields[f].field, error.message);
-      def.drop = drop, def.drop_count = 1;
+      def.drop = drop;
+      def.drop_count = 1;
       if (vl_camera_write(context, path_of("r"), &def, &r, &error) != VL_OK)
         fail_msg("%s", error.message);
       if (all[k].dialect == VL_CAMERA_DIALECT_GLTF)

@@ -29,7 +29,10 @@ static vlCameraRecord some_camera(void) {
   set3(d->eye, 1.1, 2.3, -3.7);
   set3(d->lookat, 0.1, 0.2, 0.7);
   d->roll = 0.3;
-  d->fx = 511.7, d->fy = 509.3, d->cx = 322.25, d->cy = 238.125;
+  d->fx = 511.7;
+  d->fy = 509.3;
+  d->cx = 322.25;
+  d->cy = 238.125;
   return record;
 }
 
@@ -113,10 +116,12 @@ static void test_round_trips_at_the_origin(void **state) {
   r.camera.distortion = VL_DISTORTION_NONE;
   r.camera.distortion_count = 0;
   r.camera.projection = VL_PROJECTION_DOUBLE_SPHERE;
-  r.camera.shape[0] = -0.2, r.camera.shape[1] = 0.6;
+  r.camera.shape[0] = -0.2;
+  r.camera.shape[1] = 0.6;
   there_and_back(&r, VL_CAMERA_DIALECT_KALIBR, "a.yaml", 1e-9);
   r.camera.projection = VL_PROJECTION_FOV;
-  r.camera.shape[0] = 0.9, r.camera.shape[1] = VL_UNSET;
+  r.camera.shape[0] = 0.9;
+  r.camera.shape[1] = VL_UNSET;
   there_and_back(&r, VL_CAMERA_DIALECT_KALIBR, "a.yaml", 1e-9);
 }
 
@@ -326,11 +331,13 @@ static void test_refusals(void **state) {
     vlCameraFileDef def = vl_default_camera_file_def();
     def.dialect = all[i].dialect;
     r.camera.skew = 2.0;
-    def.drop = skew + 1, def.drop_count = 1;
+    def.drop = skew + 1;
+    def.drop_count = 1;
     assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error),
                      VL_ERROR_UNSUPPORTED);
     assert_non_null(strstr(error.message, "\"skew\""));
-    def.drop = skew, def.drop_count = 2;
+    def.drop = skew;
+    def.drop_count = 2;
     assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error), VL_OK);
     r.camera.projection = VL_PROJECTION_PANINI;
     assert_int_equal(vl_camera_write(context, path_of(all[i].name), &def, &r, &error),

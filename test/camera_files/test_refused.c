@@ -43,7 +43,9 @@ static vlResult read_changed(const char *name, const char *from, const char *to,
     memcpy(text, to, size);
   }
   vlCameraFileDef def = vl_default_camera_file_def();
-  def.width = 64, def.height = 48, def.frame = frame;
+  def.width = 64;
+  def.height = 48;
+  def.frame = frame;
   vlResult result = vl_camera_read(context, put_bytes(name, text, size), &def, record, error);
   free(text);
   return result;
@@ -313,7 +315,8 @@ static void cut(const char *name) {
   size_t size;
   char *text = sample(name, &size);
   vlCameraFileDef def = vl_default_camera_file_def();
-  def.width = 64, def.height = 48;
+  def.width = 64;
+  def.height = 48;
   for (size_t n = 0; n < size; n += 1 + size / 40) {
     vlCameraRecord record;
     vlError error;

@@ -145,10 +145,12 @@ static void lists_of_poses(void **state) {
                  "# hello\r\n\r\nqw;qx;qy;qz;X;Y;Z\r\n%.17g;0;%.17g;0;1;2;3\r\n", q, q);
         break;
       case 2:
-        snprintf(text, sizeof text, "2.5 1 2 3 0 %.17g 0 %.17g\n", q, q), name = "tum.txt";
+        snprintf(text, sizeof text, "2.5 1 2 3 0 %.17g 0 %.17g\n", q, q);
+        name = "tum.txt";
         break;
       case 3:
-        snprintf(text, sizeof text, "0 0 1 1 0 1 0 2 -1 0 0 3\n"), name = "kitti.txt";
+        snprintf(text, sizeof text, "0 0 1 1 0 1 0 2 -1 0 0 3\n");
+        name = "kitti.txt";
         break;
       case 4:
         snprintf(

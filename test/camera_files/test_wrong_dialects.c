@@ -40,7 +40,8 @@ static void test_gltf(void **state) {
   /* glTF's own members were changed, but the extras were not */
   vlCameraRecord r = {.camera = vl_default_camera_def(64, 48), .frames = 1};
   vlError error;
-  r.camera.fov = 1.0, r.camera.fov_axis = VL_FOV_VERTICAL;
+  r.camera.fov = 1.0;
+  r.camera.fov_axis = VL_FOV_VERTICAL;
   assert_int_equal(vl_camera_write(context, path_of("w.gltf"), NULL, &r, &error), VL_OK);
   FILE *file = fopen(path_of("w.gltf"), "r");
   char text[4096], *at;

@@ -45,19 +45,27 @@ static void run(const vlColorKernels *k, float (*result)[PAD]) {
 #define KEEP(a) memcpy(result[at++], a, sizeof x.u)
 #define KEEP4(a) KEEP(a[0]), KEEP(a[1]), KEEP(a[2]), KEEP(a[3])
   k->visible_wavelengths(N, x.u, lambda, inv_pdf);
-  KEEP4(x.lambda), KEEP4(x.inv_pdf);
+  KEEP4(x.lambda);
+  KEEP4(x.inv_pdf);
   k->sigmoid_from_light(vl_rgb_table(VL_SPACE_REC2020), N, x.r, x.g, x.b, x.scale, x.c0, x.c1,
                         x.c2);
-  KEEP(x.scale), KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
+  KEEP(x.scale);
+  KEEP(x.c0);
+  KEEP(x.c1);
+  KEEP(x.c2);
   k->light_eval(N, x.c0, x.c1, x.c2, x.scale, vl_space_illuminant(VL_SPACE_REC2020), l, out);
   KEEP4(x.out);
   float m[9];
   vl_rgb_from_xyz(VL_SPACE_SRGB, m);
   k->rgb_from_radiance(vl_cie_xyz0, m, N, o, l, p, x.r, x.g, x.b);
-  KEEP(x.r), KEEP(x.g), KEEP(x.b);
+  KEEP(x.r);
+  KEEP(x.g);
+  KEEP(x.b);
   k->sigmoid_from_rgb(vl_rgb_table(VL_SPACE_SRGB), N, input.r, input.g, input.b, x.c0, x.c1,
                       x.c2);
-  KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
+  KEEP(x.c0);
+  KEEP(x.c1);
+  KEEP(x.c2);
   k->sigmoid_eval(N, x.c0, x.c1, x.c2, NULL, l, out);
   KEEP4(x.out);
   k->dense_eval(N, dense_pool, l, out);
@@ -70,7 +78,9 @@ static void run(const vlColorKernels *k, float (*result)[PAD]) {
 static void fill(void) {
   for (int i = 0; i < PAD; i++) {
     input.u[i] = uniform();
-    input.r[i] = uniform(), input.g[i] = uniform(), input.b[i] = uniform();
+    input.r[i] = uniform();
+    input.g[i] = uniform();
+    input.b[i] = uniform();
     if (i % 7 == 0)
       input.r[i] = input.g[i] = input.b[i];
     if (i % 11 == 0)
@@ -223,13 +233,18 @@ static double colour_noise(float (*sample)(float, float *), const float reflecta
                    &inv_pdf[c][i]);
     vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), reflectance[0],
                                       reflectance[1], reflectance[2]);
-    for (int i = 0; i < PAD; i++)
-      x.c0[i] = s.c0, x.c1[i] = s.c1, x.c2[i] = s.c2;
+    for (int i = 0; i < PAD; i++) {
+      x.c0[i] = s.c0;
+      x.c1[i] = s.c1;
+      x.c2[i] = s.c2;
+    }
     k->light_eval(PAD, x.c0, x.c1, x.c2, NULL, vl_space_illuminant(VL_SPACE_SRGB), l, out);
     k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     for (int c = 0; c < 3; c++)
-      for (int i = 0; i < n; i++)
-        sum[c] += (double)rgb[c][i], squares[c] += (double)rgb[c][i] * (double)rgb[c][i];
+      for (int i = 0; i < n; i++) {
+        sum[c] += (double)rgb[c][i];
+        squares[c] += (double)rgb[c][i] * (double)rgb[c][i];
+      }
   }
   for (int c = 0; c < 3; c++)
     noise += (squares[c] * STEPS / (sum[c] * sum[c]) - 1) / 3;
@@ -274,9 +289,11 @@ static void test_white(void **state) {
     vl_rgb_from_xyz((vlColorSpace)space, m);
     k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     double sum[3] = {0};
-    for (int i = 0; i < PAD; i++)
-      sum[0] += (double)x.r[i] / PAD, sum[1] += (double)x.g[i] / PAD,
-          sum[2] += (double)x.b[i] / PAD;
+    for (int i = 0; i < PAD; i++) {
+      sum[0] += (double)x.r[i] / PAD;
+      sum[1] += (double)x.g[i] / PAD;
+      sum[2] += (double)x.b[i] / PAD;
+    }
     for (int c = 0; c < 3; c++)
       assert_float_equal(sum[c], 1.0, 2e-3);
   }

@@ -185,7 +185,8 @@ static void test_continuous(void **state) {
     prepare((vlColorSpace)space);
     for (int walk = 0; walk < 24; walk++) {
       float a[3], b[3];
-      draw(walk % 2, a), draw(0, b);
+      draw(walk % 2, a);
+      draw(0, b);
       double last[3] = {0}, now[3];
       float last_values[26] = {0};
       enum { STEPS = 1000 };

@@ -103,8 +103,10 @@ static void daylight(void **state) {
   double light[VL_LAMBDA_COUNT], sum = 0, whole = 0;
   const float *d65 = vl_named_spectrum("stdillum-D65");
   vl_daylight(6500, light); /* 6504 K with the constant of its time */
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
-    sum += light[i], whole += (double)d65[i];
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+    sum += light[i];
+    whole += (double)d65[i];
+  }
   for (int i = 0; i < VL_LAMBDA_COUNT; i++)
     assert_true(fabs(light[i] / sum * whole / (double)d65[i] - 1) < 4e-3);
   vl_daylight(3000, light);

@@ -215,7 +215,8 @@ static void test_gold_file(void **state) {
         assert_float_equal(dense[w - 360], v0 + (w - l0) / (l - l0) * (v - v0), 1e-5);
         checked++;
       }
-      l0 = l, v0 = v;
+      l0 = l;
+      v0 = v;
     }
     fclose(file);
     assert_true(checked >= VL_LAMBDA_COUNT);
@@ -372,8 +373,10 @@ static void test_channels(void **state) {
              l = (double)light[i];
       assert_true(t >= 0 && t <= 1 && share[3] == 0);
       assert_true(fabs((double)share[0] + (double)share[1] + (double)share[2] - 1) < 2e-7);
-      xyz[0] += t * l * (double)vl_cie_x()[i], xyz[1] += t * l * (double)vl_cie_y()[i];
-      xyz[2] += t * l * (double)vl_cie_z()[i], y += l * (double)vl_cie_y()[i];
+      xyz[0] += t * l * (double)vl_cie_x()[i];
+      xyz[1] += t * l * (double)vl_cie_y()[i];
+      xyz[2] += t * l * (double)vl_cie_z()[i];
+      y += l * (double)vl_cie_y()[i];
     }
     for (int c = 0; c < 3; c++) {
       double seen = ((double)m[3 * c] * xyz[0] + (double)m[3 * c + 1] * xyz[1] +

@@ -47,14 +47,22 @@ static bool is_said_by_another(const char *name) {
 
 /* Parameters without a member of their own type. */
 static bool set_by_rule(const char *name, vlSceneDefs *defs) {
-  if (strcmp(name, "iso") == 0)
-    return defs->develop.exposure = 2, true;
-  if (strcmp(name, "coordinatesystem") == 0)
-    return defs->gbuffer = VL_GBUFFER_WORLD, true;
-  if (strcmp(name, "pixelbounds") == 0)
-    return defs->film.crop[0] = 3, true;
-  if (strcmp(name, "filename") == 0)
-    return snprintf(defs->output, sizeof defs->output, "b.exr"), true;
+  if (strcmp(name, "iso") == 0) {
+    defs->develop.exposure = 2;
+    return true;
+  }
+  if (strcmp(name, "coordinatesystem") == 0) {
+    defs->gbuffer = VL_GBUFFER_WORLD;
+    return true;
+  }
+  if (strcmp(name, "pixelbounds") == 0) {
+    defs->film.crop[0] = 3;
+    return true;
+  }
+  if (strcmp(name, "filename") == 0) {
+    snprintf(defs->output, sizeof defs->output, "b.exr");
+    return true;
+  }
   return false;
 }
 
@@ -97,7 +105,8 @@ static void check_parameter(vlFilmKind kind, const vlParameter *p) {
   if (kind == VL_FILM_SPECTRAL)
     defs->film.buckets = 8;
   set_other(p, defs);
-  defs->camera.width = defs->film.width, defs->camera.height = defs->film.height;
+  defs->camera.width = defs->film.width;
+  defs->camera.height = defs->film.height;
   if (vl_scene_save(scene, path, NULL, &error) != VL_OK)
     fail_msg("%s: %s", p->name, error.message);
   vl_scene_destroy(scene);

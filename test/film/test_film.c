@@ -56,10 +56,14 @@ static void shuffle(uint64_t seed) {
   for (int i = COUNT - 1; i > 0; i--) {
     int j = (int)(stat_bits(&rng) % (uint64_t)(i + 1));
     int32_t x = px_[i], y = py_[i];
-    px_[i] = px_[j], py_[i] = py_[j], px_[j] = x, py_[j] = y;
+    px_[i] = px_[j];
+    py_[i] = py_[j];
+    px_[j] = x;
+    py_[j] = y;
     for (int c = 0; c < 5; c++) {
       float t = columns[c][i];
-      columns[c][i] = columns[c][j], columns[c][j] = t;
+      columns[c][i] = columns[c][j];
+      columns[c][j] = t;
     }
   }
 }
@@ -97,7 +101,8 @@ static void test_exact(void **state) {
     for (int i = 0; i < COUNT; i++)
       if (py_[i] * WIDTH + px_[i] == p) {
         long double w = roundl((long double)w_[i] * 0x1p24L) * 0x1p-24L;
-        sum += w * r_[i], weight += w;
+        sum += w * r_[i];
+        weight += w;
       }
     assert_true(weight > 0);
     assert_true(fabsl(one_[4 * p] - sum / weight) <= 1e-7L * fabsl(sum / weight));
@@ -128,8 +133,11 @@ static void test_constant(void **state) {
     vl_film_destroy(film);
     film = new_film();
     for (int i = 0; i < COUNT; i++) {
-      px_[i] = i % WIDTH, py_[i] = i / WIDTH % HEIGHT;
-      r_[i] = g_[i] = VALUES[k], b_[i] = -VALUES[k], a_[i] = 1.0f;
+      px_[i] = i % WIDTH;
+      py_[i] = i / WIDTH % HEIGHT;
+      r_[i] = g_[i] = VALUES[k];
+      b_[i] = -VALUES[k];
+      a_[i] = 1.0f;
       w_[i] = stat_bits(&rng) % 5 == 0 ? -1.1376f : 1.1376f * stat_float(&rng) + 0.5f;
     }
     whole_pass(film, 0, COUNT);
@@ -200,7 +208,8 @@ static void test_coarse_def(void **state) {
   vlFilmDef def = vl_default_film_def(33, 17);
   const uint32_t crop[4] = {5, 3, 30, 16}, covered[4] = {1, 0, 8, 4};
   memcpy(def.crop, crop, sizeof crop);
-  def.errors = true, def.buckets = 3;
+  def.errors = true;
+  def.buckets = 3;
   vlFilmDef coarse = vl_coarse_film_def(&def, 4), same = vl_coarse_film_def(&def, 0);
   assert_int_equal(coarse.width, 9);
   assert_int_equal(coarse.height, 5);
@@ -260,7 +269,8 @@ static void test_wrong_samples(void **state) {
       random_samples(5);
       w_[0] = 1;
       columns[c][1] = bad[k];
-      px_[1] = 7, py_[1] = 3;
+      px_[1] = 7;
+      py_[1] = 3;
       int32_t x = -1, y = -1;
       vlFilmSamples s = {1, px_ + 1, py_ + 1, r_ + 1, g_ + 1, b_ + 1, a_ + 1, w_ + 1, NULL};
       assert_int_equal(vl_film_add(film, &s, &x, &y), 1);
@@ -283,11 +293,18 @@ static void test_wrong_samples(void **state) {
   assert_int_equal(vl_film_begin_pass(film), VL_OK);
   px_[0] = py_[0] = px_[1] = py_[1] = 0;
   r_[0] = g_[0] = b_[0] = a_[0] = r_[1] = g_[1] = b_[1] = a_[1] = 1;
-  w_[0] = 1, w_[1] = -1;
+  w_[0] = 1;
+  w_[1] = -1;
   assert_int_equal(add(film, 0, 2), 0);
-  for (int i = 0; i < COUNT; i++)
-    px_[i] = 1, py_[i] = 0, r_[i] = 0x1.fffffep39f, g_[i] = -0x1.fffffep39f, b_[i] = 1e-42f,
-    a_[i] = 1, w_[i] = 15.5f;
+  for (int i = 0; i < COUNT; i++) {
+    px_[i] = 1;
+    py_[i] = 0;
+    r_[i] = 0x1.fffffep39f;
+    g_[i] = -0x1.fffffep39f;
+    b_[i] = 1e-42f;
+    a_[i] = 1;
+    w_[i] = 15.5f;
+  }
   for (int k = 0; k < 20; k++)
     assert_int_equal(add(film, 0, COUNT), 0);
   vl_film_commit_pass(film);
@@ -301,12 +318,20 @@ static void test_wrong_samples(void **state) {
 static void test_crop_and_develop(void **state) {
   (void)state;
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
-  def.crop[0] = 3, def.crop[1] = 2, def.crop[2] = 7, def.crop[3] = 8;
+  def.crop[0] = 3;
+  def.crop[1] = 2;
+  def.crop[2] = 7;
+  def.crop[3] = 8;
   vlFilm *film;
   assert_int_equal(vl_film_create(context_, &def, &film), VL_OK);
-  for (int i = 0; i < 24; i++)
-    px_[i] = 3 + i % 4, py_[i] = 2 + i / 4, r_[i] = (float)i, g_[i] = b_[i] = 0.25f,
-    a_[i] = 0.5f, w_[i] = 1;
+  for (int i = 0; i < 24; i++) {
+    px_[i] = 3 + i % 4;
+    py_[i] = 2 + i / 4;
+    r_[i] = (float)i;
+    g_[i] = b_[i] = 0.25f;
+    a_[i] = 0.5f;
+    w_[i] = 1;
+  }
   whole_pass(film, 0, 24);
   vlDevelopDef develop_def = vl_default_develop_def();
   develop_def.exposure = 4;
@@ -343,11 +368,14 @@ static void test_wrong_defs(void **state) {
   assert_int_equal(vl_film_create(context_, &def, &film), VL_ERROR_ARGUMENT);
   def = vl_default_film_def(70000, 5);
   assert_int_equal(vl_film_create(context_, &def, &film), VL_ERROR_ARGUMENT);
-  def = good, def.crop[2] = WIDTH + 1;
+  def = good;
+  def.crop[2] = WIDTH + 1;
   assert_int_equal(vl_film_create(context_, &def, &film), VL_ERROR_ARGUMENT);
-  def = good, def.crop[1] = def.crop[3];
+  def = good;
+  def.crop[1] = def.crop[3];
   assert_int_equal(vl_film_create(context_, &def, &film), VL_ERROR_ARGUMENT);
-  def = good, def.filter.radius_x = NAN;
+  def = good;
+  def.filter.radius_x = NAN;
   assert_int_equal(vl_film_create(context_, &def, &film), VL_ERROR_ARGUMENT);
   assert_null(film);
   assert_int_equal(vl_film_create(NULL, &good, &film), VL_ERROR_ARGUMENT);

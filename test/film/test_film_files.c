@@ -84,7 +84,8 @@ enum { PLAIN, ERRORS, SPECTRUM, KINDS };
 
 static vlFilmDef film_def(int kind) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
-  def.crop[0] = 5, def.crop[3] = HEIGHT - 2;
+  def.crop[0] = 5;
+  def.crop[3] = HEIGHT - 2;
   def.errors = kind == ERRORS;
   def.buckets = kind == SPECTRUM ? 3 : 0;
   return def;
@@ -195,17 +196,21 @@ static size_t old_data(const vlFilmDef *def, uint32_t format, size_t pixels, boo
                        const char *from, char *to) {
   char *start = to;
   memcpy(to, from, pixels * sizeof(vlFilmPixel));
-  from += pixels * sizeof(vlFilmPixel), to += pixels * sizeof(vlFilmPixel);
+  from += pixels * sizeof(vlFilmPixel);
+  to += pixels * sizeof(vlFilmPixel);
   for (size_t i = 0; i < pixels && def->errors; i++) {
     vlFilmMoments m;
     memcpy(&m, from, sizeof m);
     memcpy(to, m.plain, sizeof m.plain);
     memcpy(to + sizeof m.plain, m.squares, sizeof m.squares);
     memcpy(to + sizeof m.plain + sizeof m.squares, &m.samples, sizeof m.samples);
-    from += sizeof m, to += sizeof m.plain + sizeof m.squares + sizeof m.samples;
+    from += sizeof m;
+    to += sizeof m.plain + sizeof m.squares + sizeof m.samples;
   }
-  if (compared && format == 2)
-    memset(to, 1, 16 * pixels), to += 16 * pixels;
+  if (compared && format == 2) {
+    memset(to, 1, 16 * pixels);
+    to += 16 * pixels;
+  }
   return (size_t)(to - start);
 }
 
@@ -322,7 +327,8 @@ static void shuffle(const char **paths, uint32_t count, uint32_t seed) {
   for (uint32_t i = count; i > 1; i--) {
     uint32_t k = vl_hash2(seed, i) % i;
     const char *swap = paths[i - 1];
-    paths[i - 1] = paths[k], paths[k] = swap;
+    paths[i - 1] = paths[k];
+    paths[k] = swap;
   }
 }
 
@@ -565,7 +571,8 @@ static void memory_of_json_runs_out(void **state) {
   for (json_at = 0; json_at <= total; json_at++)
     for (int stays = 0; stays < (json_at % 4 == 0 ? 2 : 1);
          stays++) { /* "and all later" at every fourth */
-      json_calls = 0, json_stays = stays && json_at;
+      json_calls = 0;
+      json_stays = stays && json_at;
       vlResult result = life_with_receipt();
       if (!json_at && !stays) {
         total = json_calls;

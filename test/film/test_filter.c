@@ -32,10 +32,21 @@ static void refuse(const vlPixelFilter *filter) {
 /* Default, a smaller one of unequal radii, a wide one. */
 static vlPixelFilter variant(int kind, int k) {
   vlPixelFilter f = vl_default_pixel_filter((vlPixelFilterKind)kind);
-  if (k == 1)
-    f.radius_x *= 0.75f, f.radius_y *= 0.6f, f.sigma = 0.3f, f.b = 0, f.c = 0.5f, f.tau = 2;
-  if (k == 2)
-    f.radius_x = f.radius_y = 7.5f, f.sigma = 4, f.b = 1, f.c = 0, f.tau = 8;
+  if (k == 1) {
+    f.radius_x *= 0.75f;
+    f.radius_y *= 0.6f;
+    f.sigma = 0.3f;
+    f.b = 0;
+    f.c = 0.5f;
+    f.tau = 2;
+  }
+  if (k == 2) {
+    f.radius_x = f.radius_y = 7.5f;
+    f.sigma = 4;
+    f.b = 1;
+    f.c = 0;
+    f.tau = 8;
+  }
   return f;
 }
 
@@ -67,8 +78,10 @@ static void test_shape(void **state) {
       double sum = 0, magnitude = 0, mean_x = 0;
       int batches = 150;
       for (int b = 0; b < batches; b++) {
-        for (int i = 0; i < BATCH; i++)
-          u_[i] = stat_float(&rng), v_[i] = stat_float(&rng);
+        for (int i = 0; i < BATCH; i++) {
+          u_[i] = stat_float(&rng);
+          v_[i] = stat_float(&rng);
+        }
         vl_filter_kernels(vl_isa_best())->sample(&table_, BATCH, u_, v_, dx_, dy_, w_);
         for (int i = 0; i < BATCH; i++) {
           double gx = (dx_[i] / f.radius_x + 1) * 0.5 * NX,
@@ -115,8 +128,10 @@ static void test_order(void **state) {
       double sum = 0;
       float before = -100;
       for (int b = 0; b < 64; b++) {
-        for (int i = 0; i < BATCH; i++)
-          u_[i] = ((float)(b * BATCH + i) + 0.5f) / (64 * BATCH), v_[i] = 0.5f;
+        for (int i = 0; i < BATCH; i++) {
+          u_[i] = ((float)(b * BATCH + i) + 0.5f) / (64 * BATCH);
+          v_[i] = 0.5f;
+        }
         vl_filter_kernels(vl_isa_best())->sample(&table_, BATCH, u_, v_, dx_, dy_, w_);
         for (int i = 0; i < BATCH; i++) {
           assert_true(dx_[i] >= before && fabsf(dx_[i]) <= f.radius_x);
@@ -130,8 +145,11 @@ static void test_order(void **state) {
       if (!(fabs(sum / (64.0 * BATCH) - middle) < 1e-4 * middle))
         fail_msg("%s, variant %d: mean weight %.9g, not %.9g", NAMES[kind], k,
                  sum / (64.0 * BATCH), middle);
-      for (int i = 0; i < 64; i++)
-        u_[i] = (float)i / 128, u_[64 + i] = 1 - u_[i], v_[i] = v_[64 + i] = 0.25f;
+      for (int i = 0; i < 64; i++) {
+        u_[i] = (float)i / 128;
+        u_[64 + i] = 1 - u_[i];
+        v_[i] = v_[64 + i] = 0.25f;
+      }
       vl_filter_kernels(vl_isa_best())->sample(&table_, 128, u_, v_, dx_, dy_, w_);
       for (int i = 0; i < 64; i++)
         assert_true(dx_[i] == -dx_[64 + i] && w_[i] == w_[64 + i]);
@@ -142,9 +160,15 @@ static void test_bits(void **state) {
   (void)state;
   static float rx[BATCH], ry[BATCH], rw[BATCH];
   statRng rng = stat_rng(3);
-  for (int i = 0; i < BATCH; i++)
-    u_[i] = stat_float(&rng), v_[i] = stat_float(&rng);
-  u_[0] = 0, v_[1] = 0, u_[2] = 0x1.fffffep-1f, v_[3] = 0x1.fffffep-1f, u_[4] = 0.5f,
+  for (int i = 0; i < BATCH; i++) {
+    u_[i] = stat_float(&rng);
+    v_[i] = stat_float(&rng);
+  }
+  u_[0] = 0;
+  v_[1] = 0;
+  u_[2] = 0x1.fffffep-1f;
+  v_[3] = 0x1.fffffep-1f;
+  u_[4] = 0.5f;
   v_[5] = 0.5f;
   for (int kind = 0; kind < KINDS; kind++)
     for (int k = 0; k < 3; k++) {
@@ -208,7 +232,8 @@ static void test_refusals(void **state) {
   f.sigma = 1e-3f; /* far smaller than the radius */
   compile(&f);
   f = vl_default_pixel_filter(VL_PIXEL_FILTER_MITCHELL);
-  f.b = 9, f.c = 0; /* below zero at its centre */
+  f.b = 9;
+  f.c = 0; /* below zero at its centre */
   refuse(&f);
   f = vl_default_pixel_filter(VL_PIXEL_FILTER_LANCZOS);
   f.radius_x = f.radius_y = 32;

@@ -24,7 +24,8 @@ enum { RARE = 64 };
 static const float dark_sample = 0.01f, bright_sample = 2;
 
 static float draw_rare(statRng *rng, float mean, float deviation) {
-  (void)mean, (void)deviation;
+  (void)mean;
+  (void)deviation;
   return stat_float(rng) * RARE < 1 ? bright_sample : dark_sample;
 }
 
@@ -115,7 +116,8 @@ static void bound_holds(void **state) {
       double pixels = (double)((place[2] - place[0]) * (place[3] - place[1])), noise;
       noise = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1);
       double errors = (noise * noise / square - 1) / sqrt(2.0 / (SPP - 1) / pixels);
-      sum += errors, squares += errors * errors;
+      sum += errors;
+      squares += errors * errors;
     }
     vl_film_destroy(film);
   }

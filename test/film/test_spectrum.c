@@ -32,7 +32,8 @@ static int tear_down(void **state) {
 static vlFilmDef film_def(void) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   def.buckets = BUCKETS;
-  def.lambda_min = 400, def.lambda_max = 700;
+  def.lambda_min = 400;
+  def.lambda_max = 700;
   return def;
 }
 static vlFilm *new_film(void) {
@@ -59,8 +60,10 @@ static void random_samples(uint64_t seed) {
 static void add(vlFilm *film, int from, int count) {
   vlFilmSpectra s = {
       .n = (uint32_t)count, .px = px_ + from, .py = py_ + from, .weight = weight_ + from};
-  for (int c = 0; c < 4; c++)
-    s.radiance[c] = value_[c] + from, s.lambda[c] = lambda_[c] + from;
+  for (int c = 0; c < 4; c++) {
+    s.radiance[c] = value_[c] + from;
+    s.lambda[c] = lambda_[c] + from;
+  }
   vl_film_add_spectra(film, &s);
   vlFilmSamples colors = {(uint32_t)count, px_ + from,     py_ + from,
                           zero_ + from,    zero_ + from,   zero_ + from,
@@ -150,10 +153,12 @@ static void wrong(void **state) {
   for (int i = 0; i < 6; i++) {
     vlFilmDef def = film_def();
     vlFilm *film;
-    if (i < 5)
-      def.lambda_min = ranges[i][0], def.lambda_max = ranges[i][1];
-    else
+    if (i < 5) {
+      def.lambda_min = ranges[i][0];
+      def.lambda_max = ranges[i][1];
+    } else {
       def.buckets = 1001;
+    }
     assert_int_equal(vl_film_create(context_, &def, &film), VL_ERROR_ARGUMENT);
   }
   vlFilmDef plain = vl_default_film_def(WIDTH, HEIGHT);
@@ -187,8 +192,10 @@ static vlResult whole_film(vlContext *context, void *user) {
     r = vl_film_create(context, &def, &film[i]);
     if (r == VL_OK)
       r = vl_film_begin_pass(film[i]);
-    if (r == VL_OK && i)
-      add(film[i], 0, 100), vl_film_commit_pass(film[i]);
+    if (r == VL_OK && i) {
+      add(film[i], 0, 100);
+      vl_film_commit_pass(film[i]);
+    }
     if (r == VL_OK && !i)
       vl_film_abandon_pass(film[i]);
   }

@@ -37,7 +37,8 @@ static void light_becomes_white(void **state) {
     double xyz[3] = {0, 0, 0}, white[3], t = kelvin * 1.4388 / 1.4380;
     for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
       double nm = 360 + i, light = pow(nm / 560, -5) / (exp(1.438776877e7 / (nm * t)) - 1);
-      xyz[0] += light * (double)vl_cie_x()[i], xyz[1] += light * (double)vl_cie_y()[i];
+      xyz[0] += light * (double)vl_cie_x()[i];
+      xyz[1] += light * (double)vl_cie_y()[i];
       xyz[2] += light * (double)vl_cie_z()[i];
     }
     float m[9], xy[8];

@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                             : "input",
              *path = fuzz_file(name, data, size);
   vlCameraFileDef def = vl_default_camera_file_def();
-  def.width = 64,
+  def.width = 64;
   def.height = 48; /* for files without an image size; all other sizes are the file's */
   if (vl_camera_read(context, path, &def, &record, &error) == VL_OK &&
       vl_camera_make(&record.camera, &camera, NULL, &error) == VL_OK) {

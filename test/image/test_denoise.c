@@ -55,7 +55,9 @@ static vlImage *textured(vlContext *context, float sigma) {
         p[4 + c] = sigma;
         p[7 + c] = albedo(x, y);
       }
-      p[3] = 1.0f, p[12] = 1.0f, p[13] = 0.25f;
+      p[3] = 1.0f;
+      p[12] = 1.0f;
+      p[13] = 0.25f;
     }
   return image;
 }
@@ -92,7 +94,10 @@ static void test_constant_stays(void **state) {
     for (uint32_t y = 0; y < H; y++)
       for (uint32_t x = 0; x < W; x++) {
         float *p = at(image, x, y);
-        p[0] = 0.5f, p[1] = 3.0f, p[2] = 1e-3f, p[3] = 0.75f;
+        p[0] = 0.5f;
+        p[1] = 3.0f;
+        p[2] = 1e-3f;
+        p[3] = 0.75f;
         for (int c = 0; c < 3; c++)
           p[4 + c] = noisy ? 0.4f * p[c] : 0.0f;
       }

@@ -86,8 +86,10 @@ static inline char *gltf_base64(const uint8_t *data, size_t size) {
 
 static inline void gltf_file(const char *path, const void *data, size_t size) {
   FILE *f = fopen(path, "wb");
-  if (f)
-    fwrite(data, 1, size, f), fclose(f);
+  if (f) {
+    fwrite(data, 1, size, f);
+    fclose(f);
+  }
 }
 
 static inline void gltf_write_text(const Gltf *g, const char *path, const char *rest) {

@@ -62,8 +62,10 @@ static void doubles_and_ties(void **state) {
     same(text);
     char *e = strchr(text, 'e');
     char tail[16] = "";
-    if (e)
-      snprintf(tail, sizeof tail, "%s", e), n = (int)(e - text);
+    if (e) {
+      snprintf(tail, sizeof tail, "%s", e);
+      n = (int)(e - text);
+    }
     snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".",
              tail); /* above */
     same(text);
@@ -104,10 +106,13 @@ static void ends(void **state) {
     same(texts[i]);
   static char text[4000];
   memset(text, '0', sizeof text - 1);
-  text[1] = '.', text[3000] = '7';
+  text[1] = '.';
+  text[3000] = '7';
   strcpy(text + 3600, "e2999");
   same(text); /* 7 after 3000 zeros; the exponent makes it 0.7 */
-  text[0] = '1', text[2500] = '.', text[1] = '0';
+  text[0] = '1';
+  text[2500] = '.';
+  text[1] = '0';
   strcpy(text + 3600, "e-2499");
   same(text);
 }

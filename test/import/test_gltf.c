@@ -346,7 +346,8 @@ static void cameras(void **state) {
     assert_false(s->camera_missing);
     vlCamera camera;
     vlCameraDef made = s->camera;
-    made.width = s->film.width, made.height = s->film.height;
+    made.width = s->film.width;
+    made.height = s->film.height;
     assert_int_equal(vl_camera_make(&made, &camera, NULL, NULL), VL_OK);
     double pixel[2], z, point[3] = {0, 0, 0};
     if (i < 3) {
@@ -356,7 +357,8 @@ static void cameras(void **state) {
       assert_near(pixel[1], 0, 1e-6);
       assert_near(z, 5, 1e-9);
     } else {
-      point[0] = 2, point[2] = -1; /* the right edge; the node's scale makes nothing larger */
+      point[0] = 2;
+      point[2] = -1; /* the right edge; the node's scale makes nothing larger */
       assert_true(vl_camera_project(&camera, point, pixel, &z));
       assert_near(pixel[0], s->film.width, 1e-6);
       assert_near(z, 1, 1e-9);
@@ -382,7 +384,8 @@ static void completion(void **state) {
        SCENE
        "\"nodes\":[{\"mesh\":0,\"scale\":[30,2,1],\"translation\":[100,7,-3]}]," SQUARE_MESH);
   vlCompleteDef def = vl_default_complete_def();
-  def.width = 300, def.height = 200;
+  def.width = 300;
+  def.height = 200;
   def.ground = true;
   assert_int_equal(vl_scene_complete(l.scene, &def, NULL), VL_OK);
   const vlSceneDefs *s = &l.scene->defs;

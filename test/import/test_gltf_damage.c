@@ -116,7 +116,8 @@ static vlResult try_file(const uint8_t *data, size_t size, char message[512]) {
   vlCamera camera, small;
   if (r == VL_OK) {
     vlCameraDef def = l.scene->defs.camera;
-    def.width = l.scene->defs.film.width, def.height = l.scene->defs.film.height;
+    def.width = l.scene->defs.film.width;
+    def.height = l.scene->defs.film.height;
     r = vl_camera_make(&def, &camera, NULL, &l.error);
   }
   if (r == VL_OK)

@@ -18,8 +18,11 @@ static void skins(void **state) {
   Gltf *g = new_square();
   uint8_t joints[16] = {0};
   float weights[16] = {0}, bind[32] = {0};
-  for (int i = 0; i < 4; i++)
-    joints[4 * i + 1] = 1, weights[4 * i] = 0.25f, weights[4 * i + 1] = 0.75f;
+  for (int i = 0; i < 4; i++) {
+    joints[4 * i + 1] = 1;
+    weights[4 * i] = 0.25f;
+    weights[4 * i + 1] = 0.75f;
+  }
   for (int i = 0; i < 8; i++)
     bind[5 * (i % 4) + 16 * (i / 4)] = 1;
   gltf_accessor(g, gltf_view(g, joints, sizeof joints, 0), 5121, 4, "VEC4", NULL); /* 2 */
@@ -47,9 +50,11 @@ static void skins(void **state) {
   const float *a = shape(&l, 0)->positions, *b = shape(&l, 1)->positions;
   const double *pa = shape(&l, 0)->group_from_shape, *pb = shape(&l, 1)->group_from_shape;
   /* joints of the first: (4, 0, 0) and (4, 4, 0); corner (1, 1, 0) */
-  is_near((double)a[9] + pa[3], 5, 1e-5), is_near((double)a[10] + pa[7], 1 + 0.75 * 4, 1e-5);
+  is_near((double)a[9] + pa[3], 5, 1e-5);
+  is_near((double)a[10] + pa[7], 1 + 0.75 * 4, 1e-5);
   /* of the second: moved to z = -8, the other twice as large as well: 0.25 + 0.75 * 2 */
-  is_near((double)b[9] + pb[3], 1.75, 1e-5), is_near((double)b[11] + pb[11], -8, 1e-5);
+  is_near((double)b[9] + pb[3], 1.75, 1e-5);
+  is_near((double)b[11] + pb[11], -8, 1e-5);
   end_load(&l);
   free(g);
 }
@@ -62,8 +67,10 @@ static void eight_influences(void **state) {
   uint16_t second[16] = {0}, rest_weights[16];
   float weights[16];
   for (int i = 0; i < 16; i++) {
-    first[i] = (uint8_t)(i % 4), second[i] = (uint16_t)(4 + i % 4);
-    weights[i] = 0.125f, rest_weights[i] = 8192;
+    first[i] = (uint8_t)(i % 4);
+    second[i] = (uint16_t)(4 + i % 4);
+    weights[i] = 0.125f;
+    rest_weights[i] = 8192;
   }
   gltf_accessor(g, gltf_view(g, first, sizeof first, 0), 5121, 4, "VEC4", NULL);
   gltf_floats(g, weights, 4, "VEC4", 4);
@@ -100,7 +107,8 @@ static void many_targets(void **state) {
     sprintf(targets + strlen(targets), "%s{\"POSITION\":%d}", k ? "," : "",
             gltf_floats(g, up, 4, "VEC3", 3));
     sprintf(weights + strlen(weights), "%s%g", k ? "," : "", k == 3 ? 0.5 : 0);
-    keys[k] = 0, keys[TARGETS + k] = k == 15 ? 1 : k == 0 ? -1 : 0;
+    keys[k] = 0;
+    keys[TARGETS + k] = k == 15 ? 1 : k == 0 ? -1 : 0;
   }
   int input = gltf_floats(g, times, 2, "SCALAR", 1),
       output = gltf_floats(g, keys, 2 * TARGETS, "SCALAR", 1);

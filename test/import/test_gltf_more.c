@@ -29,7 +29,8 @@ static void motion(void **state) {
   gltf_floats(g, weights, 2, "SCALAR", 1); /* 4 */
   gltf_floats(g, up, 4, "VEC3", 3);        /* 5 */
   vlLoadDef def = vl_default_load_def();
-  def.time = 1, def.time_close = 2;
+  def.time = 1;
+  def.time_close = 2;
   const char *moved = SCENE
       "\"nodes\":[{\"children\":[1,2]},{\"mesh\":0},{\"camera\":0}],"
       "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":0.1}}],"
@@ -245,8 +246,10 @@ static void surroundings(void **state) {
     vlImage *image;
     assert_int_equal(vl_image_create(l.context, &def, &image), VL_OK);
     uint8_t *p = vl_image_pixels(image);
-    for (int i = 0; i < 16; i++)
-      p[4 * i] = p[4 * i + 1] = p[4 * i + 2] = 255, p[4 * i + 3] = face == 2 ? 51 : 255;
+    for (int i = 0; i < 16; i++) {
+      p[4 * i] = p[4 * i + 1] = p[4 * i + 2] = 255;
+      p[4 * i + 3] = face == 2 ? 51 : 255;
+    }
     for (int i = 0; i < 16 && face == 0; i++)
       p[4 * i + 1] = p[4 * i + 2] = 0;
     char name[20];
@@ -376,7 +379,8 @@ static void draco(void **state) {
     double length = 0, along = 0;
     for (int k = 0; k < 3; k++) {
       double p = d->positions[3 * i + (uint32_t)k], n = d->normals[3 * i + (uint32_t)k];
-      length += p * p, along += p * n;
+      length += p * p;
+      along += p * n;
     }
     assert_true(fabs(sqrt(length) - 1) < 2e-3 && along > 0.99);
   }

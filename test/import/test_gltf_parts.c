@@ -26,12 +26,15 @@ static void vertex_colors(void **state) {
   uint8_t bytes[16], bytes3[16] = {0};
   uint16_t shorts[16], shorts3[16] = {0};
   float floats3[12];
-  for (int i = 0; i < 16; i++)
-    bytes[i] = (uint8_t)(floats[i] * 255 + 0.5f), shorts[i] = (uint16_t)(floats[i] * 65535);
+  for (int i = 0; i < 16; i++) {
+    bytes[i] = (uint8_t)(floats[i] * 255 + 0.5f);
+    shorts[i] = (uint16_t)(floats[i] * 65535);
+  }
   for (int i = 0; i < 4; i++)
     for (int c = 0; c < 3; c++) {
       floats3[3 * i + c] = floats[4 * i + c];
-      bytes3[4 * i + c] = bytes[4 * i + c], shorts3[4 * i + c] = shorts[4 * i + c];
+      bytes3[4 * i + c] = bytes[4 * i + c];
+      shorts3[4 * i + c] = shorts[4 * i + c];
     }
   const struct {
     const void *data;

@@ -75,7 +75,9 @@ static void flat(void **state) {
   for (int y = 0; y <= N; y++)
     for (int x = 0; x <= N; x++) {
       float *q = &p[3 * (y * (N + 1) + x)];
-      q[0] = (float)x, q[1] = (float)y, q[2] = 0.5f;
+      q[0] = (float)x;
+      q[1] = (float)y;
+      q[2] = 0.5f;
     }
   for (uint32_t y = 0; y < N; y++)
     for (uint32_t x = 0; x < N; x++) {
@@ -116,7 +118,9 @@ static void regular_vertex(void **state) {
     p[3 + 3 * i] = (float)cos(i * M_PI / 3) + 0.1f * (float)i;
     p[4 + 3 * i] = (float)sin(i * M_PI / 3);
     p[5 + 3 * i] = 0.3f * (float)(i * i % 5);
-    x += (double)p[3 + 3 * i], y += (double)p[4 + 3 * i], z += (double)p[5 + 3 * i];
+    x += (double)p[3 + 3 * i];
+    y += (double)p[4 + 3 * i];
+    z += (double)p[5 + 3 * i];
     const uint32_t face[] = {0, 1 + i, 1 + (i + 1) % 6};
     memcpy(v + 3 * i, face, sizeof face);
   }

@@ -77,7 +77,8 @@ static Face *faces_of(const char *text, size_t *count, size_t *shapes) {
         for (size_t j = 0; j < 2; j++)
           v[18 + 2 * (size_t)c + j] = s->uvs ? s->uvs[2 * at + j] : 7;
       }
-      v[24] = s->flip, v[25] = (float)world->materials.items[s->material].kind;
+      v[24] = s->flip;
+      v[25] = (float)world->materials.items[s->material].kind;
       v[26] = s->first_light != VL_NONE;
       vlTextureQuery at = {0, 0, {v[0], v[1], v[2]}, {0, 0, 1}, NULL};
       v[27] = s->alpha < 0 ? 1 : vl_texture_float_at(world, s->alpha, &at);
@@ -104,7 +105,10 @@ static void put_together_they_are_the_same(void **state) {
       if (!(fabsf(a[i].v[k] - b[i].v[k]) <= 2e-7f))
         fail_msg("face %zu, number %d: %.9g apart, %.9g together", i, k, (double)a[i].v[k],
                  (double)b[i].v[k]);
-  free(a), free(b), free(apart), free(together);
+  free(a);
+  free(b);
+  free(apart);
+  free(together);
 }
 
 static void memory_runs_out(void **state) {

@@ -54,7 +54,8 @@ static void instances_move(void **state) {
   const vlSceneInstance *q = l.scene->instances.items;
   assert_int_equal(q[0].keys, 0);
   assert_int_equal(q[1].keys, 2);
-  assert_pose(q[1].poses, 1, 2, 0), assert_pose(q[1].poses + 16, 0, 0, 0);
+  assert_pose(q[1].poses, 1, 2, 0);
+  assert_pose(q[1].poses + 16, 0, 0, 0);
   for (int i = 2; i < 4; i++) {
     assert_int_equal(q[i].group.index, 2);
     const double *first = q[i].poses, *last = q[i].poses + 16 * (q[i].keys - 1),

@@ -102,14 +102,20 @@ static void write_pyramid(Buffer *b, int format, const char *real, const char *i
       put(b, "uchar", i);
       for (int k = 0; k < i; k++)
         put(b, "int", -k);
-      put(b, "float", 0), put(b, "float", 0), put(b, "float", 1);
-      put(b, "double", i * 0.25), put(b, "float", 0.5);
+      put(b, "float", 0);
+      put(b, "float", 0);
+      put(b, "float", 1);
+      put(b, "double", i * 0.25);
+      put(b, "float", 0.5);
     }
     if (format == 0)
       say(b, i % 2 ? "\r\n" : "\n");
   }
-  for (int i = 0; rich && i < 2; i++)
-    put(b, "int", 7), put(b, "ushort", i), i ? put(b, "double", 1.5) : (void)0;
+  for (int i = 0; rich && i < 2; i++) {
+    put(b, "int", 7);
+    put(b, "ushort", i);
+    i ? put(b, "double", 1.5) : (void)0;
+  }
   if (rich && format == 0)
     say(b, "\n");
   for (int i = 0; i < 6; i++) {

@@ -29,7 +29,8 @@ static void write_file(const char *name, const char *text) {
 static void load_named(Loaded *l, const char *name, bool permissive, bool strict) {
   start_load(l);
   vlLoadDef def = vl_default_load_def();
-  def.permissive = permissive, def.strict = strict;
+  def.permissive = permissive;
+  def.strict = strict;
   l->result = vl_scene_load(l->scene, folder(name), &def, &l->error);
 }
 

@@ -67,13 +67,16 @@ static void describe(const vlWorld *world, const vlWorldShape *s, uint32_t prim,
   v[0] = floorf((v[1] + v[4]) / 6.0f + 0.5f);
   for (int k = 0; k < 2; k++) {
     vl_shape_sample(s, prim, 0.3f, 0.2f + 0.5f * (float)k, &p, &pdf);
-    for (int i = 0; i < 3; i++)
-      v[7 + 6 * k + i] = (float)p.p[i], v[10 + 6 * k + i] = (float)p.n[i];
+    for (int i = 0; i < 3; i++) {
+      v[7 + 6 * k + i] = (float)p.p[i];
+      v[10 + 6 * k + i] = (float)p.n[i];
+    }
   }
-  v[19] = (float)world->materials.items[s->material].kind, v[20] = s->first_light != VL_NONE;
+  v[19] = (float)world->materials.items[s->material].kind;
+  v[20] = s->first_light != VL_NONE;
   vlTextureQuery at = {0, 0, {v[7], v[8], v[9]}, {0, 0, 1}, NULL};
   v[21] = s->alpha < 0 ? 1 : vl_texture_float_at(world, s->alpha, &at);
-  v[22] = s->inside == VL_NONE ? -1 : (float)s->inside,
+  v[22] = s->inside == VL_NONE ? -1 : (float)s->inside;
   v[23] = s->outside == VL_NONE ? -1 : (float)s->outside;
   v[24] = (float)pdf;
 }
@@ -116,7 +119,10 @@ static void put_together_they_are_the_same(void **state) {
       if (!(fabsf(a[i].v[k] - b[i].v[k]) <= 4e-7f * fmaxf(1, fabsf(a[i].v[k]))))
         fail_msg("sphere %zu, number %d: %.9g apart, %.9g together", i, k, (double)a[i].v[k],
                  (double)b[i].v[k]);
-  free(a), free(b), free(apart), free(together);
+  free(a);
+  free(b);
+  free(apart);
+  free(together);
 }
 
 /* The spheres are transformed by a matrix that is not a similarity. A ray hits a sphere of many
@@ -140,7 +146,9 @@ static void many_are_each_alone(void **state) {
   vlError error = {0};
   assert_int_equal(vl_context_create(NULL, &context), VL_OK);
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-  def.centers = centers, def.radii = radii, def.faces = N;
+  def.centers = centers;
+  def.radii = radii;
+  def.faces = N;
   memcpy(def.group_from_shape, matrix, sizeof matrix);
   double low[2][3], high[2][3];
   for (int w = 0; w < 2; w++) {
@@ -160,8 +168,10 @@ static void many_are_each_alone(void **state) {
     double o[3] = {20 * sin(1.1 * i), 20 * sin(1.7 * i + 1), 20},
            to[3] = {5 * sin(2.3 * i), 5 * sin(3.1 * i + 2), 1};
     float row[6][1];
-    for (int k = 0; k < 3; k++)
-      row[k][0] = (float)o[k], row[3 + k][0] = (float)(to[k] - o[k]);
+    for (int k = 0; k < 3; k++) {
+      row[k][0] = (float)o[k];
+      row[3 + k][0] = (float)(to[k] - o[k]);
+    }
     vlRays ray = {
         .ox = row[0], .oy = row[1], .oz = row[2], .dx = row[3], .dy = row[4], .dz = row[5]};
     uint32_t shape[2], prim[2], instance[2];
@@ -176,8 +186,10 @@ static void many_are_each_alone(void **state) {
     assert_true(fabsf(t[0] - t[1]) <= 1e-6f * t[1]);
   }
   assert_true(hits > 300);
-  for (int w = 0; w < 2; w++)
-    vl_world_destroy(world[w]), vl_scene_destroy(scene[w]);
+  for (int w = 0; w < 2; w++) {
+    vl_world_destroy(world[w]);
+    vl_scene_destroy(scene[w]);
+  }
   vl_context_destroy(context);
 }
 
@@ -190,7 +202,9 @@ static void wrong_ones_are_refused(void **state) {
     float radii[2] = {1, 2};
     vlEmissionDef emission = vl_default_emission_def();
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-    def.centers = centers, def.radii = radii, def.faces = 2;
+    def.centers = centers;
+    def.radii = radii;
+    def.faces = 2;
     if (wrong == 1)
       def.radii = NULL;
     if (wrong == 2)

@@ -110,7 +110,9 @@ static void round_trips(void **state) {
   (void)state;
   uint64_t random = 88172645463325252ull;
   for (int i = 0; i < 200000; i++) {
-    random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+    random ^= random << 13;
+    random ^= random >> 7;
+    random ^= random << 17;
     uint32_t bits = (uint32_t)(random >> 16);
     float f;
     memcpy(&f, &bits, 4);

@@ -475,8 +475,10 @@ static void statements(void **state) {
     Loaded l;
     start_load(&l);
     l.result = vl_scene_load(l.scene, in_folder("new/s.pbrt"), NULL, &l.error);
-    if (l.result != VL_OK)
-      print_message("%s\n%s\n", got, l.error.message), wrong++;
+    if (l.result != VL_OK) {
+      print_message("%s\n%s\n", got, l.error.message);
+      wrong++;
+    }
     end_load(&l);
   }
   assert_int_equal(wrong, 0);
@@ -654,7 +656,10 @@ static void environment(void **state) {
     double w = (double)p[count * i + 1];
     vlVec3 d = vl_octahedral_decode(((float)(i % n) + 0.5f) / (float)n,
                                     ((float)(i / n) + 0.5f) / (float)n);
-    sum[0] += w * (double)d.x, sum[1] += w * (double)d.y, sum[2] += w * (double)d.z, total += w;
+    sum[0] += w * (double)d.x;
+    sum[1] += w * (double)d.y;
+    sum[2] += w * (double)d.z;
+    total += w;
   }
   double theta = M_PI * 9 / 32, phi = 2 * M_PI * 21 / 64;
   assert_near(sum[0] / total, sin(theta) * cos(phi), 0.01);

@@ -195,11 +195,14 @@ typedef struct {
 static inline Line fit_line(const Edge *e) {
   Line l = {.flat = e->flat};
   double n = e->count, sxx = 0, sxy = 0;
-  for (int i = 0; i < e->count; i++)
-    l.middle += e->along[i] / n, l.offset += e->across[i] / n;
+  for (int i = 0; i < e->count; i++) {
+    l.middle += e->along[i] / n;
+    l.offset += e->across[i] / n;
+  }
   for (int i = 0; i < e->count; i++) {
     double x = e->along[i] - l.middle;
-    sxx += x * x, sxy += x * (e->across[i] - l.offset);
+    sxx += x * x;
+    sxy += x * (e->across[i] - l.offset);
   }
   l.slope = sxy / sxx;
   l.length = e->along[e->count - 1] - e->along[0] + 1;
@@ -228,8 +231,11 @@ static inline P2 meet(const Line *lines, int count) {
     /* flat: y - slope x = offset - slope middle; steep: x - slope y = ... */
     double nx = lines[i].flat ? -lines[i].slope : 1, ny = lines[i].flat ? 1 : -lines[i].slope;
     double c = lines[i].offset - lines[i].slope * lines[i].middle, n2 = nx * nx + ny * ny;
-    m[0] += nx * nx / n2, m[1] += nx * ny / n2, m[2] += ny * ny / n2;
-    r[0] += nx * c / n2, r[1] += ny * c / n2;
+    m[0] += nx * nx / n2;
+    m[1] += nx * ny / n2;
+    m[2] += ny * ny / n2;
+    r[0] += nx * c / n2;
+    r[1] += ny * c / n2;
   }
   double det = m[0] * m[2] - m[1] * m[1];
   return (P2){(m[2] * r[0] - m[1] * r[1]) / det, (m[0] * r[1] - m[1] * r[0]) / det};

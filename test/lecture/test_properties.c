@@ -25,7 +25,9 @@ static void size_goes_with_one_over_distance(void **state) {
       for (long i = (long)(centre.x - expected - 2); i <= (long)(centre.x + expected + 2);
            i++) {
         double c = coverage(&p, ALPHA, i, j);
-        area += c, mx += c * ((double)i + 0.5), my += c * ((double)j + 0.5);
+        area += c;
+        mx += c * ((double)i + 0.5);
+        my += c * ((double)j + 0.5);
       }
     /* An area sums the errors of 2 pi r edge pixels, independent and 0.005 each: the radius,
      * area' / (2 pi r), errs by 0.005 / sqrt(2 pi r), below 0.002 for all of them. */
@@ -127,7 +129,8 @@ static void straight_lines_stay_straight(void **state) {
       near_to("residual of the fitted line", l.worst, 0, ONE_ROW);
       near_to("worst distance from the exact line", worst, 0, ONE_ROW);
       near_to("mean distance from the exact line", mean, 0, FITTED);
-      edges++, rows += e.count;
+      edges++;
+      rows += e.count;
     }
   assert_true(edges >= 9 && rows >= 250);
   free_image(&p);
@@ -211,8 +214,10 @@ static void axes_meet_in_principal_vanishing_points(void **state) {
     for (int k = 0; k < 3; k++) {
       double s[3] = {300, 300, 300}, b[3] = {0, 0, 0};
       s[axis] -= 90;
-      s[(axis + 1) % 3] += offset[k][0], s[(axis + 2) % 3] += offset[k][1];
-      b[(axis + 1) % 3] = offset[k][2], b[(axis + 2) % 3] = offset[k][3];
+      s[(axis + 1) % 3] += offset[k][0];
+      s[(axis + 2) % 3] += offset[k][1];
+      b[(axis + 1) % 3] = offset[k][2];
+      b[(axis + 2) % 3] = offset[k][3];
       long_edges(&p, axis, (Strip){{s[0], s[1], s[2]}, {d[0], d[1], d[2]}, {b[0], b[1], b[2]}},
                  6, &lines[2 * k]);
     }

@@ -24,7 +24,9 @@ static bool same_pixels(const Image *a, const Image *b) {
 
 static void change_zoom(vlCameraDef *def, const void *user) {
   const double *zoom_d_s = user;
-  def->zoom = zoom_d_s[0], def->view_distance = zoom_d_s[1], def->pixel_size = zoom_d_s[2];
+  def->zoom = zoom_d_s[0];
+  def->view_distance = zoom_d_s[1];
+  def->pixel_size = zoom_d_s[2];
 }
 
 /* f = zoom d / s: parameters with the same f give the same bits, and twice the f gives twice
@@ -76,7 +78,8 @@ static void exposure_time_is_a_factor(void **state) {
 
 static void change_planes(vlCameraDef *def, const void *user) {
   const double *planes = user;
-  def->near_plane = planes[0], def->far_plane = planes[1];
+  def->near_plane = planes[0];
+  def->far_plane = planes[1];
 }
 
 /* The clipping planes cut at their z in camera space, not at that distance along the ray. */
@@ -111,8 +114,10 @@ static void roll_turns_the_image(void **state) {
   assert_true(fabs(third.x - W / 2) < 1e-9 && fabs(third.y - (H / 2 - f * 160 / 1000)) < 1e-9);
   for (long y = 0; y < H; y++)
     for (long x = 0; x < W; x++)
-      if (hypot((double)x + 0.5 - third.x, (double)y + 0.5 - third.y) < f * 40 / 1000 + 1.5)
-        area += coverage(&p, ALPHA, x, y), my += coverage(&p, ALPHA, x, y) * ((double)y + 0.5);
+      if (hypot((double)x + 0.5 - third.x, (double)y + 0.5 - third.y) < f * 40 / 1000 + 1.5) {
+        area += coverage(&p, ALPHA, x, y);
+        my += coverage(&p, ALPHA, x, y) * ((double)y + 0.5);
+      }
   assert_true(fabs(area / (3.14159265358979323846 * pow(f * 40 / 1000, 2)) - 1) < 0.005);
   assert_true(fabs(my / area - third.y) < FITTED);
   free_image(&p);
@@ -120,7 +125,8 @@ static void roll_turns_the_image(void **state) {
 
 static void change_lens(vlCameraDef *def, const void *user) {
   const double *radius_focus = user;
-  def->lens_radius = radius_focus[0], def->focus_distance = radius_focus[1];
+  def->lens_radius = radius_focus[0];
+  def->focus_distance = radius_focus[1];
 }
 
 /* With the focus on the disk at 500, its edge is as sharp as the pinhole's; the disk at 250 has
@@ -143,7 +149,8 @@ static void lens_blurs_what_is_out_of_focus(void **state) {
     double partial = 0, partial_sharp = 0;
     for (long x = (long)edge - around; x <= (long)edge + around; x++) {
       double a = coverage(&p, ALPHA, x, 60), b = coverage(&sharp, ALPHA, x, 60);
-      partial += a > 0.001 && a<0.999, partial_sharp += b> 0.001 && b < 0.999;
+      partial += a > 0.001 && a < 0.999;
+      partial_sharp += b > 0.001 && b < 0.999;
     }
     assert_true(partial_sharp <= 2);
     if (k == 1)

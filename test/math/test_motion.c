@@ -101,7 +101,8 @@ static void impossible_is_refused(void **unused) {
   (void)unused;
   vlMat4 one = vl_mat4_identity(), flat = vl_mat4_scale(1, 1, 0),
          mirror = vl_mat4_scale(1, -1, 1), nan = one, w = one;
-  nan.m[5] = NAN, w.m[15] = 2;
+  nan.m[5] = NAN;
+  w.m[15] = 2;
   vlMotion motion;
   assert_false(vl_motion_make(one.m, flat.m, &motion));
   assert_false(vl_motion_make(one.m, mirror.m, &motion));

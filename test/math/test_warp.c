@@ -64,7 +64,8 @@ static double cone_pdf(void *user, const double d[3]) {
   return 1 - d[2] < h ? vl_cone_pdf(h) : 0;
 }
 static double sphere_pdf(void *user, const double d[3]) {
-  (void)user, (void)d;
+  (void)user;
+  (void)d;
   return VL_INV_4PI;
 }
 
@@ -216,16 +217,22 @@ static void test_spherical_triangle(void **state) {
         assert_unit(w);
         for (int e = 0; e < 3; e++)
           assert_true(t.n[e][0] * w.x + t.n[e][1] * w.y + t.n[e][2] * w.z > -1e-6);
-        phi[i] = atan2(w.y, w.x), theta[i] = acos(w.z);
+        phi[i] = atan2(w.y, w.x);
+        theta[i] = acos(w.z);
         if (k == 4 && phi[i] < 0)
           phi[i] += 6.283185307179586;
-        box[0] = fmin(box[0], phi[i]), box[1] = fmax(box[1], phi[i]);
-        box[2] = fmin(box[2], theta[i]), box[3] = fmax(box[3], theta[i]);
+        box[0] = fmin(box[0], phi[i]);
+        box[1] = fmax(box[1], phi[i]);
+        box[2] = fmin(box[2], theta[i]);
+        box[3] = fmax(box[3], theta[i]);
       }
       double rim_x = 0.01 * (box[1] - box[0]), rim_y = 0.01 * (box[3] - box[2]);
-      box[0] -= rim_x, box[1] += rim_x;
-      if (box[1] - box[0] > 6.2)
-        box[0] = -3.14159265358979, box[1] = 3.14159265358979; /* all around */
+      box[0] -= rim_x;
+      box[1] += rim_x;
+      if (box[1] - box[0] > 6.2) {
+        box[0] = -3.14159265358979;
+        box[1] = 3.14159265358979;
+      } /* all around */
       statGrid *grid = stat_grid_new(20, 20, box[0], box[1], fmax(0, box[2] - rim_y),
                                      fmin(3.14159265358979, box[3] + rim_y));
       for (int i = 0; i < COUNT / 4; i++)

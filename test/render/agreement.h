@@ -20,7 +20,8 @@ static UNUSED Measure measure(MakeStage *make, const void *user, vlTracer tracer
   memset(&r, 0, sizeof r);
   for (uint32_t seed = 0; seed < AGREEMENT_SEEDS; seed++) {
     Stage s = make(user, tracer);
-    s.render.tracer = tracer, s.render.seed = 77 * seed + (uint32_t)tracer;
+    s.render.tracer = tracer;
+    s.render.seed = 77 * seed + (uint32_t)tracer;
     Image p = stage_finish(&s);
     assert_int_equal(p.stats.not_finite, 0);
     for (uint32_t band = 0; band < AGREEMENT_BANDS; band++)
@@ -28,7 +29,8 @@ static UNUSED Measure measure(MakeStage *make, const void *user, vlTracer tracer
         double m = band < 3 ? image_region(&p, 0, band * p.height / 3, p.width,
                                            (band + 1) * p.height / 3, c)
                             : image_mean(&p, c);
-        r.mean[band][c] += m, r.error[band][c] += m * m;
+        r.mean[band][c] += m;
+        r.error[band][c] += m * m;
       }
     image_free(&p);
   }

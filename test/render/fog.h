@@ -22,7 +22,9 @@ static UNUSED vlMaterialId interface(Stage *s) {
 static UNUSED void add_ball(Stage *s, float z, float radius, vlMaterialId material,
                             vlMediumId inside, vlMediumId outside) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  def.radius = radius;
+  def.z_min = -radius;
+  def.z_max = radius;
   set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z);
   def.material = material;
   def.inside = inside;

@@ -28,9 +28,11 @@ static UNUSED void put_ball(Gltf *g) {
   for (int i = 0, v = 0; i <= RINGS; i++)
     for (int j = 0; j <= PARTS; j++, v++) {
       double theta = M_PI * i / RINGS, phi = 2 * M_PI * j / PARTS;
-      p[3 * v] = (float)(sin(theta) * cos(phi)), p[3 * v + 1] = (float)cos(theta);
+      p[3 * v] = (float)(sin(theta) * cos(phi));
+      p[3 * v + 1] = (float)cos(theta);
       p[3 * v + 2] = (float)(-sin(theta) * sin(phi));
-      uv[2 * v] = (float)j / PARTS, uv[2 * v + 1] = (float)i / RINGS;
+      uv[2 * v] = (float)j / PARTS;
+      uv[2 * v + 1] = (float)i / RINGS;
     }
   for (int i = 0; i < RINGS; i++)
     for (int j = 0; j < PARTS; j++) {
@@ -48,8 +50,9 @@ static UNUSED void put_ball(Gltf *g) {
 static UNUSED void put_box(Gltf *g, float thickness) {
   float p[24];
   for (int i = 0; i < 8; i++) {
-    p[3 * i] = i & 1 ? 8.0f : -8.0f, p[3 * i + 1] = i & 2 ? 8.0f : -8.0f,
-          p[3 * i + 2] = i & 4 ? 0.0f : -thickness;
+    p[3 * i] = i & 1 ? 8.0f : -8.0f;
+    p[3 * i + 1] = i & 2 ? 8.0f : -8.0f;
+    p[3 * i + 2] = i & 4 ? 0.0f : -thickness;
   }
   static const uint16_t faces[36] = {4, 5, 7, 4, 7, 6, 1, 0, 2, 1, 2, 3, 5, 1, 3, 5, 3, 7,
                                      0, 4, 6, 0, 6, 2, 6, 7, 3, 6, 3, 2, 0, 1, 5, 0, 5, 4};

@@ -36,7 +36,8 @@ static inline bool load_world(Loaded *l, const char *name, uint32_t width, uint3
   snprintf(path, sizeof path, "%s/scenes/%s", VELO_SOURCE_DIR, name);
   vlResult result = vl_scene_load(scene, path, NULL, &error);
   vlCameraDef camera_def = vl_scene_defs(scene)->camera;
-  camera_def.width = width, camera_def.height = height;
+  camera_def.width = width;
+  camera_def.height = height;
   if (result == VL_OK)
     result = vl_camera_make(&camera_def, &l->camera, NULL, &error);
   if (result == VL_OK)

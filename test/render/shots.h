@@ -49,7 +49,8 @@ static UNUSED Stage stage_open_in(vlContext *context, uint32_t width, uint32_t h
   assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
   s.camera = vl_default_camera_def(width, height);
   s.camera.eye[0] = s.camera.eye[1] = s.camera.eye[2] = 0;
-  s.camera.lookat[0] = s.camera.lookat[1] = 0, s.camera.lookat[2] = -1;
+  s.camera.lookat[0] = s.camera.lookat[1] = 0;
+  s.camera.lookat[2] = -1;
   s.build = vl_default_build_def();
   s.film = vl_default_film_def(width, height);
   s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
@@ -81,7 +82,8 @@ static UNUSED Image stage_take(Stage *s) {
   vlImage *image = NULL;
   vlDevelopDef develop = vl_default_develop_def();
   assert_int_equal(vl_film_develop(film, &develop, &image), VL_OK);
-  p.width = vl_image_width(image), p.height = vl_image_height(image);
+  p.width = vl_image_width(image);
+  p.height = vl_image_height(image);
   p.rgba = malloc((size_t)p.width * p.height * 4 * sizeof(float));
   for (uint32_t y = 0; y < p.height; y++)
     for (uint32_t x = 0; x < p.width; x++)
@@ -117,7 +119,8 @@ typedef Image Rendering(vlContext *context, const void *what);
 
 static UNUSED Image image_in(Rendering *render, const void *what, uint32_t threads, vlIsa isa) {
   vlContextDef def = vl_default_context_def();
-  def.threads = threads, def.isa = isa;
+  def.threads = threads;
+  def.isa = isa;
   vlContext *context;
   if (vl_context_create(&def, &context) != VL_OK)
     return (Image){0}; /* the machine does not have that instruction set */
@@ -209,7 +212,9 @@ static UNUSED void add_sky(Stage *s, float radiance) {
 static UNUSED void add_point(Stage *s, float x, float y, float z, float intensity) {
   vlLightDef def = vl_default_light_def(VL_LIGHT_POINT);
   def.color = vl_spectrum_rgb(intensity, intensity, intensity);
-  def.from[0] = x, def.from[1] = y, def.from[2] = z;
+  def.from[0] = x;
+  def.from[1] = y;
+  def.from[2] = z;
   assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
 }
 
@@ -267,9 +272,12 @@ static UNUSED vlShapeDef mesh_sphere(int n, float radius, bool normals, float **
       double theta = M_PI * i / n, phi = M_PI * (j % (2 * n)) / n;
       double d[3] = {i == 0 || i == n ? 0 : sin(theta) * cos(phi),
                      i == 0 || i == n ? 0 : sin(theta) * sin(phi), cos(theta)};
-      for (int k = 0; k < 3; k++)
-        nn[3 * v + (size_t)k] = (float)d[k], p[3 * v + (size_t)k] = radius * (float)d[k];
-      uv[2 * v] = (float)j / (float)(2 * n), uv[2 * v + 1] = 1 - (float)i / (float)n;
+      for (int k = 0; k < 3; k++) {
+        nn[3 * v + (size_t)k] = (float)d[k];
+        p[3 * v + (size_t)k] = radius * (float)d[k];
+      }
+      uv[2 * v] = (float)j / (float)(2 * n);
+      uv[2 * v + 1] = 1 - (float)i / (float)n;
     }
   for (uint32_t i = 0; i < (uint32_t)n; i++)
     for (uint32_t j = 0; j < 2 * (uint32_t)n; j++) {

@@ -88,8 +88,10 @@ static void see_wall(bool merged, bool absorbs, double mean[3]) {
   s.camera.fov = 0.02;
   s.render.spp = 1024;
   s.render.tracer = merged ? VL_TRACER_MERGING : VL_TRACER_VOLPATH;
-  if (merged)
-    s.render.merge_radius = 0.4, s.render.light_paths = 512;
+  if (merged) {
+    s.render.merge_radius = 0.4;
+    s.render.light_paths = 512;
+  }
   vlMediumDef none = fog(0, 0, 0);
   vlMediumId medium = absorbs ? glass_of(&s, 2 * 5, attenuation, 0)
                               : add_medium(&s, &none); /* 5 units a length of 1 */
@@ -111,7 +113,8 @@ static void there_and_back(void **state) {
   (void)state;
   for (int merged = 0; merged < 2; merged++) {
     double clear[3], seen[3];
-    see_wall(merged, false, clear), see_wall(merged, true, seen);
+    see_wall(merged, false, clear);
+    see_wall(merged, true, seen);
     for (int c = 0; c < 3; c++) { /* 2 there, 2 back */
       double expected = pow(attenuation[c], 4 * 5), value = seen[c] / clear[c];
       if (fabs(value - expected) > (merged ? 0.03 : 0.01) * expected + 2e-3)
@@ -130,9 +133,12 @@ static void add_box(Stage *s, const float low[3], const float high[3], vlMateria
     for (int k = 0; k < 3; k++)
       p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.positions = p, def.vertices = 8;
-  def.indices = faces, def.faces = 12;
-  def.material = material, def.inside = inside;
+  def.positions = p;
+  def.vertices = 8;
+  def.indices = faces;
+  def.faces = 12;
+  def.material = material;
+  def.inside = inside;
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 

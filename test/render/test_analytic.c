@@ -134,8 +134,10 @@ static void finish(Bench *b, Shot shot, double mean[3], double range[2]) {
     }
   for (int c = 0; c < 3; c++)
     mean[c] /= (double)shot.size * shot.size;
-  if (range)
-    range[0] = low, range[1] = high;
+  if (range) {
+    range[0] = low;
+    range[1] = high;
+  }
   vl_image_destroy(image);
   vl_film_destroy(film);
   vl_world_destroy(world);

@@ -9,10 +9,14 @@ static void fill(Stage *s) {
   add_sky(s, 0.3f);
   add_point(s, 1, 2, 0, 5);
   s->camera.fov = 0.9;
-  s->camera.lens_radius = 0.02, s->camera.focus_distance = 3;
-  s->render.spp = 8, s->render.max_depth = 8;
+  s->camera.lens_radius = 0.02;
+  s->camera.focus_distance = 3;
+  s->render.spp = 8;
+  s->render.max_depth = 8;
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
-  checks.su = 7, checks.sv = 5, checks.float_a = vl_float_input(0.7f),
+  checks.su = 7;
+  checks.sv = 5;
+  checks.float_a = vl_float_input(0.7f);
   checks.float_b = vl_float_input(0.2f);
   vlTextureId cover = vl_scene_add_texture(s->scene, &checks);
   vlMaterialDef glass = vl_default_material_def(VL_MATERIAL_DIELECTRIC),
@@ -20,14 +24,17 @@ static void fill(Stage *s) {
   glass.eta = vl_spectrum_input(vl_spectrum_named("glass-SF11"));
   bumpy.u_roughness = bumpy.v_roughness = vl_float_input(0.1f);
   vlTextureDef height = vl_default_texture_def(VL_TEXTURE_SCALE, false);
-  height.float_a.texture = cover, height.amount = vl_float_input(0.05f);
+  height.float_a.texture = cover;
+  height.amount = vl_float_input(0.05f);
   bumpy.displacement.texture = vl_scene_add_texture(s->scene, &height);
   vlMaterialDef none = vl_default_material_def(VL_MATERIAL_INTERFACE),
                 mix = vl_default_material_def(VL_MATERIAL_MIX);
   vlMaterialId ids[4] = {
       vl_scene_add_material(s->scene, &glass), vl_scene_add_material(s->scene, &bumpy),
       vl_scene_add_material(s->scene, &none), add_diffuse(s, 0.7f, 0.3f, 0.2f)};
-  mix.materials[0] = ids[1], mix.materials[1] = ids[3], mix.amount.texture = cover;
+  mix.materials[0] = ids[1];
+  mix.materials[1] = ids[3];
+  mix.amount.texture = cover;
   vlMaterialId mixed = vl_scene_add_material(s->scene, &mix);
   vlGroupId group = vl_scene_add_group(s->scene, "group");
   for (int k = 0; k < 5; k++) {
@@ -43,9 +50,12 @@ static void fill(Stage *s) {
     vl_scene_add_shape(s->scene, &def);
   }
   Quad card = quad_at(0, -0.4f, 0, 1.3f, 0.1f, 0.2f, 0, 0.1f, -0.6f);
-  card.material = mixed, card.alpha.texture = cover, card.group = group;
+  card.material = mixed;
+  card.alpha.texture = cover;
+  card.group = group;
   add_quad(s, &card);
-  card.patch = true, card.p[1] = 0.3f;
+  card.patch = true;
+  card.p[1] = 0.3f;
   add_quad(s, &card);
   for (int k = 0; k < 3; k++) {
     double place[16];

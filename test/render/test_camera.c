@@ -15,7 +15,8 @@ static void circle_of_confusion(void **state) {
     s.render.spp = 4096;
     s.render.max_depth = 0;
     s.camera.fx = s.camera.fy = 60;
-    s.camera.lens_radius = 0.4, s.camera.focus_distance = 2.5;
+    s.camera.lens_radius = 0.4;
+    s.camera.focus_distance = 2.5;
     double z = depths[i], side = 0.02 * z, radius = 0.4 * fabs(1 / z - 1 / 2.5) * 60;
     Quad q = quad_at((float)(0.1 * z), (float)(-0.05 * z), (float)-z, (float)side, 0, 0, 0,
                      (float)side, 0);
@@ -26,9 +27,12 @@ static void circle_of_confusion(void **state) {
     for (uint32_t y = 0; y < 64; y++)
       for (uint32_t x = 0; x < 64; x++) {
         double v = image_at(&p, x, y, 1);
-        sum += v, mx += v * (x + 0.5), my += v * (y + 0.5);
+        sum += v;
+        mx += v * (x + 0.5);
+        my += v * (y + 0.5);
       }
-    mx /= sum, my /= sum;
+    mx /= sum;
+    my /= sum;
     for (uint32_t y = 0; y < 64; y++)
       for (uint32_t x = 0; x < 64; x++) {
         double dx = x + 0.5 - mx, dy = y + 0.5 - my;
@@ -49,7 +53,8 @@ static void near_and_far(void **state) {
   for (int projection = 0; projection < 2; projection++) {
     Stage s = stage_open(32, 32);
     s.camera.projection = projection ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
-    s.camera.near_plane = 2, s.camera.far_plane = 4;
+    s.camera.near_plane = 2;
+    s.camera.far_plane = 4;
     s.render.max_depth = 0;
     /* Three walls: in front of the near plane, between the planes (left half), behind the far
      * plane. The limits are planes, not distances: the whole wall at depth 3.99 is visible,
@@ -73,7 +78,7 @@ static void orthographic(void **state) {
   for (int k = 0; k < 2; k++) {
     Stage s = stage_open(40, 40);
     s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
-    s.camera.screen_min_x = s.camera.screen_min_y = -2,
+    s.camera.screen_min_x = s.camera.screen_min_y = -2;
     s.camera.screen_max_x = s.camera.screen_max_y = 2;
     s.render.max_depth = 0;
     s.render.spp = 64;
@@ -86,7 +91,9 @@ static void orthographic(void **state) {
     for (uint32_t y = 0; y < 40; y++)
       for (uint32_t x = 0; x < 40; x++) {
         double v = image_at(&p, x, y, 3);
-        sum += v, mx += v * (x + 0.5), my += v * (y + 0.5);
+        sum += v;
+        mx += v * (x + 0.5);
+        my += v * (y + 0.5);
       }
     assert_near("x", mx / sum, 20 + 10 * 0.5, 0.03);
     assert_near("y", my / sum, 20 - 10 * 0.25, 0.03);
@@ -105,8 +112,12 @@ static void exposure_and_crop(void **state) {
     vl_scene_add_shape(s.scene, &def);
     if (k == 1)
       s.camera.exposure_time = 2;
-    if (k == 2)
-      s.film.crop[0] = 7, s.film.crop[1] = 5, s.film.crop[2] = 30, s.film.crop[3] = 17;
+    if (k == 2) {
+      s.film.crop[0] = 7;
+      s.film.crop[1] = 5;
+      s.film.crop[2] = 30;
+      s.film.crop[3] = 17;
+    }
     p[k] = stage_finish(&s);
   }
   for (uint32_t y = 0; y < 36; y++)
@@ -131,7 +142,8 @@ static void depths(void **state) {
   (void)state;
   double expected = 0, power = 1;
   for (uint32_t depth = 0; depth < 5; depth++) {
-    expected += power, power *= 0.6;
+    expected += power;
+    power *= 0.6;
     for (int light = 0; light < 2;
          light++) { /* every point emits light, or a point light's wall emits light: one less */
       Stage s = stage_open(16, 16);
@@ -158,11 +170,14 @@ static void raycast(void **state) {
   Stage s = stage_open(32, 32);
   s.build.color = VL_COLOR_RGB;
   s.render.tracer = VL_TRACER_RAYCAST;
-  s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+  s.render.sampler = VL_SAMPLER_REGULAR;
+  s.render.spp = 1;
   s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
   ball.material = add_diffuse(&s, 0.8f, 0.4f, 0.2f);
-  ball.radius = 0.75f, ball.z_min = -0.75f, ball.z_max = 0.75f;
+  ball.radius = 0.75f;
+  ball.z_min = -0.75f;
+  ball.z_max = 0.75f;
   set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
   vl_scene_add_shape(s.scene, &ball);
   add_sky(&s, 0.3f);
@@ -195,8 +210,10 @@ static void ambient_occlusion(void **state) {
         s.render.spp = 256;
         s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
         s.camera.eye[2] = 0.001;
-        s.camera.screen_min_x = 1e-4, s.camera.screen_max_x = 2e-4;
-        s.camera.screen_min_y = -0.5e-4, s.camera.screen_max_y = 0.5e-4;
+        s.camera.screen_min_x = 1e-4;
+        s.camera.screen_max_x = 2e-4;
+        s.camera.screen_min_y = -0.5e-4;
+        s.camera.screen_max_y = 0.5e-4;
         if (k > 1)
           s.camera.eye[2] = 0.4;
         /* a wall of constant shading normals that lean: openness is of the true surface */
@@ -204,7 +221,10 @@ static void ambient_occlusion(void **state) {
         static const float n[12] = {0.6f, 0, 0.8f, 0.6f, 0, 0.8f, 0.6f, 0, 0.8f, 0.6f, 0, 0.8f};
         static const uint32_t f[6] = {0, 1, 3, 0, 3, 2};
         vlShapeDef floor = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-        floor.vertices = 4, floor.faces = 2, floor.positions = p, floor.indices = f;
+        floor.vertices = 4;
+        floor.faces = 2;
+        floor.positions = p;
+        floor.indices = f;
         if (smooth)
           floor.normals = n;
         vl_scene_add_shape(s.scene, &floor);
@@ -241,7 +261,7 @@ static void modes_agree_on_greys(void **state) {
           (vlMaterialKind[4]){VL_MATERIAL_DIFFUSE, VL_MATERIAL_COATED_DIFFUSE,
                               VL_MATERIAL_DIELECTRIC, VL_MATERIAL_CONDUCTOR}[k]);
       if (k == 3) {
-        defs[k].use_reflectance = true,
+        defs[k].use_reflectance = true;
         defs[k].reflectance = vl_spectrum_input(vl_spectrum_constant(0.7f));
         defs[k].u_roughness = defs[k].v_roughness = vl_float_input(0.2f);
       }

@@ -53,12 +53,20 @@ static void fill(Stage *s) {
   vlShapeDef cylinder = vl_default_shape_def(VL_SHAPE_CYLINDER);
   set_matrix(cylinder.group_from_shape, 0.3, 0, 0, 0, 0, 0.1, 1, 0, 0, -1, 0, -4);
   vl_scene_add_shape(s->scene, &cylinder);
-  s->camera.eye[0] = 1.1, s->camera.eye[1] = 1.7, s->camera.eye[2] = 0.3;
-  s->camera.lookat[0] = 0.2, s->camera.lookat[1] = -0.3, s->camera.lookat[2] = -5;
+  s->camera.eye[0] = 1.1;
+  s->camera.eye[1] = 1.7;
+  s->camera.eye[2] = 0.3;
+  s->camera.lookat[0] = 0.2;
+  s->camera.lookat[1] = -0.3;
+  s->camera.lookat[2] = -5;
   s->camera.roll = 0.1;
-  s->camera.fx = 70, s->camera.fy = 66, s->camera.skew = 1.5, s->camera.cx = 37.25,
+  s->camera.fx = 70;
+  s->camera.fy = 66;
+  s->camera.skew = 1.5;
+  s->camera.cx = 37.25;
   s->camera.cy = 20.75;
-  s->camera.lens_radius = 0.3, s->camera.focus_distance = 3;
+  s->camera.lens_radius = 0.3;
+  s->camera.focus_distance = 3;
 }
 
 static double length3(const double v[3]) {
@@ -128,7 +136,9 @@ static void test_exact_distance_and_ids(void **state) {
   wall.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f);
   add_quad(&s, &wall);
   vlShapeDef sphere = vl_default_shape_def(VL_SHAPE_SPHERE);
-  sphere.radius = 1.5f, sphere.z_min = -1.5f, sphere.z_max = 1.5f;
+  sphere.radius = 1.5f;
+  sphere.z_min = -1.5f;
+  sphere.z_max = 1.5f;
   set_matrix(sphere.group_from_shape, 1, 0, 0, 0.25, 0, 1, 0, -0.5, 0, 0, 1, -5);
   vl_scene_add_shape(s.scene, &sphere);
   GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
@@ -178,7 +188,8 @@ static void test_plane_has_one_depth(void **state) {
   double m[16];
   set_matrix(m, 1, 0, 0, 3.7, 0, 1, 0, -2.1, 0, 0, 1, 0.6);
   vl_scene_add_instance(s.scene, group, m, (vlSource){"wall.pbrt", 12, 3});
-  s.camera.eye[0] = s.camera.lookat[0] = 1.234, s.camera.eye[1] = s.camera.lookat[1] = -0.77;
+  s.camera.eye[0] = s.camera.lookat[0] = 1.234;
+  s.camera.eye[1] = s.camera.lookat[1] = -0.77;
   GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_Z | VL_CHANNEL_ID_INSTANCE);
   assert_int_equal(vl_image_channels(t.floats), 1);
   assert_int_equal(vl_image_channels(t.ids), 1);

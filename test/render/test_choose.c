@@ -71,26 +71,34 @@ static void by_numbers(void **state) {
 static Stage room(vlContext *context) {
   Stage s = stage_open_in(context, SIZE, SIZE);
   s.camera.fov = 1.2;
-  s.render.max_depth = 4, s.render.spp = 512;
+  s.render.max_depth = 4;
+  s.render.spp = 512;
   vlMaterialId white = add_diffuse(&s, 0.7f, 0.6f, 0.5f),
                dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f);
   for (int axis = 0; axis < 3; axis++)
     for (int side = -1; side <= 1; side += 2) {
       float at[3] = {0, 0, -2}, u[3] = {0}, v[3] = {0};
-      at[axis] += 2.5f * (float)side, u[(axis + 1) % 3] = 2.5f, v[(axis + 2) % 3] = 2.5f;
+      at[axis] += 2.5f * (float)side;
+      u[(axis + 1) % 3] = 2.5f;
+      v[(axis + 2) % 3] = 2.5f;
       Quad q = quad_at(at[0], at[1], at[2], u[0], u[1], u[2], v[0], v[1], v[2]);
       q.material = white;
       add_quad(&s, &q);
     }
   vlShapeDef tube = vl_default_shape_def(VL_SHAPE_CYLINDER);
-  tube.radius = 0.35f, tube.z_min = 0, tube.z_max = 0.5f;
+  tube.radius = 0.35f;
+  tube.z_min = 0;
+  tube.z_max = 0.5f;
   set_matrix(tube.group_from_shape, 1, 0, 0, 0.4, 0, 0, 1, 0.2, 0, -1, 0, -3); /* z up */
   tube.material = dark;
   assert_int_not_equal(vl_scene_add_shape(s.scene, &tube).index, 0);
   vlShapeDef lamp = vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(lamp.group_from_shape, 1, 0, 0, 0.4, 0, 1, 0, 0.4, 0, 0, 1, -3);
-  lamp.radius = 0.15f, lamp.z_min = -0.15f, lamp.z_max = 0.15f;
-  lamp.material = dark, lamp.emission = add_emission(&s, 40, false);
+  lamp.radius = 0.15f;
+  lamp.z_min = -0.15f;
+  lamp.z_max = 0.15f;
+  lamp.material = dark;
+  lamp.emission = add_emission(&s, 40, false);
   assert_int_not_equal(vl_scene_add_shape(s.scene, &lamp).index, 0);
   return s;
 }
@@ -100,7 +108,10 @@ static void add_one_sided(Stage *s) {
   static const float positions[9] = {0, 0, 3, 1, 0, 3, 0, 1, 3};
   static const uint32_t indices[3] = {0, 1, 2};
   vlShapeDef sheet = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  sheet.positions = positions, sheet.vertices = 3, sheet.indices = indices, sheet.faces = 1;
+  sheet.positions = positions;
+  sheet.vertices = 3;
+  sheet.indices = indices;
+  sheet.faces = 1;
   sheet.one_sided = true;
   assert_int_not_equal(vl_scene_add_shape(s->scene, &sheet).index, 0);
 }
@@ -128,7 +139,8 @@ static vlTracerChoice choice_of(How how) {
     s.film.crop[0] = s.film.crop[1] = how.crop;
   if (how.spp)
     s.render.spp = how.spp;
-  s.render.seed = how.seed, s.render.first_sample = how.first;
+  s.render.seed = how.seed;
+  s.render.first_sample = how.first;
   assert_int_equal(vl_choose_tracer(world, &camera, &s.film, &s.render, true, &choice, &error),
                    VL_OK);
   vl_world_destroy(world);
@@ -161,7 +173,8 @@ static void too_short(void **state) {
 static Image with_sheet(vlTracer tracer) {
   Stage s = room(NULL);
   add_one_sided(&s);
-  s.render.spp = 4, s.render.tracer = tracer;
+  s.render.spp = 4;
+  s.render.tracer = tracer;
   return stage_finish(&s);
 }
 

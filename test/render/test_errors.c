@@ -10,14 +10,17 @@ static void fill(Stage *s) {
   Quad floor = quad_at(-4, -1, -1, 8, 0, 0, 0, 0, -6),
        wall = quad_at(-4, -1, -6, 8, 0, 0, 0, 5, 0);
   Quad lamp = quad_at(-1, 1.5f, -4, 1.2f, 0.3f, 0, 0, -0.2f, -0.8f);
-  floor.material = add_diffuse(s, 0.7f, 0.7f, 0.6f),
+  floor.material = add_diffuse(s, 0.7f, 0.7f, 0.6f);
   wall.material = add_diffuse(s, 0.6f, 0.3f, 0.2f);
-  lamp.material = add_diffuse(s, 0, 0, 0), lamp.emission = add_emission(s, 12, true);
+  lamp.material = add_diffuse(s, 0, 0, 0);
+  lamp.emission = add_emission(s, 12, true);
   add_quad(s, &floor);
   add_quad(s, &wall);
   add_quad(s, &lamp);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  ball.radius = 0.8f, ball.z_min = -0.8f, ball.z_max = 0.8f;
+  ball.radius = 0.8f;
+  ball.z_min = -0.8f;
+  ball.z_max = 0.8f;
   ball.material = add_diffuse(s, 0.8f, 0.8f, 0.8f);
   set_matrix(ball.group_from_shape, 1, 0, 0, 0.8, 0, 1, 0, -0.2, 0, 0, 1, -3.5);
   vl_scene_add_shape(s->scene, &ball);
@@ -40,15 +43,19 @@ static void measure(const Case *c, double ratio[2]) {
   vlFilm *film;
   fill(&s);
   s.build.color = c->rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
-  s.film.errors = true, s.film.filter = vl_default_pixel_filter(c->filter);
-  s.render.sampler = c->sampler, s.render.share_samples = c->share, s.render.spp = c->spp;
+  s.film.errors = true;
+  s.film.filter = vl_default_pixel_filter(c->filter);
+  s.render.sampler = c->sampler;
+  s.render.share_samples = c->share;
+  s.render.spp = c->spp;
   s.render.sequence = c->sequence;
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
   assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
   assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
   static double sum[VALUES], squares[VALUES];
   double stated[2] = {0, 0}, variance = 0;
-  memset(sum, 0, sizeof sum), memset(squares, 0, sizeof squares);
+  memset(sum, 0, sizeof sum);
+  memset(squares, 0, sizeof squares);
   for (uint32_t seed = 1; seed <= SEEDS; seed++) {
     s.render.seed = seed;
     vl_film_clear(film);
@@ -58,7 +65,8 @@ static void measure(const Case *c, double ratio[2]) {
     const float *p = vl_image_const_pixels(image);
     for (int i = 0; i < VALUES; i++) {
       double v = (double)p[i / 3 * 4 + i % 3];
-      sum[i] += v, squares[i] += v * v;
+      sum[i] += v;
+      squares[i] += v * v;
     }
     vl_image_destroy(image);
     for (int k = 0; k < 2; k++) {
@@ -129,7 +137,8 @@ static void filters_and_colours(void **state) {
   check("box, RGB", &c, 2);
   c.filter = VL_PIXEL_FILTER_MITCHELL;
   check("mitchell, RGB", &c, 1.3);
-  c.filter = VL_PIXEL_FILTER_TRIANGLE, c.spp = 24; /* parts of 16 and 8 samples */
+  c.filter = VL_PIXEL_FILTER_TRIANGLE;
+  c.spp = 24; /* parts of 16 and 8 samples */
   check("triangle, RGB", &c, 1.5);
 }
 

@@ -99,9 +99,11 @@ static void test_no_self_occlusion(void **state) {
   vl_scene_add_shape(s.scene, &mesh);
   free(block);
   s.camera.eye[0] = s.camera.lookat[0] = (double)far_off;
-  s.camera.eye[1] = -0.8, s.camera.lookat[1] = -0.8;
+  s.camera.eye[1] = -0.8;
+  s.camera.lookat[1] = -0.8;
   vlCameraDef other = s.camera;
-  other.eye[0] += 5, other.eye[1] = 0.5;
+  other.eye[0] += 5;
+  other.eye[1] = 0.5;
   GroundTruth t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
   uint32_t seen = 0, hidden = 0, wrong = 0;
   for (uint32_t y = 0; y < 70; y++)
@@ -113,7 +115,8 @@ static void test_no_self_occlusion(void **state) {
       static const char *const P[3] = {"P.X", "P.Y", "P.Z"}, *const G[3] = {"Ng.X", "Ng.Y",
                                                                             "Ng.Z"};
       for (int k = 0; k < 3; k++) {
-        p[k] = number(&t, x, y, P[k]), n[k] = number(&t, x, y, G[k]);
+        p[k] = number(&t, x, y, P[k]);
+        n[k] = number(&t, x, y, G[k]);
         to[k] = other.eye[k] - p[k];
         along += to[k] * n[k];
       }
@@ -130,7 +133,8 @@ static void test_no_self_occlusion(void **state) {
         ball_between = ball_between || (object != 2 && a < 1);
         mesh_between = mesh_between || (object != 3 && b < 0.72);
       }
-      seen += h == VL_HIDDEN_NOT, hidden += h == VL_HIDDEN_BEHIND;
+      seen += h == VL_HIDDEN_NOT;
+      hidden += h == VL_HIDDEN_BEHIND;
       bool expected = away || ball_between || mesh_between;
       if (object == 3)
         continue;
@@ -193,7 +197,8 @@ static void test_boxes(void **state) {
         counted[id(&t, x, y, "id.object") - 1]++;
   for (int i = 0; i < 3; i++)
     assert_int_equal(counted[i], objects[i].seen);
-  def.crop[0] = 50, def.crop[2] = 60;
+  def.crop[0] = 50;
+  def.crop[2] = 60;
   assert_int_equal(vl_world_boxes(t.world, &t.camera, &def, objects, NULL, &error), VL_OK);
   assert_int_equal(objects[0].all, 10 * 20);
   assert_int_equal(objects[0].seen, 5 * 20);

@@ -20,20 +20,28 @@ typedef void Base(double u, double v, double p[3]);
 
 static void on_sphere(double u, double v, double p[3]) {
   double theta = M_PI * (1 - v), phi = 2 * M_PI * u;
-  p[0] = sin(theta) * cos(phi), p[1] = sin(theta) * sin(phi), p[2] = cos(theta);
+  p[0] = sin(theta) * cos(phi);
+  p[1] = sin(theta) * sin(phi);
+  p[2] = cos(theta);
 }
 static void on_part(double u, double v,
                     double p[3]) { /* of a sphere: z from -0.5 to 0.8, three quarters round */
   double low = acos(-0.5), high = acos(0.8), theta = low + v * (high - low),
          phi = 1.5 * M_PI * u;
-  p[0] = sin(theta) * cos(phi), p[1] = sin(theta) * sin(phi), p[2] = cos(theta);
+  p[0] = sin(theta) * cos(phi);
+  p[1] = sin(theta) * sin(phi);
+  p[2] = cos(theta);
 }
 static void on_cylinder(double u, double v, double p[3]) {
-  p[0] = cos(2 * M_PI * u), p[1] = sin(2 * M_PI * u), p[2] = -1 + 2 * v;
+  p[0] = cos(2 * M_PI * u);
+  p[1] = sin(2 * M_PI * u);
+  p[2] = -1 + 2 * v;
 }
 static void on_disk(double u, double v, double p[3]) {
   double r = 1 - 0.8 * v;
-  p[0] = r * cos(2 * M_PI * u), p[1] = r * sin(2 * M_PI * u), p[2] = 0;
+  p[0] = r * cos(2 * M_PI * u);
+  p[1] = r * sin(2 * M_PI * u);
+  p[2] = 0;
 }
 static const float patch_corners[12] = {-1, -1, 0.4f, 1, -1, -0.5f, -1, 1, -0.4f, 1, 1, 0.6f};
 static const float patch_uvs[8] = {0, 1, 0, 0,
@@ -62,11 +70,16 @@ static void slopes(Base *base, double u, double v, const double side[3], bool di
                    double n[3]) {
   const double e = 1e-4;
   double a[3], b[3], c[3], d[3];
-  put_off(base, u - e, v, side, displaced, a), put_off(base, u + e, v, side, displaced, b);
-  put_off(base, u, v - e, side, displaced, c), put_off(base, u, v + e, side, displaced, d);
-  for (int i = 0; i < 3; i++)
-    a[i] = b[i] - a[i], c[i] = d[i] - c[i];
-  n[0] = a[1] * c[2] - a[2] * c[1], n[1] = a[2] * c[0] - a[0] * c[2],
+  put_off(base, u - e, v, side, displaced, a);
+  put_off(base, u + e, v, side, displaced, b);
+  put_off(base, u, v - e, side, displaced, c);
+  put_off(base, u, v + e, side, displaced, d);
+  for (int i = 0; i < 3; i++) {
+    a[i] = b[i] - a[i];
+    c[i] = d[i] - c[i];
+  }
+  n[0] = a[1] * c[2] - a[2] * c[1];
+  n[1] = a[2] * c[0] - a[0] * c[2];
   n[2] = a[0] * c[1] - a[1] * c[0];
   double l = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   double facing = n[0] * side[0] + n[1] * side[1] + n[2] * side[2] < 0 ? -1 : 1;
@@ -107,14 +120,20 @@ static void bumps_are_displacements(void **state) {
     vlShapeDef shape = vl_default_shape_def(q->kind);
     if (q->kind == VL_SHAPE_TRIANGLES)
       shape = mesh_sphere(96, 1, true, &block);
-    if (q->base == on_part)
-      shape.z_min = -0.5f, shape.z_max = 0.8f, shape.phi_max = (float)(1.5 * M_PI);
+    if (q->base == on_part) {
+      shape.z_min = -0.5f;
+      shape.z_max = 0.8f;
+      shape.phi_max = (float)(1.5 * M_PI);
+    }
     if (q->kind == VL_SHAPE_DISK)
       shape.inner_radius = 0.2f;
     static const uint32_t corners[4] = {0, 1, 2, 3};
     if (q->kind == VL_SHAPE_BILINEAR) {
-      shape.vertices = 4, shape.faces = 1;
-      shape.positions = patch_corners, shape.uvs = patch_uvs, shape.indices = corners;
+      shape.vertices = 4;
+      shape.faces = 1;
+      shape.positions = patch_corners;
+      shape.uvs = patch_uvs;
+      shape.indices = corners;
     }
     shape.material = vl_scene_add_material(s.scene, &material);
     if (q->instance)
@@ -125,7 +144,9 @@ static void bumps_are_displacements(void **state) {
     set_matrix(unit, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
     if (q->instance)
       vl_scene_add_instance(s.scene, shape.group, unit, (vlSource){0});
-    s.camera.eye[0] = 1.7, s.camera.eye[1] = -1.2, s.camera.eye[2] = 2.1,
+    s.camera.eye[0] = 1.7;
+    s.camera.eye[1] = -1.2;
+    s.camera.eye[2] = 2.1;
     s.camera.lookat[2] = 0;
     vlError error = {0};
     vlWorld *world;
@@ -201,8 +222,12 @@ static Image stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bo
   def.sv = 12;
   if (mapping ==
       VL_MAPPING_PLANAR) { /* the same over the quad: s = (x + 1)/2, t = (y + 1) * 6 */
-    def.planar_v1[0] = 0.5f, def.planar_v1[1] = def.planar_v1[2] = 0, def.du = 0.5f;
-    def.planar_v2[1] = 6, def.planar_v2[0] = def.planar_v2[2] = 0, def.dv = 6;
+    def.planar_v1[0] = 0.5f;
+    def.planar_v1[1] = def.planar_v1[2] = 0;
+    def.du = 0.5f;
+    def.planar_v2[1] = 6;
+    def.planar_v2[0] = def.planar_v2[2] = 0;
+    def.dv = 6;
   }
   vlTextureId id = vl_scene_add_texture(s.scene, &def);
   vl_image_destroy(image);
@@ -229,7 +254,8 @@ static void fine_stripes_are_grey_and_wide_ones_sharp(void **state) {
     for (uint32_t y = 2; y < VIEW - 2; y++)
       for (uint32_t x = 2; x < VIEW - 2; x++) {
         double f = image_at(&fine, x, y, 1) / cosine, w = image_at(&wide, x, y, 1) / cosine;
-        sum += f, square += f * f;
+        sum += f;
+        square += f * f;
         double expected = (x / 4) & 1 ? 0.8 : 0.2, off = fabs(w - expected);
         bool edge =
             x % 4 == 0 ||

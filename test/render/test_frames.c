@@ -39,8 +39,10 @@ static int end(void **state) {
 static vlCamera camera_at(double x) {
   vlCameraDef def = vl_default_camera_def(50, 40);
   vlCamera camera;
-  def.eye[0] = x, def.eye[1] = 1.2;
-  def.lookat[0] = x, def.lookat[1] = 1.2;
+  def.eye[0] = x;
+  def.eye[1] = 1.2;
+  def.lookat[0] = x;
+  def.lookat[1] = 1.2;
   assert_int_equal(vl_camera_make(&def, &camera, NULL, NULL), VL_OK);
   return camera;
 }
@@ -48,7 +50,8 @@ static vlCamera camera_at(double x) {
 static vlFilm *make_film(bool errors) {
   vlFilmDef def = vl_default_film_def(50, 40);
   vlFilm *film;
-  def.crop[0] = 3, def.crop[3] = 37;
+  def.crop[0] = 3;
+  def.crop[3] = 37;
   def.errors = errors;
   assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
   return film;

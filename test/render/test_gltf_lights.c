@@ -12,7 +12,8 @@
 /* The wall is the plane z = 0 and the camera is at z = 10. Computes the point that pixel (x, y)
  * shows. */
 static void pixel_point(uint32_t x, uint32_t y, double p[2]) {
-  p[0] = (x + 0.5) / 16 - 1, p[1] = 1 - (y + 0.5) / 16;
+  p[0] = (x + 0.5) / 16 - 1;
+  p[1] = 1 - (y + 0.5) / 16;
 }
 
 static Image lamp_image(const char *node, const char *light) {
@@ -62,7 +63,8 @@ static void point_and_spot(void **state) {
              axis = (at[0] * sin(0.3) + 2 * cos(0.3)) / r; /* cosine to the spot's axis */
       double t = (axis - cos(0.45)) / (cos(0.2) - cos(0.45));
       t = t < 0 ? 0 : t > 1 ? 1 : t;
-      dark += t == 0, full += t == 1;
+      dark += t == 0;
+      full += t == 1;
       assert_near("spot", image_at(&spot, x, y, 1), 0.5 / M_PI * 4 * 2 / (r2 * r) * t * t,
                   0.004);
     }
@@ -142,8 +144,11 @@ static void emissive_image(void **state) {
         float u = panels[i].low +
                   (panels[i].high - panels[i].low) * (float)k / (float)panels[i].strips;
         float *to = corners + 6 * k + 3 * top;
-        to[0] = 2, to[1] = 4 * u - 2, to[2] = top ? 2.5f : 0.5f;
-        uv[4 * k + 2 * top] = u, uv[4 * k + 2 * top + 1] = 0.5f;
+        to[0] = 2;
+        to[1] = 4 * u - 2;
+        to[2] = top ? 2.5f : 0.5f;
+        uv[4 * k + 2 * top] = u;
+        uv[4 * k + 2 * top + 1] = 0.5f;
       }
     for (int k = 0; k < panels[i].strips; k++) {
       uint16_t a = (uint16_t)(2 * k);

@@ -143,7 +143,8 @@ static void glass(void **state) {
           "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
           "\"KHR_materials_volume\":{\"thicknessFactor\":1},\"KHR_materials_dispersion\":{"
           "\"dispersion\":2}}");
-  shot.spectral = true, shot.depth = 200;
+  shot.spectral = true;
+  shot.depth = 200;
   expect_shot("dispersion", &shot, 1, 1, 1, 0.015);
 }
 

@@ -16,7 +16,9 @@ static vlImage *gradient_image(Stage *s, uint32_t width, uint32_t height) {
 
 static void set(vlImage *image, uint32_t x, uint32_t y, float r, float g, float b) {
   float *at = (float *)vl_image_pixels(image) + 3 * ((size_t)y * vl_image_width(image) + x);
-  at[0] = r, at[1] = g, at[2] = b;
+  at[0] = r;
+  at[1] = g;
+  at[2] = b;
 }
 
 static Stage stage(void) {

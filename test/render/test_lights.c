@@ -14,8 +14,10 @@ static Stage floor_stage(bool exact) {
   s.camera.eye[2] = 0.01;
   s.build.color = VL_COLOR_RGB;
   s.render.max_depth = 1;
-  if (exact)
-    s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+  if (exact) {
+    s.render.sampler = VL_SAMPLER_REGULAR;
+    s.render.spp = 1;
+  }
   Quad q = quad_at(0, 0, 0, 40, 0, 0, 0, 40, 0);
   q.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
   add_quad(&s, &q);
@@ -41,10 +43,13 @@ static void point_and_spot(void **state) {
       Stage s = floor_stage(true);
       vlLightDef def = vl_default_light_def(spot ? VL_LIGHT_SPOT : VL_LIGHT_POINT);
       const double p[3] = {0.3, -0.2, 0.9}, aim[3] = {-0.1, 0.1, 0};
-      for (int i = 0; i < 3; i++)
-        def.from[i] = (float)p[i], def.to[i] = (float)aim[i];
+      for (int i = 0; i < 3; i++) {
+        def.from[i] = (float)p[i];
+        def.to[i] = (float)aim[i];
+      }
       def.scale = 3;
-      def.cone_angle = 0.7f, def.cone_delta = 0.3f;
+      def.cone_angle = 0.7f;
+      def.cone_delta = 0.3f;
       double start = cos((double)def.cone_angle - def.cone_delta), end = cos(def.cone_angle),
              intensity = 3;
       if (powered) {
@@ -54,8 +59,10 @@ static void point_and_spot(void **state) {
       vl_scene_add_light(s.scene, &def);
       Image q = stage_finish(&s);
       double axis[3], l = 0;
-      for (int i = 0; i < 3; i++)
-        axis[i] = aim[i] - p[i], l += axis[i] * axis[i];
+      for (int i = 0; i < 3; i++) {
+        axis[i] = aim[i] - p[i];
+        l += axis[i] * axis[i];
+      }
       for (uint32_t y = 0; y < SIZE; y++)
         for (uint32_t x = 0; x < SIZE; x++) {
           double d[3] = {at_x(x) - p[0], at_y(y) - p[1], -p[2]};
@@ -80,8 +87,10 @@ static void hard_spots(void **state) {
       Stage s = floor_stage(true);
       s.build.light_sampler = (vlLightSampler)sampler;
       vlLightDef def = vl_default_light_def(VL_LIGHT_SPOT);
-      def.from[2] = 1, def.to[2] = 0;
-      def.cone_angle = angles[k / 3], def.cone_delta = deltas[k % 3];
+      def.from[2] = 1;
+      def.to[2] = 0;
+      def.cone_angle = angles[k / 3];
+      def.cone_delta = deltas[k % 3];
       vl_scene_add_light(s.scene, &def);
       Image q = stage_finish(&s);
       for (uint32_t y = 0; y < SIZE; y++)
@@ -101,7 +110,9 @@ static void distant(void **state) {
   for (int lux = 0; lux < 2; lux++) {
     Stage s = floor_stage(true);
     vlLightDef def = vl_default_light_def(VL_LIGHT_DISTANT);
-    def.from[0] = 3, def.from[2] = 4, def.to[2] = 0;
+    def.from[0] = 3;
+    def.from[2] = 4;
+    def.to[2] = 0;
     if (lux)
       def.illuminance = 7;
     vl_scene_add_light(s.scene, &def);
@@ -171,11 +182,17 @@ static void sides(void **state) {
                            VL_SHAPE_SPHERE, VL_SHAPE_CYLINDER}[kind]);
       static const float p[12] = {-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0};
       static const uint32_t triangles[6] = {0, 1, 3, 0, 3, 2}, patch[4] = {0, 1, 2, 3};
-      if (kind < 2)
-        def.vertices = 4, def.faces = kind ? 1 : 2, def.positions = p,
+      if (kind < 2) {
+        def.vertices = 4;
+        def.faces = kind ? 1 : 2;
+        def.positions = p;
         def.indices = kind ? patch : triangles;
-      if (kind > 2)
-        def.radius = 20, def.z_min = -20, def.z_max = 20;
+      }
+      if (kind > 2) {
+        def.radius = 20;
+        def.z_min = -20;
+        def.z_max = 20;
+      }
       def.emission = add_emission(&s, 2, two_sided);
       def.reverse_orientation = reverse;
       /* Normals of the flat ones point to the camera, of the round ones away from it. A mirror
@@ -214,11 +231,13 @@ static void power_of_area_lights(void **state) {
         add_quad(&s, &q);
       } else {
         vlShapeDef def = vl_default_shape_def(VL_SHAPE_DISK);
-        def.radius = 0.02f, def.emission = emission, def.reverse_orientation = true;
+        def.radius = 0.02f;
+        def.emission = emission;
+        def.reverse_orientation = true;
         set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 10);
         vl_scene_add_shape(s.scene, &def);
       }
-      s.camera.screen_min_x = s.camera.screen_min_y = -0.1,
+      s.camera.screen_min_x = s.camera.screen_min_y = -0.1;
       s.camera.screen_max_x = s.camera.screen_max_y = 0.1;
       Image p = stage_finish(&s);
       /* rgb's factor 7 is kept (only its white is normalised), as pbrt's spectrum would be */
@@ -240,7 +259,8 @@ static void image_on_a_light(void **state) {
     Stage s = stage_open(SIZE, SIZE);
     s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
     s.build.color = VL_COLOR_RGB;
-    s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+    s.render.sampler = VL_SAMPLER_REGULAR;
+    s.render.spp = 1;
     vlImage *image = make_image(&s, 2, 2, rgb);
     assert_int_equal(vl_image_write(image, path, NULL, NULL), VL_OK);
     vl_image_destroy(image);
@@ -267,7 +287,8 @@ static void image_on_a_light(void **state) {
 
 /* The equal-area octahedral map of the book (3.8.3), in double, written from its definition. */
 static void square_to_sphere(double u, double v, double d[3]) {
-  u = 2 * u - 1, v = 2 * v - 1;
+  u = 2 * u - 1;
+  v = 2 * v - 1;
   double up = fabs(u), vp = fabs(v), sd = 1 - (up + vp), r = 1 - fabs(sd);
   double phi = (r == 0 ? 1 : (vp - up) / r + 1) * M_PI / 4;
   d[2] = copysign(1 - r * r, sd);
@@ -316,7 +337,9 @@ static void sky_orientation(void **state) {
       double w[3] = {turned ? d[2] : d[0], turned ? d[0] : d[1], turned ? d[1] : d[2]};
       for (int i = 0; i < 3; i++)
         s.camera.lookat[i] = w[i];
-      s.camera.up[0] = 0.3, s.camera.up[1] = 0.5, s.camera.up[2] = 0.8;
+      s.camera.up[0] = 0.3;
+      s.camera.up[1] = 0.5;
+      s.camera.up[2] = 0.8;
       vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
       vlImage *image = make_sky(&s, sky, k < 24 ? 1 : REPEAT);
       def.image = image;
@@ -412,7 +435,9 @@ static void light_samplers_agree(void **state) {
   double mean[3];
   for (int sampler = 0; sampler < 3; sampler++) {
     Stage s = stage_open(48, 36);
-    s.camera.eye[1] = 1, s.camera.eye[2] = 3, s.camera.lookat[1] = -0.5;
+    s.camera.eye[1] = 1;
+    s.camera.eye[2] = 3;
+    s.camera.lookat[1] = -0.5;
     s.render.spp = sampler == 2 ? 400 : 100;
     s.render.max_depth = 2;
     s.build.light_sampler = (vlLightSampler)sampler;
@@ -421,11 +446,18 @@ static void light_samplers_agree(void **state) {
     add_quad(&s, &floor);
     add_point(&s, 1, 1, 0, 1);
     vlLightDef spot = vl_default_light_def(VL_LIGHT_SPOT);
-    spot.from[0] = -1, spot.from[1] = 2, spot.to[0] = -1, spot.to[1] = -1, spot.to[2] = 0.5f;
+    spot.from[0] = -1;
+    spot.from[1] = 2;
+    spot.to[0] = -1;
+    spot.to[1] = -1;
+    spot.to[2] = 0.5f;
     spot.scale = 5;
     vl_scene_add_light(s.scene, &spot);
     vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
-    sun.from[0] = 1, sun.from[1] = 2, sun.to[2] = 0, sun.scale = 0.3f;
+    sun.from[0] = 1;
+    sun.from[1] = 2;
+    sun.to[2] = 0;
+    sun.scale = 0.3f;
     vl_scene_add_light(s.scene, &sun);
     add_sky(&s, 0.1f);
     for (int k = 0; k < 12; k++) {
@@ -489,7 +521,9 @@ static void invisible_light(void **state) {
     if (hidden) { /* it casts no shadow either: a sun through it leaves the floor as bright as
                      without */
       vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
-      sun.from[2] = 1, sun.to[2] = 0, sun.scale = 2;
+      sun.from[2] = 1;
+      sun.to[2] = 0;
+      sun.scale = 2;
       vl_scene_add_light(s.scene, &sun);
     }
     Image p = stage_finish(&s);
@@ -521,7 +555,9 @@ static void invisible_sphere(void **state) {
         s.render.tracer = tracers[t];
         vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
         set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, around ? 0 : 1);
-        def.radius = around ? 30 : 0.5f, def.z_min = -def.radius, def.z_max = def.radius;
+        def.radius = around ? 30 : 0.5f;
+        def.z_min = -def.radius;
+        def.z_max = def.radius;
         def.alpha = vl_float_input(0);
         def.emission = add_emission(&s, 1, two_sided);
         def.reverse_orientation = reverse;
@@ -559,12 +595,14 @@ static void imitation_errs_where_pbrt_does(void **state) {
       s.render.spp = 256;
       vlMaterialDef coat = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
       coat.reflectance = vl_spectrum_input(vl_spectrum_constant(1));
-      coat.u_roughness = coat.v_roughness = vl_float_input(0.4f), coat.remap_roughness = false;
+      coat.u_roughness = coat.v_roughness = vl_float_input(0.4f);
+      coat.remap_roughness = false;
       Quad q = quad_at(0, 0, 0, 40, 0, 0, 0, 40, 0);
       q.material = vl_scene_add_material(s.scene, &coat);
       add_quad(&s, &q);
       vlLightDef light = vl_default_light_def(sun ? VL_LIGHT_DISTANT : VL_LIGHT_INFINITE);
-      light.from[2] = 1, light.to[2] = 0;
+      light.from[2] = 1;
+      light.to[2] = 0;
       vl_scene_add_light(s.scene, &light);
       Image p = stage_finish(&s);
       mean[sun][imitate] = image_mean(&p, 1);
@@ -590,9 +628,11 @@ static Image emissive_ceiling(const uint32_t lit[4], float dim, vlTextureFilter 
   for (uint32_t j = 0; j <= CELLS; j++)
     for (uint32_t i = 0; i <= CELLS; i++) {
       size_t k = j * (CELLS + 1) + i;
-      p[3 * k] = (float)i / CELLS - 0.5f, p[3 * k + 1] = (float)j / CELLS - 0.5f,
-            p[3 * k + 2] = 1;
-      uv[2 * k] = 2.0f * (float)i / CELLS, uv[2 * k + 1] = 2.0f * (float)j / CELLS;
+      p[3 * k] = (float)i / CELLS - 0.5f;
+      p[3 * k + 1] = (float)j / CELLS - 0.5f;
+      p[3 * k + 2] = 1;
+      uv[2 * k] = 2.0f * (float)i / CELLS;
+      uv[2 * k + 1] = 2.0f * (float)j / CELLS;
       if (i == CELLS || j == CELLS)
         continue;
       uint32_t a = (uint32_t)k, b = a + CELLS + 1;
@@ -608,12 +648,16 @@ static Image emissive_ceiling(const uint32_t lit[4], float dim, vlTextureFilter 
   }
   vlTextureDef map = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   vlImage *image = make_image(&s, SIDE, SIDE, rgb);
-  map.image = image, map.filter = filter;
+  map.image = image;
+  map.filter = filter;
   vlEmissionDef emission = vl_default_emission_def();
   emission.texture = vl_scene_add_texture(s.scene, &map);
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = (CELLS + 1) * (CELLS + 1), def.faces = 2 * CELLS * CELLS;
-  def.positions = p, def.uvs = uv, def.indices = f;
+  def.vertices = (CELLS + 1) * (CELLS + 1);
+  def.faces = 2 * CELLS * CELLS;
+  def.positions = p;
+  def.uvs = uv;
+  def.indices = f;
   def.emission = vl_scene_add_emission(s.scene, &emission);
   vl_scene_add_shape(s.scene, &def);
   vl_image_destroy(image);
@@ -651,7 +695,8 @@ static void black_faces_are_no_lights(void **state) {
       assert_near("light of a few faces", image_mean(&a, 1), image_mean(&b, 1),
                   0.02 * image_mean(&b, 1) + 1e-9);
       assert_true(few == 0 || image_mean(&a, 1) > 1e-5);
-      image_free(&a), image_free(&b);
+      image_free(&a);
+      image_free(&b);
     }
 }
 

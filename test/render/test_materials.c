@@ -25,7 +25,8 @@ static void add_ball(Stage *s, vlMaterialId material) {
 
 static vlMaterialId add_mix(Stage *s, vlMaterialId a, vlMaterialId b, float amount) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_MIX);
-  def.materials[0] = a, def.materials[1] = b;
+  def.materials[0] = a;
+  def.materials[1] = b;
   def.amount = vl_float_input(amount);
   vlMaterialId id = vl_scene_add_material(s->scene, &def);
   assert_int_not_equal(id.index, 0);
@@ -77,10 +78,12 @@ static void mix_by_texture(void **state) {
     Stage s = stage();
     vlMaterialId m[2] = {add_diffuse(&s, 0.8f, 0.2f, 0.1f), add_diffuse(&s, 0.1f, 0.3f, 0.6f)};
     vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
-    checks.float_a = vl_float_input(0), checks.float_b = vl_float_input(1);
+    checks.float_a = vl_float_input(0);
+    checks.float_b = vl_float_input(1);
     checks.su = checks.sv = 4;
     vlMaterialDef mix = vl_default_material_def(VL_MATERIAL_MIX);
-    mix.materials[0] = m[0], mix.materials[1] = m[1];
+    mix.materials[0] = m[0];
+    mix.materials[1] = m[1];
     mix.amount.texture = vl_scene_add_texture(s.scene, &checks);
     Quad q = quad_at(0, 0, -3, 1, 0, 0, 0, 1, 0);
     q.material = vl_scene_add_material(s.scene, &mix);
@@ -99,7 +102,8 @@ static void mix_by_texture(void **state) {
     fail_msg("mix by texture: %.1f %% of the pixels differ", 100 * differing);
   for (int c = 0; c < 3; c++)
     assert_ratio("mix by texture", image_mean(&p[0], c), image_mean(&p[1], c), 3e-3);
-  image_free(&p[0]), image_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
 }
 
 /* Half of a sheet that is not there: half of what lies behind is seen, and half of the light
@@ -117,7 +121,8 @@ static void mixed_with_an_interface(void **state) {
     vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
     vlMaterialId none = vl_scene_add_material(s.scene, &def), black = add_diffuse(&s, 0, 0, 0);
     vlMaterialDef mix = vl_default_material_def(VL_MATERIAL_MIX);
-    mix.materials[way & 1] = none, mix.materials[!(way & 1)] = black;
+    mix.materials[way & 1] = none;
+    mix.materials[!(way & 1)] = black;
     mix.amount = vl_float_input(way & 1 ? 0.7f : 0.3f); /* the interface's share is 0.7 */
     if (way & 2) {
       vlTextureDef t = vl_default_texture_def(VL_TEXTURE_CONSTANT, false);
@@ -164,10 +169,14 @@ static Stage wall_stage(const double from[3]) {
   Stage s = stage_open(SIZE, SIZE);
   s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
   s.build.color = VL_COLOR_RGB;
-  s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1, s.render.max_depth = 1;
+  s.render.sampler = VL_SAMPLER_REGULAR;
+  s.render.spp = 1;
+  s.render.max_depth = 1;
   vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
-  for (int i = 0; i < 3; i++)
-    sun.from[i] = (float)from[i], sun.to[i] = 0;
+  for (int i = 0; i < 3; i++) {
+    sun.from[i] = (float)from[i];
+    sun.to[i] = 0;
+  }
   sun.scale = (float)M_PI;
   vl_scene_add_light(s.scene, &sun);
   return s;
@@ -220,7 +229,8 @@ static void normal_maps(void **state) {
   double differing = image_differing(&p[0], &p[1], 1e-3);
   if (differing > 0.01)
     fail_msg("flat normal map: %.1f %% of the pixels differ", 100 * differing);
-  image_free(&p[0]), image_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
   remove(path);
 }
 
@@ -233,8 +243,9 @@ static void displacements(void **state) {
     Stage s = wall_stage(sun_at);
     vlTextureDef h = vl_default_texture_def(VL_TEXTURE_BILERP,
                                             false); /* u = (x + 1)/2: twice the slope over u */
-    h.float_a = vl_float_input(0.7f), h.float_b = vl_float_input((float)(0.7 + 2 * b));
-    h.float_c = vl_float_input((float)(0.7 + 2 * a)),
+    h.float_a = vl_float_input(0.7f);
+    h.float_b = vl_float_input((float)(0.7 + 2 * b));
+    h.float_c = vl_float_input((float)(0.7 + 2 * a));
     h.float_d = vl_float_input((float)(0.7 + 2 * a + 2 * b));
     vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
     def.displacement.texture = vl_scene_add_texture(s.scene, &h);
@@ -257,7 +268,8 @@ static void displacements(void **state) {
   double differing = image_differing(&p[0], &p[1], 1e-3);
   if (differing > 0.01)
     fail_msg("constant displacement: %.1f %% of the pixels differ", 100 * differing);
-  image_free(&p[0]), image_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
 }
 
 /* ---- interfaces -------------------------------------------------------------------------- */
@@ -269,7 +281,9 @@ static void interfaces_are_nothing(void **state) {
   double mean[2];
   for (int way = 0; way < 2; way++) {
     Stage s = stage_open(48, 36);
-    s.camera.eye[1] = 0.5, s.camera.eye[2] = 2, s.camera.lookat[1] = -0.3;
+    s.camera.eye[1] = 0.5;
+    s.camera.eye[2] = 2;
+    s.camera.lookat[1] = -0.3;
     s.render.spp = 200;
     s.render.max_depth = 2;
     Quad floor = quad_at(0, -0.5f, 0, 1.5f, 0, 0, 0, 0, -1.5f),
@@ -285,10 +299,13 @@ static void interfaces_are_nothing(void **state) {
       sheet.material = none;
       add_quad(&s, &sheet);
       sheet = quad_at(0, 0, 1, 5, 0, 0, 0, 5, 0);
-      sheet.material = none, sheet.patch = true;
+      sheet.material = none;
+      sheet.patch = true;
       add_quad(&s, &sheet);
       vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-      ball.radius = 9, ball.z_min = -9, ball.z_max = 9;
+      ball.radius = 9;
+      ball.z_min = -9;
+      ball.z_max = 9;
       ball.material = none;
       vl_scene_add_shape(s.scene, &ball);
     }
@@ -323,7 +340,8 @@ static void far_plane_behind_an_interface(void **state) {
 static void prism(void **state) {
   (void)state;
   Stage s = stage_open(96, 8);
-  s.camera.fov = 0.5, s.camera.fov_axis = VL_FOV_HORIZONTAL;
+  s.camera.fov = 0.5;
+  s.camera.fov_axis = VL_FOV_HORIZONTAL;
   s.render.spp = 400;
   s.render.max_depth = 6;
   vlMaterialDef glass = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
@@ -337,7 +355,11 @@ static void prism(void **state) {
   static const uint32_t f[36] = {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
                                  2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 8, def.faces = 12, def.positions = p, def.indices = f, def.material = material;
+  def.vertices = 8;
+  def.faces = 12;
+  def.positions = p;
+  def.indices = f;
+  def.material = material;
   vl_scene_add_shape(s.scene, &def);
   Quad strip = quad_at(-3.2f, 0, -21, 0.15f, 0, 0, 0, 9, 0);
   strip.emission = add_emission(&s, 1, true);
@@ -347,8 +369,10 @@ static void prism(void **state) {
   for (int c = 0; c < 3; c++) {
     double sum = 0, moment = 0;
     for (uint32_t y = 0; y < q.height; y++)
-      for (uint32_t x = 0; x < q.width; x++)
-        sum += image_at(&q, x, y, c), moment += (x + 0.5) * image_at(&q, x, y, c);
+      for (uint32_t x = 0; x < q.width; x++) {
+        sum += image_at(&q, x, y, c);
+        moment += (x + 0.5) * image_at(&q, x, y, c);
+      }
     assert_true(sum > 1);
     at[c] = moment / sum;
   }
@@ -393,7 +417,8 @@ static void dispersion_keeps_energy(void **state) {
     Quad sheet = quad_at(0, 0, -2, 40, 0, 0, 0, 40,
                          0); /* between the wall and the sky; the eye looks through too */
     sheet.material = vl_scene_add_material(s.scene, &glass);
-    s.camera.eye[2] = -2.5, s.camera.lookat[2] = -4;
+    s.camera.eye[2] = -2.5;
+    s.camera.lookat[2] = -4;
     add_quad(&s, &sheet);
     Image p = stage_finish(&s);
     mean[way] = image_mean(&p, 1);

@@ -36,7 +36,9 @@ static void fill(Stage *s) {
   add_quad(s, &right);
   vlGroupId group = vl_scene_add_group(s->scene, "ball");
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  ball.radius = 0.7f, ball.z_min = -0.7f, ball.z_max = 0.7f;
+  ball.radius = 0.7f;
+  ball.z_min = -0.7f;
+  ball.z_max = 0.7f;
   ball.group = group;
   vl_scene_add_shape(s->scene, &ball);
   for (int i = 0; i < 2; i++) {
@@ -46,7 +48,8 @@ static void fill(Stage *s) {
   }
   vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
   vl_scene_add_light(s->scene, &light);
-  s->camera.lens_radius = 0.1, s->camera.focus_distance = 5;
+  s->camera.lens_radius = 0.1;
+  s->camera.focus_distance = 5;
   s->render.spp = 13;
   s->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
 }
@@ -187,13 +190,15 @@ static void test_standard_error(void **state) {
     ceiling.emission = add_emission(&s, 3, true);
     add_quad(&s, &emission);
     add_quad(&s, &ceiling);
-    s.camera.eye[2] = 1.5, s.camera.lookat[2] = 0;
+    s.camera.eye[2] = 1.5;
+    s.camera.lookat[2] = 0;
     s.render.sampler = VL_SAMPLER_INDEPENDENT;
     s.film.filter =
         vl_default_pixel_filter(filter ? VL_PIXEL_FILTER_MITCHELL : VL_PIXEL_FILTER_BOX);
     s.render.spp = 32;
     GroundTruth few = ground_truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
-    s.render.spp = 512, s.render.seed = 5;
+    s.render.spp = 512;
+    s.render.seed = 5;
     GroundTruth many = ground_truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
     double inside = 0, count = 0;
     for (uint32_t y = 0; y < 64; y++)
@@ -203,8 +208,8 @@ static void test_standard_error(void **state) {
         assert_true(e >= 0 && e < 1e6);
         if (e == 0)
           continue;
-        inside += off * off < 0.6745 * 0.6745 * (e * e + f * f),
-            count++; /* half of a normal distribution */
+        inside += off * off < 0.6745 * 0.6745 * (e * e + f * f);
+        count++; /* half of a normal distribution */
       }
     assert_true(count > 3000);
     assert_near("share inside the quartiles", inside / count, 0.5, 0.05);
@@ -252,7 +257,8 @@ static void test_features(void **state) {
       }
       if (object < 1 || object > 2 || *place(&t, x, y, "CryptoObject00.A") > 0)
         continue;
-      whole += coverage > 0.9999, parts += coverage < 0.9;
+      whole += coverage > 0.9999;
+      parts += coverage < 0.9;
       const float *own = place(&t, x, y, "N.X");
       for (int k = 0; k < 3; k++) {
         assert_near("N", n[k], coverage * (double)own[k], 1e-5);
@@ -324,11 +330,13 @@ static void test_wrong_arguments(void **state) {
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
                    VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "film"));
-  def.film = t.film, def.render = &s.render;
+  def.film = t.film;
+  def.render = &s.render;
   def.ranks = 7;
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
                    VL_ERROR_ARGUMENT);
-  def.ranks = 6, def.channels = VL_CHANNEL_ERROR; /* the film was not made for it */
+  def.ranks = 6;
+  def.channels = VL_CHANNEL_ERROR; /* the film was not made for it */
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
                    VL_ERROR_ARGUMENT);
   vlImage *image;
@@ -336,7 +344,8 @@ static void test_wrong_arguments(void **state) {
   def.channels = VL_CHANNEL_FORWARD;
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
                    VL_ERROR_ARGUMENT);
-  def.channels = VL_CHANNEL_Z, def.mode = (vlChannelMode)3;
+  def.channels = VL_CHANNEL_Z;
+  def.mode = (vlChannelMode)3;
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
                    VL_ERROR_ARGUMENT);
   ground_truth_free(&t);
@@ -351,7 +360,9 @@ static vlResult take_all(Stage *s, GroundTruth *t) {
   vlChannelsDef def = vl_default_channels_def(16, 8);
   def.channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FORWARD;
   def.mode = VL_CHANNEL_MODE_COVERAGE;
-  def.film = t->film, def.render = &s->render, def.forward = &t->camera;
+  def.film = t->film;
+  def.render = &s->render;
+  def.forward = &t->camera;
   vlImage *floats, *ids;
   vlIdBox objects[8], instances[8];
   vlBoxesDef boxes = vl_default_boxes_def(16, 8);

@@ -17,15 +17,22 @@ static vlMediumDef white_medium(int kind) {
   vlMediumDef def = vl_default_medium_def((vlMediumKind)kind);
   def.sigma_a = vl_spectrum_constant(0);
   def.sigma_s = vl_spectrum_rgb(1, 1.5f, 2);
-  for (int i = 0; i < 3; i++)
-    def.low[i] = -1, def.high[i] = 1;
+  for (int i = 0; i < 3; i++) {
+    def.low[i] = -1;
+    def.high[i] = 1;
+  }
   set_matrix(def.world_from_medium, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, -3);
   def.g = 0.4f;
   static const float none[24] = {0};
-  if (kind == VL_MEDIUM_GRID)
-    def.nx = def.ny = def.nz = 4, def.density = eights;
-  if (kind == VL_MEDIUM_RGB_GRID)
-    def.nx = def.ny = def.nz = 2, def.rgb_s = colours, def.rgb_a = none;
+  if (kind == VL_MEDIUM_GRID) {
+    def.nx = def.ny = def.nz = 4;
+    def.density = eights;
+  }
+  if (kind == VL_MEDIUM_RGB_GRID) {
+    def.nx = def.ny = def.nz = 2;
+    def.rgb_s = colours;
+    def.rgb_a = none;
+  }
   return def;
 }
 
@@ -97,9 +104,12 @@ static void beer(void **state) {
     if (kind == 1) { /* a grid that is 1 where the ray goes; twice as wide so that it stays so
                         up to the slab's faces */
       def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2, def.density = ones;
-      for (int i = 0; i < 3; i++)
-        def.low[i] = -20, def.high[i] = 20;
+      def.nx = def.ny = def.nz = 2;
+      def.density = ones;
+      for (int i = 0; i < 3; i++) {
+        def.low[i] = -20;
+        def.high[i] = 20;
+      }
     }
     if (kind == 2)
       def.sigma_s = vl_spectrum_constant(0.25f);
@@ -143,9 +153,12 @@ static void single_scattering(void **state) {
     vlMediumDef def = fog((float)a, (float)sc, (float)g);
     if (kind == 1) {
       def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2, def.density = ones;
-      for (int i = 0; i < 3; i++)
-        def.low[i] = -200, def.high[i] = 200;
+      def.nx = def.ny = def.nz = 2;
+      def.density = ones;
+      for (int i = 0; i < 3; i++) {
+        def.low[i] = -200;
+        def.high[i] = 200;
+      }
     }
     add_point(&s, (float)lamp[0], (float)lamp[1], (float)lamp[2], 1);
     vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &def);
@@ -170,9 +183,12 @@ static void emissive(void **state) {
     def.emission = vl_spectrum_rgb(3, 3, 3);
     if (kind > 1) {
       def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2, def.density = ones;
-      for (int i = 0; i < 3; i++)
-        def.low[i] = -20, def.high[i] = 20;
+      def.nx = def.ny = def.nz = 2;
+      def.density = ones;
+      for (int i = 0; i < 3; i++) {
+        def.low[i] = -20;
+        def.high[i] = 20;
+      }
     }
     add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
     Image p = stage_finish(&s);
@@ -196,13 +212,19 @@ static void hot(void **state) {
       s.render.spp = 1024;
       vlMediumDef def = fog(0.7f, 0, 0);
       def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2, def.density = ones;
-      for (int i = 0; i < 3; i++)
-        def.low[i] = -20, def.high[i] = 20;
+      def.nx = def.ny = def.nz = 2;
+      def.density = ones;
+      for (int i = 0; i < 3; i++) {
+        def.low[i] = -20;
+        def.high[i] = 20;
+      }
       if (way == 0)
         def.emission = vl_spectrum_blackbody(2500);
-      if (way == 1)
-        def.temperature = kelvin, def.temperature_offset = 5, def.temperature_scale = 100;
+      if (way == 1) {
+        def.temperature = kelvin;
+        def.temperature_offset = 5;
+        def.temperature_scale = 100;
+      }
       add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
       Image p = stage_finish(&s);
       for (int c = 0; c < 3; c++)
@@ -230,7 +252,8 @@ static void imaged_lamp(void **state) {
     s.render.spp = 16;
     vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     vlImage *image = make_image(&s, 1, 2, rows);
-    texture.image = image, texture.filter = VL_FILTER_POINT;
+    texture.image = image;
+    texture.filter = VL_FILTER_POINT;
     vlEmissionDef emission = vl_default_emission_def();
     emission.texture = vl_scene_add_texture(s.scene, &texture);
     vl_image_destroy(image);
@@ -241,7 +264,7 @@ static void imaged_lamp(void **state) {
     if (with)
       add_ball(&s, -3, 0.01f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
     Image p = stage_finish(&s);
-    half[with][0] = image_region(&p, 0, 0, 8, 3, 1),
+    half[with][0] = image_region(&p, 0, 0, 8, 3, 1);
     half[with][1] = image_region(&p, 0, 5, 8, 8, 1);
     image_free(&p);
   }
@@ -265,7 +288,7 @@ static Image rich(vlContext *context, const void *what) {
   vlMediumId air = add_medium(&s, &dust);
   vl_scene_defs(s.scene)->camera_medium = air;
   vlMediumDef def = white_medium(VL_MEDIUM_GRID);
-  def.emission = vl_spectrum_rgb(0.5f, 0.1f, 0.1f),
+  def.emission = vl_spectrum_rgb(0.5f, 0.1f, 0.1f);
   def.sigma_a = vl_spectrum_rgb(0.1f, 0.3f, 0.6f);
   add_ball(&s, -3, 0.9f, interface(&s), add_medium(&s, &def), air);
   Quad floor = quad_at(0, -1, -3, 4, 0, 0, 0, 0, -4);

@@ -13,9 +13,12 @@ static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
 /* Density 1 all over and around what is looked at. */
 static void uniform(vlMediumDef *def, float half) {
   def->kind = VL_MEDIUM_GRID;
-  def->nx = def->ny = def->nz = 2, def->density = ones;
-  for (int i = 0; i < 3; i++)
-    def->low[i] = -half, def->high[i] = half;
+  def->nx = def->ny = def->nz = 2;
+  def->density = ones;
+  for (int i = 0; i < 3; i++) {
+    def->low[i] = -half;
+    def->high[i] = half;
+  }
 }
 
 static Stage narrow(uint32_t spp, vlColorMode color) {
@@ -44,7 +47,8 @@ static void equilibrium(void **state) {
   enum { CELLS = 6 * 6 * 6 };
   static float a[3 * CELLS], b[3 * CELLS], emission[3 * CELLS];
   for (int i = 0; i < 3 * CELLS; i++) {
-    a[i] = (float)(i * 7919 % 101) / 60, b[i] = (float)(i * 6101 % 89) / 50;
+    a[i] = (float)(i * 7919 % 101) / 60;
+    b[i] = (float)(i * 6101 % 89) / 50;
     emission[i] = 2 / (float)RAW;
   }
   for (int kind = 0; kind < 3; kind++)
@@ -63,15 +67,24 @@ static void equilibrium(void **state) {
         def.emission = vl_spectrum_rgb(2, 2, 2);
         def.emission_scale =
             glass ? 1.5f * 1.5f : 1; /* radiance in glass is eta^2 times as high */
-        if (kind == 1)
-          def.kind = VL_MEDIUM_GRID, def.nx = def.ny = def.nz = 4, def.density = eights;
-        if (kind == 2)
-          def.kind = VL_MEDIUM_RGB_GRID, def.nx = def.ny = def.nz = 6;
-        if (kind == 2)
-          def.rgb_a = a, def.rgb_s = b, def.rgb_emission = emission;
-        for (int i = 0; i < 3; i++)
-          def.low[i] = -1.3f,
-          def.high[i] = 1.3f; /* the emission falls off in the outer half cell */
+        if (kind == 1) {
+          def.kind = VL_MEDIUM_GRID;
+          def.nx = def.ny = def.nz = 4;
+          def.density = eights;
+        }
+        if (kind == 2) {
+          def.kind = VL_MEDIUM_RGB_GRID;
+          def.nx = def.ny = def.nz = 6;
+        }
+        if (kind == 2) {
+          def.rgb_a = a;
+          def.rgb_s = b;
+          def.rgb_emission = emission;
+        }
+        for (int i = 0; i < 3; i++) {
+          def.low[i] = -1.3f;
+          def.high[i] = 1.3f;
+        } /* the emission falls off in the outer half cell */
         set_matrix(def.world_from_medium, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, -3);
         vlMaterialDef window = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
         add_sky(&s, 2);
@@ -122,8 +135,10 @@ static void lamp_in_shell(void **state) {
     Stage s = narrow(256, VL_COLOR_RGB);
     vlMediumDef a = fog(0.5f, 0, 0), b = fog(0.3f, 0, 0);
     vlMediumId inner = {0}, outer = {0};
-    if (with)
-      inner = add_medium(&s, &a), outer = add_medium(&s, &b);
+    if (with) {
+      inner = add_medium(&s, &a);
+      outer = add_medium(&s, &b);
+    }
     vl_scene_defs(s.scene)->camera_medium = inner;
     add_ball(&s, 0, 4, interface(&s), inner, outer);
     Quad wall = quad_at(0, 0, -2, 1, 0, 0, 0, 1, 0);
@@ -131,7 +146,8 @@ static void lamp_in_shell(void **state) {
     add_quad(&s, &wall);
     vlLightDef point = vl_default_light_def(VL_LIGHT_POINT);
     point.color = vl_spectrum_rgb(9, 9, 9);
-    point.from[2] = 8, point.medium = outer;
+    point.from[2] = 8;
+    point.medium = outer;
     vl_scene_add_light(s.scene, &point);
     Image p = stage_finish(&s);
     mean[with] = image_mean(&p, 1);
@@ -153,9 +169,13 @@ static void stretched(void **state) {
     s.camera.fov = 0.001;
     vlMediumDef def = fog(0.25f, 0, 0);
     def.kind = VL_MEDIUM_GRID;
-    def.nx = 2, def.ny = def.nz = 1, def.density = ramp;
-    for (int i = 0; i < 3; i++)
-      def.low[i] = 0, def.high[i] = 1;
+    def.nx = 2;
+    def.ny = def.nz = 1;
+    def.density = ramp;
+    for (int i = 0; i < 3; i++) {
+      def.low[i] = 0;
+      def.high[i] = 1;
+    }
     /* x -> -z twice as long, y -> x, z -> y four times as wide; the ray goes through the middle
      * of both */
     if (back)
@@ -178,8 +198,10 @@ static void stretched(void **state) {
 static void rgb_grids(void **state) {
   (void)state;
   static float sigma[24], emission[24], none[24];
-  for (int i = 0; i < 24; i++)
-    sigma[i] = (float[3]){0.2f, 0.5f, 1.0f}[i % 3], emission[i] = (float[3]){3, 2, 1}[i % 3];
+  for (int i = 0; i < 24; i++) {
+    sigma[i] = (float[3]){0.2f, 0.5f, 1.0f}[i % 3];
+    emission[i] = (float[3]){3, 2, 1}[i % 3];
+  }
   for (int rgb = 0; rgb < 2; rgb++) {
     double seen[3], known[3];
     for (int way = 0; way < 3; way++) { /* the grid before a sky; emissive; the same colours of
@@ -189,12 +211,15 @@ static void rgb_grids(void **state) {
       if (way < 2) {
         def.kind = VL_MEDIUM_RGB_GRID;
         def.nx = def.ny = def.nz = 2;
-        def.rgb_a = sigma, def.rgb_s = none;
+        def.rgb_a = sigma;
+        def.rgb_s = none;
         if (way == 1)
           def.rgb_emission = emission;
         def.scale = 0.8f;
-        for (int i = 0; i < 3; i++)
-          def.low[i] = -20, def.high[i] = 20;
+        for (int i = 0; i < 3; i++) {
+          def.low[i] = -20;
+          def.high[i] = 20;
+        }
       } else {
         def.sigma_a = vl_spectrum_rgb(0.2f, 0.5f, 1.0f);
         def.scale = 0.8f;

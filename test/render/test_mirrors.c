@@ -140,8 +140,10 @@ static Scene make_scene(int kind, int map, Place place, bool reverse) {
   if (place == OWN_IN_INSTANCE || place == OWN_IN_MOVING)
     s.outer = maps[2];
   s.flip = reverse != (det(s.own) < 0);
-  memcpy(s.p, s.kind->p, sizeof s.p), memcpy(s.n, s.kind->n, sizeof s.n);
-  apply(s.own, s.p), apply(s.outer, s.p);
+  memcpy(s.p, s.kind->p, sizeof s.p);
+  memcpy(s.n, s.kind->n, sizeof s.n);
+  apply(s.own, s.p);
+  apply(s.outer, s.p);
   double out[3] = {s.kind->n[0], s.kind->n[1], s.kind->n[2]}, side = s.flip ? -1 : 1;
   switch (s.kind->family) {
     case QUADRIC:
@@ -152,14 +154,18 @@ static Scene make_scene(int kind, int map, Place place, bool reverse) {
       apply_cofactors(s.own, s.n);
       break; /* the cross product of moved edges */
     case NORMALS:
-      apply_normal(s.own, s.n), side = reverse ? -1 : 1;
+      apply_normal(s.own, s.n);
+      side = reverse ? -1 : 1;
       break;
   }
   apply_normal(s.outer, s.n);
-  apply_normal(s.own, out), apply_normal(s.outer, out);
+  apply_normal(s.own, out);
+  apply_normal(s.outer, out);
   double length = sqrt(s.n[0] * s.n[0] + s.n[1] * s.n[1] + s.n[2] * s.n[2]);
-  for (int i = 0; i < 3; i++)
-    s.n[i] *= side / length, s.p[i] += shift[i];
+  for (int i = 0; i < 3; i++) {
+    s.n[i] *= side / length;
+    s.p[i] += shift[i];
+  }
   s.outward = s.kind->outward * (s.n[0] * out[0] + s.n[1] * out[1] + s.n[2] * out[2]) > 0;
   return s;
 }
@@ -218,7 +224,8 @@ static double shoot_file(const char *path, uint32_t spp, uint32_t depth) {
   stage.camera.width = stage.camera.height = 2;
   stage.build.color = VL_COLOR_RGB;
   stage.render.tracer = vl_scene_defs(stage.scene)->render.tracer;
-  stage.render.spp = spp, stage.render.max_depth = depth;
+  stage.render.spp = spp;
+  stage.render.max_depth = depth;
   Image q = stage_finish(&stage);
   double mean = image_mean(&q, 1);
   image_free(&q);
@@ -260,7 +267,8 @@ static void lights_shine_to_the_side_of_the_normal(void **state) {
         Scene s = make_scene(kind, map, OWN, k & 1);
         double side = k & 2 ? -1 : 1, eye[3], at[3];
         char name[160], bead[200];
-        off(&s, 0.15 * side, eye), off(&s, 0.3 * side, at);
+        off(&s, 0.15 * side, eye);
+        off(&s, 0.3 * side, at);
         name_scene(&s, map, side, "seen", name);
         assert_near(name, shoot(&s, eye, s.p, "", one, 1, 0), side > 0, 1e-3);
         snprintf(bead, sizeof bead,
@@ -291,14 +299,16 @@ static void media_lie_behind_the_normal(void **state) {
         off(&s, 0.15 * side, eye);
         double value = shoot(&s, eye, s.p, sky, bounds, 1, 100);
         name_scene(&s, map, side, "medium", name);
-        if (s.kind->family == CURVE)
+        if (s.kind->family == CURVE) {
           low = high = !s.flip;
-        else if (s.kind->outward == 0)
+        } else if (s.kind->outward == 0) {
           low = high = side < 0;
-        else if (side > 0)
-          low = s.outward ? 0.01 : 0, high = s.outward ? 0.9 : 0;
-        else
+        } else if (side > 0) {
+          low = s.outward ? 0.01 : 0;
+          high = s.outward ? 0.9 : 0;
+        } else {
           low = high = s.outward;
+        }
         if (!(value >= low - 1e-3 && value <= high + 1e-3))
           fail_msg("%s: %g, expected %g to %g", name, value, low, high);
       }

@@ -19,7 +19,8 @@ static void wheel_pose(double t, double m[16]) {
  * move, too. held >= 0: all rests, but where it is at that time. */
 static void fill(Stage *s, bool camera_moves, double held) {
   s->camera.fov = 0.9;
-  s->camera.shutter_open = 0.25, s->camera.shutter_close = 0.75;
+  s->camera.shutter_open = 0.25;
+  s->camera.shutter_close = 0.75;
   if (camera_moves) {
     const double eye[3] = {0.3, 0.1, 0}, lookat[3] = {0.25, 0, -3};
     memcpy(s->camera.eye_close, eye, sizeof eye);
@@ -35,19 +36,24 @@ static void fill(Stage *s, bool camera_moves, double held) {
   add_quad(s, &floor);
   vlGroupId group = vl_scene_add_group(s->scene, "wheel");
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
-  checks.su = 5, checks.sv = 5, checks.float_a = vl_float_input(1),
+  checks.su = 5;
+  checks.sv = 5;
+  checks.float_a = vl_float_input(1);
   checks.float_b = vl_float_input(0);
   for (int k = 0; k < 3; k++) {
     Quad board =
         quad_at(0, 0, 0.1f * (float)k, k == 0 ? 0.6f : 0.1f, 0, 0, 0, k == 0 ? 0.1f : 0.6f, 0);
-    board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f), board.group = group,
+    board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f);
+    board.group = group;
     board.patch = k == 2;
     if (k == 1)
       board.alpha.texture = vl_scene_add_texture(s->scene, &checks);
     add_quad(s, &board);
   }
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  ball.radius = 0.25f, ball.group = group, ball.material = add_diffuse(s, 0.2f, 0.3f, 0.8f);
+  ball.radius = 0.25f;
+  ball.group = group;
+  ball.material = add_diffuse(s, 0.2f, 0.3f, 0.8f);
   set_matrix(ball.group_from_shape, 1, 0, 0, 0.4, 0, 1, 0, 0.4, 0, 0, 1.3, 0);
   assert_int_not_equal(vl_scene_add_shape(s->scene, &ball).index, 0);
   const double times[3] = {0, 0.5, 1};
@@ -71,9 +77,12 @@ static void fill(Stage *s, bool camera_moves, double held) {
     close[i] = (float)((double)mesh.positions[i] * (1 - f) + (double)close[i] * f);
   if (held >= 0)
     mesh.positions = close;
-  if (held < 0)
-    mesh.positions_close = close, mesh.normals_close = mesh.normals;
-  mesh.times[0] = 0.25, mesh.times[1] = 0.5;
+  if (held < 0) {
+    mesh.positions_close = close;
+    mesh.normals_close = mesh.normals;
+  }
+  mesh.times[0] = 0.25;
+  mesh.times[1] = 0.5;
   mesh.material = add_diffuse(s, 0.3f, 0.7f, 0.3f);
   assert_int_not_equal(vl_scene_add_shape(s->scene, &mesh).index, 0);
   free(block);
@@ -86,7 +95,8 @@ static void blur_is_the_mean_of_held_images(void **state) {
   enum { HELD = 400, SPP = 4 };
   for (int moves = 0; moves < 2; moves++) {
     static double sum[2][W * H], square[2][W * H];
-    memset(sum, 0, sizeof sum), memset(square, 0, sizeof square);
+    memset(sum, 0, sizeof sum);
+    memset(square, 0, sizeof square);
     for (int k = 0; k < 2 * HELD; k++) { /* even: blurred, odd: held */
       int set = k % 2;
       /* the times of the held ones: even steps, jittered */
@@ -102,14 +112,16 @@ static void blur_is_the_mean_of_held_images(void **state) {
       assert_int_equal(vl_camera_at(&camera, t, &held), VL_OK);
       vlFilm *film = NULL;
       vlImage *image = NULL;
-      s.render.seed = (uint32_t)(k + 1000 * moves), s.render.spp = SPP;
+      s.render.seed = (uint32_t)(k + 1000 * moves);
+      s.render.spp = SPP;
       assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
       assert_int_equal(vl_render(world, set ? &held : &camera, film, &s.render, NULL, &error),
                        VL_OK);
       assert_int_equal(vl_film_develop(film, NULL, &image), VL_OK);
       for (uint32_t i = 0; i < W * H; i++) {
         double v = vl_image_get(image, i % W, i / W, 1);
-        sum[set][i] += v, square[set][i] += v * v;
+        sum[set][i] += v;
+        square[set][i] += v * v;
       }
       vl_image_destroy(image);
       vl_film_destroy(film);
@@ -174,7 +186,8 @@ static void nothing_hides_itself(void **state) {
   for (int k = 0; k < 4; k++) { /* turning, far from the origin, growing, vertices */
     Stage s = stage_open(40, 40);
     s.build.color = VL_COLOR_RGB;
-    s.render.tracer = VL_TRACER_AMBIENT_OCCLUSION, s.render.spp = 64;
+    s.render.tracer = VL_TRACER_AMBIENT_OCCLUSION;
+    s.render.spp = 64;
     double far = k == 1 ? 1000 : 0, times[2] = {0, 1}, poses[32];
     s.camera.eye[0] = s.camera.lookat[0] = far + 0.5;
     s.camera.fov = 0.5;
@@ -217,7 +230,8 @@ static void ways_to_move_agree(void **state) {
   for (int k = 0; k < 3; k++) {
     Stage s = stage_open(32, 24);
     s.build.color = VL_COLOR_RGB;
-    s.render.max_depth = 0, s.render.spp = 32;
+    s.render.max_depth = 0;
+    s.render.spp = 32;
     add_sky(&s, 1);
     float *block, close[3 * 17 * 9];
     vlShapeDef ball = mesh_sphere(8, 0.5f, false, &block);
@@ -225,7 +239,8 @@ static void ways_to_move_agree(void **state) {
     double times[2] = {0, 1}, poses[32];
     set_matrix(poses, 1, 0, 0, -0.5, 0, 1, 0, 0, 0, 0, 1, -2);
     memcpy(poses + 16, poses, 16 * sizeof *poses);
-    poses[19] = 0.5, poses[23] = 0.25;
+    poses[19] = 0.5;
+    poses[23] = 0.25;
     for (uint32_t i = 0; i < 3 * ball.vertices; i++)
       close[i] = ball.positions[i] + (i % 3 == 0 ? 1.0f : i % 3 == 1 ? 0.25f : 0.0f);
     if (k == 0)
@@ -267,8 +282,10 @@ static void rolling_shutter_slants_edges(void **state) {
     s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
     s.camera.fx = 32; /* pixels a unit */
     s.build.color = VL_COLOR_RGB;
-    s.render.max_depth = 0, s.render.spp = k == 2 ? 256 : 64;
-    s.camera.shutter_close = k == 2 ? 0.25 : 0, s.camera.readout = 0.5;
+    s.render.max_depth = 0;
+    s.render.spp = k == 2 ? 256 : 64;
+    s.camera.shutter_close = k == 2 ? 0.25 : 0;
+    s.camera.readout = 0.5;
     s.camera.readout_direction = k == 1 ? VL_READOUT_UP : VL_READOUT_DOWN;
     vlGroupId group = vl_scene_add_group(s.scene, "card");
     Quad card = quad_at(-5, 0, 0, 5, 0, 0, 0, 5, 0);
@@ -285,7 +302,10 @@ static void rolling_shutter_slants_edges(void **state) {
       double x = 0; /* the edge: how many pixels the card covers */
       for (uint32_t i = 0; i < WIDTH; i++)
         x += (double)image_at(&p, i, y, 3);
-      sy += y, sx += x, syy += (double)y * y, sxy += x * y;
+      sy += y;
+      sx += x;
+      syy += (double)y * y;
+      sxy += x * y;
     }
     double slope = (HEIGHT * sxy - sx * sy) / (HEIGHT * syy - sy * sy), sign = k == 1 ? -1 : 1;
     double want = sign * speed * 32 * 0.5 / HEIGHT, offset = (sx - slope * sy) / HEIGHT;

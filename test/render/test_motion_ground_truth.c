@@ -18,7 +18,8 @@ static Stage fill(double f) {
   bool still = f >= 0;
   double a[16], b[16], poses[32];
   s.camera.fov = 0.8;
-  s.camera.shutter_open = 0.2, s.camera.shutter_close = 0.6;
+  s.camera.shutter_open = 0.2;
+  s.camera.shutter_close = 0.6;
   set_matrix(a, 1, 0, 0, -0.6, 0, 1, 0, 0.1, 0, 0, 1, -3);
   set_matrix(b, 1, 0, 0, 0.4, 0, 1.5, 0, 0.3, 0, 0, 1,
              -2.5); /* no turn: the truth is known exactly */
@@ -50,8 +51,10 @@ static Stage fill(double f) {
     rows[1][i] = close;
   }
   mesh.positions = rows[0];
-  if (!still)
-    mesh.positions_close = rows[1], mesh.normals_close = mesh.normals;
+  if (!still) {
+    mesh.positions_close = rows[1];
+    mesh.normals_close = mesh.normals;
+  }
   vl_scene_add_shape(s.scene, &mesh);
   assert_int_equal(vl_scene_result(s.scene, NULL), VL_OK);
   free(block);
@@ -136,10 +139,13 @@ static void flow_follows(void **state) {
       for (uint32_t c = 0; c < 3; c++)
         p[c] = vl_image_get(floats, x, y, 1 + c);
       if (object == 3) { /* shape space: less (0.8, -0.4, -3) */
-        q[0] = 0.8 + 0.8 * (p[0] - 0.8) - 0.4, q[1] = -0.4 + 1.4 * (p[1] + 0.4),
+        q[0] = 0.8 + 0.8 * (p[0] - 0.8) - 0.4;
+        q[1] = -0.4 + 1.4 * (p[1] + 0.4);
         q[2] = -3 + 0.8 * (p[2] + 3);
       } else {
-        q[0] = p[0] + 1, q[1] = 1.5 * (p[1] - 0.1) + 0.3, q[2] = p[2] + 0.5;
+        q[0] = p[0] + 1;
+        q[1] = 1.5 * (p[1] - 0.1) + 0.3;
+        q[2] = p[2] + 0.5;
       }
       assert_true(vl_camera_project(&then, q, pixel, &z));
       assert_near("flow x", vl_image_get(floats, x, y, at), pixel[0] - (x + 0.5), 2e-4);

@@ -16,7 +16,8 @@ static void blur_has_the_openings_shape(void **state) {
     s.render.spp = 4096;
     s.render.max_depth = 0;
     s.camera.fx = s.camera.fy = 60;
-    s.camera.lens_radius = 0.4, s.camera.focus_distance = k ? 9 : 2;
+    s.camera.lens_radius = 0.4;
+    s.camera.focus_distance = k ? 9 : 2;
     s.camera.lens.blades = 3;
     Quad q = quad_at(0, 0, -4, 0.08f, 0, 0, 0, 0.08f, 0);
     q.emission = add_emission(&s, 100, true);
@@ -28,10 +29,15 @@ static void blur_has_the_openings_shape(void **state) {
         for (uint32_t x = 0; x < 64; x++) {
           double v = image_at(&p, x, y, 1), dx = x + 0.5 - 32, dy = y + 0.5 - 32;
           if (!pass) {
-            sum += v, mean[0] += v * dx, mean[1] += v * dy;
+            sum += v;
+            mean[0] += v * dx;
+            mean[1] += v * dy;
           } else {
-            dx -= mean[0] / sum, dy -= mean[1] / sum;
-            third += v * dy * dy * dy, second[0] += v * dx * dx, second[1] += v * dy * dy;
+            dx -= mean[0] / sum;
+            dy -= mean[1] / sum;
+            third += v * dy * dy * dy;
+            second[0] += v * dx * dx;
+            second[1] += v * dy * dy;
           }
         }
     assert_near("centre of the blur, x", mean[0] / sum, 0, 0.05);
@@ -59,10 +65,12 @@ static void autofocus(void **state) {
     if (k) {
       s.camera.focus_distance = 3;
     } else {
-      s.camera.lens.focus_pixel[0] = 8.25, s.camera.lens.focus_pixel[1] = 20;
+      s.camera.lens.focus_pixel[0] = 8.25;
+      s.camera.lens.focus_pixel[1] = 20;
     }
     Quad a = quad_at(-5, 0, -3, 5, 0, 0, 0, 9, 0), b = quad_at(5, 0, -8, 5, 0, 0, 0, 4, 0);
-    a.emission = add_emission(&s, 2, true), b.emission = add_emission(&s, 1, true);
+    a.emission = add_emission(&s, 2, true);
+    b.emission = add_emission(&s, 1, true);
     add_quad(&s, &a);
     add_quad(&s, &b);
     if (!k) {
@@ -130,7 +138,8 @@ static void natural_vignetting(void **state) {
 static void many_elements(void **state) {
   (void)state;
   vlOpticsDef def = vl_default_optics_def();
-  def.aperture_diameter = 6, def.focus_distance = 2;
+  def.aperture_diameter = 6;
+  def.focus_distance = 2;
   for (int k = 0; k < 3; k++) {
     Stage s = stage_open(72, 48);
     vlOptics *optics = NULL;
@@ -139,8 +148,10 @@ static void many_elements(void **state) {
                        VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat", &def,
                        &optics, &error) != VL_OK)
       fail_msg("%s", error.message);
-    s.camera.projection = VL_PROJECTION_OPTICS, s.camera.lens.optics = optics;
-    s.render.spp = 256, s.render.max_depth = 0;
+    s.camera.projection = VL_PROJECTION_OPTICS;
+    s.camera.lens.optics = optics;
+    s.render.spp = 256;
+    s.render.max_depth = 0;
     vlCamera camera;
     assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
     double dot[3] = {0.3, -0.2, -2}, pixel[2] = {0, 0};
@@ -171,7 +182,9 @@ static void many_elements(void **state) {
       for (uint32_t y = 0; y < 48; y++)
         for (uint32_t x = 0; x < 72; x++) {
           double v = image_at(&p, x, y, 1);
-          sum += v, mx += v * (x + 0.5), my += v * (y + 0.5);
+          sum += v;
+          mx += v * (x + 0.5);
+          my += v * (y + 0.5);
         }
       assert_near("x of the dot", mx / sum, pixel[0], 0.1);
       assert_near("y of the dot", my / sum, pixel[1], 0.1);

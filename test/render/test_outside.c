@@ -9,14 +9,17 @@ static void image_circle(void **state) {
     Stage s = stage_open(48, 48);
     s.camera.projection = closed ? VL_PROJECTION_PERSPECTIVE : VL_PROJECTION_EQUIDISTANT;
     if (closed) { /* r (1 - 0.4 r^2) reaches no further than 0.6086 */
-      s.camera.fx = 30, s.camera.distortion = VL_DISTORTION_RADIAL,
+      s.camera.fx = 30;
+      s.camera.distortion = VL_DISTORTION_RADIAL;
       s.camera.distortion_count = 1;
       s.camera.distortion_coefficients[0] = -0.4;
     }
     add_sky(&s, 1);
     if (closed) {
       vlShapeDef room = vl_default_shape_def(VL_SHAPE_SPHERE);
-      room.radius = 5, room.z_min = -5, room.z_max = 5;
+      room.radius = 5;
+      room.z_min = -5;
+      room.z_max = 5;
       room.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
       assert_int_not_equal(vl_scene_add_shape(s.scene, &room).index, 0);
     }

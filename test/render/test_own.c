@@ -53,7 +53,8 @@ static void same_as_velo(void **state) {
       p[k] = stage_finish(&s);
     }
     assert_same(&p[0], &p[1]);
-    image_free(&p[0]), image_free(&p[1]);
+    image_free(&p[0]);
+    image_free(&p[1]);
   }
 }
 
@@ -62,12 +63,16 @@ static void same_in_motion(void **state) {
   Image p[2];
   for (int k = 0; k < 2; k++) {
     Stage s = small_stage(NULL, k ? &pinhole : NULL);
-    s.camera.eye_close[0] = 0.4, s.camera.eye_close[1] = 1.6, s.camera.eye_close[2] = 5;
-    s.camera.readout = 0.5, s.camera.shutter_close = 0.5;
+    s.camera.eye_close[0] = 0.4;
+    s.camera.eye_close[1] = 1.6;
+    s.camera.eye_close[2] = 5;
+    s.camera.readout = 0.5;
+    s.camera.shutter_close = 0.5;
     p[k] = stage_finish(&s);
   }
   assert_same(&p[0], &p[1]);
-  image_free(&p[0]), image_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
 }
 
 static Image render_own(vlContext *context, const void *what) {
@@ -115,7 +120,8 @@ static void other_sizes(void **state) {
     vl_camera_project_batch(&a, 2, points, pa, za, va);
     vl_camera_project_batch(&b, 2, points, pb, zb, vb);
     for (int i = 0; i < 2; i++) {
-      assert_int_equal(va[i], i == 0), assert_int_equal(vb[i], va[i]);
+      assert_int_equal(va[i], i == 0);
+      assert_int_equal(vb[i], va[i]);
       assert_true(fabs(za[i] - zb[i]) < 1e-12);
       assert_true(fabs(pa[2 * i] - pb[2 * i]) < 1e-9 &&
                   fabs(pa[2 * i + 1] - pb[2 * i + 1]) < 1e-9);
@@ -154,8 +160,10 @@ static void ground_truth(void **state) {
         assert_true(a == b || fabsf(a - b) < 1e-5f * fabsf(a) + 1e-6f);
       }
     }
-  for (int k = 0; k < 2; k++)
-    vl_image_destroy(floats[k]), vl_image_destroy(ids[k]);
+  for (int k = 0; k < 2; k++) {
+    vl_image_destroy(floats[k]);
+    vl_image_destroy(ids[k]);
+  }
   vl_world_destroy(world);
   stage_close(&s);
 }
@@ -208,7 +216,8 @@ static void no_rays(void **state) {
         for (int c = 0; c < 4 && quarter == 3; c++)
           assert_true(b[c] == a[c]);
       }
-    image_free(&whole), image_free(&p);
+    image_free(&whole);
+    image_free(&p);
   }
 }
 
@@ -226,7 +235,7 @@ static void look(void *user, const vlOwnFilmPoints *points, const vlOwnRays *ray
   for (uint32_t i = 0; i < points->count; i++) {
     s->u_low = fmin(s->u_low, fmin(points->lens_u[i], points->lens_v[i]));
     s->u_high = fmax(s->u_high, fmax(points->lens_u[i], points->lens_v[i]));
-    s->time_low = fmin(s->time_low, points->time[i]),
+    s->time_low = fmin(s->time_low, points->time[i]);
     s->time_high = fmax(s->time_high, points->time[i]);
   }
   pthread_mutex_unlock(&s->mutex);
@@ -240,7 +249,8 @@ static void what_it_gets(void **state) {
         .mutex = PTHREAD_MUTEX_INITIALIZER, .u_low = 1, .time_low = 1e9, .time_high = -1e9};
     const vlOwnCamera own = {.name = "look", .rays = look, .lens = lens, .user = &seen};
     Stage s = small_stage(NULL, &own);
-    s.camera.shutter_open = 3, s.camera.shutter_close = 5;
+    s.camera.shutter_open = 3;
+    s.camera.shutter_close = 5;
     if (lens)
       s.camera.readout = 1;
     Image p = stage_finish(&s);
@@ -324,10 +334,12 @@ static void sampler_mean(void **state) {
       double all = 0;
       for (uint32_t i = 0; i < p.width * p.height; i++)
         all += (double)p.rgba[4 * i + 1];
-      sum += all, square += all * all;
+      sum += all;
+      square += all * all;
       image_free(&p);
     }
-    mean[k] = sum / 16, error[k] = sqrt((square / 16 - mean[k] * mean[k]) / 15);
+    mean[k] = sum / 16;
+    error[k] = sqrt((square / 16 - mean[k] * mean[k]) / 15);
   }
   double z = (mean[1] - mean[0]) / hypot(error[0], error[1]);
   print_message("own sampler: mean %.5g, velo's %.5g, z = %.2f\n", mean[1], mean[0], z);
@@ -463,10 +475,12 @@ static void mean_of(vlTracer tracer, const vlOwnTracer *own, vlColorMode color, 
     double all = 0;
     for (uint32_t i = 0; i < p.width * p.height; i++)
       all += fmin((double)p.rgba[4 * i + 1], 20); /* no fireflies */
-    sum += all, square += all * all;
+    sum += all;
+    square += all * all;
     image_free(&p);
   }
-  *mean = sum / SEEDS, *error = sqrt((square / SEEDS - *mean * *mean) / (SEEDS - 1));
+  *mean = sum / SEEDS;
+  *error = sqrt((square / SEEDS - *mean * *mean) / (SEEDS - 1));
 }
 
 /* The means are those of velo's tracers. */
@@ -608,7 +622,8 @@ static vlResult render_part(const Stage *s, const vlWorld *world, const vlOwnCam
   vlRenderDef render = s->render;
   assert_int_equal(vl_camera_make(&def, &camera, NULL, error), VL_OK);
   render.own_sampler = sampler;
-  render.first_sample = first, render.spp = spp;
+  render.first_sample = first;
+  render.spp = spp;
   return vl_render(world, &camera, film, &render, NULL, error);
 }
 
@@ -626,8 +641,10 @@ static void names_in_films(void **state) {
   char a[] = "/tmp/velo_own_aXXXXXX", b[] = "/tmp/velo_own_bXXXXXX",
        c[] = "/tmp/velo_own_cXXXXXX";
   char *const paths[3] = {a, b, c};
-  for (int i = 0; i < 3; i++)
-    close(mkstemp(paths[i])), unlink(paths[i]);
+  for (int i = 0; i < 3; i++) {
+    close(mkstemp(paths[i]));
+    unlink(paths[i]);
+  }
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_OK);
   assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
   assert_null(vl_film_own(film, VL_OWN_CAMERA));
@@ -714,7 +731,8 @@ static void names_in_receipts(void **state) {
   assert_true(vl_receipt_compare(receipt[0], parsed, VL_RECEIPT_SETTINGS, NULL, NULL) > 0);
   assert_int_equal(vl_receipt_compare(receipt[1], parsed, VL_RECEIPT_ALL, NULL, NULL), 0);
   vl_receipt_destroy(parsed);
-  vl_receipt_destroy(receipt[0]), vl_receipt_destroy(receipt[1]);
+  vl_receipt_destroy(receipt[0]);
+  vl_receipt_destroy(receipt[1]);
   vlCameraRecord record = {.camera = defs->camera};
   assert_int_equal(vl_camera_write(s.context, "/tmp/velo_own.json", NULL, &record, &error),
                    VL_ERROR_UNSUPPORTED);

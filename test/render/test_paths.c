@@ -29,7 +29,8 @@ static void rendered(vlContext *context, const vlWorld *world, const vlCamera *c
   const uint32_t crop[4] = {of->x, of->y, of->x + 1, of->y + 1};
   memcpy(pixel.crop, crop, sizeof crop);
   vlRenderDef own = *def;
-  own.first_sample = first, own.spp = end;
+  own.first_sample = first;
+  own.spp = end;
   vlFilm *made = NULL;
   vlImage *image = NULL;
   assert_int_equal(vl_film_create(context, &pixel, &made), VL_OK);
@@ -55,8 +56,10 @@ static void check_path(const vlPath *p) {
       assert_true(c->radiance[0] == 0 && c->radiance[1] == 0);
     for (int k = 0; k < 4; k++)
       sum[k] += c->radiance[k];
-    for (int k = 0; k < 3; k++)
-      rgb[k] += c->rgb[k], size += fabs(c->rgb[k]);
+    for (int k = 0; k < 3; k++) {
+      rgb[k] += c->rgb[k];
+      size += fabs(c->rgb[k]);
+    }
   }
   for (int k = 0; k < 4; k++) {
     float expected = p->camera_weight > 0 ? sum[k] * p->camera_weight : 0;
@@ -138,7 +141,9 @@ static void check_sums(bool shared) {
     assert_true(load_world(&l, cases[k].scene, SIDE, SIDE));
     vlFilmDef film = vl_default_film_def(SIDE, SIDE);
     vlRenderDef def = vl_default_render_def();
-    def.tracer = cases[k].tracer, def.max_depth = cases[k].depth, def.spp = COUNT,
+    def.tracer = cases[k].tracer;
+    def.max_depth = cases[k].depth;
+    def.spp = COUNT;
     def.share_samples = shared;
     uint32_t occurs = 0;
     for (uint32_t y = 1; y < SIDE; y += 5)
@@ -199,13 +204,16 @@ static Stage floor_stage(bool point) {
   add_quad(&s, &q);
   if (point) {
     vlLightDef light = vl_default_light_def(VL_LIGHT_POINT);
-    light.from[2] = 2, light.scale = 3;
+    light.from[2] = 2;
+    light.scale = 3;
     vl_scene_add_light(s.scene, &light);
   } else {
     vlEmissionDef emission = vl_default_emission_def();
     emission.scale = 3;
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-    def.radius = 0.25f, def.z_min = -0.25f, def.z_max = 0.25f;
+    def.radius = 0.25f;
+    def.z_min = -0.25f;
+    def.z_max = 0.25f;
     set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 2);
     def.emission = vl_scene_add_emission(s.scene, &emission);
     assert_int_not_equal(vl_scene_add_shape(s.scene, &def).index, 0);

@@ -48,7 +48,8 @@ static void add_imaged_sky(Stage *s, bool portal) {
 
 static Image room(vlTracer tracer, bool portal, uint32_t seed, uint32_t spp) {
   Stage s = stage_open(SIZE, SIZE);
-  s.camera.eye[2] = 0.95, s.camera.eye[1] = -0.3;
+  s.camera.eye[2] = 0.95;
+  s.camera.eye[1] = -0.3;
   s.camera.lookat[1] = 0.1;
   s.camera.fov = 1.4;
   s.render.tracer = tracer;
@@ -74,7 +75,8 @@ static Blocks measure(vlTracer tracer, bool portal, uint32_t spp) {
     for (uint32_t k = 0; k < BLOCKS * BLOCKS; k++) {
       uint32_t x = k % BLOCKS * (SIZE / BLOCKS), y = k / BLOCKS * (SIZE / BLOCKS);
       double v = image_region(&p, x, y, x + SIZE / BLOCKS, y + SIZE / BLOCKS, 1);
-      sum[k] += v, squares[k] += v * v;
+      sum[k] += v;
+      squares[k] += v * v;
     }
     image_free(&p);
   }
@@ -93,7 +95,9 @@ static void compare(const char *what, const Blocks *a, const Blocks *b) {
     double v = a->variance[k] + b->variance[k], z = (a->mean[k] - b->mean[k]) / sqrt(v);
     if (!(fabs(z) < 4.5))
       fail_msg("%s: block %d: %g against %g, z = %g", what, k, a->mean[k], b->mean[k], z);
-    difference += a->mean[k] - b->mean[k], variance += v, total += a->mean[k];
+    difference += a->mean[k] - b->mean[k];
+    variance += v;
+    total += a->mean[k];
   }
   assert_near(what, difference / sqrt(variance), 0, 4);
   if (!(sqrt(variance) < 0.03 * total))
@@ -133,10 +137,15 @@ static void seen_from_both_sides(void **state) {
     Image p[2];
     for (int portal = 0; portal < 2; portal++) {
       Stage s = stage_open(32, 32);
-      s.camera.eye[0] = 0.2, s.camera.eye[1] = side == 2 ? 1.5 : 0.5;
-      s.camera.lookat[0] = 0.2, s.camera.lookat[1] = side == 1 ? -5 : 5, s.camera.lookat[2] = 0;
-      s.camera.up[0] = s.camera.up[1] = 0, s.camera.up[2] = 1;
-      s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+      s.camera.eye[0] = 0.2;
+      s.camera.eye[1] = side == 2 ? 1.5 : 0.5;
+      s.camera.lookat[0] = 0.2;
+      s.camera.lookat[1] = side == 1 ? -5 : 5;
+      s.camera.lookat[2] = 0;
+      s.camera.up[0] = s.camera.up[1] = 0;
+      s.camera.up[2] = 1;
+      s.render.sampler = VL_SAMPLER_REGULAR;
+      s.render.spp = 1;
       s.build.color = VL_COLOR_RGB;
       add_imaged_sky(&s, portal);
       p[portal] = stage_finish(&s);
@@ -148,7 +157,8 @@ static void seen_from_both_sides(void **state) {
         assert_near("sky in a portal", image_at(&p[1], x, y, 1),
                     inside ? image_at(&p[0], x, y, 1) : 0, 1e-6);
       }
-    image_free(&p[0]), image_free(&p[1]);
+    image_free(&p[0]);
+    image_free(&p[1]);
   }
 }
 
@@ -157,8 +167,11 @@ static void floor_under_a_portal(void **state) {
   (void)state;
   Stage s = stage_open(8, 8);
   s.camera.eye[0] = 0.2;
-  s.camera.lookat[0] = 0.2, s.camera.lookat[1] = -1, s.camera.lookat[2] = 0;
-  s.camera.up[1] = 0, s.camera.up[2] = 1;
+  s.camera.lookat[0] = 0.2;
+  s.camera.lookat[1] = -1;
+  s.camera.lookat[2] = 0;
+  s.camera.up[1] = 0;
+  s.camera.up[2] = 1;
   s.camera.fov = 0.01;
   s.build.color = VL_COLOR_RGB;
   s.render.max_depth = 1;
@@ -171,7 +184,8 @@ static void floor_under_a_portal(void **state) {
     sky[i] = 3; /* the same from everywhere */
   vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
   vlImage *image = make_image(&s, 4, 4, sky);
-  def.image = image, def.has_portal = true;
+  def.image = image;
+  def.has_portal = true;
   const float corners[4][3] = {
       {-0.2f, 1, -0.3f}, {0.6f, 1, -0.3f}, {0.6f, 1, 0.3f}, {-0.2f, 1, 0.3f}};
   memcpy(def.portal, corners, sizeof corners);

@@ -113,8 +113,10 @@ static void sums(void **state) {
         vl_shared_taps(&r, vl_filter_kernels(vl_isa_best()), axis, 1, axis ? y : x,
                        taps.along[axis][0], VL_SHARED_LANES);
       bool counts = i % 50 != 3;
-      if (!counts)
-        values[i][0] = NAN, points[i][0] = 99; /* no weight in any pixel */
+      if (!counts) {
+        values[i][0] = NAN;
+        points[i][0] = 99;
+      } /* no weight in any pixel */
       vl_shared_store(&r, &grid_, i, values[i], &taps, 0, counts);
       for (int c = 0; c < 4 && !counts; c++)
         values[i][c] = 0;
@@ -199,9 +201,11 @@ static void rules(void **state) {
   film.filter = filters[0];
   def.centred = true;
   assert_false(vl_shares_samples(&film, &def));
-  def.centred = false, film.buckets = 8;
+  def.centred = false;
+  film.buckets = 8;
   assert_false(vl_shares_samples(&film, &def));
-  film.buckets = 0, def.share_samples = false;
+  film.buckets = 0;
+  def.share_samples = false;
   assert_false(vl_shares_samples(&film, &def));
 }
 

@@ -18,8 +18,10 @@ static vlMaterialId shiny(Stage *s, int kind, float u, float v) {
       VL_MATERIAL_COATED_CONDUCTOR, VL_MATERIAL_COATED_DIFFUSE, VL_MATERIAL_PRINCIPLED};
   vlMaterialDef def = vl_default_material_def(kinds[kind]);
   def.remap_roughness = false;
-  def.u_roughness = vl_float_input(u), def.v_roughness = vl_float_input(v);
-  def.coat_u_roughness = vl_float_input(u), def.coat_v_roughness = vl_float_input(v);
+  def.u_roughness = vl_float_input(u);
+  def.v_roughness = vl_float_input(v);
+  def.coat_u_roughness = vl_float_input(u);
+  def.coat_v_roughness = vl_float_input(v);
   if (kind == WALKED_COAT)
     def.albedo = vl_spectrum_input(vl_spectrum_constant(0.5f));
   if (kind == PRINCIPLED) {
@@ -40,14 +42,16 @@ static Image room(int kind, float u, float v, bool regularize, bool first, uint3
   if (medium) {
     s.render.tracer = VL_TRACER_VOLPATH;
     vlMediumDef air = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-    air.sigma_s = vl_spectrum_constant(0), air.sigma_a = vl_spectrum_constant(0.1f);
+    air.sigma_s = vl_spectrum_constant(0);
+    air.sigma_a = vl_spectrum_constant(0.1f);
     vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &air);
   }
   vlMaterialId grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f), other = shiny(&s, kind, u, v);
   Quad wall = quad_at(0, 0, -1, 3, 0, 0, 0, 3, 0), back = quad_at(0, 0, 1, -3, 0, 0, 0, 3, 0);
   wall.material = first ? other : grey;
   back.material = first ? grey : other;
-  add_quad(&s, &wall), add_quad(&s, &back);
+  add_quad(&s, &wall);
+  add_quad(&s, &back);
   add_point(&s, 0.4f, 0.7f, -0.3f, 4);
   add_sky(&s, 0.3f);
   return stage_finish(&s);
@@ -79,7 +83,9 @@ static void rougher(void **state) {
         }
         if (same(&on, &off))
           fail_msg("kind %d alphas %d: nothing has changed", kind, i);
-        image_free(&on), image_free(&off), image_free(&rough);
+        image_free(&on);
+        image_free(&off);
+        image_free(&rough);
       }
 }
 
@@ -92,12 +98,14 @@ static void unchanged(void **state) {
           off = room(kind, 0.05f, 0.05f, false, true, 1, false);
     if (!same(&on, &off))
       fail_msg("kind %d: the first hit has changed", kind);
-    image_free(&on), image_free(&off);
-    on = room(kind, 0.5f, 0.4f, true, false, 4, false),
+    image_free(&on);
+    image_free(&off);
+    on = room(kind, 0.5f, 0.4f, true, false, 4, false);
     off = room(kind, 0.5f, 0.4f, false, false, 4, false);
     if (!same(&on, &off))
       fail_msg("kind %d: what was rough has changed", kind);
-    image_free(&on), image_free(&off);
+    image_free(&on);
+    image_free(&off);
   }
 }
 
@@ -117,7 +125,8 @@ static void in_a_mirror(void **state) {
            metal = quad_at(0, 0, 1, -3, 0, 0, 0, 3, 0);
       mirror.material = shiny(&s, CONDUCTOR, 0, 0);
       metal.material = shiny(&s, CONDUCTOR, 0.15f, 0.15f);
-      add_quad(&s, &mirror), add_quad(&s, &metal);
+      add_quad(&s, &mirror);
+      add_quad(&s, &metal);
       add_point(&s, 0.4f, 0.7f, -0.3f, 4);
       p[deep][on] = stage_finish(&s);
     }
@@ -138,13 +147,15 @@ static void in_a_medium(void **state) {
     s.render.max_depth = 2;
     s.render.tracer = VL_TRACER_VOLPATH;
     vlMediumDef fog = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-    fog.sigma_s = vl_spectrum_constant(0.5f), fog.sigma_a = vl_spectrum_constant(0);
+    fog.sigma_s = vl_spectrum_constant(0.5f);
+    fog.sigma_a = vl_spectrum_constant(0);
     vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &fog);
     Quad mirror = quad_at(0, 0, -2, 3, 0, 0, 0, 3, 0);
     mirror.material = shiny(&s, CONDUCTOR, 0, 0);
     add_quad(&s, &mirror);
     vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);
-    lamp.from[0] = 0.4f, lamp.from[2] = -1;
+    lamp.from[0] = 0.4f;
+    lamp.from[2] = -1;
     lamp.medium = vl_scene_defs(s.scene)->camera_medium;
     vl_scene_add_light(s.scene, &lamp);
     Image p = stage_finish(&s);

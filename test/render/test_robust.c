@@ -61,9 +61,14 @@ static void degenerate_triangles(void **state) {
                                  0, 6, 7, 8, 9, 8, 1, 1, 4, 0, 1, 4};
   for (int k = 0; k < 8; k++) {
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    def.vertices = 10, def.faces = 8, def.positions = p, def.indices = f;
-    if (k & 1)
-      def.normals = n, def.tangents = n;
+    def.vertices = 10;
+    def.faces = 8;
+    def.positions = p;
+    def.indices = f;
+    if (k & 1) {
+      def.normals = n;
+      def.tangents = n;
+    }
     if (k & 2)
       def.uvs = uv;
     if (k & 4)
@@ -78,17 +83,26 @@ static void degenerate_triangles(void **state) {
   }
   vlShapeDef patch = vl_default_shape_def(VL_SHAPE_BILINEAR);
   static const uint32_t index[12] = {0, 0, 0, 0, 0, 1, 0, 1, 0, 1, 4, 4};
-  patch.vertices = 10, patch.faces = 3, patch.positions = p, patch.indices = index,
+  patch.vertices = 10;
+  patch.faces = 3;
+  patch.positions = p;
+  patch.indices = index;
   patch.emission = add_emission(&s, 1, false);
   vl_scene_add_shape(s.scene, &patch);
   vlShapeDef thin = vl_default_shape_def(VL_SHAPE_CYLINDER);
-  thin.z_min = 0, thin.z_max = 1e-30f, thin.emission = patch.emission;
+  thin.z_min = 0;
+  thin.z_max = 1e-30f;
+  thin.emission = patch.emission;
   vl_scene_add_shape(s.scene, &thin);
   thin = vl_default_shape_def(VL_SHAPE_DISK);
-  thin.inner_radius = 0.99999994f, thin.emission = patch.emission;
+  thin.inner_radius = 0.99999994f;
+  thin.emission = patch.emission;
   vl_scene_add_shape(s.scene, &thin);
   thin = vl_default_shape_def(VL_SHAPE_SPHERE);
-  thin.z_min = 0.9999999f, thin.z_max = 1, thin.phi_max = 1e-6f, thin.emission = patch.emission;
+  thin.z_min = 0.9999999f;
+  thin.z_max = 1;
+  thin.phi_max = 1e-6f;
+  thin.emission = patch.emission;
   vl_scene_add_shape(s.scene, &thin);
   done("degenerate shapes", &s, true);
 }
@@ -187,9 +201,11 @@ static void dark_and_wild_lights(void **state) {
       vlLightDef light = vl_default_light_def((vlLightKind)(k % 4));
       light.scale = k < 4 ? 0 : k == 4 ? 1e30f : -1;
       vl_scene_add_light(s.scene, &light);
-      if (k == 2)
-        light.color = vl_spectrum_constant(0), light.scale = 1,
+      if (k == 2) {
+        light.color = vl_spectrum_constant(0);
+        light.scale = 1;
         vl_scene_add_light(s.scene, &light);
+      }
       vlEmissionDef emission = vl_default_emission_def();
       emission.scale = k == 5 ? 1e30f : 0;
       emission.power = k == 1 ? 0 : VL_UNSET;
@@ -217,7 +233,7 @@ static void wild_materials(void **state) {
       add_point(&s, 1, 1, 1, 5);
       vlMaterialDef def = vl_default_material_def((vlMaterialKind)kind);
       def.reflectance = vl_spectrum_input(vl_spectrum_constant(wild[k]));
-      def.u_roughness = vl_float_input(wild[k]),
+      def.u_roughness = vl_float_input(wild[k]);
       def.v_roughness = vl_float_input(wild[(k + 3) % 8]);
       if (kind == VL_MATERIAL_CONDUCTOR && k & 1)
         def.eta = def.k = vl_spectrum_input(vl_spectrum_constant(wild[k]));
@@ -307,7 +323,8 @@ static void thousands_of_materials(void **state) {
       fail_msg("5000 materials took %.1f s", seconds() - start);
   }
   assert_true(image_differing(&p[0], &p[1], 1e-6) == 0);
-  image_free(&p[0]), image_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
 }
 
 /* A cloud of 100 000 tiny lights lights a floor as one large light of the same power does from
@@ -319,8 +336,10 @@ static void a_hundred_thousand_lights(void **state) {
   uint32_t *f = malloc(N * 6 * sizeof *f), seed = 1;
   for (uint32_t k = 0; k < N; k++) {
     float c[2];
-    for (int i = 0; i < 2; i++)
-      seed = seed * 1664525u + 1013904223u, c[i] = (float)(seed >> 8) * 0x1p-23f - 1;
+    for (int i = 0; i < 2; i++) {
+      seed = seed * 1664525u + 1013904223u;
+      c[i] = (float)(seed >> 8) * 0x1p-23f - 1;
+    }
     const float at[12] = {c[0], 1, c[1],         c[0] + 1e-3f, 1, c[1],
                           c[0], 1, c[1] + 1e-3f, c[0] + 1e-3f, 1, c[1] + 1e-3f};
     memcpy(p + 12 * (size_t)k, at, sizeof at);
@@ -331,13 +350,17 @@ static void a_hundred_thousand_lights(void **state) {
   for (int many = 0; many < 2; many++) {
     Stage s = stage_open(32, 24);
     s.camera.lookat[1] = -0.5;
-    s.render.max_depth = 1, s.render.spp = 32;
+    s.render.max_depth = 1;
+    s.render.spp = 32;
     Quad floor = quad_at(0, -1, -1, 2, 0, 0, 0, 0, -2);
     add_quad(&s, &floor);
     double start = seconds();
     if (many) {
       vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-      def.vertices = 4 * N, def.faces = 2 * N, def.positions = p, def.indices = f;
+      def.vertices = 4 * N;
+      def.faces = 2 * N;
+      def.positions = p;
+      def.indices = f;
       def.emission = add_emission(&s, 4.0f / (N * 1e-6f), false);
       vl_scene_add_shape(s.scene, &def);
     } else {

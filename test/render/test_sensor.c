@@ -68,7 +68,8 @@ static void colour_of_light(void **state) {
     for (int c = 0; c < 3; c++)
       most = fmax(most, fabs(image_mean(&p, c) / image_mean(&eye, c) - 1));
     assert_true(most > 0.01);
-    image_free(&p), image_free(&eye);
+    image_free(&p);
+    image_free(&eye);
   }
 }
 
@@ -99,7 +100,8 @@ static void rgb_world(void **state) {
   Image a = see_light("nikon_d850", 0, 2200, VL_COLOR_RGB, INFINITY);
   Image b = see_light("cie1931", 6500, 2200, VL_COLOR_RGB, INFINITY);
   assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));
-  image_free(&a), image_free(&b);
+  image_free(&a);
+  image_free(&b);
 }
 
 static void unknown_name(void **state) {

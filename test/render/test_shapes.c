@@ -48,19 +48,27 @@ static void add_kind(Stage *s, int kind, vlGroupId group, const double m[16],
       break;
     case PART_SPHERE:
       def = vl_default_shape_def(VL_SHAPE_SPHERE);
-      def.z_min = -0.5f, def.z_max = 0.8f, def.phi_max = 4;
+      def.z_min = -0.5f;
+      def.z_max = 0.8f;
+      def.phi_max = 4;
       break;
     case DISK:
       def = vl_default_shape_def(VL_SHAPE_DISK);
-      def.inner_radius = 0.3f, def.height = 0.2f, def.phi_max = 5;
+      def.inner_radius = 0.3f;
+      def.height = 0.2f;
+      def.phi_max = 5;
       break;
     case CYLINDER:
       def = vl_default_shape_def(VL_SHAPE_CYLINDER);
-      def.z_min = -0.7f, def.z_max = 0.6f, def.radius = 0.8f, def.phi_max = 4.5f;
+      def.z_min = -0.7f;
+      def.z_max = 0.6f;
+      def.radius = 0.8f;
+      def.phi_max = 4.5f;
       break;
     default:
       def = vl_default_shape_def(VL_SHAPE_BILINEAR);
-      def.vertices = 4, def.faces = 1;
+      def.vertices = 4;
+      def.faces = 1;
       def.positions = patch_corners;
       def.indices = patch_index;
   }
@@ -141,14 +149,16 @@ static void one_group_many_places(void **state) {
       set_matrix(a, 1, 0, 0, -0.6, 0, 1, 0, 0, 0, 0, 1, 0);
       set_matrix(b, 0.5, 0, 0, 0.8, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.4);
       if (way) {
-        if (k == 0)
-          add_kind(&s, SPHERE, group, a, red, false),
-              add_kind(&s, CYLINDER, group, b, grey, false);
+        if (k == 0) {
+          add_kind(&s, SPHERE, group, a, red, false);
+          add_kind(&s, CYLINDER, group, b, grey, false);
+        }
         vl_scene_add_instance(s.scene, group, place, (vlSource){0});
       } else {
-        multiply(place, a, first), multiply(place, b, second);
-        add_kind(&s, SPHERE, group, first, red, false),
-            add_kind(&s, CYLINDER, group, second, grey, false);
+        multiply(place, a, first);
+        multiply(place, b, second);
+        add_kind(&s, SPHERE, group, first, red, false);
+        add_kind(&s, CYLINDER, group, second, grey, false);
       }
     }
     p[way] = stage_finish(&s);
@@ -185,7 +195,8 @@ static void fine_mesh_is_the_sphere(void **state) {
     double differing = image_differing(&p[0], &p[1], 0.1);
     if (differing > 0.06)
       fail_msg("mesh of a sphere: %.1f %% of the pixels differ", 100 * differing);
-    image_free(&p[0]), image_free(&p[1]);
+    image_free(&p[0]);
+    image_free(&p[1]);
   }
 }
 
@@ -223,7 +234,8 @@ static void flat_patch_is_two_triangles(void **state) {
       s.render.spp = emissive ? 64 : 16;
       s.camera.fov = 0.8;
       vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
-      checks.su = 4, checks.sv = 3;
+      checks.su = 4;
+      checks.sv = 3;
       checks.spectrum_b = vl_spectrum_input(vl_spectrum_constant(0.2f));
       Quad q = quad_at(0.2f, 0.3f, -4, 1, 0.2f, 0.3f, -0.1f, 0.8f, 0.2f);
       q.patch = way;
@@ -246,7 +258,8 @@ static void flat_patch_is_two_triangles(void **state) {
                b = image_region(&p[1], x, y, x + 12, y + 12, 1);
         assert_near("light of a flat patch", b, a, 0.01 * a + 2e-3);
       }
-    image_free(&p[0]), image_free(&p[1]);
+    image_free(&p[0]);
+    image_free(&p[1]);
   }
 }
 
@@ -254,8 +267,10 @@ static void flat_patch_is_two_triangles(void **state) {
 
 static vlTextureId checks(Stage *s, float su, float sv, float a, float b) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
-  def.float_a = vl_float_input(a), def.float_b = vl_float_input(b);
-  def.su = su, def.sv = sv;
+  def.float_a = vl_float_input(a);
+  def.float_b = vl_float_input(b);
+  def.su = su;
+  def.sv = sv;
   return vl_scene_add_texture(s->scene, &def);
 }
 
@@ -274,8 +289,10 @@ static void half_a_card_lets_half_through(void **state) {
       add_quad(&s, &card);
     } else {
       vlShapeDef disk = vl_default_shape_def(VL_SHAPE_DISK);
-      disk.radius = 20, disk.height = -1;
-      disk.material = card.material, disk.alpha = card.alpha;
+      disk.radius = 20;
+      disk.height = -1;
+      disk.material = card.material;
+      disk.alpha = card.alpha;
       vl_scene_add_shape(s.scene, &disk);
     }
     Image p = stage_finish(&s);
@@ -304,7 +321,8 @@ static void coverage_multiplies(void **state) {
       vl_scene_add_shape(s.scene, &def);
     } else {
       Quad card = quad_at(0, 0, -4, 2, 0, 0, 0, 2, 0);
-      card.material = black, card.alpha = vl_float_input(0.5f),
+      card.material = black;
+      card.alpha = vl_float_input(0.5f);
       card.group = vl_scene_add_group(s.scene, "card");
       add_quad(&s, &card);
       double a[16], b[16];
@@ -327,7 +345,8 @@ static void half_a_card_casts_half_a_shadow(void **state) {
     Stage s = stage_open(48, 36);
     s.render.spp = 64;
     vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
-    sun.from[1] = 1, sun.to[2] = 0;
+    sun.from[1] = 1;
+    sun.to[2] = 0;
     vl_scene_add_light(s.scene, &sun);
     Quad floor = quad_at(0, -1, 0, 50, 0, 0, 0, 0, -50),
          card = quad_at(0, 5, 0, 90, 0, 0, 0, 0, -90);
@@ -363,7 +382,9 @@ static void alpha_holes_are_holes(void **state) {
       vlGroupId group = kind == 2 ? vl_scene_add_group(s.scene, "cards") : (vlGroupId){0};
       if (way == 0) {
         Quad card = quad_at(0, 0, -3, 1, 0, 0, 0, 1, 0);
-        card.material = red, card.patch = kind == 1, card.group = group;
+        card.material = red;
+        card.patch = kind == 1;
+        card.group = group;
         card.alpha.texture = checks(&s, 4, 4, 1, 0);
         add_quad(&s, &card);
       }
@@ -371,7 +392,9 @@ static void alpha_holes_are_holes(void **state) {
         if (((i & 3) + (i >> 2)) % 2 == 0) {
           Quad cell = quad_at(-0.75f + 0.5f * (float)(i & 3), -0.75f + 0.5f * (float)(i >> 2),
                               -3, 0.25f, 0, 0, 0, 0.25f, 0);
-          cell.material = red, cell.patch = kind == 1, cell.group = group;
+          cell.material = red;
+          cell.patch = kind == 1;
+          cell.group = group;
           add_quad(&s, &cell);
         }
       double place[16];

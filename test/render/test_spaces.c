@@ -33,16 +33,20 @@ static void look(int kind, bool tells, vlColorSpace said, vlColorSpace film, dou
   Quad q = quad_at(0, 0, -1, 3, 0, 0, 0, 3, 0);
   if (kind == TEXTURE) {
     vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-    def.image = image, def.space = said;
+    def.image = image;
+    def.space = said;
     q.material = add_textured(&s, vl_scene_add_texture(s.scene, &def));
     add_quad(&s, &q);
     vlLightDef light =
         vl_default_light_def(VL_LIGHT_DISTANT); /* white: comes back as it goes in */
-    light.from[2] = 1, light.to[2] = 0, light.scale = (float)M_PI;
+    light.from[2] = 1;
+    light.to[2] = 0;
+    light.scale = (float)M_PI;
     vl_scene_add_light(s.scene, &light);
   } else if (kind == SKY) {
     vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
-    def.image = image, def.space = said;
+    def.image = image;
+    def.space = said;
     vl_scene_add_light(s.scene, &def);
   } else {
     assert_int_equal(vl_image_write(image, path, NULL, NULL), VL_OK);

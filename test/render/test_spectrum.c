@@ -28,7 +28,8 @@ static Spectrum take(Stage *s) {
   assert_int_equal(vl_film_spectrum(film, &image), VL_OK);
   assert_int_equal(vl_film_develop(film, NULL, &colors), VL_OK);
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
-  r.image.width = w, r.image.height = h;
+  r.image.width = w;
+  r.image.height = h;
   r.pixels = malloc((size_t)w * h * BUCKETS * sizeof(float));
   r.image.rgba = malloc((size_t)w * h * 4 * sizeof(float));
   memcpy(r.pixels, vl_image_const_pixels(image), (size_t)w * h * BUCKETS * sizeof(float));
@@ -42,8 +43,10 @@ static Spectrum take(Stage *s) {
       squares += pow(r.pixels[i * BUCKETS + k] - r.mean[k], 2);
     r.error[k] = sqrt(squares / n / (n - 1));
   }
-  vl_image_destroy(image), vl_image_destroy(colors);
-  vl_film_destroy(film), vl_world_destroy(world);
+  vl_image_destroy(image);
+  vl_image_destroy(colors);
+  vl_film_destroy(film);
+  vl_world_destroy(world);
   stage_close(s);
   return r;
 }
@@ -55,7 +58,8 @@ static void release(Spectrum *s) {
 static Stage stage(double low, double high) {
   Stage s = stage_open(SIZE, SIZE);
   s.film.buckets = BUCKETS;
-  s.film.lambda_min = low, s.film.lambda_max = high;
+  s.film.lambda_min = low;
+  s.film.lambda_max = high;
   s.render.sampler = VL_SAMPLER_INDEPENDENT;
   s.render.spp = 512;
   return s;
@@ -81,7 +85,10 @@ static double expected(double low, double high, int k, const float reflectance[4
 }
 static vlSpectrum sampled(const float values[4]) {
   vlSpectrum s = vl_spectrum_constant(1);
-  s.kind = VL_SPECTRUM_SAMPLED, s.count = 4, s.wavelengths = nm, s.values = values;
+  s.kind = VL_SPECTRUM_SAMPLED;
+  s.count = 4;
+  s.wavelengths = nm;
+  s.values = values;
   return s;
 }
 /* Lights are divided by their luminance, so that the scale is known: 106.86 over the integral
@@ -128,7 +135,8 @@ static void reflected(void **state) {
   s.render.max_depth = 1;
   vlLightDef def = vl_default_light_def(VL_LIGHT_DISTANT);
   def.color = sampled(light);
-  def.from[2] = 1, def.to[2] = 0;
+  def.from[2] = 1;
+  def.to[2] = 0;
   vl_scene_add_light(s.scene, &def);
   vlMaterialDef matte = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   matte.reflectance = vl_spectrum_input(sampled(paint));
@@ -207,8 +215,12 @@ static void same_bytes(void **state) {
     Stage s = stage_open(40, 24);
     s.film.buckets = BUCKETS;
     s.render.spp = 5;
-    if (i)
-      s.film.crop[0] = 9, s.film.crop[1] = 5, s.film.crop[2] = 31, s.film.crop[3] = 20;
+    if (i) {
+      s.film.crop[0] = 9;
+      s.film.crop[1] = 5;
+      s.film.crop[2] = 31;
+      s.film.crop[3] = 20;
+    }
     vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
     def.color = sampled(light);
     vl_scene_add_light(s.scene, &def);
@@ -220,7 +232,8 @@ static void same_bytes(void **state) {
   for (uint32_t y = 5; y < 20; y++)
     assert_memory_equal(r[0].pixels + (y * 40 + 9) * BUCKETS,
                         r[1].pixels + (y - 5) * 22 * BUCKETS, 22 * BUCKETS * sizeof(float));
-  release(&r[0]), release(&r[1]);
+  release(&r[0]);
+  release(&r[1]);
 }
 
 static void not_in_rgb(void **state) {
@@ -236,7 +249,8 @@ static void not_in_rgb(void **state) {
   assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
   assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
   assert_int_equal(vl_render(world, &camera, film, &s.render, NULL, &error), VL_ERROR_ARGUMENT);
-  vl_film_destroy(film), vl_world_destroy(world);
+  vl_film_destroy(film);
+  vl_world_destroy(world);
   stage_close(&s);
 }
 

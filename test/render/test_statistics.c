@@ -14,9 +14,12 @@ typedef struct Estimate {
 
 static Stage scene(void) {
   Stage s = stage_open(WIDTH, HEIGHT);
-  s.camera.eye[1] = 0.6, s.camera.eye[2] = 2.2, s.camera.lookat[1] = -0.2,
+  s.camera.eye[1] = 0.6;
+  s.camera.eye[2] = 2.2;
+  s.camera.lookat[1] = -0.2;
   s.camera.lookat[2] = -1;
-  s.camera.lens_radius = 0.05, s.camera.focus_distance = 2.5;
+  s.camera.lens_radius = 0.05;
+  s.camera.focus_distance = 2.5;
   s.camera.fov = 0.9;
   s.render.max_depth = 4;
   Quad floor = quad_at(0, -0.5f, 0, 3, 0, 0, 0, 0, -3),
@@ -41,7 +44,8 @@ static Stage scene(void) {
 
 static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, Estimate *e) {
   static double sum[PIXELS], sum2[PIXELS];
-  memset(sum, 0, sizeof sum), memset(sum2, 0, sizeof sum2);
+  memset(sum, 0, sizeof sum);
+  memset(sum2, 0, sizeof sum2);
   memset(e, 0, sizeof *e);
   Stage s = scene();
   s.render.sampler = sampler;
@@ -53,12 +57,17 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
     double all = 0, block[PIXELS / (BLOCK * BLOCK)] = {0};
     for (uint32_t i = 0; i < PIXELS; i++) {
       double v = p.rgba[4 * i + 1];
-      sum[i] += v, sum2[i] += v * v, all += v / PIXELS;
+      sum[i] += v;
+      sum2[i] += v * v;
+      all += v / PIXELS;
       block[i / WIDTH / BLOCK * (WIDTH / BLOCK) + i % WIDTH / BLOCK] += v / (BLOCK * BLOCK);
     }
-    e->image += all / SEEDS, image2 += all * all;
-    for (uint32_t b = 0; b < PIXELS / (BLOCK * BLOCK); b++)
-      e->block[b] += block[b] / SEEDS, block2[b] += block[b] * block[b];
+    e->image += all / SEEDS;
+    image2 += all * all;
+    for (uint32_t b = 0; b < PIXELS / (BLOCK * BLOCK); b++) {
+      e->block[b] += block[b] / SEEDS;
+      block2[b] += block[b] * block[b];
+    }
     assert_int_equal(p.stats.not_finite, 0);
     image_free(&p);
   }

@@ -101,8 +101,10 @@ static void walls(void **state) {
         Stage s = open_stage(16, 512, rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
         s.render.max_depth = 1;
         vlMaterialDef def = way ? body(3, 17) : reflecting(vl_spectrum_constant(0.6f), 0.2f);
-        if (way)
-          def.scale = 0.5f, def.g = vl_float_input(0.3f);
+        if (way) {
+          def.scale = 0.5f;
+          def.g = vl_float_input(0.3f);
+        }
         def.eta = vl_spectrum_input(vl_spectrum_constant(etas[k]));
         add_sky(&s, 1);
         Quad q = wall(-3, 3000, add(&s, &def));
@@ -216,7 +218,9 @@ static void corner(void **state) {
     add_quad(&s, &side);
     vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
     sun.color = vl_spectrum_rgb(1, 1, 1);
-    sun.from[0] = 1, sun.from[2] = 0, sun.to[2] = 0;
+    sun.from[0] = 1;
+    sun.from[2] = 0;
+    sun.to[2] = 0;
     vl_scene_add_light(s.scene, &sun);
     vlContext *context = s.context;
     vlBssrdfTable *table = malloc(sizeof *table);
@@ -325,7 +329,8 @@ static void textured(void **state) {
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
   checks.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.9f));
   checks.spectrum_b = vl_spectrum_input(vl_spectrum_constant(0.3f));
-  checks.su = 2, checks.sv = 1;
+  checks.su = 2;
+  checks.sv = 1;
   vlMaterialDef def = reflecting(vl_spectrum_constant(1), 1e-4f);
   def.reflectance.texture = vl_scene_add_texture(s.scene, &checks);
   add_sky(&s, 1);
@@ -354,7 +359,8 @@ static void as_glass(void **state) {
     vl_scene_destroy(s.scene);
     vl_context_destroy(s.context);
     vlContextDef context = vl_default_context_def();
-    context.log = note, context.log_user = &told;
+    context.log = note;
+    context.log_user = &told;
     assert_int_equal(vl_context_create(&context, &s.context), VL_OK);
     assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
     s.camera.fov = 0.8;
@@ -484,7 +490,8 @@ static void memory(void **state) {
     Purse purse = {1000000};
     vlContextDef def = vl_default_context_def();
     def.threads = 1;
-    def.allocator.allocate = take, def.allocator.release = give_back;
+    def.allocator.allocate = take;
+    def.allocator.release = give_back;
     def.allocator.user = &purse;
     Stage s = {.build = vl_default_build_def()};
     assert_int_equal(vl_context_create(&def, &s.context), VL_OK);

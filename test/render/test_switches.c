@@ -22,7 +22,8 @@ static void centred(void **state) {
   for (int on = 0; on < 2; on++) {
     Stage s = stage(true);
     s.render.centred = on;
-    s.camera.lens_radius = 0.05, s.camera.focus_distance = 1;
+    s.camera.lens_radius = 0.05;
+    s.camera.focus_distance = 1;
     Quad q = quad_at(0.3f, 0.2f, -3, 1.5f, 0.7f, 0, -0.7f, 1.5f, 0);
     q.emission = add_emission(&s, 2, true);
     add_quad(&s, &q);
@@ -61,7 +62,8 @@ static void sharp_textures(void **state) {
   uint32_t grey[2] = {0, 0};
   for (int on = 0; on < 2; on++) {
     Stage s = stage(true);
-    s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+    s.render.sampler = VL_SAMPLER_REGULAR;
+    s.render.spp = 1;
     s.render.sharp_textures = on;
     s.render.tracer = VL_TRACER_RAYCAST;
     float *rgb = malloc(FINE * FINE * 3 * sizeof *rgb);

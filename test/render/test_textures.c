@@ -51,7 +51,9 @@ static void assert_shows(const char *what, Image *p, Expected *f, void *user,
 }
 
 static double constant(void *user, double u, double v, int c) {
-  (void)u, (void)v, (void)c;
+  (void)u;
+  (void)v;
+  (void)c;
   return *(double *)user;
 }
 static void assert_constant(const char *what, Image p, double value) {
@@ -86,7 +88,8 @@ static void constants_scale_and_mix(void **state) {
   s = stage();
   vlTextureDef f =
       vl_default_texture_def(VL_TEXTURE_MIX, false); /* a float texture as the amount */
-  f.float_a = vl_float_input(0.1f), f.float_b = vl_float_input(0.9f),
+  f.float_a = vl_float_input(0.1f);
+  f.float_b = vl_float_input(0.9f);
   f.amount = vl_float_input(0.5f);
   def = grey(VL_TEXTURE_MIX, 0, 1);
   def.amount.texture = add(&s, &f);
@@ -103,7 +106,10 @@ static void checkerboard(void **state) {
   (void)state;
   Stage s = stage();
   vlTextureDef def = grey(VL_TEXTURE_CHECKERBOARD, 0.7, 0.2);
-  def.su = 4, def.sv = 2, def.du = -8, def.dv = 0.5f;
+  def.su = 4;
+  def.sv = 2;
+  def.du = -8;
+  def.dv = 0.5f;
   Image p = show(&s, add(&s, &def));
   assert_shows("checkerboard", &p, checks, &def, 1e-5);
   /* Three dimensions: cells of the world, moved by the texture's matrix; the plane z = -1 is
@@ -119,7 +125,8 @@ static void checkerboard(void **state) {
 }
 
 static double bilerp(void *user, double s, double t, int c) {
-  (void)user, (void)c;
+  (void)user;
+  (void)c;
   return (1 - s) * (1 - t) * 0.1 + (1 - s) * t * 0.3 + s * (1 - t) * 0.5 + s * t * 0.9;
 }
 
@@ -222,8 +229,10 @@ typedef struct Lookup {
 static double texel(int x, int y, vlWrap wrap, int c) {
   if (wrap == VL_WRAP_BLACK && (x < 0 || y < 0 || x > 3 || y > 1))
     return 0;
-  if (wrap == VL_WRAP_REPEAT)
-    x = x & 3, y = y & 1;
+  if (wrap == VL_WRAP_REPEAT) {
+    x = x & 3;
+    y = y & 1;
+  }
   x = x < 0 ? 0 : x > 3 ? 3 : x;
   y = y < 0 ? 0 : y > 1 ? 1 : y;
   return texels[3 * (4 * y + x) + c];
@@ -259,14 +268,19 @@ static void image_orientation_wrap_filter(void **state) {
     l.def.filter = i == 0 ? VL_FILTER_POINT : i == 8 ? VL_FILTER_TRILINEAR : VL_FILTER_BILINEAR;
     if (i >= 2 && i <= 4) {
       l.def.wrap = (vlWrap[3]){VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP}[i - 2];
-      l.def.su = 2, l.def.sv = 3, l.def.du = -0.6f, l.def.dv = -1.1f;
+      l.def.su = 2;
+      l.def.sv = 3;
+      l.def.du = -0.6f;
+      l.def.dv = -1.1f;
     }
     if (i == 5)
       l.def.invert = true;
     if (i == 6)
       l.def.scale = 0.5f;
-    if (i == 7)
-      l.def.invert = true, l.def.scale = 1.3f;
+    if (i == 7) {
+      l.def.invert = true;
+      l.def.scale = 1.3f;
+    }
     vlTextureId id = add(&s, &l.def);
     vl_image_destroy(image);
     Image p = show(&s, id);
@@ -338,7 +352,9 @@ static void mappings(void **state) {
   for (int y = 0; y < N; y++)
     for (int x = 0; x < N; x++) {
       float *c = ramp + 3 * (y * N + x);
-      c[0] = ((float)x + 0.5f) / N, c[1] = 1 - ((float)y + 0.5f) / N, c[2] = 0.5f;
+      c[0] = ((float)x + 0.5f) / N;
+      c[1] = 1 - ((float)y + 0.5f) / N;
+      c[2] = 0.5f;
     }
   for (int kind = 0; kind < 3; kind++) {
     Stage s = stage();
@@ -349,9 +365,12 @@ static void mappings(void **state) {
         (vlMapping[3]){VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR}[kind];
     /* the square's points are (x, y, -1): put them round (0.05, 0.02, 0.4) of the texture */
     set_matrix(def.texture_from_world, 1, 0, 0, 0.05, 0, 1, 0, 0.02, 0, 0, 1, 1.4);
-    def.planar_v1[0] = 0.3f, def.planar_v1[1] = 0.1f, def.planar_v2[0] = 0,
+    def.planar_v1[0] = 0.3f;
+    def.planar_v1[1] = 0.1f;
+    def.planar_v2[0] = 0;
     def.planar_v2[1] = 0.4f;
-    def.du = 0.5f, def.dv = 0.45f;
+    def.du = 0.5f;
+    def.dv = 0.45f;
     vlTextureId id = add(&s, &def);
     vl_image_destroy(image);
     Image p = show(&s, id);
@@ -360,12 +379,18 @@ static void mappings(void **state) {
       for (uint32_t x = 0; x < SIZE; x++) {
         double q[3] = {2 * at_u(x) - 1 + 0.05, 2 * at_v(y) - 1 + 0.02, 0.4}, st[2];
         double r = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), phi = atan2(q[1], q[0]);
-        if (kind == 0)
-          st[0] = acos(q[2] / r) / M_PI, st[1] = (phi < 0 ? phi + 2 * M_PI : phi) / (2 * M_PI);
-        if (kind == 1)
-          st[0] = (M_PI + phi) / (2 * M_PI), st[1] = q[2];
-        if (kind == 2)
-          st[0] = 0.5 + 0.3 * q[0] + 0.1 * q[1], st[1] = 0.45 + 0.4 * q[1];
+        if (kind == 0) {
+          st[0] = acos(q[2] / r) / M_PI;
+          st[1] = (phi < 0 ? phi + 2 * M_PI : phi) / (2 * M_PI);
+        }
+        if (kind == 1) {
+          st[0] = (M_PI + phi) / (2 * M_PI);
+          st[1] = q[2];
+        }
+        if (kind == 2) {
+          st[0] = 0.5 + 0.3 * q[0] + 0.1 * q[1];
+          st[1] = 0.45 + 0.4 * q[1];
+        }
         if (st[0] < 0.02 || st[0] > 0.98 || st[1] < 0.02 || st[1] > 0.98)
           continue; /* the ramp's seam */
         compared++;

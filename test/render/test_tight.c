@@ -25,9 +25,13 @@ static void add_box(Stage *s, const double m[16], vlMaterialId material, vlEmiss
     memcpy(triangles + 6 * i, f, sizeof f);
   }
   vlShapeDef def = vl_default_shape_def(patch ? VL_SHAPE_BILINEAR : VL_SHAPE_TRIANGLES);
-  def.vertices = 8, def.faces = patch ? 6 : 12, def.positions = p,
+  def.vertices = 8;
+  def.faces = patch ? 6 : 12;
+  def.positions = p;
   def.indices = patch ? quads : triangles;
-  def.material = material, def.emission = emission, def.group = group,
+  def.material = material;
+  def.emission = emission;
+  def.group = group;
   def.reverse_orientation = reverse;
   memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
@@ -42,10 +46,12 @@ static double room_mean(Room r, bool sky) {
   double place[16], at[3];
   for (int i = 0; i < 3; i++)
     at[i] = r.offset * r.size * way[i];
-  s.render.spp = s.render.sequence = 8, s.render.max_depth = 20;
-  for (int i = 0; i < 3; i++)
-    s.camera.eye[i] = at[i] + 0.2 * r.size * (i == 0),
+  s.render.spp = s.render.sequence = 8;
+  s.render.max_depth = 20;
+  for (int i = 0; i < 3; i++) {
+    s.camera.eye[i] = at[i] + 0.2 * r.size * (i == 0);
     s.camera.lookat[i] = at[i] + r.size * (0.3 * i - 0.5);
+  }
   vlMaterialId wall = add_diffuse(&s, 0.9f, 0.9f, 0.9f);
   vlGroupId group = r.instanced ? vl_scene_add_group(s.scene, "room") : (vlGroupId){0};
   double k = r.size,
@@ -57,7 +63,9 @@ static double room_mean(Room r, bool sky) {
     vlShapeDef def = r.kind < 2 ? mesh_sphere(12, 1, r.kind == 1, &block)
                                 : vl_default_shape_def(VL_SHAPE_SPHERE);
     memcpy(def.group_from_shape, place, sizeof place);
-    def.material = wall, def.group = group, def.reverse_orientation = true;
+    def.material = wall;
+    def.group = group;
+    def.reverse_orientation = true;
     vl_scene_add_shape(s.scene, &def);
   } else {
     add_box(&s, place, wall, (vlEmissionId){0}, group, r.kind == 4, true);
@@ -130,7 +138,9 @@ static void no_acne(void **state) {
       double off = (double[3]){0, 30, 1000}[o];
       Stage s = stage_open(48, 36);
       s.build.color = VL_COLOR_RGB;
-      s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1, s.render.max_depth = 1;
+      s.render.sampler = VL_SAMPLER_REGULAR;
+      s.render.spp = 1;
+      s.render.max_depth = 1;
       Quad q = quad_at(0, 0, 0, 1.2f, 0.1f, 0.3f, -0.3f, 0.2f, 1.13333333f); /* leans */
       q.patch = o == 1;
       if (instanced)
@@ -144,8 +154,10 @@ static void no_acne(void **state) {
         vl_scene_add_instance(s.scene, q.group, far, (vlSource){0});
       /* a low light, a low eye */
       const double eye[3] = {-1.2, 0.25, -0.9}, lamp[3] = {0.9, 0.35, 0.6};
-      for (int i = 0; i < 3; i++)
-        s.camera.eye[i] = eye[i] + off, s.camera.lookat[i] = off;
+      for (int i = 0; i < 3; i++) {
+        s.camera.eye[i] = eye[i] + off;
+        s.camera.lookat[i] = off;
+      }
       s.camera.fov = 0.5;
       add_point(&s, (float)(lamp[0] + off), (float)(lamp[1] + off), (float)(lamp[2] + off), 1);
       vlCamera camera;
@@ -163,11 +175,14 @@ static void no_acne(void **state) {
             continue;
           double eye_at[3], d[3], on = 0, dn = 0, d2 = 0, ln = 0;
           vl_camera_unproject(&camera, x + 0.5, y + 0.5, eye_at, d);
-          for (int i = 0; i < 3; i++)
-            on += (eye_at[i] - off) * n[i], dn += d[i] * n[i];
+          for (int i = 0; i < 3; i++) {
+            on += (eye_at[i] - off) * n[i];
+            dn += d[i] * n[i];
+          }
           for (int i = 0; i < 3; i++) {
             double to = lamp[i] - (eye_at[i] - off - on / dn * d[i]);
-            d2 += to * to, ln += to * n[i] / length;
+            d2 += to * to;
+            ln += to * n[i] / length;
           }
           double expected = 0.5 / M_PI * fabs(ln) / (d2 * sqrt(d2));
           lit++;

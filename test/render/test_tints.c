@@ -50,13 +50,17 @@ static void add_slab(Stage *s, float near, float far, vlMaterialId material,
   static const uint32_t faces[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                      2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   for (int i = 0; i < 8; i++) {
-    p[3 * i] = i & 1 ? 900.0f : -900.0f, p[3 * i + 1] = i & 2 ? 900.0f : -900.0f,
-          p[3 * i + 2] = i & 4 ? near : far;
+    p[3 * i] = i & 1 ? 900.0f : -900.0f;
+    p[3 * i + 1] = i & 2 ? 900.0f : -900.0f;
+    p[3 * i + 2] = i & 4 ? near : far;
   }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.positions = p, def.vertices = 8;
-  def.indices = faces, def.faces = 12;
-  def.material = material, def.inside = inside;
+  def.positions = p;
+  def.vertices = 8;
+  def.indices = faces;
+  def.faces = 12;
+  def.material = material;
+  def.inside = inside;
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 
@@ -189,7 +193,7 @@ static void textures(void **state) {
       for (int c = 0; c < 3; c++) {
         left[c] = pow(mixed ? 0.5 + 0.5 * (double)blue[c] : (double)blue[c], 10);
         right[c] = pow(mixed ? 0.5 + 0.5 * (double)amber[c] : (double)amber[c], 10);
-        seen[0][c] = image_region(&p, 0, 0, 7, 16, c),
+        seen[0][c] = image_region(&p, 0, 0, 7, 16, c);
         seen[1][c] = image_region(&p, 9, 0, 16, 16, c);
       }
       image_free(&p);
@@ -214,7 +218,8 @@ static void spectra_multiply(void **state) {
      */
     float steps[8], values[8];
     for (int i = 0; i < 4; i++) {
-      steps[2 * i] = lambda[i], steps[2 * i + 1] = i < 3 ? lambda[i + 1] - 0.001f : 840;
+      steps[2 * i] = lambda[i];
+      steps[2 * i + 1] = i < 3 ? lambda[i + 1] - 0.001f : 840;
       values[2 * i] = values[2 * i + 1] = k ? twice[i] : once[i];
     }
     vlSpectrum color = {.kind = VL_SPECTRUM_SAMPLED,
@@ -295,7 +300,9 @@ static Image rough(vlColorMode mode, vlTracer tracer, bool media) {
   add_ball(&s, 0, 6, vl_scene_add_material(s.scene, &grey), medium[1], (vlMediumId){0});
   vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);
   lamp.color = vl_spectrum_rgb(40, 40, 40);
-  lamp.from[0] = 1, lamp.from[1] = 1, lamp.from[2] = -4;
+  lamp.from[0] = 1;
+  lamp.from[1] = 1;
+  lamp.from[2] = -4;
   lamp.medium = medium[1];
   assert_int_not_equal(vl_scene_add_light(s.scene, &lamp).index, 0);
   return stage_finish(&s);
@@ -315,7 +322,8 @@ static void rough_glass(void **state) {
           fail_msg("tracer %d, media %d: channel %d: spectral %.5f, RGB %.5f", (int)tracers[k],
                    media, c, a, b);
       }
-      image_free(&spectral), image_free(&plain);
+      image_free(&spectral);
+      image_free(&plain);
     }
 }
 

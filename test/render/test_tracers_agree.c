@@ -102,7 +102,9 @@ static vlImage *render(const Scene *s, vlTracer tracer, uint32_t spp, uint32_t s
   vlImage *image = NULL;
   vlError error = {0};
   vlRenderDef def = s->defs.render;
-  def.tracer = tracer, def.spp = spp, def.seed = seed;
+  def.tracer = tracer;
+  def.spp = spp;
+  def.seed = seed;
   def.merge_radius = 0.04;
   assert_int_equal(vl_film_create(s->context, &s->defs.film, &film), VL_OK);
   if (vl_render(s->world, &s->camera, film, &def, NULL, &error) != VL_OK)
@@ -126,11 +128,13 @@ static void add_means(const vlImage *image, Means *m) {
     for (uint32_t y = 0; y < height; y++)
       for (uint32_t x = 0; x < width; x++) {
         double value = (double)vl_image_get(image, x, y, c);
-        sum[2 * (2 * y / height) + 2 * x / width] += 4 * value, sum[PARTS - 1] += value;
+        sum[2 * (2 * y / height) + 2 * x / width] += 4 * value;
+        sum[PARTS - 1] += value;
       }
     for (int k = 0; k < PARTS; k++) {
       double mean = sum[k] / (width * height);
-      m->mean[k][c] += mean / SEEDS, m->error[k][c] += mean * mean / SEEDS;
+      m->mean[k][c] += mean / SEEDS;
+      m->error[k][c] += mean * mean / SEEDS;
     }
   }
 }

@@ -45,7 +45,9 @@ static void means_of(vlContext *context, vlScene *scene, const double *move, dou
   vlWorld *world;
   vlFilm *film;
   vlImage *image;
-  render.spp = 32, render.tracer = VL_TRACER_VOLPATH, render.share_samples = false;
+  render.spp = 32;
+  render.tracer = VL_TRACER_VOLPATH;
+  render.share_samples = false;
   film_def.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   if (vl_world_build(scene, NULL, &world, &error) != VL_OK)
     fail_msg("build: %s", error.message);

@@ -29,8 +29,11 @@ static void add_round(Stage *s, float x, float y, float z, float radius, vlMater
                       vlEmissionId emission) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z);
-  def.radius = radius, def.z_min = -radius, def.z_max = radius;
-  def.material = material, def.emission = emission;
+  def.radius = radius;
+  def.z_min = -radius;
+  def.z_max = radius;
+  def.material = material;
+  def.emission = emission;
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 
@@ -40,7 +43,8 @@ static vlLightDef lamp_def(vlLightKind kind, float color) {
   const float from[3] = {0.3f, 1.4f, -2.6f}, to[3] = {-0.2f, -1, -3.2f};
   memcpy(def.from, from, sizeof from);
   memcpy(def.to, to, sizeof to);
-  def.cone_angle = 0.8f, def.cone_delta = 0.3f;
+  def.cone_angle = 0.8f;
+  def.cone_delta = 0.3f;
   return def;
 }
 
@@ -48,7 +52,8 @@ static void add_lamp(Stage *s, Lamp lamp) {
   vlMaterialId dark = add_diffuse(s, 0.2f, 0.2f, 0.2f);
   if (lamp <= PATCH) {
     Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
-    q.material = dark, q.patch = lamp == PATCH;
+    q.material = dark;
+    q.patch = lamp == PATCH;
     q.emission = add_emission(s, 10, lamp == PANEL_BOTH);
     add_quad(s, &q);
   } else if (lamp == BALL) {
@@ -83,7 +88,8 @@ static Stage room_in(vlContext *context, Lamp lamp, bool rich, uint32_t size) {
   Stage s = stage_open_in(context, size, size);
   s.build.color = VL_COLOR_RGB;
   s.camera.fov = 1;
-  s.render.spp = size == FINE ? 4 : 32, s.render.max_depth = 4;
+  s.render.spp = size == FINE ? 4 : 32;
+  s.render.max_depth = 4;
   add_lamp(&s, lamp);
   Quad q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
   q.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
@@ -94,7 +100,8 @@ static Stage room_in(vlContext *context, Lamp lamp, bool rich, uint32_t size) {
   q.material = rich ? vl_scene_add_material(s.scene, &def) : add_diffuse(&s, 0.3f, 0.6f, 0.8f);
   add_quad(&s, &q);
   def = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
-  def.u_roughness = vl_float_input(0.2f), def.v_roughness = vl_float_input(0.4f);
+  def.u_roughness = vl_float_input(0.2f);
+  def.v_roughness = vl_float_input(0.4f);
   vlMaterialId metal = vl_scene_add_material(s.scene, &def),
                plain = add_diffuse(&s, 0.8f, 0.8f, 0.8f);
   add_round(&s, -0.7f, -0.5f, -3.4f, 0.5f, rich ? metal : plain, (vlEmissionId){0});
@@ -118,8 +125,10 @@ typedef struct Case {
 static Stage room(const void *user, vlTracer tracer) {
   const Case *c = user;
   Stage s = room_in(NULL, c->lamp, c->rich, tracer == VL_TRACER_MERGING ? FINE : SIZE);
-  if (c->radius > 0)
-    s.camera.lens_radius = c->radius, s.camera.focus_distance = 2.5;
+  if (c->radius > 0) {
+    s.camera.lens_radius = c->radius;
+    s.camera.focus_distance = 2.5;
+  }
   if (c->paths)
     s.render.light_paths = c->paths;
   if (c->merge > 0)
@@ -169,7 +178,8 @@ static void paths_and_radius(void **state) {
   Measure path = measure(room, &what, VL_TRACER_PATH);
   what.paths = 3 * SIZE * SIZE + 77;
   agrees("bidirectional, many paths", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
-  what.paths = 100, what.merge = 0.05;
+  what.paths = 100;
+  what.merge = 0.05;
   agrees("bidirectional, few paths", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
   agrees("merging, few paths", what, VL_TRACER_MERGING, &path, 0.02);
 }
@@ -182,8 +192,10 @@ static vlResult try_to_render(double radius, uint32_t paths) {
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
   assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
   assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
-  s.render.tracer = VL_TRACER_MERGING, s.render.spp = 1;
-  s.render.merge_radius = radius, s.render.light_paths = paths;
+  s.render.tracer = VL_TRACER_MERGING;
+  s.render.spp = 1;
+  s.render.merge_radius = radius;
+  s.render.light_paths = paths;
   vlResult result = vl_render(world, &camera, film, &s.render, NULL, NULL);
   vl_film_destroy(film);
   vl_world_destroy(world);
@@ -215,7 +227,8 @@ static Image colored(vlContext *context, const void *what) {
   Stage s = room_in(context, PANEL, true, SIZE);
   s.build.color = VL_COLOR_SPECTRAL;
   s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
-  s.render.tracer = c->tracer, s.render.spp = 5;
+  s.render.tracer = c->tracer;
+  s.render.spp = 5;
   s.render.light_paths = 2 * SIZE * SIZE - 5;
   const uint32_t part[4] = {5, 3, 17, 21};
   if (c->crop)

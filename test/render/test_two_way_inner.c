@@ -79,7 +79,8 @@ static Stage furnace(const void *user, vlTracer tracer) {
   (void)tracer;
   Stage s = stage_open_in(NULL, FURNACE, FURNACE);
   s.build.color = *(const bool *)user ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
-  s.render.max_depth = 5, s.render.spp = 16;
+  s.render.max_depth = 5;
+  s.render.spp = 16;
   add_furnace(&s);
   return s;
 }

@@ -37,11 +37,17 @@ static vlMediumId air_of(Stage *s, Air air) {
     def.sigma_a = vl_spectrum_rgb(0.02f, 0.1f, 0.4f);
     def.sigma_s = vl_spectrum_constant(0.5f);
   }
-  def.g = 0.4f, def.scale = air == RGB_GRID ? 0.2f : 1;
-  for (int i = 0; i < 3; i++)
-    def.low[i] = -2.6f, def.high[i] = 2.6f;
+  def.g = 0.4f;
+  def.scale = air == RGB_GRID ? 0.2f : 1;
+  for (int i = 0; i < 3; i++) {
+    def.low[i] = -2.6f;
+    def.high[i] = 2.6f;
+  }
   set_matrix(def.world_from_medium, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
-  def.nx = def.ny = def.nz = 2, def.density = densities, def.rgb_s = colors, def.rgb_a = colors;
+  def.nx = def.ny = def.nz = 2;
+  def.density = densities;
+  def.rgb_s = colors;
+  def.rgb_a = colors;
   return vl_scene_add_medium(s->scene, &def);
 }
 
@@ -49,8 +55,12 @@ static void add_filled_ball(Stage *s, vlMaterialId skin, vlMediumId inside,
                             vlMediumId outside) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(def.group_from_shape, 1, 0, 0, -0.6, 0, 1, 0, -0.4, 0, 0, 1, -2.6);
-  def.radius = 0.7f, def.z_min = -0.7f, def.z_max = 0.7f;
-  def.material = skin, def.inside = inside, def.outside = outside;
+  def.radius = 0.7f;
+  def.z_min = -0.7f;
+  def.z_max = 0.7f;
+  def.material = skin;
+  def.inside = inside;
+  def.outside = outside;
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 
@@ -138,14 +148,19 @@ static Stage furnace(const void *user, vlTracer tracer) {
   const Case *what = user;
   Stage s = stage_open_in(NULL, FURNACE, FURNACE);
   s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
-  s.render.max_depth = what->depth, s.render.spp = 24;
+  s.render.max_depth = what->depth;
+  s.render.spp = 24;
   vlMediumDef medium =
       vl_default_medium_def(what->air == GRID ? VL_MEDIUM_GRID : VL_MEDIUM_HOMOGENEOUS);
-  medium.sigma_a = vl_spectrum_constant(0), medium.g = 0.3f;
+  medium.sigma_a = vl_spectrum_constant(0);
+  medium.g = 0.3f;
   medium.sigma_s = vl_spectrum_rgb(0.3f, 0.4f, 0.6f);
-  for (int i = 0; i < 3; i++)
-    medium.low[i] = -2, medium.high[i] = 2;
-  medium.nx = medium.ny = medium.nz = 2, medium.density = densities;
+  for (int i = 0; i < 3; i++) {
+    medium.low[i] = -2;
+    medium.high[i] = 2;
+  }
+  medium.nx = medium.ny = medium.nz = 2;
+  medium.density = densities;
   vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &medium);
   add_furnace(&s);
   return s;
@@ -163,7 +178,8 @@ static Image in_context(vlContext *context, const void *user) {
   Case what = *(const Case *)user;
   what.context = context;
   Stage s = room(&what, VL_TRACER_BIDIRECTIONAL);
-  s.render.tracer = VL_TRACER_BIDIRECTIONAL, s.render.spp = 3;
+  s.render.tracer = VL_TRACER_BIDIRECTIONAL;
+  s.render.spp = 3;
   return stage_finish(&s);
 }
 

@@ -44,14 +44,18 @@ static vlMediumId add_medium(Stage *s, Air air) {
   def.sigma_a = vl_spectrum_rgb(0.1f * thick, 0.2f * thick, 0.4f * thick);
   def.sigma_s = vl_spectrum_rgb(1.5f * thick, 1.0f * thick, 0.6f * thick);
   def.g = 0.4f;
-  for (int i = 0; i < 3; i++)
-    def.low[i] = -0.8f, def.high[i] = 0.8f;
+  for (int i = 0; i < 3; i++) {
+    def.low[i] = -0.8f;
+    def.high[i] = 0.8f;
+  }
   set_matrix(def.world_from_medium, 0, 0, 1, 0, 0, 1, 0, -0.2, -1, 0, 0, -3);
   if (air == DARK)
     def.sigma_s = vl_spectrum_constant(0);
   if (air == GLOWING)
     def.emission = vl_spectrum_rgb(0.3f, 0.4f, 0.2f);
-  def.nx = def.ny = def.nz = 2, def.density = densities, def.rgb_s = colours,
+  def.nx = def.ny = def.nz = 2;
+  def.density = densities;
+  def.rgb_s = colours;
   def.rgb_a = little;
   vlMediumId id = vl_scene_add_medium(s->scene, &def);
   vlError error;
@@ -64,9 +68,13 @@ static void add_ball(Stage *s, float x, float y, float z, float radius, vlMateri
                      vlMediumId inside, vlMediumId outside, vlEmissionId emission) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z);
-  def.radius = radius, def.z_min = -radius, def.z_max = radius;
-  def.material = material, def.emission = emission;
-  def.inside = inside, def.outside = outside;
+  def.radius = radius;
+  def.z_min = -radius;
+  def.z_max = radius;
+  def.material = material;
+  def.emission = emission;
+  def.inside = inside;
+  def.outside = outside;
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 
@@ -78,7 +86,8 @@ static void add_lamp(Stage *s, Lamp lamp) {
   vlMaterialId dark = add_diffuse(s, 0.2f, 0.2f, 0.2f);
   if (lamp == PANEL) {
     Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
-    q.material = dark, q.emission = add_emission(s, 10, false);
+    q.material = dark;
+    q.emission = add_emission(s, 10, false);
     add_quad(s, &q);
   } else if (lamp == BALL) {
     add_ball(s, 0.3f, 1.1f, -3, 0.2f, dark, (vlMediumId){0}, (vlMediumId){0},
@@ -88,8 +97,10 @@ static void add_lamp(Stage *s, Lamp lamp) {
     float color = lamp == POINT || lamp == SPOT ? 5 : lamp == DISTANT ? 2 : 0.7f;
     const float from[3] = {0.3f, 1.2f, -2.6f}, to[3] = {-0.2f, -1, -3.2f};
     def.color = vl_spectrum_rgb(color, 0.8f * color, 0.6f * color);
-    memcpy(def.from, from, sizeof from), memcpy(def.to, to, sizeof to);
-    def.cone_angle = 0.8f, def.cone_delta = 0.3f;
+    memcpy(def.from, from, sizeof from);
+    memcpy(def.to, to, sizeof to);
+    def.cone_angle = 0.8f;
+    def.cone_delta = 0.3f;
     assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
   }
 }
@@ -104,7 +115,10 @@ static void add_window(Stage *s, vlMediumId fog) {
   static const float p[12] = {-4, -4, -1.2f, 4, -4, -1.2f, -4, 4, -1.2f, 4, 4, -1.2f};
   static const uint32_t faces[6] = {0, 1, 3, 0, 3, 2};
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 4, def.faces = 2, def.positions = p, def.indices = faces;
+  def.vertices = 4;
+  def.faces = 2;
+  def.positions = p;
+  def.indices = faces;
   def.material = material_of(s, VL_MATERIAL_INTERFACE);
   def.inside = fog; /* its normal looks at the eye */
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
@@ -116,7 +130,8 @@ static Stage room(const void *user, vlTracer tracer) {
   Stage s = stage_open_in(c->context, size, size);
   s.build.color = c->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   s.camera.fov = 1;
-  s.render.spp = size == FINE ? 4 : 64, s.render.max_depth = 5;
+  s.render.spp = size == FINE ? 4 : 64;
+  s.render.max_depth = 5;
   add_lamp(&s, c->lamp);
   Quad q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
   q.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
@@ -185,15 +200,21 @@ static void furnace(void **state) {
       Stage s = stage_open(24, 24);
       s.camera.fov = 0.7;
       s.build.color = VL_COLOR_RGB;
-      s.render.tracer = tracers[k], s.render.spp = 64, s.render.max_depth = 200;
+      s.render.tracer = tracers[k];
+      s.render.spp = 64;
+      s.render.max_depth = 200;
       const float densities[8] = {1, 2, 0.2f, 1, 3, 1, 0, 2};
       vlMediumDef def = vl_default_medium_def(grid ? VL_MEDIUM_GRID : VL_MEDIUM_HOMOGENEOUS);
-      def.sigma_a = vl_spectrum_constant(0), def.sigma_s = vl_spectrum_constant(2),
+      def.sigma_a = vl_spectrum_constant(0);
+      def.sigma_s = vl_spectrum_constant(2);
       def.g = 0.3f;
-      for (int i = 0; i < 3; i++)
-        def.low[i] = -1, def.high[i] = 1;
+      for (int i = 0; i < 3; i++) {
+        def.low[i] = -1;
+        def.high[i] = 1;
+      }
       set_matrix(def.world_from_medium, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3);
-      def.nx = def.ny = def.nz = 2, def.density = densities;
+      def.nx = def.ny = def.nz = 2;
+      def.density = densities;
       add_sky(&s, 1);
       add_ball(&s, 0, 0, -3, 1, material_of(&s, VL_MATERIAL_INTERFACE),
                vl_scene_add_medium(s.scene, &def), (vlMediumId){0}, (vlEmissionId){0});
@@ -213,7 +234,8 @@ static Image colored(vlContext *context, const void *what) {
   const Colored *c = what;
   Case in = {c->air, PANEL, true, context, SIZE};
   Stage s = room(&in, c->tracer);
-  s.render.tracer = c->tracer, s.render.spp = 3;
+  s.render.tracer = c->tracer;
+  s.render.spp = 3;
   return stage_finish(&s);
 }
 

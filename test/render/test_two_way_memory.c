@@ -13,7 +13,10 @@ static vlResult fill(vlScene *scene) {
                 skin = vl_default_material_def(VL_MATERIAL_INTERFACE);
   vlShapeDef floor = vl_default_shape_def(VL_SHAPE_BILINEAR),
              ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  floor.vertices = 4, floor.faces = 1, floor.positions = p, floor.indices = face;
+  floor.vertices = 4;
+  floor.faces = 1;
+  floor.positions = p;
+  floor.indices = face;
   floor.material = vl_scene_add_material(scene, &diffuse);
   vl_scene_add_shape(scene, &floor);
   vlMediumDef fog = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
@@ -22,7 +25,8 @@ static vlResult fill(vlScene *scene) {
   set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3);
   vl_scene_add_shape(scene, &ball);
   vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);
-  lamp.from[1] = 1.5f, lamp.from[2] = -3;
+  lamp.from[1] = 1.5f;
+  lamp.from[2] = -3;
   vl_scene_add_light(scene, &lamp);
   return vl_scene_result(scene, NULL);
 }
@@ -39,7 +43,8 @@ static vlResult render(vlContext *context, void *user) {
   camera_def.lookat[2] = -1;
   vlFilmDef film_def = vl_default_film_def(8, 8);
   vlRenderDef def = vl_default_render_def();
-  def.tracer = *tracer, def.spp = 2;
+  def.tracer = *tracer;
+  def.spp = 2;
   def.light_paths = 1 << 17; /* photons that the first room cannot hold */
   vlResult r = vl_scene_create(context, &scene);
   if (r == VL_OK)

@@ -26,10 +26,14 @@ static void add_mover(Stage *s) {
   double poses[32];
   vlGroupId group = vl_scene_add_group(s->scene, "mover");
   Quad board = quad_at(0, 0, 0, 0.5f, 0, 0, 0, 0.1f, 0.2f);
-  board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f), board.group = group;
+  board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f);
+  board.group = group;
   add_quad(s, &board);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  ball.radius = 0.25f, ball.z_min = -0.25f, ball.z_max = 0.25f, ball.group = group;
+  ball.radius = 0.25f;
+  ball.z_min = -0.25f;
+  ball.z_max = 0.25f;
+  ball.group = group;
   ball.material = add_diffuse(s, 0.2f, 0.3f, 0.8f);
   set_matrix(ball.group_from_shape, 1, 0, 0, 0.4, 0, 1, 0, 0.4, 0, 0, 1, 0);
   assert_int_not_equal(vl_scene_add_shape(s->scene, &ball).index, 0);
@@ -43,20 +47,27 @@ static Stage room(const void *user, vlTracer tracer) {
   uint32_t size = c->size ? c->size : tracer == VL_TRACER_MERGING ? FINE : SIZE;
   Stage s = stage_open_in(c->context, size, size);
   s.camera.fov = 1;
-  s.camera.shutter_open = 0.25, s.camera.shutter_close = 0.85;
+  s.camera.shutter_open = 0.25;
+  s.camera.shutter_close = 0.85;
   if (c->camera)
     move_camera(&s.camera);
-  if (c->lens)
-    s.camera.lens_radius = 0.05, s.camera.focus_distance = 3;
+  if (c->lens) {
+    s.camera.lens_radius = 0.05;
+    s.camera.focus_distance = 3;
+  }
   if (c->curve) {
     s.camera.shutter_points = 3;
-    s.camera.shutter_at[1] = 0.3, s.camera.shutter_at[2] = 1;
-    s.camera.shutter_value[1] = 1, s.camera.shutter_value[2] = 0.2;
+    s.camera.shutter_at[1] = 0.3;
+    s.camera.shutter_at[2] = 1;
+    s.camera.shutter_value[1] = 1;
+    s.camera.shutter_value[2] = 0.2;
   }
   s.build.color = VL_COLOR_RGB;
-  s.render.spp = size == FINE ? 24 : 96, s.render.max_depth = 4;
+  s.render.spp = size == FINE ? 24 : 96;
+  s.render.max_depth = 4;
   Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
-  q.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f), q.emission = add_emission(&s, 10, false);
+  q.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f);
+  q.emission = add_emission(&s, 10, false);
   if (c->sky)
     add_sky(&s, 0.8f);
   if (!c->sky)
@@ -71,7 +82,8 @@ static Stage room(const void *user, vlTracer tracer) {
     add_mover(&s);
   if (c->fog) {
     vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-    def.sigma_a = vl_spectrum_constant(0.02f), def.sigma_s = vl_spectrum_constant(0.15f);
+    def.sigma_a = vl_spectrum_constant(0.02f);
+    def.sigma_s = vl_spectrum_constant(0.15f);
     vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &def);
   }
   return s;
@@ -109,7 +121,9 @@ static void blurred_alike(void **state) {
   Image path = stage_finish(&s);
   for (int k = 0; k < 2; k++) {
     s = room(&what, tracers[k]);
-    s.render.tracer = tracers[k], s.render.spp = 512, s.render.merge_radius = 0.02;
+    s.render.tracer = tracers[k];
+    s.render.spp = 512;
+    s.render.merge_radius = 0.02;
     s.build.color = VL_COLOR_SPECTRAL; /* times and wavelengths of merging's passes are spread
                                           apart from each other */
     Image p = stage_finish(&s);
@@ -129,7 +143,7 @@ static void add_boards(Stage *s) {
   vlGroupId group = vl_scene_add_group(s->scene, "boards");
   for (int k = 0; k < 2; k++) {
     Quad board = quad_at(k ? 0.9f : -0.9f, 0, 0, 0.7f, 0.2f, 0, 0, 0, 0.8f);
-    board.material = k ? add_diffuse(s, 0.1f, 0.2f, 0.9f) : add_diffuse(s, 0.9f, 0.2f, 0.1f),
+    board.material = k ? add_diffuse(s, 0.1f, 0.2f, 0.9f) : add_diffuse(s, 0.9f, 0.2f, 0.1f);
     board.group = group;
     add_quad(s, &board);
   }
@@ -146,7 +160,8 @@ static Stage lamp_room(const void *user, vlTracer tracer) {
   const Lamp *what = user;
   Stage s = stage_open_in(NULL, SIZE, SIZE);
   s.camera.fov = 1.2;
-  s.camera.shutter_open = 0.1, s.camera.shutter_close = 0.9;
+  s.camera.shutter_open = 0.1;
+  s.camera.shutter_close = 0.9;
   if (what->camera)
     move_camera(&s.camera);
   s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
@@ -163,7 +178,8 @@ static Stage lamp_room(const void *user, vlTracer tracer) {
   add_boards(&s);
   if (what->fog) {
     vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-    def.sigma_a = vl_spectrum_constant(0.02f), def.sigma_s = vl_spectrum_constant(0.2f);
+    def.sigma_a = vl_spectrum_constant(0.02f);
+    def.sigma_s = vl_spectrum_constant(0.2f);
     vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &def);
   }
   return s;
@@ -190,12 +206,16 @@ static void grey_blur(void **state) {
   Stage s = stage_open_in(NULL, SIZE, SIZE);
   s.build.color = VL_COLOR_SPECTRAL;
   s.render.tracer = VL_TRACER_BIDIRECTIONAL;
-  s.render.spp = 256, s.render.max_depth = 2, s.render.light_paths = 2048;
-  s.camera.shutter_open = 0, s.camera.shutter_close = 1;
+  s.render.spp = 256;
+  s.render.max_depth = 2;
+  s.render.light_paths = 2048;
+  s.camera.shutter_open = 0;
+  s.camera.shutter_close = 1;
   add_point(&s, 0, 0, 0, 10);
   vlGroupId group = vl_scene_add_group(s.scene, "board");
   Quad board = quad_at(0, 0, 0, 0.15f, 0, 0, 0, 2, 0);
-  board.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f), board.group = group;
+  board.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f);
+  board.group = group;
   add_quad(&s, &board);
   set_matrix(poses, 1, 0, 0, -1.5, 0, 1, 0, 0, 0, 0, 1, -3);
   set_matrix(poses + 16, 1, 0, 0, 1.5, 0, 1, 0, 0, 0, 0, 1, -3);
@@ -225,7 +245,8 @@ static Image pixels(vlContext *context, const void *with) {
   vlTracer tracer = *(const vlTracer *)with;
   Case what = {"bits", true, true, true, true, true, false, SIZE, context};
   Stage s = room(&what, tracer);
-  s.render.tracer = tracer, s.render.spp = 4;
+  s.render.tracer = tracer;
+  s.render.spp = 4;
   return stage_finish(&s);
 }
 

@@ -45,13 +45,17 @@ static void add_box(Model *m, const float low[3], const float high[3], bool inwa
   for (int i = 0; i < 36; i++)
     indices[i] = faces[inward ? i / 3 * 3 + 2 - i % 3 : i];
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 8, def.faces = 12, def.positions = p, def.indices = indices,
+  def.vertices = 8;
+  def.faces = 12;
+  def.positions = p;
+  def.indices = indices;
   def.one_sided = one_sided;
   assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
 }
 
 static void complete(Model *m, vlCompleteDef *def) {
-  def->width = 300, def->height = 200;
+  def->width = 300;
+  def->height = 200;
   vlError error;
   if (vl_scene_complete(m->scene, def, &error) != VL_OK)
     fail_msg("%s", error.message);
@@ -67,8 +71,10 @@ static vlCompleteDef first_image(void) {
 static void toward_eye(const Model *m, double d[3]) {
   const vlCameraDef *c = &m->scene->defs.camera;
   double length = 0;
-  for (int i = 0; i < 3; i++)
-    d[i] = c->eye[i] - c->lookat[i], length += d[i] * d[i];
+  for (int i = 0; i < 3; i++) {
+    d[i] = c->eye[i] - c->lookat[i];
+    length += d[i] * d[i];
+  }
   for (int i = 0; i < 3; i++)
     d[i] /= sqrt(length);
 }
@@ -79,11 +85,16 @@ static void flat_models(void **state) {
     for (int up = 1; up < 3; up++) {
       Model m = begin();
       float low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
-      low[axis] = -0.01f, high[axis] = 0.01f;
+      low[axis] = -0.01f;
+      high[axis] = 0.01f;
       add_box(&m, low, high, false, false);
       vlCompleteDef def = first_image();
-      if (up == 2)
-        def.up[1] = 0, def.up[2] = 1, def.front[1] = -1, def.front[2] = 0;
+      if (up == 2) {
+        def.up[1] = 0;
+        def.up[2] = 1;
+        def.front[1] = -1;
+        def.front[2] = 0;
+      }
       complete(&m, &def);
       double d[3];
       toward_eye(&m, d);
@@ -108,7 +119,9 @@ static void sheet_from_behind(void **state) {
     const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint32_t front[3] = {0, 1, 2}, behind[3] = {0, 2, 1};
     vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = 3, shape.faces = 1, shape.positions = p,
+    shape.vertices = 3;
+    shape.faces = 1;
+    shape.positions = p;
     shape.indices = back ? behind : front;
     assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
     vlCompleteDef def = first_image();

@@ -55,10 +55,14 @@ static void everything_is_copied(void **state) {
   char name[16] = "wall", file[16] = "a.pbrt", path[16] = "x.png", metal[32] = "metal-Au-eta";
   memcpy(p, corners, sizeof p);
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-  t.name = name, t.path = path, t.source.file = file;
+  t.name = name;
+  t.path = path;
+  t.source.file = file;
   assert_int_equal(vl_scene_add_texture(scene, &t).index, 1);
   vlMaterialDef m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
-  m.name = name, m.normal_map = path, m.eta.value = vl_spectrum_named(metal);
+  m.name = name;
+  m.normal_map = path;
+  m.eta.value = vl_spectrum_named(metal);
   m.k.value = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
                            .scale = 1,
                            .count = 2,
@@ -66,12 +70,19 @@ static void everything_is_copied(void **state) {
                            .values = values};
   assert_int_equal(vl_scene_add_material(scene, &m).index, 1);
   vlShapeDef s = triangle();
-  s.positions = p, s.normals = p, s.tangents = p, s.uvs = p, s.indices = v,
-  s.source = (vlSource){file, 3, 4}, s.material.index = 1;
+  s.positions = p;
+  s.normals = p;
+  s.tangents = p;
+  s.uvs = p;
+  s.indices = v;
+  s.source = (vlSource){file, 3, 4};
+  s.material.index = 1;
   assert_int_equal(vl_scene_add_shape(scene, &s).index, 1);
   vlImage *image;
   vlImageDef id = vl_default_image_def(2, 1, 3);
-  id.type = VL_PIXEL_U8, id.encoding = VL_ENCODING_GAMMA, id.gamma = 1.7f;
+  id.type = VL_PIXEL_U8;
+  id.encoding = VL_ENCODING_GAMMA;
+  id.gamma = 1.7f;
   assert_int_equal(vl_image_create(context, &id, &image), VL_OK);
   ((uint8_t *)vl_image_pixels(image))[5] = 77;
   float value = vl_image_get(image, 1, 0, 2);
@@ -82,8 +93,12 @@ static void everything_is_copied(void **state) {
   vlEmissionDef e = vl_default_emission_def();
   e.image = path;
   assert_int_equal(vl_scene_add_emission(scene, &e).index, 1);
-  memset(p, 0, sizeof p), memset(v, 0, sizeof v), memset(name, 'x', 4), memset(file, 'x', 4),
-      memset(path, 'x', 4), memset(metal, 'x', 9);
+  memset(p, 0, sizeof p);
+  memset(v, 0, sizeof v);
+  memset(name, 'x', 4);
+  memset(file, 'x', 4);
+  memset(path, 'x', 4);
+  memset(metal, 'x', 9);
   wavelengths[1] = values[1] = 0;
   assert_int_equal(vl_scene_result(scene, NULL), VL_OK);
   assert_string_equal(scene->textures.items[0].name, "wall");
@@ -290,8 +305,11 @@ static void large_mesh(void **state) {
   uint32_t vertices = (N + 1) * (N + 1), n = 0;
   float *p = malloc(vertices * 3 * sizeof *p);
   uint32_t *v = malloc((size_t)N * N * 6 * sizeof *v);
-  for (uint32_t i = 0; i < vertices; i++)
-    p[3 * i] = (float)(i % (N + 1)), p[3 * i + 1] = (float)(i / (N + 1)), p[3 * i + 2] = 0;
+  for (uint32_t i = 0; i < vertices; i++) {
+    p[3 * i] = (float)(i % (N + 1));
+    p[3 * i + 1] = (float)(i / (N + 1));
+    p[3 * i + 2] = 0;
+  }
   for (uint32_t y = 0; y < N; y++)
     for (uint32_t x = 0; x < N; x++) {
       uint32_t a = y * (N + 1) + x, quad[] = {a, a + 1, a + N + 2, a, a + N + 2, a + N + 1};
@@ -299,7 +317,10 @@ static void large_mesh(void **state) {
       n += 6;
     }
   vlShapeDef d = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  d.vertices = vertices, d.faces = 2 * N * N, d.positions = p, d.indices = v;
+  d.vertices = vertices;
+  d.faces = 2 * N * N;
+  d.positions = p;
+  d.indices = v;
   assert_int_equal(vl_scene_add_shape(scene, &d).index, 1);
   p[3 * 777777 + 1] = NAN;
   assert_int_equal(vl_scene_add_shape(scene, &d).index, 0);
@@ -317,7 +338,8 @@ static vlResult fill(vlContext *from, void *user) {
   if (result != VL_OK)
     return result;
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_CONSTANT, true);
-  t.name = "t", t.source.file = "a.pbrt";
+  t.name = "t";
+  t.source.file = "a.pbrt";
   vlMaterialDef m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
   m.reflectance.texture = vl_scene_add_texture(s, &t);
   m.normal_map = "n.png";
@@ -330,7 +352,9 @@ static vlResult fill(vlContext *from, void *user) {
   l.path = "l.exr";
   vl_scene_add_light(s, &l);
   vlShapeDef d = triangle();
-  d.normals = corners, d.uvs = corners, d.tangents = corners;
+  d.normals = corners;
+  d.uvs = corners;
+  d.tangents = corners;
   d.group = vl_scene_add_group(s, "g");
   d.emission = vl_scene_add_emission(s, &e);
   vl_scene_add_shape(s, &d);

@@ -93,8 +93,10 @@ static void simulate(Kind kind, statRng *rng, int draws, double *smooth, double 
     double *a = smooth + r * VALUES, *b = noisy + r * VALUES;
     a[BLOCKS] = b[BLOCKS] = 0;
     for (int k = 0; k < BLOCKS; k++) {
-      a[k] = 1 + 0.02 * normal(rng), b[k] = radiance(kind, rng, draws);
-      a[BLOCKS] += a[k] / BLOCKS, b[BLOCKS] += b[k] / BLOCKS;
+      a[k] = 1 + 0.02 * normal(rng);
+      b[k] = radiance(kind, rng, draws);
+      a[BLOCKS] += a[k] / BLOCKS;
+      b[BLOCKS] += b[k] / BLOCKS;
     }
   }
 }

@@ -57,8 +57,11 @@ static const uint32_t face[4] = {0, 1, 2, 3};
 
 static void make_shape(int kind, Def *def) {
   def->shape = vl_default_shape_def((vlShapeKind)kind);
-  def->shape.positions = corners, def->shape.indices = face, def->shape.widths = widths;
-  def->shape.vertices = 4, def->shape.faces = 1;
+  def->shape.positions = corners;
+  def->shape.indices = face;
+  def->shape.widths = widths;
+  def->shape.vertices = 4;
+  def->shape.faces = 1;
 }
 static uint32_t add_shape(vlScene *scene, const Def *def) {
   return vl_scene_add_shape(scene, &def->shape).index;
@@ -128,10 +131,14 @@ static bool beyond(const vlParameter *p, bool high, double *x) {
 
 static bool set_number(const vlParameter *p, Def *def, double x) {
   void *at = (char *)def + p->offset;
-  if (p->type == VL_PARAMETER_FLOAT)
-    return *(float *)at = (float)x, true;
-  if (p->type == VL_PARAMETER_COUNT && x >= 0)
-    return *(uint32_t *)at = (uint32_t)x, true;
+  if (p->type == VL_PARAMETER_FLOAT) {
+    *(float *)at = (float)x;
+    return true;
+  }
+  if (p->type == VL_PARAMETER_COUNT && x >= 0) {
+    *(uint32_t *)at = (uint32_t)x;
+    return true;
+  }
   return false;
 }
 
@@ -179,12 +186,15 @@ static void dropped(void **state) {
   vlScene *scene;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlLightDef light = vl_default_light_def(VL_LIGHT_POINT);
-  light.path = "a.exr", light.fov = NAN;
+  light.path = "a.exr";
+  light.fov = NAN;
   assert_int_not_equal(vl_scene_add_light(scene, &light).index, 0);
   assert_null(scene->lights.items[0].path);
   assert_true(scene->lights.items[0].fov == vl_default_light_def(VL_LIGHT_POINT).fov);
   vlMediumDef medium = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-  medium.density = corners, medium.path = "a.nvdb", medium.frequency = -1;
+  medium.density = corners;
+  medium.path = "a.nvdb";
+  medium.frequency = -1;
   assert_int_not_equal(vl_scene_add_medium(scene, &medium).index, 0);
   assert_null(scene->media.items[0].density);
   assert_null(scene->media.items[0].path);

@@ -38,9 +38,15 @@ static inline vlBsdfParams batch_params(Batch *b) {
   vlBsdfParams p;
   for (int c = 0; c < 4; c++)
     p.tint[c] = NULL;
-  for (int c = 0; c < 4; c++)
-    p.reflectance[c] = b->reflectance[c], p.eta[c] = b->eta[c], p.k[c] = b->k[c];
-  p.alpha_x = b->alpha_x, p.alpha_y = b->alpha_y, p.eta_s = b->eta_s, p.coat = b->coat;
+  for (int c = 0; c < 4; c++) {
+    p.reflectance[c] = b->reflectance[c];
+    p.eta[c] = b->eta[c];
+    p.k[c] = b->k[c];
+  }
+  p.alpha_x = b->alpha_x;
+  p.alpha_y = b->alpha_y;
+  p.eta_s = b->eta_s;
+  p.coat = b->coat;
   for (int k = 0; k < VL_BSDF_ROWS; k++)
     p.own[k] = b->own[k];
   for (int c = 0; c < 4; c++)
@@ -55,7 +61,9 @@ static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
     b->eta[c][i] = s->eta * (1.0f + 0.2f * (float)c);
     b->k[c][i] = s->k * (1.0f - 0.1f * (float)c);
   }
-  b->alpha_x[i] = s->alpha_x, b->alpha_y[i] = s->alpha_y, b->eta_s[i] = s->eta_s,
+  b->alpha_x[i] = s->alpha_x;
+  b->alpha_y[i] = s->alpha_y;
+  b->eta_s[i] = s->eta_s;
   b->coat[i] = s->coat;
   b->measured[i] = s->measured;
   for (int k = 0; s->own && k < VL_BSDF_ROWS; k++)
@@ -65,12 +73,16 @@ static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
 }
 /* theta from +z; above pi/2 from below */
 static inline void batch_wo(Batch *b, uint32_t i, double theta, double phi) {
-  b->ox[i] = (float)(sin(theta) * cos(phi)), b->oy[i] = (float)(sin(theta) * sin(phi)),
+  b->ox[i] = (float)(sin(theta) * cos(phi));
+  b->oy[i] = (float)(sin(theta) * sin(phi));
   b->oz[i] = (float)cos(theta);
 }
 static inline void batch_numbers(Batch *b, uint32_t n, statRng *rng) {
-  for (uint32_t i = 0; i < n; i++)
-    b->lobe[i] = stat_float(rng), b->u[i] = stat_float(rng), b->v[i] = stat_float(rng);
+  for (uint32_t i = 0; i < n; i++) {
+    b->lobe[i] = stat_float(rng);
+    b->u[i] = stat_float(rng);
+    b->v[i] = stat_float(rng);
+  }
 }
 static inline void batch_eval(const vlBsdfKernels *k, vlBsdfKind kind, uint32_t n, Batch *b) {
   vlBsdfParams p = batch_params(b);

@@ -90,7 +90,9 @@ static inline double mf_value(const mfSurface *s, const double o[3], const doubl
 /* ---- its measurement ---- */
 
 static inline void mf_direction(double theta, double phi, double w[3]) {
-  w[0] = sin(theta) * cos(phi), w[1] = sin(theta) * sin(phi), w[2] = cos(theta);
+  w[0] = sin(theta) * cos(phi);
+  w[1] = sin(theta) * sin(phi);
+  w[2] = cos(theta);
 }
 /* The direction of point (x, y) of the square. */
 static inline void mf_unwarp(double x, double y, double w[3]) {
@@ -133,7 +135,8 @@ static inline void mf_sample(const double *f, const double *rows, uint32_t n, do
   double t = mf_solve(rows[j], rows[j + 1], (v * all - sum) / (0.5 * (rows[j] + rows[j + 1])));
   *y = (j + t) / (n - 1);
   const double *a = f + (size_t)j * n, *b = a + n;
-  all = mf_between(rows[j], rows[j + 1], t), sum = 0;
+  all = mf_between(rows[j], rows[j + 1], t);
+  sum = 0;
   uint32_t i = 0;
   for (;; i++) {
     double part = 0.5 * (mf_between(a[i], b[i], t) + mf_between(a[i + 1], b[i + 1], t));

@@ -92,7 +92,9 @@ static void direction_set(Direction *d, const Surface *surface, double theta) {
 }
 static void direction_eval(const Direction *d, const double w[3]) {
   Batch *b = d->s->other;
-  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
+  b->ix[0] = (float)w[0];
+  b->iy[0] = (float)w[1];
+  b->iz[0] = (float)w[2];
   batch_eval(d->s->kernels, d->kind, 1, b);
 }
 static double direction_pdf(void *user, const double w[3]) {
@@ -163,7 +165,9 @@ static void consistent(void **state) {
       batch_surface(b, j, &surf);
       double d[3];
       stat_direction(&rng, d);
-      b->ox[j] = (float)d[0], b->oy[j] = (float)d[1], b->oz[j] = (float)d[2];
+      b->ox[j] = (float)d[0];
+      b->oy[j] = (float)d[1];
+      b->oz[j] = (float)d[2];
     }
     batch_numbers(b, BATCH, &rng);
     batch_sample(s->kernels, surf.kind, BATCH, b);
@@ -223,7 +227,8 @@ static void albedo(void **state) {
             batch_surface(b, n, &surf);
             batch_wo(b, n, thetas[t], wo_phi);
             b->lobe[n] = ((float)l + stat_float(&rng)) / 16;
-            b->u[n] = u, b->v[n] = v;
+            b->u[n] = u;
+            b->v[n] = v;
             if (++n < BATCH)
               continue;
             batch_sample(s->kernels, surf.kind, n, b);
@@ -238,7 +243,8 @@ static void albedo(void **state) {
           }
         }
       double count = 16.0 * SIDE * SIDE;
-      sum /= count, delta /= count;
+      sum /= count;
+      delta /= count;
       direction_set(&d, &surf, thetas[t]);
       double whole = 0;
       for (int h = 0; h < 2; h++)

@@ -72,14 +72,20 @@ static void reciprocity(void **state) {
       stat_direction(&rng, o);
       stat_direction(&rng, w);
       batch_surface(b, j, &all[i]);
-      b->ox[j] = (float)o[0], b->oy[j] = (float)o[1], b->oz[j] = (float)o[2];
-      b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
+      b->ox[j] = (float)o[0];
+      b->oy[j] = (float)o[1];
+      b->oz[j] = (float)o[2];
+      b->ix[j] = (float)w[0];
+      b->iy[j] = (float)w[1];
+      b->iz[j] = (float)w[2];
     }
     *c = *b;
-    memcpy(c->ox, b->ix, sizeof b->ix), memcpy(c->oy, b->iy, sizeof b->iy),
-        memcpy(c->oz, b->iz, sizeof b->iz);
-    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->oy),
-        memcpy(c->iz, b->oz, sizeof b->oz);
+    memcpy(c->ox, b->ix, sizeof b->ix);
+    memcpy(c->oy, b->iy, sizeof b->iy);
+    memcpy(c->oz, b->iz, sizeof b->iz);
+    memcpy(c->ix, b->ox, sizeof b->ox);
+    memcpy(c->iy, b->oy, sizeof b->oy);
+    memcpy(c->iz, b->oz, sizeof b->oz);
     batch_eval(s->kernels, all[i].kind, BATCH, b);
     batch_eval(s->kernels, all[i].kind, BATCH, c);
     for (uint32_t j = 0; j < BATCH; j++) {
@@ -90,7 +96,8 @@ static void reciprocity(void **state) {
       /* radiance divided by the squared index of its medium is conserved: f(wo, wi) n_i^2 =
        * f(wi, wo) n_o^2 */
       double n = all[i].kind == VL_BSDF_DIELECTRIC ? (double)all[i].eta_s : 1;
-      f *= b->iz[j] < 0 ? n * n : 1, g *= b->oz[j] < 0 ? n * n : 1;
+      f *= b->iz[j] < 0 ? n * n : 1;
+      g *= b->oz[j] < 0 ? n * n : 1;
       double off =
           fabs(f - g) /
           (fabs(f) + 1e-2); /* near the critical angle 1 - F is mostly rounding error */
@@ -136,12 +143,14 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     b->own[VL_P_FILM_NM][j] = stat_bits(rng) & 3 ? 1000 * stat_float(rng) : 0;
     double n[3];
     stat_direction(rng, n);
-    b->own[VL_P_COAT_X][j] = (float)n[0], b->own[VL_P_COAT_Y][j] = (float)n[1];
+    b->own[VL_P_COAT_X][j] = (float)n[0];
+    b->own[VL_P_COAT_Y][j] = (float)n[1];
     b->own[VL_P_COAT_Z][j] = (float)fabs(n[2]);
     if (kind == VL_BSDF_LAYERED) {
-      b->own[VL_L_BASE_X][j] = pick(rng, alphas, 8),
+      b->own[VL_L_BASE_X][j] = pick(rng, alphas, 8);
       b->own[VL_L_BASE_Y][j] = pick(rng, alphas, 8);
-      b->own[VL_L_DEPTH][j] = 10, b->own[VL_L_WALKS][j] = 1;
+      b->own[VL_L_DEPTH][j] = 10;
+      b->own[VL_L_WALKS][j] = 1;
     }
     b->seed[j] = (uint32_t)stat_bits(rng);
     b->coat[j] = s->coats[stat_bits(rng) % 4];
@@ -149,23 +158,39 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     double o[3], w[3];
     stat_direction(rng, o);
     stat_direction(rng, w);
-    b->ox[j] = (float)o[0], b->oy[j] = (float)o[1], b->oz[j] = (float)o[2];
-    b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
-    if (!(stat_bits(rng) & 7))
-      b->ox[j] = pick(rng, small, 10), b->oy[j] = pick(rng, small, 7),
+    b->ox[j] = (float)o[0];
+    b->oy[j] = (float)o[1];
+    b->oz[j] = (float)o[2];
+    b->ix[j] = (float)w[0];
+    b->iy[j] = (float)w[1];
+    b->iz[j] = (float)w[2];
+    if (!(stat_bits(rng) & 7)) {
+      b->ox[j] = pick(rng, small, 10);
+      b->oy[j] = pick(rng, small, 7);
       b->oz[j] = pick(rng, small, 9);
-    if (!(stat_bits(rng) & 7))
-      b->ix[j] = pick(rng, small, 10), b->iy[j] = pick(rng, small, 7),
+    }
+    if (!(stat_bits(rng) & 7)) {
+      b->ix[j] = pick(rng, small, 10);
+      b->iy[j] = pick(rng, small, 7);
       b->iz[j] = pick(rng, small, 9);
-    if (!(stat_bits(rng) & 7))
-      b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = -b->oz[j]; /* no half vector */
-    if (!(stat_bits(rng) & 15))
-      b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = b->oz[j]; /* mirror */
+    }
+    if (!(stat_bits(rng) & 7)) {
+      b->ix[j] = -b->ox[j];
+      b->iy[j] = -b->oy[j];
+      b->iz[j] = -b->oz[j];
+    } /* no half vector */
+    if (!(stat_bits(rng) & 15)) {
+      b->ix[j] = -b->ox[j];
+      b->iy[j] = -b->oy[j];
+      b->iz[j] = b->oz[j];
+    } /* mirror */
   }
   batch_numbers(b, BATCH, rng);
-  for (uint32_t j = 0; j < BATCH; j += 9)
-    b->lobe[j] = pick(rng, edges, 3), b->u[j] = pick(rng, edges, 3),
+  for (uint32_t j = 0; j < BATCH; j += 9) {
+    b->lobe[j] = pick(rng, edges, 3);
+    b->u[j] = pick(rng, edges, 3);
     b->v[j] = pick(rng, edges, 3);
+  }
 }
 
 static void never_nan(void **state) {
@@ -253,22 +278,34 @@ static void lanes_alone(void **state) {
     *c = *b;
     for (uint32_t j = 0; j < 600; j++) { /* reversed, and a shorter batch */
       uint32_t i = 599 - j;
-      for (int d = 0; d < 4; d++)
-        c->reflectance[d][j] = b->reflectance[d][i], c->eta[d][j] = b->eta[d][i],
+      for (int d = 0; d < 4; d++) {
+        c->reflectance[d][j] = b->reflectance[d][i];
+        c->eta[d][j] = b->eta[d][i];
         c->k[d][j] = b->k[d][i];
+      }
       for (int d = 0; d < 4; d++)
         c->lambda[d][j] = b->lambda[d][i];
       for (int r = 0; r < VL_BSDF_ROWS; r++)
         c->own[r][j] = b->own[r][i];
-      c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i],
+      c->alpha_x[j] = b->alpha_x[i];
+      c->alpha_y[j] = b->alpha_y[i];
+      c->eta_s[j] = b->eta_s[i];
       c->coat[j] = b->coat[i];
-      c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
+      c->ox[j] = b->ox[i];
+      c->oy[j] = b->oy[i];
+      c->oz[j] = b->oz[i];
       c->measured[j] = b->measured[i];
-      c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i], c->seed[j] = b->seed[i];
+      c->lobe[j] = b->lobe[i];
+      c->u[j] = b->u[i];
+      c->v[j] = b->v[i];
+      c->seed[j] = b->seed[i];
     }
-    for (uint32_t j = 600; j < BATCH; j++)
-      c->coat[j] = NULL, c->measured[j] = NULL, c->ox[j] = NAN,
-      c->alpha_x[j] = NAN; /* padding is garbage */
+    for (uint32_t j = 600; j < BATCH; j++) {
+      c->coat[j] = NULL;
+      c->measured[j] = NULL;
+      c->ox[j] = NAN;
+      c->alpha_x[j] = NAN;
+    } /* padding is garbage */
     batch_sample(s->kernels, kind, BATCH, b);
     batch_sample(s->kernels, kind, 600, c);
     for (uint32_t j = 0; j < 600; j++) {
@@ -344,9 +381,13 @@ static void special(void **state) {
   for (uint32_t j = 0; j < 16; j++) {
     batch_surface(b, j, &coat);
     batch_wo(b, j, 0.5, 0);
-    b->ix[j] = 0.6f, b->iy[j] = 0, b->iz[j] = 0.8f;
-    if (j & 1)
-      b->oz[j] = -b->oz[j], b->iz[j] = -b->iz[j];
+    b->ix[j] = 0.6f;
+    b->iy[j] = 0;
+    b->iz[j] = 0.8f;
+    if (j & 1) {
+      b->oz[j] = -b->oz[j];
+      b->iz[j] = -b->iz[j];
+    }
     if (j & 2)
       b->iz[j] = -b->iz[j];
   }
@@ -386,7 +427,9 @@ static void special(void **state) {
   assert_true(b->weight[0][0] > 0 && b->weight[0][0] == c->weight[0][0]);
   for (uint32_t j = 0; j < 16; j++)
     batch_surface(b, j, &black);
-  b->ix[0] = 0.6f, b->iy[0] = 0, b->iz[0] = 0.8f;
+  b->ix[0] = 0.6f;
+  b->iy[0] = 0;
+  b->iz[0] = 0.8f;
   batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
   double base = with - (double)b->value[0][0],
          want = to * ti * 0.5 / 3.14159265358979 / 2.25 * series * 0.8;

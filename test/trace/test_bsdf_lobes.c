@@ -68,7 +68,9 @@ static double density(void *user, double x, double y) {
       return 0;
     stretch = 4 * c;
   }
-  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)(l->side * w[2]);
+  b->ix[0] = (float)w[0];
+  b->iy[0] = (float)w[1];
+  b->iz[0] = (float)(l->side * w[2]);
   batch_eval(l->s->kernels, l->surface.kind, 1, b);
   return (double)b->pdf[0] * stretch * z * z * z * l->alpha_x * l->alpha_y * 0.5 /
          ((1 - x) * (1 - x));
@@ -83,14 +85,16 @@ static double sample(const Lobe *l, statGrid *grid, double edge, uint64_t seed, 
   *none = 0;
   for (uint32_t j = 0; j < BATCH; j++) {
     batch_surface(b, j, &l->surface);
-    b->ox[j] = (float)l->o[0], b->oy[j] = (float)l->o[1], b->oz[j] = (float)(l->side * l->o[2]);
+    b->ox[j] = (float)l->o[0];
+    b->oy[j] = (float)l->o[1];
+    b->oz[j] = (float)(l->side * l->o[2]);
     b->seed[j] = (uint32_t)stat_bits(&rng);
   }
   for (uint32_t turn = 0; turn < 64; turn++) {
     batch_numbers(b, BATCH, &rng);
     for (uint32_t j = 0; j < BATCH && !grid; j++) {
       uint32_t i = turn * BATCH + j;
-      b->u[j] = ((float)(i % 256) + b->u[j]) / 256,
+      b->u[j] = ((float)(i % 256) + b->u[j]) / 256;
       b->v[j] = ((float)(i / 256) + b->v[j]) / 256;
       b->lobe[j] =
           (float)fmod((double)b->lobe[j] / 64 + (double)((j * 37 + turn * 11) % 64) / 64, 1.0);
@@ -119,7 +123,8 @@ enum { TESTS = 400 }; /* more than the number of tests made */
 static void look_at(Lobe *l, const char *name, double edge, uint64_t seed) {
   for (uint32_t j = 0; j < VL_LANES; j++) {
     batch_surface(l->s->other, j, &l->surface);
-    l->s->other->ox[j] = (float)l->o[0], l->s->other->oy[j] = (float)l->o[1];
+    l->s->other->ox[j] = (float)l->o[0];
+    l->s->other->oy[j] = (float)l->o[1];
     l->s->other->oz[j] = (float)(l->side * l->o[2]);
   }
   double none, error = 6e-4; /* of the strata */
@@ -155,7 +160,9 @@ static void conductor(void **state) {
   for (int a = 0; a < ALPHAS; a++)
     for (int c = 0; c < COSINES; c++) {
       Lobe l = lobe_of(*state, a, c);
-      l.surface.kind = VL_BSDF_CONDUCTOR, l.surface.eta = 0.2f, l.surface.k = 3;
+      l.surface.kind = VL_BSDF_CONDUCTOR;
+      l.surface.eta = 0.2f;
+      l.surface.k = 3;
       look_at(&l, "conductor", 0.9999, (uint64_t)(a * COSINES + c));
     }
 }
@@ -166,7 +173,8 @@ static void dielectric(void **state) {
       for (int way = 0; way < 4; way++) { /* both sides of the surface, both of the lobe */
         Lobe l = lobe_of(*state, a, c);
         double eta = a % 2 ? 1.5 : 1.8;
-        l.surface.kind = VL_BSDF_DIELECTRIC, l.surface.eta_s = (float)eta;
+        l.surface.kind = VL_BSDF_DIELECTRIC;
+        l.surface.eta_s = (float)eta;
         l.side = way & 1 ? -1 : 1;
         l.eta = way & 2 ? (l.side < 0 ? 1 / eta : eta) : 0;
         look_at(&l, "dielectric", way & 2 ? 0.99 : 0.9999,
@@ -183,16 +191,20 @@ static void coats(void **state) {
     assert_int_equal(vl_coat_build(s->context, 1.5f, 0.1f, 10, mean, mean, &table), VL_OK);
     for (int c = 0; c < COSINES; c++) {
       Lobe l = lobe_of(s, a, c);
-      l.surface.kind = VL_BSDF_COATED_DIFFUSE, l.surface.eta_s = 1.5f,
+      l.surface.kind = VL_BSDF_COATED_DIFFUSE;
+      l.surface.eta_s = 1.5f;
       l.surface.reflectance = 0.5f;
       l.surface.coat = table;
       look_at(&l, "coated diffuse", 0.9, (uint64_t)(300 + a * COSINES + c));
       float rows[VL_BSDF_ROWS] = {
           [VL_L_BASE_X] = 0.3f, [VL_L_BASE_Y] = 0.3f, [VL_L_THICKNESS] = 0.2f};
-      rows[VL_L_DEPTH] = 10, rows[VL_L_WALKS] = 1;
+      rows[VL_L_DEPTH] = 10;
+      rows[VL_L_WALKS] = 1;
       for (int metal = 0; metal < 2; metal++) {
         rows[VL_L_METAL] = (float)metal;
-        l.surface.kind = VL_BSDF_LAYERED, l.surface.eta = 0.2f, l.surface.k = 3,
+        l.surface.kind = VL_BSDF_LAYERED;
+        l.surface.eta = 0.2f;
+        l.surface.k = 3;
         l.surface.own = rows;
         look_at(&l, metal ? "coated conductor" : "walked coat", 0.9,
                 (uint64_t)(400 + a * COSINES + c));
@@ -211,9 +223,13 @@ static void principled(void **state) {
           [VL_P_METALLIC] = 0.8f, [VL_P_F90] = 1, [VL_P_THIN] = 1, [VL_P_COAT_Z] = 1};
       for (int k = 0; k < 4; k++)
         rows[VL_P_F0 + k] = 0.04f;
-      rows[VL_P_COAT] = 0.3f, rows[VL_P_COAT_ALPHA] = 0.4f, rows[VL_P_SHEEN_ALPHA] = 0.3f;
+      rows[VL_P_COAT] = 0.3f;
+      rows[VL_P_COAT_ALPHA] = 0.4f;
+      rows[VL_P_SHEEN_ALPHA] = 0.3f;
       rows[VL_P_FILM_INDEX] = 1.3f;
-      l.surface.kind = VL_BSDF_PRINCIPLED, l.surface.eta_s = 1.5f, l.surface.reflectance = 0.8f;
+      l.surface.kind = VL_BSDF_PRINCIPLED;
+      l.surface.eta_s = 1.5f;
+      l.surface.reflectance = 0.8f;
       l.surface.own = rows;
       look_at(&l, "principled", 0.9, (uint64_t)(500 + a * COSINES + c));
     }
@@ -229,7 +245,9 @@ static void reciprocity(void **state) {
       [VL_P_METALLIC] = 0.8f, [VL_P_F90] = 1, [VL_P_THIN] = 1, [VL_P_COAT_Z] = 1};
   for (int k = 0; k < 4; k++)
     rows[VL_P_F0 + k] = 0.04f;
-  rows[VL_P_COAT_ALPHA] = 0.4f, rows[VL_P_SHEEN_ALPHA] = 0.3f, rows[VL_P_FILM_INDEX] = 1.3f;
+  rows[VL_P_COAT_ALPHA] = 0.4f;
+  rows[VL_P_SHEEN_ALPHA] = 0.3f;
+  rows[VL_P_FILM_INDEX] = 1.3f;
   statRng rng = stat_rng(77);
   for (int a = 1; a < ALPHAS; a++) {
     vlCoatTable *table;
@@ -244,21 +262,26 @@ static void reciprocity(void **state) {
                          .coat = table};
       if (kinds[k] == VL_BSDF_PRINCIPLED)
         surface.own = rows;
-      surface.alpha_x = (float)alphas[a][0], surface.alpha_y = (float)alphas[a][1];
+      surface.alpha_x = (float)alphas[a][0];
+      surface.alpha_y = (float)alphas[a][1];
       /* pairs of directions where the lobe is not 0: sampled ones */
       for (uint32_t j = 0; j < BATCH; j++) {
         double o[3];
         stat_direction(&rng, o);
         batch_surface(b, j, &surface);
-        b->ox[j] = (float)o[0], b->oy[j] = (float)o[1], b->oz[j] = (float)o[2];
+        b->ox[j] = (float)o[0];
+        b->oy[j] = (float)o[1];
+        b->oz[j] = (float)o[2];
       }
       batch_numbers(b, BATCH, &rng);
       batch_sample(s->kernels, kinds[k], BATCH, b);
       *c = *b;
-      memcpy(c->ox, b->ix, sizeof b->ix), memcpy(c->oy, b->iy, sizeof b->iy),
-          memcpy(c->oz, b->iz, sizeof b->iz);
-      memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->oy),
-          memcpy(c->iz, b->oz, sizeof b->oz);
+      memcpy(c->ox, b->ix, sizeof b->ix);
+      memcpy(c->oy, b->iy, sizeof b->iy);
+      memcpy(c->oz, b->iz, sizeof b->iz);
+      memcpy(c->ix, b->ox, sizeof b->ox);
+      memcpy(c->iy, b->oy, sizeof b->oy);
+      memcpy(c->iz, b->oz, sizeof b->oz);
       uint32_t flags[BATCH];
       memcpy(flags, b->flags, sizeof flags);
       batch_eval(s->kernels, kinds[k], BATCH, b);
@@ -272,7 +295,8 @@ static void reciprocity(void **state) {
         double f = (double)(b->value[2][j] / fabsf(b->iz[j])),
                g = (double)(c->value[2][j] / fabsf(b->oz[j]));
         double n = kinds[k] == VL_BSDF_DIELECTRIC ? 1.5 : 1;
-        f *= b->iz[j] < 0 ? n * n : 1, g *= b->oz[j] < 0 ? n * n : 1;
+        f *= b->iz[j] < 0 ? n * n : 1;
+        g *= b->oz[j] < 0 ? n * n : 1;
         /* near the critical angle F is steep without bound: half of the cosine's digits are
          * lost */
         bool through = b->oz[j] * b->iz[j] < 0,

@@ -30,7 +30,8 @@ static void make_hairs(Hairs *h, statRng *rng) {
     bool bent = k >= HAIRS / 2;
     for (int i = 0; i < 4; i++) {
       float *p = h->positions[k] + 3 * i;
-      p[0] = 0.5f * (float)i - 0.75f, p[1] = bent ? 0.3f * stat_float(rng) : 0,
+      p[0] = 0.5f * (float)i - 0.75f;
+      p[1] = bent ? 0.3f * stat_float(rng) : 0;
       p[2] = 0.07f * (float)k;
     }
     for (int i = 0; i < 2; i++) {
@@ -50,8 +51,11 @@ static vlWorld *build(vlContext *context, const Hairs *h, vlCurveKind kind,
   vlError error = {0};
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_CURVES);
-  def.faces = HAIRS, def.vertices = 4 * HAIRS;
-  def.positions = h->positions[0], def.widths = h->widths[0], def.normals = h->normals[0];
+  def.faces = HAIRS;
+  def.vertices = 4 * HAIRS;
+  def.positions = h->positions[0];
+  def.widths = h->widths[0];
+  def.normals = h->normals[0];
   def.curve = kind;
   if (instance) {
     def.group = vl_scene_add_group(scene, NULL);

@@ -54,7 +54,8 @@ static void end(Fixture *f) {
 static void add_ball(Fixture *f, float radius) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   def.radius = radius;
-  def.z_min = -radius, def.z_max = radius;
+  def.z_min = -radius;
+  def.z_max = radius;
   assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
 }
 
@@ -75,7 +76,8 @@ static void power_is(Fixture *f, const char *what, double expected, double slack
   for (int i = 0; i < TRIES; i++) {
     vlEmission e = one(f, &rng);
     double v = e.valid ? (double)e.flux[1] : 0;
-    sum += v, squares += v * v;
+    sum += v;
+    squares += v * v;
   }
   double mean = sum / TRIES, error = sqrt(fmax(0, squares / TRIES - mean * mean) / TRIES);
   if (!(fabs(mean - expected) <= 4.5 * error + (slack + 1e-5) * expected))
@@ -92,7 +94,8 @@ static void density_is_told(Fixture *f, const char *what, unsigned seed) {
     const vlWorldLight *light = &f->world->lights.items[e.light];
     vlPoint at;
     memset(&at, 0, sizeof at);
-    at.p = e.at, at.g = at.n = e.n;
+    at.p = e.at;
+    at.g = at.n = e.n;
     double told = (double)vl_emission_density(f->world, &f->way, e.light, vl_neg(e.d), 1.0f,
                                               light->kind == VL_WL_AREA ? &at : NULL);
     if (!(fabs(told - (double)e.density) <= 1e-4 * told))
@@ -118,12 +121,11 @@ static void directions(Fixture *f, const char *what, double low,
     double phi = atan2((double)e.d.y, (double)e.d.x);
     int row = (int)((z - low) / (1 - low) * ROWS),
         column = (int)((phi + M_PI) / (2 * M_PI) * COLUMNS);
-    row = row < 0      ? 0
-          : row < ROWS ? row
-                       : ROWS - 1,
+    row = row < 0 ? 0 : row < ROWS ? row : ROWS - 1;
     column = column < COLUMNS ? column : COLUMNS - 1;
     double weight = 1 / ((double)e.density * (area ? area(f, &e) : 1));
-    sum[row * COLUMNS + column] += weight, squares[row * COLUMNS + column] += weight * weight;
+    sum[row * COLUMNS + column] += weight;
+    squares[row * COLUMNS + column] += weight * weight;
   }
   double expected = 2 * M_PI * (1 - low) / CELLS;
   for (int k = 0; k < CELLS; k++) {
@@ -147,9 +149,11 @@ static void points(void **state) {
     Fixture *f = begin();
     add_ball(f, 1);
     vlLightDef def = vl_default_light_def(spot ? VL_LIGHT_SPOT : VL_LIGHT_POINT);
-    def.from[2] = 3, def.to[2] = 4;
+    def.from[2] = 3;
+    def.to[2] = 4;
     def.scale = 2;
-    def.cone_angle = 0.9f, def.cone_delta = 0.4f;
+    def.cone_angle = 0.9f;
+    def.cone_delta = 0.4f;
     vl_scene_add_light(f->scene, &def);
     build(f);
     double end_cos = cos(0.9), start = cos(0.5);
@@ -205,7 +209,9 @@ static void distant(void **state) {
   Fixture *f = begin();
   add_ball(f, 2);
   vlLightDef def = vl_default_light_def(VL_LIGHT_DISTANT);
-  def.from[0] = 1, def.from[2] = 2, def.to[2] = 0;
+  def.from[0] = 1;
+  def.from[2] = 2;
+  def.to[2] = 0;
   def.illuminance = 3;
   vl_scene_add_light(f->scene, &def);
   build(f);
@@ -314,7 +320,8 @@ static void leave_by_cosine(Fixture *f, const char *what, bool two_sided, unsign
     double c = (double)vl_dot(e.d, e.n), x = (double)vl_dot(e.d, frame.x),
            y = (double)vl_dot(e.d, frame.y);
     int row = (int)(c * c * ROWS), column = (int)((atan2(y, x) + M_PI) / (2 * M_PI) * COLUMNS);
-    row = row < ROWS ? row : ROWS - 1, column = column < COLUMNS ? column : COLUMNS - 1;
+    row = row < ROWS ? row : ROWS - 1;
+    column = column < COLUMNS ? column : COLUMNS - 1;
     counts[((c < 0) * ROWS + row) * COLUMNS + column]++;
     n++;
   }
@@ -346,10 +353,15 @@ static void surfaces(void **state) {
     for (int sides = 1; sides <= 2; sides++) {
       Fixture *f = begin();
       vlShapeDef def = vl_default_shape_def(kinds[kind]);
-      def.radius = 1.5f, def.z_min = -1.5f, def.z_max = 1.5f;
-      if (kind < 2)
-        def.vertices = kind ? 4 : 3, def.faces = 1, def.positions = kind ? patch : triangle,
+      def.radius = 1.5f;
+      def.z_min = -1.5f;
+      def.z_max = 1.5f;
+      if (kind < 2) {
+        def.vertices = kind ? 4 : 3;
+        def.faces = 1;
+        def.positions = kind ? patch : triangle;
         def.indices = index;
+      }
       def.emission = emission(f, sides == 2);
       assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
       build(f);
@@ -368,7 +380,10 @@ static void places(void **state) {
   static const uint32_t index[3] = {0, 1, 2};
   Fixture *f = begin();
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 3, def.faces = 1, def.positions = p, def.indices = index;
+  def.vertices = 3;
+  def.faces = 1;
+  def.positions = p;
+  def.indices = index;
   def.emission = emission(f, false);
   vl_scene_add_shape(f->scene, &def);
   build(f);
@@ -403,13 +418,15 @@ static void together(void **state) {
   Fixture *f = begin();
   add_ball(f, 1);
   vlLightDef def = vl_default_light_def(VL_LIGHT_POINT);
-  def.from[2] = 3, def.scale = 2;
+  def.from[2] = 3;
+  def.scale = 2;
   vl_scene_add_light(f->scene, &def);
   def = vl_default_light_def(VL_LIGHT_DISTANT);
   def.illuminance = 7;
   vl_scene_add_light(f->scene, &def);
   vlShapeDef disk = vl_default_shape_def(VL_SHAPE_DISK);
-  disk.radius = 0.5f, disk.height = 2;
+  disk.radius = 0.5f;
+  disk.height = 2;
   disk.emission = emission(f, false);
   vl_scene_add_shape(f->scene, &disk);
   build(f);

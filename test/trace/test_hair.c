@@ -14,7 +14,9 @@ static void put(Batch *b, uint32_t i, float sigma_a, float h, float beta_m, floa
   float rows[VL_BSDF_ROWS] = {0};
   for (int c = 0; c < 4; c++)
     rows[VL_H_SIGMA_A + c] = sigma_a * (float)(c + 1);
-  rows[VL_H_ACROSS] = h, rows[VL_H_BETA_M] = beta_m, rows[VL_H_BETA_N] = beta_n,
+  rows[VL_H_ACROSS] = h;
+  rows[VL_H_BETA_M] = beta_m;
+  rows[VL_H_BETA_N] = beta_n;
   rows[VL_H_ALPHA] = alpha;
   Surface s = {.eta_s = 1.55f, .own = rows};
   batch_surface(b, i, &s);
@@ -42,10 +44,13 @@ static void white_furnace(void **state) {
         double scale = 1 / sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]);
         for (uint32_t j = 0; j < BATCH; j++) {
           put(b, j, 0, 2 * stat_float(&rng) - 1, betas[k][0], betas[k][1], 0);
-          b->ox[j] = (float)(o[0] * scale), b->oy[j] = (float)(o[1] * scale),
+          b->ox[j] = (float)(o[0] * scale);
+          b->oy[j] = (float)(o[1] * scale);
           b->oz[j] = (float)(o[2] * scale);
           stat_direction(&rng, w);
-          b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
+          b->ix[j] = (float)w[0];
+          b->iy[j] = (float)w[1];
+          b->iz[j] = (float)w[2];
         }
         if (way)
           batch_sample(s->kernels, VL_BSDF_HAIR, BATCH, b);
@@ -55,7 +60,9 @@ static void white_furnace(void **state) {
           double x = way ? (double)b->weight[0][j] : 4 * PI * (double)b->value[0][j];
           if (way && !(fabs(x - 1) < 1e-3))
             fail_msg("betas %d: a sample of white hair is worth %g", k, x);
-          sum += x, square += x * x, count++;
+          sum += x;
+          square += x * x;
+          count++;
         }
       }
       double mean = sum / count, error = sqrt(fmax(square / count - mean * mean, 0) / count);
@@ -67,7 +74,9 @@ static void white_furnace(void **state) {
 static double density(void *user, const double w[3]) {
   const State *s = user;
   Batch *b = s->other;
-  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
+  b->ix[0] = (float)w[0];
+  b->iy[0] = (float)w[1];
+  b->iz[0] = (float)w[2];
   batch_eval(s->kernels, VL_BSDF_HAIR, 1, b);
   return (double)b->pdf[0];
 }
@@ -126,9 +135,10 @@ static void absorption(void **state) {
     double sum[4] = {0};
     for (int turn = 0; turn < 20; turn++) {
       batch_numbers(b, BATCH, &rng);
-      for (uint32_t j = 0; j < BATCH; j++)
-        put(b, j, sigma, 2 * stat_float(&rng) - 1, 0.3f, 0.3f, 0.035f),
-            batch_wo(b, j, 0.9, 0.4);
+      for (uint32_t j = 0; j < BATCH; j++) {
+        put(b, j, sigma, 2 * stat_float(&rng) - 1, 0.3f, 0.3f, 0.035f);
+        batch_wo(b, j, 0.9, 0.4);
+      }
       batch_sample(s->kernels, VL_BSDF_HAIR, BATCH, b);
       for (uint32_t j = 0; j < BATCH; j++)
         for (int c = 0; c < 4; c++)
@@ -153,8 +163,10 @@ static void light_goes_through(void **state) {
     double through = 0,
            turned = 2 * (asin((double)across[k] / 1.55) - asin((double)across[k])) + PI;
     batch_numbers(b, BATCH, &rng);
-    for (uint32_t j = 0; j < BATCH; j++)
-      put(b, j, 0, across[k], 0.1f, 0.1f, 0), batch_wo(b, j, 0, 0);
+    for (uint32_t j = 0; j < BATCH; j++) {
+      put(b, j, 0, across[k], 0.1f, 0.1f, 0);
+      batch_wo(b, j, 0, 0);
+    }
     batch_sample(s->kernels, VL_BSDF_HAIR, BATCH, b);
     for (uint32_t j = 0; j < BATCH; j++) {
       double phi = atan2((double)b->iz[j], (double)b->iy[j]) - PI / 2;

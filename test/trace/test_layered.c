@@ -76,12 +76,15 @@ enum { STACKS = sizeof stacks / sizeof *stacks };
 
 static void put(Batch *b, uint32_t i, const Stack *t, uint32_t seed) {
   float rows[VL_BSDF_ROWS] = {0};
-  rows[VL_L_METAL] = t->metal ? 1.0f : 0.0f, rows[VL_L_BASE_X] = t->base_x,
+  rows[VL_L_METAL] = t->metal ? 1.0f : 0.0f;
+  rows[VL_L_BASE_X] = t->base_x;
   rows[VL_L_BASE_Y] = t->base_y;
-  rows[VL_L_THICKNESS] = t->thickness, rows[VL_L_G] = t->g;
+  rows[VL_L_THICKNESS] = t->thickness;
+  rows[VL_L_G] = t->g;
   for (int c = 0; c < 4; c++)
     rows[VL_L_ALBEDO + c] = t->albedo;
-  rows[VL_L_DEPTH] = t->depth, rows[VL_L_WALKS] = 1;
+  rows[VL_L_DEPTH] = t->depth;
+  rows[VL_L_WALKS] = 1;
   Surface s = {.reflectance = t->reflectance,
                .eta = t->eta,
                .k = t->k,
@@ -105,8 +108,10 @@ static void tally(Tally *t, float x, float y, float z, float weight) {
                          : 2,
       sector = (int)((atan2((double)y, (double)x) / (2 * PI) + 0.5) * 3.9999);
   int cells[2] = {ring * 4 + sector, CELLS - 1};
-  for (int k = 0; k < 2; k++)
-    t->sum[cells[k]] += (double)weight, t->square[cells[k]] += (double)(weight * weight);
+  for (int k = 0; k < 2; k++) {
+    t->sum[cells[k]] += (double)weight;
+    t->square[cells[k]] += (double)(weight * weight);
+  }
 }
 
 /* Traces a batch of light paths through the layers (channel 0). Each surface is sampled by its
@@ -125,8 +130,13 @@ static void nature(const State *s, const Stack *t, double theta, statRng *rng, T
                   .alpha_y = t->base_y,
                   .eta_s = 1};
   for (uint32_t i = 0; i < BATCH; i++) {
-    x[i] = (float)-sin(theta), y[i] = 0, z[i] = (float)-cos(theta); /* of flight */
-    weight[i] = 1, height[i] = t->thickness, alive[i] = 1, inside[i] = 0;
+    x[i] = (float)-sin(theta);
+    y[i] = 0;
+    z[i] = (float)-cos(theta); /* of flight */
+    weight[i] = 1;
+    height[i] = t->thickness;
+    alive[i] = 1;
+    inside[i] = 0;
   }
   for (int step = -1; step <= (int)t->depth; step++)
     for (int at = 0; at < 2; at++) { /* those at the coat, those at the base */
@@ -138,7 +148,9 @@ static void nature(const State *s, const Stack *t, double theta, statRng *rng, T
         batch_surface(b, i, at == 0 ? &coat : &base);
         bool turn = alive[i] && (step == -1 || inside[i]);
         here[i] = false;
-        b->ox[i] = 0, b->oy[i] = 0, b->oz[i] = 1;
+        b->ox[i] = 0;
+        b->oy[i] = 0;
+        b->oz[i] = 1;
         if (!turn)
           continue;
         if (step >= 0 && at == 0) { /* the flight of this step */
@@ -148,7 +160,11 @@ static void nature(const State *s, const Stack *t, double theta, statRng *rng, T
           if (t->albedo > 0 && to > 0 && to < far) {
             vlVec3 d = vl_phase_sample(t->g, vl_vec3(x[i], y[i], z[i]), stat_float(rng),
                                        stat_float(rng));
-            x[i] = d.x, y[i] = d.y, z[i] = d.z, height[i] = to, weight[i] *= t->albedo;
+            x[i] = d.x;
+            y[i] = d.y;
+            z[i] = d.z;
+            height[i] = to;
+            weight[i] *= t->albedo;
             inside[i] = 2; /* done for this step */
             continue;
           }
@@ -159,8 +175,11 @@ static void nature(const State *s, const Stack *t, double theta, statRng *rng, T
         if (inside[i] == 2)
           continue;
         here[i] = step == -1 || (z[i] > 0) == (at == 0);
-        if (here[i])
-          b->ox[i] = -x[i], b->oy[i] = -y[i], b->oz[i] = -z[i];
+        if (here[i]) {
+          b->ox[i] = -x[i];
+          b->oy[i] = -y[i];
+          b->oz[i] = -z[i];
+        }
       }
       batch_sample(s->kernels,
                    at == 0    ? VL_BSDF_DIELECTRIC
@@ -172,7 +191,9 @@ static void nature(const State *s, const Stack *t, double theta, statRng *rng, T
           continue;
         bool last = step == (int)t->depth;
         weight[i] *= b->weight[0][i];
-        x[i] = b->ix[i], y[i] = b->iy[i], z[i] = b->iz[i];
+        x[i] = b->ix[i];
+        y[i] = b->iy[i];
+        z[i] = b->iz[i];
         if (!(weight[i] > 0))
           alive[i] = 0;
         if (at == 0 && z[i] > 0) { /* out */
@@ -197,8 +218,10 @@ static void nature(const State *s, const Stack *t, double theta, statRng *rng, T
 static void ours(const State *s, const Stack *t, double theta, statRng *rng, Tally *result) {
   Batch *b = s->batch;
   batch_numbers(b, BATCH, rng);
-  for (uint32_t i = 0; i < BATCH; i++)
-    put(b, i, t, (uint32_t)stat_bits(rng)), batch_wo(b, i, theta, 0);
+  for (uint32_t i = 0; i < BATCH; i++) {
+    put(b, i, t, (uint32_t)stat_bits(rng));
+    batch_wo(b, i, theta, 0);
+  }
   batch_sample(s->kernels, VL_BSDF_LAYERED, BATCH, b);
   for (uint32_t i = 0; i < BATCH; i++)
     if (!(b->flags[i] & VL_SAMPLED_NONE))
@@ -266,14 +289,18 @@ static void diffuse_base_is_the_closed_form(void **state) {
         batch_eval(s->kernels, VL_BSDF_LAYERED, BATCH, s->batch);
         for (uint32_t i = 0; i < BATCH; i++) {
           double x = (double)s->batch->value[0][i];
-          sum += x, square += x * x, count++;
+          sum += x;
+          square += x * x;
+          count++;
         }
       }
       for (uint32_t i = 0; i < VL_LANES; i++) {
         batch_surface(s->other, i, &exact);
-        s->other->ox[i] = s->batch->ox[0], s->other->oy[i] = s->batch->oy[0],
+        s->other->ox[i] = s->batch->ox[0];
+        s->other->oy[i] = s->batch->oy[0];
         s->other->oz[i] = s->batch->oz[0];
-        s->other->ix[i] = s->batch->ix[0], s->other->iy[i] = s->batch->iy[0],
+        s->other->ix[i] = s->batch->ix[0];
+        s->other->iy[i] = s->batch->iy[0];
         s->other->iz[i] = s->batch->iz[0];
       }
       batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 1, s->other);
@@ -341,7 +368,11 @@ static void never_gains(void **state) {
                .base_y = 0.5f,
                .eta = 0,
                .k = 2};
-    t.thickness = thick, t.g = g, t.albedo = 1, t.reflectance = 1, t.depth = 200;
+    t.thickness = thick;
+    t.g = g;
+    t.albedo = 1;
+    t.reflectance = 1;
+    t.depth = 200;
     for (int k = 0; k < 3; k++) {
       Tally sum = {0}, black = {0}, bare = {0};
       statRng rng = stat_rng((uint64_t)(900 + 3 * i + k));
@@ -356,9 +387,14 @@ static void never_gains(void **state) {
       if (thick < 20)
         continue;
       Stack dark = t, coat = t;
-      dark.albedo = 0, coat.reflectance = 0, coat.metal = false, coat.albedo = 0;
-      for (int turn = 0; turn < 8; turn++)
-        ours(s, &dark, thetas[k], &rng, &black), ours(s, &coat, thetas[k], &rng, &bare);
+      dark.albedo = 0;
+      coat.reflectance = 0;
+      coat.metal = false;
+      coat.albedo = 0;
+      for (int turn = 0; turn < 8; turn++) {
+        ours(s, &dark, thetas[k], &rng, &black);
+        ours(s, &coat, thetas[k], &rng, &bare);
+      }
       double x = black.sum[CELLS - 1] / black.count, y = bare.sum[CELLS - 1] / bare.count;
       error =
           sqrt((black.square[CELLS - 1] + bare.square[CELLS - 1]) / black.count / black.count);
@@ -380,17 +416,19 @@ static void reciprocity(void **state) {
           put(s->batch, j, &stacks[i], (uint32_t)turn * BATCH + j);
           batch_wo(s->batch, j, a, way ? 2.6 : 0);
           double phi = (way ? 2.6 : 0) + turned;
-          s->batch->ix[j] = (float)(sin(b) * cos(phi)),
+          s->batch->ix[j] = (float)(sin(b) * cos(phi));
           s->batch->iy[j] = (float)(sin(b) * sin(phi));
           s->batch->iz[j] = (float)cos(b);
         }
         batch_eval(s->kernels, VL_BSDF_LAYERED, BATCH, s->batch);
         for (uint32_t j = 0; j < BATCH; j++) {
           double x = (double)s->batch->value[1][j] / cos(b);
-          sum += x, square += x * x, count++;
+          sum += x;
+          square += x * x;
+          count++;
         }
       }
-      mean[way] = sum / count,
+      mean[way] = sum / count;
       error[way] = sqrt(fmax(square / count - mean[way] * mean[way], 0) / count);
     }
     if (!(fabs(mean[0] - mean[1]) < 4.5 * hypot(error[0], error[1]) + 1e-4 * mean[0] + 1e-9))
@@ -404,7 +442,9 @@ static void reciprocity(void **state) {
 static double density(void *user, const double w[3]) {
   const State *s = user;
   Batch *b = s->other;
-  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
+  b->ix[0] = (float)w[0];
+  b->iy[0] = (float)w[1];
+  b->iz[0] = (float)w[2];
   batch_eval(s->kernels, VL_BSDF_LAYERED, 1, b);
   return (double)b->pdf[0];
 }
@@ -418,8 +458,10 @@ static void sampling_agrees_with_evaluation(void **state) {
       for (int turn = 0; turn < 48; turn++) {
         Batch *b = s->batch;
         batch_numbers(b, BATCH, &rng);
-        for (uint32_t j = 0; j < BATCH; j++)
-          put(b, j, &stacks[i], (uint32_t)stat_bits(&rng)), batch_wo(b, j, thetas[k], 0.7);
+        for (uint32_t j = 0; j < BATCH; j++) {
+          put(b, j, &stacks[i], (uint32_t)stat_bits(&rng));
+          batch_wo(b, j, thetas[k], 0.7);
+        }
         batch_sample(s->kernels, VL_BSDF_LAYERED, BATCH, b);
         *s->other = *b;
         batch_eval(s->kernels, VL_BSDF_LAYERED, BATCH, s->other);
@@ -438,8 +480,10 @@ static void sampling_agrees_with_evaluation(void **state) {
           }
         }
       }
-      for (uint32_t j = 0; j < VL_LANES; j++)
-        put(s->other, j, &stacks[i], 0), batch_wo(s->other, j, thetas[k], 0.7);
+      for (uint32_t j = 0; j < VL_LANES; j++) {
+        put(s->other, j, &stacks[i], 0);
+        batch_wo(s->other, j, thetas[k], 0.7);
+      }
       statResult r = stat_sphere_test(hist, density, s, 2e-5);
       if (!stat_accept(r, STACKS * 3))
         fail_msg("stack %d theta %g: p %g, integral %g", i, thetas[k], r.p, r.integral);

@@ -47,8 +47,12 @@ static void put_random(Batch *b, uint32_t n, statRng *rng, double least) {
     do
       stat_direction(rng, w);
     while (fabs(w[2]) < least || o[2] * w[2] < 0);
-    b->ox[i] = (float)o[0], b->oy[i] = (float)o[1], b->oz[i] = (float)o[2];
-    b->ix[i] = (float)w[0], b->iy[i] = (float)w[1], b->iz[i] = (float)w[2];
+    b->ox[i] = (float)o[0];
+    b->oy[i] = (float)o[1];
+    b->oz[i] = (float)o[2];
+    b->ix[i] = (float)w[0];
+    b->iy[i] = (float)w[1];
+    b->iz[i] = (float)w[2];
   }
 }
 
@@ -131,7 +135,9 @@ static void values(void **state) {
           double w[3] = {flip * (double)b->ix[i], flip * (double)b->iy[i],
                          flip * (double)b->iz[i]};
           double f = mf_value(metal, o, w, (double)b->lambda[c][i]), g = (double)b->value[c][i];
-          off += fabs(f - g), all += f, ours += g;
+          off += fabs(f - g);
+          all += f;
+          ours += g;
           if (f > 0.1)
             worst = fmax(worst, fabs(g / f - 1));
         }
@@ -148,7 +154,9 @@ typedef struct Direction {
 } Direction;
 static double direction_pdf(void *user, const double w[3]) {
   Batch *b = ((const Direction *)user)->s->other;
-  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
+  b->ix[0] = (float)w[0];
+  b->iy[0] = (float)w[1];
+  b->iz[0] = (float)w[2];
   batch_eval(((const Direction *)user)->s->kernels, VL_BSDF_MEASURED, 1, b);
   return (double)b->pdf[0];
 }
@@ -272,16 +280,19 @@ static void reciprocity(void **state) {
     put_surface(b, m, BATCH);
     put_random(b, BATCH, &rng, 0.2);
     *c = *b;
-    memcpy(c->ox, b->ix, sizeof b->ox), memcpy(c->oy, b->iy, sizeof b->ox),
-        memcpy(c->oz, b->iz, sizeof b->ox);
-    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->ox),
-        memcpy(c->iz, b->oz, sizeof b->ox);
+    memcpy(c->ox, b->ix, sizeof b->ox);
+    memcpy(c->oy, b->iy, sizeof b->ox);
+    memcpy(c->oz, b->iz, sizeof b->ox);
+    memcpy(c->ix, b->ox, sizeof b->ox);
+    memcpy(c->iy, b->oy, sizeof b->ox);
+    memcpy(c->iz, b->oz, sizeof b->ox);
     batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, b);
     batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, c);
     for (uint32_t i = 0; i < BATCH; i++) {
       double f = (double)(b->value[0][i] / fabsf(b->iz[i])),
              g = (double)(c->value[0][i] / fabsf(c->iz[i]));
-      off += fabs(f - g), all += f + g;
+      off += fabs(f - g);
+      all += f + g;
     }
     print_message("surface %u: not reciprocal %.4f\n", k, off / all);
     assert_true(off / all < 0.012);
@@ -319,7 +330,8 @@ static void forms(void **state) {
     batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, c);
     for (uint32_t i = 0; i < BATCH; i++) {
       double f = (double)b->value[0][i], g = (double)c->value[0][i];
-      off += fabs(f - g), all += f;
+      off += fabs(f - g);
+      all += f;
     }
     print_message("form %u: off by %.5f\n", form, off / all);
     assert_true(off / all < (form == 0 ? 0.02 : 5e-3));
@@ -341,7 +353,9 @@ static void wavelengths(void **state) {
   put_surface(b, m, 16);
   for (uint32_t i = 0; i < 16; i++) {
     batch_wo(b, i, 0.5, 0.2);
-    b->ix[i] = -0.28f, b->iy[i] = 0, b->iz[i] = 0.96f;
+    b->ix[i] = -0.28f;
+    b->iy[i] = 0;
+    b->iz[i] = 0.96f;
     b->lambda[0][i] = nm[i < 9 ? i : 8];
   }
   batch_eval(s->kernels, VL_BSDF_MEASURED, 16, b);
@@ -361,7 +375,8 @@ static void wavelengths(void **state) {
     for (int k = 0; k < 3; k++)
       for (int d = 0; d < 3; d++) {
         double x = (double)matrix[3 * k + d] * (double)observer[d][l] * (double)light[l];
-        sum[k] += x * (double)b->value[0][0], white[k] += x;
+        sum[k] += x * (double)b->value[0][0];
+        white[k] += x;
       }
   }
   *c = *b;

@@ -146,14 +146,17 @@ static void majorants_do_not_show(void **state) {
         a.hero = b.hero = (int)(k % 3);
         if (vl_track(&f.medium, o, d, t0, t1, false, &a, radiance, &t) == VL_FLIGHT_PASSED) {
           double inv = 1 / (double)vl_flight_mean(a.u, 3);
-          for (int c = 0; c < 3; c++)
-            flown[c] += (double)a.beta[c] * inv, square[c] += pow((double)a.beta[c] * inv, 2);
+          for (int c = 0; c < 3; c++) {
+            flown[c] += (double)a.beta[c] * inv;
+            square[c] += pow((double)a.beta[c] * inv, 2);
+          }
         }
         vl_track_through(&f.medium, o, d, t0, t1, &b);
         double inv = 1 / (double)vl_flight_mean(b.l, 3);
-        for (int c = 0; c < 3; c++)
-          passed[c] += (double)b.beta[c] * inv,
-              ratio_square[c] += pow((double)b.beta[c] * inv, 2);
+        for (int c = 0; c < 3; c++) {
+          passed[c] += (double)b.beta[c] * inv;
+          ratio_square[c] += pow((double)b.beta[c] * inv, 2);
+        }
       }
       for (int c = 0; c < 3; c++) {
         double expected = exp(-depth[c]), e1 = sqrt(square[c]) / n,

@@ -203,11 +203,15 @@ static Surface surface_of(const Look *l, float rows[VL_BSDF_ROWS]) {
   rows[VL_P_COAT_ALPHA] = fmaxf(l->coat_roughness * l->coat_roughness, 1e-3f);
   rows[VL_P_COAT_Z] = 1;
   rows[VL_P_SHEEN_ALPHA] = fmaxf(l->sheen_roughness * l->sheen_roughness, 0.005f);
-  rows[VL_P_FILM] = l->film, rows[VL_P_FILM_INDEX] = 1.3f, rows[VL_P_FILM_NM] = l->film_nm;
+  rows[VL_P_FILM] = l->film;
+  rows[VL_P_FILM_INDEX] = 1.3f;
+  rows[VL_P_FILM_NM] = l->film_nm;
   float index = l->index > 0 ? l->index : 1.5f, root = (index - 1) / (index + 1);
-  for (int c = 0; c < 4; c++)
-    rows[VL_P_F0 + c] = root * root, rows[VL_P_THROUGH + c] = 1,
-                   rows[VL_P_SHEEN + c] = l->sheen;
+  for (int c = 0; c < 4; c++) {
+    rows[VL_P_F0 + c] = root * root;
+    rows[VL_P_THROUGH + c] = 1;
+    rows[VL_P_SHEEN + c] = l->sheen;
+  }
   float alpha = fmaxf(l->roughness * l->roughness, 1e-3f);
   return (Surface){.kind = VL_BSDF_PRINCIPLED,
                    .reflectance = l->base,
@@ -309,7 +313,7 @@ static void mixtures_keep_what_is_told(void **state) {
       Surface surface = surface_of(&look, rows);
       Kept kept =
           kept_by(s, &surface, pow(stat_double(&rng), 2) * 0.97 + 0.03, SOME_TURNS, &rng);
-      low = fmin(low, kept.mean + 4 * kept.error),
+      low = fmin(low, kept.mean + 4 * kept.error);
       high = fmax(high, kept.mean - 4 * kept.error);
     }
     if (!(low > mixtures[m].least && high < mixtures[m].most))
@@ -337,9 +341,11 @@ static void reciprocity(void **state) {
       while (fabs(w[2]) < 0.05);
       batch_surface(a, j, &surface);
       batch_surface(b, j, &surface);
-      a->ox[j] = b->ix[j] = (float)o[0], a->oy[j] = b->iy[j] = (float)o[1],
+      a->ox[j] = b->ix[j] = (float)o[0];
+      a->oy[j] = b->iy[j] = (float)o[1];
       a->oz[j] = b->iz[j] = (float)o[2];
-      a->ix[j] = b->ox[j] = (float)w[0], a->iy[j] = b->oy[j] = (float)w[1],
+      a->ix[j] = b->ox[j] = (float)w[0];
+      a->iy[j] = b->oy[j] = (float)w[1];
       a->iz[j] = b->oz[j] = (float)w[2];
     }
     batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
@@ -370,7 +376,9 @@ typedef struct Direction {
 static double density(void *user, const double w[3]) {
   const Direction *d = user;
   Batch *b = d->s->other;
-  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
+  b->ix[0] = (float)w[0];
+  b->iy[0] = (float)w[1];
+  b->iz[0] = (float)w[2];
   batch_eval(d->s->kernels, VL_BSDF_PRINCIPLED, 1, b);
   return (double)b->pdf[0];
 }
@@ -430,7 +438,9 @@ static void sampled_is_evaluated(void **state) {
       double d[3];
       stat_direction(&rng, d);
       batch_surface(a, j, &surface);
-      a->ox[j] = (float)d[0], a->oy[j] = (float)d[1], a->oz[j] = (float)d[2];
+      a->ox[j] = (float)d[0];
+      a->oy[j] = (float)d[1];
+      a->oz[j] = (float)d[2];
     }
     batch_numbers(a, BATCH, &rng);
     batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
@@ -495,21 +505,26 @@ static void off_is_off(void **state) {
   Look look = {.roughness = 0.4f, .metallic = 0.2f, .base = 0.8f};
   float plain[VL_BSDF_ROWS], other[VL_BSDF_ROWS];
   Surface surface = surface_of(&look, plain), same = surface_of(&look, other);
-  other[VL_P_COAT_ALPHA] = 0.3f, other[VL_P_COAT_X] = 0.6f, other[VL_P_COAT_Z] = 0.8f,
+  other[VL_P_COAT_ALPHA] = 0.3f;
+  other[VL_P_COAT_X] = 0.6f;
+  other[VL_P_COAT_Z] = 0.8f;
   other[VL_P_SHEEN_ALPHA] = 0.2f;
-  other[VL_P_FILM_NM] = 700, other[VL_P_FILM_INDEX] = 2;
+  other[VL_P_FILM_NM] = 700;
+  other[VL_P_FILM_INDEX] = 2;
   statRng rng = stat_rng(9);
   for (uint32_t j = 0; j < BATCH; j++) {
     double d[3];
     stat_direction(&rng, d);
     batch_surface(a, j, &surface);
     batch_surface(b, j, &same);
-    a->ox[j] = b->ox[j] = (float)d[0], a->oy[j] = b->oy[j] = (float)d[1],
+    a->ox[j] = b->ox[j] = (float)d[0];
+    a->oy[j] = b->oy[j] = (float)d[1];
     a->oz[j] = b->oz[j] = (float)d[2];
   }
   batch_numbers(a, BATCH, &rng);
-  memcpy(b->lobe, a->lobe, sizeof a->lobe), memcpy(b->u, a->u, sizeof a->u),
-      memcpy(b->v, a->v, sizeof a->v);
+  memcpy(b->lobe, a->lobe, sizeof a->lobe);
+  memcpy(b->u, a->u, sizeof a->u);
+  memcpy(b->v, a->v, sizeof a->v);
   batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
   batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
   assert_memory_equal(a->weight, b->weight, sizeof a->weight);

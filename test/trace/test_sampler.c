@@ -217,8 +217,11 @@ static void test_with(void **state) {
   static float p[4][COUNT];
   int32_t px[COUNT], py[COUNT];
   uint32_t index[COUNT];
-  for (uint32_t i = 0; i < COUNT; i++)
-    px[i] = 31, py[i] = 7, index[i] = i;
+  for (uint32_t i = 0; i < COUNT; i++) {
+    px[i] = 31;
+    py[i] = 7;
+    index[i] = i;
+  }
   for (int kind = 0; kind < KINDS; kind++) {
     vlSampler s;
     vl_sampler_init(&s, (vlSamplerKind)kind, 5, 640, 480, COUNT);

@@ -73,13 +73,21 @@ static vlShapeDef shape_of(const Kind *k) {
   static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3}, patch_corners[4] = {0, 1, 2, 3};
   static const float widths[2] = {0.02f, 0.02f}, normals[6] = {0, 0, 1, 0, 0, 1};
   vlShapeDef def = vl_default_shape_def(k->kind);
-  def.radius = k->radius, def.inner_radius = k->inner, def.z_min = k->z_min,
+  def.radius = k->radius;
+  def.inner_radius = k->inner;
+  def.z_min = k->z_min;
   def.z_max = k->z_max;
-  def.height = k->height, def.phi_max = k->phi_max;
-  def.positions = k->positions, def.vertices = k->vertices, def.faces = k->faces;
+  def.height = k->height;
+  def.phi_max = k->phi_max;
+  def.positions = k->positions;
+  def.vertices = k->vertices;
+  def.faces = k->faces;
   def.indices = k->kind == VL_SHAPE_BILINEAR ? patch_corners : corners;
-  if (k->kind == VL_SHAPE_CURVES)
-    def.widths = widths, def.curve = k->curve, def.normals = normals;
+  if (k->kind == VL_SHAPE_CURVES) {
+    def.widths = widths;
+    def.curve = k->curve;
+    def.normals = normals;
+  }
   return def;
 }
 
@@ -143,15 +151,23 @@ static void linear_map(Map map, statRng *rng, double m[16]) {
   if (map == SMALL || map == LARGE)
     for (int i = 0; i < 3; i++)
       scale[5 * i] = map == SMALL ? 1e-3 : 1e3;
-  if (map == STRETCHED)
-    scale[0] = 0.1, scale[5] = 3, scale[10] = 0.7;
+  if (map == STRETCHED) {
+    scale[0] = 0.1;
+    scale[5] = 3;
+    scale[10] = 0.7;
+  }
   if (map == MIRRORED)
     scale[0] = -1;
-  if (map == SHEARED)
-    scale[1] = 2, scale[6] = -1;
-  if (map == ALMOST_ROUND)
-    scale[0] = 1.00003, scale[1] = 1e-5;
-  rotation(rng, a), rotation(rng, b);
+  if (map == SHEARED) {
+    scale[1] = 2;
+    scale[6] = -1;
+  }
+  if (map == ALMOST_ROUND) {
+    scale[0] = 1.00003;
+    scale[1] = 1e-5;
+  }
+  rotation(rng, a);
+  rotation(rng, b);
   multiply(a, scale, m);
   if (map == STRETCHED || map == SHEARED) {
     double c[16];
@@ -249,8 +265,11 @@ static Scene make(const Kind *kind, Place place, Map map, bool shines, bool far,
   assert_int_equal(vl_context_create(NULL, &s.context), VL_OK);
   if (place == PLACED)
     memcpy(shape, m, sizeof shape);
-  if (place != PLACED)
-    shape[3] = 3, shape[7] = -2, shape[11] = 7; /* far from the origin of the group */
+  if (place != PLACED) {
+    shape[3] = 3;
+    shape[7] = -2;
+    shape[11] = 7;
+  } /* far from the origin of the group */
   memcpy(poses, place == PLACED ? identity : m, sizeof m);
   memcpy(poses + 16, poses, sizeof m);
   vlWorld *there = build(s.context, kind, PLACED, false, shape, poses);
@@ -274,8 +293,10 @@ static Scene make(const Kind *kind, Place place, Map map, bool shines, bool far,
   }
   if (place == MOVING) {
     memcpy(poses + 16, poses, sizeof m);
-    for (int i = 0; i < 3; i++)
-      poses[4 * i + 3] -= s.size * (i - 0.7), poses[16 + 4 * i + 3] += s.size * (i - 0.7);
+    for (int i = 0; i < 3; i++) {
+      poses[4 * i + 3] -= s.size * (i - 0.7);
+      poses[16 + 4 * i + 3] += s.size * (i - 0.7);
+    }
   }
   s.world = build(s.context, kind, place, shines, shape, poses);
   if (embree)
@@ -330,16 +351,20 @@ static void aim(const Scene *s, float time, statRng *rng, vlVec3 *o, vlVec3 *d) 
         q ? (double)m[0] * p[0] + (double)m[1] * p[1] + (double)m[2] * p[2] + (double)m[3]
           : p[i];
     to[i] = s->touch[i] + share * (at - s->touch[i]);
-    from[i] = to[i] + distance * from[i], way[i] = to[i] - from[i];
+    from[i] = to[i] + distance * from[i];
+    way[i] = to[i] - from[i];
   }
-  *o = to_float(from), *d = vl_normalize(to_float(way));
+  *o = to_float(from);
+  *d = vl_normalize(to_float(way));
 }
 
 /* Whether a point is in the plane of a flat shape but for rounding: no side can be told. */
 static bool in_plane(const Scene *s, vlVec3 p) {
   double q[3] = {(double)p.x, (double)p.y, (double)p.z}, height = 0, size = s->size;
-  for (int i = 0; i < 3; i++)
-    height += s->normal[i] * (q[i] - s->touch[i]), size += fabs(s->touch[i]);
+  for (int i = 0; i < 3; i++) {
+    height += s->normal[i] * (q[i] - s->touch[i]);
+    size += fabs(s->touch[i]);
+  }
   return s->kind->flat && fabs(height) < 4e-6 * size;
 }
 

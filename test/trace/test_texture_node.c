@@ -58,7 +58,10 @@ static vlShapeDef triangle(void) {
   static const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   static const uint32_t indices[3] = {0, 1, 2};
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 3, def.faces = 1, def.positions = p, def.indices = indices;
+  def.vertices = 3;
+  def.faces = 1;
+  def.positions = p;
+  def.indices = indices;
   return def;
 }
 
@@ -91,18 +94,22 @@ static void add_kinds(Fixture *f, statRng *rng) {
       continue; /* a colour */
     vlTextureDef def = vl_default_texture_def((vlTextureKind)kind, false);
     def.float_a.texture = def.float_d.texture = def.amount.texture = input;
-    def.float_b.value = 0.3f, def.float_c.value = 0.6f;
+    def.float_b.value = 0.3f;
+    def.float_c.value = 0.6f;
     if (kind == VL_TEXTURE_CONSTANT)
       def.float_a = vl_float_input(0.7f);
     if (kind == VL_TEXTURE_IMAGE)
       def.image = image;
-    def.su = 7, def.sv = 5, def.du = 0.3f;
+    def.su = 7;
+    def.sv = 5;
+    def.du = 0.3f;
     def.uv_set = kind == VL_TEXTURE_IMAGE ? 1 : 0;
     def.channel = kind == VL_TEXTURE_VERTEX_COLOR ? 2 : -1;
     for (int i = 0; i < 3; i++)
       def.direction[i] = 0.57735f;
     vlShapeDef shape = triangle();
-    shape.colors = colors, shape.more_uvs[0] = uvs;
+    shape.colors = colors;
+    shape.more_uvs[0] = uvs;
     shape.alpha.texture = vl_scene_add_texture(f->scene, &def);
     vl_scene_add_shape(f->scene, &shape);
   }
@@ -120,9 +127,14 @@ static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng,
     corners[i] = (vlTextureCorner){&f->world->shapes.items[shape], 0, {1 - x - y, x, y}};
     queries[i] = (vlTextureQuery){3 * x, y, vl_vec3(x, y, 0), n, &corners[i]};
     vlVec3 unit = vl_normalize(n);
-    at->u[i] = 3 * x, at->v[i] = y;
-    at->px[i] = x, at->py[i] = y, at->pz[i] = 0;
-    at->gx[i] = unit.x, at->gy[i] = unit.y, at->gz[i] = unit.z;
+    at->u[i] = 3 * x;
+    at->v[i] = y;
+    at->px[i] = x;
+    at->py[i] = y;
+    at->pz[i] = 0;
+    at->gx[i] = unit.x;
+    at->gy[i] = unit.y;
+    at->gz[i] = unit.z;
     s->at.paths.dz[i] = -1;
     s->at.hits.shape[i] = shape;
     s->at.hits.prim[i] = 0;
@@ -159,7 +171,8 @@ static void same_bits(void **state) {
       if (memcmp(&one, &out[i], sizeof one))
         fail_msg("node kind %d: %.9g alone, %.9g in a batch",
                  (int)f.world->nodes.items[node].kind, (double)one, (double)out[i]);
-      least = fminf(least, one), most = fmaxf(most, one);
+      least = fminf(least, one);
+      most = fmaxf(most, one);
     }
     bool constant = f.world->nodes.items[node].kind == VL_NODE_FLOAT;
     assert_true(constant ? most == least : most > least);
@@ -180,7 +193,8 @@ static int hits(const Fixture *f, float ox, float oy, float oz, float dx, float 
 
 static vlFloatInput direction_mix(Fixture *f, int axis, float a, float b) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_DIRECTION_MIX, false);
-  def.float_a.value = a, def.float_b.value = b;
+  def.float_a.value = a;
+  def.float_b.value = b;
   for (int i = 0; i < 3; i++)
     def.direction[i] = i == axis;
   vlFloatInput input = {.texture = vl_scene_add_texture(f->scene, &def)};
@@ -247,7 +261,8 @@ static void lights_with_alpha(void **state) {
   vlEmissionDef emission = vl_default_emission_def();
   emission.radiance = vl_spectrum_rgb(1, 1, 1);
   vlShapeDef def = triangle();
-  def.emission = vl_scene_add_emission(f.scene, &emission), def.colors = colors;
+  def.emission = vl_scene_add_emission(f.scene, &emission);
+  def.colors = colors;
   vlTextureDef red = vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, false);
   red.channel = 0;
   def.alpha.texture = vl_scene_add_texture(f.scene, &red);
@@ -262,12 +277,15 @@ static void lights_with_alpha(void **state) {
   statRng rng = stat_rng(1);
   vlImage *image = image_of(&f, &rng, 1);
   vlTextureDef map = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-  map.image = image, map.uv_set = 1;
+  map.image = image;
+  map.uv_set = 1;
   emission.texture = vl_scene_add_texture(f.scene, &map);
   vlTextureDef u = vl_default_texture_def(VL_TEXTURE_BILERP, false);
-  u.float_a.value = u.float_b.value = 0, u.float_c.value = u.float_d.value = 1;
+  u.float_a.value = u.float_b.value = 0;
+  u.float_c.value = u.float_d.value = 1;
   def = triangle();
-  def.uvs = uvs, def.more_uvs[0] = other_uvs;
+  def.uvs = uvs;
+  def.more_uvs[0] = other_uvs;
   def.emission = vl_scene_add_emission(f.scene, &emission);
   def.alpha.texture = vl_scene_add_texture(f.scene, &u);
   vl_scene_add_shape(f.scene, &def);
@@ -297,7 +315,8 @@ static void mix_by_vertex_color(void **state) {
     red.channel = 0;
     mix.amount.texture = vl_scene_add_texture(f.scene, &red);
     vlShapeDef def = triangle();
-    def.colors = colors, def.material = vl_scene_add_material(f.scene, &mix);
+    def.colors = colors;
+    def.material = vl_scene_add_material(f.scene, &mix);
     vl_scene_add_shape(f.scene, &def);
     build(&f);
     vlTraceScratch *s = f.scratch;

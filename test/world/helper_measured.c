@@ -12,11 +12,15 @@ int main(int count, char **words) {
   for (int i = 0; i < 5; i++)
     v[i] = atof(words[2 + i]);
   mfSurface metal = mf_surface(v[0], v[1]);
-  metal.eta = v[2], metal.k = v[3], metal.color = v[4];
+  metal.eta = v[2];
+  metal.k = v[3];
+  metal.color = v[4];
   metal.nodes = 96;
   metal.lambdas = 24;
-  if (metal.phis > 1)
-    metal.phis = 32, metal.parts = 4;
+  if (metal.phis > 1) {
+    metal.phis = 32;
+    metal.parts = 4;
+  }
   mfFile file = mf_measure(&metal);
   bool done = mf_write(words[1], &file);
   free(file.bytes);

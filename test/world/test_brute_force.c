@@ -62,24 +62,34 @@ static void add_box(Made *m, const float low[3], const float high[3], float angl
   for (int k = 0; k < 8; k++) {
     float x = k & 4 ? high[0] : low[0], y = k & 2 ? high[1] : low[1],
           z = k & 1 ? high[2] : low[2];
-    if (crooked && k == 5)
-      x += 0.1f, y += 0.07f, z += 0.03f;
-    p[k][0] = cosf(angle) * x + sinf(angle) * z, p[k][1] = y,
+    if (crooked && k == 5) {
+      x += 0.1f;
+      y += 0.07f;
+      z += 0.03f;
+    }
+    p[k][0] = cosf(angle) * x + sinf(angle) * z;
+    p[k][1] = y;
     p[k][2] = cosf(angle) * z - sinf(angle) * x;
   }
   for (int k = 0; k < 6; k++) {
     const uint32_t *q = quads[k], one[3] = {q[0], q[1], q[2]}, two[3] = {q[0], q[2], q[3]};
-    memcpy(f[2 * k], one, sizeof one), memcpy(f[2 * k + 1], two, sizeof two);
+    memcpy(f[2 * k], one, sizeof one);
+    memcpy(f[2 * k + 1], two, sizeof two);
   }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.positions = p[0], def.vertices = 8, def.indices = f[0], def.faces = 12,
+  def.positions = p[0];
+  def.vertices = 8;
+  def.indices = f[0];
+  def.faces = 12;
   def.material = material;
   assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
 }
 
 static void add_ball(Made *m, float radius, double x, double y, double z) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  def.radius = radius;
+  def.z_min = -radius;
+  def.z_max = radius;
   double at[16] = {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1};
   memcpy(def.group_from_shape, at, sizeof at);
   assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
@@ -98,8 +108,10 @@ static void make_room(Made *m, float shift) {
                              {1.7f, 0, -2, 3, 1.1f, -1}};
   for (int k = 0; k < 5; k++) {
     float low[3], high[3];
-    for (int i = 0; i < 3; i++)
-      low[i] = boxes[k][i] + shift, high[i] = boxes[k][3 + i] + shift;
+    for (int i = 0; i < 3; i++) {
+      low[i] = boxes[k][i] + shift;
+      high[i] = boxes[k][3 + i] + shift;
+    }
     add_box(m, low, high, k && shift == 0 ? 0.3f * (float)k : 0, k == 4,
             k == 3 ? passed : none);
   }
@@ -123,8 +135,10 @@ static vlRays rays_at(uint32_t first, bool ends) {
 
 static void make_rays(float shift) {
   for (uint32_t k = 0; k < RAYS; k++) {
-    for (int i = 0; i < 3; i++)
-      o_[i][k] = shift + 3.9f * random_signed(), d_[i][k] = random_signed();
+    for (int i = 0; i < 3; i++) {
+      o_[i][k] = shift + 3.9f * random_signed();
+      d_[i][k] = random_signed();
+    }
     end_[k] = 4 + 4 * random_signed();
   }
 }
@@ -157,8 +171,10 @@ static void equal_to_accelerator(float shift, int allowed) {
   vl_accel_leave(state);
   int hits = 0, blocked = 0, other_hits = 0, other_shadows = 0, kinds[2] = {0};
   for (uint32_t k = 0; k < RAYS; k++) {
-    hits += shape_[0][k] != VL_NONE, blocked += blocked_[0][k];
-    other_hits += !same_hit(k), other_shadows += blocked_[0][k] != blocked_[1][k];
+    hits += shape_[0][k] != VL_NONE;
+    blocked += blocked_[0][k];
+    other_hits += !same_hit(k);
+    other_shadows += blocked_[0][k] != blocked_[1][k];
     if (shape_[0][k] == VL_NONE)
       continue;
     kinds[m.world->shapes.items[shape_[0][k]].kind == VL_SHAPE_TRIANGLES]++;
@@ -238,7 +254,8 @@ static void the_same_bits(void **state) {
     Made m = {.isa = isa};
     make_room(&m, 0);
     for (size_t j = 0; j < sizeof steps / sizeof *steps; j++) {
-      memset(shape_[1], 0xee, sizeof shape_[1]), memset(t_[1], 0xee, sizeof t_[1]);
+      memset(shape_[1], 0xee, sizeof shape_[1]);
+      memset(t_[1], 0xee, sizeof t_[1]);
       trace_all(&m, steps[j], 1);
       if (steps[j] == 64 || 64 % steps[j] == 0) {
         assert_memory_equal(t_[0], t_[1], sizeof t_[0]);
@@ -259,8 +276,10 @@ static void broken_rays(void **state) {
   make_room(&m, 0);
   const float bad[4] = {NAN, INFINITY, -INFINITY, 3e38f};
   for (uint32_t k = 0; k < 128; k++) {
-    for (int i = 0; i < 3; i++)
-      o_[i][k] = 0.5f, d_[i][k] = k < 64 && i == 1 ? bad[k % 4] : 0.3f;
+    for (int i = 0; i < 3; i++) {
+      o_[i][k] = 0.5f;
+      d_[i][k] = k < 64 && i == 1 ? bad[k % 4] : 0.3f;
+    }
     if (k >= 64)
       o_[k % 3][k] = bad[k % 4];
     if (k % 8 == 7)

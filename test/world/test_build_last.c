@@ -20,8 +20,8 @@ static vlScene *make(vlContext *context) {
   static float p[3 * VERTICES], uv[2 * VERTICES];
   static uint32_t f[3 * FACES];
   for (uint32_t i = 0; i < VERTICES; i++) {
-    p[3 * i] = uv[2 * i] = (float)(i % (N + 1)),
-          p[3 * i + 1] = uv[2 * i + 1] = (float)(i / (N + 1));
+    p[3 * i] = uv[2 * i] = (float)(i % (N + 1));
+    p[3 * i + 1] = uv[2 * i + 1] = (float)(i / (N + 1));
     p[3 * i + 2] = (float)(i % 7);
   }
   for (uint32_t k = 0, i = 0; i < N * N; i++) {
@@ -33,7 +33,11 @@ static vlScene *make(vlContext *context) {
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlShapeDef d = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  d.vertices = VERTICES, d.faces = FACES, d.positions = p, d.uvs = uv, d.normals = p,
+  d.vertices = VERTICES;
+  d.faces = FACES;
+  d.positions = p;
+  d.uvs = uv;
+  d.normals = p;
   d.indices = f;
   d.group_from_shape[3] = 5;
   vl_scene_add_shape(scene, &d);

@@ -34,7 +34,8 @@ static void fill(Stage *s, const char *path) {
   vlTextureId a = vl_scene_add_texture(s->scene, &map),
               b = vl_scene_add_texture(s->scene, &file);
   vlTextureDef mix = vl_default_texture_def(VL_TEXTURE_MIX, true);
-  mix.spectrum_a.texture = a, mix.spectrum_b.texture = b;
+  mix.spectrum_a.texture = a;
+  mix.spectrum_b.texture = b;
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
   vlTextureId height = vl_scene_add_texture(s->scene, &checks);
   vlMaterialDef defs[6];
@@ -43,12 +44,16 @@ static void fill(Stage *s, const char *path) {
     defs[k] = vl_default_material_def((vlMaterialKind)k);
     if (k == VL_MATERIAL_DIFFUSE)
       defs[k].reflectance.texture = vl_scene_add_texture(s->scene, &mix);
-    if (k == VL_MATERIAL_DIFFUSE)
-      defs[k].displacement.texture = height, defs[k].normal_map = path;
+    if (k == VL_MATERIAL_DIFFUSE) {
+      defs[k].displacement.texture = height;
+      defs[k].normal_map = path;
+    }
     if (k == VL_MATERIAL_DIELECTRIC)
       defs[k].eta = vl_spectrum_input(vl_spectrum_named("glass-BK7"));
-    if (k == VL_MATERIAL_MIX)
-      defs[k].materials[0] = ids[0], defs[k].materials[1] = ids[2];
+    if (k == VL_MATERIAL_MIX) {
+      defs[k].materials[0] = ids[0];
+      defs[k].materials[1] = ids[2];
+    }
     ids[k] = vl_scene_add_material(s->scene, &defs[k]);
     Quad q = quad_at(0, 0, -1 - (float)k, 1, 0, 0, 0, 1, 0);
     q.material = ids[k];
@@ -78,7 +83,7 @@ static void fill(Stage *s, const char *path) {
   mesh.emission = vl_scene_add_emission(s->scene, &emission);
   vl_scene_add_shape(s->scene, &mesh);
   mesh.emission.index = 0;
-  mesh.positions_close = mesh.positions,
+  mesh.positions_close = mesh.positions;
   mesh.normals_close = mesh.normals; /* on its way, if only to itself */
   vl_scene_add_shape(s->scene, &mesh);
   free(block);
@@ -97,7 +102,8 @@ static void fill(Stage *s, const char *path) {
   vlLightDef sky = vl_default_light_def(VL_LIGHT_INFINITE);
   sky.image = image;
   vl_scene_add_light(s->scene, &sky);
-  sky.image = NULL, sky.path = path;
+  sky.image = NULL;
+  sky.path = path;
   vl_scene_add_light(s->scene, &sky);
   vl_image_destroy(image);
 }

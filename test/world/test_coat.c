@@ -46,7 +46,8 @@ static bool interface(statRng *rng, Vec o, double eta, double alpha, Vec *w, dou
            tan2 = alpha * alpha * u / (1 - u);
     h.z = 1 / sqrt(1 + tan2);
     double s = sqrt(fmax(0, 1 - h.z * h.z));
-    h.x = s * cos(phi), h.y = s * sin(phi);
+    h.x = s * cos(phi);
+    h.y = s * sin(phi);
   }
   double oh = o.x * h.x + o.y * h.y + o.z * h.z, cos_t = 0;
   if (oh <= 0)
@@ -144,7 +145,9 @@ static void against_walk(void **state) {
           if (off > 4.5)
             fail_msg("alpha %g cos %g rho %g bin %d: walk %g, closed %g (%.1f sigma)",
                      (double)alphas[a], cosines[c], rho, b, seen, closed, off);
-          all_seen += seen, all_closed += closed, all_variance += variance;
+          all_seen += seen;
+          all_closed += closed;
+          all_variance += variance;
         }
         double ratio = all_seen / all_closed, error = sqrt(all_variance) / all_closed;
         if (fabs(ratio - 1) > 4 * error + 5e-4 || error > 6e-3)
@@ -192,7 +195,8 @@ static void imitation(void **state) {
                     (o.z * c * out * out) / (1 + lo + lw);
         double x = ft * PI * exp(-(double)tau / c), d = c / PI;
         double y = x * (p * p / (p * p + d * d) + d * d / (d * d + q * q) - 1);
-        excess += y, square += y * y;
+        excess += y;
+        square += y * y;
       }
       excess /= TRIES;
       double error = sqrt((square / TRIES - excess * excess) / TRIES);
@@ -251,7 +255,8 @@ static void conserving(void **state) {
   assert_int_equal(vl_coat_white_albedo(*state, smooth, &other), VL_OK);
   if (!(fabs(albedo - other) < 0.02 && albedo < 1))
     fail_msg("conserving %g, smooth %g", albedo, other);
-  vl_coat_free(*state, t), vl_coat_free(*state, smooth);
+  vl_coat_free(*state, t);
+  vl_coat_free(*state, smooth);
   for (int i = 0; i < 16; i++) {
     float eta = (float[]){0.7f, 1.2f, 1.5f, 2.4f}[i % 4],
           alpha = (float[]){0.01f, 0.1f, 0.4f, 1.0f}[i / 4];
@@ -364,8 +369,10 @@ static void out_of_memory(void **state) {
       assert_true(t->conserves == (result == VL_OK));
       vl_coat_free(context, t);
     }
-    if (result != VL_OK)
-      assert_int_equal(result, VL_ERROR_MEMORY), failed++;
+    if (result != VL_OK) {
+      assert_int_equal(result, VL_ERROR_MEMORY);
+      failed++;
+    }
     assert_int_equal(blocks, before);
     vl_context_destroy(context);
     assert_int_equal(blocks, 0);

@@ -53,8 +53,11 @@ static vlWorld *build(vlContext *context, const Hair *h, vlCurveKind kind, uint3
   vlError error;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_CURVES);
-  def.faces = SEGMENTS, def.vertices = 4 * SEGMENTS;
-  def.positions = h->p[0], def.widths = h->w[0], def.normals = h->n[0];
+  def.faces = SEGMENTS;
+  def.vertices = 4 * SEGMENTS;
+  def.positions = h->p[0];
+  def.widths = h->w[0];
+  def.normals = h->n[0];
   def.curve = kind;
   def.split_depth = split;
   if (instance) {
@@ -183,13 +186,18 @@ static int compare(vlWorld *world, const Hair *h, vlCurveKind kind, bool instanc
   for (int k = 0; k < rays; k++) {
     float o[3], d[3], t;
     double target[3], od[3], dd[3], so[3], sd[3];
-    for (int i = 0; i < 3; i++)
-      o[i] = (float)(4 * random_signed()), target[i] = 0.8 * random_signed();
+    for (int i = 0; i < 3; i++) {
+      o[i] = (float)(4 * random_signed());
+      target[i] = 0.8 * random_signed();
+    }
     for (int i = 0; i < 3; i++)
       d[i] = (float)(target[i] - o[i]);
-    for (int i = 0; i < 3; i++)
-      od[i] = o[i], dd[i] = d[i];
-    to_shape(od, false, so), to_shape(dd, true, sd);
+    for (int i = 0; i < 3; i++) {
+      od[i] = o[i];
+      dd[i] = d[i];
+    }
+    to_shape(od, false, so);
+    to_shape(dd, true, sd);
     Found f = brute_force(h, kind, so, sd);
     vlRays ray = {o, o + 1, o + 2, d, d + 1, d + 2, NULL, NULL, NULL};
     uint32_t shape, prim, at;
@@ -209,7 +217,8 @@ static int compare(vlWorld *world, const Hair *h, vlCurveKind kind, bool instanc
     vlShapeHit hit;
     vlSurfacePoint point;
     double go[3], gd[3];
-    memcpy(go, od, sizeof go), memcpy(gd, dd, sizeof gd);
+    memcpy(go, od, sizeof go);
+    memcpy(gd, dd, sizeof gd);
     if (instance)
       vl_ray_to_group(&world->instances.items[at], go, gd);
     assert_true(vl_shape_intersect(&world->shapes.items[0], prim, go, gd, t * 0.999999,
@@ -220,8 +229,10 @@ static int compare(vlWorld *world, const Hair *h, vlCurveKind kind, bool instanc
       fail_msg("ray %d: u, v %g %g, by brute force %g %g", k, (double)point.uv[0],
                (double)point.uv[1], f.u, f.v);
     double off[3], on[3] = {0, 0, 0};
-    for (int i = 0; i < 3; i++)
-      on[i] = go[i] + f.t * gd[i], off[i] = point.p[i] - on[i];
+    for (int i = 0; i < 3; i++) {
+      on[i] = go[i] + f.t * gd[i];
+      off[i] = point.p[i] - on[i];
+    }
     assert_true(dot(off, off) < 1e-8);
     assert_true(fabs(dot(point.n, point.n) - 1) < 1e-9 &&
                 fabs(dot(point.n, point.dpdu)) < 1e-6 * (1 + dot(point.dpdu, point.dpdu)));
@@ -258,7 +269,9 @@ static void normals(void **state) {
   vlWorldShape s = {.kind = VL_SHAPE_CURVES, .faces = 1, .steps = 1, .alpha = -1};
   float p[12] = {0, -1, 0, 0, -0.33f, 0, 0, 0.33f, 0, 0, 1, 0}, w[2] = {0.5f, 0.5f},
         n[6] = {0.6f, 0, -0.8f, 0.6f, 0, -0.8f};
-  s.positions = p, s.widths = w, s.normals = n;
+  s.positions = p;
+  s.widths = w;
+  s.normals = n;
   for (int i = 0; i < 3; i++)
     s.from_shape[5 * i] = s.to_shape[5 * i] = 1;
   for (int kind = 0; kind < 3; kind++)
@@ -280,10 +293,14 @@ static void normals(void **state) {
              turn = 3.14159265358979 * (v - 0.5);
       assert_true(fabs(point.uv[1] - v) < 1e-6);
       double expected[3] = {0, 0, 1};
-      if (kind == VL_CURVE_CYLINDER)
-        expected[0] = -sin(turn), expected[2] = cos(turn);
-      if (kind == VL_CURVE_RIBBON)
-        expected[0] = -0.6, expected[2] = 0.8;
+      if (kind == VL_CURVE_CYLINDER) {
+        expected[0] = -sin(turn);
+        expected[2] = cos(turn);
+      }
+      if (kind == VL_CURVE_RIBBON) {
+        expected[0] = -0.6;
+        expected[2] = 0.8;
+      }
       for (int i = 0; i < 3; i++)
         if (!(fabs(fabs(point.n[i]) - fabs(expected[i])) < 1e-6))
           fail_msg("kind %d, v %g: normal %d", kind, v, i);

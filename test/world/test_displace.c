@@ -37,8 +37,10 @@ static Made make(float amount, float edge, bool half, bool quads) {
   vlShapeDef def = vl_default_shape_def(quads ? VL_SHAPE_BILINEAR : VL_SHAPE_TRIANGLES);
   def.displacement.texture = vl_scene_add_texture(scene, &texture);
   def.edge_length = edge;
-  def.vertices = 6, def.faces = half ? 4 : 8;
-  def.positions = p, def.indices = f;
+  def.vertices = 6;
+  def.faces = half ? 4 : 8;
+  def.positions = p;
+  def.indices = f;
   for (int i = 0; i < 3; i++)
     def.group_from_shape[5 * i] = 2;
   vl_scene_add_shape(scene, &def);

@@ -239,16 +239,18 @@ static void mutations(void **state) {
     uint64_t wild[6] = {0, 1, UINT64_MAX, (uint64_t)1 << 40, 0x7f800000, 0xff7fffff};
     for (int k = 0; k < 1 + turn % 3; k++) {
       size_t at = stat_bits(&rng) % (turn & 1 ? head : whole - 8);
-      if (turn % 5 == 0)
+      if (turn % 5 == 0) {
         f.bytes[at] ^= (unsigned char)(1u << stat_bits(&rng) % 8);
-      else if (turn % 5 == 1)
+      } else if (turn % 5 == 1) {
         memcpy(f.bytes + at, &wild[stat_bits(&rng) % 6], turn % 3 ? 4 : 8);
-      else if (turn % 5 == 2)
+      } else if (turn % 5 == 2) {
         f.size = stat_bits(&rng) % whole;
-      else if (turn % 5 == 3)
-        memmove(f.bytes + at, f.bytes + at + 5, whole - at - 5), f.size = whole - 5;
-      else
+      } else if (turn % 5 == 3) {
+        memmove(f.bytes + at, f.bytes + at + 5, whole - at - 5);
+        f.size = whole - 5;
+      } else {
         f.bytes[at] = (unsigned char)stat_bits(&rng);
+      }
     }
     assert_true(mf_write(path, &f));
     vlMeasured *m = NULL;
@@ -262,10 +264,15 @@ static void mutations(void **state) {
     } else {
       for (uint32_t i = 0; i < 256; i++) {
         double o[3], w[3];
-        stat_direction(&rng, o), stat_direction(&rng, w);
+        stat_direction(&rng, o);
+        stat_direction(&rng, w);
         b->measured[i] = m;
-        b->ox[i] = (float)o[0], b->oy[i] = (float)o[1], b->oz[i] = (float)o[2];
-        b->ix[i] = (float)w[0], b->iy[i] = (float)w[1], b->iz[i] = (float)w[2];
+        b->ox[i] = (float)o[0];
+        b->oy[i] = (float)o[1];
+        b->oz[i] = (float)o[2];
+        b->ix[i] = (float)w[0];
+        b->iy[i] = (float)w[1];
+        b->iz[i] = (float)w[2];
         for (int c = 0; c < 4; c++)
           b->lambda[c][i] = 300 + 600 * stat_float(&rng);
       }
@@ -327,7 +334,7 @@ static Image ball(const mfSurface *metal, bool measured, bool rgb) {
   vlMaterialDef def =
       vl_default_material_def(measured ? VL_MATERIAL_MEASURED : VL_MATERIAL_CONDUCTOR);
   def.measured = measured ? path : NULL;
-  def.u_roughness = vl_float_input((float)metal->alpha_x),
+  def.u_roughness = vl_float_input((float)metal->alpha_x);
   def.v_roughness = vl_float_input((float)metal->alpha_y);
   def.remap_roughness = false;
   def.eta = vl_spectrum_input(vl_spectrum_constant((float)metal->eta));
@@ -369,13 +376,15 @@ static void image(void **state) {
         for (int c = 0; c < 3; c++) {
           double u = image_region(&a, x, y, x + 4, y + 4, c),
                  v = image_region(&b, x, y, x + 4, y + 4, c);
-          off += fabs(u - v), all += v;
+          off += fabs(u - v);
+          all += v;
         }
     print_message("mean %.4f, metal's %.4f; blocks off by %.4f\n", image_mean(&a, 1),
                   image_mean(&b, 1), off / all);
     assert_true(off / all < 0.02 && a.stats.not_finite == 0);
     assert_ratio("measured ball", image_mean(&a, 1), image_mean(&b, 1), 0.004);
-    image_free(&a), image_free(&b);
+    image_free(&a);
+    image_free(&b);
   }
   free(f.bytes);
   remove(path);

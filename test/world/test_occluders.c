@@ -37,7 +37,10 @@ typedef struct Made {
 static void add_triangles(const Made *m, uint32_t vertices, const float *positions,
                           uint32_t faces, const uint32_t *indices, vlMaterialId material) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.positions = positions, def.vertices = vertices, def.indices = indices, def.faces = faces,
+  def.positions = positions;
+  def.vertices = vertices;
+  def.indices = indices;
+  def.faces = faces;
   def.material = material;
   assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
 }
@@ -134,7 +137,8 @@ static void make_rays(const vlWorld *world, float size, float shift) {
       from[i] += off * random_signed();
       if (kind > 0.6f)
         from[i] = shift + (kind > 0.99f ? 1000 : 0.99f) * size * random_signed();
-      o_[i][k] = from[i], d_[i][k] = to[i] - from[i];
+      o_[i][k] = from[i];
+      d_[i][k] = to[i] - from[i];
     }
     kind = random_unit();
     end_[k] = kind < 0.3f   ? 1 + small()
@@ -163,7 +167,9 @@ static double compare(float size, float shift, vlIsa isa) {
       if (blocked[0][k] != blocked[1][k])
         fail_msg("size %g, shift %g, batch %d, ray %d: %d, Embree alone %d", (double)size,
                  (double)shift, batch, k, blocked[1][k], blocked[0][k]);
-      tested += o->count > 0, known += alone[k], open += !blocked[0][k];
+      tested += o->count > 0;
+      known += alone[k];
+      open += !blocked[0][k];
     }
   }
   vl_accel_leave(state);

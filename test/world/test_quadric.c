@@ -40,9 +40,12 @@ static vlWorld *build(const Part *p, const double m[16], vlContext **context) {
   assert_int_equal(vl_context_create(NULL, context), VL_OK);
   assert_int_equal(vl_scene_create(*context, &scene), VL_OK);
   vlShapeDef def = vl_default_shape_def(p->kind);
-  def.radius = p->radius, def.inner_radius = p->inner, def.z_min = p->z_min,
+  def.radius = p->radius;
+  def.inner_radius = p->inner;
+  def.z_min = p->z_min;
   def.z_max = p->z_max;
-  def.height = p->height, def.phi_max = p->phi_max;
+  def.height = p->height;
+  def.phi_max = p->phi_max;
   memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
   assert_int_not_equal(vl_scene_add_shape(scene, &def).index, 0);
   if (vl_world_build(scene, NULL, &world, &error) != VL_OK)
@@ -58,15 +61,18 @@ static void formula(const Part *q, double u, double v, const double m[16], doubl
     double low = acos(fmax(-1, (double)(q->z_min / q->radius))),
            high = acos(fmin(1, (double)(q->z_max / q->radius)));
     double theta = low + v * (high - low);
-    p[0] = (double)q->radius * sin(theta) * cos(phi),
+    p[0] = (double)q->radius * sin(theta) * cos(phi);
     p[1] = (double)q->radius * sin(theta) * sin(phi);
     p[2] = (double)q->radius * cos(theta);
   } else if (q->kind == VL_SHAPE_CYLINDER) {
-    p[0] = (double)q->radius * cos(phi), p[1] = (double)q->radius * sin(phi);
+    p[0] = (double)q->radius * cos(phi);
+    p[1] = (double)q->radius * sin(phi);
     p[2] = (double)q->z_min + v * (double)(q->z_max - q->z_min);
   } else {
     double radius = (double)q->radius + v * (double)(q->inner - q->radius);
-    p[0] = radius * cos(phi), p[1] = radius * sin(phi), p[2] = (double)q->height;
+    p[0] = radius * cos(phi);
+    p[1] = radius * sin(phi);
+    p[2] = (double)q->height;
   }
   for (int i = 0; i < 3; i++)
     r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
@@ -82,10 +88,14 @@ static double cell_area(const Part *q, const double m[16], double u0, double u1,
     for (int j = 0; j < n; j++) {
       double u = u0 + (i + 0.5) / n * (u1 - u0), v = v0 + (j + 0.5) / n * (v1 - v0), a[3], b[3],
              c[3], d[3];
-      formula(q, u - e, v, m, a), formula(q, u + e, v, m, b), formula(q, u, v - e, m, c),
-          formula(q, u, v + e, m, d);
-      for (int k = 0; k < 3; k++)
-        a[k] = (b[k] - a[k]) / (2 * e), c[k] = (d[k] - c[k]) / (2 * e);
+      formula(q, u - e, v, m, a);
+      formula(q, u + e, v, m, b);
+      formula(q, u, v - e, m, c);
+      formula(q, u, v + e, m, d);
+      for (int k = 0; k < 3; k++) {
+        a[k] = (b[k] - a[k]) / (2 * e);
+        c[k] = (d[k] - c[k]) / (2 * e);
+      }
       double x = a[1] * c[2] - a[2] * c[1], y = a[2] * c[0] - a[0] * c[2],
              z = a[0] * c[1] - a[1] * c[0];
       sum += sqrt(x * x + y * y + z * z);
@@ -132,8 +142,10 @@ static void samples_fit_the_area(void **state) {
         double o[3], d[3],
             side =
                 i % 32 ? 1 : -1; /* a ray from either side, aslant, must find the same point */
-        for (int c = 0; c < 3; c++)
-          o[c] = at.p[c] + side * 1e-2 * (at.n[c] + 0.3 * (c == 0)), d[c] = at.p[c] - o[c];
+        for (int c = 0; c < 3; c++) {
+          o[c] = at.p[c] + side * 1e-2 * (at.n[c] + 0.3 * (c == 0));
+          d[c] = at.p[c] - o[c];
+        }
         vlShapeHit hit;
         if (!vl_shape_intersect(s, 0, o, d, 0, 1.5, &hit))
           fail_msg("%s: a ray misses a sampled point", q->name);

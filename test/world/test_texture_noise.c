@@ -80,8 +80,10 @@ static void sums(void **state) {
     double want = 0, absolute = 0, size = 1, strength = 1;
     for (int k = 0; k < 4; k++) {
       double n = plain_noise(size * p.x, size * p.y, size * p.z);
-      want += strength * n, absolute += strength * fabs(n);
-      size *= 1.99, strength *= 0.6;
+      want += strength * n;
+      absolute += strength * fabs(n);
+      size *= 1.99;
+      strength *= 0.6;
     }
     assert_true(fabs(vl_fractal_noise(p, 0, 0.6f, 4) - want) < 1e-4);
     /* of turbulence the next octave counts with its mean */
@@ -103,7 +105,8 @@ static vlTextureNode node_of(vlNodeKind kind) {
   memset(&node, 0, sizeof node);
   node.kind = kind;
   node.su = node.sv = node.scale = 1;
-  node.omega = 0.5f, node.octaves = 8;
+  node.omega = 0.5f;
+  node.octaves = 8;
   for (int i = 0; i < 3; i++)
     node.texture_from_world[5 * i] = 1;
   return node;
@@ -124,13 +127,17 @@ static void dots(void **state) {
             .u = (float)u, .v = (float)v, .n = vl_vec3(0, 0, 1), .color = {1, 1, 1, 1}};
         bool in = vl_node_dots(&node, at) > 0;
         if (pass == 0) {
-          count += in, x += in ? u : 0, y += in ? v : 0;
+          count += in;
+          x += in ? u : 0;
+          y += in ? v : 0;
         } else if (fabs(hypot(u - x, v - y) - 0.35) >
                    0.012) { /* one disk, about the middle of what is in */
           assert_true(in == (count && hypot(u - x, v - y) < 0.35));
         }
-        if (pass == 0 && i == N * N - 1 && count)
-          x /= count, y /= count;
+        if (pass == 0 && i == N * N - 1 && count) {
+          x /= count;
+          y /= count;
+        }
       }
     with += count > 0;
     if (count)
@@ -161,7 +168,8 @@ static void marble(void **state) {
         .n = vl_vec3(0, 0, 1),
         .color = {1, 1, 1, 1}};
     vlVec3 c = vl_node_marble(&node, at);
-    low = fmin(low, c.x), high = fmax(high, c.x);
+    low = fmin(low, c.x);
+    high = fmax(high, c.x);
     assert_true(c.z >= c.x - 0.05f); /* never warmer than the warmest of the nine */
   }
   assert_true(low > 1.5 * 0.2 && low < 0.75 && high < 1.5 * 0.6 && high > 0.85);

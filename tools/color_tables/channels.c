@@ -57,7 +57,8 @@ static bool solve(programme *p, int n) {
       return false;
     for (int j = k; best != k && j <= n; j++) {
       double swap = p->a[k][j];
-      p->a[k][j] = p->a[best][j], p->a[best][j] = swap;
+      p->a[k][j] = p->a[best][j];
+      p->a[best][j] = swap;
     }
     for (int i = k + 1; i < n; i++) {
       double f = p->a[i][k] / p->a[k][k];
@@ -89,7 +90,10 @@ static bool solve_active(programme *p) {
         double w = u == v ? 2.0 : 1.0;
         double *low = p->a[u * KNOTS + j] + v * KNOTS + j,
                *high = p->a[u * KNOTS + j + 1] + v * KNOTS + j;
-        low[0] += w, low[1] -= w, high[0] -= w, high[1] += w;
+        low[0] += w;
+        low[1] -= w;
+        high[0] -= w;
+        high[1] += w;
       }
   int row = UNKNOWNS;
   for (int c = 0; c < COLORS; c++, row++) {

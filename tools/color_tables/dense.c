@@ -135,14 +135,21 @@ static void add_fluorescent(state *s, const char *name, const double values[81])
 }
 
 static void add_all(state *s) {
-  add_metal(s, "Ag", "-eta", Ag_eta), add_metal(s, "Ag", "-k", Ag_k);
-  add_metal(s, "Al", "-eta", Al_eta), add_metal(s, "Al", "-k", Al_k);
-  add_metal(s, "Au", "-eta", Au_eta), add_metal(s, "Au", "-k", Au_k);
-  add_metal(s, "Cu", "-eta", Cu_eta), add_metal(s, "Cu", "-k", Cu_k);
-  add_brass(s, "-eta", CuZn_eta), add_brass(s, "-k", CuZn_k);
+  add_metal(s, "Ag", "-eta", Ag_eta);
+  add_metal(s, "Ag", "-k", Ag_k);
+  add_metal(s, "Al", "-eta", Al_eta);
+  add_metal(s, "Al", "-k", Al_k);
+  add_metal(s, "Au", "-eta", Au_eta);
+  add_metal(s, "Au", "-k", Au_k);
+  add_metal(s, "Cu", "-eta", Cu_eta);
+  add_metal(s, "Cu", "-k", Cu_k);
+  add_brass(s, "-eta", CuZn_eta);
+  add_brass(s, "-k", CuZn_k);
 #define POINTS(a) a, (int)(sizeof(a) / sizeof(a)[0])
-  add_points(s, "MgO", "-eta", POINTS(MgO_eta)), add_points(s, "MgO", "-k", POINTS(MgO_k));
-  add_points(s, "TiO2", "-eta", POINTS(TiO2_eta)), add_points(s, "TiO2", "-k", POINTS(TiO2_k));
+  add_points(s, "MgO", "-eta", POINTS(MgO_eta));
+  add_points(s, "MgO", "-k", POINTS(MgO_k));
+  add_points(s, "TiO2", "-eta", POINTS(TiO2_eta));
+  add_points(s, "TiO2", "-k", POINTS(TiO2_k));
 #undef POINTS
   for (size_t i = 0; i < sizeof glasses / sizeof *glasses; i++) {
     add_glass(s, glasses[i].name, &glasses[i]);
@@ -213,7 +220,9 @@ static void make_space(const state *s, space *p, const double primaries[6],
   p->xy[7] = white[1] / (white[0] + white[1] + white[2]);
   for (int j = 0; j < 3; j++) {
     double x = primaries[2 * j], y = primaries[2 * j + 1];
-    m[j] = x, m[3 + j] = y, m[6 + j] = 1 - x - y;
+    m[j] = x;
+    m[3 + j] = y;
+    m[6 + j] = 1 - x - y;
   }
   invert(m, inverse);
   for (int j = 0; j < 3; j++) {

@@ -216,7 +216,9 @@ void solve_space(const space *s, float *coefficients) {
         for (int i = NX - 1; i >= 0; i--) {
           poly *n = &f.node[k][j][i], guess;
           double x = node_of(i, NX), y = node_of(j, NX), rgb[3];
-          rgb[big] = z, rgb[(big + 1) % 3] = x * z, rgb[(big + 2) % 3] = y * z;
+          rgb[big] = z;
+          rgb[(big + 1) % 3] = x * z;
+          rgb[(big + 2) % 3] = y * z;
           double scale = scale_of(rgb);
           bool grey = i == NX - 1 && j == NX - 1;
           if (grey) {

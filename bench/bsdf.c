@@ -1,8 +1,7 @@
 /* bench/bsdf.c: nanoseconds per evaluation and per sample of each BSDF, by instruction set.
  * Batches are compared with the same code run one lane at a time (compiled without vectors);
  * each line ends in the ratio. Usage: bench_bsdf [lanes] (default 512). Each number is the best
- * of several rounds.
- */
+ * of several rounds. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -98,8 +98,7 @@ typedef struct statResult {
 } statResult;
 
 /* The probability that any of `tests` independent tests rejects a correct sampler is 1 %
- * (Sidak).
- */
+ * (Sidak). */
 static inline bool stat_accept(statResult r, unsigned tests) {
   double level = 1.0 - pow(0.99, 1.0 / (tests ? tests : 1));
   bool ok = r.p > level;
@@ -206,8 +205,7 @@ static inline double stat_gauss_cell(statDensity *f, void *user, double x0, doub
   return sum * hx * hy;
 }
 /* Integral over the rectangle; subdivided into four while that changes it by more than
- * `tolerance`.
- */
+ * `tolerance`. */
 static inline double stat_integrate(statDensity *f, void *user, double x0, double x1, double y0,
                                     double y1, double whole, double tolerance, int depth) {
   double mx = 0.5 * (x0 + x1), my = 0.5 * (y0 + y1);
@@ -258,8 +256,7 @@ static inline void stat_grid_add(statGrid *g, double x, double y) {
   g->counts[(size_t)j * g->nx + i]++;
 }
 /* Tests and frees the grid. tolerance: of the integral over one cell; 0: 1e-7 (deep subdivision
- * for sharp densities).
- */
+ * for sharp densities). */
 static inline statResult stat_grid_test(statGrid *g, statDensity *density, void *user,
                                         double tolerance) {
   size_t n = (size_t)g->nx * g->ny;

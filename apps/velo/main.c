@@ -37,8 +37,8 @@ static void print_overview(void) {
   options_print_exit_statuses();
 }
 
-/* Returns the number of words of argv that name the command, or 0 if they name another command.
- */
+/* Returns the number of words of argv that name the command, or 0 if they name another
+ * command. */
 static int name_words(const Command *command, int argc, char **argv) {
   const char *space = strchr(command->name, ' ');
   if (!space)

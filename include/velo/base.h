@@ -5,22 +5,22 @@
  * Conventions of the whole library
  *   - Functions that can fail return a vlResult. Functions that read files also fill a vlError.
  *   - Description structs ("defs") are made by vl_default_*_def(), which sets their field
- * `cookie`. A def without this cookie is VL_ERROR_ARGUMENT. Where vl_default_*_def() takes no
- * arguments (context, load, write, build, develop, render), a null def stands for the default;
- * otherwise the def is required.
+ *     `cookie`. A def without this cookie is VL_ERROR_ARGUMENT. Where vl_default_*_def() takes
+ *     no arguments (context, load, write, build, develop, render), a null def stands for the
+ *     default; otherwise the def is required.
  *   - In defs, 0 is an ordinary value. A double that is not given is VL_UNSET (a NaN). An id
- * that is not given has index 0.
+ *     that is not given has index 0.
  *   - Every parameter named `error` may be null.
  *   - Objects (vlX, made by vl_X_create and similar calls) belong to the caller, who destroys
- * them with vl_X_destroy. vl_X_destroy(NULL) does nothing. Strings and arrays in a def belong
- * to the caller; the call copies what it keeps.
+ *     them with vl_X_destroy. vl_X_destroy(NULL) does nothing. Strings and arrays in a def
+ *     belong to the caller; the call copies what it keeps.
  *   - Constant objects may be read from any number of threads; an object is changed by one
- * thread at a time.
+ *     thread at a time.
  *   - Matrices are row-major double[16] acting on column vectors: p' = M p; `a_from_b` maps b
- * to a.
+ *     to a.
  *   - Units: metres (scene units), seconds, radians. The world is right-handed. The camera's x
- * axis points right, y down, z forward. The first pixel's centre is at (0.5, 0.5); rows are
- * counted from the top.
+ *     axis points right, y down, z forward. The first pixel's centre is at (0.5, 0.5); rows are
+ *     counted from the top.
  *   - The library never exits, aborts or prints. Warnings go to the context's log callback. */
 #ifndef VELO_BASE_H
 #define VELO_BASE_H
@@ -41,8 +41,7 @@ extern "C" {
 #endif
 
 /** The major version number of these headers (semantic versioning). CMakeLists.txt reads the
- * three numbers from here.
- */
+ * three numbers from here. */
 #define VL_VERSION_MAJOR 0
 /** The minor version number. */
 #define VL_VERSION_MINOR 1
@@ -157,8 +156,7 @@ typedef void vlParallelForFn(void *user, uint32_t count, vlParallelFn *body, voi
 
 /** Instruction sets of the hot loops. All of them give bitwise equal results. AUTO: the widest
  * set that the machine supports. BASE: the lowest set that the library has code for: V2 on
- * x86-64; on other machines it is the only one. V2, V3, V4: levels of x86-64.
- */
+ * x86-64; on other machines it is the only one. V2, V3, V4: levels of x86-64. */
 typedef enum vlIsa {
   VL_ISA_AUTO = 0,
   VL_ISA_BASE = 1,

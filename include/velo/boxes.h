@@ -29,8 +29,8 @@ typedef struct vlIdBox {
                               part of instances */
   /** The corners of the box in space, in the coordinates of the box, and the matrix from these
    * coordinates to the world. For objects the coordinates are world space, or the space of
-   * their group, and the matrix is the identity. For instances they are the space of the group.
-   */
+   * their group, and the matrix is the identity. For instances they are the space of the
+   * group. */
   double low[3], high[3], world_from_box[16];
 } vlIdBox;
 

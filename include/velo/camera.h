@@ -21,8 +21,8 @@ enum {
   VL_PROJECTION_ORTHOGRAPHIC /**< all rays are parallel */
 };
 
-/** "perspective", "equidistant fisheye", ...; a constant string; "unknown" for another number.
- */
+/** "perspective", "equidistant fisheye", ...; a constant string; "unknown" for another
+ * number. */
 VL_API const char *vl_projection_name(vlProjection projection);
 
 /** The distortion model of a calibrated lens and the order of its coefficients. It acts on the
@@ -102,9 +102,10 @@ enum { VL_SHUTTER_POINTS = 16 };
  * replaces eye, lookat and up.
  *
  * A sample of pixel row r of `height` rows, counted in the direction of readout, is taken at
- * the time shutter_open + r/height readout + s (shutter_close - shutter_open); s in [0, 1) is
- * distributed by the shutter curve.
- */
+ * the time
+ *   shutter_open + r/height readout + s (shutter_close - shutter_open); s in [0, 1) is
+ *     distributed by the shutter
+ * curve. */
 typedef struct vlCameraDef {
   uint32_t cookie;
   vlProjection projection; /**< default VL_PROJECTION_PERSPECTIVE */
@@ -137,8 +138,8 @@ typedef struct vlCameraDef {
   double shutter_open, shutter_close; /**< seconds; default 0, 1 */
   /** The shutter curve: how far open the shutter is over time. It is linear between its points
    * and 0 before the first and after the last. With 0 points the shutter is fully open
-   * throughout. The curve distributes the samples over time and does not change the exposure.
-   */
+   * throughout. The curve distributes the samples over time and does not change the
+   * exposure. */
   uint32_t shutter_points;
   /** The points of the shutter curve. shutter_at: time as a share of the interval from open to
    * close, 0 to 1, ascending. shutter_value: the opening at that time, in any unit. */
@@ -195,8 +196,7 @@ VL_API vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model,
                                      const double *parameters, uint32_t count, vlError *error);
 
 /** All distortion models in one common form (equations: docs/cameras.md), made by
- * vl_camera_make.
- */
+ * vl_camera_make. */
 typedef struct vlDistortionMap {
   /** Rational radial (k1 k2 k3 .. over k4 k5 k6), tangential and thin prism coefficients. */
   double numerator[4], denominator[3], tangential[2], prism[4];
@@ -260,8 +260,7 @@ VL_API vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const c
 VL_API vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye,
                               vlCamera *result, vlError *error);
 /** Makes both eyes of a def and ignores its `stereo_eye`. warning: as in vl_camera_make.
- * Errors: as vl_camera_make; ARGUMENT also for a def without stereo.
- */
+ * Errors: as vl_camera_make; ARGUMENT also for a def without stereo. */
 VL_API vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *right,
                                  const char **warning, vlError *error);
 /** Makes the same camera with another pose, at rest. Only the pose is recomputed, so the call

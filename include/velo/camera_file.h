@@ -107,8 +107,8 @@ typedef struct vlCameraRecord {
 
 /** Reads one camera. def may be null: the default. The result is a description; vl_camera_make
  * checks its numbers. Errors: MISSING, IO, MEMORY; SCENE: the contents are wrong, and the
- * message names the field; UNSUPPORTED: the camera is valid, but velo does not have its model.
- */
+ * message names the field; UNSUPPORTED: the camera is valid, but velo does not have its
+ * model. */
 VL_API vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def,
                                vlCameraRecord *record, vlError *error);
 /** Writes one camera; the file is written whole or not at all. def may be null: the default.

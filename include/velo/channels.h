@@ -58,12 +58,12 @@ typedef enum vlChannel {
   VL_CHANNEL_CRYPTO_MATERIAL = 1 << 18, /**< CryptoMaterial00.R ... */
   VL_CHANNEL_CRYPTO_INSTANCE = 1 << 19, /**< CryptoInstance00.R ... */
   /** feature.albedo.R .G .B, feature.N.X .Y .Z, feature.disparity.Y: features for denoisers
-     (vl_denoise). They are means over the first samples of each pixel (8 to VL_FEATURE_SAMPLES)
-     and those it shares, through the lens; so they are blurred as the image is, at edges, by
-     defocus and by motion. The albedo uses fewer wavelengths than the channel albedo. The
-     disparity is 1 / distance, 0 for nothing. They need vlChannelsDef.film and .render, as
-     Cryptomatte does. With VL_CHANNEL_ERROR there are also feature.error.R .G .B:
-     vl_film_errors with vlDevelopDef.independent. */
+   * (vl_denoise). They are means over the first samples of each pixel (8 to VL_FEATURE_SAMPLES)
+   * and those it shares, through the lens; so they are blurred as the image is, at edges, by
+   * defocus and by motion. The albedo uses fewer wavelengths than the channel albedo. The
+   * disparity is 1 / distance, 0 for nothing. They need vlChannelsDef.film and .render, as
+   * Cryptomatte does. With VL_CHANNEL_ERROR there are also feature.error.R .G .B:
+   * vl_film_errors with vlDevelopDef.independent. */
   VL_CHANNEL_FEATURES = 1 << 20
 } vlChannel;
 /** The number of channels; the default set, which has all cheap channels; the largest number of
@@ -74,8 +74,8 @@ enum { VL_CHANNEL_COUNT = 21, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES
  * The other modes select one of the points of the image's samples (traced through the centre of
  * the lens, at the middle of the exposure). NEAREST: the point with the smallest depth.
  * COVERAGE: first the surface (object and instance, or nothing) whose samples have the greatest
- * total filter weight is selected, then the point on it that is closest to the pixel's centre.
- */
+ * total filter weight is selected, then the point on it that is closest to the pixel's
+ * centre. */
 typedef enum vlChannelMode {
   VL_CHANNEL_MODE_CENTRE,
   VL_CHANNEL_MODE_NEAREST,
@@ -84,8 +84,8 @@ typedef enum vlChannelMode {
 
 /** Whether the other camera sees the surface point of this pixel. NOT: it does. BEHIND: another
  * surface occludes the point. OUTSIDE: the point lies outside the other image, or a near or far
- * plane clips it; the flow is still valid. NOWHERE: the point has no projection, and U = V = 0.
- */
+ * plane clips it; the flow is still valid. NOWHERE: the point has no projection, and U = V =
+ * 0. */
 typedef enum vlHidden {
   VL_HIDDEN_NOT,
   VL_HIDDEN_BEHIND,
@@ -138,8 +138,8 @@ VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
  * other camera's exposure.
  *
  * Cryptomatte's metadata (cryptomatte/.../name, hash, conversion, manifest) are attributes of
- * *floats. Must not be called from inside a parallel loop. Errors: ARGUMENT, MEMORY, CANCELLED.
- */
+ * *floats. Must not be called from inside a parallel loop. Errors: ARGUMENT, MEMORY,
+ * CANCELLED. */
 VL_API vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
                                    const vlChannelsDef *def, vlImage **floats, vlImage **ids,
                                    vlError *error);

@@ -48,8 +48,7 @@ VL_API void vl_channels_tabulate(float shares[3 * VL_SPECTRUM_VALUES]);
 /** The white of a colour space, for each nm. ARGUMENT: an unknown space. */
 VL_API vlResult vl_white_tabulate(vlColorSpace space, float values[VL_SPECTRUM_VALUES]);
 /** The row-major matrix from XYZ to the linear RGB of a colour space. ARGUMENT: an unknown
- * space.
- */
+ * space. */
 VL_API vlResult vl_color_space_matrix(vlColorSpace space, double rgb_from_xyz[9]);
 
 #ifdef __cplusplus

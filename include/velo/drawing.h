@@ -66,8 +66,7 @@ typedef struct vlDrawingDef {
   uint32_t parts; /**< bits 1 << VL_DRAWING_*; default all but FILM */
   /** Distance of the view surface from the eye, scene units, above 0: of a perspective or
    * orthographic camera a plane at this depth, of the others the sphere around the eye. The
-   * image on the film is as far behind the eye. Default 1.
-   */
+   * image on the film is as far behind the eye. Default 1. */
   double plane;
   /** Where the view volume of a perspective or orthographic camera ends in the drawing if it
    * has no far plane; of the others it ends at the view surface. Default 2. */

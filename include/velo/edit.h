@@ -23,8 +23,7 @@ extern "C" {
 /** The def of an object, with defaults in the members that its kind does not use; null if there
  * is no such id. It and what it points at belong to the scene and are valid until the scene is
  * changed. To change an object: copy its def, change the copy, pass it to the vl_scene_set_*
- * call.
- */
+ * call. */
 VL_API const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id);
 /** As vl_scene_texture. */
 VL_API const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id);

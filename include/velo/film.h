@@ -40,8 +40,8 @@ VL_API void vl_remove_unfinished(vlContext *context);
 typedef struct vlFilmWriteDef {
   uint32_t cookie;
   /** The text of the receipt of the whole render (vl_receipt_text), read during the call only.
-   * It is stored in the header, which is JSON; vl_film_merge compares it. Null (default): none.
-   */
+   * It is stored in the header, which is JSON; vl_film_merge compares it. Null (default):
+   * none. */
   const char *receipt;
   /** The pixels of the whole render: x0, y0, x1, y1; x1, y1 exclusive. It must contain the
    * film's crop, whose sides are sides of the window or at multiples of 32 pixels. The other

@@ -109,11 +109,10 @@ VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name,
 
 /** Reads EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP; the content decides, not the
  * suffix. Of an EXR file the first part is read. The image is its data window; if the display
- * window differs, both are stored as attributes
- * ("dataWindow", "displayWindow"), which vl_image_write writes back. Errors: SCENE (a damaged
- * file), MISSING, IO, MEMORY. Memory is bounded by the file: a header with more pixels than the
- * file can hold is refused before allocating.
- */
+ * window differs, both are stored as attributes ("dataWindow", "displayWindow"), which
+ * vl_image_write writes back. Errors: SCENE (a damaged file), MISSING, IO, MEMORY. Memory is
+ * bounded by the file: a header with more pixels than the file can hold is refused before
+ * allocating. */
 VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **image,
                               vlError *error);
 
@@ -135,8 +134,7 @@ VL_API vlResult vl_image_read_channels(vlContext *context, const char *path,
                                        const char *const *names, uint32_t count,
                                        vlImage **image, vlError *error);
 /** The type of a channel in the file that the image was read from; otherwise the image's own
- * type.
- */
+ * type. */
 VL_API vlPixelType vl_image_stored_type(const vlImage *image, uint32_t channel);
 
 /** How to write an image file. */
@@ -172,8 +170,7 @@ VL_API vlResult vl_image_write_memory(const vlImage *image, const char *suffix,
 
 /** Writes all channels of several images of the same size to one OpenEXR file, each with its
  * image's type. Channel names must differ. Attributes are those of the first image; `half`
- * applies to the first image only. Errors as above.
- */
+ * applies to the first image only. Errors as above. */
 VL_API vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count,
                                       const char *path, const vlWriteDef *write,
                                       vlError *error);

@@ -22,8 +22,7 @@ typedef struct vlAperture vlAperture;
 VL_API vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
                                    const float *values, vlAperture **aperture, vlError *error);
 /** Makes one of pbrt's apertures: "gaussian", "square", "pentagon", "star". ARGUMENT: another
- * name.
- */
+ * name. */
 VL_API vlResult vl_aperture_create_named(vlContext *context, const char *name,
                                          vlAperture **aperture, vlError *error);
 /** Null is allowed. */
@@ -58,9 +57,9 @@ VL_API vlOpticsDef vl_default_optics_def(void);
 
 /** A focused lens of many elements. Constant; it must outlive the cameras that use it. */
 typedef struct vlOptics vlOptics;
-/** Makes a lens: focuses it by moving the film, as pbrt does (thick lens approximation,
- * book 5.4.3), and finds its exit pupil. Errors: ARGUMENT (too many or no surfaces, a number
- * out of range, a lens that cannot focus at this distance or transmits no light), MEMORY. */
+/** Makes a lens: focuses it by moving the film, as pbrt does (thick lens approximation, book
+ * 5.4.3), and finds its exit pupil. Errors: ARGUMENT (too many or no surfaces, a number out of
+ * range, a lens that cannot focus at this distance or transmits no light), MEMORY. */
 VL_API vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics **optics,
                                  vlError *error);
 /** As vl_optics_create, with the surfaces from a text file: four numbers per line (radius,
@@ -100,8 +99,7 @@ VL_API void vl_optics_info(const vlOptics *optics, vlOpticsInfo *info);
 typedef struct vlLensDef {
   /** f_number sets the lens radius: focal length / (2 f_number); unset: lens_radius is used.
    * The focal length in mm is focal_mm, or follows from sensor_width_mm. unit_mm is the number
-   * of millimetres per scene unit (default 1000).
-   */
+   * of millimetres per scene unit (default 1000). */
   double f_number, unit_mm;
   /** The plane in focus contains this point in world space, or the surface seen at this film
    * point in pixels. vl_autofocus finds that surface; vl_render calls it if needed. Unset:

@@ -13,8 +13,7 @@ extern "C" {
 
 /** Emission of surfaces. The emitted radiance is scale * L in units in which a spectrum L with
  * Y = 1 has luminance 1. As in pbrt (SpectrumToPhotometric, book 12.1), named, blackbody and
- * sampled spectra are first divided by their own Y.
- */
+ * sampled spectra are first divided by their own Y. */
 struct vlEmissionDef {
   uint32_t cookie;
   vlSource source;     /**< where the file describes it */

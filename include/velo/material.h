@@ -10,8 +10,7 @@ extern "C" {
 #endif
 
 /** X(NAME, name) for each kind of material. velo/schema.h describes the kinds and their
- * parameters.
- */
+ * parameters. */
 #define VL_MATERIAL_KINDS(X)                                                                 \
   X(DIFFUSE, diffuse)                                                                        \
   X(COATED_DIFFUSE, coated_diffuse)                                                          \

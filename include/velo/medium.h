@@ -12,8 +12,8 @@ extern "C" {
 /** X(NAME, name) for each kind of medium. velo/schema.h describes the parameters. Homogeneous:
  * constant coefficients. Grid: sigma_a and sigma_s times a density on a grid over a box. RGB
  * grid: sigma_a and sigma_s themselves on a grid. Cloud: sigma_a and sigma_s times a procedural
- * density (pbrt-v4's cloud). NanoVDB: sigma_a and sigma_s times a density from a NanoVDB file.
- */
+ * density (pbrt-v4's cloud). NanoVDB: sigma_a and sigma_s times a density from a NanoVDB
+ * file. */
 #define VL_MEDIUM_KINDS(X)    \
   X(HOMOGENEOUS, homogeneous) \
   X(GRID, grid)               \
@@ -43,8 +43,7 @@ struct vlMediumDef {
    * remains after the distance x. This holds in both colour modes and does not depend on how
    * the distance is divided (docs/media.md). Only for homogeneous media without emission, with
    * a sigma_a that is an RGB value or a constant. False (default): sigma_a is a spectrum, as in
-   * pbrt.
-   */
+   * pbrt. */
   bool rgb_absorption;
   /** Homogeneous and grid: the medium emits the radiance sigma_a * emission * emission_scale
    * per unit of length. As for lights, the emission spectrum is first divided by its own

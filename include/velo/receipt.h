@@ -70,8 +70,7 @@ VL_API const char *vl_receipt_command(const vlReceipt *receipt, uint32_t index);
 /** Path `index` of the outputs, from 0; null past the end. */
 VL_API const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index);
 /** Samples per pixel that the image has. *planned: the number planned for the render; may be
- * null.
- */
+ * null. */
 VL_API uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned);
 /** The threshold of adaptive sampling (vlRenderDef.noise); 0: none. */
 VL_API double vl_receipt_noise(const vlReceipt *receipt);
@@ -120,8 +119,8 @@ VL_API uint32_t vl_receipt_compare(const vlReceipt *then, const vlReceipt *now, 
                                    vlReceiptFn *fn, void *user);
 
 /** The number of velo's sample sequence. It changes with every release in which the same scene
- * and settings give other samples. Films of different sequences cannot be merged or continued.
- */
+ * and settings give other samples. Films of different sequences cannot be merged or
+ * continued. */
 VL_API uint32_t vl_sample_sequence(void);
 #ifdef __cplusplus
 }

@@ -36,8 +36,8 @@ typedef struct vlFilmDef {
    * name of a measured camera (vl_sensor_name) selects its response; a matrix converts its
    * values to XYZ. The matrix is fitted to 24 reflectances under the sensor's white, which is
    * daylight of white_balance kelvin, or of 6500 K if that is 0 (pbrt book 5.4.2). Worlds in
-   * RGB mode have no spectra: for them the sensor is the standard observer with the same white.
-   */
+   * RGB mode have no spectra: for them the sensor is the standard observer with the same
+   * white. */
   const char *sensor;
   /** A sample whose X, Y or Z (or the sensor's red, green or blue) is above this value is
    * scaled down so that the largest equals it. This removes fireflies, but biases the image.
@@ -85,8 +85,7 @@ VL_API vlDevelopDef vl_default_develop_def(void);
 /** Makes a float image R G B A of the crop window, owned by the caller. R G B are the weighted
  * mean of the samples: linear, in the film's colour space, with the background. A is the share
  * of samples that met a surface. Pixels without samples are 0. Must not be called while a
- * render runs, except from its callback after a pass. def may be null. ARGUMENT, MEMORY.
- */
+ * render runs, except from its callback after a pass. def may be null. ARGUMENT, MEMORY. */
 VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
 /** Makes a float image error.R error.G error.B of the crop window, owned by the caller: the
  * standard errors of vl_film_develop's values. They are square roots of the estimated variance
@@ -102,8 +101,7 @@ VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlIm
  * for spectral images"): S0.374,688nm is the bucket centred at 374.688 nm. A value is the mean
  * radiance per wavelength in the bucket. Its unit is pbrt-v4's: a light of constant spectrum
  * and luminance 1 has the value 1 at all wavelengths. White balance, exposure and max_component
- * do not apply. ARGUMENT for a film without buckets.
- */
+ * do not apply. ARGUMENT for a film without buckets. */
 VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 
 /* ---- render ------------------------------------------------------------------------------ */
@@ -191,8 +189,8 @@ typedef struct vlRenderDef {
    * discarded, and the film keeps whole passes. Default null. */
   const vlCancel *cancel;
   /** Of several calls that run at once in a context, those with the highest priority get all
-   * workers; the others wait between two batches, except for one batch each 50 ms. Default 0.
-   */
+   * workers; the others wait between two batches, except for one batch each 50 ms. Default
+   * 0. */
   int priority;
   /** A sampler of one's own (velo/own.h), in place of `sampler` for all paths that begin at the
    * camera. Must outlive the call. `sampler` then still gives the numbers of light paths and
@@ -219,9 +217,8 @@ typedef struct vlRenderStats {
   uint32_t worst_x, worst_y; /**< a pixel where a sample was discarded */
 } vlRenderStats;
 /** The name of the first feature of world, camera and film that the tracer does not render,
- * such as "material
- * \"hair\""; null: it renders all. vl_render then uses VL_TRACER_VOLPATH in its place, and
- * tells the log. docs/tracers.md lists the features. The string is constant. */
+ * such as "material \"hair\""; null: it renders all. vl_render then uses VL_TRACER_VOLPATH in
+ * its place, and tells the log. docs/tracers.md lists the features. The string is constant. */
 VL_API const char *vl_tracer_lacks(const vlWorld *world, const vlCamera *camera,
                                    const vlFilmDef *film, vlTracer tracer);
 /** Adds samples to the film until each pixel has def->spp. The bits depend neither on the

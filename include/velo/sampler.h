@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each sampler. velo/schema.h has descriptions and the names in pbrt files.
- */
+/** X(NAME, name) for each sampler. velo/schema.h has descriptions and the names in pbrt
+ * files. */
 #define VL_SAMPLER_KINDS(X)         \
   X(INDEPENDENT, independent)       \
   X(REGULAR, regular)               \
@@ -22,8 +22,7 @@ extern "C" {
   X(SOBOL, sobol)                   \
   X(ZSOBOL, zsobol)
 /** Sample generators (src/trace/sampler/sampler.h): those of the lecture and the
- * low-discrepancy samplers of pbrt book 8.6-8.7.
- */
+ * low-discrepancy samplers of pbrt book 8.6-8.7. */
 typedef enum vlSamplerKind {
 #define VL_KIND(NAME, name) VL_SAMPLER_##NAME,
   VL_SAMPLER_KINDS(VL_KIND)

@@ -46,8 +46,7 @@ struct vlShapeDef {
    * group_from_shape mirrors. So a mirrored mesh keeps its outside, but the normals of a
    * sphere, disk, cylinder or curve turn over under a mirroring group_from_shape. Instances
    * never flip normals. Vertex normals take precedence if they are given; only
-   * reverse_orientation flips them.
-   */
+   * reverse_orientation flips them. */
   bool reverse_orientation;
   vlMaterialId material; /**< index 0: a default diffuse material of reflectance 0.5 */
   vlFloatInput alpha;    /**< coverage, 0 to 1; 1: opaque */

@@ -12,8 +12,7 @@ extern "C" {
 #endif
 
 /** X(NAME, name) for each kind of texture. velo/schema.h describes the kinds and their
- * parameters.
- */
+ * parameters. */
 #define VL_TEXTURE_KINDS(X)                                                                 \
   X(CONSTANT, constant)                                                                     \
   X(SCALE, scale)                                                                           \

@@ -29,8 +29,7 @@ typedef struct vlTraceRays {
   float direction[3][VL_OWN_BATCH]; /**< of unit length; of shadow rays (vlTraceLights): of any
                                        length */
   /** The part of the ray that counts, in lengths of its direction. t_max < 0: the lane has no
-   * ray.
-   */
+   * ray. */
   float t_min[VL_OWN_BATCH], t_max[VL_OWN_BATCH];
   float width[VL_OWN_BATCH]; /**< width of the ray's footprint at its origin, scene units, for
                                 textures; 0: sharp */

@@ -44,8 +44,7 @@ VL_API uint32_t vl_trajectory_frames(const vlTrajectory *trajectory);
 VL_API vlResult vl_trajectory_frame(const vlTrajectory *trajectory, uint32_t index,
                                     vlTrajectoryFrame *frame);
 /** The number of different cameras; cameras that differ only in their pose count as one. 0: the
- * file holds only poses.
- */
+ * file holds only poses. */
 VL_API uint32_t vl_trajectory_cameras(const vlTrajectory *trajectory);
 /** Camera `index`, from 0; its pose is that of its first frame. Lives as long as the
  * trajectory; null past the end. */

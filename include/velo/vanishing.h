@@ -46,8 +46,7 @@ typedef struct vlVanishingPoints {
   bool has_horizon;
   /** The horizon is the vanishing line of all planes perpendicular to `up`: h[0] x + h[1] y +
    * h[2] = 0 in pixels. (h[0], h[1]) has unit length, and the left side is positive above the
-   * horizon.
-   */
+   * horizon. */
   double horizon[3];
 } vlVanishingPoints;
 

@@ -10,8 +10,7 @@ extern "C" {
 #endif
 
 /** A compiled scene. It never changes, so any number of threads and renders may share it. Its
- * context must outlive it.
- */
+ * context must outlive it. */
 typedef struct vlWorld vlWorld;
 /** How a path represents radiance: at 4 sampled wavelengths, or as R, G, B. */
 typedef enum vlColorMode { VL_COLOR_SPECTRAL, VL_COLOR_RGB } vlColorMode;

@@ -26,8 +26,7 @@ PyObject *raise_value(const char *what, PyObject *value, const char *format, ...
 }
 
 /* Whether a conversion failed since the value is of another type or too large; other exceptions
- * are the caller's own.
- */
+ * are the caller's own. */
 static bool unfit(void) {
   return PyErr_ExceptionMatches(PyExc_TypeError) || PyErr_ExceptionMatches(PyExc_ValueError) ||
          PyErr_ExceptionMatches(PyExc_ArithmeticError);

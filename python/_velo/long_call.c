@@ -1,7 +1,6 @@
 /* _velo/long_call.c: calls of the library that take long. Such a call runs on a thread of its
  * own; the thread of Python waits for it, looks for signals and runs the callbacks. So Ctrl-C
- * stops a call at once (vlCancel), whatever it does.
- */
+ * stops a call at once (vlCancel), whatever it does. */
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -192,8 +191,7 @@ bool long_call_begin(LongCall *call, const Context *context, PyObject *callback)
 
 /* The interpreter ends, and this is not the thread that ends it, so it never runs Python again:
  * it waits for the end of the process, as Python's own threads do. An exception would be
- * printed, and Python aborts when a thread prints then.
- */
+ * printed, and Python aborts when a thread prints then. */
 static void wait_for_the_end(void) {
   if (pthread_equal(pthread_self(), shutter))
     return;

@@ -88,8 +88,7 @@ typedef struct Handle {
 } Handle;
 
 /* The classes that the module makes objects of. The Python package replaces them by its
- * subclasses.
- */
+ * subclasses. */
 enum {
   TYPE_CONTEXT,
   TYPE_SCENE,
@@ -142,8 +141,8 @@ typedef struct LongCall {
   PyObject *error;   /* the first exception of these functions; null: none */
 } LongCall;
 typedef vlResult LongBody(void *user);
-/* callback: a callable, or None. False: an exception is set. True: long_call_end must follow.
- */
+/* callback: a callable, or None. False: an exception is set. True: long_call_end must
+ * follow. */
 bool long_call_begin(LongCall *call, const Context *context, PyObject *callback);
 /* Runs body(user) without the GIL; *result is what it returns. False: an exception is set, by a
  * signal, the callback, or since the call could not run. */
@@ -154,8 +153,8 @@ bool long_call_progress(void *user, const vlProgress *progress);
 bool long_call_step(void *user, const vlStep *step);
 /* Ends the long calls that call this code, with an exception (taken). False: there are none. */
 bool long_call_fail(const Own *own, PyObject *error);
-/* The film that this thread may read, although a render runs: inside a callback after a pass.
- */
+/* The film that this thread may read, although a render runs: inside a callback after a
+ * pass. */
 extern _Thread_local const Film *open_film;
 /* shut_down(): stops the calls of other threads, and waits for them; later ones are errors. */
 PyObject *shut_down(PyObject *module, PyObject *unused);
@@ -179,8 +178,7 @@ PyObject *text_object(const char *text);
 /* 1: *number is read; 0: it is not a number; -1: an exception of the caller's own. */
 int to_double(PyObject *value, double *number);
 /* Each of these is false (null, -1) with an exception that names `what`, the range and the
- * value.
- */
+ * value. */
 bool read_whole(PyObject *value, const char *what, int64_t low, int64_t high, int64_t *whole);
 bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high,
                 uint32_t *count);
@@ -203,8 +201,7 @@ bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *
                 const char **texts);
 const char *keep_path(PyObject *keep, PyObject *value, const char *what);
 /* Whether this many bytes more than the context holds now may be taken; `what` is what needs
- * them.
- */
+ * them. */
 bool check_memory(const Context *context, uint64_t bytes, const char *what);
 
 /* ---- values ------------------------------------------------------------------------------ */
@@ -242,8 +239,7 @@ const vlParameter *find_parameter(const vlParameter *rows, size_t count, const c
 bool set_parameter(const Target *target, const vlParameter *row, PyObject *value);
 PyObject *get_parameter(const char *def, const vlParameter *row);
 /* velo.UsageError: there is no such keyword, with the nearest of names. `names` is a list,
- * stolen.
- */
+ * stolen. */
 bool raise_unknown(const char *thing, const char *name, PyObject *names);
 /* Appends the names of rows to a list. */
 bool append_names(PyObject *list, const vlParameter *rows, size_t count);

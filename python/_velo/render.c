@@ -313,8 +313,7 @@ static PyObject *trial_list(const vlKindFamily *tracers, const vlTracerChoice *c
 }
 
 /* choose_tracer(world, camera, settings, spp): ({"tracer": name, "light_paths": number},
- * [trials])
- */
+ * [trials]) */
 static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;

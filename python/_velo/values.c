@@ -138,8 +138,8 @@ const vlParameter *find_parameter(const vlParameter *rows, size_t count, const c
 
 /* ---- spectra and ids --------------------------------------------------------------------- */
 
-/* An attribute. The name is interned, since the interpreter's cache of methods keeps the str.
- */
+/* An attribute. The name is interned, since the interpreter's cache of methods keeps the
+ * str. */
 static PyObject *get_attribute(PyObject *object, const char *name) {
   PyObject *text = PyUnicode_InternFromString(name);
   PyObject *value = text ? PyObject_GetAttr(object, text) : NULL;

@@ -23,8 +23,7 @@ bool vl_receipt_put(json_t *parent, const char *key, json_t *value);
 bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def);
 
 /* Parses the receipt of a film file; its errors name the file. reader->texts.receipt is not
- * null.
- */
+ * null. */
 vlResult vl_film_receipt(const vlFilmReader *reader, vlReceipt **receipt, vlError *error);
 
 #endif

@@ -78,8 +78,8 @@ static void differ_value(Comparison *c, const char *thing, const char *name, con
     differ(c, "%s%s%.60s is %s, was %s", start, between, name, is, was);
 }
 
-/* The members of "render" that say when a block has enough samples, not which samples it gets.
- */
+/* The members of "render" that say when a block has enough samples, not which samples it
+ * gets. */
 static bool is_extent(const char *key) {
   return vl_text_is(key, "spp") || vl_text_is(key, "adaptive");
 }

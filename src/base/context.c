@@ -1,5 +1,5 @@
-/* base/context.c: counted allocation, log, parallel loops (pool.c), the sandbox. See context.h.
- */
+/* base/context.c: counted allocation, log, parallel loops (pool.c), the sandbox. See
+ * context.h. */
 #include "base/context.h"
 
 #include <pthread.h>

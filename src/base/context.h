@@ -24,8 +24,8 @@ char *vl_strdup(vlContext *context, const char *text); /* null for null text, or
  * memory exceeds the limit and is not counted. With `taken` it is already allocated and always
  * counted. */
 bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken);
-/* Whether a scene may name this file. Symbolic links are resolved. True if there is no sandbox.
- */
+/* Whether a scene may name this file. Symbolic links are resolved. True if there is no
+ * sandbox. */
 bool vl_context_allows(const vlContext *context, const char *path);
 /* Tests whether as many threads as the context has workers can be started in addition to the
  * workers. Libraries that start their own threads end the process if a thread cannot be

@@ -5,8 +5,8 @@
 
 #include "velo/base.h"
 
-/* End of the message about a def that was not made by the default function of this ABI version.
- */
+/* End of the message about a def that was not made by the default function of this ABI
+ * version. */
 #define VL_BAD_COOKIE "def.cookie is not that of a default def of this version"
 
 vlResult vl_fail(vlError *error, vlResult code, const char *format, ...)

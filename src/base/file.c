@@ -141,8 +141,8 @@ static const char *not_a_file(const struct stat *info, bool pipes) {
 }
 
 /* Checks the file's type before opening, since opening a pipe blocks and opening a device may
- * have side effects; and again after opening, since the name may refer to another file by then.
- */
+ * have side effects; and again after opening, since the name may refer to another file by
+ * then. */
 static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
   struct stat info;
   if (!given && !vl_context_allows(
@@ -305,8 +305,7 @@ vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, c
 }
 
 /* The file's bytes in anonymous pages of its own, for systems that map no file at a given
- * address.
- */
+ * address. */
 static char *read_pages(int fd, size_t length) {
   char *block =
       mmap(NULL, length + 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

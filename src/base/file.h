@@ -14,8 +14,8 @@
  * file), IO, MEMORY. */
 vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data,
                       size_t *size, vlError *error);
-/* The same for files that the caller names: pipes are allowed, and the sandbox does not apply.
- */
+/* The same for files that the caller names: pipes are allowed, and the sandbox does not
+ * apply. */
 vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, char **data,
                             size_t *size, vlError *error);
 /* Maps a file into memory: pages are read on access; a zero byte follows. Regular files only:

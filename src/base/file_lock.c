@@ -27,8 +27,8 @@ bool vl_is_lock_name(const char *name) {
          vl_text_is(name + prefix + DIGITS, SUFFIX);
 }
 
-/* The name is a digest, so that it fits where the file's own name is as long as names may be.
- */
+/* The name is a digest, so that it fits where the file's own name is as long as names may
+ * be. */
 static bool name_lock(const char *path, char *name, size_t size) {
   char target[4096], text[33];
   uint8_t digest[16];
@@ -98,8 +98,7 @@ static void name_sibling(const char *name, char *sibling, size_t size) {
 }
 
 /* Removes a lock's file and its sibling, unless another process or another descriptor has the
- * lock.
- */
+ * lock. */
 static void remove_lock(int descriptor, int folder, const char *name) {
   char sibling[sizeof((vlFileLock *)0)->path];
   if (set_lock(descriptor) != 0 || !is_named(descriptor, folder, name))

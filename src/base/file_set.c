@@ -9,8 +9,8 @@
 #include "base/file_input.h"
 #include "base/text.h"
 
-/* The bytes of a regular file, zero-terminated; null: none. They are no input of the context.
- */
+/* The bytes of a regular file, zero-terminated; null: none. They are no input of the
+ * context. */
 static char *read_bytes(vlContext *context, const char *path, size_t *size) {
   struct stat info;
   *size = 0;

@@ -25,13 +25,11 @@ typedef struct vlFileSet {
 void vl_file_set_begin(vlFileSet *set, vlContext *context, const char *main);
 /* Chooses the name of a file, relative to the main file's folder: where another file has the
  * name, `name`, an array of `size` bytes, becomes a free one ("room-2.bin"). A file that has
- * these bytes already is taken as it is. MEMORY, IO.
- */
+ * these bytes already is taken as it is. MEMORY, IO. */
 vlResult vl_file_set_name(vlFileSet *set, char *name, size_t size, const void *data,
                           size_t bytes, vlError *error);
 /* Writes a file of that name, and the folders above it, below that of the main file; nothing if
- * it was taken as it is.
- */
+ * it was taken as it is. */
 vlResult vl_file_set_write(vlFileSet *set, const char *name, const void *data, size_t bytes,
                            vlError *error);
 /* Writes the main file: the last one. */

@@ -65,8 +65,8 @@ static bool open_nameless(vlFileWriter *writer) {
 #endif
 }
 
-/* Links the nameless file to a temporary name, just before it is renamed. False: errno is set.
- */
+/* Links the nameless file to a temporary name, just before it is renamed. False: errno is
+ * set. */
 static bool give_name(vlFileWriter *writer) {
   char self[64];
   snprintf(self, sizeof self, "/proc/self/fd/%d", writer->descriptor);
@@ -249,8 +249,7 @@ void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint6
 }
 
 /* Keeps owner and permissions of the replaced file, as far as the user and the file system
- * allow.
- */
+ * allow. */
 static void keep_permissions(const vlFileWriter *writer) {
   if (fchown(writer->descriptor, writer->owner, writer->group) != 0 &&
       fchown(writer->descriptor, (uid_t)-1, writer->group) != 0)

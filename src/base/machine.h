@@ -7,12 +7,12 @@
 #include <stddef.h>
 
 /* Whether the process can reserve this many more bytes of address space. The test makes a
- * reservation and releases it; it takes no memory. True on systems where this cannot be tested.
- */
+ * reservation and releases it; it takes no memory. True on systems where this cannot be
+ * tested. */
 bool vl_machine_has_addresses(size_t bytes);
 
-/* Returns free memory that the C library holds to the system, if the C library supports this.
- */
+/* Returns free memory that the C library holds to the system, if the C library supports
+ * this. */
 void vl_machine_return_memory(void);
 
 /* Asks the system to use large pages for a new block of memory that will be read at random, if

@@ -58,8 +58,7 @@ void vl_sandbox_free(vlSandbox *sandbox) {
 }
 
 /* Whether a path is a folder or lies in it. Compares whole components: /a/b is not beneath
- * /a/bc.
- */
+ * /a/bc. */
 static bool is_beneath(const char *path, const char *folder) {
   size_t n = strlen(folder);
   if (n && folder[n - 1] == '/')

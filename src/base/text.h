@@ -47,12 +47,11 @@ vlArgumentText vl_argument_text(const char *text);
 void vl_shorten_quoted(vlError *error, const char *text);
 /* Replaces the same characters as vl_short_text by "?", but in a whole message and without
  * shortening it, so names of files stay complete. Removes an incomplete UTF-8 sequence at the
- * end.
- */
+ * end. */
 void vl_make_printable(char *message);
 bool vl_is_utf8(const char *text);
-/* Length of one of jansson's messages without its end (" near '...'"), which quotes the file.
- */
+/* Length of one of jansson's messages without its end (" near '...'"), which quotes the
+ * file. */
 size_t vl_json_problem_length(const char *message);
 /* Whether the text is this word; false if it is null. */
 static inline bool vl_text_is(const char *text, const char *word) {

@@ -36,8 +36,7 @@ vlUnfinished *vl_unfinished_add(vlUnfinishedList *list, const char *path, int de
                                 vlUnfinishedFn *remove);
 /* After the file is gone or has its own name, and before its descriptor is closed. Null is
  * allowed. Where a signal handler is removing the file already, it waits for the process' end.
- * errno stays.
- */
+ * errno stays. */
 void vl_unfinished_drop(vlUnfinished *file);
 /* Removes the files of the list. Async-signal-safe. */
 void vl_unfinished_remove(vlUnfinishedList *list);

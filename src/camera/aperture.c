@@ -1,5 +1,5 @@
-/* camera/aperture.c: apertures that are not round: blade polygons and images. See aperture.h.
- */
+/* camera/aperture.c: apertures that are not round: blade polygons and images. See
+ * aperture.h. */
 #include "camera/aperture.h"
 
 #include <math.h>

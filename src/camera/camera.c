@@ -1,5 +1,5 @@
-/* camera/camera.c: the public functions: a camera from its def; a camera at another resolution.
- */
+/* camera/camera.c: the public functions: a camera from its def; a camera at another
+ * resolution. */
 #include <math.h>
 #include <stdio.h>
 

@@ -13,8 +13,7 @@
 #include "velo/projection.h"
 
 /* Number of pixels by which a plane that wraps around extends beyond its edges. No filter is
- * wider.
- */
+ * wider. */
 static const double overhang = 16.0;
 
 /* Returns the angle (radians) that the central pixel subtends. */

@@ -8,7 +8,7 @@
  *     s = x^2 + y^2,  q = (1 + n0 s + n1 s^2 + n2 s^3 + n3 s^4) / (1 + d0 s + d1 s^2 + d2 s^3)
  *     u = x q + 2 p0 x y + p1 (s + 2 x^2) + t0 s + t1 s^2
  *     v = y q + p0 (s + 2 y^2) + 2 p1 x y + t2 s + t3 s^2,   then the sensor's tilt, a
- * homography.
+ *                                                            homography.
  *
  * Within the disc of radius vlDistortionMap.radius the Jacobian determinant is positive: the
  * map does not fold. */

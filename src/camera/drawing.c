@@ -116,8 +116,8 @@ static bool at_depth(const Pen *p, double x, double y, double depth, double poin
   return true;
 }
 
-/* A curve on the surface at `depth` between two film points; pieces without rays are left out.
- */
+/* A curve on the surface at `depth` between two film points; pieces without rays are left
+ * out. */
 static void curve(Pen *p, vlDrawingPart part, double x0, double y0, double x1, double y1,
                   double depth) {
   const vlCamera *c = p->camera;

@@ -7,8 +7,7 @@
  *
  * The inverse has a closed form. Seen from above, the ray is tangent to the circle. Its length
  * to a point at distance p from the axis is therefore t = sqrt(p^2 - r^2), and the ray's
- * longitude is the point's longitude minus atan(r / t).
- */
+ * longitude is the point's longitude minus atan(r / t). */
 #ifndef CAMERA_EYES_H
 #define CAMERA_EYES_H
 

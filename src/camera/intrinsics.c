@@ -246,8 +246,7 @@ static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathere
     return;
   }
   /* along the smaller side: 180 degrees for fisheyes, 90 for others if the model covers that
-   * angle
-   */
+   * angle */
   bool fisheye = row->traits & VL_PROJECTION_FISHEYE;
   if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * just_inside : 0.25 * pi,
                               d->width >= d->height, &radius))
@@ -280,8 +279,8 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
   camera->fx = vl_is_unset(g.fx.value) ? g.fy.value : g.fx.value;
   camera->fy = vl_is_unset(g.fy.value) ? g.fx.value : g.fy.value;
   camera->skew = vl_is_unset(d->skew) ? 0.0 : d->skew;
-  /* the faces of a cube start at the corner, and so do the film points of a camera of one's own
-   */
+  /* the faces of a cube start at the corner, and so do the film points of a camera of one's
+   * own */
   double centre =
       d->projection == VL_PROJECTION_CUBE || d->projection == VL_PROJECTION_OWN ? 0.0 : 0.5;
   camera->cx = vl_is_unset(g.cx.value) ? centre * d->width : g.cx.value;

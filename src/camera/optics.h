@@ -56,8 +56,8 @@ typedef struct vlOpticsRay {
   double x, y, z, dx, dy, dz, alive;
 } vlOpticsRay;
 
-/* Propagates the ray to the stop's plane. round: whether the stop's round aperture blocks rays.
- */
+/* Propagates the ray to the stop's plane. round: whether the stop's round aperture blocks
+ * rays. */
 static inline vlOpticsRay vl_optics_stop(const vlOpticsSurface *s, const int round,
                                          vlOpticsRay r) {
   double t = (s->z - r.z) / r.dz;
@@ -71,8 +71,7 @@ static inline vlOpticsRay vl_optics_stop(const vlOpticsSurface *s, const int rou
 
 /* Refracts at a sphere by Snell's law. The ray goes forwards. If the sphere's centre is ahead,
  * the ray intersects the near half of the sphere; if the centre is behind, it intersects the
- * far half.
- */
+ * far half. */
 static inline vlOpticsRay vl_optics_refract(const vlOpticsSurface *s, const int round,
                                             vlOpticsRay r) {
   double cz = r.z - (s->z - s->radius);
@@ -114,8 +113,7 @@ void vl_optics_find_chiefs(vlOptics *optics);
 /* Computes the chief ray of a film point, in camera space, with its origin in the film's plane.
  * Returns false if there is none. x, y: the film point in scene units from the centre, right
  * and down as in the image (the physical film is rotated by 180 degrees). Defined in
- * optics_points.c.
- */
+ * optics_points.c. */
 bool vl_optics_unproject(const vlOptics *optics, double x, double y, vlCameraLocal *ray);
 /* The inverse of vl_optics_unproject: maps a point in camera space to the film point. */
 bool vl_optics_project(const vlOptics *optics, double x, double y, double z, double film[2]);

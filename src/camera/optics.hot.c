@@ -24,8 +24,8 @@ static inline void store(Bundle *b, uint32_t i, vlOpticsRay r) {
 }
 
 /* Rays from the film to points of the exit pupil, sampled for the film point. The weight is
- * cos^4 of the angle times the pupil's area over the square of its distance (pbrt book 5.4.6).
- */
+ * cos^4 of the angle times the pupil's area over the square of its distance (pbrt book
+ * 5.4.6). */
 static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections *d,
                   const float *lens_u, const float *lens_v, Bundle *b) {
   const vlOptics *o = c->optics;

@@ -15,8 +15,8 @@ typedef struct vlOwnRows {
   double dx[VL_OWN_BATCH], dy[VL_OWN_BATCH], dz[VL_OWN_BATCH], weight[VL_OWN_BATCH];
 } vlOwnRows;
 
-/* Makes the rays of n film points. Elements from n to VL_PAD(n) have the ray (0 0 0), (0 0 0).
- */
+/* Makes the rays of n film points. Elements from n to VL_PAD(n) have the ray (0 0 0), (0 0
+ * 0). */
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *rows);
 /* The chief rays of n film points (pixels of the compiled camera), at the start of the
  * exposure. */
@@ -37,8 +37,8 @@ static inline vlWorldRay vl_own_to_world(const vlCameraCompiled *c, double ox, d
 bool vl_own_ray_at(const vlCameraCompiled *c, const vlOwnRows *rows, uint32_t i,
                    vlWorldRay *ray);
 
-/* The def without what describes a projection or a lens: these a camera of one's own replaces.
- */
+/* The def without what describes a projection or a lens: these a camera of one's own
+ * replaces. */
 vlCameraDef vl_camera_own_def(const vlCameraDef *def);
 /* Checks def->own and fills the members of the camera that begin with own_. */
 vlResult vl_camera_own(const vlCameraDef *def, vlCamera *camera, vlError *error);

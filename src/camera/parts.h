@@ -8,8 +8,8 @@
 
 /* Sets shape, and the distortion's coefficients and tilt. Checks their ranges and counts. */
 vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error);
-/* Sets limit, distortion.radius and steps, and outside. Called last: it needs all other parts.
- */
+/* Sets limit, distortion.radius and steps, and outside. Called last: it needs all other
+ * parts. */
 vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char **warning,
                           vlError *error);
 /* Sets distortion.steps and outside, which also depend on the image's size. */

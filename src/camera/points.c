@@ -228,8 +228,8 @@ double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
   if (d.valid == 0.0)
     return 0.0;
   /* plane units: 1/10000 of a focal length, smaller near the border of the domain. Truncation
-   * h^4 and rounding 1e-16 / h are both about 1e-12 to 1e-16; below 1e-7 rounding exceeds 1e-9.
-   */
+   * h^4 and rounding 1e-16 / h are both about 1e-12 to 1e-16; below 1e-7 rounding exceeds
+   * 1e-9. */
   for (double h = 1e-4; h > 1e-7; h *= 0.1) {
     if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b))
       continue;

@@ -41,8 +41,7 @@ static Vec normalized(Vec a) {
 static const double parallel_sine = 1e-9;
 
 /* u to the right, v up, w backwards, against the view direction: the lecture's viewing
- * coordinates.
- */
+ * coordinates. */
 typedef struct {
   Vec u, v, w;
 } Basis;

@@ -2,7 +2,7 @@
  * at a time.
  *
  *     film sample -> distortion (distortion.h) -> projection (projection.h and what it
- * includes) -> lens (lens.h)
+ *       includes) -> lens (lens.h)
  *     -> pose -> world-space ray
  *
  * Each stage is a plain function by value; the projection is chosen once per batch. Positions
@@ -101,8 +101,8 @@ typedef struct vlCameraRays {
   float *weight;
 } vlCameraRays;
 
-/* A chunk of points or pixels in double: VL_PAD(n) elements are computed, n <= VL_CAMERA_CHUNK.
- */
+/* A chunk of points or pixels in double: VL_PAD(n) elements are computed, n <=
+ * VL_CAMERA_CHUNK. */
 typedef struct vlCameraPixels {
   double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];
 } vlCameraPixels;

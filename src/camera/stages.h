@@ -6,8 +6,7 @@
 
 /* Input: x, y in pixels from the principal point (overwritten); face, the cell of a cube.
  * Output: directions in camera space, with z = 1 for perspective cameras and of unit length for
- * all others.
- */
+ * all others. */
 typedef struct vlDirections {
   double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], face[VL_CAMERA_CHUNK];
   double dx[VL_CAMERA_CHUNK], dy[VL_CAMERA_CHUNK], dz[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];

@@ -3,7 +3,7 @@
  * camera.
  *
  *     random number -> curve -> fraction of the exposure -> seconds, later for rows that are
- * read later -> pose */
+ *       read later -> pose */
 #ifndef CAMERA_TIME_H
 #define CAMERA_TIME_H
 
@@ -27,8 +27,8 @@ typedef struct vlCameraTime {
 } vlCameraTime;
 
 /* Returns the fraction of the exposure time after which the fraction u of the light has
- * arrived. This is the inverse of the curve's integral, which is a parabola between two points.
- */
+ * arrived. This is the inverse of the curve's integral, which is a parabola between two
+ * points. */
 static inline double vl_shutter_share(const vlCameraTime *t, double u) {
   if (t->points == 0)
     return u;

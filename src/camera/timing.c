@@ -140,8 +140,7 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
       break;
   }
   /* times are relative to the pixel that is read first; its exposure begins when the shutter
-   * opens
-   */
+   * opens */
   t->first_column = t->per_column < 0.0 ? camera->width - 1.0 : 0.0;
   t->first_row = t->per_row < 0.0 ? camera->height - 1.0 : 0.0;
   t->moves = camera->moves && vl_motion_make(camera->world_from_camera,

@@ -1,8 +1,7 @@
 /* camera_files/bundler.c: Bundler's bundle.out (also of RealityCapture, Metashape and Theia).
  * For each camera f k1 k2, R, t: camera from world. Camera axes: x right, y up, z back. The
  * principal point is the image's middle. The file has no image size. Cameras with f = 0 were
- * not reconstructed and do not count; a camera's name is its number in the file.
- */
+ * not reconstructed and do not count; a camera's name is its number in the file. */
 #include <stdio.h>
 #include <string.h>
 

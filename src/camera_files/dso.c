@@ -2,8 +2,7 @@
  * model's name (without one: FOV), fx fy cx cy and the lens, a line with the image's size, then
  * the rectification, which is ignored. There is no pose. The first pixel's centre is (0, 0). If
  * cx and cy are below 1, the four numbers are shares of the image's sides, which begins at
- * (-0.5, -0.5).
- */
+ * (-0.5, -0.5). */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -18,8 +17,7 @@ static const struct {
 enum { FOV, PINHOLE, RADTAN, EQUIDISTANT, KANNALA_BRANDT, MODELS };
 
 /* Returns the model of the first line and where its numbers begin; MODELS: the line is another
- * one.
- */
+ * one. */
 static int model_of(const char *line, const char **numbers) {
   for (int i = 0; i < MODELS; i++) {
     size_t length = strlen(models[i].name);

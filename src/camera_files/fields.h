@@ -73,14 +73,17 @@ typedef struct vlCameraValue {
   { .key = name, .word = text }
 /* Appends a text in which $key stands for a value. Every dialect has
  *   $width $height, $fx $fy $skew $cx $cy, $cx0 $cy0 (from the centre of the first pixel),
- * $near $far; $aspect: fy / fx; $ratio: width / height; $yfov: the vertical field of view,
- * degrees; $name: the record's name, or "camera", in quotation marks; $K: fx skew cx0, 0 fy
- * cy0, 0 0 1; $R $t: camera from world; $V: the rotation vector of R; $view: camera from world,
- * 4 x 4; $pose: world from camera, 4 x 4; $flipped: $pose for axes x right, y up, z back;
- * $viewcolumns $flippedcolumns: by columns; $axes $centre: the 3 x 3 part of $pose, and its
- * last column. $key@N is number N of a list, from 0. Lists are written as "1, 2, 3"; after :s
- * as "1 2 3"; after :q with each number in quotation marks; after :1, :3 or :4 in brackets, so
- * many at a time. Returns VL_OK: text->failed says if memory is lacking. */
+ *     $near $far;
+ *   $aspect: fy / fx; $ratio: width / height; $yfov: the vertical field of view, degrees;
+ *   $name: the record's name, or "camera", in quotation marks;
+ *   $K: fx skew cx0, 0 fy cy0, 0 0 1; $R $t: camera from world; $V: the rotation vector of R;
+ *   $view: camera from world, 4 x 4; $pose: world from camera, 4 x 4; $flipped: $pose for axes
+ *     x right, y up, z back;
+ *   $viewcolumns $flippedcolumns: by columns; $axes $centre: the 3 x 3 part of $pose, and its
+ *     last column.
+ * $key@N is number N of a list, from 0. Lists are written as "1, 2, 3"; after :s as "1 2 3";
+ * after :q with each number in quotation marks; after :1, :3 or :4 in brackets, so many at a
+ * time. Returns VL_OK: text->failed says if memory is lacking. */
 vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record,
                             const vlCamera *camera, const vlCameraValue *own, const char *form);
 #define VL_PUT_FORM(text, record, camera, form, ...) \

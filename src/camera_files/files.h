@@ -98,8 +98,7 @@ vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const ch
 vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record);
 /* Sets the image's size for a file that has none. It is the size of the def, or else of the
  * first of the named images that exists. The names are relative to the file's folder, and null
- * ends the list. It is an error if there is neither.
- */
+ * ends the list. It is an error if there is neither. */
 vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images,
                                vlCameraRecord *record);
 /* Reads the image's size from two keys if both exist. Otherwise sets the size like
@@ -114,8 +113,7 @@ vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, con
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
                            double *values, uint32_t least, uint32_t most, uint32_t *count);
 /* Parses the next number of a text, after blanks and commas. If there is no number, *end is
- * text.
- */
+ * text. */
 double vl_camera_parse(const char *text, char **end);
 /* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
@@ -232,8 +230,8 @@ vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_
 
 void vl_rotation_from_vector(const double v[3], double r[9]);
 void vl_rotation_to_vector(const double r[9], double v[3]);
-/* Converts a quaternion w x y z to a rotation. Returns false if its length is 0 or not finite.
- */
+/* Converts a quaternion w x y z to a rotation. Returns false if its length is 0 or not
+ * finite. */
 bool vl_rotation_from_quaternion(const double q[4], double r[9]);
 void vl_rotation_to_quaternion(const double r[9], double q[4]);
 /* Both functions use camera-from-world rotation and translation. The first sets the def's pose;

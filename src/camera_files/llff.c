@@ -17,8 +17,7 @@ typedef struct {
 } Array;
 
 /* Reads NumPy's header. False: it is not an array of N x 17 little-endian floating-point
- * numbers.
- */
+ * numbers. */
 static bool read_header(const char *text, size_t size, Array *array) {
   const unsigned char *b = (const unsigned char *)text;
   char header[512];

@@ -115,8 +115,7 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
   if (flat && scale < 0.0)
     return vl_camera_wrong(file, "%s: \"projection_matrix\" mirrors w", file->dialect);
   /* orthographic: forward is the direction in which clip.z increases; with reversed z it
-   * decreases
-   */
+   * decreases */
   if (flat)
     forward = p[10] < 0.0 ? -1.0 : 1.0;
   if (p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || (!flat && (p[3] != 0.0 || p[7] != 0.0)))
@@ -211,8 +210,8 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-/* Projection matrix from view space (x right, y up, z back) to clip space, for column vectors.
- */
+/* Projection matrix from view space (x right, y up, z back) to clip space, for column
+ * vectors. */
 static vlMat4 projection_of(const vlCamera *c, const Api *api) {
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double w = c->width, h = c->height, up = api->down ? 1.0 : -1.0;

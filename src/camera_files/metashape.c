@@ -11,8 +11,7 @@
 #include "velo/projection.h"
 
 /* Reads the numbers of <calibration>. Files of version 1.1 and before have fx, fy, and cx, cy
- * from the image's corner.
- */
+ * from the image's corner. */
 static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration,
                              vlCameraDef *d) {
   static const char *const names[] = {"k1", "k2", "p2", "p1",

@@ -55,8 +55,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
 }
 
 /* Fields of instant-ngp that make another camera of it: refused, so that none is read as a
- * pinhole.
- */
+ * pinhole. */
 static vlResult refuse_others(const vlCameraFile *file, const json_t *frame,
                               const json_t *tree) {
   static const char *const polynomial[] = {"ftheta_p0", "ftheta_p1", "ftheta_p2", "ftheta_p3",

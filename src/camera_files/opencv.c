@@ -7,8 +7,8 @@
 #include "camera_files/fields.h"
 #include "velo/projection.h"
 
-/* The names of lens models in both dialects; without a name the number of coefficients decides.
- */
+/* The names of lens models in both dialects; without a name the number of coefficients
+ * decides. */
 vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
                              const char *coefficients, vlCameraDef *d) {
   static const char *const names[] = {
@@ -196,8 +196,8 @@ static vlResult read_size(const vlCameraFile *file, const json_t *tree,
 }
 
 /* Two cameras, and x2 = R x1 + T. The world's space is the first camera's. Without R and T,
- * which the calibration program writes into a file of their own, the second has no pose here.
- */
+ * which the calibration program writes into a file of their own, the second has no pose
+ * here. */
 static vlResult read_stereo(const vlCameraFile *file, const json_t *tree,
                             const char *const *names, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;

@@ -1,10 +1,10 @@
 /* camera_files/realitycapture.c: RealityCapture's (RealityScan's) XMP beside each image, and
  * its CSV "Internal/External camera parameters". Camera axes of the XMP: x right, y down, z
  * forward; xcr:Rotation is camera from world by rows, xcr:Position the camera's centre. With s
- * the larger side of the image: f = s * 35 mm focal length / 36, cx = w/2 + s
- * * U, cy = h/2 + s * V; the first pixel's centre is (0.5, 0.5). The distortion is Brown's,
- * with t1 and t2 as OpenCV's p1 and p2. The CSV: x, y, alt is the centre; with heading h, pitch
- * p, roll r the camera's axes (x right, y up, z back) are the columns of Rz(-h) Rx(p) Ry(r). */
+ * the larger side of the image: f = s * 35 mm focal length / 36, cx = w/2 + s * U, cy = h/2 + s
+ * * V; the first pixel's centre is (0.5, 0.5). The distortion is Brown's, with t1 and t2 as
+ * OpenCV's p1 and p2. The CSV: x, y, alt is the centre; with heading h, pitch p, roll r the
+ * camera's axes (x right, y up, z back) are the columns of Rz(-h) Rx(p) Ry(r). */
 #include <math.h>
 #include <stdio.h>
 

@@ -21,8 +21,7 @@ struct vlTrajectory {
 };
 
 /* A frame's location for messages: the file (if it is not the opened one), the line and the
- * frame.
- */
+ * frame. */
 typedef struct vlFrameLocation {
   const char *path;
   uint32_t line, frame;

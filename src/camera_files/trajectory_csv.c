@@ -1,9 +1,9 @@
 /* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns:
  * CSV (separated by comma, semicolon, tab or blanks). Without one: TUM's lists (8 numbers:
  * seconds, position, quaternion x y z w) and KITTI's (12 numbers: three rows of a matrix).
- * EuRoC's ground truth has its header in a comment, with units:
- * "#timestamp [ns], p_RS_R_x [m], ...". All are world from camera, x right, y down, z forward,
- * unless a comment before the header says "axes: opengl" or "pose: camera_from_world". */
+ * EuRoC's ground truth has its header in a comment, with units: "#timestamp [ns], p_RS_R_x [m],
+ * ...". All are world from camera, x right, y down, z forward, unless a comment before the
+ * header says "axes: opengl" or "pose: camera_from_world". */
 #include <math.h>
 #include <stdlib.h>
 

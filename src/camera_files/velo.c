@@ -273,8 +273,8 @@ static vlResult read_pose_close(const vlCameraFile *file, const json_t *tree,
   return read_matrix(file, tree, field->name, &d->has_matrix_close, d->world_from_camera_close);
 }
 
-/* Checks one value by the field's row, or a finite number where no row holds it; null is unset.
- */
+/* Checks one value by the field's row, or a finite number where no row holds it; null is
+ * unset. */
 static vlResult read_item(const vlCameraFile *file, const json_t *item, const Field *field,
                           double *number) {
   static const vlParameter any = {.type = VL_PARAMETER_DOUBLE, .flags = VL_PARAMETER_UNSET};

@@ -36,8 +36,8 @@ static vlResult read_camera(const vlCameraFile *file, const vlCameraLines *lines
   return vl_camera_line_numbers(file, lines, lines->text + name, v, 10, 10, &count);
 }
 
-/* The length of the name: up to the tab, or to the first blank after a possible quotation mark.
- */
+/* The length of the name: up to the tab, or to the first blank after a possible quotation
+ * mark. */
 static size_t name_length(const char *line) {
   const char *quote = *line == '"' ? strchr(line + 1, '"') : NULL;
   if (quote)

@@ -1,8 +1,8 @@
 /* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias becomes a
  * copy of the value that its anchor names. The number of values in a file with aliases is
  * limited, since a small file could otherwise expand without bound. "<<" merges maps. OpenCV's
- * first line
- * "%YAML:1.0" is not a valid YAML directive and is ignored, and its tabs count as blanks. */
+ * first line "%YAML:1.0" is not a valid YAML directive and is ignored, and its tabs count as
+ * blanks. */
 #include <math.h>
 #include <stdlib.h>
 #include <yaml.h>

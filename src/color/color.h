@@ -1,7 +1,7 @@
-/* color/color.h: spectra, colour spaces, and conversion between spectra and RGB.
- * Wavelengths are in nm, from 360 to 830. A dense spectrum is an array of 471 floats, one per
- * nm, interpolated linearly. RGB reflectances become smooth spectra s(l) = sigmoid(c0 l^2 + c1
- * l + c2) (Jakob and Hanika 2019). The coefficients come from a table made at build time. */
+/* color/color.h: spectra, colour spaces, and conversion between spectra and RGB. Wavelengths
+ * are in nm, from 360 to 830. A dense spectrum is an array of 471 floats, one per nm,
+ * interpolated linearly. RGB reflectances become smooth spectra s(l) = sigmoid(c0 l^2 + c1 l +
+ * c2) (Jakob and Hanika 2019). The coefficients come from a table made at build time. */
 #ifndef COLOR_COLOR_H
 #define COLOR_COLOR_H
 

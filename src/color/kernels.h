@@ -36,8 +36,8 @@ typedef struct vlColorKernels {
   /* Evaluates one dense spectrum (VL_LAMBDA_COUNT values) for all paths. */
   void (*dense_eval)(uint32_t n, const float *dense, const float *const lambda[4],
                      float *const out[4]);
-  /* Evaluates one dense spectrum per path: the spectrum of path i starts at dense[offset[i]].
-   */
+  /* Evaluates one dense spectrum per path: the spectrum of path i starts at
+   * dense[offset[i]]. */
   void (*dense_gather)(uint32_t n, const float *dense, const uint32_t *offset,
                        const float *const lambda[4], float *const out[4]);
   /* Converts RGB reflectances, clamped to [0,1], to sigmoid coefficients. */
@@ -52,8 +52,8 @@ typedef struct vlColorKernels {
 } vlColorKernels;
 VL_KERNEL_TABLE(vlColorKernels, vl_color)
 
-/* The CIE observer for rgb_from_radiance: x, y, z, 0 for each nm, VL_LAMBDA_COUNT * 4 floats.
- */
+/* The CIE observer for rgb_from_radiance: x, y, z, 0 for each nm, VL_LAMBDA_COUNT * 4
+ * floats. */
 extern const float vl_cie_xyz0[VL_LAMBDA_COUNT * 4];
 
 #endif

@@ -1,6 +1,5 @@
 /* color/kernels.hot.c: spectra and colour over batches of paths (color/kernels.h). Compiled
- * once per instruction set.
- */
+ * once per instruction set. */
 #include "color/kernels.h"
 
 /* u + channel / 4, wrapped to [0, 1). */

@@ -22,11 +22,11 @@ extern const float vl_checker_patches[VL_CHECKER_PATCHES][VL_CHECKER_SAMPLES];
 const vlSensorCurves *vl_sensor_find(const char *name);
 
 /* Writes the sensor's curves at each nm, interleaved as in vl_cie_xyz0 (r, g, b, 0;
- * VL_LAMBDA_COUNT
- * * 4 floats). Also writes the row-major matrix that maps the integrals of radiance times these
- * curves to XYZ. The matrix is a least-squares fit over the ColorChecker patches. It maps their
- * sensor values under daylight of `kelvin` to their XYZ under the space's illuminant. It is
- * scaled so that a white surface with luminance Y under that daylight gets Y. */
+ * VL_LAMBDA_COUNT * 4 floats). Also writes the row-major matrix that maps the integrals of
+ * radiance times these curves to XYZ. The matrix is a least-squares fit over the ColorChecker
+ * patches. It maps their sensor values under daylight of `kelvin` to their XYZ under the
+ * space's illuminant. It is scaled so that a white surface with luminance Y under that daylight
+ * gets Y. */
 void vl_sensor_make(const vlSensorCurves *curves, double kelvin, vlColorSpace space,
                     float *observer, double xyz_from_sensor[9]);
 

@@ -1,5 +1,5 @@
-/* export/export.c: the interface of this room: chooses the format, counts losses, writes files.
- */
+/* export/export.c: the interface of this room: chooses the format, counts losses, writes
+ * files. */
 #include "export/export.h"
 
 #include <stdarg.h>

@@ -78,16 +78,16 @@ void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
  * were. */
 bool vl_export_main(vlExport *x, const void *data, size_t size);
 /* Writes a file beside the scene file. No file is overwritten: where another has the name,
- * `name` becomes a free one
- * ("room-2.bin"). A file that has these bytes already is taken as it is. */
+ * `name` becomes a free one ("room-2.bin"). A file that has these bytes already is taken as it
+ * is. */
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size);
 /* Path of a file in the folder of the scene file. */
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
 /* The decoded image of a texture. */
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t);
 /* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise
- * the image encoded as PNG. *suffix receives the format. The bytes are a block of the context.
- */
+ * the image encoded as PNG. *suffix receives the format. The bytes are a block of the
+ * context. */
 bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size,
                      const char **suffix);
 /* Encodes an image in the format that the suffix names. */
@@ -110,8 +110,7 @@ void vl_export_metal_rgb(vlExport *x, const vlMaterialDef *m, float rgb[3]);
 /* Index of refraction at 589 nm. */
 float vl_export_eta(const vlSpectrum *eta);
 /* The mean of the squares of an input: of an image over all its pixels. Principled materials
- * have alpha = roughness^2.
- */
+ * have alpha = roughness^2. */
 float vl_export_mean_square(vlExport *x, const vlFloatInput *input);
 /* GGX alpha from the roughness of a pbrt material. */
 float vl_export_alpha(vlExport *x, const vlMaterialDef *m, const vlFloatInput *roughness);
@@ -157,8 +156,7 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror);
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes);
 /* Gives the scene the sum of the infinite lights. mirror: the nodes have a parent that mirrors
- * z.
- */
+ * z. */
 bool vl_gltf_put_environment(vlExport *x, json_t *scene, bool mirror);
 
 bool vl_export_pbrt(vlExport *x);

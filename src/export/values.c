@@ -35,8 +35,8 @@ const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
   return t->kind == VL_TEXTURE_IMAGE ? t : NULL;
 }
 
-/* The approximate mean of a texture that is not an image. depth limits the nesting of textures.
- */
+/* The approximate mean of a texture that is not an image. depth limits the nesting of
+ * textures. */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
   const vlTextureDef *t =
       input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;

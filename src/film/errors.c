@@ -66,8 +66,8 @@ static double variance_of_ratio(double r, double n, double share) {
   return r / smooth / n;
 }
 
-/* The square of the factor on the standard error of independent samples, for a pixel of a cell.
- */
+/* The square of the factor on the standard error of independent samples, for a pixel of a
+ * cell. */
 static double pixel_factor(const Pixel *p, const Pixel *cell, uint32_t count, bool apart) {
   if (!p->valid)
     return 1;

@@ -146,8 +146,8 @@ vlResult vl_film_lock_write(vlContext *context, const char *path, vlFilmLock **l
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);
 /* Writes preamble and header. */
 vlResult vl_film_put_header(vlFileWriter *writer, const char *header);
-/* Fills a block's head. compared: null: none. Returns the size of the block in the file, bytes.
- */
+/* Fills a block's head. compared: null: none. Returns the size of the block in the file,
+ * bytes. */
 size_t vl_film_block_head(const vlFilmDef *def, const uint32_t window[4], uint32_t range_count,
                           const vlComparedNoise *compared, vlFilmBlockHead *head);
 

@@ -28,8 +28,7 @@ static bool append(json_t *list, json_t *value) {
 }
 
 /* Numbers that JSON cannot hold, and strings that are not UTF-8, are left out with their
- * attribute.
- */
+ * attribute. */
 static bool can_be_kept(const vlAttribute *a) {
   if (!types[a->type].numbers)
     return !a->string || vl_is_utf8(a->string);

@@ -64,8 +64,8 @@ static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
          crop[3] <= window[3];
 }
 
-/* Copies a block's data to `to`, in the order of the file. Returns the end of the copied data.
- */
+/* Copies a block's data to `to`, in the order of the file. Returns the end of the copied
+ * data. */
 static char *gather(const vlFilm *film, const uint32_t block_window[4], char *to) {
   uint32_t width = block_window[2] - block_window[0], n = film->def.buckets;
   size_t first = (size_t)(block_window[1] - film->def.crop[1]) * film->width +

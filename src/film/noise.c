@@ -35,8 +35,8 @@ typedef struct Block {
   double mean[VL_FILM_BLOCK][VL_FILM_BLOCK][3], square[VL_FILM_BLOCK][VL_FILM_BLOCK][3];
 } Block;
 
-/* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to e^2.
- */
+/* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to
+ * e^2. */
 static const double ERRORS_OF_MEAN = 3, ERRORS_OF_RATIO = 2;
 enum {
   LEAST_FOR_RATIO = 12
@@ -77,8 +77,7 @@ static void limit(double white, double *mean, double *square) {
 }
 
 /* The limited values, each replaced by the mean over the pixels of the block that are next to
- * it.
- */
+ * it. */
 static void pool(const Block *from, double white, Block *to) {
   Block limited = *from;
   for (uint32_t y = 0; y < from->height; y++)

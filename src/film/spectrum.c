@@ -1,7 +1,7 @@
 /* film/spectrum.c: spectra in addition to colours: buckets of wavelengths of equal width, each
  * with its own exact sums (docs/decisions/0002-exact-film-sums.md). Wavelengths are sampled
- * uniformly (trace), so that the mean of the samples in a bucket is the mean over the bucket.
- */
+ * uniformly (trace), so that the mean of the samples in a bucket is the mean over the
+ * bucket. */
 #include <stdio.h>
 #include <string.h>
 

@@ -48,8 +48,7 @@ static inline uint32_t vl_first_part(uint32_t end) {
 
 /* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): the front
  * sums are committed; the back sums belong to the running pass and are valid where stamp ==
- * pass.
- */
+ * pass. */
 typedef struct vlFilmSpectrum {
   vlInt128 *sums[2]; /* front, back; null: not allocated yet */
   int64_t *weights[2];

@@ -5,8 +5,7 @@
 #include "math/transform.h"
 
 /* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened
- * cones.
- */
+ * cones. */
 static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135,
                                 0.0367, 0.0389, -0.0685, 1.0296};
 

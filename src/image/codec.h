@@ -48,14 +48,12 @@ vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char
 /* Reports an UNSUPPORTED error: "name: PNG file with <what> is not supported". */
 vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
 /* CANCELLED, reported, if the load or the build must stop; decoders call it for each row or
- * chunk.
- */
+ * chunk. */
 vlResult vl_codec_step(const vlImageFile *file);
 /* Checks the image's size before memory is allocated. need: bytes of the pixels. ratio: the
  * largest number of these bytes that one byte of the file can encode. The result is a SCENE
  * error when the file is too small ("promises WxH pixels, more than its N bytes can hold") or
- * the image is empty.
- */
+ * the image is empty. */
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width,
                           uint64_t height, double need, double ratio);
 /* Makes an image with default channel names and reports errors. Returns CANCELLED when only the

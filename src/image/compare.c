@@ -21,8 +21,7 @@ static bool finite3(const float *v) {
 }
 
 /* Magma (van der Walt and Smith, CC0) by Matt Zucker's polynomials of degree 6 (CC0); t in [0,
- * 1].
- */
+ * 1]. */
 static void magma(float t, uint8_t out[3]) {
   static const float C[3][7] = {{-0.002136485f, 0.251660541f, 8.353717279f, -27.668733086f,
                                  52.176139812f, -50.768525365f, 18.655705066f},

@@ -1,6 +1,5 @@
 /* image/exr.h: declarations shared by the OpenEXR reader and writer: error handling and
- * attributes.
- */
+ * attributes. */
 #ifndef IMAGE_EXR_H
 #define IMAGE_EXR_H
 
@@ -20,8 +19,7 @@ typedef struct vlExr {
 
 void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char *message);
 /* Copies the header's attributes that vlAttribute can hold to the image, except those that
- * describe the file's layout.
- */
+ * describe the file's layout. */
 vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image);
 /* Copies the image's attributes to the header. Layout attributes (windows, aspect, screen
  * window) use OpenEXR's setters. */

@@ -15,8 +15,7 @@ void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char 
 }
 
 /* Attributes that describe the file's layout. The reader skips them and the writer makes new
- * ones.
- */
+ * ones. */
 static const char *const LAYOUT[] = {
     "channels",          "compression", "lineOrder", "tiles",   "type",
     "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
@@ -113,8 +112,8 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, si
   }
 }
 
-/* Whether an attribute that every header has is at its default; such attributes are not kept.
- */
+/* Whether an attribute that every header has is at its default; such attributes are not
+ * kept. */
 static bool is_default(const vlAttribute *a, const vlImage *image) {
   if (vl_text_is(a->name, "pixelAspectRatio") || vl_text_is(a->name, "screenWindowWidth"))
     return a->numbers[0] == 1.0;

@@ -320,8 +320,7 @@ static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
 }
 
 /* Compares layers: the part of the name before the last dot. Channels without a layer come
- * first.
- */
+ * first. */
 static int compare_layers(const char *a, const char *b) {
   size_t n = (size_t)(suffix_of(a) - a), m = (size_t)(suffix_of(b) - b);
   n -= n > 0;

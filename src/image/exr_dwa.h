@@ -15,8 +15,8 @@ typedef struct vlDwaChannel {
 void vl_dwa_make_curve(uint16_t *curve);
 
 /* Decodes one chunk of width*height pixels. unpacked receives, for each line, each channel's
- * values in the given order, as in an uncompressed file. Returns SCENE when the data is broken.
- */
+ * values in the given order, as in an uncompressed file. Returns SCENE when the data is
+ * broken. */
 vlResult vl_dwa_unpack(vlContext *context, const vlDwaChannel *channels, uint32_t count,
                        uint32_t width, uint32_t height, const uint16_t *curve,
                        const uint8_t *packed, size_t packed_size, uint8_t *unpacked);

@@ -108,8 +108,7 @@ static bool headers_fit(const vlImageFile *file) {
 
 static vlResult fail(Reader *r, exr_result_t code) {
   /* The PIZ decoder reports "out of memory" for damaged data, too; the message tells the two
-   * apart.
-   */
+   * apart. */
   bool damaged = strncmp(r->base.message, "Unable to decompress", 20) == 0;
   bool refused =
       vl_text_is(r->base.message,

@@ -60,8 +60,8 @@ static Vec xyz_of_ycc(Vec c) {
 static float lab_curve(float t) {
   return t > 0.00885645168f ? vl_pow(t, 1.0f / 3.0f) : t * 7.78703704f + 0.137931034f;
 }
-/* Section 4.1.3: L*a*b* with Hunt's adjustment: colour differences are weaker at low luminance.
- */
+/* Section 4.1.3: L*a*b* with Hunt's adjustment: colour differences are weaker at low
+ * luminance. */
 static Vec hunt_lab_of_xyz(Vec c) {
   float x = lab_curve(c.x / WHITE.x), y = lab_curve(c.y / WHITE.y),
         z = lab_curve(c.z / WHITE.z);
@@ -84,8 +84,8 @@ static double weight_exp(double x) {
   return sum;
 }
 
-/* Gaussian exp(-pi^2 d^2 / b), d in degrees, normalised. Returns its sum before normalisation.
- */
+/* Gaussian exp(-pi^2 d^2 / b), d in degrees, normalised. Returns its sum before
+ * normalisation. */
 static double csf_kernel(Kernel *k, int radius, double b) {
   const double pi = 3.14159265358979324;
   double sum = 0.0, w[2 * MAX_RADIUS + 1];

@@ -52,8 +52,8 @@ static inline uint16_t vl_float_to_half(float f) {
 
 /* ---- curves ------------------------------------------------------------------------------ */
 
-/* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives 0.
- */
+/* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives
+ * 0. */
 uint8_t vl_linear_to_srgb8(float linear);
 /* The nearest of 256 equally spaced codes for a value clamped to [0, 1]; NaN gives 0. */
 static inline uint8_t vl_linear_to_unorm8(float x) {

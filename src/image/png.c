@@ -90,8 +90,8 @@ static const char *check_chunks(const vlImageFile *file) {
   return NULL;
 }
 
-/* Texts, profiles and the like are skipped: only what tells the encoding of the values is read.
- */
+/* Texts, profiles and the like are skipped: only what tells the encoding of the values is
+ * read. */
 static void ignore_chunks(Png *p) {
   static const png_byte wanted[] = "gAMA\0sRGB\0iCCP";
   png_set_keep_unknown_chunks(p->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);

@@ -7,8 +7,8 @@
 #include "velo/load.h"
 #include "velo/scene_base.h"
 
-/* X(suffix, name) for each suffix of scene files; vl_import_NAME reads them. def may be null.
- */
+/* X(suffix, name) for each suffix of scene files; vl_import_NAME reads them. def may be
+ * null. */
 #define VL_SCENE_FORMATS(X) \
   X(".pbrt", pbrt)          \
   X(".pbrt.gz", pbrt)       \
@@ -30,8 +30,8 @@ VL_SCENE_FORMATS(VL_DECLARE_IMPORT)
 
 /* pbrt: a pbrt-v4 scene file, plain or compressed by gzip. gltf: a glTF 2.0 file, .gltf or .glb
  * as its content shows; the scene's defs are marked when camera or lights are missing. obj,
- * ply, stl, off: geometry without camera and lights; the scene's defs are marked accordingly.
- */
+ * ply, stl, off: geometry without camera and lights; the scene's defs are marked
+ * accordingly. */
 
 /* A pbrt-v4 scene from memory; errors use `name` as the file's name, and relative file names
  * start from its folder. data is copied. */

@@ -1,6 +1,5 @@
 /* import/plain.c: plain geometry: loads a PLY file as a scene, with default settings and
- * material.
- */
+ * material. */
 #include "import/plain.h"
 
 #include <string.h>

@@ -4,10 +4,13 @@
  * the same for both.
  *
  *   eval:   value[c] = f(wo, wi) |cos wi|, pdf = density of sampling wi (solid angle); specular
- * (delta) parts are 0 sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete
- * probability, flag set); flags The BSDFs transport radiance, as on camera paths, so
- * transmission has the factor 1/eta^2 (pbrt book 9.5.2). References: pbrt-v4 book chapter 9;
- * Walter et al. 2007; Heitz 2018 / Dupuy and Benyoub 2023 (visible normals). */
+ *           (delta) parts are 0
+ *   sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete probability, flag
+ *           set); flags
+ *
+ * The BSDFs transport radiance, as on camera paths, so transmission has the factor 1/eta^2
+ * (pbrt book 9.5.2). References: pbrt-v4 book chapter 9; Walter et al. 2007; Heitz 2018 / Dupuy
+ * and Benyoub 2023 (visible normals). */
 #ifndef MATERIAL_BSDF_HOT_H
 #define MATERIAL_BSDF_HOT_H
 
@@ -51,8 +54,7 @@ enum {
 _Static_assert((int)VL_P_FILM_NM < (int)VL_BSDF_ROWS, "enough rows");
 
 /* Rows of the other kinds: VL_T_ diffuse transmission, VL_L_ layered, VL_H_ hair, VL_S_
- * subsurface.
- */
+ * subsurface. */
 enum { VL_T_TRANSMITTANCE /* 4 */ };
 enum {
   VL_L_METAL, /* 1: the base is a metal with eta and k, relative to the coat's index; 0: the

@@ -11,8 +11,8 @@
 static const double pi = 3.14159265358979323846;
 
 /* Fresnel moments: int Fr(c) c dc and int Fr(c) c^2 dc over cosines c from 0 to 1. eta: index
- * on the incident side over index on the other side, so 1.5 for light inside a solid of
- * index 1.5. */
+ * on the incident side over index on the other side, so 1.5 for light inside a solid of index
+ * 1.5. */
 static double moment1(double eta) {
   double e = eta;
   if (e < 1)

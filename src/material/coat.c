@@ -44,8 +44,8 @@ typedef struct {
   double x[OUTER], w[OUTER]; /* Gauss-Legendre on [0, 1] */
 } Rules;
 
-/* Nodes and weights on [0, 1], by Newton's method on the Legendre polynomial (Numerical
- * Recipes 4.6). */
+/* Nodes and weights on [0, 1], by Newton's method on the Legendre polynomial (Numerical Recipes
+ * 4.6). */
 static void gauss_legendre(int n, double *x, double *w) {
   for (int i = 0; i < n; i++) {
     double z = -(double)vl_sincos(3.14159265f * ((float)i + 0.75f) / ((float)n + 0.5f)).cos,

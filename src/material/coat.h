@@ -52,11 +52,10 @@ typedef struct vlCoatTable {
 
 /* Builds the tables for isotropic alpha between alpha_min and alpha_max (equal for untextured
  * roughness). Below VL_GGX_SMOOTH (math/ggx.h) the interface is smooth. The quadrature is
- * deterministic. Relative errors of T and R for eta > 1: 1e-4 up to alpha 0.1, 4e-4 up to
- * alpha 1. Interpolation between rows adds up to 2e-3 for cos > 0.1 and 1e-2 below. A build
- * takes 1.5 ms for one roughness, 45 ms for a range. Errors: ARGUMENT (eta <= 0, tau < 0,
- * alpha_min > alpha_max,
- * ...), MEMORY. */
+ * deterministic. Relative errors of T and R for eta > 1: 1e-4 up to alpha 0.1, 4e-4 up to alpha
+ * 1. Interpolation between rows adds up to 2e-3 for cos > 0.1 and 1e-2 below. A build takes 1.5
+ * ms for one roughness, 45 ms for a range. Errors: ARGUMENT (eta <= 0, tau < 0, alpha_min >
+ * alpha_max, ...), MEMORY. */
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth,
                        float alpha_min, float alpha_max, vlCoatTable **table);
 /* The same for an interface of two alphas, along x and along y. Interpolation between azimuths

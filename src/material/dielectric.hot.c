@@ -35,8 +35,7 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     float fr = vl_fresnel_dielectric(oh, eta).reflected;
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
     /* D_wo(h) / wo.h = 2 D / (Lo + zo). jacobian: the Jacobian of h with respect to wi, times
-     * wo.h
-     */
+     * wo.h */
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     float t = ih + oh * inverse;
     float t2 = t * t;

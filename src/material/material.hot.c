@@ -21,8 +21,7 @@ static vlVec3 facing(vlVec3 n, vlVec3 side) {
 }
 
 /* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or
- * uv.
- */
+ * uv. */
 static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i) {
   vlVec3 p[3], n[3];
   for (int k = 0; k < 3; k++) {
@@ -264,8 +263,7 @@ static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
 static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
   for (uint32_t i = first; i < last; i++) {
     /* Equal wavelengths mark a path with only the hero left: weights may be zero for other
-     * reasons.
-     */
+     * reasons. */
     bool alone = p->lambda[1][i] == p->lambda[0][i];
     p->beta[0][i] *= alone ? 1.0f : 4.0f;
     p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;

@@ -230,8 +230,8 @@ static bool spectra_to_rgb(vlContext *context, vlMeasured *m, const vlTensorFiel
   return true;
 }
 
-/* Moves the spectra to the start of the file's memory block, shrinks the block, and keeps it.
- */
+/* Moves the spectra to the start of the file's memory block, shrinks the block, and keeps
+ * it. */
 static void keep_spectra(vlContext *context, vlMeasured *m, Source *s) {
   const vlTensorField *f = s->fields[SPECTRA];
   size_t size = (size_t)f->count * sizeof(float);

@@ -180,8 +180,8 @@ static inline float vl_measured_albedo(const vlMeasured *m, int channel, float l
                     : m->albedo[k.i];
 }
 
-/* The inverse of vl_measured_sample: the (u, v) from which (x, y) is sampled, and its density.
- */
+/* The inverse of vl_measured_sample: the (u, v) from which (x, y) is sampled, and its
+ * density. */
 static inline vlMeasuredPoint vl_measured_invert(const vlMeasuredTable *table,
                                                  vlMeasuredSlices slices, float x, float y) {
   uint32_t w = table->width, h = table->height;

@@ -4,14 +4,18 @@
  *
  * A direction of elevation theta and azimuth phi is a point of the unit square, (sqrt(2 theta /
  * pi), (phi + pi) / (2 pi)). All tables are bilinear over the square: their rows run along phi,
- * their columns along theta. ndf(m): density D of the microfacet normals m, per solid angle.
- *     sigma(o): projected microfacet area visible from o.
- *     vndf(m): for each o = (phi_i, theta_i) of a grid, the density of the visible normals over
- * the unit square. Sampling this density maps a square of random numbers to normals. The next
- * two tables are over that square. luminance: for each o, the luminance. spectra: for each o,
- * the value per wavelength. If sampling vndf maps the point s of the square of random numbers
- * to m, and m is the half vector of o and w, then f(o, w) cos w = spectra(s) D(m) / (4
- * sigma(o)). */
+ * their columns along theta.
+ *
+ *   ndf(m)     density D of the microfacet normals m, per solid angle.
+ *   sigma(o)   projected microfacet area visible from o.
+ *   vndf(m)    for each o = (phi_i, theta_i) of a grid, the density of the visible normals over
+ *              the unit square. Sampling this density maps a square of random numbers to
+ *              normals. The next two tables are over that square.
+ *   luminance  for each o, the luminance.
+ *   spectra    for each o, the value per wavelength.
+ *
+ * If sampling vndf maps the point s of the square of random numbers to m, and m is the half
+ * vector of o and w, then f(o, w) cos w = spectra(s) D(m) / (4 sigma(o)). */
 #ifndef MATERIAL_MEASURED_TABLES_H
 #define MATERIAL_MEASURED_TABLES_H
 

@@ -2,13 +2,17 @@
  * of light that a rough layer reflects into all directions. The layers below it receive the
  * rest, so that energy is conserved.
  *
- *     specular  E(w) = F0 a(w) + F90 b(w): GGX with single scattering and Schlick's Fresnel
- * term, split-sum form (Karis 2013, "Real Shading in Unreal Engine 4"); a + b is E for F = 1
- * sheen the "Charlie" distribution with its shadowing (Estevez and Kulla 2017, "Production
- * Friendly Microfacet Sheen BRDF") loss      share of the light incident on rough glass, from
- * outside or inside, that a single-scattering model of reflection and refraction loses (Walter
- * et al. 2007 with the Schlick term of that index) Means are cosine-weighted averages over the
- * hemisphere: int E 2 cos dcos (Kulla and Conty 2017). */
+ *   specular  E(w) = F0 a(w) + F90 b(w): GGX with single scattering and Schlick's Fresnel term,
+ *             split-sum form (Karis 2013, "Real Shading in Unreal Engine 4"); a + b is E for
+ *             F = 1
+ *   sheen     the "Charlie" distribution with its shadowing (Estevez and Kulla 2017,
+ *             "Production Friendly Microfacet Sheen BRDF")
+ *   loss      share of the light incident on rough glass, from outside or inside, that a
+ *             single-scattering model of reflection and refraction loses (Walter et al. 2007
+ *             with the Schlick term of that index)
+ *
+ * Means are cosine-weighted averages over the hemisphere: int E 2 cos dcos (Kulla and Conty
+ * 2017). */
 #ifndef MATERIAL_PRINCIPLED_H
 #define MATERIAL_PRINCIPLED_H
 

@@ -6,8 +6,7 @@
 /* ---- thin film --------------------------------------------------------------------------- */
 
 /* Reflectance of two parallel interfaces for one polarisation, with all reflections between
- * them.
- */
+ * them. */
 static float interfere(float first, float second, float phase) {
   float product = first * second,
         sum = first * first + second * second + 2.0f * product * phase;
@@ -219,11 +218,12 @@ static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const fl
 /* Kulla and Conty 2017, extended to a boundary that transmits light. m(w) is the fraction of
  * energy that single scattering loses for direction w, M its mean over the cosine-weighted
  * hemisphere, n the index inside divided by that outside, and T the mean of 1 - F from outside.
- * The lost energy is scattered back uniformly to both sides: f_up(o, i)   = (1 - p) m(o) m(i) /
- * (pi M) f_down(o, i) = n_o^2 T m(o) m(i) / (pi max(n^2 M_in, M_out)) p_out = T n^2 M_in /
- * max(n^2 M_in, M_out),  p_in = T M_out / max(n^2 M_in, M_out) If radiance divided by the
- * squared index is the same everywhere (a furnace), each side gets back its loss, and f is
- * reciprocal. */
+ * The lost energy is scattered back uniformly to both sides:
+ *     f_up(o, i)   = (1 - p) m(o) m(i) / (pi M)
+ *     f_down(o, i) = n_o^2 T m(o) m(i) / (pi max(n^2 M_in, M_out))
+ *     p_out = T n^2 M_in / max(n^2 M_in, M_out),  p_in = T M_out / max(n^2 M_in, M_out)
+ * If radiance divided by the squared index is the same everywhere (a furnace), each side gets
+ * back its loss, and f is reciprocal. */
 static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   for (uint32_t i = 0; i < s->count; i++) {
     float eta = s->eta[i];

@@ -1,7 +1,6 @@
 /* math/approx.h: elementary functions in plain C that compilers vectorise, with the same bits
- * on every machine (only
- * + - * / sqrt and integer operations). Polynomials after Moshier's Cephes (single precision).
- * Errors are relative to the exact value over the stated range. */
+ * on every machine (only + - * / sqrt and integer operations). Polynomials after Moshier's
+ * Cephes (single precision). Errors are relative to the exact value over the stated range. */
 #ifndef MATH_APPROX_H
 #define MATH_APPROX_H
 
@@ -49,8 +48,8 @@ static inline vlSinCos vl_sincos_turn(float u) {
   return vl_sincos_quadrant(vl_sincos_kernel((q - n) * 1.57079632679489662f), (int32_t)n);
 }
 
-/* Relative error < 2e-7 for results in the normal range; 0 below -87.3, saturates at exp(88.3).
- */
+/* Relative error < 2e-7 for results in the normal range; 0 below -87.3, saturates at
+ * exp(88.3). */
 static inline float vl_exp(float x) {
   float y = x > 88.3f ? 88.3f : x;
   y = y < -87.3f ? -87.3f : y;

@@ -1,6 +1,5 @@
 /* math/cube_map.h: directions and the faces of a cube map, in the order and with the axes of
- * OpenGL: +x -x +y -y +z -z.
- */
+ * OpenGL: +x -x +y -y +z -z. */
 #ifndef VL_MATH_CUBE_MAP_H
 #define VL_MATH_CUBE_MAP_H
 

@@ -1,8 +1,7 @@
 /* math/elementary.c: see elementary.h. Numbers are pairs of doubles. A pair is the unevaluated
  * sum of its two doubles, with |low| <= half a unit in the last place of high, which gives 106
  * bits. Sums are computed after Knuth, products after Dekker (1971); neither needs a fused
- * multiply-add.
- */
+ * multiply-add. */
 #include "math/elementary.h"
 
 #include <math.h>
@@ -116,8 +115,7 @@ static double exp_of(Pair x) {
 }
 
 /* Natural logarithm of a finite x > 0. x = m 2^exponent with m in [sqrt(1/2), sqrt 2); ln m = 2
- * artanh((m - 1) / (m
- * + 1)). */
+ * artanh((m - 1) / (m + 1)). */
 static Pair log_pair(double x) {
   int exponent;
   double m = frexp(x, &exponent);

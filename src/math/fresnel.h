@@ -55,8 +55,7 @@ static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
 }
 
 /* A thin slab of two parallel interfaces, with all orders of interreflection: R + T^2 R + T^2
- * R^3
- * ... = 2R/(1+R) for T = 1 - R (pbrt book 9.5.1). */
+ * R^3 ... = 2R/(1+R) for T = 1 - R (pbrt book 9.5.1). */
 static inline float vl_fresnel_slab(float reflected) {
   return 2.0f * reflected / (1.0f + reflected);
 }

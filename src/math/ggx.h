@@ -3,11 +3,15 @@
  * callers mirror other directions first, because the distribution is even in z.
  *
  * With L(w) = |(alpha_x w.x, alpha_y w.y, w.z)| Smith's functions are short, and finite at
- * grazing angles: 1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z), G(o, i) = 1 / (1 + Lambda_o
- * + Lambda_i) = 2 zo zi / (Lo zi + Li zo)   (height-correlated; pbrt book 9.6.3). With D the
- * density of normals, for reflection: f cos_i = F D zi / (2 (Lo zi + Li zo)),  pdf(wi) = D / (2
- * (Lo + zo)),  f cos_i / pdf = F G/G1. References: Walter et al. 2007; Heitz 2014, 2018; Dupuy
- * and Benyoub 2023 (spherical caps); pbrt book 9.6. */
+ * grazing angles:
+ *     1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),
+ *     G(o, i) = 1 / (1 + Lambda_o + Lambda_i) = 2 zo zi / (Lo zi + Li zo)
+ * (height-correlated; pbrt book 9.6.3).
+ * With D the density of normals, for reflection:
+ *     f cos_i = F D zi / (2 (Lo zi + Li zo)),  pdf(wi) = D / (2 (Lo + zo)),
+ *     f cos_i / pdf = F G/G1.
+ * References: Walter et al. 2007; Heitz 2014, 2018; Dupuy and Benyoub 2023 (spherical caps);
+ * pbrt book 9.6. */
 #ifndef MATH_GGX_H
 #define MATH_GGX_H
 
@@ -15,8 +19,7 @@
 #include "math/vec.h"
 
 /* If both alphas are below this the surface is treated as smooth (as in pbrt's
- * EffectivelySmooth).
- */
+ * EffectivelySmooth). */
 #define VL_GGX_SMOOTH 1e-3f
 static inline int vl_ggx_is_smooth(float alpha_x, float alpha_y) {
   return (alpha_x < VL_GGX_SMOOTH) & (alpha_y < VL_GGX_SMOOTH);

@@ -1,7 +1,7 @@
-/* math/noise.h: gradient noise and its sums. Inline, by value.
- * Sources: Perlin 2002, "Improving Noise", with the permutation of his reference
- * implementation; sums as in Ebert et al., "Texturing and Modeling" and pbrt (3rd
- * edition, 10.6), so that the same parameters give the same pattern. */
+/* math/noise.h: gradient noise and its sums. Inline, by value. Sources: Perlin 2002, "Improving
+ * Noise", with the permutation of his reference implementation; sums as in Ebert et al.,
+ * "Texturing and Modeling" and pbrt (3rd edition, 10.6), so that the same parameters give the
+ * same pattern. */
 #ifndef MATH_NOISE_H
 #define MATH_NOISE_H
 

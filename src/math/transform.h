@@ -28,13 +28,11 @@ void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]);
 /* The same for the normal of a mesh's vertex, whose length is a weight where normals are
  * interpolated, as in pbrt: a mesh looks the same whether it or its instance is stretched.
  * scale: vl_mat4_scale_of the transform, which keeps unit normals near length 1. A length of 1
- * but for rounding becomes 1, and so do lengths whose square a float cannot hold.
- */
+ * but for rounding becomes 1, and so do lengths whose square a float cannot hold. */
 void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
                            float result[3]);
 /* The mean factor of the transform on lengths: the cube root of its determinant's absolute
- * value.
- */
+ * value. */
 double vl_mat4_scale_of(const vlMat4 *a);
 
 /* 3x3, row-major. The inverse of a singular matrix is not finite. */

@@ -76,8 +76,7 @@ static inline float vl_abs(float x) {
  * has no correct digit left. All are normal floats: those below 2^-126 (1.2e-38) have fewer
  * digits, and quotients by them overflow. */
 /* For products and squares of cosines, and for densities. Values up to 1e8 have a finite
- * quotient.
- */
+ * quotient. */
 #define VL_MIN_POSITIVE 1e-30f
 /* For squared lengths in scene units, which may be small. It is the smallest power of ten that
  * is a normal float. */
@@ -91,8 +90,7 @@ static inline float vl_abs(float x) {
 #define VL_INFINITY __builtin_inff()
 
 /* Orthonormal basis around unit n (Duff et al. 2017, "Building an Orthonormal Basis,
- * Revisited").
- */
+ * Revisited"). */
 typedef struct vlFrame {
   vlVec3 x, y, z;
 } vlFrame;

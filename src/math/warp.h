@@ -47,8 +47,7 @@ static inline vlVec2 vl_unwarp_disk(float x, float y) {
 /* ---- hemisphere and sphere --------------------------------------------------------------- */
 
 /* Density cos(theta) / pi (Malley's method). z is accurate to the last bits near the horizon
- * too.
- */
+ * too. */
 static inline vlVec3 vl_warp_cosine_hemisphere(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z = __builtin_sqrtf(vl_max(0.0f, (1.0f - d.r) * (1.0f + d.r)));
@@ -111,9 +110,10 @@ static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
 
 /* A spherical triangle seen from the origin. After Arvo 1995, "Stratified Sampling of Spherical
  * Triangles", but without computing angles. c' = cos(s) a + sin(s) t lies on the arc from a to
- * c. Van Oosterom and Strackee's (1983) solid angle of (a, b, c'), tan(area / 2) = det(a, b,
- * c') / (1
- * + a.b + b.c' + c'.a), solved for s, is tan(s / 2) = (1 + a.b) tan / (det(a, b, t) - b.t tan).
+ * c. Van Oosterom and Strackee's (1983) solid angle of (a, b, c'),
+ *     tan(area / 2) = det(a, b, c') / (1 + a.b + b.c' + c'.a),
+ * solved for s, is
+ *     tan(s / 2) = (1 + a.b) tan / (det(a, b, t) - b.t tan).
  * This needs no inverse cosine and loses no precision for small triangles except by the
  * rounding of their corners (6e-8 / size; below a solid angle of about 1e-6 sample the area
  * instead). */

@@ -8,8 +8,7 @@
 #include "velo/projection.h"
 
 /* A direction at angle theta to the axis, towards +x, is this many focal lengths from the
- * centre.
- */
+ * centre. */
 typedef struct ProjectionKnown {
   double theta, r;
 } ProjectionKnown;

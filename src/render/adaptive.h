@@ -47,8 +47,7 @@ bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *
 /* Whether a pixel gets samples in this pass. */
 bool vl_adaptive_has(const vlAdaptive *a, uint32_t x, uint32_t y);
 /* After a committed pass of `count` samples: counts them, and compares the blocks. Error:
- * MEMORY.
- */
+ * MEMORY. */
 vlResult vl_adaptive_end_pass(vlAdaptive *a, uint32_t count);
 
 /* Samples per pixel, the mean over the blocks: those of the film, and an estimate of those at

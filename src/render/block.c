@@ -66,8 +66,7 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
 }
 
 /* Each counter has one writing thread, so that load and store suffice; no atomic
- * read-modify-write.
- */
+ * read-modify-write. */
 static void count_more(_Atomic uint64_t *total, uint64_t more) {
   atomic_store_explicit(total, atomic_load_explicit(total, memory_order_relaxed) + more,
                         memory_order_relaxed);
@@ -88,8 +87,7 @@ static void clear_invalid(uint32_t n, const float *valid, float *alpha,
 
 /* Multiplies radiance by the camera ray's weight. Alpha stays 1 where the lens blocks a part of
  * the light: vignetting is black, not transparent. A weight of NaN makes the film leave the
- * sample out.
- */
+ * sample out. */
 static void weigh(uint32_t n, const float *weight, const float *valid, float *alpha,
                   float *const radiance[4]) {
   for (uint32_t i = 0; i < n; i++) {
@@ -249,8 +247,8 @@ static bool ask_between(vlRenderRun *r, unsigned *state) {
   return stop;
 }
 
-/* Marks those of the n listed samples that no pixel of the block counts. Returns their number.
- */
+/* Marks those of the n listed samples that no pixel of the block counts. Returns their
+ * number. */
 static uint32_t skip_listed(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b,
                             vlSharedGrid *grid, uint32_t n) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
@@ -295,8 +293,8 @@ static uint32_t skip_useless(const vlRenderRun *r, vlRenderWorker *w, const vlSh
   return skipped + skip_listed(r, w, b, grid, n);
 }
 
-/* Traces the samples [first, first + count) of a block and its border. False: it was stopped.
- */
+/* Traces the samples [first, first + count) of a block and its border. False: it was
+ * stopped. */
 static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b,
                          uint32_t first, uint32_t count, unsigned *state) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);

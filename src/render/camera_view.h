@@ -1,5 +1,5 @@
-/* render/camera_view.h: the camera as light paths connect to it, and the first merging radius.
- */
+/* render/camera_view.h: the camera as light paths connect to it, and the first merging
+ * radius. */
 #ifndef RENDER_CAMERA_VIEW_H
 #define RENDER_CAMERA_VIEW_H
 
@@ -9,8 +9,8 @@
 
 /* Sets the view. view->sees is false unless the camera is perspective with a round lens or a
  * pinhole, or one of one's own that projects points, has no lens and does not move
- * (own_view.h); for the last, the caller sets view->camera. A moving camera has its first pose.
- */
+ * (own_view.h); for the last, the caller sets view->camera. A moving camera has its first
+ * pose. */
 void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView *view);
 /* Moves the view to another pose; at: world from camera. */
 void vl_camera_view_move(vlCameraView *view, vlAffine at);

@@ -48,8 +48,7 @@ typedef struct vlTally {
 } vlTally;
 
 /* The first hit of a sample of the image: ids (0: none), film point, depth (infinity: nothing
- * was hit, or not asked).
- */
+ * was hit, or not asked). */
 typedef struct vlSampleHit {
   uint32_t ids[3]; /* object, material, instance */
   float x, y, z;
@@ -168,8 +167,7 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
 /* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
 /* In channel_tile.c: t_min and t_max of rays, from the kernel that makes the image's camera
- * rays.
- */
+ * rays. */
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,
                      const vlChannelEnds *ends, float *t_min, float *t_max);
 void vl_channel_tile(void *pass, uint32_t tile,

@@ -43,8 +43,7 @@ static const double SURE = 0.85, BIASED = 2.0 / 3.0;
 static const double BLUR = 0.002;
 static const uint32_t seeds[2] = {0x72616365u, 0x61676169u}, tail_seed = 0x7461696cu;
 /* A sample is rare if it alone makes a coarse pixel RARE times as bright as it should be
- * (tails.h).
- */
+ * (tails.h). */
 static const double RARE = 4, DOUBT = 2;
 
 /* Rays are cheap in small worlds, and the rest of the work counts more. */
@@ -130,8 +129,7 @@ static bool choose_size(Race *race, const vlFilmDef *film) {
 }
 
 /* Whether all tracers of the race render this world and film (support.c). Without lights there
- * is nothing to race for.
- */
+ * is nothing to race for. */
 static vlResult can_race(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film,
                          bool *can) {
   uint32_t tracers = 0;
@@ -205,8 +203,7 @@ static double trimmed_mean(double *values, size_t n, size_t low, size_t high) {
 }
 
 /* The mean of trial t's two images in the square of `around` pixels on each side of pixel (x,
- * y).
- */
+ * y). */
 static double mean_around(const Race *race, uint32_t t, uint32_t x, uint32_t y, uint32_t c,
                           uint32_t around) {
   uint32_t x0 = x > around ? x - around : 0, y0 = y > around ? y - around : 0, n = 0;

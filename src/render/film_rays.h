@@ -64,8 +64,7 @@ vlFilmRayRows vl_film_ray_rows(float *rows);
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter,
                        const vlSampler *sampler, vlIsa isa);
 /* The number in [0, 1) that samples the time of a group. For random turns it is uniform and
- * independent of the group.
- */
+ * independent of the group. */
 float vl_film_rays_group_time(const vlFilmRays *f, uint32_t group);
 /* Makes rays have world times (0 to 1) if the world has moving shapes. */
 void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);

@@ -3,7 +3,7 @@
  * whether the point is visible from there.
  *
  *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> is the first
- * hit P?
+ *                                                 hit P?
  *
  * Pixels of the sky have flow, too. Their target is a direction; it is visible if the other
  * camera's ray hits nothing. */
@@ -16,8 +16,7 @@
 
 /* A hit hides the point if it is nearer by more than this tolerance, relative to the size of
  * the numbers. Rays are rounded to float (2^-23), and their hit distance moves by 1 / cosine of
- * that.
- */
+ * that. */
 static const double TOLERANCE = 0x1p-19, LEAST_COSINE = 0.01;
 
 typedef struct Target {
@@ -47,8 +46,7 @@ static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uin
 
 /* Projects the target with the other camera. The sky is at a large finite distance, so large
  * that the eyes of a stereo camera coincide. An orthographic camera has one direction in all
- * its pixels.
- */
+ * its pixels. */
 static bool find_pixel(const vlCamera *camera, Target *t) {
   double point[3], z;
   if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC)

@@ -70,8 +70,8 @@ static void add_vertices(Points *p, const vlWorldShape *s, float time) {
   }
 }
 
-/* Adds points of a circle of radius r at height z in object space, over the shape's phi range.
- */
+/* Adds points of a circle of radius r at height z in object space, over the shape's phi
+ * range. */
 static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
   const double *m = s->from_shape;
   for (int i = 0; i <= AROUND; i++) {

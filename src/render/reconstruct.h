@@ -81,8 +81,7 @@ void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at,
                      const float color[4], const vlSharedTaps *taps, uint32_t lane,
                      bool counts);
 /* The weighted means of the samples over the pixels of the block's rows [first, last), row by
- * row, and their weights.
- */
+ * row, and their weights. */
 void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g,
                       const vlSharedBlock *block, uint32_t first, uint32_t last,
                       float *const color[4], float *weight);

@@ -164,8 +164,7 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
 }
 
 /* The tracer that is used: volpath in place of one that lacks something of the scene
- * (support.c).
- */
+ * (support.c). */
 static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;

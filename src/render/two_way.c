@@ -279,8 +279,8 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
   return eyes;
 }
 
-/* Samples the numbers (w->u) from which the times of the n light paths from `first` on follow.
- */
+/* Samples the numbers (w->u) from which the times of the n light paths from `first` on
+ * follow. */
 static void draw_times(const vlTwoWayRun *run, uint32_t first, uint32_t n, Worker *w) {
   const vlFilmRays *rays = run->rays;
   if (!rays->centred && rays->groups) {
@@ -443,8 +443,7 @@ static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
 }
 
 /* Prepares connections of inner vertices. Groups differ by their wavelengths and, if the world
- * moves, by their times.
- */
+ * moves, by their times. */
 static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   const vlWorld *world = run->world;
   vlLightVertices *inner = &run->way.inner;

@@ -43,8 +43,8 @@ enum { VL_CHECK_INPUTS = 48 };
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);
 /* Gives the textures that a texture reads directly. */
 uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]);
-/* Name for a message: "material \"glass\"", "the default material", "the material of line 3".
- */
+/* Name for a message: "material \"glass\"", "the default material", "the material of line
+ * 3". */
 typedef struct vlCheckName {
   char text[120];
 } vlCheckName;

@@ -69,8 +69,7 @@ static void look_for_files(vlCheck *c) {
 /* ---- greatest values --------------------------------------------------------------------- */
 
 /* The largest value of a spectrum as a reflectance: over the RGB channels, or over all
- * wavelengths.
- */
+ * wavelengths. */
 static float spectrum_max(const vlSpectrum *s) {
   if (s->kind == VL_SPECTRUM_RGB) {
     float m = s->rgb[0] > s->rgb[1] ? s->rgb[0] : s->rgb[1];
@@ -114,8 +113,7 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
                 vl_ends_with(t->path, ".hdr") || vl_ends_with(t->path, ".pfm");
   vlImage *image = NULL;
   /* Values of integer images are at most 1, so these are read only if a factor enlarges the
-   * values.
-   */
+   * values. */
   if (c->def.images && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
     vlError error;
     vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image",
@@ -190,8 +188,7 @@ typedef struct Share {
 } Share;
 
 /* Whether the material reads this input. Some kinds read their reflectance only if the def says
- * so.
- */
+ * so. */
 static bool is_read(const vlMaterialDef *m, uint32_t traits, const vlSpectrumInput *input) {
   if (input != &m->reflectance)
     return true;

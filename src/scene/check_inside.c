@@ -161,8 +161,7 @@ static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const doub
 }
 
 /* The boxes of the groups, in their spaces; that of an empty one has low > high. Null: no
- * memory.
- */
+ * memory. */
 static Box *group_boxes(vlCheck *c, const Box *boxes) {
   const vlScene *s = c->scene;
   Box *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);

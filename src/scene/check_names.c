@@ -152,8 +152,8 @@ static void tell_unused(vlCheck *c) {
   vl_free(c->context, mixed);
 }
 
-/* Reports unused groups. A group has no source location, so that of its first shape is given.
- */
+/* Reports unused groups. A group has no source location, so that of its first shape is
+ * given. */
 static void tell_groups(vlCheck *c) {
   const vlScene *s = c->scene;
   size_t next = 0;

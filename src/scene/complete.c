@@ -245,8 +245,8 @@ static bool fade_texture(vlScene *scene, vlTextureId *id) {
   return id->index != 0;
 }
 
-/* A disk under everything. fades: with the radiance of the studio's floor, into which it fades.
- */
+/* A disk under everything. fades: with the radiance of the studio's floor, into which it
+ * fades. */
 static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool fades) {
   double center[3], size = 0;
   for (int i = 0; i < 3; i++) {

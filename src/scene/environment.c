@@ -1,6 +1,6 @@
 /* scene/environment.c: see environment.h. Directions: x right, y ahead (away from the viewer),
- * z up. The image is the equal-area octahedral square of infinite lights (math/octahedral.h).
- */
+ * z up. The image is the equal-area octahedral square of infinite lights
+ * (math/octahedral.h). */
 #include "scene/environment.h"
 
 #include <math.h>

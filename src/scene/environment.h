@@ -8,8 +8,7 @@
 #define VL_FLOOR_ALBEDO 0.2f
 
 /* Adds an environment light; its kind is neither AUTO nor NONE. False: the scene holds the
- * error.
- */
+ * error. */
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind);
 /* Gives the directions right, up and front of the scene as unit vectors. False: up or front is
  * zero, or they are parallel. */

@@ -66,8 +66,7 @@ static double triangle_area(const double p[3][3]) {
 }
 
 /* Area of a shape. Patches count as two triangles; quadrics as if their transform scaled
- * uniformly.
- */
+ * uniformly. */
 static double shape_area(const vlShapeDef *d) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   double r = d->radius, turn = d->phi_max, scale = vl_mat4_scale_of(&m), sum = 0;

@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "scene/scene.h"
 
-/* Memory is reserved first, so that a failed allocation never leaves an object with two owners.
- */
+/* Memory is reserved first, so that a failed allocation never leaves an object with two
+ * owners. */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
   if (!scene || !from)

@@ -86,8 +86,7 @@ struct vlScene {
   VL_ARRAY(const char *) files;
   VL_ARRAY(vlSceneChoice) choices; /* in the order of the file */
   /* World points (3 numbers each) that an automatic camera frames in place of the shapes: those
-   * of a whole animation.
-   */
+   * of a whole animation. */
   VL_ARRAY(double) frame_points;
   VL_ARRAY(vlSceneUnread) unread;
   const char *copyright; /* of the file, for those that are written from it; null: none */

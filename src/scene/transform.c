@@ -50,8 +50,8 @@ static void apply(const vlMat4 *matrix, double m[16]) {
   memcpy(m, product.m, sizeof product.m);
 }
 
-/* A float texture with `scale` times the values of another one. Index 0: an error of the scene.
- */
+/* A float texture with `scale` times the values of another one. Index 0: an error of the
+ * scene. */
 static vlTextureId scaled_texture(vlScene *scene, vlTextureId texture, double scale) {
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_SCALE, false);
   def.float_a.texture = texture;

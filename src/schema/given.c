@@ -44,8 +44,8 @@ static const char *put_number(char text[40], double number) {
   return text;
 }
 
-/* Writes "a whole number from 1 to 64", "a number above 0, or infinity". factor: as in vlGiven.
- */
+/* Writes "a whole number from 1 to 64", "a number above 0, or infinity". factor: as in
+ * vlGiven. */
 static void put_number_rule(const vlParameter *row, double factor, char *rule, size_t size) {
   const char *const thing = row->type == VL_PARAMETER_COUNT ? "whole number" : "number";
   char low[40];

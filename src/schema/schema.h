@@ -148,8 +148,7 @@ bool vl_parameter_check(const vlParameter *parameter, const void *def, const cha
                         char message[VL_GIVEN_MESSAGE]);
 /* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices,
  * bools, and inputs without texture that hold one number. False: the parameter is of another
- * type.
- */
+ * type. */
 bool vl_parameter_number(const vlParameter *parameter, const void *def, double *number);
 /* Gives the textures that the members of the row read, at most `most`. Returns their number. */
 uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids,

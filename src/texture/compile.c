@@ -151,8 +151,8 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
   return true;
 }
 
-/* The node kinds that give an RGB colour, which is converted to wavelengths where it is used.
- */
+/* The node kinds that give an RGB colour, which is converted to wavelengths where it is
+ * used. */
 #define GIVES_RGB(node, value, set) [node] = true,
 static const bool gives_rgb[VL_NODE_SPECTRUM + 1] = {
     [VL_NODE_IMAGE] = true, [VL_NODE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};

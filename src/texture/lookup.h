@@ -89,8 +89,7 @@ static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float 
 /* ---- images ------------------------------------------------------------------------------ */
 
 /* Maps an integer texel coordinate into the image by the wrap mode. -1: outside the image
- * (black).
- */
+ * (black). */
 static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
   if (i >= 0 && i < n)
     return i;

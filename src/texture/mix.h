@@ -5,8 +5,7 @@
 #include "texture/lookup.h"
 
 /* share: weight of the second input. Also of the other kinds that mix two inputs
- * (VL_SHARE_NODES).
- */
+ * (VL_SHARE_NODES). */
 static inline float vl_node_mix(float a, float b, float share) {
   return (1 - share) * a + share * b;
 }

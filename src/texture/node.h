@@ -81,8 +81,7 @@ typedef struct vlTextureNode {
 } vlTextureNode;
 
 /* What tells whether an image is that of an earlier build: from which bytes it was made, and
- * how.
- */
+ * how. */
 typedef struct vlImageKey {
   vlFileStamp stamp;  /* of a file; `there` is false for bytes in memory */
   uint64_t size;      /* number of bytes in memory */

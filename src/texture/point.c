@@ -1,6 +1,5 @@
 /* texture/point.c: evaluates a float texture at one point, for alpha, mix amounts and
- * displacement.
- */
+ * displacement. */
 #include <math.h>
 
 #include "texture/kinds.h"

@@ -1,5 +1,5 @@
-/* texture/run.hot.h: textures evaluated node by node over a run of lanes; private to hot files.
- */
+/* texture/run.hot.h: textures evaluated node by node over a run of lanes; private to hot
+ * files. */
 #ifndef TEXTURE_RUN_HOT_H
 #define TEXTURE_RUN_HOT_H
 

@@ -2,8 +2,9 @@
  * the hot files of trace.
  *
  *   vlPaths (rays) -> vlHits -> vlVertices: sorted by material, with vlSurface and vlShade
- * (frame, wo, BSDF parameters) vlVertices -> vlLightSamples -> vlBsdfValues -> vlShadowRays ->
- * radiance vlVertices -> vlBsdfSamples -> vlPaths of the next bounce
+ *     (frame, wo, BSDF parameters)
+ *   vlVertices -> vlLightSamples -> vlBsdfValues -> vlShadowRays -> radiance
+ *   vlVertices -> vlBsdfSamples -> vlPaths of the next bounce
  *
  * Every array has VL_ROW_SIZE elements. Elements from n on hold old data, which is safe to
  * read: numbers are finite, and indices are valid. */
@@ -16,8 +17,8 @@
 
 #define VL_ROW __attribute__((aligned(64)))
 
-/* Paths: the ray, the throughput, and what multiple importance sampling needs at the next hit.
- */
+/* Paths: the ray, the throughput, and what multiple importance sampling needs at the next
+ * hit. */
 typedef struct vlPaths {
   VL_ROW float ox[VL_ROW_SIZE], oy[VL_ROW_SIZE], oz[VL_ROW_SIZE];
   VL_ROW float dx[VL_ROW_SIZE], dy[VL_ROW_SIZE], dz[VL_ROW_SIZE];
@@ -66,20 +67,19 @@ typedef struct vlSurface {
   VL_ROW float vx[VL_ROW_SIZE], vy[VL_ROW_SIZE], vz[VL_ROW_SIZE]; /* dpdv */
   VL_ROW float u[VL_ROW_SIZE], v[VL_ROW_SIZE];
   VL_ROW float offset[VL_ROW_SIZE]; /* distance along the geometric normal by which a new ray's
-                                       origin is moved off the   surface */
+                                       origin is moved off the surface */
   VL_ROW float uv_scale[VL_ROW_SIZE]; /* uv per world length */
   VL_ROW float width[VL_ROW_SIZE];    /* width of the footprint, world units */
-  VL_ROW float across_u[VL_ROW_SIZE],
-      across_v[VL_ROW_SIZE]; /* the footprint's axes in uv; only set if the world */
-  VL_ROW float along_u[VL_ROW_SIZE],
-      along_v[VL_ROW_SIZE]; /* has image textures (footprint.hot.c) */
-  VL_ROW float
-      curvature[VL_ROW_SIZE]; /* mean curvature of the shading normals: positive where convex */
+  /* the footprint's axes in uv; only set if the world has image textures (footprint.hot.c) */
+  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE];
+  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];
+  /* mean curvature of the shading normals: positive where convex */
+  VL_ROW float curvature[VL_ROW_SIZE];
   VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; for triangles only if the material has a bump
                                       map (material.hot.c) */
-  VL_ROW float
-      no_cosine[VL_ROW_SIZE];     /* 1: light from all directions counts equally (in media); 0:
-                                     light is weighted by the cosine to the normal */
+  /* 1: light from all directions counts equally (in media); 0: light is weighted by the cosine
+   * to the normal */
+  VL_ROW float no_cosine[VL_ROW_SIZE];
   VL_ROW float side[VL_ROW_SIZE]; /* 1 or -1: only light on the side of n or -n counts, the
                                      viewer's; 0: on both sides */
 } vlSurface;

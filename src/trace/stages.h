@@ -118,8 +118,8 @@ void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, fl
                        const float *t_max);
 /* Returns the material of a hit. For a mixed material, chooses one of its materials. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
-/* Adds the radiance of the lights that the n rays hit: infinite lights and emissive surfaces.
- */
+/* Adds the radiance of the lights that the n rays hit: infinite lights and emissive
+ * surfaces. */
 void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits);
 /* Sets the batch's alpha from its camera rays' hits. */
 void vl_stage_alpha(const vlTracing *t, const vlHits *hits);

@@ -85,8 +85,7 @@ typedef struct vlTraceDef {
 } vlTraceDef;
 
 /* Camera rays and their results. Rays are in world space, and d has unit length. Each array has
- * VL_PAD(n) elements, n
- * <= VL_BATCH. */
+ * VL_PAD(n) elements, n <= VL_BATCH. */
 typedef struct vlTraceBatch {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;

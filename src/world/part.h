@@ -1,7 +1,6 @@
 /* world/part.h: parts that worlds share: the arrays of a shape, an image, a table. Each world
  * that has a part is one of its users; the last one frees it. Parts are not changed once they
- * are made.
- */
+ * are made. */
 #ifndef WORLD_PART_H
 #define WORLD_PART_H
 

@@ -4,8 +4,7 @@
  * A surface point is identified by (shape, prim, instance): shape indexes world->shapes, prim
  * is a face of that shape, and instance indexes world->instances or is VL_NONE. Vertices of
  * shapes in group 0 are in world space; vertices of shapes in other groups are in the space of
- * their group.
- */
+ * their group. */
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
@@ -220,8 +219,8 @@ typedef struct vlWorldLight {
   uint32_t environment; /* of an infinite light with an image: index into environments; VL_NONE:
                            uniform radiance */
   float power;          /* emitted flux in units of luminance, for light selection */
-  /* the light is an invisible full sphere: light paths start only on its outside (light.hot.c)
-   */
+  /* the light is an invisible full sphere: light paths start only on its outside
+   * (light.hot.c) */
   bool outer_side;
   /* the shape of the area light has alpha 0 everywhere: rays do not hit the shape, but it emits
    * light, as in pbrt */

@@ -1,7 +1,6 @@
 /* test/api/test_contract.c: invalid arguments of every public function: a def without its
  * default function is rejected by its cookie, null arguments do not crash, and destroying null
- * is allowed.
- */
+ * is allowed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

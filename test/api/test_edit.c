@@ -154,8 +154,8 @@ static void shoot(vlContext *context, const vlWorld *world, float *pixels) {
 
 static vlBits bits; /* of the worlds */
 
-/* Builds with and without the previous world, and compares the bytes. Returns the shared world.
- */
+/* Builds with and without the previous world, and compares the bytes. Returns the shared
+ * world. */
 static vlWorld *compare(vlContext *context, const vlScene *scene, const vlWorld *previous,
                         float *image) {
   static float fresh_image[8 * PIXELS];
@@ -473,8 +473,8 @@ static void wrong_edits(void **state) {
   end(context);
 }
 
-/* An object that is set again keeps its image in memory, also when another object has got it.
- */
+/* An object that is set again keeps its image in memory, also when another object has got
+ * it. */
 static void images_are_kept(void **state) {
   (void)state;
   static float image[8 * PIXELS];

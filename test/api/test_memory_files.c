@@ -1,6 +1,5 @@
 /* test/api/test_memory_files.c: scenes and images in memory give the same as files; coarse
- * images.
- */
+ * images. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* test/api/test_threads.c: one world shared by renders on several threads of the caller, each
- * with its own workers. Meant for the thread sanitizer; the images must also be bit-identical.
- */
+ * with its own workers. Meant for the thread sanitizer; the images must also be
+ * bit-identical. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

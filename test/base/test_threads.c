@@ -57,8 +57,7 @@ static void each_index_once(void **state) {
 }
 
 /* One sum in plain memory by each worker: a data race here would be seen by the thread
- * sanitizer.
- */
+ * sanitizer. */
 typedef struct Sums {
   uint64_t by_worker[8];
 } Sums;
@@ -195,8 +194,7 @@ static void loops_overlap(void **state) {
 }
 
 /* A loop of low priority gives way: while the other one runs, it starts at most a task each 50
- * ms.
- */
+ * ms. */
 typedef struct Race {
   vlContext *context;
   atomic_uint low, low_before, low_after, high;

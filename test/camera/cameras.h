@@ -1,6 +1,5 @@
 /* test/camera/cameras.h: helpers of the camera tests: a random source with fixed seeds, a few
- * very different cameras.
- */
+ * very different cameras. */
 #ifndef TEST_CAMERA_CAMERAS_H
 #define TEST_CAMERA_CAMERAS_H
 

@@ -1,8 +1,7 @@
 /* test/camera/helper_project.c: projects points for test_opencv.py. Input and output are binary
  * doubles. Input per camera: fisheye (0, 1), width, height, fx, fy, cx, cy, coefficient count,
  * 14 coefficients, 16 of world_from_camera, point count, points. Output: share of pixels
- * outside, radius; then u, v, z, valid of each point.
- */
+ * outside, radius; then u, v, z, valid of each point. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

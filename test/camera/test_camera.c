@@ -250,8 +250,8 @@ static void resize_keeps_the_framing(void **state) {
   assert_int_equal(vl_camera_resize(&twice, 641, 479, &back), VL_OK);
   assert_true(fabs(back.fx - c.fx) < 1e-12 && fabs(back.cx - c.cx) < 1e-12 &&
               fabs(back.cy - c.cy) < 1e-12);
-  /* another shape: the smaller side keeps its field of view, as a fov camera made at that size
-   */
+  /* another shape: the smaller side keeps its field of view, as a fov camera made at that
+   * size */
   vlCameraDef def = vl_default_camera_def(640, 480);
   def.fov = RADIANS(50);
   c = make_or_fail(&def);

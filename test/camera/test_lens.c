@@ -79,8 +79,8 @@ static void blades_are_even(void **state) {
   }
 }
 
-/* Each cell of the image is hit as often as it is bright, and evenly inside; black ones never.
- */
+/* Each cell of the image is hit as often as it is bright, and evenly inside; black ones
+ * never. */
 static void image_is_density(void **state) {
   (void)state;
   enum { W = 7, H = 5, PARTS = 2 };
@@ -445,8 +445,7 @@ static void f_number_and_focus_point(void **state) {
   def.fov_axis = VL_FOV_HORIZONTAL;
   assert_true(fabs(make_or_fail(&def).lens_radius - 0.0125) < 1e-12);
   /* the tilted plane contains the point, too; spheres of focus have the point's distance as
-   * radius
-   */
+   * radius */
   def.lens.tilt_x = 0.3;
   camera = make_or_fail(&def);
   assert_true(fabs(camera.focus_distance - (4.5 + tan(0.3) * 2)) < 1e-12);

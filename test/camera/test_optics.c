@@ -1,7 +1,6 @@
 /* test/camera/test_optics.c: lenses of many elements: focal length, focus and magnification
  * against the equations, rays against an independent trace by Snell's law, brightness against
- * the pupil's area, projection and unprojection, files.
- */
+ * the pupil's area, projection and unprojection, files. */
 #include "camera/context.h"
 
 #include <stdio.h>
@@ -61,8 +60,8 @@ static void focal_lengths(void **state) {
     vlOptics *infinite = load(double_gauss, VL_UNSET, INFINITY, NULL);
     vl_optics_info(infinite, &far);
     double image = info.rear_principal, object = 1 / (1 / info.focal_length - 1 / image);
-    /* object + image + distance of the planes = distance; the planes' distance does not change
-     */
+    /* object + image + distance of the planes = distance; the planes' distance does not
+     * change */
     double planes = distance - object - image;
     assert_true(image > info.focal_length && fabs(planes) < 0.05 + 1e-9 * distance);
     assert_true(fabs((info.length - info.film_distance) - (far.length - far.film_distance)) <
@@ -187,8 +186,7 @@ static void batches_obey_snell(void **state) {
         continue;
       }
       /* backwards is forwards: the ray that left, traced from the film point to where it came
-       * from
-       */
+       * from */
       double film[3] = {-pitch * (s.px[i] + (double)s.film_x[i] - 180),
                         -pitch * (s.py[i] + (double)s.film_y[i] - 120), 0};
       const vlPupil *p = &o->pupils[(int)(hypot(film[0], film[1]) / o->half * VL_PUPILS)];

@@ -1,7 +1,6 @@
 /* test/camera/test_projections.c: every projection and calibrated model: round trips, batches
  * against single calls, the limit of the field of view, solid angles, folds, names, error
- * messages.
- */
+ * messages. */
 #include "camera/cameras.h"
 
 #include "camera/parts.h"
@@ -250,8 +249,7 @@ static void there_and_back(void **state) {
 }
 
 /* If a camera projects a direction, unprojection returns the same direction. No result is ever
- * NaN.
- */
+ * NaN. */
 static void back_and_there(void **state) {
   (void)state;
   for (int k = 0; k < MODELS; k++) {
@@ -415,8 +413,7 @@ static void rays_of_all_sets(void **state) {
 }
 
 /* All rays of a film point meet in one point: at z = 5 for those that see only ahead, at the
- * distance 5 for all others.
- */
+ * distance 5 for all others. */
 static void lens_focuses(void **state) {
   (void)state;
   enum { N = 64 };
@@ -462,8 +459,7 @@ static void lens_focuses(void **state) {
 }
 
 /* Known from the equations: cos^3 for the perspective; constant for equal-area maps;
- * cos(latitude),
- * ... */
+ * cos(latitude), ... */
 static void solid_angles(void **state) {
   (void)state;
   for (int k = 0; k < MODELS; k++) {
@@ -523,8 +519,7 @@ static void framing_and_image_circles(void **state) {
   (void)state;
   double o[3], d[3];
   /* a circular fisheye of 180 degrees: the circle touches the smaller side, the corners are
-   * empty
-   */
+   * empty */
   vlCameraDef def = vl_default_camera_def(600, 400);
   def.projection = VL_PROJECTION_EQUISOLID;
   def.fov = pi;

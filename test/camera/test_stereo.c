@@ -84,8 +84,8 @@ static void disparities_are_exact(void **state) {
       }
       if (i == 0)
         assert_true(fabs(disparity) < 1e-9 && fabs(rise) < 1e-9); /* where the axes cross */
-      /* the keystone: a corner of the screen is nearer to the eye on its side, and higher there
-       */
+      /* the keystone: a corner of the screen is nearer to the eye on its side, and higher
+       * there */
       if (i == 1)
         assert_true(fabs(rise) > 0.1);
     }
@@ -299,8 +299,7 @@ static void moving_is_making_elsewhere(void **state) {
 static void the_cross_of_a_cube(void **state) {
   (void)state;
   /* right left up down front back, in cells of 100 pixels; the default camera looks along -z, y
-   * up
-   */
+   * up */
   const double axis[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                              {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
   const int cell[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};

@@ -1,7 +1,6 @@
 /* test/camera/test_vanishing.c: long parallel lines converge to their vanishing points; random
  * cameras are recovered from their vanishing points; the horizon; impossible points are
- * rejected.
- */
+ * rejected. */
 #include "camera/cameras.h"
 
 #include "velo/projection.h"
@@ -22,8 +21,7 @@ static vlCameraDef random_def(uint64_t *seed) {
 static const double up[3] = {0, 1, 0};
 
 /* A point far along a line of that direction, through any place, is drawn where the line
- * vanishes.
- */
+ * vanishes. */
 static void test_lines_meet(void **state) {
   (void)state;
   uint64_t seed = 3;

@@ -158,8 +158,8 @@ static vlCameraRecord through(const vlCameraRecord *record, const Holds *to) {
   return back;
 }
 
-/* Each dialect with what it holds; then on into every other one with what both hold, and back.
- */
+/* Each dialect with what it holds; then on into every other one with what both hold, and
+ * back. */
 static void test_round_trips(void **state) {
   (void)state;
   uint64_t seed = 11;
@@ -474,8 +474,8 @@ static void test_usd_example(void **state) {
   assert_float_equal(c.cy, 120 + 24, 1e-9);
   assert_float_equal(c.lens_radius, 1.0, 1e-12); /* 5 units / 2.5 / 2 */
   assert_float_equal(c.focus_distance, 12, 0);
-  /* a quarter turn about y: the camera's back (z) is the world's x; 4 along it from (1, 2, 3)
-   */
+  /* a quarter turn about y: the camera's back (z) is the world's x; 4 along it from (1, 2,
+   * 3) */
   assert_float_equal(c.world_from_camera[3], 5, 1e-12);
   assert_float_equal(c.world_from_camera[7], 2, 1e-12);
   assert_float_equal(c.world_from_camera[11], 3, 1e-12);

@@ -112,8 +112,7 @@ static void test_bits(void **state) {
 }
 
 /* Each result is compared with that of the inline functions in the headers, which other code
- * uses.
- */
+ * uses. */
 static void test_inline(void **state) {
   (void)state;
   fill();
@@ -177,8 +176,7 @@ static void test_density(void **state) {
 }
 
 /* Random wavelengths in intervals of 10 nm against the density, by chi^2: each of the four has
- * it.
- */
+ * it. */
 static void test_samples(void **state) {
   (void)state;
   enum { BINS = 47, ROUNDS = 100 };

@@ -1,6 +1,5 @@
 /* Spectra and colour spaces: standard values of the CIE, measured materials, the meaning of a
- * vlSpectrum, its errors.
- */
+ * vlSpectrum, its errors. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -446,8 +446,8 @@ static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {
   return true;
 }
 
-/* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is not.
- */
+/* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is
+ * not. */
 static void settings_of_cameras(void **state) {
   (void)state;
   int kept[2] = {0, 0};

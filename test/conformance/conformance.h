@@ -3,8 +3,8 @@
  * errors.
  *
  * A law goes over the rows of its family. What it must know of a kind beyond the row is the
- * kind's case, in a table that the list of kinds makes: a kind without a case does not compile.
- */
+ * kind's case, in a table that the list of kinds makes: a kind without a case does not
+ * compile. */
 #ifndef TEST_CONFORMANCE_CONFORMANCE_H
 #define TEST_CONFORMANCE_CONFORMANCE_H
 
@@ -29,8 +29,8 @@
 enum { WIDTH = 12, SAMPLES = 4, PIXELS = 3 * WIDTH * WIDTH, TEXT = 8192 };
 
 static vlContext *context;
-/* Contexts of the lowest and of the best instruction set; the same where the machine has one.
- */
+/* Contexts of the lowest and of the best instruction set; the same where the machine has
+ * one. */
 static vlContext *contexts[2];
 static char folder[40] = "/tmp/velo_conformance_XXXXXX";
 
@@ -91,8 +91,8 @@ static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   return NULL;
 }
 
-/* Renders a scene by its settings and destroys it. Null, and the reason: it cannot be rendered.
- */
+/* Renders a scene by its settings and destroys it. Null, and the reason: it cannot be
+ * rendered. */
 static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
   vlWorld *world = NULL;
   vlFilm *film = NULL;

@@ -78,8 +78,7 @@ static const LightCase infinite_light = {
     }};
 /* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom.
  * Its map has y upwards: below the light, u goes with x and v with z. The distance is the root
- * of 1.5.
- */
+ * of 1.5. */
 static const LightCase goniometric_light = {
     .before = "Translate 0 1 0",
     .variants = {

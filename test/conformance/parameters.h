@@ -3,8 +3,7 @@
  * with one parameter that is not its default, reads it, renders a few pixels and compares the
  * bytes with those of the scene without the parameter. It fails where a reader, a compile
  * function or a kernel forgets a parameter, and where a kind or a parameter is added that the
- * test cannot give a value.
- */
+ * test cannot give a value. */
 #ifndef TEST_CONFORMANCE_PARAMETERS_H
 #define TEST_CONFORMANCE_PARAMETERS_H
 

@@ -99,8 +99,7 @@ static double correlation(double a[SETS][SET], double b[SETS][SET]) {
 }
 
 /* The variance of the mean of f over a pixel, times the samples, over that of independent
- * numbers.
- */
+ * numbers. */
 static double spread(double u[SETS][SET], double v[SETS][SET]) {
   Mean m = {0};
   for (int p = 0; p < SETS; p++) {

@@ -1,7 +1,6 @@
 /* conformance/textures.h: the laws of textures, seen as the reflectance of a square with
  * texture coordinates 0 to 1: known values, values between those of the inputs, and a pattern
- * that is one.
- */
+ * that is one. */
 #ifndef TEST_CONFORMANCE_TEXTURES_H
 #define TEST_CONFORMANCE_TEXTURES_H
 

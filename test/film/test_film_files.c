@@ -190,8 +190,8 @@ static vlResult merge(const char *const *paths, uint32_t count, const char *outp
   return vl_film_merge(context, paths, count, &def, output, error);
 }
 
-/* Turns the data of a block of the present format into that of format 1 or 2. Returns its size.
- */
+/* Turns the data of a block of the present format into that of format 1 or 2. Returns its
+ * size. */
 static size_t old_data(const vlFilmDef *def, uint32_t format, size_t pixels, bool compared,
                        const char *from, char *to) {
   char *start = to;
@@ -215,8 +215,7 @@ static size_t old_data(const vlFilmDef *def, uint32_t format, size_t pixels, boo
 }
 
 /* Turns a file of the present format into one of format 1 or 2, whose first block has a
- * comparison.
- */
+ * comparison. */
 static void make_old(const char *path, uint32_t format) {
   size_t size;
   char *bytes = bytes_of(path, &size), *made = malloc(size + 16 * 32 * 32), *to = made;
@@ -292,8 +291,7 @@ static void old_formats_are_read(void **state) {
 }
 
 /* Blocks keep their last comparison of adaptive sampling, unless samples of another part join
- * them.
- */
+ * them. */
 static void compared_noise(void **state) {
   (void)state;
   enum { LAST = 2 };

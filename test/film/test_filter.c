@@ -117,8 +117,7 @@ static void test_shape(void **state) {
 }
 
 /* Stratified u: the mean weight is 1 to the precision of the strata; offsets rise with u and
- * are odd around its middle.
- */
+ * are odd around its middle. */
 static void test_order(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++)

@@ -1,8 +1,7 @@
 /* test/fuzz/replay.c: runs a fuzz target without libFuzzer over files and directories: each
- * file unchanged and, with
- * --mutate N, in N damaged forms (fixed seed: bytes changed, cut off, duplicated, replaced by
- * special values). Prints the number of inputs. A crash or a sanitizer's report is a failure.
- */
+ * file unchanged and, with --mutate N, in N damaged forms (fixed seed: bytes changed, cut off,
+ * duplicated, replaced by special values). Prints the number of inputs. A crash or a
+ * sanitizer's report is a failure. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>

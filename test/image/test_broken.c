@@ -252,8 +252,8 @@ static void add_attribute(Bytes *b, const char *name, const char *type, const vo
   add(b, data, (size_t)size);
 }
 
-/* Uncompressed, 3x2 pixels: channels Z (float) and id (uint, sampled every `sampling` pixels).
- */
+/* Uncompressed, 3x2 pixels: channels Z (float) and id (uint, sampled every `sampling`
+ * pixels). */
 static void make_exr(Bytes *b, int32_t sampling, int32_t version) {
   b->size = 0;
   add(b, "\x76\x2f\x31\x01", 4);

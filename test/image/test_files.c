@@ -336,8 +336,8 @@ static void test_refusals(void **state) {
   assert_null(back);
   assert_int_equal(vl_image_read(context, folder(), &back, &error), VL_ERROR_IO);
 
-  /* Of an image without colours formats that hold nothing else get the first channel, as grey.
-   */
+  /* Of an image without colours formats that hold nothing else get the first channel, as
+   * grey. */
   const char *const names[2] = {"N.X", "Z"};
   vlImageDef def = vl_default_image_def(2, 2, 2);
   def.names = names;

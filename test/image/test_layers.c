@@ -1,5 +1,5 @@
-/* Several images in one OpenEXR file, each with its own type, and single channels read from it.
- */
+/* Several images in one OpenEXR file, each with its own type, and single channels read from
+ * it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

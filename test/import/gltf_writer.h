@@ -31,8 +31,7 @@ static inline int gltf_view(Gltf *g, const void *data, size_t size, int stride) 
 }
 
 /* Adds an accessor and returns its index. view < 0: no buffer view. more: further members, such
- * as
- * ",\"normalized\":true"; may be null. */
+ * as ",\"normalized\":true"; may be null. */
 static inline int gltf_accessor(Gltf *g, int view, int type, size_t count, const char *shape,
                                 const char *more) {
   char view_text[40] = "";

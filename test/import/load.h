@@ -69,8 +69,7 @@ static inline void load_fine(Loaded *l, const char *text) {
 }
 
 /* Expects the error as the program prints it: "file:line:column: message". Prints the
- * difference.
- */
+ * difference. */
 static inline bool gives_error(const char *text, vlResult code, const char *expected) {
   Loaded l;
   char said[1200];

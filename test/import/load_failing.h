@@ -8,8 +8,7 @@
 
 /* Loads the text once without a failure, then `last` - 1 times: each of the last allocations
  * fails once, and must give VL_ERROR_MEMORY and leak nothing. (The importer makes runs of
- * shapes there.)
- */
+ * shapes there.) */
 static inline void fail_last_allocations(const char *text, long last) {
   long all = 0;
   for (long n = 0; n < last; n++) {

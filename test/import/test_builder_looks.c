@@ -1,6 +1,5 @@
 /* test/import/test_builder_looks.c: statements for materials, textures, lights and media, with
- * defaults and attributes.
- */
+ * defaults and attributes. */
 #include "import/load.h"
 #include "velo/light.h"
 #include "velo/material.h"

@@ -1,7 +1,6 @@
 /* test/import/test_cameras.c: further kinds of the Camera directive: pbrt's spherical camera
  * against pbrt's formulas, velo's projections and calibrated lenses with the lecture's
- * parameters.
- */
+ * parameters. */
 #include "import/load.h"
 #include "velo/projection.h"
 

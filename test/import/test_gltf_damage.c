@@ -163,8 +163,8 @@ static void replace_number(uint8_t *data, size_t size, uint32_t pick) {
   size_t length = strlen(text);
   if (end >= size || end - at < 1)
     return;
-  /* keeps the length of the chunk: shorter words are padded with blanks, longer words are cut
-   */
+  /* keeps the length of the chunk: shorter words are padded with blanks, longer words are
+   * cut */
   for (size_t i = at; i < end; i++)
     data[i] = i - at < length ? (uint8_t)text[i - at] : ' ';
 }

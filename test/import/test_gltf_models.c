@@ -11,8 +11,8 @@ static void is_near(double a, double b, double most) {
 }
 
 /* RecursiveSkeletons has two skins for one mesh, and one node is a child of a joint of its own
- * skin. The joints alone determine the position of a skinned mesh; its node's pose is ignored.
- */
+ * skin. The joints alone determine the position of a skinned mesh; its node's pose is
+ * ignored. */
 static void skins(void **state) {
   (void)state;
   Gltf *g = new_square();

@@ -1,7 +1,6 @@
 /* test/import/test_gltf_more.c: glTF beyond the core: a shutter interval, several scenes,
  * variants, compressed buffers, WebP beside other images, image-based lights, textures with
- * their own uv sets and transforms, unsupported extensions.
- */
+ * their own uv sets and transforms, unsupported extensions. */
 #include <meshoptimizer.h>
 
 #include "image/image.h"

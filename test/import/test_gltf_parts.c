@@ -276,8 +276,7 @@ static void faces(void **state) {
 /* ---- variants ---------------------------------------------------------------------------- */
 
 /* Without a choice, and for a variant that a primitive does not name: the primitive's own
- * material.
- */
+ * material. */
 static void variants(void **state) {
   (void)state;
   Gltf *g = new_square();

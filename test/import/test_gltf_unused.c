@@ -1,5 +1,5 @@
-/* test/import/test_gltf_unused.c: `velo scene check` reads what no scene of a glTF file uses.
- */
+/* test/import/test_gltf_unused.c: `velo scene check` reads what no scene of a glTF file
+ * uses. */
 #include "import/gltf_load.h"
 #include "velo/check.h"
 

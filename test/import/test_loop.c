@@ -65,8 +65,7 @@ static void closed(void **state) {
 }
 
 /* A flat grid stays flat; a border of collinear vertices stays a line; the normals are the
- * plane's.
- */
+ * plane's. */
 static void flat(void **state) {
   (void)state;
   enum { N = 4 };
@@ -144,8 +143,8 @@ static void refused(void **state) {
   assert_string_equal(error.message, "face 0 names vertex 1 twice");
   assert_int_equal(vl_loop_subdivide(context, 5, p, 2, same_way, 1, &m, &error),
                    VL_ERROR_SCENE);
-  /* three faces at an edge, a vertex of two fans, a vertex of none: odd, but there is an answer
-   */
+  /* three faces at an edge, a vertex of two fans, a vertex of none: odd, but there is an
+   * answer */
   const uint32_t book[] = {0, 1, 2, 1, 0, 3, 0, 1, 4}, bow[] = {0, 1, 2, 0, 3, 4};
   subdivide(5, p, 3, book, 3, &m);
   free_mesh(&m);

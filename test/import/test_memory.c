@@ -1,6 +1,5 @@
 /* test/import/test_memory.c: the n-th allocation fails, for every n: the result is
- * VL_ERROR_MEMORY and nothing leaks.
- */
+ * VL_ERROR_MEMORY and nothing leaks. */
 #include "import/load.h"
 
 #include "failing_allocator.h"

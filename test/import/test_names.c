@@ -1,6 +1,5 @@
 /* test/import/test_names.c: names of files reach shapes, materials and instances: glTF, OBJ,
- * PLY.
- */
+ * PLY. */
 #include "import/gltf_load.h"
 #include "velo/check.h"
 #include "velo/shape.h"

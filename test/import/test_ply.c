@@ -64,8 +64,7 @@ static void put(Buffer *b, const char *type, double v) {
 static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 
 /* A pyramid: 5 vertices; a quad, four triangles and a pentagon that repeats a corner line, with
- * things to skip between.
- */
+ * things to skip between. */
 static void write_pyramid(Buffer *b, int format, const char *real, const char *index,
                           const char *count, bool rich) {
   static const float p[5][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 1}};

@@ -126,8 +126,8 @@ static void put_together_they_are_the_same(void **state) {
 }
 
 /* The spheres are transformed by a matrix that is not a similarity. A ray hits a sphere of many
- * at the same point as the same sphere alone; this also holds for rays through the whole world.
- */
+ * at the same point as the same sphere alone; this also holds for rays through the whole
+ * world. */
 static void many_are_each_alone(void **state) {
   (void)state;
   enum { N = 50 };

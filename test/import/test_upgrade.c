@@ -78,8 +78,7 @@ static vlResult upgrade(const char *from, const char *to, bool strict, Notes *no
 }
 
 /* Statements after WorldBegin, and what becomes of them. lost: number of notes without
- * counterpart.
- */
+ * counterpart. */
 static const struct {
   const char *from, *to;
   int lost;

@@ -162,15 +162,14 @@ static void parallels_to_the_view_plane_stay_parallel(void **state) {
 }
 
 /* Where the lines of direction d vanish: the ray from the eye along d stays one point of the
- * image.
- */
+ * image. */
 static P2 vanishing_point(const Image *p, P3 d) {
   const double *m = p->camera.world_from_camera;
   return exact(p, add3((P3){m[3], m[7], m[11]}, d));
 }
 
-/* Property 5: parallel lines that are not parallel to the view plane meet in a vanishing point.
- */
+/* Property 5: parallel lines that are not parallel to the view plane meet in a vanishing
+ * point. */
 static void other_parallels_meet(void **state) {
   (void)state;
   Image p = render_scene("property_5", W, H);

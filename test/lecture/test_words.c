@@ -131,8 +131,7 @@ static void change_lens(vlCameraDef *def, const void *user) {
 
 /* With the focus on the disk at 500, its edge is as sharp as the pinhole's; the disk at 250 has
  * a penumbra as wide as the circle of confusion at that distance, of diameter 2 R f |1/z -
- * 1/focus|.
- */
+ * 1/focus|. */
 static void lens_blurs_what_is_out_of_focus(void **state) {
   (void)state;
   const double radius_focus[2] = {10, 500};

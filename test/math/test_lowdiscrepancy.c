@@ -52,8 +52,7 @@ static void test_sobol2(void **state) {
 }
 
 /* A nested scramble: the top k bits of the result are a permutation of the top k bits; each bit
- * flips half of the time.
- */
+ * flips half of the time. */
 static void test_owen(void **state) {
   (void)state;
   enum { K = 8 };

@@ -138,8 +138,8 @@ static void test_small_cone(void **state) {
   assert_true(fabs(sum / 10000 / (sin_max * sin_max) - 0.5) < 0.01);
 }
 
-/* The equal-area map as pbrt draws it (book, figure 3.8.3): corners and middles of the square.
- */
+/* The equal-area map as pbrt draws it (book, figure 3.8.3): corners and middles of the
+ * square. */
 static void test_octahedral_convention(void **state) {
   (void)state;
   static const struct {

@@ -1,6 +1,5 @@
 /* render/own_pinhole.h: a camera of one's own that is velo's perspective camera of the small
- * world (api/small_world.h).
- */
+ * world (api/small_world.h). */
 #ifndef TEST_RENDER_OWN_PINHOLE_H
 #define TEST_RENDER_OWN_PINHOLE_H
 

@@ -1,6 +1,6 @@
 /* Images of known value: closed spheres with light inside (pbrt's analytic integrator tests),
- * white furnaces, solid angles. Means over the whole image are compared with the exact number.
- */
+ * white furnaces, solid angles. Means over the whole image are compared with the exact
+ * number. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -96,8 +96,7 @@ typedef struct Shot {
 } Shot;
 
 /* Renders and returns the means of R, G, B; extremes of G in range, if asked for. Frees the
- * bench.
- */
+ * bench. */
 static void finish(Bench *b, Shot shot, double mean[3], double range[2]) {
   vlBuildDef build = vl_default_build_def();
   build.color = shot.color;

@@ -1,6 +1,6 @@
 /* The choice of a tracer: by given numbers; the same for any number of threads, crop and seed;
- * no race where it would be too long; the mean of the chosen tracer is that of the path tracer.
- */
+ * no race where it would be too long; the mean of the chosen tracer is that of the path
+ * tracer. */
 #include "render/agreement.h"
 #include "render/choose.h"
 #include "velo/choose.h"
@@ -178,8 +178,8 @@ static Image with_sheet(vlTracer tracer) {
   return stage_finish(&s);
 }
 
-/* Light paths would meet the other side of what camera paths meet: volpath renders such worlds.
- */
+/* Light paths would meet the other side of what camera paths meet: volpath renders such
+ * worlds. */
 static void one_sided_surfaces(void **state) {
   (void)state;
   vlTracerChoice choice = choice_of((How){.threads = 1, .one_sided = true});

@@ -90,8 +90,7 @@ static void measure(const Case *c, double ratio[2]) {
 
 /* The ratio lies between 0.85 and 1.15; its own statistical error is 0.04 with 20 seeds. The
  * errors of independent samples are at least `independent` times the true ones, so that they
- * would fail.
- */
+ * would fail. */
 static void check(const char *what, const Case *c, double independent) {
   double ratio[2];
   measure(c, ratio);

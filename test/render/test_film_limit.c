@@ -1,6 +1,5 @@
 /* test_film_limit.c: vlFilmDef.max_component: samples above the limit are scaled down as a
- * whole, others are unchanged.
- */
+ * whole, others are unchanged. */
 #include "render/shots.h"
 
 static Image sky(float radiance, float most, vlColorMode mode) {

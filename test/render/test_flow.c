@@ -14,8 +14,8 @@ static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_
 }
 
 /* A wall at depth 8, and in front of it a narrow wall at depth 4. The other camera is 1 to the
- * right. The focal length is 60, so the wall moves 7.5 pixels to the left and the narrow
- * wall 15. Stripes 7.5 pixels wide appear and disappear. */
+ * right. The focal length is 60, so the wall moves 7.5 pixels to the left and the narrow wall
+ * 15. Stripes 7.5 pixels wide appear and disappear. */
 static void test_two_walls(void **state) {
   (void)state;
   Stage s = stage_open(120, 40);

@@ -94,8 +94,7 @@ static void a_cleared_film_is_new(void **state) {
 }
 
 /* After the first image no more memory is allocated: the tenth image holds as much as the
- * second.
- */
+ * second. */
 static void frames_take_no_memory(void **state) {
   (void)state;
   vlFilm *film = make_film(false);

@@ -42,8 +42,8 @@ static Image lamp_image(const char *node, const char *light) {
 
 static void point_and_spot(void **state) {
   (void)state;
-  /* the spot points 0.3 radians away from straight down, towards +x: its -z is rotated about y
-   */
+  /* the spot points 0.3 radians away from straight down, towards +x: its -z is rotated about
+   * y */
   Image point = lamp_image("\"translation\":[0.3,-0.2,2],\"scale\":[3,3,3]",
                            "\"type\":\"point\",\"intensity\":4,\"color\":[1,0.5,0.25]");
   Image spot = lamp_image("\"translation\":[0,0,2],\"rotation\":[0,-0.149438,0,0.988771]",
@@ -76,8 +76,7 @@ static void point_and_spot(void **state) {
 static void directional(void **state) {
   (void)state;
   /* 60 degrees from the wall's normal, then a scaled and mirrored node: only the direction
-   * counts
-   */
+   * counts */
   static const char *const nodes[] = {
       "\"rotation\":[0.5,0,0,0.8660254]",
       "\"translation\":[7,8,9],\"rotation\":[0.5,0,0,0.8660254],\"scale\":[-2,1,0.1]"};

@@ -130,8 +130,8 @@ static void glass(void **state) {
       Shot shot = {.material = pbr(1, 0, rough, more), .depth = 200};
       expect_shot(solid ? "clear solid" : "clear sheet", &shot, 1, 1, 1, 0.006);
     }
-  /* A ball of thin glass: F + b^2 (1 - F) for each ray, with the Schlick mean .04 + .96 / 21.
-   */
+  /* A ball of thin glass: F + b^2 (1 - F) for each ray, with the Schlick mean .04 + .96 /
+   * 21. */
   double f = 0.04 + 0.96 / 21, e = f + 0.25 * (1 - f);
   Shot shot = {
       .material =
@@ -214,8 +214,7 @@ static void normal_incidence(void **state) {
 }
 
 /* A film of index 1.8, 300 nm thick, on glass of 1.5: Airy's sum for three wavelengths a
- * channel.
- */
+ * channel. */
 static void film(void **state) {
   (void)state;
   static const double waves[3][3] = {{595, 615, 635}, {525, 545, 565}, {435, 452, 470}};
@@ -238,8 +237,7 @@ static void film(void **state) {
 /* ---- slabs ------------------------------------------------------------------------------- */
 
 /* Glass 1 thick in front of a white room: F + (1 - F)^2 a / (1 - F a), a = colour^(1 /
- * attenuationDistance).
- */
+ * attenuationDistance). */
 static void attenuation(void **state) {
   (void)state;
   static const struct {

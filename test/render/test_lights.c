@@ -316,8 +316,7 @@ static vlImage *make_sky(Stage *s, const float *sky, int repeat) {
 static void sky_orientation(void **state) {
   (void)state;
   /* Known by the book: the square's middle is +z, its corners -z, the middles of its edges +-x
-   * and
-   * +-y (row 0 is v = 0). */
+   * and +-y (row 0 is v = 0). */
   double d[3];
   square_to_sphere(1, 0.5, d);
   assert_near("+x", d[0], 1, 1e-12);

@@ -348,8 +348,7 @@ static void prism(void **state) {
   glass.eta = vl_spectrum_input(vl_spectrum_named("glass-SF11"));
   vlMaterialId material = vl_scene_add_material(s.scene, &glass);
   /* a closed wedge: thick 0.9 at x = -2, 0.1 at x = 2, its front face at right angles to the
-   * view
-   */
+   * view */
   static const float p[24] = {-2, -2, -1,    2, -2, -1,    -2, 2, -1,    2, 2, -1,
                               -2, -2, -1.9f, 2, -2, -1.1f, -2, 2, -1.9f, 2, 2, -1.1f};
   static const uint32_t f[36] = {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
@@ -428,8 +427,8 @@ static void dispersion_keeps_energy(void **state) {
   assert_ratio("narrow band through dispersive glass", mean[1], mean[0], 0.02);
 }
 
-/* A ball of flint glass before a white sky cannot be seen: what it splits comes together again.
- */
+/* A ball of flint glass before a white sky cannot be seen: what it splits comes together
+ * again. */
 static void dispersion_in_the_white_furnace(void **state) {
   (void)state;
   const char *const glass[2] = {"glass-SF11", "glass-BK7"};

@@ -39,8 +39,8 @@ static const Kind kinds[] = {
      0},
     {"\"bilinearmesh\" " SQUARE, MESH, {.1, .2, .1}, {0, 0, 1}, 0},
     {"\"bilinearmesh\" " SQUARE DOWN, NORMALS, {.1, .2, .1}, {0, 0, -1}, 0},
-    /* Corner 0's ring in pbrt's order: +x -y -x +y, so S = 2x, T = -2y, and S x T points down.
-     */
+    /* Corner 0's ring in pbrt's order: +x -y -x +y, so S = 2x, T = -2y, and S x T points
+     * down. */
     {"\"loopsubdiv\" \"integer levels\" 3 \"point3 P\" [0 0 1 1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 "
      "-1] "
      "\"integer indices\" "

@@ -6,8 +6,7 @@
 #include "velo/projection.h"
 
 /* A bright dot out of focus shows the opening upright: more light below the middle of a
- * triangle's corner than above.
- */
+ * triangle's corner than above. */
 static void blur_has_the_openings_shape(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {
@@ -42,8 +41,8 @@ static void blur_has_the_openings_shape(void **state) {
         }
     assert_near("centre of the blur, x", mean[0] / sum, 0, 0.05);
     assert_near("centre of the blur, y", mean[1] / sum, 0, 0.05);
-    /* an equilateral triangle, corner up: the mean of (y up)^3 is R^3/40, of x^2 and y^2 R^2/8
-     */
+    /* an equilateral triangle, corner up: the mean of (y up)^3 is R^3/40, of x^2 and y^2
+     * R^2/8 */
     double r = 0.4 * fabs(1 / 4.0 - (k ? 1 / 9.0 : 1 / 2.0)) * 60;
     double dot = 0.08 / 4 * 60, small = dot * dot / 3 + 1.0 / 12;
     assert_ratio("x of the triangle", second[0] / sum, r * r / 8 + small, 0.02);
@@ -132,9 +131,8 @@ static void natural_vignetting(void **state) {
 }
 
 /* A double Gauss lens in front of a bright wall: pi / (4 N^2) of its light in the middle, less
- * in the corners, alpha
- * 1. Against an empty background the barrel is black and opaque. A dot is imaged where the
- * chief ray meets the film. */
+ * in the corners, alpha 1. Against an empty background the barrel is black and opaque. A dot is
+ * imaged where the chief ray meets the film. */
 static void many_elements(void **state) {
   (void)state;
   vlOpticsDef def = vl_default_optics_def();

@@ -628,8 +628,7 @@ static vlResult render_part(const Stage *s, const vlWorld *world, const vlOwnCam
 }
 
 /* A film keeps the names, in its file too; films of other names are neither continued nor
- * merged.
- */
+ * merged. */
 static void names_in_films(void **state) {
   (void)state;
   Stage s = small_stage(NULL, NULL);

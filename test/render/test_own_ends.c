@@ -65,8 +65,8 @@ static void radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) {
       paths->radiance[c][i] = hits.emission[c][i] + hits.reflectance[c][i];
 }
 
-/* A small scene, its world, camera and film; own code of each kind that a bit of `kinds` names.
- */
+/* A small scene, its world, camera and film; own code of each kind that a bit of `kinds`
+ * names. */
 typedef struct Work {
   vlScene *scene;
   vlWorld *world;

@@ -1,6 +1,6 @@
 /* Light paths and cameras of one's own (render/own_view.h): an own pinhole has the splats of
- * velo's; other cameras get by two-way tracers the image that paths from the camera alone give.
- */
+ * velo's; other cameras get by two-way tracers the image that paths from the camera alone
+ * give. */
 #include "render/shots.h"
 
 #include "api/small_world.h"
@@ -116,8 +116,7 @@ static const vlOwnCamera wrong = {
     .name = "wrong", .rays = pinhole_rays, .pixels = wrong_pixels, .user = &of_small};
 
 /* Lamps, mirrors and glass on a floor; the same with a cloud; or a floor, a wall and a point
- * light.
- */
+ * light. */
 typedef enum What { CLEAR, CLOUD, DIFFUSE } What;
 
 static void fill(Stage *s, What what) {
@@ -304,8 +303,8 @@ static void wrong_inverses(void **state) {
   image_free(&q);
 }
 
-/* Of cameras that light paths cannot be connected to, the tracer that lives of that names it.
- */
+/* Of cameras that light paths cannot be connected to, the tracer that lives of that names
+ * it. */
 static void what_tracers_lack(void **state) {
   (void)state;
   vlOwnCamera blind = pinhole, lens = pinhole;

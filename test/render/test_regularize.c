@@ -110,8 +110,7 @@ static void unchanged(void **state) {
 }
 
 /* eye -> mirror -> metal: both as they are. The metal scatters: what the next ray meets is
- * rougher.
- */
+ * rougher. */
 static void in_a_mirror(void **state) {
   (void)state;
   Image p[2][2];

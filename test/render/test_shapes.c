@@ -128,8 +128,8 @@ static void instances_are_baked_geometry(void **state) {
       }
       char what[64];
       snprintf(what, sizeof what, "%s, transform %d", kind_name[kind], m);
-      /* Glass and the sphere's silhouette multiply rounding: a few pixels may take other paths.
-       */
+      /* Glass and the sphere's silhouette multiply rounding: a few pixels may take other
+       * paths. */
       assert_same(what, &p[0], &p[1], glass ? 0.04 : 0.02, 2e-3);
     }
 }

@@ -139,8 +139,7 @@ static void the_test_has_eyes(void **state) {
 }
 
 /* The regular sampler has the error of its fixed grid only: it must be near the mean of the
- * others.
- */
+ * others. */
 static void regular_is_near(void **state) {
   (void)state;
   static Estimate a;

@@ -139,8 +139,8 @@ static void colours(void **state) {
   }
 }
 
-/* A rough surface: the share of light that it reflects apart, lights and samples find the same.
- */
+/* A rough surface: the share of light that it reflects apart, lights and samples find the
+ * same. */
 static void rough(void **state) {
   (void)state;
   double mean[2];

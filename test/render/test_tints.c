@@ -214,8 +214,7 @@ static void spectra_multiply(void **state) {
     Stage s = open_stage(VL_COLOR_SPECTRAL, VL_TRACER_VOLPATH, 256);
     add_sky(&s, 1);
     /* constant in steps, so that the square of the interpolated spectrum is the interpolated
-     * square
-     */
+     * square */
     float steps[8], values[8];
     for (int i = 0; i < 4; i++) {
       steps[2 * i] = lambda[i];

@@ -6,8 +6,8 @@
  * Each tracer has SEEDS images. The standard error of a mean of the whole image is below POWER
  * of it, which is checked, except in rows that are `weak`. A difference of 11 POWER (9 %) is
  * then at least 7.8 standard errors, of which 5 are allowed, and is found with a probability of
- * 0.99. In most rows the standard error is a third of that, and 3 % are found. Seeds are fixed.
- */
+ * 0.99. In most rows the standard error is a third of that, and 3 % are found. Seeds are
+ * fixed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -181,8 +181,8 @@ static void objects(void **state) {
   }
 }
 
-/* The camera is in the dome and frames what the dome contains; the half on its side is hidden.
- */
+/* The camera is in the dome and frames what the dome contains; the half on its side is
+ * hidden. */
 static void dome(void **state) {
   (void)state;
   Model m = begin();

@@ -1,6 +1,5 @@
 /* bsdf_batch.h: lanes for the BSDF tests: all arrays of a batch in one struct, filled lane by
- * lane.
- */
+ * lane. */
 #ifndef TEST_TRACE_BSDF_BATCH_H
 #define TEST_TRACE_BSDF_BATCH_H
 

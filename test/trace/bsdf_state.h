@@ -1,5 +1,5 @@
-/* bsdf_state.h: the setup of tests of one BSDF: a context, its kernels, room for three batches.
- */
+/* bsdf_state.h: the setup of tests of one BSDF: a context, its kernels, room for three
+ * batches. */
 #ifndef TEST_TRACE_BSDF_STATE_H
 #define TEST_TRACE_BSDF_STATE_H
 

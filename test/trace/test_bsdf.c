@@ -1,7 +1,6 @@
 /* test_bsdf.c: sampling and evaluation of every BSDF agree: chi-square of directions against
  * the density, the sampled weight is value / density, the sampled albedo is the integral of the
- * value.
- */
+ * value. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -151,8 +150,8 @@ static void chi_square(void **state) {
     }
 }
 
-/* For each sample eval returns the same: pdf, and value = weight pdf. Transmission is flagged.
- */
+/* For each sample eval returns the same: pdf, and value = weight pdf. Transmission is
+ * flagged. */
 static void consistent(void **state) {
   State *s = *state;
   Batch *b = s->batch, *c = calloc(1, sizeof *c);

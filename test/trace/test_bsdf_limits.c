@@ -352,8 +352,8 @@ static void special(void **state) {
   }
   batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
   assert_true(b->flags[0] == VL_SAMPLED_SPECULAR && b->pdf[0] == 1 && b->iz[0] < 0);
-  /* gold at normal incidence by the textbook's formula, and just rough enough to be no mirror
-   */
+  /* gold at normal incidence by the textbook's formula, and just rough enough to be no
+   * mirror */
   Surface gold = {.kind = VL_BSDF_CONDUCTOR,
                   .eta = 0.2f,
                   .k = 3.9f,

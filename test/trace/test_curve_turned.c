@@ -93,8 +93,8 @@ static bool near(vlVec3 a, vlVec3 b, float tolerance) {
   return vl_length(vl_sub(a, b)) <= tolerance;
 }
 
-/* Whether both hits are the same. Rounding decides which of two hairs a ray meets at an edge.
- */
+/* Whether both hits are the same. Rounding decides which of two hairs a ray meets at an
+ * edge. */
 static bool same_hit(const Hit *a, const Hit *b) {
   if (a->shape == VL_NONE || b->shape == VL_NONE)
     return a->shape == b->shape;

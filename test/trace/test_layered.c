@@ -116,8 +116,7 @@ static void tally(Tally *t, float x, float y, float z, float weight) {
 
 /* Traces a batch of light paths through the layers (channel 0). Each surface is sampled by its
  * own kernel, which chooses reflection or transmission. A path may leave through the coat at
- * any step.
- */
+ * any step. */
 static void nature(const State *s, const Stack *t, double theta, statRng *rng, Tally *result) {
   Batch *b = s->interface;
   static float x[BATCH], y[BATCH], z[BATCH], weight[BATCH], height[BATCH];

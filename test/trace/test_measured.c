@@ -36,8 +36,7 @@ static void put_surface(Batch *b, const vlMeasured *m, uint32_t n) {
 }
 
 /* Sets random directions on both sides of the surface for lane i, within the cone of cos >
- * least.
- */
+ * least. */
 static void put_random(Batch *b, uint32_t n, statRng *rng, double least) {
   for (uint32_t i = 0; i < n; i++) {
     double o[3], w[3];
@@ -340,8 +339,8 @@ static void forms(void **state) {
   vl_measured_free(s->context, whole);
 }
 
-/* Between wavelengths straight lines, beyond them the last; colours are those of the spectra.
- */
+/* Between wavelengths straight lines, beyond them the last; colours are those of the
+ * spectra. */
 static void wavelengths(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;

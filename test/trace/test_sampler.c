@@ -275,8 +275,8 @@ static void test_uniform(void **state) {
         uint32_t grid[16 * 16] = {0}, joint[16 * 16] = {0}, line[64] = {0};
         double sum = 0, sum2 = 0;
         for (int p = 0; p < PIXELS; p++) {
-          /* Pixels far apart, one sample of each: independent of each other, whatever the kind
-           */
+          /* Pixels far apart, one sample of each: independent of each other, whatever the
+           * kind */
           int x = (p % 64) * 16 + p % 7, y = (p / 64) * 16 + p % 5;
           pixel_set(&s, x, y, (uint32_t)p % SPP[k], 1, DIMENSIONS[d], u_, v_);
           pixel_set(&s, x, y, (uint32_t)p % SPP[k], 1, DIMENSIONS[d] + 2, w_, NULL);

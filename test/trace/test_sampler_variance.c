@@ -99,8 +99,8 @@ static void test_beats_independent(void **state) {
   }
 }
 
-/* Error ~ N^-1.5 for smooth functions, ~ N^-0.75 for edges, in the powers of two (Owen 1997).
- */
+/* Error ~ N^-1.5 for smooth functions, ~ N^-0.75 for edges, in the powers of two (Owen
+ * 1997). */
 static void test_decay(void **state) {
   (void)state;
   static const vlSamplerKind KIND[2] = {VL_SAMPLER_SOBOL, VL_SAMPLER_ZSOBOL};

@@ -46,8 +46,8 @@ static inline void set_bit(unsigned char *mask, uint32_t n) {
 }
 
 /* Two leaves at (0,0,0) and (8,0,0) of values x + 10 y + 100 z (+ 1), a tile of 8^3 of 5 at
- * (16,0,0), a tile of 128^3 of 7 at (128,0,0); voxels of half a unit, the first at (10, 0, 0).
- */
+ * (16,0,0), a tile of 128^3 of 7 at (128,0,0); voxels of half a unit, the first at (10, 0,
+ * 0). */
 static inline unsigned char *make_grid(void) {
   unsigned char *g = calloc(1, SIZE);
   put(g, "NanoVDB0", 8);

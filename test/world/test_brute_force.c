@@ -200,8 +200,7 @@ static void room_far_from_the_origin(void **state) {
 }
 
 /* Rays from inside of a closed room to points on its edges, diagonals and corners, and exactly
- * along its axes, hit it.
- */
+ * along its axes, hit it. */
 static void no_ray_passes_between_faces(void **state) {
   (void)state;
   Made m = {0};

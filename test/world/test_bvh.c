@@ -216,8 +216,7 @@ typedef struct Verdict {
 
 /* The ray in a group, by the arithmetic of the accelerators. Returns a bound of the relative
  * error of the map's scale: packets of Embree sum the determinant of a moving instance in
- * another order.
- */
+ * another order. */
 static double to_group(const vlWorld *w, uint32_t k, uint32_t instance, float o[3],
                        float d[3]) {
   float world_o[3], world_d[3], pose[12], map[12];
@@ -269,8 +268,8 @@ static int meets(const float *const c[3], const float o[3], const float d[3],
   vl_cross3(edge[0], edge[1], n);
   speed = vl_dot3(n, ray);
   height = vl_dot3(n, v[0]);
-  /* Corners relative to the origin are off by `near`, and their differences by a little more.
-   */
+  /* Corners relative to the origin are off by `near`, and their differences by a little
+   * more. */
   double near = EPSILON * reach + 2 * scale_error * far;
   double beside = length * (8 * near * (reach + longest) + 32 * EPSILON * reach * longest);
   double slow = length * 16 * (near + EPSILON * longest) * longest,
@@ -603,8 +602,7 @@ static void nothing_at_all(void **state) {
 }
 
 /* Embree reports a hit at an infinite distance where the arithmetic of a huge triangle
- * overflows.
- */
+ * overflows. */
 static void a_distance_that_overflows_is_no_hit(void **state) {
   (void)state;
   vlNearest known = {

@@ -287,8 +287,8 @@ static void normals(void **state) {
         continue;
       assert_true(fabs(hit.t - 1.5) < 1e-12);
       vl_shape_point(&s, 0, &hit, &point);
-      /* dpdu is up, left of it (as numbers, d x up) is -x: v grows to there; n = dpdu x dpdv.
-       */
+      /* dpdu is up, left of it (as numbers, d x up) is -x: v grows to there; n = dpdu x
+       * dpdv. */
       double v = 0.5 - x / (kind == VL_CURVE_RIBBON ? 0.4 : 0.5),
              turn = 3.14159265358979 * (v - 0.5);
       assert_true(fabs(point.uv[1] - v) < 1e-6);

@@ -22,8 +22,7 @@ static const char *file_name(void) {
 }
 
 /* max_memory: of the context; 0: no limit. peak: receives the most bytes that it held; may be
- * null.
- */
+ * null. */
 static vlResult load_within(const unsigned char *file, size_t size, size_t max_memory,
                             size_t *peak, vlError *error,
                             void (*look)(const vlWorldMedium *m)) {
@@ -156,8 +155,8 @@ static void refused(void **state) {
   free(grid);
 }
 
-/* Any wrong byte of what is not values: an image's worth of memory or an error, never a crash.
- */
+/* Any wrong byte of what is not values: an image's worth of memory or an error, never a
+ * crash. */
 static void shaken(void **state) {
   (void)state;
   unsigned char *grid = make_grid();
@@ -254,8 +253,7 @@ static void takes_no_more_than_its_size(void **state) {
 }
 
 /* A packed grid unpacks to what its file says: 260 MB of 256 KB, which the context's limit
- * refuses before it is there.
- */
+ * refuses before it is there. */
 static void unpacks_within_the_limit(void **state) {
   (void)state;
   enum { UNPACKED = 256 << 20 };

@@ -125,8 +125,7 @@ static void point_of(Face f, float p[3]) {
 
 /* Rays through a point of a triangle. They begin in the room, at another triangle, near the
  * same triangle (so they graze it), or far away; they end before the point, at it, beyond it,
- * or never.
- */
+ * or never. */
 static void make_rays(const vlWorld *world, float size, float shift) {
   for (uint32_t k = 0; k < BATCH; k++) {
     float from[3], to[3], kind = random_unit(), off = kind < 0.4f ? size * small() : 0;

@@ -45,8 +45,8 @@ static void set_colors(programme *p, const space *s) {
     }
 }
 
-/* Gaussian elimination with pivoting of the first n rows. Column n of a is the right-hand side.
- */
+/* Gaussian elimination with pivoting of the first n rows. Column n of a is the right-hand
+ * side. */
 static bool solve(programme *p, int n) {
   for (int k = 0; k < n; k++) {
     int best = k;

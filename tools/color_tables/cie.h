@@ -1,6 +1,6 @@
 /* cie.h: tables of the CIE (CIE 15), one value every 5 nm. tools/color_tables/import_cie made
- * them from Debian's package colord-data. Illuminants are relative: their scale has no meaning.
- */
+ * them from Debian's package colord-data. Illuminants are relative: their scale has no
+ * meaning. */
 #ifndef COLOR_TABLES_CIE_H
 #define COLOR_TABLES_CIE_H
 /* clang-format off */

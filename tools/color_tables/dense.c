@@ -158,8 +158,7 @@ static void add_all(state *s) {
       add_glass(s, glasses[i].name + 1, &glasses[i]);
   }
   /* Illuminant A: Planck's law at 2848 K with the second radiation constant of that time (CIE
-   * 15)
-   */
+   * 15) */
   double a[LAMBDA_COUNT];
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     double l = LAMBDA_MIN + i;

@@ -1,6 +1,6 @@
 /* main.c: color_tables spectra FILE.c | color_tables rgb SPACE FILE.bin: writes velo's colour
- * tables. The build runs it (CMakeLists.txt); all runs together take some seconds on one core.
- */
+ * tables. The build runs it (CMakeLists.txt); all runs together take some seconds on one
+ * core. */
 #include <stdlib.h>
 #include <string.h>
 

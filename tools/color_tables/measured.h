@@ -1,12 +1,12 @@
 /* measured.h: measured properties of materials: refractive indices of metals and oxides,
- * dispersion formulas of glasses, and the components of daylight. Each table names its source.
- */
+ * dispersion formulas of glasses, and the components of daylight. Each table names its
+ * source. */
 #ifndef COLOR_TABLES_MEASURED_H
 #define COLOR_TABLES_MEASURED_H
 /* clang-format off */
 
-/* SOPRA optical data base (public n,k tables): photon energies from 3.45 down to 1.45 eV in steps of 0.05 eV, that is
- * 359.37 to 855.06 nm; wavelength = 1239.84176 nm / energy. */
+/* SOPRA optical data base (public n,k tables): photon energies from 3.45 down to 1.45 eV in
+ * steps of 0.05 eV, that is 359.37 to 855.06 nm; wavelength = 1239.84176 nm / energy. */
 enum { METAL_COUNT = 41 };
 static const double Ag_eta[METAL_COUNT] = {
     0.194813, 0.186, 0.192063, 0.2, 0.198063, 0.192, 0.182, 0.173, 0.172625, 0.173, 0.166688, 0.16, 0.1585, 0.157,
@@ -49,8 +49,8 @@ static const double Cu_k[METAL_COUNT] = {
     2.809, 3.01075, 3.24, 3.458187, 3.67, 3.863125, 4.05, 4.239563, 4.43, 4.619563, 4.817, 5.034125, 5.26, 5.485625,
 };
 
-/* Brass, 70 % copper and 30 % zinc: M. R. Querry, Optical constants, CRDC-CR-85034 (1985), by refractiveindex.info (CC0);
- * 360 to 830 nm in steps of 10 nm. */
+/* Brass, 70 % copper and 30 % zinc: M. R. Querry, Optical constants, CRDC-CR-85034 (1985), by
+ * refractiveindex.info (CC0); 360 to 830 nm in steps of 10 nm. */
 enum { BRASS_COUNT = 48 };
 static const double CuZn_eta[BRASS_COUNT] = {
     1.503, 1.497, 1.487, 1.471, 1.445, 1.405, 1.350, 1.278, 1.191, 1.094, 0.994, 0.900, 0.816, 0.745, 0.686, 0.639,
@@ -63,8 +63,9 @@ static const double CuZn_k[BRASS_COUNT] = {
     3.943, 4.025, 4.106, 4.186, 4.266, 4.346, 4.424, 4.501, 4.579, 4.657, 4.737, 4.814, 4.890, 4.965, 5.039, 5.115,
 };
 
-/* Magnesium oxide and titanium dioxide (rutile): SOPRA optical data base; pairs of nm and value. k of MgO is below
- * 2e-6 everywhere in the visible range: 0. k of TiO2 is 0 but for the points given. */
+/* Magnesium oxide and titanium dioxide (rutile): SOPRA optical data base; pairs of nm and
+ * value. k of MgO is below 2e-6 everywhere in the visible range: 0. k of TiO2 is 0 but for the
+ * points given. */
 static const double MgO_eta[][2] = {
     {355.549, 1.7755},  {360.932, 1.7732},  {361.142, 1.77318}, {364.969, 1.77186}, {382.065, 1.7668},
     {386.712, 1.7655},  {393.338, 1.7638},  {404.634, 1.76104}, {430.935, 1.7557},  {435.782, 1.75471},
@@ -100,7 +101,8 @@ static const sellmeier glasses[] = {
     {"SF11", {1.73759695, 0.313747346, 1.89878101}, {0.013188707, 0.0623068142, 155.23629}},        /* N-SF11 */
 };
 
-/* Daylight (CIE 15, Judd et al. 1964): S = S0 + M1 S1 + M2 S2; 360 to 830 nm in steps of 10 nm, linear between. */
+/* Daylight (CIE 15, Judd et al. 1964): S = S0 + M1 S1 + M2 S2; 360 to 830 nm in steps of 10 nm,
+ * linear between. */
 enum { DAYLIGHT_COUNT = 48 };
 static const double daylight[3][DAYLIGHT_COUNT] = {
     {61.5, 68.8, 63.4, 65.8, 94.8, 104.8, 105.9, 96.8, 113.9, 125.6, 125.5, 121.3, 121.3, 113.5, 113.1, 110.8,
@@ -113,8 +115,8 @@ static const double daylight[3][DAYLIGHT_COUNT] = {
      -1.2, -1.0, -0.5, -0.3, 0.0, 0.2, 0.5, 2.1, 3.2, 4.1, 4.7, 5.1, 6.7, 7.3, 8.6, 9.8,
      10.2, 8.3, 9.6, 8.5, 7.0, 7.6, 8.0, 6.7, 5.2, 7.4, 6.8, 7.0, 6.4, 5.5, 6.1, 6.5},
 };
-/* M1, M2 of D50 and D65, to three decimals as the CIE has them; D60 as the ACES white (correlated colour temperature 6000 K put into the
- * formulas, to three decimals). */
+/* M1, M2 of D50 and D65, to three decimals as the CIE has them; D60 as the ACES white
+ * (correlated colour temperature 6000 K put into the formulas, to three decimals). */
 static const double daylight_D50[2] = {-1.039, 0.363};
 static const double daylight_D60[2] = {-0.536, -0.519};
 static const double daylight_D65[2] = {-0.295, -0.689};

@@ -139,8 +139,8 @@ static void fit(const problem *q, const double rgb[3], double z, double scale, p
       damping = damping * 100 + 1e-12;
       continue;
     }
-    /* Limits the step: a spectrum that is 0 or 1 everywhere has no derivative that leads back.
-     */
+    /* Limits the step: a spectrum that is 0 or 1 everywhere has no derivative that leads
+     * back. */
     double length = sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]),
            size = sqrt(square_of(c));
     double factor = length > 0.5 * size + 0.5 ? (0.5 * size + 0.5) / length : 1.0;
@@ -195,8 +195,8 @@ static void store(const poly *c, float *out) {
   out[2] = (float)(c->p[0] - c->p[1] + c->p[2] * (2.0 / 3.0));
 }
 
-/* Whether a node can be used. The table is read only for colours with z + smallest component
- * <= 1. A node that belongs to no cell of such a colour is not solved and takes a neighbour's
+/* Whether a node can be used. The table is read only for colours with z + smallest component <=
+ * 1. A node that belongs to no cell of such a colour is not solved and takes a neighbour's
  * value. */
 static bool is_used(double z_below, double x_below, double y_below) {
   return z_below * (1 + fmin(x_below, y_below)) <= 1;

@@ -22,8 +22,7 @@ typedef struct space {
  * no such spectra exist. */
 bool make_channels(const space *srgb, float shares[LAMBDA_COUNT][3]);
 /* In dense.c: computes the spectra and the spaces. To be called once, before the file is
- * written.
- */
+ * written. */
 void make_spectra(space spaces[SPACE_COUNT]);
 bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]);
 /* Writes count values, each the stride-th, as members of an initialiser. */

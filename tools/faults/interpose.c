@@ -1,11 +1,13 @@
 /* tools/faults/interpose.c: makes one call of the C library fail. tools/check_faults preloads
- * it: VELO_FAULT=CALL:K:ERRNO       the K-th call of that kind (from 1) fails
+ * it:
+ *   VELO_FAULT=CALL:K:ERRNO       the K-th call of that kind (from 1) fails
  *   VELO_FAULT=CALL:K+:ERRNO      that and all later ones
  *   VELO_FAULT=CALL:K:-SIGNAL     the K-th call succeeds, and its thread gets that signal right
- * after it (open and name) VELO_FAULT_COUNT=FILE         how many calls of that kind there
- * were, at exit CALL: memory (malloc, calloc, realloc, aligned), read (read, pread), write
- * (write, pwrite, ftruncate), sync, rename, link, open, name (open, fcntl, rename, link,
- * unlink), thread. Calls on standard input, output and error do not count. */
+ *                                 after it (open and
+ * name) VELO_FAULT_COUNT=FILE         how many calls of that kind there were, at exit CALL:
+ * memory (malloc, calloc, realloc, aligned), read (read, pread), write (write, pwrite,
+ * ftruncate), sync, rename, link, open, name (open, fcntl, rename, link, unlink), thread. Calls
+ * on standard input, output and error do not count. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

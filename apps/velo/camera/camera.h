@@ -13,9 +13,9 @@ bool camera_is_scene(const char *path);
 /* Reads a camera file of any dialect, or the camera of a pbrt scene. If a file has several
  * frames and none was chosen, a note names the frame that is used. size: the image size given
  * by --size; it is used for files without a size, and a file with another size is an error.
- * fallback: a size
- * (--resolution) for files without a size, from which a file's own size may differ. Both may be
- * null or not given. Returns -1, or the exit code after reporting the error. */
+ * fallback: a size (--resolution) for files without a size, from which a file's own size may
+ * differ. Both may be null or not given. Returns -1, or the exit code after reporting the
+ * error. */
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame,
                 const OptionValue *size, const OptionValue *fallback, vlCameraRecord *record);
 /* Like camera_load, and also makes the camera. Reports warnings. */

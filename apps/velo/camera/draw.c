@@ -155,8 +155,7 @@ static int load(State *s, const Command *command, const Arguments *arguments) {
 /* ---- what is drawn ----------------------------------------------------------------------- */
 
 /* Two of the seen points, above and below the middle of the image, and none far behind the
- * others.
- */
+ * others. */
 static void choose_points(State *s) {
   static const double targets[DEFAULT_POINTS][2] = {{0.4, 0.36}, {0.62, 0.6}};
   const Seen *seen = &s->seen;

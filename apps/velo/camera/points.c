@@ -46,8 +46,7 @@ static bool read_numbers(const char *text, double *values, int count, const char
 }
 
 /* Reports a bad line; only the first ten are reported separately. Returns -1, or the exit code
- * if it ends the command.
- */
+ * if it ends the command. */
 static int bad_line(Lines *lines, const char *at, int columns) {
   enum { REPORTED = 10 };
   long column = at - lines->line + 1;

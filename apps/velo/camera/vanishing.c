@@ -1,6 +1,6 @@
 /* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon
- * of a camera, optionally drawn over an image; and the inverse: a camera from vanishing points.
- */
+ * of a camera, optionally drawn over an image; and the inverse: a camera from vanishing
+ * points. */
 #include <math.h>
 #include <stdio.h>
 

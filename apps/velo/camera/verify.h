@@ -64,8 +64,8 @@ double target_choose(Target *target, const vlCamera *camera);
  * random tilt and rotation. False: the film point has no ray, or the board does not fit. */
 bool target_place(const Target *target, const vlCamera *camera, double x, double y, double side,
                   Random *random, Placement *placement);
-/* The world point (float coordinates, as rendered) at (i, j) squares from the board's corner.
- */
+/* The world point (float coordinates, as rendered) at (i, j) squares from the board's
+ * corner. */
 void target_point(const Target *target, const Placement *placement, double i, double j,
                   double point[3]);
 vlResult target_build(vlContext *context, const Target *target, const Placement *placement,

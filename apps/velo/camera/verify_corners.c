@@ -2,11 +2,12 @@
  * of a pixel.
  *   1. Detection: maxima of -det of the Hessian of the smoothed image (saddle points).
  *   2. First refinement: the point orthogonal to all gradients around it (Foerstner and Guelch
- * 1987; OpenCV's cornerSubPix). The gradient is orthogonal to an edge, and both edges pass
- * through the corner.
+ *      1987; OpenCV's
+ * cornerSubPix). The gradient is orthogonal to an edge, and both edges pass through the corner.
  *   3. Second refinement: lens distortion curves the edges, which biases step 2 by some
- * hundredths of a pixel. The model m + a erf(f1/s) erf(f2/s) of two curved, blurred edges is
- * fitted to the pixels by least squares. A window that the model does not fit is rejected. */
+ *      hundredths of a pixel. The
+ * model m + a erf(f1/s) erf(f2/s) of two curved, blurred edges is fitted to the pixels by least
+ * squares. A window that the model does not fit is rejected. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -246,8 +247,8 @@ static bool begin(const Window *w, const Corner *corner, double *q) {
   q[SHARPNESS] = 1.2;
   q[X] = corner->x;
   q[Y] = corner->y;
-  /* `turn` is the direction of largest increase; both edge functions have the same sign there
-   */
+  /* `turn` is the direction of largest increase; both edge functions have the same sign
+   * there */
   q[TURN1] = turn - 0.25 * M_PI;
   q[TURN2] = turn + 0.25 * M_PI;
   q[BEND1] = q[BEND2] = 0.0;

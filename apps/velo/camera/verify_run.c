@@ -1,6 +1,5 @@
 /* camera/verify_run.c: poses of the board that cover the image. Each is rendered; its corners
- * are found and compared.
- */
+ * are found and compared. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

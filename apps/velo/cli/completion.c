@@ -117,8 +117,8 @@ static size_t clause_length(const char *text) {
   return open ? open - 1 : n;
 }
 
-/* Prints the first clause of a text inside single quotes; `escaped` characters get a backslash.
- */
+/* Prints the first clause of a text inside single quotes; `escaped` characters get a
+ * backslash. */
 static void put_clause(const char *text, const char *escaped, bool fish) {
   size_t n = clause_length(text);
   for (size_t i = 0; i < n; i++) {
@@ -296,8 +296,8 @@ static void zsh_option(const Option *o) {
   printf("' \\\n");
 }
 
-/* Prints a call of _describe: commands with their summaries. family: null for the first words.
- */
+/* Prints a call of _describe: commands with their summaries. family: null for the first
+ * words. */
 static void zsh_describe(const Command *const *commands, int count, const Command *family) {
   printf("    names=(\n");
   for (int i = 0; i < count; i++) {

@@ -1,6 +1,5 @@
 /* cli/completion.h: completion scripts of shells, made from the tables of the commands: `velo
- * help
- * --completion`. */
+ * help --completion`. */
 #ifndef APP_CLI_COMPLETION_H
 #define APP_CLI_COMPLETION_H
 

@@ -12,8 +12,7 @@ int context_open(const vlContextDef *def, vlContext **context);
 /* Destroys a context that context_open created. Null is allowed. */
 void context_close(vlContext *context);
 /* The instruction set that the context's kernels use: "x86-64-v3", or "base" on other
- * processors.
- */
+ * processors. */
 const char *context_isa_name(const vlContext *context);
 
 #endif

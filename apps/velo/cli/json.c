@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates included).
- */
+/* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates
+ * included). */
 static size_t utf8_length(const unsigned char *s) {
   if (s[0] < 0x80)
     return 1;

@@ -44,8 +44,7 @@ static void put_literal(const char *text) {
 }
 
 /* Prints one word of prose. `code`: whether it lies between backquotes, which make the text
- * bold.
- */
+ * bold. */
 static void put_word(const char *word, size_t length, bool *code) {
   bool option = (length >= 2 && word[0] == '-') ||
                 (length >= 3 && !isalnum((unsigned char)word[0]) && word[1] == '-');

@@ -347,8 +347,8 @@ static const Option *find_option(const Command *command, const char *name, size_
   return NULL;
 }
 
-/* Parses one argument that begins with a dash, and the next one as its value when it needs one.
- */
+/* Parses one argument that begins with a dash, and the next one as its value when it needs
+ * one. */
 static int parse_option(const Command *command, char ***rest, char **end,
                         Arguments *arguments) {
   const char *word = **rest;

@@ -17,8 +17,7 @@ static int out_of_memory(void) {
 }
 
 /* Finds the parts of [0, planned) that are not in the ranges. `gaps` has room for count + 1
- * ranges.
- */
+ * ranges. */
 static uint32_t find_gaps(const vlSampleRange *ranges, uint32_t count, uint32_t planned,
                           vlSampleRange *gaps) {
   uint32_t n = 0, at = 0;
@@ -34,8 +33,8 @@ static uint32_t find_gaps(const vlSampleRange *ranges, uint32_t count, uint32_t 
   return n;
 }
 
-/* Returns the number of the list with these ranges, counted from 1. Returns 0 if out of memory.
- */
+/* Returns the number of the list with these ranges, counted from 1. Returns 0 if out of
+ * memory. */
 static uint32_t find_list(FilmParts *parts, const vlSampleRange *ranges, uint32_t count) {
   for (uint32_t i = parts->list_count; i > 0; i--) {
     const RangeList *list = &parts->lists[i - 1];

@@ -27,8 +27,7 @@ typedef struct FilmParts {
 /* Reads all blocks and groups them; `check` also verifies their checksums. If planned is 0, the
  * parts list the samples that the film has. Otherwise they list the samples of [0, planned)
  * that it lacks. Parts without samples are omitted. Returns -1, or the exit code after
- * reporting the error.
- */
+ * reporting the error. */
 int film_parts_read(vlFilmFile *file, bool check, uint32_t planned, FilmParts *parts);
 void film_parts_free(FilmParts *parts);
 

@@ -1,7 +1,6 @@
 /* image/check.c: `velo image check`: checks that the ground truth channels of a file agree with
  * each other and with the camera in the header. Everything is recomputed in double from the
- * file.
- */
+ * file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -26,8 +26,7 @@ static bool is_float(const vlImage *image) {
 }
 
 /* Copies the attributes. After a crop, those that place the pixels in a larger image are left
- * out.
- */
+ * out. */
 static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
@@ -130,8 +129,7 @@ static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t 
 }
 
 /* Replaces *image by one of its channels: unchanged, or as 16-bit integers when a scale is
- * given.
- */
+ * given. */
 static int take_channel(vlContext *context, const Arguments *arguments, vlImage **image) {
   const OptionValue *name = &arguments->values[CONVERT_CHANNEL],
                     *scale = &arguments->values[CONVERT_SCALE];

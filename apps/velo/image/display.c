@@ -35,8 +35,7 @@ static void white_xyz(const double xy[8], double xyz[3]) {
 }
 
 /* rgb to XYZ: the columns are the primaries, scaled so that (1, 1, 1) is the white (SMPTE RP
- * 177).
- */
+ * 177). */
 static bool xyz_from_rgb(const double xy[8], double m[9]) {
   double inverse[9], white[3];
   for (int i = 0; i < 3; i++) {

@@ -4,8 +4,8 @@
 
 #include "velo/image.h"
 
-/* Makes a context and reads an image. Returns -1, or the exit code after reporting the error.
- */
+/* Makes a context and reads an image. Returns -1, or the exit code after reporting the
+ * error. */
 int image_context(vlContext **context);
 int image_load(vlContext *context, const char *path, vlImage **image);
 /* Checks that stdout was written completely. */

@@ -1,7 +1,6 @@
 /* render/attributes.c: see attributes.h. Names and meanings are those of OpenEXR's standard
  * attributes (openexr.com, "Standard Attributes") where one exists; other names begin with
- * "velo.".
- */
+ * "velo.". */
 #include "render/attributes.h"
 
 #include <math.h>
@@ -63,8 +62,7 @@ static void set_matrix(Header *header, const char *name, vlAttributeType type,
 }
 
 /* Whether straight lines project to straight lines, so that matrices and a focal length
- * describe the camera completely.
- */
+ * describe the camera completely. */
 static bool is_linear(const vlCamera *c) {
   return c->projection == VL_PROJECTION_ORTHOGRAPHIC ||
          (c->projection == VL_PROJECTION_PERSPECTIVE && c->distortion.steps == 0);

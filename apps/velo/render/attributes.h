@@ -11,8 +11,7 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp);
 /* Adds the camera of the second view with the prefix "right.". */
 vlResult attributes_set_view(vlImage *image, const Job *job, const char *view);
 /* Adds the number, name and time of a trajectory's frame. name may be empty, time may be
- * VL_UNSET.
- */
+ * VL_UNSET. */
 vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name, double time);
 /* Adds OpenEXR's attribute "view" to the image of one eye. */
 vlResult attributes_set_eye(vlImage *image, const char *view);

@@ -30,14 +30,12 @@ int channels_choose(Channels *c, const Arguments *arguments);
 /* Adds the channels that the scene's film requires: a spectrum or a gbuffer. */
 void channels_take(Channels *c, Job *job);
 /* Reads the cameras to which flow leads. Must be called after the image's camera is made.
- * Returns -1 or the exit code.
- */
+ * Returns -1 or the exit code. */
 int channels_load(Channels *c, vlContext *context, const Job *job);
 /* Returns whether there are channels that only .exr files can hold. */
 bool channels_any(const Channels *c);
 /* Returns the number of 4-byte values per pixel. buckets: number of buckets of the film's
- * spectrum.
- */
+ * spectrum. */
 uint64_t channels_values(const Channels *c, uint32_t buckets);
 /* Estimated seconds of rendering and writing the channels of an image with `spp` samples per
  * pixel, from those that one sample per pixel and the writing of the image alone took. */

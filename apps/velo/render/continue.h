@@ -16,8 +16,7 @@ typedef struct Continue {
 } Continue;
 
 /* Reads the film's receipt and replaces *arguments by those of its command. If each eye has a
- * film
- * (%v in the name), it reads the receipt of the left film. Returns -1 or the exit code. */
+ * film (%v in the name), it reads the receipt of the left film. Returns -1 or the exit code. */
 int continue_open(Continue *c, const Arguments **arguments);
 /* Reads the film that the claim's file has already, or that of --continue; *film stays if there
  * is none. Its receipt must equal `now`, and it must have the samples before those that will be

@@ -1,5 +1,5 @@
-/* render/describe.c: describes what a job would render, as text or JSON (--dry-run). See job.h.
- */
+/* render/describe.c: describes what a job would render, as text or JSON (--dry-run). See
+ * job.h. */
 #include <math.h>
 
 #include "cli/context.h"

@@ -10,8 +10,7 @@
 int exposure_parse(const OptionValue *value, float *ev, bool *meter);
 /* The exposure in stops, rounded to a tenth, that maps the geometric mean of a linear image's
  * luminances to 0.18. Pixels below a thousandth of the mean and pixels with alpha 0 are
- * excluded.
- */
+ * excluded. */
 float exposure_meter(const vlImage *image);
 /* Meters the light that falls on a model, not its colours: renders the whole image small and
  * compares the radiance of the model's pixels (alpha > 0) with their albedo. *ev: the exposure

@@ -20,8 +20,8 @@ typedef struct FilmClaim {
 int film_claim(FilmClaim *claim, vlContext *context, const char *path, const char *from,
                bool overwrite);
 void film_claim_release(FilmClaim *claim);
-/* Says why the film that is there stays: "WHY; --overwrite replaces it". Returns the exit code.
- */
+/* Says why the film that is there stays: "WHY; --overwrite replaces it". Returns the exit
+ * code. */
 int film_claim_refuse(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Checks --overwrite. Returns -1 or the exit code. */
 int film_claim_check(bool overwrite, const char *film, const char *from);

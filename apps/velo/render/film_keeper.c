@@ -1,6 +1,6 @@
 /* render/film_keeper.c: see film_keeper.h. All workers write a checkpoint between two passes. A
- * thread then waits until the file is on the disk and renames it, while the render continues.
- */
+ * thread then waits until the file is on the disk and renames it, while the render
+ * continues. */
 #include "render/film_keeper.h"
 
 #include <stdio.h>

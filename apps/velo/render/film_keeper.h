@@ -48,8 +48,8 @@ int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, int view, vlCont
 /* Makes the receipt again for another range of samples. Returns -1 or the exit code. */
 int film_keeper_describe(FilmKeeper *keeper, const FilmPlan *plan, vlContext *context,
                          const Job *job, const char *eye);
-/* Called after a pass. Writes a checkpoint when it is due. A failure is reported as a warning.
- */
+/* Called after a pass. Writes a checkpoint when it is due. A failure is reported as a
+ * warning. */
 void film_keeper_checkpoint(FilmKeeper *keeper, const vlFilm *film);
 /* Returns the estimated seconds for writing a film of `bytes` bytes at the end, from the
  * duration of the last checkpoint. */

@@ -45,8 +45,7 @@ void frame_image_free(FrameImage *image) {
 /* ---- one image --------------------------------------------------------------------------- */
 
 /* Renames "Z" to "right.Z" and "N.X" to "N.right.X". In the first view, names without a dot
- * stay.
- */
+ * stay. */
 static vlResult add_view(vlImage *image, const char *view, bool first) {
   for (uint32_t i = 0; i < vl_image_channels(image); i++) {
     const char *name = vl_image_channel_name(image, i), *dot = strrchr(name, '.');

@@ -317,8 +317,7 @@ static int compare_paths(const void *a, const void *b) {
 }
 
 /* Checks all paths of one pattern. Two paths may be equal only if the trajectory repeats the
- * name.
- */
+ * name. */
 static int check_twice(const Frames *frames, const char *pattern) {
   uint32_t count = frames_count(frames);
   char **paths = calloc(count, sizeof *paths), path[4096];

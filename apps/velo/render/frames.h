@@ -44,8 +44,8 @@ typedef struct Frame {
 /* Returns whether several images are rendered, because of --trajectory or stereo. job is null
  * before the scene is loaded; then stereo is unknown. */
 bool frames_wanted(const Arguments *arguments, const Job *job);
-/* Checks that the options are compatible, and the name patterns. Returns -1 or the exit code.
- */
+/* Checks that the options are compatible, and the name patterns. Returns -1 or the exit
+ * code. */
 int frames_check(const Arguments *arguments, Outputs *outputs);
 /* Reads trajectory and rig and makes all cameras. Returns -1, or the exit code after reporting
  * the error. */

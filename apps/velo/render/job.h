@@ -151,8 +151,8 @@ bool job_sequence_is_planned(const Job *job, const Arguments *arguments);
 /* The time of the ground truth and of the camera in the header, in seconds. */
 double job_channels_time(const Job *job);
 
-/* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive it.
- */
+/* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive
+ * it. */
 int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path,
                     const Arguments *arguments);
 

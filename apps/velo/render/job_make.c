@@ -1,6 +1,5 @@
 /* render/job_make.c: see job.h. Makes the defs and the camera of a render from the scene's defs
- * and the command line.
- */
+ * and the command line. */
 #include "render/job.h"
 
 #include <math.h>
@@ -187,8 +186,7 @@ static bool sampler_is_open(vlSamplerKind kind) {
 }
 
 /* The tracer with which --tracer auto begins: one that sees of the scene what its own tracer
- * sees (vl_choose_tracer).
- */
+ * sees (vl_choose_tracer). */
 static vlTracer before_race(vlTracer tracer) {
   const vlKindFamily *tracers = vl_kind_family_find("tracers");
   bool past = (uint32_t)tracer < tracers->kind_count &&

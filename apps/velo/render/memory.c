@@ -32,8 +32,8 @@ void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes) {
   plan->total += bytes;
 }
 
-/* OpenEXR files are compressed in chunks of 16 rows, two per worker, with three copies of each.
- */
+/* OpenEXR files are compressed in chunks of 16 rows, two per worker, with three copies of
+ * each. */
 static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width,
                         uint64_t height, uint64_t values) {
   uint64_t most = 0, rows = 32 * (uint64_t)vl_context_threads(context);

@@ -1,7 +1,6 @@
 /* render/needs.c: see needs.h. One table says what an option needs, another when that is there.
  * Where the answer is not certain, the option counts as having an effect: a film keeps options
- * for
- * --continue and velo film develop. */
+ * for --continue and velo film develop. */
 #include "render/needs.h"
 
 #include "camera/camera.h"

@@ -194,8 +194,7 @@ static void report_progress_failure(Outputs *outputs, int i, vlResult result,
 }
 
 /* After a write: NAME.part.EXT is removed once NAME.EXT is complete. Otherwise a note says how
- * many samples it holds.
- */
+ * many samples it holds. */
 static void keep_part(Outputs *outputs, int i, const char *part, OutputStage stage,
                       bool written, uint32_t spp) {
   if (stage != OUTPUT_FINISHED && written)

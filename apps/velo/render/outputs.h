@@ -46,8 +46,7 @@ bool output_holds_layers(const char *path);
 /* Whether the file's format holds an alpha channel. */
 bool output_holds_alpha(const char *path);
 /* Whether velo writes files with this suffix. *eight_bit: whether the format holds display
- * values.
- */
+ * values. */
 bool output_suffix(const char *path, bool *eight_bit);
 /* The largest width and height of the format. */
 uint32_t output_largest_side(const char *path);
@@ -73,8 +72,7 @@ vlResult output_write_layers(const vlImage *const *images, uint32_t count, const
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp,
                   OutputStage stage);
 /* The path to which output i was written at that stage: its own, or its NAME.part.EXT (in
- * `part`).
- */
+ * `part`). */
 const char *output_written(const Outputs *outputs, int i, OutputStage stage, char *part,
                            size_t size);
 

@@ -47,8 +47,7 @@ bool pattern_has(const char *pattern, char kind) {
 }
 
 /* The last component of a path, without its suffix. Characters that some systems do not allow
- * in file names become
- * "_". */
+ * in file names become "_". */
 static void clean(const char *name, char *result, size_t size) {
   const char *slash = strrchr(name, '/'), *back = strrchr(slash ? slash : name, '\\');
   const char *start = back ? back + 1 : slash ? slash + 1 : name, *dot = strrchr(start, '.');

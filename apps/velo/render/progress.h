@@ -1,6 +1,5 @@
 /* render/progress.h: shows the progress of a render: as a bar on a terminal, else as lines of
- * text; as JSON with
- * --log-json. */
+ * text; as JSON with --log-json. */
 #ifndef APP_RENDER_PROGRESS_H
 #define APP_RENDER_PROGRESS_H
 

@@ -1,6 +1,6 @@
 /* render/race.c: see race.h. From then on the render has a tracer like any other: receipts and
- * film files name the chosen one, so that --continue, --again and velo film merge need no race.
- */
+ * film files name the chosen one, so that --continue, --again and velo film merge need no
+ * race. */
 #include "render/race.h"
 
 #include "cli/kinds.h"

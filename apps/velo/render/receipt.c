@@ -50,8 +50,7 @@ static void add_option(Words *w, const Option *option, const char *value) {
 }
 
 /* The value of an option that a race replaces: the command names the result. Null: another
- * option.
- */
+ * option. */
 static const char *raced_value(Words *w, int option, const Job *job) {
   const vlRenderDef *render = &job->defs->render;
   if (!job->raced)

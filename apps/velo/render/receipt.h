@@ -40,8 +40,7 @@ vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *jo
 vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *which,
                      vlImage *image);
 /* Finds the receipt in a header. Returns -1, or the exit code after reporting that there is
- * none or that it is wrong.
- */
+ * none or that it is wrong. */
 int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
                      vlReceipt **receipt);
 /* Checks the scene's path that a receipt holds: it must be that of a file. what, owner: the

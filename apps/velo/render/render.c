@@ -31,8 +31,8 @@ static const char *default_suffix(const Render *render, const Arguments *argumen
 }
 
 /* The default output name: the last component of the name that the scene gives, otherwise the
- * scene's name with the suffix. It is in the current directory, since scenes may be untrusted.
- */
+ * scene's name with the suffix. It is in the current directory, since scenes may be
+ * untrusted. */
 static void choose_output(Render *render, const char *scene_path, const char *asked,
                           const char *suffix) {
   bool eight_bit;
@@ -290,8 +290,8 @@ static int check_sizes(const Render *render) {
   return job_no_film(&render->job, result);
 }
 
-/* A trajectory is metered by its first frame, so a part without that frame cannot be metered.
- */
+/* A trajectory is metered by its first frame, so a part without that frame cannot be
+ * metered. */
 static int check_metering(const Outputs *outputs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   bool shard = v[RENDER_SHARD].given, eight_bit;

@@ -10,8 +10,8 @@
 #include "render/attributes.h"
 #include "render/noise.h"
 
-/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time.
- */
+/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the
+ * time. */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
 /* ---- files ------------------------------------------------------------------------------- */
@@ -238,8 +238,8 @@ static void report_late(const Render *render, uint32_t spp) {
 }
 
 /* Writes the final image with its ground truth. A stopped render is written before its ground
- * truth is rendered, which another signal may interrupt. *stage: the stage of the last write.
- */
+ * truth is rendered, which another signal may interrupt. *stage: the stage of the last
+ * write. */
 static int write_last(Render *render, OutputStage *stage) {
   int written = STATUS_OK;
   if (*stage == OUTPUT_STOPPED && run_has_layers(render))

@@ -115,8 +115,8 @@ static void choose_completion(const char *path, const Arguments *arguments, bool
   if (v[RENDER_ENVIRONMENT_STRENGTH].given)
     complete->strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
   complete->ground = v[RENDER_GROUND].given;
-  /* Ground truth is of the file alone. A film that is continued keeps the ground that it has.
-   */
+  /* Ground truth is of the file alone. A film that is continued keeps the ground that it
+   * has. */
   complete->backdrop = model && !v[RENDER_NO_GROUND].given &&
                        (!v[RENDER_CHANNELS].given || arguments->channels_later);
   complete->open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;

@@ -1,5 +1,5 @@
-/* scene/convert.c: `velo scene convert`: converts a scene to another format and reports losses.
- */
+/* scene/convert.c: `velo scene convert`: converts a scene to another format and reports
+ * losses. */
 
 #include "cli/commands.h"
 #include "cli/context.h"

@@ -24,8 +24,7 @@ static const struct {
 enum { CHOICE_KINDS = sizeof choice_kinds / sizeof *choice_kinds };
 
 /* Named shapes, materials and instances with their ids: "  shape 3     Hall/Chair
- * nodes[3].meshes[1].primitives[0]".
- */
+ * nodes[3].meshes[1].primitives[0]". */
 void info_print_names(const vlScene *scene) {
   for (int k = 0; k < ID_KINDS; k++) {
     const uint32_t n = vl_scene_id_count(scene, id_kinds[k].kind);

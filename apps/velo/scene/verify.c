@@ -1,7 +1,6 @@
 /* scene/verify.c: `velo scene verify`: whether the tracers agree about the light of a scene,
  * with themselves when the whole scene is shifted, turned and scaled, and with the reference
- * renderer.
- */
+ * renderer. */
 #include "scene/verify.h"
 
 #include <math.h>

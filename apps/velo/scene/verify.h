@@ -139,8 +139,7 @@ vlResult verify_render(Verify *v, int look, vlError *error);
  * smaller. */
 uint32_t verify_seed(const Verify *v, int look, uint32_t replicate);
 /* The means of an image's first three channels over the cells. row: VERIFY_CHANNELS for each
- * cell.
- */
+ * cell. */
 void verify_take_means(const Verify *v, const vlImage *image, double *row);
 
 /* ---- verify_reference.c: renders by the reference renderer ------------------------------- */

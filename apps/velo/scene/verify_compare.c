@@ -20,8 +20,7 @@ VerifyFamily verify_family(const VerifyRun *run, const VerifyCell *cell) {
 }
 
 /* The variance of a difference, per pixel, in a replicate: its mean over the blocks of the
- * image.
- */
+ * image. */
 static double variance_per_pixel(const Verify *v, const double *a, const double *b,
                                  uint32_t channel) {
   const size_t stride = (size_t)v->cell_count * VERIFY_CHANNELS;

@@ -54,8 +54,7 @@ typedef struct Features {
 } Features;
 
 /* Whether a roughness may be so small that the surface is a mirror. A texture may have any
- * value.
- */
+ * value. */
 static bool may_be_small(vlFloatInput roughness) {
   return roughness.texture.index != 0 || roughness.value < 0.05f;
 }

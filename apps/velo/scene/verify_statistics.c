@@ -5,9 +5,8 @@
 
 enum { MOST_TERMS = 400 };
 
-/* Lentz's continued fraction of the incomplete beta function (Numerical Recipes 6.4;
- * DLMF 8.17.22).
- */
+/* Lentz's continued fraction of the incomplete beta function (Numerical Recipes 6.4; DLMF
+ * 8.17.22). */
 static double beta_fraction(double x, double a, double b) {
   const double tiny = 1e-300;
   double c = 1, d = 1 - (a + b) * x / (a + 1);
@@ -32,8 +31,8 @@ static double beta_fraction(double x, double a, double b) {
   return h;
 }
 
-/* The regularised incomplete beta function I_x(a, b). y: 1 - x, exactly where x is close to 1.
- */
+/* The regularised incomplete beta function I_x(a, b). y: 1 - x, exactly where x is close to
+ * 1. */
 static double incomplete_beta(double x, double y, double a, double b) {
   if (x <= 0)
     return 0;

@@ -1,7 +1,6 @@
 /* view/engine_curves.c: drawings over the image as the camera sees them, for every projection
  * and distortion: axes, ground grid, horizon, lines to the vanishing points, and the distortion
- * field.
- */
+ * field. */
 #include <math.h>
 #include <string.h>
 
@@ -32,8 +31,8 @@ static void put_point(Json *json, const double pixel[2]) {
     json_number(json, NULL, floor(100 * pixel[i] + 0.5) / 100);
 }
 
-/* Adds the image of a point. Steps of more than a quarter of the image are seams of a panorama.
- */
+/* Adds the image of a point. Steps of more than a quarter of the image are seams of a
+ * panorama. */
 static void curve_to(Curve *c, const double point[3]) {
   double pixel[2], w = c->camera->width, h = c->camera->height;
   bool seen = vl_camera_project(c->camera, point, pixel, NULL) && pixel[0] > -2 * w &&

@@ -25,8 +25,7 @@ static void set_option(FilmCommand *c, int option, const char *text) {
 }
 
 /* Whether the camera is the scene's. An edit that changes no number may make it seem another
- * one.
- */
+ * one. */
 static bool is_scenes_own(const Engine *e) {
   const ViewCamera *a = &e->now.camera, *b = &e->scene_camera;
   return memcmp(&a->def, &b->def, sizeof a->def) == 0 &&

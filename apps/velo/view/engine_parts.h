@@ -175,8 +175,8 @@ int engine_write_film(Engine *engine);
 /* Posts vanishing points, horizon and, if asked for, the boxes of objects and the curves of
  * engine_put_curves. */
 void engine_overlay(Engine *engine, const Task *task);
-/* Posts the lines that draw the camera from outside; a small image of the scene from outside.
- */
+/* Posts the lines that draw the camera from outside; a small image of the scene from
+ * outside. */
 void engine_outline(Engine *engine, const Task *task);
 void engine_outside(Engine *engine, const Task *task);
 /* Posts the cameras of --trajectory, and the lines that draw them. */

@@ -112,8 +112,8 @@ bool engine_swap_model(Engine *e) {
   bool taken = engine_take_model(e) < 0,
        sized = shown.made.width == e->scene_camera.made.width &&
                shown.made.height == e->scene_camera.made.height;
-  /* the page's camera stays unless the file's camera changed, or it has parts of the old scene
-   */
+  /* the page's camera stays unless the file's camera changed, or it has parts of the old
+   * scene */
   bool keep = !other && sized && same_pose(&before, &e->scene_camera) &&
               !shown.def.lens.optics && !shown.def.lens.aperture;
   if (taken && keep) {

@@ -454,8 +454,8 @@ int engine_take_model(Engine *e) {
   return -1;
 }
 
-/* Reports options that have no effect. The page can open the lens; a race may take any tracer.
- */
+/* Reports options that have no effect. The page can open the lens; a race may take any
+ * tracer. */
 static int check_options(const Engine *e) {
   const Arguments *arguments = e->def.arguments;
   const Needs needs = {.options = view_options,

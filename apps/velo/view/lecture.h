@@ -15,8 +15,7 @@ const char *lecture_scene(const char *name);
  * Null: no memory. */
 char *lecture_text(const char *scene);
 /* What follows the address of the page: its language, from --language, else from the
- * environment.
- */
+ * environment. */
 const char *lecture_query(const Arguments *arguments);
 
 #endif

@@ -1,6 +1,6 @@
 /* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The
- * principled material is exported losslessly where possible; other materials are approximated.
- */
+ * principled material is exported losslessly where possible; other materials are
+ * approximated. */
 #include <math.h>
 
 #include "export/export.h"

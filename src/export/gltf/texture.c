@@ -72,8 +72,8 @@ static int wrap_code(vlExport *x, vlWrap wrap) {
   return wrap == VL_WRAP_REPEAT ? 10497 : wrap == VL_WRAP_MIRROR ? 33648 : 33071;
 }
 
-/* KHR_texture_transform, unless it is the identity. Velo's v points upwards, glTF's downwards.
- */
+/* KHR_texture_transform, unless it is the identity. Velo's v points upwards, glTF's
+ * downwards. */
 static void put_transform(vlExport *x, json_t *info, const vlTextureDef *t) {
   double m[6];
   vl_export_st_from_uv(t, m);

@@ -35,8 +35,7 @@ static void put_inline(vlExport *x, const vlShapeDef *d) {
 }
 
 /* Writes binary little-endian PLY. Patches become faces of four corners in cyclic order, which
- * pbrt reads as patches.
- */
+ * pbrt reads as patches. */
 static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
   vlBytes b = {0};
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;

@@ -197,8 +197,8 @@ static float mean3(float *const plane[COLOR], ptrdiff_t at) {
 }
 
 /* The third largest mean of R, G and B among the 24 pixels of the ring at a distance of 3
- * around a pixel (7 x 7). Nearer pixels may have counted the same samples as the pixel itself.
- */
+ * around a pixel (7 x 7). Nearer pixels may have counted the same samples as the pixel
+ * itself. */
 static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
   enum { REACH = 3, RANK = 3 };
   float top[RANK] = {0};

@@ -1,6 +1,5 @@
-/* import/gltf/camera.c: the choice of the scene's camera, and its parameters
- * (specification, 3.10).
- */
+/* import/gltf/camera.c: the choice of the scene's camera, and its parameters (specification,
+ * 3.10). */
 #include <math.h>
 #include <stdlib.h>
 

@@ -8,8 +8,7 @@
 /* ---- morph targets ----------------------------------------------------------------------- */
 
 /* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are
- * `stride` floats apart.
- */
+ * `stride` floats apart. */
 static bool add_target(vlGltf *g, const vlGltfLocation *at, const json_t *target,
                        const char *name, uint32_t components, uint32_t stride, float weight,
                        size_t vertices, float sign_y, float *out) {

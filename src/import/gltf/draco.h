@@ -1,5 +1,5 @@
-/* import/gltf/draco.h: libdraco, behind functions of C. Only builds with VELO_DRACO have them.
- */
+/* import/gltf/draco.h: libdraco, behind functions of C. Only builds with VELO_DRACO have
+ * them. */
 #ifndef IMPORT_GLTF_DRACO_H
 #define IMPORT_GLTF_DRACO_H
 

@@ -341,8 +341,7 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
 /* ---- materials --------------------------------------------------------------------------- */
 
 /* The material `index` (-1: the default material) for a primitive with or without vertex
- * colours. Null after an error.
- */
+ * colours. Null after an error. */
 const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors);
 /* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1 makes a
  * colour texture. Without a textureInfo *id is 0. */

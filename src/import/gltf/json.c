@@ -95,8 +95,7 @@ static bool wrong_kind(vlGltf *g, const vlGltfLocation *at, const char *key, con
 }
 
 /* Looks up a member of this kind. *value is null if it is not there. Returns false after an
- * error.
- */
+ * error. */
 static bool member(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
                    const char *wanted, const json_t **value) {
   *value = json_object_get(object, key);

@@ -137,8 +137,8 @@ void vl_gltf_free_labels(vlGltf *g) {
           g->material_names.slots, g->shape_names.slots, g->instance_names.slots);
 }
 
-/* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several times.
- */
+/* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several
+ * times. */
 static int print_node(const vlGltf *g, size_t node, char *text, size_t size) {
   return g->copy == SIZE_MAX ? snprintf(text, size, "nodes[%zu]", node)
                              : snprintf(text, size, "nodes[%zu].copies[%zu]", node, g->copy);

@@ -385,8 +385,7 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
 }
 
 /* Finds the wanted scene by name or number. Without such a choice the file's default scene is
- * kept.
- */
+ * kept. */
 static bool choose_scene(vlGltf *g, size_t *chosen) {
   const char *wanted = g->def->scene;
   char names[200] = "", *end;

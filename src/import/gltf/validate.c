@@ -1,7 +1,6 @@
 /* import/gltf/validate.c: for `velo scene check`: reads what the chosen scene does not use,
  * into a scene that is thrown away. Messages begin with the codes of Khronos' validator where
- * it has one.
- */
+ * it has one. */
 #include <math.h>
 
 #include "import/gltf/gltf.h"
@@ -9,8 +8,7 @@
 enum { MOST = 200 }; /* messages */
 
 /* The first error of the scene that is thrown away becomes a message, and the next object is
- * read.
- */
+ * read. */
 static void flush(vlGltf *g, vlScene *kept, uint32_t *reported) {
   vlError *e = &g->scene->error;
   if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++*reported <= MOST)

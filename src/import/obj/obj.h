@@ -1,8 +1,8 @@
-/* import/obj/obj.h: types and functions shared by the files of the OBJ importer.
- * Data flow: obj.c (statements to arrays of corners, polygons cut by obj_polygon.c) with mtl.c
- * (material libraries) -> obj_mesh.c (one shape per part) with mtl_material.c. Sources: "Object
- * Files (.obj)" and "Material Library File
- * (.mtl)", Alias/Wavefront; the PBR statements of MTL as published by Clara.io. */
+/* import/obj/obj.h: types and functions shared by the files of the OBJ importer. Data flow:
+ * obj.c (statements to arrays of corners, polygons cut by obj_polygon.c) with mtl.c (material
+ * libraries) -> obj_mesh.c (one shape per part) with mtl_material.c. Sources: "Object Files
+ * (.obj)" and "Material Library File (.mtl)", Alias/Wavefront; the PBR statements of MTL as
+ * published by Clara.io. */
 #ifndef IMPORT_OBJ_OBJ_H
 #define IMPORT_OBJ_OBJ_H
 

@@ -1,6 +1,5 @@
 /* import/obj/obj_label.c: names of objects (o), groups (g) and materials become labels of
- * shapes.
- */
+ * shapes. */
 
 #include "base/text.h"
 #include "import/obj/obj.h"

@@ -8,8 +8,7 @@
 #include "import/import.h"
 
 /* The part of a file where a directive may stand: options precede WorldBegin, the world follows
- * it.
- */
+ * it. */
 typedef enum Part { ANYWHERE, OPTIONS, WORLD } Part;
 
 typedef struct Rule {

@@ -212,8 +212,7 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not
- * support.
- */
+ * support. */
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
                        const char *const *known, size_t known_count, const char *const *later,
                        size_t later_count);
@@ -315,8 +314,7 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
                            vlMaterialId *id, bool *is_interface);
 
 /* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file
- * names of their sources.
- */
+ * names of their sources. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
 bool vl_import_attribute(vlImport *import, const vlStatement *s);
 bool vl_import_object_begin(vlImport *import, const vlStatement *s);
@@ -358,8 +356,8 @@ void vl_import_free_spheres(vlImport *import);
 bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b);
 bool vl_import_same_text(const char *a, const char *b); /* null equals the empty string */
 bool vl_import_medium(vlImport *import, const vlStatement *s);
-/* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c').
- */
+/* Records the media of the current state for a shape ('s'), a light ('l') or the camera
+ * ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source);
 bool vl_import_finish_media(vlImport *import);
 

@@ -114,8 +114,7 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
 }
 
 /* Reads velo's own parameters of the shutter curve: a name, or points (time, value, time,
- * value,
- * ...). */
+ * value, ...). */
 static bool read_curve(vlDict *dict, vlCameraDef *def) {
   static const char *const curves[] = {"box", "triangle", "trapezoid"};
   int curve = 0;

@@ -74,8 +74,8 @@ static bool within_limits(vlParser *parser, vlParserFile *parent, vlSource at, u
                        MAX_REPEATED_MEGABYTES);
 }
 
-/* Parses one file. `at` is the token in `parent` that names the file; null for the first file.
- */
+/* Parses one file. `at` is the token in `parent` that names the file; null for the first
+ * file. */
 static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, const char *path,
                        bool included) {
   struct stat info;

@@ -1,6 +1,5 @@
 /* import/pbrt/lens.c: see lens.h. Aperture images and lens files become objects owned by the
- * scene.
- */
+ * scene. */
 #include "import/pbrt/lens.h"
 
 #include "base/text.h"

@@ -76,8 +76,7 @@ static bool finish_mix(const Reading *r, vlMaterialDef *def) {
 }
 
 /* As in pbrt, only the first of sigma_a, reflectance and the melanins that is given has an
- * effect.
- */
+ * effect. */
 static bool finish_hair(const Reading *r, vlMaterialDef *def) {
   bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"),
        pheomelanin = given(r, "pheomelanin");

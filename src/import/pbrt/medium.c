@@ -65,8 +65,8 @@ static void sort_box(vlMediumDef *def) {
   }
 }
 
-/* Reads a grid with `per` numbers per cell. The result is null when the parameter is not given.
- */
+/* Reads a grid with `per` numbers per cell. The result is null when the parameter is not
+ * given. */
 static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def,
                        const float **values) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);

@@ -163,8 +163,7 @@ static bool move_links(vlImport *import, const uint32_t *first) {
 }
 
 /* Files are read in batches, so that the arrays not yet moved stay small compared with the
- * scene.
- */
+ * scene. */
 enum { RUN = 256 };
 
 static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count,

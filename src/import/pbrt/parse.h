@@ -70,8 +70,8 @@ typedef struct vlParseTarget {
   /* Handles a statement. Returns false to stop the parser, after it has reported an error. */
   bool (*statement)(void *user, const vlStatement *statement);
   void (*error)(void *user, vlResult code, vlSource source, const char *message);
-  /* Called after an error. Returns true to continue after the directive or file. May be null.
-   */
+  /* Called after an error. Returns true to continue after the directive or file. May be
+   * null. */
   bool (*recover)(void *user);
   /* Folders separated by ':' in which included files are looked for, too; null: none. */
   const char *search_path;

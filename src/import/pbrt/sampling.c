@@ -113,8 +113,8 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
 
 /* ---- integrator -------------------------------------------------------------------------- */
 
-/* Reads the maximal path length and limits it to MOST. Longer paths do not contribute visibly.
- */
+/* Reads the maximal path length and limits it to MOST. Longer paths do not contribute
+ * visibly. */
 static void read_depth(vlDict *dict, vlSceneDefs *s) {
   enum { MOST = 4096 };
   vl_dict_count(dict, "maxdepth", 0, &s->render.max_depth);

@@ -1,5 +1,5 @@
-/* import/pbrt/shape.c: Shape directives. The arrays of a mesh move to the scene without a copy.
- */
+/* import/pbrt/shape.c: Shape directives. The arrays of a mesh move to the scene without a
+ * copy. */
 #include <stdio.h>
 
 #include "base/text.h"

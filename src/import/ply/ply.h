@@ -30,8 +30,7 @@ vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, b
 vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken,
                      vlPlyMesh *mesh, vlError *error);
 /* Reads from memory. name is used in errors. data[size] must be a zero byte; data is not
- * changed.
- */
+ * changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
                       vlPlyMesh *mesh, vlError *error);
 void vl_ply_free(vlContext *context, vlPlyMesh *mesh);

@@ -180,8 +180,7 @@ static bool read_format(vlPlyReader *r, const Words *w) {
 }
 
 /* The bytes of a row; for a text file a lower bound of two bytes, a digit and a blank, per
- * value.
- */
+ * value. */
 static void measure(const vlPlyReader *r, vlPlyElement *e) {
   e->row_size = 0;
   for (uint32_t i = 0; i < e->property_count; i++) {

@@ -312,8 +312,8 @@ bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
   return true;
 }
 
-/* A strip names a vertex after another; -1 ends a strip. Every second triangle is turned over.
- */
+/* A strip names a vertex after another; -1 ends a strip. Every second triangle is turned
+ * over. */
 static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
   uint64_t n, run = 0;
   uint32_t last[2] = {0, 0};

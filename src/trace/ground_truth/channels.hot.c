@@ -2,9 +2,8 @@
  * normals, albedo.
  *
  *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray
- * and the surface itself
- *                                                  -> the tracers' stages: normals, uv,
- * textures (64 wavelengths)
+ *     and the surface itself
+ *   ids -> the tracers' stages: normals, uv, textures (64 wavelengths)
  *
  * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the
  * ray decides mixed materials. */
@@ -307,8 +306,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
 }
 
 /* Advances past each surface by the error bound of the hit point, as hits.hot.c does at
- * interfaces.
- */
+ * interfaces. */
 static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane,
                    vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];

@@ -41,8 +41,7 @@ typedef struct vlGroundTruthBatch {
 
 /* Ids of the first hits of the same float rays with which the image's paths begin. Arrays have
  * VL_PAD(n) elements. distance may be null; it is infinite if a ray hits nothing. Ids count
- * from 1.
- */
+ * from 1. */
 typedef struct vlGroundTruthHits {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;

@@ -82,8 +82,8 @@ static inline vlSphereSample vl_sample_sphere(vlVec3 center, float radius, float
   float sin2_max = radius * radius / d2, span = vl_sphere_cone(sin2_max);
   float one_minus_cos = span * u, cos_t = 1.0f - one_minus_cos;
   float sin2_t = vl_max(0.0f, one_minus_cos * (2.0f - one_minus_cos));
-  /* a: angle at the sphere's centre between the cone's axis and the sampled point (pbrt
-   * book 6.2.4). */
+  /* a: angle at the sphere's centre between the cone's axis and the sampled point (pbrt book
+   * 6.2.4). */
   float sin_max = __builtin_sqrtf(sin2_max);
   float cos_a =
       sin2_t / sin_max + cos_t * __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_t / sin2_max));

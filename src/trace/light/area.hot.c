@@ -8,8 +8,7 @@
 enum { BLOCK = VL_AREA_BLOCK };
 
 /* A block of lanes. The arrays are filled to a multiple of VL_LANES with copies of the last
- * lane.
- */
+ * lane. */
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK];
   VL_ROW float px[BLOCK], py[BLOCK], pz[BLOCK], u[BLOCK],

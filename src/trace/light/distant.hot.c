@@ -1,5 +1,5 @@
-/* trace/light/distant.hot.c: lights at an infinite distance in one direction (pbrt book 12.3).
- */
+/* trace/light/distant.hot.c: lights at an infinite distance in one direction (pbrt book
+ * 12.3). */
 #include "trace/light/kinds.h"
 
 void vl_light_sample_distant(const vlLightQuery *q, vlLightSample *out) {

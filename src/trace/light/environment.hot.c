@@ -9,8 +9,7 @@
 enum { BLOCK = VL_SKY_BLOCK };
 
 /* A block of lanes. The arrays are filled to a multiple of VL_LANES with copies of the last
- * lane.
- */
+ * lane. */
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK], y[BLOCK], cell[BLOCK];
   VL_ROW float u[BLOCK], dx[BLOCK], dy[BLOCK];

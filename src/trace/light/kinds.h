@@ -2,8 +2,9 @@
  * world/world.h has three functions:
  *
  *   vl_light_sample_KIND     a direction from a point towards the light, and the radiance that
- * arrives (pbrt book 12) vl_light_emit_KIND       a ray that leaves the light, for the two-way
- * tracers vl_light_emit_pdf_KIND   the density of those rays
+ *                            arrives (pbrt book 12)
+ *   vl_light_emit_KIND       a ray that leaves the light, for the two-way tracers
+ *   vl_light_emit_pdf_KIND   the density of those rays
  *
  * A kind that lacks one of them is a link error. */
 #ifndef TRACE_LIGHT_KINDS_H
@@ -56,18 +57,17 @@ VL_WORLD_LIGHT_KINDS(VL_LIGHT_KIND_FUNCTIONS)
 
 /* ---- many lanes at once ------------------------------------------------------------------ */
 
-/* Largest number of lanes for the functions below. With it, their data stays in the L1 cache.
- */
+/* Largest number of lanes for the functions below. With it, their data stays in the L1
+ * cache. */
 enum { VL_AREA_BLOCK = 64 };
 
 /* Whether a light is an environment map without portal. vl_sample_environment samples such
- * lights.
- */
+ * lights. */
 static inline bool vl_light_is_environment(const vlWorld *world, const vlWorldLight *light) {
   return light->environment != VL_NONE && !world->environments.items[light->environment].portal;
 }
-/* Samples an environment map for the given lanes, which have chosen this light. u, v: by lane.
- */
+/* Samples an environment map for the given lanes, which have chosen this light. u, v: by
+ * lane. */
 void vl_sample_environment(const vlWorld *world, const vlWorldLight *light,
                            const vlPaths *paths, const uint32_t *lanes, uint32_t count,
                            const float *u, const float *v, vlLightSamples *out);

@@ -10,8 +10,8 @@ enum { LIGHT_FIELD = 12, LEFT_FIELD = 13 };
 _Static_assert(offsetof(vlLightNode, light) == LIGHT_FIELD * sizeof(float), "layout of a node");
 _Static_assert(offsetof(vlLightNode, left) == LEFT_FIELD * sizeof(float), "layout of a node");
 
-/* Lanes on their way down the tree: remaining random number, and probability of the way so far.
- */
+/* Lanes on their way down the tree: remaining random number, and probability of the way so
+ * far. */
 typedef struct Walk {
   uint32_t count;
   VL_ROW uint32_t lane[VL_ROW_SIZE], node[VL_ROW_SIZE];

@@ -1,6 +1,5 @@
-/* trace/light/point.hot.c: point lights with the same intensity in all directions (pbrt
- * book 12.2).
- */
+/* trace/light/point.hot.c: point lights with the same intensity in all directions (pbrt book
+ * 12.2). */
 #include "trace/light/kinds.h"
 
 void vl_light_sample_point(const vlLightQuery *q, vlLightSample *out) {

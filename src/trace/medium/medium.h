@@ -72,8 +72,7 @@ typedef struct vlFlights {
   VL_ROW uint32_t count[VL_FLIGHTS];
   VL_ROW float passed[3][VL_FLIGHTS]; /* only if vlWorld.by_channel */
   /* The next flight: along o + t d for t in [from, to] in a medium; VL_NONE: the lane does not
-   * fly.
-   */
+   * fly. */
   VL_ROW uint32_t medium[VL_FLIGHTS];
   VL_ROW float from[VL_FLIGHTS], to[VL_FLIGHTS];
   /* The result of vl_fly. given: radiance, to which the emission of media is added. */

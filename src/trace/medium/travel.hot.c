@@ -147,8 +147,8 @@ static void begin_flights(const vlTracing *t, const vlPaths *p, const float *u, 
       f->passed[c][i] = t->passed[c][p->lane[first + i]];
 }
 
-/* The next flights of the open lanes: each leads to the surface ahead or to the end of the ray.
- */
+/* The next flights of the open lanes: each leads to the surface ahead or to the end of the
+ * ray. */
 static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium) {
   vlFlights *f = &k->f;
   uint32_t lanes[VL_FLIGHTS], count = 0;

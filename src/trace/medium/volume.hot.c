@@ -4,7 +4,7 @@
  * a surface:
  *
  *   rays -> travel -> emission -> those that scatter in media: light samples, phase function ->
- * volume.scattered
+ *     volume.scattered
  *                              -> those on surfaces: as in path.hot.c -> rays
  *   rays <- both
  *

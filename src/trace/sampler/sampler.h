@@ -7,13 +7,16 @@
  *
  *   independent      hashed numbers
  *   regular          centres of equal cells; only their order is random, so that dimensions are
- * not correlated stratified       one number in each of spp equal cells ("jittered") nrooks one
- * in each of spp rows and of spp columns multi-jittered   one in each cell, row and column
- * (Kensler 2013) hammersley       (i/n, radical inverse), jittered in x, digits scrambled in y
+ *                    not correlated
+ *   stratified       one number in each of spp equal cells ("jittered")
+ *   nrooks           one in each of spp rows and of spp columns
+ *   multi-jittered   one in each cell, row and column (Kensler 2013)
+ *   hammersley       (i/n, radical inverse), jittered in x, digits scrambled in y
  *   halton           radical inverses in the primes, Owen-scrambled for each pixel
  *   sobol            Sobol' pairs, Owen-scrambled and shuffled for each pixel and pair (Burley
- * 2020) zsobol           the same along the Morton curve of the pixels, so that the errors of
- * neighbours differ (Ahmed and Wonka 2020): blue noise over the image
+ *                    2020)
+ *   zsobol           the same along the Morton curve of the pixels, so that the errors of
+ *                    neighbours differ (Ahmed and Wonka 2020): blue noise over the image
  *
  * Kinds with cells make exactly spp cells, for any spp, where spp is the length of the
  * sequence. Sample indices from spp on belong to new, independent sets; for independent and
@@ -69,8 +72,7 @@ typedef struct vlSamplerKernels {
                  const uint32_t *index, uint32_t dimension, float *u, float *v);
   /* As get_2d, for a pair that is well distributed together with the pair of the 2-D call at
    * dimension `with`: sobol and zsobol take four dimensions of one Sobol' sequence. Other
-   * kinds: as get_2d. At most one pair for each `with`.
-   */
+   * kinds: as get_2d. At most one pair for each `with`. */
   void (*get_2d_with)(const vlSampler *sampler, uint32_t n, const int32_t *px,
                       const int32_t *py, const uint32_t *index, uint32_t dimension,
                       uint32_t with, float *u, float *v);

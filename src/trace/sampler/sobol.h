@@ -4,8 +4,9 @@
  * (zsobol).
  *
  * Bit reversals are most of the cost, so they are merged. With r = reverse(index), and L a
- * scramble of reversed bits: shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),
- * second reverse(L(pascal j)).
+ * scramble of reversed bits:
+ *   shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),   second
+ *                   reverse(L(pascal j)).
  *
  * A pair that is drawn with another one uses the third and fourth Sobol' dimension and the
  * other's j, so that all four are one sequence. */

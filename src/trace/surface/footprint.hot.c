@@ -14,8 +14,7 @@ void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {
     vlVec3 u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]), v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);
     vlFootprint r = vl_footprint_of(d, g, f->width[i]);
     /* Solves X = a u + b v by least squares, because u and v lie only approximately in the
-     * surface.
-     */
+     * surface. */
     float uu = vl_dot(u, u), uv = vl_dot(u, v), vv = vl_dot(v, v), det = uu * vv - uv * uv;
     float inv = det > 0.0f && f->uv_scale[i] > 0.0f ? 1.0f / det : 0.0f;
     float au = vl_dot(r.across, u), av = vl_dot(r.across, v), bu = vl_dot(r.along, u),

@@ -1,6 +1,6 @@
-/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and
- * the choice of mixed materials; and adds the radiance of lights that rays hit, with MIS
- * weights against light sampling (pbrt book 13.4). */
+/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and the
+ * choice of mixed materials; and adds the radiance of lights that rays hit, with MIS weights
+ * against light sampling (pbrt book 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
 #include "velo/schema.h"

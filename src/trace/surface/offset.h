@@ -60,16 +60,16 @@ static inline float vl_point_offset(const vlSurfacePoint *q) {
 
 /* ---- starts and ends --------------------------------------------------------------------- */
 
-/* The next float in the direction of d's sign: x rounded towards +inf (d > 0) or -inf (d < 0).
- */
+/* The next float in the direction of d's sign: x rounded towards +inf (d > 0) or -inf (d <
+ * 0). */
 static inline float vl_nudge(float x, float d) {
   int32_t i = (int32_t)vl_float_bits(x);
   int32_t step = (d > 0.0f) == (i >= 0) ? 1 : -1;
   int32_t j = x == 0.0f ? (int32_t)(d > 0.0f ? 1u : 0x80000001u) : i + step;
   return d != 0.0f ? vl_bits_float((uint32_t)j) : x;
 }
-/* Origin of a ray that leaves the surface point p on the side to which w points (pbrt
- * book 6.8.6). g: geometric normal. */
+/* Origin of a ray that leaves the surface point p on the side to which w points (pbrt book
+ * 6.8.6). g: geometric normal. */
 static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w) {
   float side = vl_dot(w, g) < 0.0f ? -offset : offset;
   vlVec3 d = vl_mul(g, side);

@@ -33,9 +33,8 @@ typedef struct vlPoint {
   float u, v, t, offset;
 } vlPoint;
 /* A hit's distance t is a float. When the distance is computed again in double, it lies within
- * t (1
- * -+ VL_REFIND), which allows 8 float roundings. VL_REFIND_LEAST keeps that interval from being
- * empty at t = 0. */
+ * t (1 -+ VL_REFIND), which allows 8 float roundings. VL_REFIND_LEAST keeps that interval from
+ * being empty at t = 0. */
 #define VL_REFIND 0x1p-21
 #define VL_REFIND_LEAST 1e-37
 

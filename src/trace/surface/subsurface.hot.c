@@ -4,8 +4,8 @@
  * before volume.hot.c traces them further:
  *
  *   rays, those refracted -> probes: segments through the solid near the entry -> all surfaces
- * of the material on them, one of each chosen -> exits: vlSurface, light samples, new
- * directions -> rays, with the other paths
+ *     of the material on them, one of each chosen -> exits: vlSurface, light samples, new
+ *     directions -> rays, with the other paths
  *
  * Half of the probes are parallel to the normal; the others are parallel to one of two
  * tangents. The hero wavelength's profile samples a probe's distance from the entry point. The

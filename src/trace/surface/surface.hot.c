@@ -17,8 +17,7 @@ static inline float placing_error(const vlWorldInstance *q, const float *x) {
          q->error[3];
 }
 /* Transforms a normal by the inverse transpose: the rows of the inverse matrix are used as
- * columns.
- */
+ * columns. */
 static inline vlVec3 move_normal(const float inverse[12], const float *n) {
   return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
                  inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
@@ -170,8 +169,7 @@ static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
 
 /* Scales v by the power of two that brings its largest component into [1, 2). Without this,
  * squares of cross products of tiny or huge triangles would leave the range of float. The
- * scaling is exact.
- */
+ * scaling is exact. */
 static inline vlVec3 near_one(vlVec3 v) {
   float largest = vl_max(vl_max(vl_abs(v.x), vl_abs(v.y)), vl_abs(v.z));
   uint32_t exponent = vl_float_bits(largest) & 0x7f800000u;
@@ -181,8 +179,7 @@ static inline vlVec3 near_one(vlVec3 v) {
 
 /* The point at which a ray hits a triangle. Barycentric coordinates are ratios of volumes
  * spanned with the ray (signs as in Woop et al. 2013); points outside by rounding are clamped
- * to the edge.
- */
+ * to the edge. */
 static inline __attribute__((always_inline)) Triangle triangle_point(
     vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
     TriangleUv uv, float corner_error, float flip) {

@@ -1,7 +1,6 @@
 /* trace/tracer/own.hot.c: a tracer of one's own: starts it on a batch, and answers its
  * questions by the stages of the path tracer. Lanes of the questions are lanes of the batch;
- * the stages have the lanes with hits, sorted by material.
- */
+ * the stages have the lanes with hits, sorted by material. */
 #include "trace/tracer/own.h"
 
 #include "math/warp.h"

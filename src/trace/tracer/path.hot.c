@@ -153,8 +153,7 @@ void vl_stage_occluded(vlTracing *t, uint32_t count, const vlPaths *p, vlShadowR
 }
 
 /* Takes light samples, and adds the radiance of those that arrive. light, values, shadow:
- * memory for what is between.
- */
+ * memory for what is between. */
 static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension, const vlVertices *at,
                          vlLightSamples *light, vlBsdfValues *values, vlShadowRays *shadow) {
   if (t->world->lights.count == 0)
@@ -203,7 +202,7 @@ static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE, u.u0);
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV,
                      u.u1, u.u2);
-  /* runs are padded to whole lanes */
+  /* a run is padded to whole lanes from its own first one: the last run reads past VL_PAD(n) */
   for (uint32_t i = n; i < n + VL_LANES && i < VL_ROW_SIZE; i++)
     u.u0[i] = u.u1[i] = u.u2[i] = 0.0f;
   for (uint32_t first = 0; first < n;) {

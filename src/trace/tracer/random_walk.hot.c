@@ -1,7 +1,7 @@
 /* trace/tracer/random_walk.hot.c: the random walk (pbrt book 1.3.6), the simplest estimator,
  * for comparison. Each bounce samples a uniform direction on the sphere; only lights that the
- * walk hits contribute. Specular lobes are never sampled, so that specular surfaces are black.
- */
+ * walk hits contribute. Specular lobes are never sampled, so that specular surfaces are
+ * black. */
 #include "math/warp.h"
 #include "trace/tracer/kinds.h"
 #include "trace/two_way/stages.h"

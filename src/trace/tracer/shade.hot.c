@@ -12,8 +12,7 @@ _Static_assert(PATH_ROWS * sizeof(float[VL_ROW_SIZE]) == offsetof(vlPaths, time)
                "rows of 4 bytes without gaps");
 
 /* Whether a block of the order is a block of neighbours, as most blocks of the first bounces
- * are.
- */
+ * are. */
 static inline bool neighbours(const uint32_t *order) {
   uint32_t different = 0;
   for (uint32_t j = 1; j < BLOCK; j++)

@@ -180,8 +180,8 @@ static void carry_on(const vlTracing *t, uint32_t count, uint32_t depth, const v
   }
 }
 
-/* With vlTwoWay.apart, each path has its own last bounce. Ends the paths that have reached it.
- */
+/* With vlTwoWay.apart, each path has its own last bounce. Ends the paths that have reached
+ * it. */
 static void end_long(const vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *rays,
                      vlHits *hits, vlFlightEnds *ends) {
   uint32_t *smooth = t->lanes->smooth;

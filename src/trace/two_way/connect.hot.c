@@ -6,8 +6,8 @@
  * distributed over them, and keeps one with a probability in proportion to what it would
  * contribute if it were visible (resampled importance sampling: Talbot et al. 2005; Nabata et
  * al. 2020 for bidirectional tracers). Only that one costs a shadow ray. The estimate is
- * unbiased for any such probability above 0. On diffuse surfaces it is exact up to visibility.
- */
+ * unbiased for any such probability above 0. On diffuse surfaces it is exact up to
+ * visibility. */
 #include "math/hash.h"
 #include "trace/two_way/stages.h"
 
@@ -153,8 +153,8 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
   return vl_unit_float(vl_hash(seed + 1 + CANDIDATES)) < survive ? chosen : VL_NONE;
 }
 
-/* Candidates are drawn some lanes ahead of their use, since most of them are not in the cache.
- */
+/* Candidates are drawn some lanes ahead of their use, since most of them are not in the
+ * cache. */
 void vl_choose_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
                         const vlTwoWayVertices *x, uint32_t *chosen, float *factor) {
   enum { AHEAD = 8 };

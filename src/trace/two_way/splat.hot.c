@@ -1,7 +1,6 @@
 /* trace/two_way/splat.hot.c: connections of light paths to the camera: the film point of each
  * vertex, the radiance that arrives there, and its weight against the other strategies
- * (two_way.h).
- */
+ * (two_way.h). */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 

@@ -134,8 +134,8 @@ void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views);
  * back->pdf is the density of sampling wo, back->value is f(wi, wo) |cos wo|. */
 void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at,
                       const float wi[3][VL_ROW_SIZE], vlBsdfValues *back);
-/* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way back.
- */
+/* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way
+ * back. */
 void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at,
                              const float (*toward)[VL_ROW_SIZE], vlBsdfValues *there,
                              vlBsdfValues *back);

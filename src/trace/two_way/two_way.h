@@ -4,7 +4,7 @@
  * sides share; src/render runs the passes.
  *
  *   light paths (one pass) -> splats (film points, radiance) and photons -> vlPhotonMap ->
- * camera paths -> radiance
+ *     camera paths -> radiance
  *
  * Several strategies can make the same path, and the balance heuristic weights them. The camera
  * path hits a light or samples one (next-event estimation), a light path connects to the
@@ -13,7 +13,7 @@
  * camera path's first j vertices, L_j the density of the light path from its start to vertex j,
  * N the number of light paths, and H = N pi radius^2. Merging at j has density H P_j L_j;
  * connecting to the camera has N L_1. The sum S_t of the strategies before vertex t, divided by
- * P_t L_t, is S_1 = N / p(z_1), S_(t+1) = (S_t + H) rev_(t+1) cos_t / (fwd_t cos_(t+1)) where
+ * P_t L_t, is S_1 = N / p(z_1),   S_(t+1) = (S_t + H) rev_(t+1) cos_t / (fwd_t cos_(t+1)) where
  * fwd and rev are the densities of sampling the path's direction forwards and backwards.
  * Distances cancel, so each path carries only one number (`carry` = (S + H) cos / fwd). The sum
  * on the light's side is the same, counted from the light. At deltas, fwd = rev and H = 0.
@@ -119,8 +119,7 @@ _Static_assert(sizeof(vlLightVertex) == 64, "a vertex is one cache line");
 
 /* The vertices of the light paths numbered below `paths`. The paths are dealt to groups in
  * turn; all paths of a group have the same wavelengths and, if the world moves, the same time.
- * The vertices are sorted by group, path and bounce.
- */
+ * The vertices are sorted by group, path and bounce. */
 enum { VL_MOST_GROUPS = 16 };
 typedef struct vlLightVertices {
   const vlLightVertex *vertices;

@@ -31,8 +31,7 @@ typedef struct vlBruteForce {
       64) float corner[3][VL_BRUTE_FACES]; /* a point of the face, not relative to the centre */
   /* Rounding may put a line through a corner on the wrong side of all edges that meet there. So
    * a line may be outside of an edge by this number times |normal . d|: about a rounding error,
-   * which makes the face wider by 1e-7 of the world.
-   */
+   * which makes the face wider by 1e-7 of the world. */
   _Alignas(64) float tolerance[VL_BRUTE_FACES];
   /* Of a quadrilateral: the edge between its triangles. The sign is positive for rays on the
    * side of the second triangle if that of all other edges is. */
@@ -47,8 +46,8 @@ typedef struct vlBruteForce {
 } vlBruteForce;
 
 /* Makes it for a world whose shapes are complete. *result is null if the world is not of that
- * kind: more primitives, instances, motion, opacities, surfaces with one side. Error: MEMORY.
- */
+ * kind: more primitives, instances, motion, opacities, surfaces with one side. Error:
+ * MEMORY. */
 vlResult vl_brute_force_make(const struct vlWorld *world, vlBruteForce **result);
 
 /* As vl_accel_closest and vl_accel_occluded. The result for a ray does not depend on the other

@@ -133,8 +133,7 @@ static void cross_any(Block *k, const vlBruteForce *b, uint32_t j) {
 }
 
 /* The same for few rays: each against all faces, many at a time. any: marks rays as cross_any
- * does.
- */
+ * does. */
 static void cross_few(Block *k, const vlBruteForce *b, bool any) {
   _Alignas(64) float height[VL_BRUTE_FACES], speed[VL_BRUTE_FACES];
   uint32_t padded = VL_PAD(b->faces);

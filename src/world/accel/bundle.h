@@ -14,8 +14,7 @@ uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group,
                               vlAccelBundle *bundle, uint32_t *members);
 
 /* The shape of a geometry of a group. *prim is that of the geometry and becomes that of the
- * shape.
- */
+ * shape. */
 static inline const vlWorldShape *vl_accel_group_shape(const vlWorld *world, uint32_t group,
                                                        uint32_t geometry, uint32_t *prim) {
   const vlAccelBundle *bundle = &world->accel.bundles[group];

@@ -15,8 +15,8 @@
 enum {
   VL_BVH_WIDTH = 8, /* children of a node */
   VL_BVH_FOUR = 4,  /* triangles that are tested at a time */
-  /* Nodes are split at the median from this depth on, which bounds the depth by that plus 32.
-   */
+  /* Nodes are split at the median from this depth on, which bounds the depth by that plus
+   * 32. */
   VL_BVH_DEPTH = 64,
   VL_BVH_STACK = (VL_BVH_DEPTH + 32) * (VL_BVH_WIDTH - 1) + 1,
   VL_BVH_ALIGN = 32

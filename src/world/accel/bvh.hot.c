@@ -74,8 +74,7 @@ static bool is_usual(const float o[3], const float d[3], float farthest) {
 }
 
 /* Bits of children and triangles. (Not every instruction set shifts each lane by its own
- * number.)
- */
+ * number.) */
 static const uint32_t bits[W] = {1, 2, 4, 8, 16, 32, 64, 128};
 
 /* ---- boxes ------------------------------------------------------------------------------- */
@@ -126,8 +125,7 @@ static inline float side(float px, float py, float pz, float qx, float qy, float
 }
 
 /* A component of the normal: of two cross products of edges a, b, c that with the smaller
- * products.
- */
+ * products. */
 static inline float normal(float ay, float az, float by, float bz, float cy, float cz) {
   float ab = az * by, bc = bz * cy;
   return fabsf(ab) < fabsf(bc) ? ay * bz - ab : by * cz - bc;

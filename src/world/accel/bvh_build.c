@@ -14,8 +14,8 @@
 
 enum { BINS = 16, CHUNK = 4096 };
 
-/* The fourth lane of a box fills a vector. That of a primitive's box has its numbers instead.
- */
+/* The fourth lane of a box fills a vector. That of a primitive's box has its numbers
+ * instead. */
 typedef struct Box {
   float low[4], high[4];
 } Box;
@@ -389,8 +389,8 @@ static bool make_leaf(Builder *b, Arena *arena, const Range *r, uintptr_t *child
   return true;
 }
 
-/* Makes the tree of a range. apart: its small ranges become parts, whose trees are made later.
- */
+/* Makes the tree of a range. apart: its small ranges become parts, whose trees are made
+ * later. */
 static bool make_tree(Builder *b, Arena *arena, const Range *range, bool apart,
                       uintptr_t *child) {
   if (apart && (is_stopped(b) || !VL_RESERVE(b->world->context, &b->parts, 1)))

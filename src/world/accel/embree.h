@@ -24,8 +24,7 @@ void vl_embree_closest(const struct vlWorld *world, uint32_t n, const vlRays *ra
                        bool coherent, uint32_t *shape, uint32_t *prim, uint32_t *instance,
                        float *t);
 /* Rays whose occluded[i] is already 1 are left out. occluders: learns which triangles block
- * rays; null: nothing does.
- */
+ * rays; null: nothing does. */
 void vl_embree_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays,
                         vlOccluders *occluders, uint8_t *occluded);
 

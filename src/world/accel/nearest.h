@@ -58,8 +58,8 @@ static inline bool vl_nearest_before(const vlNearest *a, const vlNearest *b) {
   float ta = vl_nearest_distance(a), tb = vl_nearest_distance(b);
   if (ta != tb)
     return ta < tb;
-  /* Embree's number for "no instance" is the largest one, so hits inside instances come first.
-   */
+  /* Embree's number for "no instance" is the largest one, so hits inside instances come
+   * first. */
   return a->instance != b->instance   ? a->instance < b->instance
          : a->geometry != b->geometry ? a->geometry < b->geometry
                                       : a->primitive < b->primitive;

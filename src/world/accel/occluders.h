@@ -44,8 +44,7 @@ struct vlOccluders {
 };
 
 /* Prepares for n shadow rays: begins or ends learning. After it, o->count triangles can be
- * tested.
- */
+ * tested. */
 void vl_occluders_begin(vlOccluders *o, const struct vlWorld *world, uint32_t n);
 /* While o->learns: counts a triangle that Embree found to block a ray. */
 void vl_occluders_learn(vlOccluders *o, uint32_t geometry, uint32_t prim);

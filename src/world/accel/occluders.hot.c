@@ -1,6 +1,6 @@
 /* world/accel/occluders.hot.c: tests blocks of shadow rays against single triangles (Moeller
- * and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", without its division).
- */
+ * and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", without its
+ * division). */
 #include "world/accel/occluders.h"
 #include "math/vec.h"
 

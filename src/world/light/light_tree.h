@@ -73,8 +73,8 @@ typedef struct vlReceiver {
       side; /* 1 or -1: only light on the side of n or -n counts; 0: on both (vlSurface.side) */
 } vlReceiver;
 
-/* Importance of a node for a receiver. Free of branches, so that loops over batches vectorise.
- */
+/* Importance of a node for a receiver. Free of branches, so that loops over batches
+ * vectorise. */
 static inline __attribute__((always_inline)) float vl_light_importance(vlLightCluster b,
                                                                        vlReceiver at) {
   vlVec3 p = at.p, n = at.n;
@@ -164,8 +164,7 @@ static inline bool vl_light_reaches(const vlLightTree *tree, uint32_t k, vlRecei
 }
 
 /* The lights outside the tree that reach a receiver, and the tree if any of its lights does:
- * each has the same chance.
- */
+ * each has the same chance. */
 typedef struct vlLightSlots {
   uint32_t outside;
   bool tree;

@@ -22,8 +22,8 @@ typedef struct vlPortal {
                     of a  cell corner, in rows  from v = 0 */
 } vlPortal;
 
-/* The part of the (u, v) square that is visible from a point: a rectangle, in units of cells.
- */
+/* The part of the (u, v) square that is visible from a point: a rectangle, in units of
+ * cells. */
 typedef struct vlPortalWindow {
   double x0, y0, x1, y1;
 } vlPortalWindow;

@@ -121,8 +121,7 @@ static void sphere_light(const vlWorldShape *s, vlVec3 center, float radius,
 }
 
 /* Compiles the emission of a shape into world->emitted, unless an earlier shape has compiled
- * the same emission
- * (*index is then set). */
+ * the same emission (*index is then set). */
 static vlResult add_shape_emission(vlWorld *world, const vlScene *scene,
                                    const vlEmissionDef *def, uint32_t *index, vlError *error) {
   if (*index != VL_NONE)

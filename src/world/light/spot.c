@@ -1,5 +1,5 @@
-/* world/light/spot.c: spot lights (pbrt book 12.2.1), set by scale or by power over the cone.
- */
+/* world/light/spot.c: spot lights (pbrt book 12.2.1), set by scale or by power over the
+ * cone. */
 #include "math/elementary.h"
 #include "velo/light.h"
 #include "world/light/lights.h"

@@ -154,8 +154,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
 }
 
 /* Compiles a medium, or shares that of the previous world if neither it nor its file has
- * changed.
- */
+ * changed. */
 static vlResult obtain(vlWorld *world, const vlScene *scene, vlMediumId id, vlWorldMedium *m,
                        vlError *error) {
   const vlMediumDef *def = &scene->media.items[id.index - 1];

@@ -49,8 +49,7 @@ typedef struct vlWorldMedium {
   float low[3],
       high[3]; /* box of the medium, in medium space; of all kinds except homogeneous */
   /* Majorants: upper bounds of the density (of sigma_t for an RGB grid) in equal cells of the
-   * box.
-   */
+   * box. */
   uint32_t cells[3];
   const float *majorants;
   vlDenseGrid density, emission_scales, temperature;
@@ -71,8 +70,8 @@ enum { VL_BLACKBODY_STEPS = 321 };
 
 struct vlScene;
 struct vlWorld;
-/* Compiles the media in use and sets their indices in shapes, world->camera_medium and lights.
- */
+/* Compiles the media in use and sets their indices in shapes, world->camera_medium and
+ * lights. */
 vlResult vl_world_add_media(struct vlWorld *world, const struct vlScene *scene, vlError *error);
 /* Reads the grid of that name from a file. If the file has none, *grid stays null. */
 vlResult vl_nanovdb_read(struct vlWorld *world, const char *path, const char *name,

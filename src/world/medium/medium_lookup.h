@@ -1,7 +1,6 @@
 /* world/medium/medium_lookup.h: coefficients of a medium at a point, and traversal of its
  * majorants by a ray. The functions are inline and take values, for the hot files of trace.
- * pbrt book 11.4.
- */
+ * pbrt book 11.4. */
 #ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
 #define WORLD_MEDIUM_MEDIUM_LOOKUP_H
 
@@ -113,8 +112,7 @@ static inline float vl_medium_density_rgb_grid(const vlWorldMedium *m, vlVec3 p,
 
 /* Density at a point, which multiplies the coefficients; 1 for kinds without a density. p: the
  * point in medium space; q: the point relative to the box, 0 to 1. Each kind has its own
- * function.
- */
+ * function. */
 static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
 #define VL_DENSITY(K, k) \
   case VL_MEDIUM_##K:    \
@@ -189,8 +187,8 @@ typedef struct vlMajorantWalk {
   int32_t at[3], way[3];
 } vlMajorantWalk;
 
-/* Starts a traversal. o, d: ray in world space. False if the segment [t0, t1] misses the box.
- */
+/* Starts a traversal. o, d: ray in world space. False if the segment [t0, t1] misses the
+ * box. */
 static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0,
                                      float t1, vlMajorantWalk *w) {
   vlVec3 po = vl_affine_point(m->medium_from_world, o),

@@ -1,8 +1,8 @@
 /* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read
  * (world/medium/medium.h). This is the only file that uses PNanoVDB.h. Its readers check every
  * address; addresses outside of the grid read as zero. The number of nodes is bounded by the
- * grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot exhaust memory.
- */
+ * grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot exhaust
+ * memory. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -109,8 +109,7 @@ static vlResult list_tile(Tree *t, const int32_t at[3], float value) {
 }
 
 /* Maps 21 bits of a root key to the first block: keys hold coordinates >> 12, blocks are 2^7
- * wide.
- */
+ * wide. */
 static int32_t block_of_key(uint64_t bits) {
   return (int32_t)(uint32_t)((bits & 0x1fffff) << 12) >> 7;
 }

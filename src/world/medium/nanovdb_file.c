@@ -68,8 +68,8 @@ static vlResult unpack(vlContext *context, const char *path, uint16_t codec, con
                  "%s: the NanoVDB file is damaged: zlib cannot unpack the grid", path);
 }
 
-/* Searches the segment at `at`. *next: start of the following segment; 0 if the grid was found.
- */
+/* Searches the segment at `at`. *next: start of the following segment; 0 if the grid was
+ * found. */
 static vlResult search_segment(vlContext *context, const char *path, const char *data,
                                size_t size, size_t at, const char *name, vlNanoGrid *grid,
                                size_t *next, vlError *error) {

@@ -278,8 +278,8 @@ static void map(const float m[12], const double p[3], double q[3]) {
            (double)m[4 * i + 3];
 }
 
-/* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to float.
- */
+/* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to
+ * float. */
 static void unmap(const float m[12], const double p[3], double q[3]) {
   double x[3], y[3], z[3], r[3], n[3];
   for (int i = 0; i < 3; i++) {

@@ -139,8 +139,7 @@ static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const do
 }
 
 /* The polar angle of a sphere's limit z. Most limits are poles, for which the compiler computes
- * it.
- */
+ * it. */
 static inline double theta_of(double z, double r) {
   if (z == -r)
     return vl_acos(-1.0f);

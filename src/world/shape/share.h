@@ -14,8 +14,7 @@ bool vl_shape_reuse(vlWorld *world, const struct vlScene *scene, size_t index, v
                     bool *done);
 /* The same by comparison with the geometry that was compiled for *s as the part that was added
  * last. If a shape of the previous world has the same, that part is dropped. False: out of
- * memory.
- */
+ * memory. */
 bool vl_shape_match(vlWorld *world, size_t index, vlWorldShape *s);
 /* Whether shape i of a world and shape j of the previous world look the same to the
  * accelerator. */

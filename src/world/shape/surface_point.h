@@ -63,8 +63,7 @@ static inline double vl_similarity_error(const double m[12], double scale) {
 }
 
 /* Centre and radius of a full sphere under a similarity, in group space; false for any other
- * shape.
- */
+ * shape. */
 static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
   const double *m = s->from_shape;
   double scale;
@@ -76,8 +75,8 @@ static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float 
   return true;
 }
 
-/* Samples a point uniformly over the parameters, with its density per unit area in group space.
- */
+/* Samples a point uniformly over the parameters, with its density per unit area in group
+ * space. */
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
                      vlSurfacePoint *point, double *pdf);
 /* The density with which vl_shape_sample gives this point. */

@@ -1,6 +1,5 @@
 /* world/shape/tables.h: the table of functions of each kind of shape (kinds.h says what they
- * do).
- */
+ * do). */
 #ifndef WORLD_SHAPE_TABLES_H
 #define WORLD_SHAPE_TABLES_H
 

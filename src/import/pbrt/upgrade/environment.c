@@ -22,8 +22,8 @@ typedef struct Work {
   vlImage *to;
 } Work;
 
-/* Adds the value at longitude u and latitude v, in pixels, interpolated between four of them.
- */
+/* Adds the value at longitude u and latitude v, in pixels, interpolated between four of
+ * them. */
 static void look(const Work *w, double u, double v, double sum[3]) {
   double fu = floor(u), fv = floor(v);
   for (int c = 0; c < 4; c++) {

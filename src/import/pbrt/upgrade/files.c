@@ -157,8 +157,7 @@ static bool choose_name(vlOldFile *file, const vlOldStatement *s, const char *pa
 }
 
 /* Upgrades the file, and names the new one. first: it was not included before. Null after an
- * error.
- */
+ * error. */
 static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s,
                                         const char *path, bool first) {
   vlUpgrade *u = file->u;

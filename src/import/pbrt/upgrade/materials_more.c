@@ -13,8 +13,8 @@ static void color_text(const double rgb[3], char text[120]) {
   snprintf(text, 120, "[ %s %s %s ]", n[0], n[1], n[2]);
 }
 
-/* Writes a share as a parameter "amount": a number, or a float texture. False after an error.
- */
+/* Writes a share as a parameter "amount": a number, or a float texture. False after an
+ * error. */
 static bool amount_text(vlOldFile *file, vlOldStatement *s, const vlOldParam *p,
                         const char *what, char *text, size_t size) {
   double rgb[3];

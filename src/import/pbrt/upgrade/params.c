@@ -1,6 +1,5 @@
 /* import/pbrt/upgrade/params.c: parameters: finding them, their values, the rows that rename
- * them.
- */
+ * them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

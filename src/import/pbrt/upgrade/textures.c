@@ -184,8 +184,7 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
 }
 
 /* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of
- * it.
- */
+ * it. */
 static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
   if (is_spectrum(s))
     return true;

@@ -66,8 +66,7 @@ typedef struct vlOldName {
 } vlOldName;
 
 /* A file that was included. One that makes names, or refers to renamed ones, becomes several
- * files.
- */
+ * files. */
 typedef struct vlOldInclude {
   char *path, *name;  /* where it was found; what the new Include says */
   const char *text;   /* of the new file, which u->outputs owns; null: the old file is used */

@@ -3,16 +3,16 @@
 // A camera is { eye, lookat, up, d, zoom, s, roll, width, height } as in docs/lecture.md, and { r, c, px, py }, the point
 // of a pixel: r counts rows from the bottom. Members that are not given have the defaults below.
 
+import { cross, dot } from "../vec.js";
+
 const DEFAULTS = { eye: [0, 0, 500], lookat: [0, 0, 0], up: [0, 1, 0], d: 500, zoom: 1, s: 1, roll: 0, width: 400, height: 400,
                    px: 0.5, py: 0.5, direction: [-1, 0.75, -5] };
 const DEPTHS = [250, 0, -500, -1500]; // the disks of scenes/lecture/property_1.pbrt
 const OUTERMOST = 2.6, RADIUS = 0.6; // x of the outermost spheres of the middle row in scenes/lecture/objects/spheres.pbrt
 const DEGREES = 180 / Math.PI;
 
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const times = (k, a) => a.map((x) => k * x);
 const plus = (...vectors) => vectors.reduce((a, b) => a.map((x, k) => x + b[k]));
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const normalize = (a) => times(1 / Math.hypot(...a), a);
 
 // The lecture's viewing coordinates, as Camera_compute_uvw of examples/lecture.c computes them.

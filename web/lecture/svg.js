@@ -1,6 +1,7 @@
 // web/lecture/svg.js: the parts of the drawn figures as text of SVG, and the two ways of looking at space that they use:
 // a camera of the lecture's, and the view from outside (parallel projectors, so that lengths can be compared).
-import { add, cross, dot, scale, sub, unit } from "../vec.js";
+import { cross, dot, length, sub, unit } from "../vec.js";
+import { basis } from "./formulas.js";
 
 const n = (value) => Number(value.toFixed(2));
 const attributes = (more) => Object.entries(more).map(([name, value]) => ` ${name}="${value}"`).join("");
@@ -74,12 +75,9 @@ export function outsideView({ azimuth, elevation }, middle, factor, centre) {
 
 // The viewing coordinates: as basis of formulas.js; null: up is parallel to the view direction, or eye is lookat.
 export function frameOf(eye, lookat, up, roll = 0) {
-  const arm = sub(eye, lookat), length = Math.hypot(...arm);
-  if (length < 1e-9) return null;
-  const w = scale(arm, 1 / length), side = cross(up, w);
-  if (Math.hypot(...side) < 1e-6 * Math.hypot(...up)) return null;
-  const u0 = unit(side), v0 = cross(w, u0), a = (roll * Math.PI) / 180;
-  return { u: add(scale(u0, Math.cos(a)), scale(v0, -Math.sin(a))), v: add(scale(u0, Math.sin(a)), scale(v0, Math.cos(a))), w };
+  const arm = sub(eye, lookat);
+  if (length(arm) < 1e-9 || length(cross(up, unit(arm))) < 1e-6 * length(up)) return null;
+  return basis({ eye, lookat, up, roll });
 }
 
 // A point on the view plane at distance d, as (x_v, y_v); null: it is not before the eye.

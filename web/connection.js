@@ -14,11 +14,3 @@ export async function connect(handlers) {
   const { Connection } = await import(MODULES[engineName()]);
   return new Connection(handlers);
 }
-
-// The SHA-256 of a whole frame's pixels (half floats, red, green and blue, rows from the top), in hexadecimal. Null where the
-// browser computes none: it does so on https and on this computer only.
-export async function hashOf(pixels) {
-  if (!globalThis.crypto?.subtle) return null;
-  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", pixels));
-  return [...digest].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-}

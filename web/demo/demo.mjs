@@ -1,6 +1,6 @@
 // demo/demo.mjs: the demonstration page: files are dropped, workers render, the page shows image, hash and receipt.
 import { lacks } from './velo.mjs';
-import { sha256 } from './sha256.mjs';
+import { sha256 } from './sha256.js';
 import { VeloWorkers, lacksWorkers } from './workers.mjs';
 
 const $ = (id) => document.getElementById(id);

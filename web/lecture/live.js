@@ -1,10 +1,11 @@
 // web/lecture/live.js: velo as the renderer of the lecture's figures: one scene at a time, shown in the figure that is
 // live, with the view from outside beside it.
-import { connect, engineName, hashOf } from "../connection.js";
+import { connect, engineName } from "../connection.js";
 import { parseFrame } from "../frame.js";
 import { Outside } from "../outside.js";
 import { Overlay } from "../overlay.js";
 import { Screen } from "../screen.js";
+import { sha256 } from "../sha256.js";
 import { attachDrag } from "./drag.js";
 
 const WORDS = {
@@ -68,6 +69,7 @@ export class Live {
     this.element = null;  // the figure that is live
     this.change = Math.floor(Date.now() / 1000); // the number of the last change, which velo gives back; no page before had it
     this.gesture = 1;
+    this.signed = this.hash = null; // the finished frame, and the SHA-256 of its pixels
     this.waiting = new Map();
     this.nextId = 1;
     this.canvas = Object.assign(document.createElement("canvas"), { className: "screen", hidden: true });
@@ -251,16 +253,18 @@ export class Live {
     this.sign();
   }
 
-  // Which engine renders, with the hash of the image when it has all its samples.
-  async sign() {
+  // Which engine renders, with the hash of the image's pixels (half floats; red, green and blue; rows from the top) when it has
+  // all its samples.
+  sign() {
     if (this.broken) return this.foot("");
-    const { frame } = this.screen, serial = frame?.serial;
-    const done = frame && frame.spp > 0 && frame.spp === this.target;
-    const hash = done ? await hashOf(this.screen.pixels.data) : null;
-    if (serial !== this.screen.frame?.serial) return; // a newer one is there
+    const { frame, pixels } = this.screen;
+    const done = frame && frame.spp > 0 && frame.spp === this.target ? frame : null;
+    if (done !== this.signed) {
+      this.signed = done;
+      this.hash = done && sha256(new Uint8Array(pixels.data.buffer, pixels.data.byteOffset, pixels.data.byteLength));
+    }
     const words = this.words;
-    this.hash = hash;
-    this.foot(words.engine[engineName()] + (hash ? " " + words.hash(hash) : ""));
+    this.foot(words.engine[engineName()] + (this.hash ? " " + words.hash(this.hash) : ""));
   }
 
   // A message of velo for the reader: too little memory concerns the figure, whose printed image is there.

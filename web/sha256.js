@@ -1,4 +1,4 @@
-// demo/sha256.mjs: SHA-256 (FIPS 180-4) of bytes, as 64 hexadecimal digits. Browsers have their own only in pages by https.
+// sha256.js: SHA-256 (FIPS 180-4) of bytes, as 64 hexadecimal digits. Browsers have their own only in pages by https.
 
 // The first 32 bits of the fractional parts of roots: square roots of the first 8 primes, cube roots of the first 64.
 const primes = [];

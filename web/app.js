@@ -2,7 +2,8 @@
 import { connect, engineName } from "./connection.js";
 import { parseFrame } from "./frame.js";
 import { Screen } from "./screen.js";
-import { Pointer, keyAction, tools } from "./pointer.js";
+import { Pointer, keepsKey, keyAction, tools } from "./pointer.js";
+import { Crosshair } from "./crosshair.js";
 import { pivot } from "./steer.js";
 import { Panel } from "./panel.js";
 import { Display } from "./display.js";
@@ -12,11 +13,12 @@ import { Compare } from "./compare.js";
 import { Save } from "./save.js";
 import { Outside } from "./outside.js";
 import { Paths } from "./paths.js";
-import { byId, make, metric } from "./dom.js";
+import { byId, make, metric, short } from "./dom.js";
 import { addHelp } from "./help.js";
+import { Gestures } from "./gestures.js";
 
 const app = {
-  tool: "orbit", change: 0, state: null, local: null, waiting: new Map(), nextId: 1, gesture: 1, sent: [],
+  tool: "orbit", change: 0, state: null, local: null, waiting: new Map(), nextId: 1, gestures: new Gestures(), sent: [],
 
   // The camera as the page has it: velo's last answer and the edits on their way (`sent`, then `queued`).
   camera: () => app.local,
@@ -55,11 +57,7 @@ const app = {
   seeOutside: () => outside.toggle(),
   escape: () => { byId("notice").hidden = true; if (app.cropped) app.crop(null); },
   expose: step => display.expose(step),
-  keyGesture() {
-    clearTimeout(app.keyTimer);
-    app.keyTimer = setTimeout(() => { app.gesture++; }, 600);
-    return 1e6 + app.gesture;
-  },
+  next: () => app.gestures.next(),
 
   choose(name) {
     app.tool = name;
@@ -68,21 +66,25 @@ const app = {
   },
 
   pick(x, y, kind) {
-    if (kind === "focus") return app.connection.send({ type: "focus", x, y, change: ++app.change });
+    if (kind === "focus") {
+      app.focused = ++app.change;
+      return app.connection.send({ type: "focus", x, y, change: app.change });
+    }
     app.ask({ type: "pick", x, y }, answer => {
       if (answer.type !== "picked") return;
       inspector.picked(answer);
       paths.pick(x, y);
       outside.point = answer.object.id ? answer.P : null;
       outside.state();
-      if (kind === "turn" && answer.object.id) app.edit(pivot(app.local, answer.P));
+      if (kind === "turn" && answer.object.id) app.edit(pivot(app.local, answer.P), app.next());
     });
   },
   hover: (x, y) => inspector.hover(x, y),
   band: rectangle => overlay.band(rectangle),
+  cross: pixel => overlay.cross(pixel),
   notice(text, calm = false) {
     const box = byId("notice");
-    box.textContent = text;
+    byId("notice-text").textContent = text;
     box.hidden = !text;
     box.classList.toggle("calm", calm);
     clearTimeout(app.noticeTimer);
@@ -102,7 +104,7 @@ function openScreen() {
 const screen = app.screen = openScreen();
 screen.onlost = () => app.notice("The browser took away what draws the image; the image is back as soon as the browser allows it.");
 screen.onrestored = () => app.notice("");
-const panel = new Panel(byId("camera"), (set, gesture) => app.edit(set, gesture));
+const panel = new Panel(byId("camera"), app);
 const display = app.display = new Display(byId("display"), app);
 const overlay = new Overlay(byId("overlays"), app);
 const compare = new Compare(byId("compare"), app);
@@ -114,6 +116,7 @@ const inspector = new Inspector(byId("pixel"), app);
 const paths = app.paths = new Paths(byId("pixel"), app);
 paths.onpaths = () => inspector.texture(paths);
 new Pointer(byId("stage"), app);
+const crosshair = new Crosshair(byId("stage"), app);
 
 // ---- messages of velo ----
 
@@ -138,11 +141,20 @@ function showState(state) {
   byId("pause").setAttribute("aria-pressed", String(state.paused));
   const c = state.crop;
   app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
+  if (app.focused === state.change) tellFocus(state.camera);
   overlay.state(state);
   outside.state();
   const camera = JSON.stringify(state.camera);
   if (camera !== app.lastCamera) paths.stale();
   app.lastCamera = camera;
+}
+
+// The tool Focus has found a distance.
+function tellFocus(c) {
+  app.focused = 0;
+  const at = `Focus at ${short(c.focus_distance, 4)}.`;
+  if (c.lens_radius > 0 || c.optics) return app.notice(at, true);
+  app.notice(`${at} The lens has no opening, so that all is sharp: give it a radius or an f-number under Camera, Lens.`, true);
 }
 
 function showStatus(s) {
@@ -168,7 +180,7 @@ const handlers = {
   },
   refused(message) {
     if (message.id && app.waiting.has(message.id)) return answered(message);
-    app.sent = app.sent.filter(edit => edit.change > message.change);
+    if (message.change) app.sent = app.sent.filter(edit => edit.change > message.change);
     if (app.state) expect();
     if (!panel.refused(message.field, message.message)) app.notice(message.message);
   },
@@ -218,14 +230,15 @@ for (const tool of tools) {
 }
 app.choose("orbit");
 for (const name of ["undo", "redo", "reset", "pause"]) byId(name).onclick = app[name];
+byId("notice-close").onclick = () => app.notice("");
 byId("side-toggle").onclick = () => {
   const side = byId("side");
   side.hidden = !side.hidden;
   byId("side-toggle").setAttribute("aria-expanded", String(!side.hidden));
 };
 document.addEventListener("keydown", event => {
-  if (!app.local || event.target.closest("input, select, textarea, summary, button")) return;
-  const action = keyAction(event, app);
+  if (!app.local || keepsKey(event.target, event.key)) return;
+  const action = crosshair.action(event) ?? keyAction(event, app);
   if (!action) return;
   event.preventDefault();
   action();

@@ -9,15 +9,23 @@ const names = { image: "image", Z: "depth", distance: "distance", P: "position",
   "id.instance": "instances", "id.primitive": "faces", error: "standard error", forward: "flow" };
 const left = ["samples", "film"];
 
+// The number with the fewest digits that is the same single-precision float: 0.33 for 0.33000001311302185.
+function plain(value) {
+  for (let digits = 1; digits < 10; digits++)
+    if (Math.fround(Number(value.toPrecision(digits))) === Math.fround(value)) return Number(value.toPrecision(digits));
+  return value;
+}
+
 export class Display {
   constructor(root, app) {
     this.app = app;
     this.channels = ["image"];
+    this.ev = 0; // the exposure; the slider shows it as far as it reaches
     this.channel = make("select", { id: "channel", onchange: () => app.settings({ channel: this.channel.value }) });
-    this.exposure = make("input", { type: "range", id: "exposure", min: -8, max: 8, step: 0.05, oninput: () => this.set() });
-    this.number = make("input", { type: "text", size: 5, inputMode: "decimal", onchange: () => { this.exposure.value = this.number.value; this.set(); } });
+    this.exposure = make("input", { type: "range", id: "exposure", min: -8, max: 8, step: "any", oninput: () => this.set(Math.round(20 * this.exposure.value) / 20) });
+    this.number = make("input", { type: "text", size: 5, inputMode: "decimal", onchange: () => this.type() });
     this.number.setAttribute("aria-label", "exposure in stops");
-    this.view = make("select", { id: "view", onchange: () => this.set() });
+    this.view = make("select", { id: "view", onchange: () => this.set(this.ev) });
     for (const [i, name] of ["standard", "neutral", "agx", "raw"].entries()) this.view.append(make("option", { value: i, textContent: name }));
     this.spp = make("input", { type: "text", id: "spp", inputMode: "numeric", onchange: () => app.settings({ spp: Math.max(1, Math.round(Number(this.spp.value)) || 1) }) });
     this.histogram = make("canvas", { id: "histogram", width: 256, height: 64, title: "histogram of the display values" });
@@ -37,22 +45,27 @@ export class Display {
 
   show(state, first) {
     if (first) {
-      this.exposure.value = state.exposure;
       this.view.value = state.view;
-      this.set();
+      this.set(plain(state.exposure));
     }
     this.channel.value = this.channels[state.channel] || "image";
     if (document.activeElement !== this.spp) this.spp.value = state.spp;
     for (const input of [this.channel, this.spp, this.mark]) input.disabled = !this.app.steers;
   }
 
-  expose(step) { this.exposure.value = Number(this.exposure.value) + step; this.set(); }
+  expose(step) { this.set(this.ev + step); }
 
-  get ev() { return Number(this.exposure.value); }
+  type() {
+    const value = Number(this.number.value.trim().replace("−", "-").replace(",", "."));
+    this.set(this.number.value.trim() && Number.isFinite(value) ? value : this.ev);
+  }
+
   get viewName() { return this.view.selectedOptions[0].textContent; }
 
-  set() {
-    this.number.value = short(this.ev, 4);
+  set(ev = this.ev) {
+    this.ev = Math.max(-64, Math.min(64, ev)); // the range of velo's setting
+    this.exposure.value = this.ev;
+    this.number.value = short(this.ev, 6);
     Object.assign(this.app.screen.display, { exposure: this.ev, view: Number(this.view.value) });
     this.app.screen.redevelop();
     this.count();

@@ -177,7 +177,7 @@ export class Outside {
     this.grip = near("eye") ? "eye" : near("plane") ? "plane" : "turn";
     this.moved = false;
     this.last = at;
-    this.gesture = 3e6 + Math.floor(Math.random() * 1e6);
+    this.gesture = this.app.next();
   }
 
   move(event) {

@@ -55,17 +55,26 @@ export class Overlay {
   }
 
   band(rectangle) { this.rectangle = rectangle; this.draw(); }
+  cross(pixel) { this.crossAt = pixel; this.draw(); }
 
   draw() {
     this.svg.replaceChildren();
     if (!this.app.screen.frame || !this.camera) return;
     if (this.rectangle) this.box(this.rectangle, { stroke: "#fff", "stroke-width": 1.5, "stroke-dasharray": "5 4", fill: "#fff2" });
     for (const name of this.on) this[name]?.();
+    if (this.crossAt) this.drawCross(...this.crossAt);
   }
 
   box(b, style) {
     const [x, y] = this.app.screen.toPage(b[0], b[1]), [u, v] = this.app.screen.toPage(b[2], b[3]);
     this.svg.append(element("rect", { x, y, width: Math.max(0, u - x), height: Math.max(0, v - y), fill: "none", ...style }));
+  }
+  // Round a pixel, in two colours, so that it is seen on every image.
+  drawCross(x, y) {
+    const [left, top] = this.app.screen.toPage(x + 0.5, y + 0.5), gap = Math.max(4, this.app.screen.factor() / 2 + 2);
+    for (const [stroke, width] of [["#000", 4], ["#fff", 1.6]])
+      for (const [u, v] of [[1, 0], [-1, 0], [0, 1], [0, -1]])
+        this.svg.append(element("line", { class: "cross", x1: left + gap * u, y1: top + gap * v, x2: left + (gap + 11) * u, y2: top + (gap + 11) * v, stroke, "stroke-width": width }));
   }
   line(a, b, style) {
     const [x1, y1] = this.app.screen.toPage(...a), [x2, y2] = this.app.screen.toPage(...b);

@@ -11,12 +11,11 @@ export const tools = [
 ];
 
 export class Pointer {
-  // app: camera(), edit(set, gesture), pick(x, y, kind), crop(rectangle), hover(x, y), screen, tool
+  // app: camera(), edit(set, gesture), next(), pick(x, y, kind), crop(rectangle), hover(x, y), screen, tool
   constructor(stage, app) {
     this.stage = stage;
     this.app = app;
     this.points = new Map();
-    this.gesture = 1 + Math.floor(Math.random() * 1e6);
     stage.addEventListener("pointerdown", event => this.down(event));
     stage.addEventListener("pointermove", event => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) stage.addEventListener(name, event => this.up(event));
@@ -35,10 +34,9 @@ export class Pointer {
     if (event.target.closest("button")) return;
     this.stage.focus({ preventScroll: true });
     this.stage.setPointerCapture(event.pointerId);
+    if (!this.points.size) this.gesture = this.app.next();
     this.points.set(event.pointerId, { at: this.place(event), start: this.place(event), moved: false });
     this.stage.classList.add("dragging");
-    this.gesture++;
-    this.first = null;
     event.preventDefault();
   }
 
@@ -112,19 +110,24 @@ export class Pointer {
     if (!this.app.screen.frame) return;
     const step = event.deltaMode === 1 ? 33 * event.deltaY : event.deltaY, factor = Math.exp(0.0012 * step);
     if (event.ctrlKey || this.app.tool === "inspect") return this.app.screen.zoomBy(1 / factor ** 1.6, ...this.place(event));
-    clearTimeout(this.wheelEnd);
-    this.wheelEnd = setTimeout(() => { this.gesture++; }, 400);
-    this.app.edit(steer.dolly(this.app.camera(), factor), this.gesture);
+    this.app.edit(steer.dolly(this.app.camera(), factor), this.points.size ? this.gesture : this.app.gestures.burst("wheel", 400));
   }
 }
 
 export const keys = [
   ["Arrows", "orbit; with Shift: look round"], ["W A S D", "fly forward, left, back, right"], ["Q E", "fly down, up"],
   ["+ −", "nearer, farther"], [", .", "roll"], ["Z, Shift+Z", "undo, redo"], ["Home", "the scene's camera"],
-  ["P", "pause"], ["O", "the camera from outside"], ["1 … 6", "tools"], ["0", "the whole image"], ["[ ]", "exposure"], ["Esc", "no rectangle, no message"],
+  ["P", "pause"], ["Enter", "pick a pixel: arrows, by 10 with Shift; Enter; Esc"], ["O", "the camera from outside"], ["1 … 6", "tools"], ["0", "the whole image"], ["[ ]", "exposure"], ["Esc", "no rectangle, no message"],
 ];
 
-// What a key does on the stage; null: nothing.
+// Whether the element that has the focus needs a key itself.
+export function keepsKey(element, key) {
+  if (element.closest("input[type=range]")) return /^(Arrow|Home|End|Page)/.test(key);
+  if (element.closest("button, summary, a, input[type=checkbox], input[type=file]")) return key === "Enter" || key === " ";
+  return Boolean(element.closest("input, select, textarea"));
+}
+
+// What a key does on the page; null: nothing.
 export function keyAction(event, app) {
   const c = app.camera(), step = 0.06, tool = tools.find(t => t.key === event.key);
   const turn = event.shiftKey ? steer.look : steer.orbit, sign = event.shiftKey ? 1 : -1;
@@ -142,6 +145,6 @@ export function keyAction(event, app) {
   };
   if (event.ctrlKey || event.metaKey || event.altKey) return null;
   if (tool) return () => app.choose(tool.name);
-  if (moves[event.key]) return () => app.edit(moves[event.key](), app.keyGesture());
+  if (moves[event.key]) return () => app.edit(moves[event.key](), app.gestures.burst("keys", 600));
   return commands[event.key] || null;
 }

@@ -143,7 +143,7 @@ export class Live {
   camera() { return this.local; }
 
   // A gesture begins: its edits are one step of undo.
-  next() { this.gesture++; }
+  next() { return ++this.gesture; }
 
   edit(set) {
     const figure = this.figures.find((f) => f.element === this.element);

@@ -138,6 +138,13 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
     result = vl_camera_domain(def, &made, warning, error);
   if (result == VL_OK)
     result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
+  if (result == VL_OK && !vl_camera_rays_are_finite(&made))
+    result =
+        vl_fail(error, VL_ERROR_ARGUMENT,
+                "camera: its rays are not finite: fx %g, fy %g, cx %g, cy %g, position (%g, "
+                "%g, %g)",
+                made.fx, made.fy, made.cx, made.cy, made.world_from_camera[3],
+                made.world_from_camera[7], made.world_from_camera[11]);
   if (result == VL_OK)
     *camera = made;
   return result;

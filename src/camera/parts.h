@@ -14,6 +14,10 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
                           vlError *error);
 /* Sets distortion.steps and outside, which also depend on the image's size. */
 void vl_camera_measure(vlCamera *camera);
+/* Whether the rays of the image's centre and corners have finite origins in single precision
+ * and directions that can be normalised. True for a camera of one's own, whose rays are checked
+ * one by one while it renders. */
+bool vl_camera_rays_are_finite(const vlCamera *camera);
 /* Computes the radius in the plane, before distortion, of a direction at `angle` (radians) from
  * the axis, measured horizontally or vertically. Returns false if the direction is outside the
  * projection's domain. */

@@ -80,6 +80,28 @@ static vlCameraLocal local_ray(const vlCameraCompiled *c, double x, double y, do
   return (vlCameraLocal){0.0, 0.0, d.x, d.y, d.z};
 }
 
+static bool is_finite_ray(const vlCameraCompiled *c, double x, double y) {
+  double valid;
+  vlCameraLocal r = local_ray(c, x - c->cx, y - c->cy, &valid);
+  if (valid == 0.0)
+    return true;
+  vlWorldRay w = vl_camera_to_world(c, r);
+  float sum = (float)w.ox + (float)w.oy + (float)w.oz;
+  return isfinite(sum) && isfinite(w.length) && isfinite(w.inv_length);
+}
+
+bool vl_camera_rays_are_finite(const vlCamera *camera) {
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  if (c.own)
+    return true;
+  bool finite = is_finite_ray(&c, 0.5 * camera->width, 0.5 * camera->height);
+  for (int i = 0; i < 4; i++)
+    finite =
+        finite && is_finite_ray(&c, i & 1 ? camera->width : 0.0, i & 2 ? camera->height : 0.0);
+  return finite;
+}
+
 bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3],
                          double direction[3]) {
   if (!camera || !isfinite(x) || !isfinite(y))

@@ -318,6 +318,11 @@ static void error_messages(void **state) {
   EXPECT_ERROR((d.view_distance = 1e300, d.pixel_size = 1e-300), "no finite focal length",
                NULL);
   EXPECT_ERROR(d.view_distance = 1e200, "out of range", NULL);
+  /* each number alone is fine, but no ray of the image is */
+  EXPECT_ERROR((d.fx = d.fy = 500, d.cy = 1e300), "rays are not finite", "cy 1e+300");
+  EXPECT_ERROR((d.eye[0] = 1e39, d.lookat[0] = 2e39), "rays are not finite", "1e+39");
+  EXPECT_ERROR((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.fx = d.fy = 1, d.cy = 1e39),
+               "rays are not finite", "cy 1e+39");
   /* pose */
   EXPECT_ERROR((set3(d.eye, 1, 2, 3), set3(d.lookat, 1, 2, 3)),
                "eye and lookat are the same point (1 2 3)", NULL);

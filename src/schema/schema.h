@@ -63,14 +63,16 @@
  * &name##_row,`. */
 #define VL_KIND_FAMILY(variable, KINDS, ROW, family_name, thing_name, directive_name) \
   static const vlKindRow *const variable##_rows[] = {KINDS(ROW)};                     \
-  static const char *const variable##_constants[] = {KINDS(VL_KIND_CONSTANT)};        \
-  const vlKindFamily variable = {                                                     \
-      .name = family_name,                                                            \
-      .thing = thing_name,                                                            \
-      .directive = directive_name,                                                    \
-      .kind_count = sizeof variable##_rows / sizeof *variable##_rows,                 \
-      .constants = variable##_constants,                                              \
-      .rows = variable##_rows};
+  VL_KIND_FAMILY_OF(variable, variable##_rows, KINDS, family_name, thing_name, directive_name)
+/* The same of an array of rows. */
+#define VL_KIND_FAMILY_OF(variable, array, KINDS, family_name, thing_name, directive_name) \
+  static const char *const variable##_constants[] = {KINDS(VL_KIND_CONSTANT)};             \
+  const vlKindFamily variable = {.name = family_name,                                      \
+                                 .thing = thing_name,                                      \
+                                 .directive = directive_name,                              \
+                                 .kind_count = sizeof(array) / sizeof *(array),            \
+                                 .constants = variable##_constants,                        \
+                                 .rows = (array)};
 #define VL_KIND_CONSTANT(NAME, name) #NAME,
 
 /* For the size of a table with one entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */

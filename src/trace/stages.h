@@ -4,7 +4,7 @@
 #ifndef TRACE_STAGES_H
 #define TRACE_STAGES_H
 
-#include "trace/light/lights.h"
+#include "light/lights.hot.h"
 #include "trace/medium/rows.h"
 #include "trace/rows.h"
 #include "trace/surface/points.h"

@@ -11,12 +11,12 @@
 #include "base/array.h"
 #include "base/cancel.h"
 #include "color/color.h"
+#include "light/environment_lookup.h"
 #include "material/coat.h"
 #include "material/measured_tables.h"
 #include "texture/node.h"
 #include "velo/world.h"
 #include "world/accel/accel.h"
-#include "world/light/environment_lookup.h"
 #include "world/medium/medium.h"
 #include "world/part.h"
 
@@ -203,7 +203,7 @@ typedef struct vlEmitted {
 } vlEmitted;
 
 typedef struct vlWorldLight {
-  uint32_t kind;        /* vlWorldLightKind (world/light/light_kind.h) */
+  uint32_t kind;        /* vlLightKind, or VL_LIGHT_AREA (light/light_kind.h) */
   uint32_t emitted;     /* index into emitted */
   uint32_t shape, prim; /* of an area light; for other lights shape is VL_NONE */
   float area;           /* of an area light: area of the primitive in world space */
@@ -228,8 +228,8 @@ typedef struct vlWorldLight {
   bool delta;     /* no ray can hit it */
   uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the
                      rotation from world to light directions */
-  float image_extent[2]; /* of a projection light: half the width and height of the image at
-                            distance 1 */
+  float own[4];   /* numbers that only this kind has; of a projection light: half the width and
+                     height of the image at distance 1 */
   /* Of an area light that is a triangle: its corners. Of a whole sphere: its centre, its
    * radius, 1 if it emits outwards or -1 if it emits inwards, and the distance by which points
    * sampled on it may be off. */
@@ -255,7 +255,7 @@ typedef struct vlWorldEnvironmentPart {
   double mean, illuminance;
 } vlWorldEnvironmentPart;
 
-#include "world/light/light_tree.h"
+#include "light/light_tree.h"
 
 /* Name and source location of an object in the scene, for reports (origins.c). */
 typedef struct vlWorldOrigin {

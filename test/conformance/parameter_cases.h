@@ -1,15 +1,19 @@
-/* conformance/parameter_cases.h: what the laws of parameters must know beyond the rows. Cases
- * of textures are with their kinds: src/texture/NAME.case.c. */
+/* conformance/parameter_cases.h: what the laws of parameters must know beyond the rows.
+ * Families with a folder have the cases of a kind there: src/texture/NAME.case.c,
+ * src/light/NAME.case.c. */
 #ifndef TEST_CONFORMANCE_PARAMETER_CASES_H
 #define TEST_CONFORMANCE_PARAMETER_CASES_H
 
 #include <stddef.h>
 
+#include "light/light.case.h"
 #include "schema/parameter.case.h"
 #include "texture/texture.case.h"
 
 #define TEXTURE_CASE(NAME, name) &name##_texture,
 static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE)};
+#define LIGHT_CASE(NAME, name) &name##_light,
+static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
 
 #define CELLS                                                                                  \
   "\"integer nx\" 2;\"integer ny\" 2;\"integer nz\" 2;\"point3 p0\" [-1 -1 -1];\"point3 p1\" " \
@@ -136,27 +140,7 @@ static const ParameterCase parameter_cases[] = {
     /* lights */
     {.family = "lights", .parameter = "power", .value = "\"float power\" 30"},
     {.family = "lights", .parameter = "illuminance", .value = "\"float illuminance\" 2"},
-    {.family = "lights",
-     .kind = "spot",
-     .base = "\"point3 from\" [1 3 2];\"point3 to\" [0 0 0]"},
-    {.family = "lights",
-     .kind = "spot",
-     .parameter = "coneangle",
-     .value = "\"float coneangle\" 12"},
-    {.family = "lights",
-     .kind = "spot",
-     .parameter = "conedeltaangle",
-     .value = "\"float conedeltaangle\" 25"},
-    {.family = "lights", .kind = "point", .base = "\"point3 from\" [1 3 2]"},
-    {.family = "lights", .kind = "distant", .base = "\"point3 from\" [1 3 2]"},
-    {.family = "lights", .kind = "goniometric", .base = "\"string filename\" \"sky.pfm\""},
-    {.family = "lights", .kind = "projection", .base = "\"string filename\" \"sky.pfm\""},
     {.family = "lights", .parameter = "filename", .value = "\"string filename\" \"other.pfm\""},
-    {.family = "lights",
-     .kind = "infinite",
-     .parameter = "portal",
-     .base = "\"string filename\" \"sky.pfm\"",
-     .value = "\"point3 portal\" [-2 0 -3 -2 4 -3 2 4 -3 2 0 -3]"},
     /* emission */
     {.family = "emission", .parameter = "power", .value = "\"float power\" 30"},
     {.family = "emission", .parameter = "filename", .value = "\"string filename\" \"a.pfm\""},

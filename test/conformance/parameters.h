@@ -20,16 +20,23 @@ static bool same_name(const char *a, const char *b) {
   return a == b || (a && b && strcmp(a, b) == 0);
 }
 
+/* The cases of parameters that are in the case of a kind; null: there are none. */
+static const ParameterCase *cases_of_kind(const char *family, uint32_t kind) {
+  if (strcmp(family, "textures") == 0)
+    return texture_cases[kind]->parameters;
+  if (strcmp(family, "lights") == 0)
+    return light_cases[kind]->parameters;
+  return NULL;
+}
+
 /* The case of a parameter that is in the case of its kind; null: there is none. */
 static const ParameterCase *own_case(const char *family, const char *kind,
                                      const char *parameter) {
-  const vlKindFamily *textures = vl_kind_family_find("textures");
-  if (!kind || strcmp(family, "textures") != 0)
-    return NULL;
-  for (uint32_t k = 0; k < textures->kind_count; k++) {
-    if (!same_name(textures->rows[k]->name, kind))
+  const vlKindFamily *all = vl_kind_family_find(family);
+  for (uint32_t k = 0; all && kind && k < all->kind_count; k++) {
+    const ParameterCase *list = cases_of_kind(family, k);
+    if (!list || !same_name(all->rows[k]->name, kind))
       continue;
-    const ParameterCase *list = texture_cases[k]->parameters;
     for (int i = 0; i < PARAMETER_CASES && (list[i].base || list[i].value || list[i].no_effect);
          i++)
       if (same_name(list[i].parameter, parameter))

@@ -13,9 +13,9 @@
 
 #include "statistics.h"
 
+#include "light/light_kind.h"
 #include "trace/two_way/stages.h"
 #include "velo/shape.h"
-#include "world/light/light_kind.h"
 
 enum { TRIES = 100 * 1000, ROWS = 8, COLUMNS = 8, TESTS = 40 };
 
@@ -97,7 +97,7 @@ static void density_is_told(Fixture *f, const char *what, unsigned seed) {
     at.p = e.at;
     at.g = at.n = e.n;
     double told = (double)vl_emission_density(f->world, &f->way, e.light, vl_neg(e.d), 1.0f,
-                                              light->kind == VL_WL_AREA ? &at : NULL);
+                                              light->kind == VL_LIGHT_AREA ? &at : NULL);
     if (!(fabs(told - (double)e.density) <= 1e-4 * told))
       fail_msg("%s: density %g with the path, %g told", what, (double)e.density, told);
   }

@@ -13,9 +13,9 @@
 
 #include "statistics.h"
 
+#include "light/light_kind.h"
 #include "trace/stages.h"
 #include "velo/shape.h"
-#include "world/light/light_kind.h"
 
 enum { TRIES = 200 * 1000 };
 
@@ -278,7 +278,7 @@ static void one_side(void **state) {
       size_t count = f->world->lights.count;
       for (uint32_t k = 0; k < count; k++) {
         float pmf = vl_light_pmf(tree, at, k);
-        bool distant = f->world->lights.items[k].kind == VL_WL_DISTANT;
+        bool distant = f->world->lights.items[k].kind == VL_LIGHT_DISTANT;
         if (f->world->lights.items[k].far)
           assert_true(fabs((double)pmf - (distant && side < 0 ? 0 : 1 / slots)) < 1e-6);
         else

@@ -1,9 +1,9 @@
 /* trace/tracer/record.hot.c: see record.h. */
 #include "trace/tracer/record.h"
 #include "material/bsdf_names.h"
+#include "schema/schema.h"
 #include "texture/node_kind.h"
 #include "velo/texture.h"
-#include "world/light/light_kind.h"
 
 static vlPathRecorder *recorder(const vlTracing *t) {
   return t->batch->recorder;
@@ -91,12 +91,9 @@ void vl_record_depth(vlTracing *t, uint32_t n, const vlPaths *rays) {
 /* ---- light ------------------------------------------------------------------------------- */
 
 void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to) {
-#define NAME(K, k) [VL_WL_##K] = #k,
-  static const char *const names[] = {VL_WORLD_LIGHT_KINDS(NAME)};
-#undef NAME
   const vlWorldLight *l = &world->lights.items[light];
   to->light = light + 1;
-  to->type = names[l->kind];
+  to->type = l->shape == VL_NONE ? vl_kind_row(&vl_light_family, (int)l->kind)->name : "area";
   to->object = l->shape == VL_NONE ? 0 : l->shape + 1;
   to->distant = l->far;
 }

@@ -1,0 +1,32 @@
+/* light/coverage.hot.h: the alpha of an area light at a sampled point; private to the hot
+ * files of trace/light. */
+#ifndef LIGHT_COVERAGE_HOT_H
+#define LIGHT_COVERAGE_HOT_H
+
+#include "math/vec.h"
+#include "texture/lookup.h"
+
+/* The light's alpha at p, in [0, 1]. It is the share of the radiance that leaves the shape at
+ * p, and the probability that a ray hits the shape at p. n: geometric normal; u, v: surface
+ * parameters, not used for triangles; weights: barycentric coordinates, used for triangles
+ * only. */
+static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *light, vlVec3 p,
+                                      vlVec3 n, float u, float v, const float weights[3]) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  vlTextureCorner corner = {s, light->prim, {weights[0], weights[1], weights[2]}};
+  vlTextureQuery at = {u, v, p, n, &corner};
+  if (s->kind == VL_SHAPE_TRIANGLES) { /* for triangles, the arguments u and v belong to the
+                                          emission's image */
+    static const float unit[6] = {0, 0, 1, 0, 1, 1};
+    const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+    at.u = at.v = 0;
+    for (int k = 0; k < 3; k++) {
+      const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+      at.u += weights[k] * t[0];
+      at.v += weights[k] * t[1];
+    }
+  }
+  return vl_clamp(vl_texture_float_at(world, s->alpha, &at), 0.0f, 1.0f);
+}
+
+#endif

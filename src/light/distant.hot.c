@@ -1,0 +1,32 @@
+/* light/distant.hot.c: lights at an infinite distance in one direction (pbrt book
+ * 12.3). */
+#include "light/kinds.hot.h"
+
+vlSampleLight vl_light_sample_distant;
+vlEmitLight vl_light_emit_distant;
+vlLightDensity vl_light_emit_pdf_distant;
+
+void vl_light_sample_distant(const vlLightQuery *q, vlLightSample *out) {
+  out->w = out->target = vl_light_axis(q->light);
+  out->pdf = 1.0f;
+  out->delta = out->distant = true;
+  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->radiance);
+}
+
+void vl_light_emit_distant(const vlEmissionQuery *q, vlEmission *out) {
+  vl_light_emit_from_afar(q->world, vl_light_axis(q->light), q->u, q->v, out);
+  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= vl_light_disk(q->world);
+  out->density = 1.0f / vl_light_disk(q->world);
+  out->delta = true;
+}
+
+float vl_light_emit_pdf_distant(const vlWorld *world, const vlWorldLight *light, float p,
+                                vlVec3 w, float distance, const vlPoint *at) {
+  (void)light;
+  (void)w;
+  (void)distance;
+  (void)at;
+  return p / vl_light_disk(world);
+}

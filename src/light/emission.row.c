@@ -1,0 +1,34 @@
+/* light/emission.row.c: the row of the emission of shapes. Names and defaults are pbrt-v4's. */
+#include "base/cookie.h"
+#include "schema/schema.h"
+#include "velo/light.h"
+
+#define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlEmissionDef, __VA_ARGS__)
+
+static const vlParameter diffuse_parameters[] = {
+    PARAMETER(SPECTRUM, "L", radiance, "radiance; its luminance is 1 before scale",
+              VL_DEFAULT(1, 1, 1), .flags = VL_PARAMETER_RGB, .role = VL_PARAMETER_ILLUMINANT),
+    PARAMETER(FLOAT, "scale", scale, "factor on the radiance", VL_DEFAULT(1)),
+    PARAMETER(BOOL, "twosided", two_sided, "both sides of the surface emit", VL_DEFAULT(0)),
+    PARAMETER(DOUBLE, "power", power,
+              "power of each face: its emission is scaled to it, and then multiplied by scale",
+              .unit = "W", .flags = VL_PARAMETER_UNSET),
+    PARAMETER(FILE, "filename", image, "image file of the radiance over uv; replaces L",
+              .text = NULL),
+    PARAMETER(TEXTURE, NULL, texture, "image texture of the radiance over uv; replaces L",
+              .unit = NULL),
+};
+VL_KIND_ROW(diffuse, .name = "diffuse",
+            .description = "a surface that emits the same radiance in all directions",
+            .traits = 0)
+
+#define EMISSION_KINDS(X) X(DIFFUSE, diffuse)
+#define EMISSION_ROW(NAME, name) &name##_row,
+VL_KIND_FAMILY(vl_emission_family, EMISSION_KINDS, EMISSION_ROW, "emission", "area light",
+               "AreaLightSource")
+
+vlEmissionDef vl_default_emission_def(void) {
+  vlEmissionDef def = {.cookie = VL_COOKIE_EMISSION};
+  vl_row_set_defaults(&diffuse_row, &def);
+  return def;
+}

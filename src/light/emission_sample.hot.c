@@ -1,0 +1,216 @@
+/* light/emission_sample.hot.c: samples rays that leave lights, and computes their densities, of
+ * all kinds and of emissive shapes (pbrt book 12; 3rd edition 16.1.2). The code is scalar
+ * because each lane has its own light. */
+#include "light/coverage.hot.h"
+#include "light/kinds.hot.h"
+#include "light/kinds.row.h"
+#include "light/light_kind.h"
+#include "math/warp.h"
+#include "texture/lookup.h"
+#include "velo/shape.h"
+#include "world/shape/surface_point.h"
+
+#define DECLARE(kind, row, power, compile, sample, emit, density) \
+  vlEmitLight emit;                                               \
+  vlLightDensity density;
+VL_LIGHT_FUNCTIONS(DECLARE)
+
+static float choice_of(const vlTwoWay *way, uint32_t light) {
+  return way->choice[light + 1] - way->choice[light];
+}
+
+/* Density of an area light's points, per area. */
+static float point_density(const vlWorld *world, const vlWorldLight *light, vlVec3 p) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (s->kind == VL_SHAPE_TRIANGLES)
+    return light->area > 0.0f ? 1.0f / light->area : 0.0f;
+  vlSurfacePoint point;
+  point.p[0] = p.x;
+  point.p[1] = p.y;
+  point.p[2] = p.z;
+  return (float)vl_shape_pdf(s, light->prim, &point);
+}
+
+/* Whether the outside of a whole sphere emits. */
+static bool emits_outwards(const vlWorld *world, const vlWorldLight *light) {
+  return world->emitted.items[light->emitted].two_sided ||
+         !world->shapes.items[light->shape].flip;
+}
+
+/* The share of an area light's paths that start on the side visible from direction w. */
+static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 p, vlVec3 w) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (!light->outer_side)
+    return world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f;
+  vlVec3 center =
+      vl_vec3((float)s->from_shape[3], (float)s->from_shape[7], (float)s->from_shape[11]);
+  return emits_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
+}
+
+float vl_light_emit_pdf_area(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
+                             float distance, const vlPoint *at) {
+  (void)distance;
+  return p * VL_INV_PI * point_density(world, light, at->p) *
+         side_share(world, light, at->p, w);
+}
+
+float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w,
+                          float distance, const vlPoint *at) {
+  const vlWorldLight *light = &world->lights.items[index];
+  float p = choice_of(way, index);
+  if (!(p > 0.0f))
+    return 0.0f;
+  switch (light->kind) {
+#define DENSITY(kind, row, power, compile, sample, emit, density) \
+  case kind:                                                      \
+    return density(world, light, p, w, distance, at);
+    VL_LIGHT_FUNCTIONS(DENSITY)
+#undef DENSITY
+    case VL_LIGHT_AREA:
+      return vl_light_emit_pdf_area(world, light, p, w, distance, at);
+    default:
+      return 0.0f;
+  }
+}
+
+float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light,
+                           vlVec3 at) {
+  return choice_of(way, light) * point_density(world, &world->lights.items[light], at);
+}
+
+/* ---- area lights ------------------------------------------------------------------------- */
+
+typedef struct Spot {
+  vlVec3 p, n;
+  float offset, pdf, u, v;
+  float weights[3]; /* barycentric coordinates in a triangle */
+} Spot;
+
+static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  const float *q = light->corners;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  vlVec2 b01 = vl_warp_triangle(u, v);
+  float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
+  vlVec3 corner[3];
+  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]),
+            .weights = {b[0], b[1], b[2]}};
+  vlVec3 ns = vl_vec3(0, 0, 0);
+  const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
+  for (int k = 0; k < 3; k++) {
+    corner[k] = vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]);
+    r.p = vl_add(r.p, vl_mul(corner[k], b[k]));
+    const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    r.u += b[k] * t[0];
+    r.v += b[k] * t[1];
+    if (light->one_sided_normals)
+      continue;
+    const float *x = s->normals + 3 * (size_t)f[k];
+    ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+  }
+  if (vl_dot(r.n, ns) < 0.0f)
+    r.n = vl_neg(r.n);
+  r.offset =
+      vl_triangle_offset(r.n, r.p, corner[0], corner[1], corner[2], b[0], b[1], b[2], 0.0f);
+  r.pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f;
+  return r;
+}
+
+static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
+  vlSurfacePoint point;
+  double pdf;
+  vl_shape_sample(s, light->prim, u, v, &point, &pdf);
+  return (Spot){vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+                vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]),
+                vl_point_offset(&point),
+                (float)pdf,
+                point.uv[0],
+                point.uv[1],
+                {0, 0, 0}};
+}
+
+void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
+  const vlWorld *world = q->world;
+  const vlWorldLight *light = q->light;
+  const vlEmitted *e = q->emitted;
+  float s = q->s, t = q->t;
+  const vlWorldShape *shape = &world->shapes.items[light->shape];
+  Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v)
+                                              : on_shape(light, shape, q->u, q->v);
+  if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light)))
+    return;
+  float sides = 1.0f;
+  vlVec3 side = light->outer_side && shape->flip ? vl_neg(at.n) : at.n;
+  if (e->two_sided && !light->outer_side) {
+    sides = 2.0f;
+    bool back = s >= 0.5f;
+    s = vl_min(2.0f * (back ? s - 0.5f : s), VL_ONE_MINUS_EPSILON);
+    if (back)
+      side = vl_neg(side);
+  }
+  vlVec3 local = vl_warp_cosine_hemisphere(s, t);
+  if (!(local.z > 0.0f))
+    return;
+  out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
+  out->o = vl_offset_origin(at.p, side, at.offset, out->d);
+  out->at = at.p;
+  out->n = at.n;
+  vl_emitted_at(world, e, q->lambda, at.u, 1.0f - at.v, false, out->flux);
+  float scale = VL_PI * sides / at.pdf;
+  if (shape->alpha >= 0 && !light->invisible)
+    scale *= vl_light_coverage(world, light, at.p, at.n, at.u, at.v, at.weights);
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= scale;
+  out->density = VL_INV_PI * at.pdf / sides;
+  out->delta = light->invisible;
+  out->area_pdf = light->invisible ? 0.0f : at.pdf;
+  out->offset = at.offset;
+  out->side = sides > 1.0f ? 0.0f : vl_dot(side, at.n) < 0.0f ? -1.0f : 1.0f;
+  out->valid = true;
+}
+
+/* ---- all lights -------------------------------------------------------------------------- */
+
+void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v,
+                             vlEmission *out) {
+  vlDiskPoint disk = vl_warp_disk(u, v);
+  vlFrame frame = vl_frame_from_z(w);
+  float r = world->radius;
+  vlVec3 at = vl_add(vl_mul(frame.x, r * disk.x), vl_mul(frame.y, r * disk.y));
+  at = vl_add(at, vl_mul(w, r));
+  out->o = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), at);
+  out->d = vl_neg(w);
+  out->at = w;
+  out->valid = true;
+}
+
+vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4],
+                              float u_choice, float u, float v, float s, float t) {
+  vlEmission r;
+  __builtin_memset(&r, 0, sizeof r);
+  float within;
+  r.light = vl_find_cell(way->choice, (uint32_t)world->lights.count, u_choice, &within);
+  float p = choice_of(way, r.light);
+  if (!(p > 0.0f))
+    return r;
+  const vlWorldLight *light = &world->lights.items[r.light];
+  vlEmissionQuery q = {world, light, &world->emitted.items[light->emitted], lambda, u, v, s, t};
+  switch (light->kind) {
+#define EMIT(kind, row, power, compile, sample, emit, density) \
+  case kind:                                                   \
+    emit(&q, &r);                                              \
+    break;
+    VL_LIGHT_FUNCTIONS(EMIT)
+#undef EMIT
+    case VL_LIGHT_AREA:
+      vl_light_emit_area(&q, &r);
+      break;
+    default:
+      break;
+  }
+  for (int c = 0; c < 4; c++)
+    r.flux[c] /= p;
+  r.density *= p;
+  r.area_pdf *= p;
+  return r;
+}

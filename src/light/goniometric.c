@@ -1,0 +1,134 @@
+/* light/goniometric.c: point lights whose intensity is given by an image: goniometric (by
+ * direction, in an equal-area octahedral square) and projection. Conventions are pbrt-v4's
+ * (book 12.2): the axis of a goniometric diagram is the light's y; a projection light's image
+ * is projected along its z with y up. The power parameter is the power of all emitted light, as
+ * in pbrt. */
+#include <math.h>
+
+#include "base/error.h"
+#include "light/compile.h"
+#include "math/double3.h"
+#include "math/elementary.h"
+#include "math/transform.h"
+#include "texture/lookup.h"
+#include "velo/light.h"
+
+vlCompileLight vl_compile_light_goniometric, vl_compile_light_projection;
+
+/* Sets the rotation from world to light directions. `order` and `sign` permute and flip the
+ * axes of the light. */
+static bool set_frame(const vlLightDef *def, const int order[3], const float sign[3],
+                      vlWorldLight *light) {
+  vlMat4 inverse;
+  if (!vl_mat4_inverse(vl_mat4_load(def->world_from_light), &inverse))
+    return false;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      light->corners[3 * i + j] = sign[i] * (float)inverse.m[4 * order[i] + j];
+  return true;
+}
+
+static float mean_of(vlTexel t, uint32_t channels) {
+  return channels < 3 ? t.c[0] : (t.c[0] + t.c[1] + t.c[2]) / 3;
+}
+
+static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError *error) {
+  return vl_fail(error, VL_ERROR_SCENE,
+                 "%s: pixel (%u, %u) is not finite, it cannot be emitted",
+                 def->path ? def->path : "the image", x, y);
+}
+
+static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlMipmap *mip,
+                                vlWorldLight *light, vlEmitted *e, vlError *error) {
+  static const int order[3] = {0, 2, 1};
+  static const float sign[3] = {1, 1, 1};
+  uint32_t n = mip->levels[0].width;
+  if (n != mip->levels[0].height)
+    return vl_fail(error, VL_ERROR_SCENE,
+                   "%s: %u x %u: a goniometric light's image must be square (equal-area "
+                   "octahedral map)",
+                   def->path ? def->path : "the image", n, mip->levels[0].height);
+  if (!set_frame(def, order, sign, light))
+    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  double sum = 0;
+  for (uint32_t y = 0; y < n; y++)
+    for (uint32_t x = 0; x < n; x++) {
+      float value =
+          mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
+      if (!isfinite(value))
+        return bad_pixel(def, x, y, error);
+      sum += value > 0 ? value : 0;
+    }
+  double mean = sum / ((double)n * n), factor = def->scale;
+  if (def->power == def->power)
+    factor *= mean > 0 ? def->power / (4 * M_PI * mean) : 0;
+  vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);
+  light->power = (float)(4 * M_PI * mean) * vl_light_luminance(&e->spectrum);
+  return r;
+}
+
+static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMipmap *mip,
+                               vlWorldLight *light, vlEmitted *e, vlError *error) {
+  static const int order[3] = {0, 1, 2};
+  static const float sign[3] = {1, -1, 1};
+  uint32_t w = mip->levels[0].width, h = mip->levels[0].height;
+  if (!set_frame(def, order, sign, light))
+    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  double aspect = (double)w / h, tangent = vl_precise_tan(0.5 * def->fov);
+  light->own[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
+  light->own[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
+  double sum = 0;
+  for (uint32_t y = 0; y < h; y++)
+    for (uint32_t x = 0; x < w; x++) {
+      double a = light->own[0] * (2 * (x + 0.5) / w - 1),
+             b = light->own[1] * (2 * (y + 0.5) / h - 1);
+      float value = vl_light_texel_luminance(
+          vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
+      if (!isfinite(value))
+        return bad_pixel(def, x, y, error);
+      double q = 1 + a * a + b * b; /* q^(-3/2): solid angle of an area of the plane z = 1 */
+      sum += value > 0 ? value / (q * sqrt(q)) : 0;
+    }
+  double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1], factor = def->scale;
+  if (def->power == def->power)
+    factor *= flux > 0 ? def->power / flux : 0;
+  e->image = (int32_t)light->image;
+  vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), (float)factor,
+                       e);
+  double forward[3] = {0, 0, 1}, axis[3];
+  vlMat4 m = vl_mat4_load(def->world_from_light);
+  vl_mat4_vector(&m, forward, axis);
+  double l = vl_norm3(axis);
+  for (int i = 0; i < 3; i++)
+    light->direction[i] = (float)(axis[i] / l);
+  light->cos_end = light->cos_start =
+      (float)(1 / sqrt(1 + light->own[0] * light->own[0] + light->own[1] * light->own[1]));
+  light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 *
+                         M_PI); /* as for a spot light */
+  return VL_OK;
+}
+
+/* Adds the image of a light. Null on error. */
+static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
+                                 vlError *error) {
+  int32_t image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
+  light->image = (uint32_t)image;
+  return image < 0 ? NULL : world->images.items[image].mipmap;
+}
+
+vlResult vl_compile_light_goniometric(vlWorld *world, const vlLightDef *def,
+                                      vlWorldLight *light, vlEmitted *e, vlError *error) {
+  const vlMipmap *mip = add_image(world, def, light, error);
+  if (!mip)
+    return error && error->code ? error->code : VL_ERROR_SCENE;
+  return add_goniometric(world, def, mip, light, e, error);
+}
+
+vlResult vl_compile_light_projection(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
+                                     vlEmitted *e, vlError *error) {
+  const vlMipmap *mip = add_image(world, def, light, error);
+  if (!mip)
+    return error && error->code ? error->code : VL_ERROR_SCENE;
+  light->has_cone = true;
+  return add_projection(world, def, mip, light, e, error);
+}

@@ -1,0 +1,19 @@
+/* light/goniometric.case.c: what tests know of goniometric lights. */
+#include "light/light.case.h"
+
+/* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom.
+ * Its map has y upwards: below the light, u goes with x and v with z. The distance is the root
+ * of 1.5. */
+const LightCase goniometric_light = {
+    .before = "Translate 0 1 0",
+    .variants =
+        {
+            {.parameters = "\"string filename\" \"quarters.pfm\" \"rgb I\" [1 1 1]",
+             .known = {{.5, .5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
+                       {-.5, .5, {.6 / 1.5, .6 / 1.5, .6 / 1.5}},
+                       {.5, -.5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
+                       {-.5, -.5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}},
+             .known_count = 4},
+        },
+    .parameters = {{.base = "\"string filename\" \"sky.pfm\""}},
+};

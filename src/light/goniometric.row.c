@@ -1,0 +1,14 @@
+/* light/goniometric.row.c: the name, the parameters and the power of goniometric lights. */
+#include "light/light.row.h"
+
+static const vlParameter parameters[] = {
+    INTENSITY, SCALE, POWER, POSITION,
+    IMAGE(
+        "required: a square image, an equal-area octahedral map of factors on the intensity")};
+
+const vlKindRow vl_light_row_goniometric = {
+    .name = "goniometric",
+    .description = "a point whose intensity over directions comes from an image",
+    .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_IMAGE,
+    VL_ROW_PARAMETERS(parameters),
+};

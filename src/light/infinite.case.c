@@ -1,0 +1,16 @@
+/* light/infinite.case.c: what tests know of infinite lights. */
+#include "light/light.case.h"
+
+const LightCase infinite_light = {
+    .variants =
+        {
+            {.parameters = "\"rgb L\" [.5 1 2]"},
+            {.parameters = "\"string filename\" \"sky.pfm\"", .compensated = true},
+            {.parameters =
+                 "\"string filename\" \"sky.pfm\" \"point3 portal\" [-2 0 -3 2 0 -3 2 4 "
+                 "-3 -2 4 -3]"},
+        },
+    .parameters = {{.parameter = "portal",
+                    .base = "\"string filename\" \"sky.pfm\"",
+                    .value = "\"point3 portal\" [-2 0 -3 -2 4 -3 2 4 -3 2 0 -3]"}},
+};

@@ -1,0 +1,31 @@
+/* light/infinite.row.c: the name, the parameters and the power of infinite lights. */
+#include <math.h>
+
+#include "light/light.row.h"
+
+static const vlParameter parameters[] = {
+    RADIANCE,
+    SCALE,
+    ILLUMINANCE,
+    IMAGE("a square image, an equal-area octahedral map of the radiance; replaces L"),
+    PARAMETER(BLOCK, "portal", portal,
+              "portal: 4 world-space corners of the rectangle through which the light enters "
+              "the scene",
+              .text = "point3"),
+};
+
+const vlKindRow vl_light_row_infinite = {
+    .name = "infinite",
+    .description = "light from all directions, from outside the scene (an environment map)",
+    .traits = VL_LIGHT_TRAIT_FAR,
+    VL_ROW_PARAMETERS(parameters),
+};
+
+vlLightPower vl_light_power_infinite;
+
+double vl_light_power_infinite(const vlLightDef *def, double luminance, double radius) {
+  if (def->path || def->image)
+    return NAN;
+  return 4 * PI * PI * radius * radius *
+         (def->illuminance > 0 ? def->illuminance / PI : luminance);
+}

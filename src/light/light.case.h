@@ -1,0 +1,39 @@
+/* light/light.case.h: what the tests of lights must know of a kind beyond its row: light that
+ * arrives at known points of a floor (test/conformance/lights.h), and cases of its
+ * parameters. */
+#ifndef LIGHT_LIGHT_CASE_H
+#define LIGHT_LIGHT_CASE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "schema/parameter.case.h"
+#include "velo/light.h"
+
+/* Radiance times solid angle that arrives at a point of the floor y = 0. */
+typedef struct LightKnown {
+  double x, z;
+  double rgb[3];
+} LightKnown;
+
+typedef struct LightVariant {
+  const char *parameters; /* null ends the list */
+  LightKnown known[4];    /* of delta lights; rgb[1] = 0 ends the list unless x is set */
+  uint32_t known_count;
+  bool compensated; /* directions darker than the mean are not sampled: BSDF samples find their
+                       light */
+} LightVariant;
+
+enum { LIGHT_VARIANTS = 4 };
+typedef struct LightCase {
+  const char *before; /* statements before the light, such as its place; null: none */
+  LightVariant variants[LIGHT_VARIANTS];
+  ParameterCase parameters[PARAMETER_CASES];
+} LightCase;
+
+/* Declares the case of each kind, which is in the file of the kind: light/NAME.case.c. */
+#define LIGHT_CASE(NAME, name) extern const LightCase name##_light;
+VL_LIGHT_KINDS(LIGHT_CASE)
+#undef LIGHT_CASE
+
+#endif

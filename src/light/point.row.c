@@ -1,0 +1,20 @@
+/* light/point.row.c: the name, the parameters and the power of point lights. */
+#include "light/light.row.h"
+
+static const vlParameter parameters[] = {INTENSITY, SCALE, POWER,
+                                         FROM("position of the light")};
+
+const vlKindRow vl_light_row_point = {
+    .name = "point",
+    .description = "a point that emits equally in all directions",
+    .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA,
+    VL_ROW_PARAMETERS(parameters),
+};
+
+vlLightPower vl_light_power_point;
+
+double vl_light_power_point(const vlLightDef *def, double luminance, double radius) {
+  (void)def;
+  (void)radius;
+  return 4 * PI * luminance;
+}

@@ -1,0 +1,253 @@
+/* light/shape_lights.c: compiles emissive shapes into lights, one per emitting face. */
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "light/compile.h"
+#include "light/emissive_faces.h"
+#include "light/light_kind.h"
+#include "math/transform.h"
+#include "scene/scene.h"
+#include "texture/lookup.h"
+#include "texture/node_kind.h"
+#include "velo/light.h"
+#include "velo/shape.h"
+#include "world/shape/surface_point.h"
+
+static float mean_image_luminance(const vlMipmap *mip) {
+  uint32_t last = mip->level_count - 1;
+  return vl_light_texel_luminance(vl_texel(mip, last, 0, 0, VL_WRAP_CLAMP), mip->channels);
+}
+
+static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmissionDef *def,
+                             vlEmitted *e, vlError *error) {
+  e->two_sided = def->two_sided;
+  if (def->texture.index) {
+    vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
+    input.texture = def->texture;
+    int32_t node;
+    vlResult r = vl_world_spectrum_node(world, scene, input, VL_ROLE_ILLUMINANT, &node, error);
+    if (r != VL_OK)
+      return r;
+    e->node = node + 1;
+    e->image = world->nodes.items[node].image;
+    vl_light_image_color(world, world->nodes.items[node].space, def->scale, e);
+    return VL_OK;
+  }
+  if (!def->image)
+    return vl_light_color(world, &def->radiance, def->scale, e, error);
+  e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
+  if (e->image < 0)
+    return error && error->code ? error->code : VL_ERROR_SCENE;
+  vl_light_image_color(world, vl_light_image_space(world, e->image, VL_SPACE_SRGB), def->scale,
+                       e);
+  const vlMipmap *mip = world->images.items[e->image].mipmap;
+  for (uint32_t y = 0; y < mip->levels[0].height; y++)
+    for (uint32_t x = 0; x < mip->levels[0].width; x++)
+      if (!isfinite(vl_light_texel_luminance(
+              vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
+        return vl_fail(error, VL_ERROR_SCENE,
+                       "%s: pixel (%u, %u) is not finite, it cannot be emitted", def->image, x,
+                       y);
+  return VL_OK;
+}
+
+/* Approximate mean luminance of an emission's texture over a triangle. Faces where the image is
+ * black need no light. */
+static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_t prim,
+                            const vlEmitted *e) {
+  static const float inside[4][3] = {{1 / 3.0f, 1 / 3.0f, 1 / 3.0f},
+                                     {0.7f, 0.15f, 0.15f},
+                                     {0.15f, 0.7f, 0.15f},
+                                     {0.15f, 0.15f, 0.7f}};
+  const vlTextureNode *node = &world->nodes.items[e->node - 1];
+  const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  float unit[6] = {0, 0, 1, 0, 1, 1}, t[6];
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 2; j++)
+      t[2 * k + j] = uvs ? uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+  float area = fabsf((t[2] - t[0]) * (t[5] - t[1]) - (t[4] - t[0]) * (t[3] - t[1])), sum = 0;
+  vlTexturePoint at = {0, 0, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  float side = sqrtf(0.5f * area), axes[4] = {side, 0, 0, side};
+  vl_texture_axes_of_uv(node, axes, &at);
+  for (int i = 0; i < 4; i++) {
+    at.u = inside[i][0] * t[0] + inside[i][1] * t[2] + inside[i][2] * t[4];
+    at.v = inside[i][0] * t[1] + inside[i][1] * t[3] + inside[i][2] * t[5];
+    vlTexel x = vl_texture_rgba(node, world->images.items[e->image].mipmap, at);
+    sum += 0.25f * vl_light_texel_luminance(x, 4);
+  }
+  return e->image_scale * (isfinite(sum) ? sum : 0);
+}
+
+/* Sets the corners and the emitting side of a light. The renderer flips the geometric normal to
+ * the side of the interpolated shading normal: if the three vertex normals agree on the side,
+ * so do all points of the triangle. */
+static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *light) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  vlVec3 p[3];
+  for (int k = 0; k < 3; k++) {
+    const float *x = s->positions + 3 * (size_t)f[k];
+    p[k] = vl_vec3(x[0], x[1], x[2]);
+    for (int i = 0; i < 3; i++)
+      light->corners[3 * k + i] = x[i];
+  }
+  vlVec3 g = vl_normalize(vl_cross(vl_sub(p[1], p[0]), vl_sub(p[2], p[0])));
+  int against = 0;
+  for (int k = 0; s->normals && k < 3; k++) {
+    const float *x = s->normals + 3 * (size_t)f[k];
+    against += vl_dot(g, vl_vec3(x[0], x[1], x[2])) < 0;
+  }
+  bool flip = s->normals ? against >= 2 : s->flip;
+  light->one_sided_normals = against == 0 || against == 3;
+  if (flip)
+    g = vl_neg(g);
+  light->direction[0] = g.x;
+  light->direction[1] = g.y;
+  light->direction[2] = g.z;
+}
+
+/* Sets the numbers from which points are sampled, and the bound of the error of such a point: a
+ * float's rounding of the centre, of the point and of the normal (some twenty roundings,
+ * area.h), and the deviation of a map that is only nearly a similarity. */
+static void sphere_light(const vlWorldShape *s, vlVec3 center, float radius,
+                         vlWorldLight *light) {
+  const float round = 0x1p-24f;
+  double scale = (double)radius / (double)s->radius;
+  float error = radius * (32 * round + 2 * (float)vl_similarity_error(s->from_shape, scale)) +
+                4 * round * vl_length(center);
+  const float q[6] = {center.x, center.y, center.z, radius, s->flip ? -1.0f : 1.0f, error};
+  memcpy(light->corners, q, sizeof q);
+}
+
+/* Compiles the emission of a shape into world->emitted, unless an earlier shape has compiled
+ * the same emission (*index is then set). */
+static vlResult add_shape_emission(vlWorld *world, const vlScene *scene,
+                                   const vlEmissionDef *def, uint32_t *index, vlError *error) {
+  if (*index != VL_NONE)
+    return VL_OK;
+  vlEmitted *e = VL_PUSH(world->context, &world->emitted);
+  if (!e)
+    return vl_fail_memory(error);
+  e->image = -1;
+  vlResult r = add_emission(world, scene, def, e, error);
+  if (r != VL_OK)
+    return vl_world_locate_error(def->source, error, r);
+  *index = (uint32_t)world->emitted.count - 1;
+  return VL_OK;
+}
+
+/* Counts the emitting faces. Sets light_of if some faces are black: only the others are
+ * numbered as lights. */
+static vlResult choose_faces(vlWorld *world, vlWorldShape *shape, const vlEmitted *e,
+                             uint32_t *faces, vlError *error) {
+  vlEmissiveFaces emissive;
+  if (!vl_emissive_faces_make(world, e, &emissive))
+    return vl_fail_memory(error);
+  uint32_t count = 0, first = (uint32_t)world->lights.count;
+  for (uint32_t i = 0; i < shape->faces; i++)
+    count += vl_face_emits(&emissive, shape, i);
+  vlResult r = VL_OK;
+  if (count > 0 && count < shape->faces) {
+    shape->light_of = vl_world_block(world, shape->faces, sizeof *shape->light_of);
+    if (!shape->light_of)
+      r = vl_fail_memory(error);
+    for (uint32_t i = 0, k = first; r == VL_OK && i < shape->faces; i++)
+      shape->light_of[i] = vl_face_emits(&emissive, shape, i) ? k++ : VL_NONE;
+  }
+  vl_emissive_faces_free(world, &emissive);
+  *faces = count;
+  return r;
+}
+
+vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape_index,
+                                   uint32_t *compiled, vlError *error) {
+  const vlShapeDef *def = &scene->shapes.items[shape_index];
+  vlWorldShape *shape = &world->shapes.items[shape_index];
+  const vlEmissionDef *emission = &scene->emissions.items[def->emission.index - 1];
+  if (def->group.index || shape->steps > 1) {
+    vlError where;
+    vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               " ");
+    vl_log(world->context, VL_LOG_WARNING, &where,
+           def->group.index
+               ? "an emissive shape inside an object that is instanced or moves does not emit"
+               : "an emissive shape that moves does not emit");
+    return VL_OK;
+  }
+  bool meshed = shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_BILINEAR;
+  uint32_t faces = meshed ? shape->faces : 1;
+  bool has_power = emission->power == emission->power && emission->power > 0;
+  uint32_t own_emission = VL_NONE,
+           *shared = has_power ? &own_emission : &compiled[def->emission.index - 1];
+  vlResult r = add_shape_emission(world, scene, emission, shared, error);
+  if (r != VL_OK)
+    return r;
+  const vlEmitted *first = &world->emitted.items[*shared];
+  uint32_t set = first->node ? world->nodes.items[first->node - 1].uv_set : 0;
+  if (set)
+    shape->emission_uvs = shape->more_uvs[set - 1];
+  if (meshed && (r = choose_faces(world, shape, first, &faces, error)) != VL_OK)
+    return r;
+  if (!VL_RESERVE(world->context, &world->lights, faces))
+    return vl_fail_memory(error);
+  shape->first_light = faces ? (uint32_t)world->lights.count : VL_NONE;
+  float own = 0; /* luminance of the spectrum of the emission */
+  for (uint32_t i = 0, k = 0; k < faces; i++) {
+    if (vl_shape_light(shape, i) == VL_NONE)
+      continue;
+    float area = vl_world_prim_area(shape, i);
+    if (has_power) { /* the given power is per primitive, as in pbrt */
+      if (k > 0)
+        *shared = VL_NONE;
+      if ((r = add_shape_emission(world, scene, emission, shared, error)) != VL_OK)
+        return r;
+      vlEmitted *e = &world->emitted.items[*shared];
+      float sent = (e->two_sided ? 2 : 1) * area * VL_PI;
+      if (e->image >= 0)
+        sent *= mean_image_luminance(world->images.items[e->image].mipmap);
+      e->spectrum.scale *= sent > 0 ? (float)emission->power / sent : 0;
+    }
+    const vlEmitted *e = &world->emitted.items[*shared];
+    if (k++ == 0 || has_power)
+      own = vl_light_luminance(&e->spectrum);
+    vlWorldLight *light = &world->lights.items[world->lights.count++];
+    memset(light, 0, sizeof *light);
+    light->kind = VL_LIGHT_AREA;
+    light->emitted = *shared;
+    light->shape = shape_index;
+    light->prim = i;
+    light->area = area;
+    light->invisible = shape->alpha >= 0 &&
+                       world->nodes.items[shape->alpha].kind == VL_NODE_FLOAT &&
+                       world->nodes.items[shape->alpha].value == 0;
+    vlVec3 center;
+    float radius;
+    bool sphere = vl_whole_sphere(shape, &center, &radius),
+         plain = shape->alpha < 0 && e->image < 0;
+    light->outer_side = light->invisible && sphere;
+    light->environment = VL_NONE;
+    float l =
+        e->image >= 0
+            ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own
+            : own;
+    if (e->node && shape->kind == VL_SHAPE_TRIANGLES)
+      l = face_luminance(world, shape, i, e) * own;
+    light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
+    if (shape->kind == VL_SHAPE_TRIANGLES) {
+      triangle_light(shape, i, light);
+      light->plain_triangle = plain && light->one_sided_normals;
+    }
+    light->plain_sphere = plain && sphere;
+    if (sphere)
+      sphere_light(shape, center, radius, light);
+    if (shape->kind == VL_SHAPE_DISK) {
+      vlSurfacePoint point;
+      double pdf;
+      vl_shape_sample(shape, 0, 0.5f, 0.5f, &point, &pdf);
+      for (int j = 0; j < 3; j++)
+        light->direction[j] = (float)point.n[j];
+    }
+  }
+  return VL_OK;
+}

@@ -1,0 +1,25 @@
+/* light/spot.case.c: what tests know of spot lights. */
+#include "light/light.case.h"
+
+/* Between the cosines of 40 and of 20 degrees t runs from 0 to 1; the falloff is 3 t^2 - 2 t^3,
+ * here of t = .5 and of .1955 (36.87 degrees), over the squared distance. */
+const LightCase spot_light = {
+    .variants =
+        {
+            {.parameters =
+                 "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
+                 "coneangle\" 40 \"float "
+                 "conedeltaangle\" 20",
+             .known = {{0, 0, {1, 1, 1}},
+                       {.612460, 0, {.363607, .363607, .363607}},
+                       {.75, 0, {.063842, .063842, .063842}},
+                       {1, 0, {0, 0, 0}}},
+             .known_count = 4},
+            {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [1 0 0] \"rgb I\" [1 2 4]",
+             .known = {{1, 0, {.5, 1, 2}}},
+             .known_count = 1},
+        },
+    .parameters = {{.base = "\"point3 from\" [1 3 2];\"point3 to\" [0 0 0]"},
+                   {.parameter = "coneangle", .value = "\"float coneangle\" 12"},
+                   {.parameter = "conedeltaangle", .value = "\"float conedeltaangle\" 25"}},
+};

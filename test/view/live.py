@@ -1,5 +1,5 @@
 """A client of `velo view` for tests, with Python's own library alone: starts the program, speaks HTTP and WebSocket."""
-import base64, json, os, select, signal, socket, struct, subprocess, time
+import base64, json, os, select, signal, socket, struct, subprocess, threading, time
 from urllib.parse import urlsplit
 
 
@@ -86,6 +86,7 @@ class Page:
         if protocol:
             lines.append(f"Sec-WebSocket-Protocol: {protocol}")
         self.buffer, self.texts, self.frames, self.pixels = b"", [], 0, None
+        self.sending = threading.Lock()  # edits may come from a thread of their own
         try:
             self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
             while b"\r\n\r\n" not in self.buffer:
@@ -108,7 +109,8 @@ class Page:
         mask = os.urandom(4) if masked else b""
         if masked:
             data = bytes(b ^ mask[i % 4] for i, b in enumerate(data))
-        self.socket.sendall(head + mask + data)
+        with self.sending:
+            self.socket.sendall(head + mask + data)
 
     def send(self, **message):
         self.send_raw(1, json.dumps(message).encode())

@@ -220,7 +220,7 @@ def test_flow(page):
     eye = mark["eye"]
     edit(page, eye=[eye[0] + 30, eye[1], eye[2] - 10])
     state_after(page, type="settings", channel="forward")
-    frame = page.wait_frame(lambda f: f.channel == 16)
+    frame = page.wait_frame(lambda f: f.channel == 16 and f.scale == 1)
     x, y = 81, 60
     p = answer(page, "picked", type="pick", x=x, y=y)["P"] + [1]
     w = mark["camera_from_world"]
@@ -234,7 +234,7 @@ def test_flow(page):
     check("error_channel", first.format == 1 and first.channels == 3 and first.spp >= 2 and 0 < sum(values) < math.inf, vars(first))
     state_after(page, type="settings", channel="Z")
     edit(page, eye=eye)
-    page.wait_frame(lambda f: f.channel == 1)
+    page.wait_frame(lambda f: f.channel == 1 and f.scale == 1)
     time.sleep(0.3)
     page.send(type="pick", id=7777, x=1, y=1)
     count = 0
@@ -292,7 +292,7 @@ def test_tasks(page):
     test_flow(page)
     for channel in ("Z", "distance", "N", "Ng", "P", "uv", "albedo", "id.object", "id.material", "id.instance"):
         state_after(page, type="settings", channel=channel)
-        frame = page.wait_frame(lambda f: f.channel > 0)
+        frame = page.wait_frame(lambda f: f.channel > 0 and f.scale == 1)
         check("channel_" + channel, frame.format == 1 and frame.columns == frame.width, vars(frame))
     state_after(page, type="settings", channel="image")
     crop = [16, 8, 80, 40]

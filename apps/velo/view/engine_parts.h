@@ -62,6 +62,8 @@ struct Engine {
                           last status */
   uint32_t clients;
   Wanted wanted;
+  bool first_runs; /* the first image after a change is being made: changes let it end. The
+                      render thread alone sets it */
   ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
   char *last_status; /* the last state of the render, for pages that come; null: none */
@@ -84,7 +86,7 @@ struct Engine {
   Wanted now; /* what is being rendered */
   vlFilm *film;
   ViewTracer best;    /* of new films */
-  uint32_t coarse;    /* scale of the next coarse image; 1: none is next */
+  uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
   bool racing;        /* it goes on */
@@ -97,6 +99,7 @@ struct Engine {
   uint32_t serial;           /* of the last frame */
   double pixel_seconds;   /* time of one sample of one pixel of the whole image; 0: not known */
   double coarse_seconds;  /* the same of coarse images */
+  double channel_seconds; /* the same of ground truth */
   double publish_seconds; /* time to make a frame */
   double frame_seconds;   /* processor time of this thread for all frames */
   double begun, published, reported,
@@ -132,7 +135,8 @@ double engine_program_seconds(void);
 /* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after
  * reporting an error. */
 int engine_take_model(Engine *engine);
-/* Stops what the render thread does; the caller holds the lock. */
+/* Stops what the render thread does, unless that is the first image after a change; the caller
+ * holds the lock. */
 void engine_interrupt(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */
 bool engine_interrupted(Engine *engine);
@@ -140,6 +144,18 @@ bool engine_interrupted(Engine *engine);
  * pixel of the frame. */
 void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels,
                     uint32_t scale);
+/* Sends the film, or a coarse one. */
+void engine_publish_film(Engine *engine, const vlFilm *film, uint32_t scale);
+/* The number of pixels of the present image. */
+double engine_pixels(const Engine *engine);
+/* Notes the time of one sample in a mean of the last ones. */
+void engine_note_speed(double *sample_seconds, uint64_t samples, double seconds);
+/* What the first image after a change is: sets `coarse`. */
+void engine_coarse_begin(Engine *engine);
+/* Renders and sends the next coarse image or image of ground truth. False: interrupted. */
+bool engine_coarse_next(Engine *engine);
+/* Sends the standard error of the film, if it has one. False: interrupted. */
+bool engine_render_error(Engine *engine);
 /* Posts the state to a page, or to all (0); the caller holds the lock. */
 void engine_post_state(Engine *engine, uint32_t client);
 /* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of

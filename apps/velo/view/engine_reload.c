@@ -128,7 +128,7 @@ bool engine_swap_model(Engine *e) {
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
-  e->pixel_seconds = e->coarse_seconds = 0;
+  e->pixel_seconds = e->coarse_seconds = e->channel_seconds = 0;
   model_free(&old);
   free(next);
   return true;

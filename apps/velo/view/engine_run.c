@@ -1,6 +1,5 @@
-/* view/engine_run.c: what is rendered when; see engine.h. The first image after a change is as
- * fine as fits into first_seconds; then come finer ones, then the film of the whole image,
- * whose samples add up. */
+/* view/engine_run.c: what is rendered when; see engine.h. After a change come coarse images
+ * (engine_coarse.c), then the film of the whole image, whose samples add up. */
 #include "view/engine.h"
 
 #include <math.h>
@@ -14,11 +13,6 @@
 #include "view/engine_status.h"
 #include "view/view.h"
 
-/* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before
- * speed is known, at least. */
-enum { COARSEST = 32, FIRST_PIXELS = 8192, FEWEST_PIXELS = 2048 };
-/* Of the first image after a change: others can follow it 25 times a second. */
-static const double first_seconds = 0.03;
 static const double pass_seconds = 0.2; /* of a pass at the beginning; */
 static const double longest_pass = 1.0; /* later ones are longer */
 static const double step_seconds = 0.1; /* of a pass where nothing can interrupt it */
@@ -49,6 +43,8 @@ static bool must_stop(const Engine *e) {
 }
 
 void engine_interrupt(Engine *engine) {
+  if (engine->first_runs && engine->clients && !engine->quit)
+    return;
   if (engine->interrupted <= 0)
     engine->interrupted = engine_clock();
   vl_cancel_request(engine->stop);
@@ -59,146 +55,6 @@ bool engine_interrupted(Engine *engine) {
   bool stop = must_stop(engine) || engine->wanted.paused || !engine->clients;
   pthread_mutex_unlock(&engine->lock);
   return stop;
-}
-
-/* ---- frames ------------------------------------------------------------------------------ */
-
-void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels,
-                    uint32_t scale) {
-  double start = engine_clock();
-  const float *matrix =
-      format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
-  ViewFrame *frame = frame_make(image, format, channels, matrix);
-  if (!frame)
-    return;
-  frame->serial = ++e->serial;
-  frame->change = e->now.change;
-  frame->width = e->now.camera.made.width;
-  frame->height = e->now.camera.made.height;
-  frame->x0 = e->now.crop[0] / scale * scale;
-  frame->y0 = e->now.crop[1] / scale * scale;
-  frame->scale = scale;
-  frame->channel = e->now.channel;
-  frame->spp = scale == 1 && e->film ? vl_film_spp(e->film) : 0;
-  server_show(e->server, frame);
-  frame_drop(frame);
-  e->published = engine_clock();
-  e->publish_seconds = e->published - start;
-}
-
-static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
-  double start = engine_clock(), used = engine_thread_seconds();
-  vlImage *image = NULL;
-  if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK) {
-    engine_publish(e, image, FRAME_HALF, 3, scale);
-    e->publish_seconds = engine_clock() - start;
-  }
-  vl_image_destroy(image);
-  e->frame_seconds += engine_thread_seconds() - used;
-}
-
-/* ---- coarse images ----------------------------------------------------------------------- */
-
-/* Notes the time of one sample in a mean of the last ones. */
-static void note_speed(double *sample_seconds, const vlRenderStats *stats, double seconds) {
-  double one = seconds / (double)(stats->camera_rays ? stats->camera_rays : 1);
-  if (stats->camera_rays > 1000)
-    *sample_seconds = *sample_seconds > 0 ? 0.5 * (*sample_seconds + one) : one;
-}
-
-/* False: interrupted. */
-static bool render_coarse(Engine *e, uint32_t scale) {
-  vlCamera camera;
-  vlFilmDef whole = e->model.job.defs->film;
-  vlRenderDef render = e->model.job.defs->render;
-  vlFilm *film = NULL;
-  vlError error = {0};
-  vlRenderStats stats = {0};
-  memcpy(whole.crop, e->now.crop, sizeof whole.crop);
-  const vlFilmDef def = vl_coarse_film_def(&whole, scale);
-  render.spp = 1;
-  render.first_sample = 0;
-  render.time_limit = 0;
-  render.noise = 0;
-  render.cancel = e->stop;
-  render.priority = 1;
-  vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
-  if (result == VL_OK)
-    result = vl_film_create(e->def.context, &def, &film);
-  double start = engine_clock();
-  if (result == VL_OK)
-    result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
-  if (result == VL_OK) {
-    note_speed(&e->coarse_seconds, &stats, engine_clock() - start);
-    publish_film(e, film, scale);
-  }
-  vl_film_destroy(film);
-  return result == VL_OK;
-}
-
-/* The scale of the first image after a change; 1: a pass of the whole image is next. */
-static uint32_t first_scale(const Engine *e) {
-  double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
-  double most = e->coarse_seconds > 0 ? first_seconds / e->coarse_seconds : FIRST_PIXELS;
-  if (most < FEWEST_PIXELS)
-    most = FEWEST_PIXELS; /* fewer would hardly be quicker */
-  uint32_t scale = 1;
-  while (scale < COARSEST && pixels > most * scale * scale)
-    scale++;
-  return scale;
-}
-
-/* ---- ground truth ------------------------------------------------------------------------ */
-
-/* Flow and whether the other camera sees the point, in one image. Null: no memory. */
-static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage *hidden) {
-  const uint32_t width = vl_image_width(flow), height = vl_image_height(flow);
-  vlImageDef def = vl_default_image_def(width, height, 3);
-  vlImage *image = NULL;
-  def.type = VL_PIXEL_F32;
-  if (vl_image_create(context, &def, &image) != VL_OK)
-    return NULL;
-  float *to = vl_image_pixels(image);
-  const float *from = vl_image_const_pixels(flow);
-  const uint32_t *ids = vl_image_const_pixels(hidden);
-  for (size_t i = 0; i < (size_t)width * height; i++) {
-    to[3 * i] = from[2 * i];
-    to[3 * i + 1] = from[2 * i + 1];
-    to[3 * i + 2] = (float)ids[i];
-  }
-  return image;
-}
-
-/* False: interrupted. */
-static bool render_channel(Engine *e) {
-  vlChannelsDef def =
-      vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
-  vlImage *floats = NULL, *ids = NULL;
-  vlError error = {0};
-  def.forward = e->now.channel == CHANNEL_FLOW ? &e->now.mark : NULL;
-  def.channels = 1u << (e->now.channel - 1);
-  def.space = e->model.job.defs->film.space;
-  memcpy(def.crop, e->now.crop, sizeof def.crop);
-  def.render = &e->model.job.defs->render;
-  def.film = e->film;
-  def.exposure = e->model.job.defs->develop.exposure;
-  def.cancel = e->stop;
-  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2))
-    return true;
-  vlResult result =
-      vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
-  vlImage *flow =
-      def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids) : NULL;
-  const vlImage *image = flow ? flow : floats ? floats : ids;
-  if (result == VL_OK && image)
-    engine_publish(e, image, FRAME_FLOAT,
-                   vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, 1);
-  if (result != VL_OK && result != VL_CANCELLED)
-    status_error(e, &error, result);
-  vl_image_destroy(floats);
-  vl_image_destroy(ids);
-  vl_image_destroy(flow);
-  return result != VL_CANCELLED;
 }
 
 /* ---- the whole image --------------------------------------------------------------------- */
@@ -223,8 +79,8 @@ static void begin_film(Engine *e) {
 
 /* The number of samples of the next pass of a film that shall have `most`. */
 static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most) {
-  double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
-  double seconds = e->def.stepwise ? step_seconds
+  double pixels = engine_pixels(e),
+         seconds = e->def.stepwise ? step_seconds
                                    : fmin(longest_pass, pass_seconds + 0.25 * e->rendered),
          n = seconds / (e->pixel_seconds * pixels + 1e-9);
   uint32_t done = vl_film_spp(film), left = most - done;
@@ -242,9 +98,9 @@ static void publish_if_due(Engine *e) {
   if (!last && vl_film_spp(e->film) > 1 && now - e->published < e->publish_seconds / share)
     return;
   if (e->now.channel == CHANNEL_ERROR)
-    render_channel(e);
+    engine_render_error(e);
   else
-    publish_film(e, e->film, 1);
+    engine_publish_film(e, e->film, 1);
 }
 
 static void tell_if_due(Engine *e, bool always) {
@@ -295,7 +151,7 @@ static bool render_pass(Engine *e) {
   }
   e->rendered += seconds;
   e->paths += stats.paths;
-  note_speed(&e->pixel_seconds, &stats, seconds);
+  engine_note_speed(&e->pixel_seconds, stats.camera_rays, seconds);
   return true;
 }
 
@@ -303,7 +159,7 @@ static bool render_pass(Engine *e) {
 static bool render_film(Engine *e) {
   if (!e->film)
     begin_film(e);
-  if (!e->film || !is_unfinished(e, e->now.spp) || engine_interrupted(e))
+  if (!e->film || !is_unfinished(e, e->now.spp) || (!e->first_runs && engine_interrupted(e)))
     return false;
   if (!e->successor && engine_race_due(e, e->now.spp))
     return engine_race(e);
@@ -328,6 +184,7 @@ static bool take_wanted(Engine *e) {
   if (!e->quit && !e->next)
     vl_cancel_clear(e->stop);
   e->interrupted = 0;
+  e->first_runs = anew || channel;
   pthread_mutex_unlock(&e->lock);
   if (!anew)
     return channel;
@@ -383,33 +240,39 @@ static void answer_tasks(Engine *e) {
   }
 }
 
+/* After the first image: from now on, changes stop what is rendered. Returns whether there was
+ * one meanwhile. */
+static bool end_first(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  e->first_runs = false;
+  bool changed = must_stop(e);
+  pthread_mutex_unlock(&e->lock);
+  return changed;
+}
+
 /* Takes up what is asked for. */
 static void begin_work(Engine *e) {
   engine_swap_model(e);
   answer_tasks(e);
   if (!take_wanted(e))
     return;
-  e->coarse = 1;
-  if (e->now.channel) {
-    if (!render_channel(e))
-      e->now.channel = UINT32_MAX; /* it is rendered anew */
-  } else if (e->film) {
-    publish_film(e, e->film, 1);
-  } else {
-    e->coarse = first_scale(e);
-  }
+  e->coarse = 0;
+  if (e->now.channel == CHANNEL_ERROR)
+    engine_render_error(e);
+  else if (e->now.channel || !e->film)
+    engine_coarse_begin(e);
+  else
+    engine_publish_film(e, e->film, 1);
+  if (!e->coarse && (e->film || e->now.channel))
+    end_first(e);
 }
 
 /* The next coarse image, or the next samples. False: interrupted, or nothing is left to do. */
 static bool work(Engine *e) {
-  if (e->coarse > 1) {
-    uint32_t scale = e->coarse;
-    bool done = render_coarse(e, scale);
-    e->coarse = done ? scale / 2 : 1;
-    return done;
-  }
-  return (e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed &&
-         render_film(e);
+  bool samples = e->now.channel == 0 || e->now.channel == CHANNEL_ERROR,
+       done = e->coarse ? engine_coarse_next(e) : samples && !e->failed && render_film(e);
+  bool changed = e->first_runs && end_first(e);
+  return done && !changed;
 }
 
 void *engine_render(void *user) {

@@ -1,0 +1,169 @@
+/* view/engine_coarse.c: coarse images. The first image after a change is as fine as fits into
+ * first_seconds, by the time that the last ones took. It is always finished: further changes
+ * are gathered meanwhile, and the newest one is shown next. So there are new images however
+ * fast changes follow each other; if each change stopped the image before it, changes that come
+ * faster than images would leave none. */
+#include <math.h>
+#include <string.h>
+
+#include "velo/channels.h"
+#include "view/engine_status.h"
+
+/* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before
+ * speed is known; as many as it should have (160 x 90); fewer would hardly be quicker. */
+enum { COARSEST = 32, FIRST_PIXELS = 8192, GOOD_PIXELS = 14400, FEWEST_PIXELS = 2048 };
+/* Of the first image after a change: others can follow it 25 times a second. */
+static const double first_seconds = 0.03;
+/* Of one with GOOD_PIXELS where they take longer. */
+static const double longest_first = 0.085;
+
+void engine_note_speed(double *sample_seconds, uint64_t samples, double seconds) {
+  double one = seconds / (double)(samples ? samples : 1);
+  if (samples > 1000)
+    *sample_seconds = *sample_seconds > 0 ? 0.5 * (*sample_seconds + one) : one;
+}
+
+double engine_pixels(const Engine *e) {
+  const uint32_t *c = e->now.crop;
+  return (double)(c[2] - c[0]) * (c[3] - c[1]);
+}
+
+/* The scale of the first image after a change, from the seconds that one pixel takes; 0: not
+ * known. */
+static uint32_t first_scale(const Engine *e, double pixel_seconds) {
+  double pixels = engine_pixels(e),
+         most = pixel_seconds > 0 ? first_seconds / pixel_seconds : FIRST_PIXELS;
+  double good = fmin(COARSEST, fmax(1, floor(sqrt(pixels / GOOD_PIXELS))));
+  if (pixel_seconds > 0 && pixels / (good * good) * pixel_seconds <= longest_first)
+    most = fmax(most, pixels / (good * good));
+  most = fmax(most, FEWEST_PIXELS);
+  uint32_t scale = 1;
+  while (scale < COARSEST && pixels > most * scale * scale)
+    scale++;
+  return scale;
+}
+
+/* ---- colours ----------------------------------------------------------------------------- */
+
+/* False: interrupted. */
+static bool render_colours(Engine *e, uint32_t scale) {
+  vlCamera camera;
+  vlFilmDef whole = e->model.job.defs->film;
+  vlRenderDef render = e->model.job.defs->render;
+  vlFilm *film = NULL;
+  vlError error = {0};
+  vlRenderStats stats = {0};
+  memcpy(whole.crop, e->now.crop, sizeof whole.crop);
+  const vlFilmDef def = vl_coarse_film_def(&whole, scale);
+  render.spp = 1;
+  render.first_sample = 0;
+  render.time_limit = 0;
+  render.noise = 0;
+  render.cancel = e->stop;
+  render.priority = 1;
+  vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
+  if (result == VL_OK)
+    result = vl_film_create(e->def.context, &def, &film);
+  double start = engine_clock();
+  if (result == VL_OK)
+    result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
+  if (result == VL_OK) {
+    engine_note_speed(&e->coarse_seconds, stats.camera_rays, engine_clock() - start);
+    engine_publish_film(e, film, scale);
+  }
+  vl_film_destroy(film);
+  return result == VL_OK;
+}
+
+/* ---- ground truth ------------------------------------------------------------------------ */
+
+/* Flow and whether the other camera sees the point, in one image. scale: pixels of the image
+ * per pixel. Null: no memory. */
+static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage *hidden,
+                          uint32_t scale) {
+  const uint32_t width = vl_image_width(flow), height = vl_image_height(flow);
+  vlImageDef def = vl_default_image_def(width, height, 3);
+  vlImage *image = NULL;
+  def.type = VL_PIXEL_F32;
+  if (vl_image_create(context, &def, &image) != VL_OK)
+    return NULL;
+  float *to = vl_image_pixels(image);
+  const float *from = vl_image_const_pixels(flow);
+  const uint32_t *ids = vl_image_const_pixels(hidden);
+  for (size_t i = 0; i < (size_t)width * height; i++) {
+    to[3 * i] = (float)scale * from[2 * i];
+    to[3 * i + 1] = (float)scale * from[2 * i + 1];
+    to[3 * i + 2] = (float)ids[i];
+  }
+  return image;
+}
+
+/* False: interrupted. The standard error is that of the film. */
+static bool render_channel(Engine *e, uint32_t scale) {
+  vlFilmDef whole = e->model.job.defs->film;
+  vlCamera camera = e->now.camera.made, mark = e->now.mark;
+  memcpy(whole.crop, e->now.crop, sizeof whole.crop);
+  const vlFilmDef film = vl_coarse_film_def(&whole, scale);
+  vlResult result = scale > 1 ? vl_camera_coarse(&e->now.camera.made, scale, &camera) : VL_OK;
+  if (result == VL_OK && scale > 1)
+    result = vl_camera_coarse(&e->now.mark, scale, &mark);
+  vlChannelsDef def = vl_default_channels_def(camera.width, camera.height);
+  vlImage *floats = NULL, *ids = NULL;
+  vlError error = {0};
+  def.forward = e->now.channel == CHANNEL_FLOW ? &mark : NULL;
+  def.channels = 1u << (e->now.channel - 1);
+  def.space = whole.space;
+  memcpy(def.crop, film.crop, sizeof def.crop);
+  def.render = &e->model.job.defs->render;
+  def.film = e->film;
+  def.exposure = e->model.job.defs->develop.exposure;
+  def.cancel = e->stop;
+  double start = engine_clock();
+  if (result == VL_OK)
+    result = vl_render_channels(e->model.world, &camera, &def, &floats, &ids, &error);
+  vlImage *flow =
+      def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids, scale) : NULL;
+  const vlImage *image = flow ? flow : floats ? floats : ids;
+  if (result == VL_OK && image) {
+    if (e->now.channel != CHANNEL_ERROR)
+      engine_note_speed(&e->channel_seconds,
+                        (uint64_t)vl_image_width(image) * vl_image_height(image),
+                        engine_clock() - start);
+    engine_publish(e, image, FRAME_FLOAT,
+                   vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, scale);
+  }
+  if (result != VL_OK && result != VL_CANCELLED)
+    status_error(e, &error, result);
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+  vl_image_destroy(flow);
+  return result != VL_CANCELLED;
+}
+
+bool engine_render_error(Engine *e) {
+  return !e->film || vl_film_spp(e->film) < 2 || render_channel(e, 1);
+}
+
+/* ---- which one is next ------------------------------------------------------------------- */
+
+void engine_coarse_begin(Engine *e) {
+  bool colours = e->now.channel == 0 || e->now.channel == CHANNEL_ERROR;
+  e->coarse = first_scale(e, colours ? e->coarse_seconds : e->channel_seconds);
+  if (colours && (e->coarse == 1 || e->now.channel))
+    e->coarse = 0; /* the film is next */
+}
+
+bool engine_coarse_next(Engine *e) {
+  const uint32_t scale = e->coarse;
+  if (e->now.channel) {
+    e->coarse = scale / 2;
+    if (render_channel(e, scale))
+      return true;
+    e->now.channel = UINT32_MAX; /* it is rendered anew */
+    e->coarse = 0;
+    return false;
+  }
+  bool done = render_colours(e, scale);
+  e->coarse = done && scale > 3 ? scale / 2 : 0;
+  return done;
+}

@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""velo view while the camera moves and just after: a page that sends changes without waiting for images still gets images
+of them, and the image gets finer step by step once it stands still."""
+import os
+import sys
+import threading
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from live import Frame, Page, View  # noqa: E402
+import results  # noqa: E402
+from results import check  # noqa: E402
+
+ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
+SCENE = os.path.join(ROOT, "scenes/lecture/perspective_two_point.pbrt")
+ENOUGH, PATIENCE = 6, 30  # images that a flood of changes must leave; seconds until the test gives up
+
+
+class Flood:
+    """Changes of the camera in a thread of its own, faster than any image, until it is ended."""
+
+    def __init__(self, page, camera):
+        self.page, self.eye, self.change, self.go = page, camera["eye"], 1000, True
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def run(self):
+        while self.go:
+            self.change += 1
+            x = self.eye[0] + 0.01 * (self.change % 100)
+            self.page.send(type="camera", change=self.change, gesture=3, set={"eye": [x, *self.eye[1:]]})
+            time.sleep(0.001)
+
+    def end(self):
+        self.go = False
+        self.thread.join()
+
+
+def images_of_flood(page, camera, fits):
+    """The changes that images show while changes flood; at most ENOUGH."""
+    shown, flood, end = [], Flood(page, camera), time.monotonic() + PATIENCE
+    while len(shown) < ENOUGH and time.monotonic() < end:
+        try:
+            message = page.receive(1)
+        except TimeoutError:
+            continue
+        if isinstance(message, Frame) and fits(message) and 1000 < message.change and message.change not in shown:
+            shown.append(message.change)
+    flood.end()
+    return shown, flood.change
+
+
+def check_flood(page, camera, name, fits):
+    shown, last = images_of_flood(page, camera, fits)
+    check(name, len(shown) == ENOUGH and shown == sorted(shown), shown, last)
+    page.wait_frame(lambda f: f.change == last and f.scale == 1)
+
+
+def test_flood():
+    view = View(VELO, SCENE, "--resolution", "800x600", "--threads", "1", "--spp", "1")
+    try:
+        page = Page(view)
+        camera = page.wait_text("state")["camera"]
+        page.wait_frame(lambda f: f.spp > 0)
+        check_flood(page, camera, "flood_image", lambda f: f.channel == 0)
+        page.send(type="settings", channel="Z")
+        page.wait_frame(lambda f: f.channel > 0 and f.scale == 1)
+        check_flood(page, camera, "flood_depth", lambda f: f.channel > 0)
+        page.close()
+    finally:
+        check("ends", view.end()[0] == 0)
+
+
+def main():
+    test_flood()
+
+
+main()
+results.end()

@@ -88,7 +88,9 @@ typedef enum vlAttributeType {
   VL_ATTRIBUTE_M44D,
   VL_ATTRIBUTE_STRINGS /**< several strings, separated by line feeds: "left\nright" */
 } vlAttributeType;
-/** An attribute of an image. Attributes are stored in EXR files; other formats drop them. */
+/** An attribute of an image. Attributes are stored in EXR files. Of other formats PNG (as its
+ * text "Comment"), JPEG and TGA (255 bytes) store the string "comments"; no reader returns it.
+ */
 typedef struct vlAttribute {
   const char *name;     /**< unique in an image */
   vlAttributeType type; /**< which of the following are used */

@@ -80,6 +80,14 @@ vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage *
   return VL_OK;
 }
 
+const char *vl_codec_comment(const vlImage *image) {
+  vlAttribute comment;
+  if (vl_image_find_attribute(image, "comments", &comment) != VL_OK ||
+      comment.type != VL_ATTRIBUTE_STRING)
+    return NULL;
+  return comment.string;
+}
+
 static void row_8bit_from_16(const vlImage *image, uint32_t y, const uint32_t *channel,
                              uint32_t count, uint8_t *result) {
   const uint16_t *row = vl_image_const_row(image, y);

@@ -71,6 +71,10 @@ vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage *
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel,
                        uint32_t count, float *scratch, uint8_t *result);
 
+/* The text that PNG, JPEG and TGA hold: the attribute "comments", OpenEXR's name. Null: there
+ * is none. */
+const char *vl_codec_comment(const vlImage *image);
+
 vlCodecProbe vl_exr_probe, vl_png_probe, vl_jpeg_probe, vl_hdr_probe, vl_pfm_probe,
     vl_tga_probe, vl_bmp_probe, vl_gif_probe, vl_pnm_probe, vl_qoi_probe, vl_webp_probe;
 vlCodecRead vl_exr_read, vl_png_read, vl_jpeg_read, vl_hdr_read, vl_pfm_read, vl_tga_read,

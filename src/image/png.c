@@ -178,6 +178,21 @@ static void swap_row(const uint16_t *from, const vlImage *image, const uint32_t 
     }
 }
 
+/* A chunk tEXt, or iTXt if the text is more than ASCII. */
+static void set_comment(Png *p, const vlImage *image) {
+  const char *comment = vl_codec_comment(image);
+  if (!comment)
+    return;
+  bool ascii = true;
+  for (const char *c = comment; *c; c++)
+    ascii = ascii && (unsigned char)*c < 0x80;
+  char key[] = "Comment";
+  png_text text = {.compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE,
+                   .key = key,
+                   .text = (char *)(uintptr_t)comment}; /* is not changed */
+  png_set_text(p->png, p->info, &text, 1);
+}
+
 static vlResult encode(Png *p, const vlImage *image, vlError *error) {
   static const int KINDS[5] = {0, PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
                                PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
@@ -200,6 +215,7 @@ static vlResult encode(Png *p, const vlImage *image, vlError *error) {
     png_set_gAMA(p->png, p->info, 1.0 / image->gamma);
   else
     png_set_sRGB(p->png, p->info, PNG_sRGB_INTENT_PERCEPTUAL);
+  set_comment(p, image);
   png_write_info(p->png, p->info);
   p->line = vl_alloc_array(p->context, image->width, count * (deep ? 2u : 1u));
   p->scratch = vl_alloc_array(p->context, image->width, count * sizeof(float));

@@ -7,6 +7,7 @@
 
 enum {
   HEAD = 18,
+  MOST_COMMENT = 255, /* bytes */
   PALETTE = 1,
   COLOR = 2,
   GREY = 3,
@@ -184,12 +185,16 @@ vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   uint8_t *row = vl_alloc_array(image->context, image->width, count);
   float *scratch = vl_alloc_array(image->context, image->width, count * sizeof(float));
   if (row && scratch) {
+    const char *comment = vl_codec_comment(image); /* the format's image ID */
+    size_t length = comment ? strlen(comment) : 0;
+    length = length < MOST_COMMENT ? length : MOST_COMMENT;
     const uint8_t head[HEAD] = {
-        [2] = count == 1 ? GREY : COLOR,       [12] = (uint8_t)image->width,
-        [13] = (uint8_t)(image->width >> 8),   [14] = (uint8_t)image->height,
-        [15] = (uint8_t)(image->height >> 8),  [16] = (uint8_t)(count * 8),
-        [17] = FROM_TOP | (count == 4 ? 8 : 0)};
+        [0] = (uint8_t)length,         [2] = count == 1 ? GREY : COLOR,
+        [12] = (uint8_t)image->width,  [13] = (uint8_t)(image->width >> 8),
+        [14] = (uint8_t)image->height, [15] = (uint8_t)(image->height >> 8),
+        [16] = (uint8_t)(count * 8),   [17] = FROM_TOP | (count == 4 ? 8 : 0)};
     vl_file_write(writer, head, HEAD);
+    vl_file_write(writer, comment, length);
     for (uint32_t y = 0; y < image->height && !writer->failed_errno; y++) {
       vl_codec_row_8bit(image, y, channel, count, scratch, row);
       for (uint32_t x = 0; count >= 3 && x < image->width; x++) {

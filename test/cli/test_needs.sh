@@ -200,7 +200,7 @@ with verbose $P --verbose
 with log-json $P --log-json
 
 # Not run here: they need a film, an image, a display or another camera. None of them needs anything to have an effect.
-printf '%s\n' continue again serve rig f-number iso seconds >>listed
+printf '%s\n' continue again serve plain rig f-number iso seconds >>listed
 "$VELO" help render --all | sed -n 's/^  \(   \|-., \)  *--\([a-z-]*\).*/\2/p; s/^  -., --\([a-z-]*\).*/\1/p' | grep -vx help | sort -u >options
 missing=$(comm -23 options <(sort -u listed) | tr '\n' ' ')
 if [ "$(wc -l <options)" -gt 90 ] && [ -z "$missing" ]; then pass all_options; else fail "all_options (of $(wc -l <options) not listed: $missing)"; fi

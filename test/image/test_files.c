@@ -439,13 +439,62 @@ static void test_other_reader(void **state) {
   end_context(context);
 }
 
+/* Whether the bytes contain the text. */
+static bool contains(const void *data, size_t size, const char *text, size_t length) {
+  for (size_t i = 0; i + length <= size; i++)
+    if (memcmp((const char *)data + i, text, length) == 0)
+      return true;
+  return false;
+}
+
+/* PNG, JPEG and TGA hold the attribute "comments"; TGA its first 255 bytes. */
+static void test_comments(void **state) {
+  (void)state;
+  static const char *const formats[] = {".png", ".jpg", ".tga"};
+  failAllocator failing;
+  vlContext *context = make_context(&failing);
+  char text[401];
+  for (int k = 0; k < 2; k++) {
+    memset(text, 'a', sizeof text - 1);
+    text[sizeof text - 1] = 0;
+    memcpy(text, k ? "gr\xc3\xbc\xc3\x9f" : "greeting", 6); /* PNG has iTXt for UTF-8 */
+    vlImage *image = make_image(context, 5, 4, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
+    for (int i = 0; i < 3; i++) {
+      void *plain, *noted;
+      size_t plain_size, noted_size;
+      vlImage *bare = make_image(context, 5, 4, 3, VL_PIXEL_U8, VL_ENCODING_SRGB), *back;
+      const vlAttribute comment = {
+          .name = "comments", .type = VL_ATTRIBUTE_STRING, .string = text};
+      vlError error;
+      assert_int_equal(vl_image_set_attribute(image, &comment), VL_OK);
+      assert_int_equal(
+          vl_image_write_memory(bare, formats[i], NULL, &plain, &plain_size, &error), VL_OK);
+      assert_int_equal(
+          vl_image_write_memory(image, formats[i], NULL, &noted, &noted_size, &error), VL_OK);
+      assert_false(contains(plain, plain_size, text, 5));
+      assert_true(contains(noted, noted_size, text, i == 2 ? 255 : sizeof text - 1));
+      assert_false(contains(noted, noted_size, text, i == 2 ? 256 : sizeof text));
+      vl_release(context, plain);
+      vl_release(context, noted);
+      char name[16];
+      snprintf(name, sizeof name, "noted%s", formats[i]);
+      back = round_trip(context, image, name, NULL);
+      assert_int_equal(vl_image_width(back), 5);
+      vl_image_destroy(back);
+      vl_image_destroy(bare);
+    }
+    vl_image_destroy(image);
+  }
+  end_context(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_exr),          cmocka_unit_test(test_exr_half),
       cmocka_unit_test(test_attributes),   cmocka_unit_test(test_same_bytes),
       cmocka_unit_test(test_integers),     cmocka_unit_test(test_floats),
       cmocka_unit_test(test_refusals),     cmocka_unit_test(test_out_of_memory),
-      cmocka_unit_test(test_other_reader),
+      cmocka_unit_test(test_other_reader), cmocka_unit_test(test_comments),
   };
   return cmocka_run_group_tests(tests, NULL, remove_folder);
 }

@@ -41,6 +41,15 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
   return status < 0 ? outputs_check_folders(&d->outputs) : status;
 }
 
+void denoised_replace(Denoised *d, const Outputs *image) {
+  d->outputs = *image;
+  d->replaces = true;
+}
+
+bool denoised_is_copy(const Denoised *d) {
+  return d->outputs.count && !d->replaces;
+}
+
 int denoised_check(const Denoised *d, vlContext *context) {
   if (!d->outputs.count || d->def.denoiser == VL_DENOISER_VELO)
     return -1;

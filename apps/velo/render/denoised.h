@@ -1,4 +1,5 @@
-/* render/denoised.h: --denoise: writes a denoised copy of the image to a file of its own. */
+/* render/denoised.h: --denoise: writes a denoised copy of the image to a file of its own; and
+ * the first image of a model, which is denoised itself. */
 #ifndef APP_RENDER_DENOISED_H
 #define APP_RENDER_DENOISED_H
 
@@ -8,8 +9,10 @@
 #include "velo/render.h"
 
 typedef struct Denoised {
-  Outputs outputs; /* count 0: --denoise is not given */
-  float exposure;  /* that of the image, where each of both would be metered */
+  Outputs outputs;   /* count 0: nothing is denoised */
+  bool replaces;     /* `outputs` are those of the image: they hold the denoised one alone */
+  char comment[128]; /* of these files */
+  float exposure;    /* that of the image, where each of both would be metered */
   bool written;
   vlDenoiseDef def;
 } Denoised;
@@ -17,6 +20,10 @@ typedef struct Denoised {
 /* Reads the options. `image`: the outputs of the image itself, whose view and exposure are
  * used. Returns -1, or the exit code after reporting the error. */
 int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *image);
+/* The outputs of the image itself hold the denoised one: the first image of a model. */
+void denoised_replace(Denoised *d, const Outputs *image);
+/* Whether a denoised copy is written to a file of its own. */
+bool denoised_is_copy(const Denoised *d);
 /* Checks before the render that the denoiser works: if it is Open Image Denoise, denoises an
  * image of one pixel. Returns -1, or the exit code after reporting the error. */
 int denoised_check(const Denoised *d, vlContext *context);

@@ -45,8 +45,8 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
   return f;
 }
 
-static void describe_json(const Job *job, const Facts *f, const char *const *outputs,
-                          int output_count) {
+static void describe_json(const Job *job, const Facts *f, bool denoised,
+                          const char *const *outputs, int output_count) {
   const vlCamera *c = &job->camera;
   const vlRenderDef *render = &job->defs->render;
   Json json = report_json_begin("plan");
@@ -55,6 +55,7 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
   json_integer(&json, "height", c->height);
   json_integers(&json, "crop", job->defs->film.crop, 4);
   json_integer(&json, "spp", render->spp);
+  json_bool(&json, "denoised", denoised);
   json_number(&json, "time_limit", render->time_limit);
   json_integer(&json, "seed", render->seed);
   json_integer(&json, "max_depth", render->max_depth);
@@ -87,10 +88,11 @@ static void describe_json(const Job *job, const Facts *f, const char *const *out
 }
 
 void job_describe(const Job *job, vlContext *context, const vlScene *scene,
-                  const vlWorld *world, const char *const *outputs, int output_count) {
+                  const vlWorld *world, bool denoised, const char *const *outputs,
+                  int output_count) {
   Facts f = gather(job, scene, world);
   if (report_is_json()) {
-    describe_json(job, &f, outputs, output_count);
+    describe_json(job, &f, denoised, outputs, output_count);
     return;
   }
   const vlCamera *c = &job->camera;
@@ -119,7 +121,8 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene,
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
   printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? "" : " of own samples",
          f.color);
-  printf("sampling  %u spp, sampler %s, seed %u", render->spp, f.sampler, render->seed);
+  printf("sampling  %u spp%s, sampler %s, seed %u", render->spp, denoised ? ", denoised" : "",
+         f.sampler, render->seed);
   if (render->time_limit > 0)
     printf(", at most %g s", render->time_limit);
   printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth,

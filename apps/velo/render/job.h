@@ -97,6 +97,7 @@ enum {
   RENDER_TILES,
   RENDER_SKIP_EXISTING,
   RENDER_SERVE,
+  RENDER_PLAIN,
   RENDER_LENS /* the first of lens_options.h */
 };
 
@@ -159,8 +160,10 @@ int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const c
 /* Reports why vl_film_create failed. Returns the exit code. */
 int job_no_film(const Job *job, vlResult result);
 
-/* Prints what would be rendered to stdout (or as a JSON line). */
+/* Prints what would be rendered to stdout (or as a JSON line). denoised: the outputs hold the
+ * denoised image alone. */
 void job_describe(const Job *job, vlContext *context, const vlScene *scene,
-                  const vlWorld *world, const char *const *outputs, int output_count);
+                  const vlWorld *world, bool denoised, const char *const *outputs,
+                  int output_count);
 
 #endif

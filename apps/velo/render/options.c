@@ -24,6 +24,10 @@ const Option render_options[] = {
      "--spp samples (docs/adaptive.md)"},
     {RENDER_DENOISE, 0, "denoise", OPTION_TEXT, "FILE",
      "also write a denoised copy of the image to this file (docs/denoising.md)"},
+    {RENDER_PLAIN, 0, "plain", OPTION_FLAG, NULL,
+     "the first image of a model, too, has 64 samples and is not denoised. Default: a .png, "
+     ".jpg or .tga of a model to which velo adds camera or light has 8 samples, denoised, "
+     "unless an option asks for something else than what is seen (docs/denoising.md)"},
     {RENDER_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
      "denoiser of --denoise; velo: the built-in one; oidn: Intel Open Image Denoise, if it is "
      "installed:",

@@ -225,6 +225,11 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
   return output_write_layers(images, count, path, write, error);
 }
 
+static vlResult set_comment(vlImage *image, const char *text) {
+  const vlAttribute comment = {.name = "comments", .type = VL_ATTRIBUTE_STRING, .string = text};
+  return vl_image_set_attribute(image, &comment);
+}
+
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp,
                   OutputStage stage) {
   float exposure = outputs->exposure, *shared = outputs->shared;
@@ -248,6 +253,8 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     bool alpha = outputs->transparent && output_holds_alpha(path);
     if (eight_bit && !displays[alpha]) {
       result = display_image(context, image, outputs->view, exposure, alpha, &displays[alpha]);
+      if (result == VL_OK && outputs->comment)
+        result = set_comment(displays[alpha], outputs->comment);
       if (!known && stage != OUTPUT_PROGRESS)
         exposure_tell(exposure);
     }

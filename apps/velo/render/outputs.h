@@ -24,8 +24,9 @@ typedef struct Outputs {
   bool patterns;  /* the names are patterns (pattern.h): directories with a % are made later */
   vlView view;    /* for 8-bit files */
   float exposure; /* EV, for 8-bit files */
-  bool transparent; /* .png files have alpha */
-  bool meter;       /* meter the exposure from the image; `exposure` is not used */
+  const char *comment; /* a text for 8-bit files that have a place for one; null: none */
+  bool transparent;    /* .png files have alpha */
+  bool meter;          /* meter the exposure from the image; `exposure` is not used */
   float *shared; /* with meter: the exposure of several images; NaN until the first is metered;
                     null: none */
   const vlImage *layers[4]; /* further channels of .exr files; null: none */

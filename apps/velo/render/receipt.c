@@ -13,14 +13,16 @@
 extern const char velo_commit[]; /* written by cmake/commit.cmake */
 
 bool receipt_option_counts(const Arguments *arguments, int option) {
-  static const int others[] = {
-      RENDER_OUTPUT,        RENDER_THREADS,   RENDER_TIME,          RENDER_DRY_RUN,
-      RENDER_QUIET,         RENDER_LOG_JSON,  RENDER_VERBOSE,       RENDER_ISA,
-      RENDER_MAX_MEMORY,    RENDER_SANDBOX,   RENDER_MAX_TEXTURE,   RENDER_AGAIN,
-      RENDER_NO_RECEIPT,    RENDER_FILM,      RENDER_CHECKPOINT,    RENDER_CONTINUE,
-      RENDER_SAMPLES,       RENDER_SHARD,     RENDER_SHARD_BY,      RENDER_TILES,
-      RENDER_SKIP_EXISTING, RENDER_ANIMATE,   RENDER_FPS,           RENDER_TURNTABLE,
-      RENDER_SERVE,         RENDER_OVERWRITE, RENDER_STRICT_OPTIONS};
+  static const int others[] = {RENDER_OUTPUT,     RENDER_THREADS,     RENDER_TIME,
+                               RENDER_DRY_RUN,    RENDER_QUIET,       RENDER_LOG_JSON,
+                               RENDER_VERBOSE,    RENDER_ISA,         RENDER_MAX_MEMORY,
+                               RENDER_SANDBOX,    RENDER_MAX_TEXTURE, RENDER_AGAIN,
+                               RENDER_NO_RECEIPT, RENDER_FILM,        RENDER_CHECKPOINT,
+                               RENDER_CONTINUE,   RENDER_SAMPLES,     RENDER_SHARD,
+                               RENDER_SHARD_BY,   RENDER_TILES,       RENDER_SKIP_EXISTING,
+                               RENDER_ANIMATE,    RENDER_FPS,         RENDER_TURNTABLE,
+                               RENDER_SERVE,      RENDER_OVERWRITE,   RENDER_STRICT_OPTIONS,
+                               RENDER_PLAIN};
   const OptionValue *bits = &arguments->values[RENDER_BITS];
   if (option == RENDER_ACCELERATOR)
     return bits->given && bits->integer == VL_BITS_FAST;

@@ -13,6 +13,7 @@
 #include "cli/signals.h"
 #include "render/animate.h"
 #include "render/exposure.h"
+#include "render/first_image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
 #include "render/noise.h"
@@ -266,7 +267,7 @@ static int check_outputs(const Render *render) {
     output_names_add_image(&names, render->outputs.paths[i], true, render->channels.bits);
   if (render->film_plan.path && !render->many)
     output_names_add(&names, render->film_plan.path, VL_OUTPUT_FILM);
-  if (render->denoised.outputs.count)
+  if (denoised_is_copy(&render->denoised))
     output_names_add_image(&names, render->denoised.outputs.paths[0], true, false);
   return output_names_check(&names, render->context);
 }
@@ -445,6 +446,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status >= 0)
       return status;
   }
+  first_image_plan(render, arguments);
   status = denoised_check(&render->denoised, render->context);
   if (status >= 0)
     return status;
@@ -598,8 +600,8 @@ static int render_once(const Command *command, const Arguments *arguments,
   if (status < 0 && render.again.receipt)
     status = check_again(&render);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
-    job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths,
-                 render.outputs.count);
+    job_describe(&render.job, render.context, render.scene, render.world,
+                 render.denoised.replaces, render.outputs.paths, render.outputs.count);
     if (render.many && frames_count(&render.frames) > 1)
       report_note("%u frames%s", frames_count(&render.frames),
                   render.frames.views == 2 ? ", two eyes each" : "");

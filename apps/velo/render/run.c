@@ -9,6 +9,7 @@
 #include "cli/signals.h"
 #include "render/attributes.h"
 #include "render/noise.h"
+#include "render/plain_command.h"
 
 /* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the
  * time. */
@@ -57,7 +58,8 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
     snprintf(text + n, size - n, "%s%s", i ? ", " : "",
              output_written(&render->outputs, i, stage, part, sizeof part));
   }
-  if (render->denoised.written && stage != OUTPUT_PROGRESS) {
+  if (render->denoised.written && denoised_is_copy(&render->denoised) &&
+      stage != OUTPUT_PROGRESS) {
     size_t n = strlen(text);
     snprintf(text + n, size - n, ", %s",
              output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
@@ -184,6 +186,10 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   const Outputs *outputs = &render->outputs;
   uint64_t rays = stats->camera_rays + stats->bounce_rays + stats->shadow_rays;
   uint32_t spp = vl_film_spp(render->film);
+  const bool first = render->denoised.replaces && render->denoised.written;
+  char plain[6000] = "";
+  if (first && !plain_command(render->receipt.arguments, plain, sizeof plain))
+    snprintf(plain, sizeof plain, "--plain");
   if (report_is_json()) {
     char part[5000];
     Json json = report_json_begin("result");
@@ -192,6 +198,9 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     json_integer(&json, "spp", spp);
     json_number(&json, "mean_spp", stats->mean_spp);
     json_integer(&json, "noisy_blocks", stats->noisy_blocks);
+    json_bool(&json, "denoised", first);
+    if (first)
+      json_text(&json, "plain", plain);
     json_number(&json, "seconds", stats->seconds);
     json_integer(&json, "paths", (int64_t)stats->paths);
     json_integer(&json, "camera_rays", (int64_t)stats->camera_rays);
@@ -203,7 +212,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     json_begin(&json, "files", '[');
     for (int i = 0; i < outputs->count && spp; i++)
       json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
-    if (render->denoised.written)
+    if (render->denoised.written && denoised_is_copy(&render->denoised))
       json_text(&json, NULL,
                 output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
     if (render->film_plan.path && spp)
@@ -218,9 +227,11 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
                stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
   format_count(ray_count, sizeof ray_count, (double)rays);
   list_files(render, stage, files, sizeof files);
-  report_note("%u spp in %s, %s paths/s, %s rays; wrote %s%s%s", spp, time, speed, ray_count,
-              files, *files && render->film_plan.path ? ", " : "",
-              render->film_plan.path ? render->film_plan.path : "");
+  report_note("%u spp%s in %s, %s paths/s, %s rays; wrote %s%s%s%s%s", spp,
+              first ? ", denoised," : "", time, speed, ray_count, files,
+              *files && render->film_plan.path ? ", " : "",
+              render->film_plan.path ? render->film_plan.path : "",
+              first ? "; without denoising: " : "", plain);
   report_memory(render);
 }
 
@@ -235,6 +246,23 @@ static void report_late(const Render *render, uint32_t spp) {
   format_seconds(taken, sizeof taken, elapsed);
   report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp, taken,
                  wanted);
+}
+
+/* The image of a stopped render is not denoised, nor is one whose denoiser is stopped. */
+static int write_first_image(Render *render, OutputStage *stage) {
+  Denoised *d = &render->denoised;
+  int status = STATUS_OK;
+  if (*stage == OUTPUT_FINISHED) {
+    d->outputs = render->outputs; /* with their exposure, and what is known of their parts */
+    status =
+        denoised_write(d, render->context, render->world, &render->job, render->film, *stage);
+  }
+  if (*stage == OUTPUT_FINISHED && status <= 128)
+    return status;
+  *stage = OUTPUT_STOPPED;
+  render->outputs.comment = NULL;
+  int code = write_image(render, *stage);
+  return code != STATUS_OK ? code : status;
 }
 
 /* Writes the final image with its ground truth. A stopped render is written before its ground
@@ -259,6 +287,8 @@ static int write_last(Render *render, OutputStage *stage) {
           channels_write_ids(&render->channels, NULL, render->context, render->world,
                              output_written(&render->outputs, i, *stage, part, sizeof part));
   }
+  if (render->denoised.replaces)
+    return write_first_image(render, stage);
   denoised_share_exposure(&render->denoised, &render->outputs);
   int code = write_image(render, *stage);
   if (code == STATUS_OK && status == STATUS_OK)

@@ -1,0 +1,83 @@
+/* render/first_image.c: see first_image.h. */
+#include "render/first_image.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "render/frames.h"
+
+/* Options with which a first image is denoised: they choose what is seen, how it is shown, or
+ * where and how velo works. With any other option the image is rendered as it always was. */
+static const int harmless[] = {RENDER_OUTPUT,
+                               RENDER_THREADS,
+                               RENDER_RESOLUTION,
+                               RENDER_CAMERA,
+                               RENDER_FRAME,
+                               RENDER_SIZE,
+                               RENDER_SCENE,
+                               RENDER_AT,
+                               RENDER_SHUTTER,
+                               RENDER_ANIMATION,
+                               RENDER_TURN,
+                               RENDER_VARIANT,
+                               RENDER_ENVIRONMENT,
+                               RENDER_ENVIRONMENT_ROTATION,
+                               RENDER_ENVIRONMENT_STRENGTH,
+                               RENDER_GROUND,
+                               RENDER_NO_GROUND,
+                               RENDER_FRAMING,
+                               RENDER_WALLS,
+                               RENDER_UP,
+                               RENDER_VIEW,
+                               RENDER_EXPOSURE,
+                               RENDER_ISA,
+                               RENDER_ACCELERATOR,
+                               RENDER_MAX_MEMORY,
+                               RENDER_MAX_TEXTURE,
+                               RENDER_SANDBOX,
+                               RENDER_SEARCH,
+                               RENDER_PERMISSIVE,
+                               RENDER_STRICT,
+                               RENDER_STRICT_OPTIONS,
+                               RENDER_DRY_RUN,
+                               RENDER_QUIET,
+                               RENDER_VERBOSE,
+                               RENDER_LOG_JSON};
+
+static bool is_harmless(int option) {
+  for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
+    if (harmless[i] == option)
+      return true;
+  return false;
+}
+
+bool first_image_wanted(const Render *render, const Arguments *arguments) {
+  const SceneOpening *opening = &render->opening;
+  const Outputs *outputs = &render->outputs;
+  if (!opening->model ||
+      !(opening->camera_added || opening->environment != VL_ENVIRONMENT_NONE))
+    return false;
+  if (render->again.path || render->resumed.path || render->shared || !outputs->count)
+    return false;
+  for (int i = 0; i < outputs->count; i++) {
+    bool eight_bit = false;
+    if (!output_suffix(outputs->paths[i], &eight_bit) || !eight_bit)
+      return false;
+  }
+  for (const Option *option = render_options; option->name; option++)
+    if (arguments->values[option->id].given && !is_harmless(option->id))
+      return false;
+  return !frames_wanted(arguments, &render->job);
+}
+
+void first_image_plan(Render *render, const Arguments *arguments) {
+  if (!first_image_wanted(render, arguments))
+    return;
+  Denoised *denoised = &render->denoised;
+  render->job.defs->render.spp = FIRST_IMAGE_SPP;
+  snprintf(denoised->comment, sizeof denoised->comment,
+           "%d samples per pixel, denoised by velo; --plain renders without denoising",
+           FIRST_IMAGE_SPP);
+  render->outputs.comment = denoised->comment;
+  denoised_replace(denoised, &render->outputs);
+}

@@ -77,20 +77,30 @@ typedef struct vlCompleteDef {
       *path; /**< FILE: path of an image, either twice as wide as high (longitude and latitude;
                 its centre is in the direction -front) or square (equal-area octahedral) */
   double rotation; /**< rotation of the environment about `up`, radians, counter-clockwise as
-                      seen from above */
+                      seen from above; unset: the studio's key light is on the added camera's
+                      left, all others are not rotated */
   float strength;  /**< factor on the environment's radiance */
   double up[3], front[3]; /**< directions in world space; default +y and +z, as in glTF */
   bool ground;            /**< adds a wide grey disk under everything */
   bool reframe;           /**< replaces the file's camera by one that frames the scene */
   vlFraming framing;      /**< where the added camera stands */
+  /** Where the added camera stands, as seen from the model's middle: radians from `front` to
+   * the right, and above the horizon. Unset: as `framing` says. */
+  double azimuth, elevation;
   /** With the added camera and the studio: a ground of the studio's colour under the model,
    * which catches its shadows and becomes transparent away from it. It is a backdrop
    * (vlShapeDef.backdrop). Default false. */
   bool backdrop;
+  /** Middle, in world space, and radius of the ground. Unset: under the model, by its size.
+   * With either the backdrop does not depend on the added camera and the studio. */
+  double ground_middle[3], ground_radius;
   /** With the added camera: of a closed model (a room whose walls hide it, a dome around it)
    * the faces between the camera and the middle are left out; a note gives their number. The
    * camera of a dome frames what the dome contains. Default false. */
   bool open_walls;
+  /** The point, in world space, that stands for the camera when walls are left out. Unset: the
+   * added camera's eye, or a point far away behind it. */
+  double walls_from[3];
 } vlCompleteDef;
 /** The default def. */
 VL_API vlCompleteDef vl_default_complete_def(void);
@@ -98,6 +108,11 @@ VL_API vlCompleteDef vl_default_complete_def(void);
  * camera looks at the whole scene (vlFraming). What is chosen is logged (VL_LOG_DEBUG). def may
  * be null. Errors: as vl_scene_result; MISSING, IO (path). */
 VL_API vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *def, vlError *error);
+/** What vl_scene_complete added last, as a def that leaves nothing to choose: vl_scene_complete
+ * by it gives the same file's scene the same lights, ground and walls and, if it has no camera,
+ * the same camera, bit for bit. What was not added is not asked for. The path is the pointer
+ * that was given. Before any vl_scene_complete it is the default def. */
+VL_API vlCompleteDef vl_scene_completed(const vlScene *scene);
 
 #ifdef __cplusplus
 }

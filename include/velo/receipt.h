@@ -34,7 +34,8 @@ typedef struct vlReceiptDef {
   uint32_t output_count;      /**< length of outputs */
   const vlSceneDefs *defs;    /**< settings and camera; required */
   const vlLoadDef *load;      /**< how the scene was loaded */
-  const vlCompleteDef *complete; /**< what was added to the scene: camera, lights */
+  const vlCompleteDef *complete; /**< what was added to the scene: camera, lights
+                                    (vl_scene_completed) */
   uint32_t samples; /**< samples per pixel that the image has; defs->render.spp is the planned
                        number */
   double focus_distance; /**< scene units, as found by autofocus; VL_UNSET (default): that of

@@ -468,7 +468,7 @@ def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = 
 
     Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera) and of
     vlCompleteDef (environment: auto, none, studio, sky, white or the path of an image; rotation in radians, strength, up,
-    front, ground, reframe, framing, backdrop)."""
+    front, ground, reframe, framing, azimuth, elevation, backdrop, ground_middle, ground_radius, open_walls, walls_from)."""
     scene = Scene(context=context)
     loading = {name: keywords.pop(name) for name in _LOAD if name in keywords}
     scene.load(path, progress=progress, **loading)

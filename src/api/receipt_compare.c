@@ -165,7 +165,9 @@ uint32_t vl_receipt_compare(const vlReceipt *then, const vlReceipt *now, uint32_
     compare_member(&c, "camera", then, now, "camera", NULL);
   if (parts & VL_RECEIPT_SETTINGS) {
     compare_member(&c, "load", then, now, "load", NULL);
-    compare_member(&c, "complete", then, now, "complete", NULL);
+    /* earlier receipts do not have it */
+    if (json_object_get(then->tree, "completed") && json_object_get(now->tree, "completed"))
+      compare_member(&c, "completed", then, now, "completed", NULL);
     compare_member(&c, "film", then, now, "film", NULL);
     compare_member(&c, "build", then, now, "build", NULL);
     compare_member(&c, "render", then, now, "render", &(const bool){false});

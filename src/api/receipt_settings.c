@@ -64,8 +64,13 @@ static const Field complete_fields[] = {FIELD_CHOICE(vlCompleteDef, environment,
                                         FIELD_BOOL(vlCompleteDef, ground),
                                         FIELD_BOOL(vlCompleteDef, reframe),
                                         FIELD_CHOICE(vlCompleteDef, framing, framings),
+                                        FIELD_DOUBLE(vlCompleteDef, azimuth),
+                                        FIELD_DOUBLE(vlCompleteDef, elevation),
                                         FIELD_BOOL(vlCompleteDef, backdrop),
+                                        FIELD_DOUBLE(vlCompleteDef, ground_middle),
+                                        FIELD_DOUBLE(vlCompleteDef, ground_radius),
                                         FIELD_BOOL(vlCompleteDef, open_walls),
+                                        FIELD_DOUBLE(vlCompleteDef, walls_from),
                                         FIELD_END};
 static const Field film_fields[] = {FIELD_COUNT(vlFilmDef, width),
                                     FIELD_COUNT(vlFilmDef, height),
@@ -237,7 +242,7 @@ static bool put_render(json_t *tree, vlRenderDef render) {
 bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def) {
   const vlSceneDefs *defs = def->defs;
   return put_def(tree, "load", load_fields, def->load) &&
-         put_def(tree, "complete", complete_fields, def->complete) &&
+         put_def(tree, "completed", complete_fields, def->complete) &&
          put_def(tree, "film", film_fields, &defs->film) && put_build(tree, &defs->build) &&
          put_render(tree, defs->render) &&
          put_def(tree, "develop", develop_fields, &defs->develop) &&

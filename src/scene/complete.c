@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/unset.h"
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
@@ -16,8 +17,20 @@
 #include "velo/texture.h"
 
 vlCompleteDef vl_default_complete_def(void) {
-  return (vlCompleteDef){
-      .cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};
+  return (vlCompleteDef){.cookie = VL_COOKIE_COMPLETE,
+                         .rotation = VL_UNSET,
+                         .strength = 1.0f,
+                         .up = {0, 1, 0},
+                         .front = {0, 0, 1},
+                         .azimuth = VL_UNSET,
+                         .elevation = VL_UNSET,
+                         .ground_middle = {VL_UNSET, VL_UNSET, VL_UNSET},
+                         .ground_radius = VL_UNSET,
+                         .walls_from = {VL_UNSET, VL_UNSET, VL_UNSET}};
+}
+
+vlCompleteDef vl_scene_completed(const vlScene *scene) {
+  return scene->completed.cookie ? scene->completed : vl_default_complete_def();
 }
 
 /* ---- the camera -------------------------------------------------------------------------- */
@@ -78,8 +91,8 @@ static void mean_normal(const vlScene *scene, double n[3]) {
 }
 
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts. */
-static const char *choose_view(const vlScene *scene, const vlCompleteDef *def,
-                               const vlExtent *box, View *v) {
+static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
+                             const vlExtent *box, View *v) {
   v->azimuth = 0.45;
   v->elevation = 0.3;
   if (def->framing == VL_FRAMING_FRONT)
@@ -111,6 +124,18 @@ static const char *choose_view(const vlScene *scene, const vlCompleteDef *def,
     return left ? "flat: from the left" : "flat: from the right";
   }
   return "from the front, a little from the right and above";
+}
+
+static const char *choose_view(const vlScene *scene, const vlCompleteDef *def,
+                               const vlExtent *box, View *v) {
+  const char *from = find_view(scene, def, box, v);
+  if (vl_is_unset(def->azimuth) && vl_is_unset(def->elevation))
+    return from;
+  if (!vl_is_unset(def->azimuth))
+    v->azimuth = def->azimuth;
+  if (!vl_is_unset(def->elevation))
+    v->elevation = def->elevation;
+  return "as given";
 }
 
 static void set_camera(vlScene *scene, const double up[3], double fov, const double eye[3],
@@ -169,47 +194,95 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
 
 /* ---- closed models ----------------------------------------------------------------------- */
 
-/* Lets camera and light into a closed model. */
-static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent *box,
-                       const vlExtent *boxes) {
-  double eye[3], size = 0;
-  uint64_t count = 0;
-  for (int i = 0; i < 3; i++) {
-    eye[i] = scene->defs.camera.eye[i];
-    size += box->high[i] - box->low[i];
-  }
+/* *box becomes what a dome contains. camera: one is added: before what a dome contains, or in
+ * the middle of a shell that contains nothing. */
+static void frame_closed(vlScene *scene, const View *v, bool camera, const vlClosed *closed,
+                         vlExtent *box, const vlExtent *boxes) {
+  double ahead[3];
   if (closed->kind == VL_CLOSED_DOME) {
-    vlExtent inner = vl_extent_nothing;
-    vl_extent_visit(scene, boxes, closed->shell, vl_extent_grow, &inner);
-    *box = inner;
-    frame_camera(scene, v, box, boxes, closed->shell);
+    *box = vl_extent_nothing;
+    vl_extent_visit(scene, boxes, closed->shell, vl_extent_grow, box);
+    if (camera)
+      frame_camera(scene, v, box, boxes, closed->shell);
   }
-  if (closed->kind == VL_CLOSED_EMPTY) {
-    double ahead[3];
+  if (closed->kind == VL_CLOSED_EMPTY && camera) {
     for (int i = 0; i < 3; i++)
       ahead[i] = closed->middle[i] - v->front[i];
     set_camera(scene, v->up, 1.2, closed->middle, ahead);
   }
-  bool inside = closed->kind != VL_CLOSED_ROOM;
+}
+
+static bool is_inside(const vlClosed *closed) {
+  return closed->kind == VL_CLOSED_DOME || closed->kind == VL_CLOSED_EMPTY;
+}
+
+/* Finds whether the model is closed. from: the eye of the added camera; in its place comes, of
+ * a dome and an empty shell, a point far away behind the camera: light comes in from there. */
+static bool choose_walls(vlScene *scene, const View *v, const vlExtent *whole,
+                         const vlExtent *boxes, double from[3], vlClosed *closed) {
+  double size = 0, far_away[3];
+  if (!vl_closed_find(scene, whole, boxes, from, closed))
+    return false;
+  if (!is_inside(closed))
+    return true;
+  vlExtent box = *whole;
+  frame_closed(scene, v, true, closed, &box, boxes);
+  for (int i = 0; i < 3; i++)
+    size += whole->high[i] - whole->low[i];
+  for (int i = 0; i < 3; i++) {
+    double away = closed->kind == VL_CLOSED_EMPTY
+                      ? v->front[i]
+                      : scene->defs.camera.eye[i] - closed->middle[i];
+    far_away[i] =
+        closed->middle[i] + 1e4 * size * away / (closed->kind == VL_CLOSED_EMPTY ? 1 : size);
+  }
+  /* what is found must be found from that point alone */
+  vlClosed again;
+  if (!vl_closed_find(scene, whole, boxes, far_away, &again))
+    return false;
+  bool same = again.kind == closed->kind;
+  if (same)
+    memcpy(from, far_away, sizeof far_away);
+  vl_free(scene->context, same ? closed->shell : again.shell);
+  *closed = same ? again : *closed;
+  return true;
+}
+
+/* Lets camera and light into a closed model. */
+static bool open_model(vlScene *scene, const vlClosed *closed, const double from[3]) {
+  uint64_t count = 0;
+  bool inside = is_inside(closed);
   if (inside && closed->emits) {
     vl_log(scene->context, VL_LOG_INFO, NULL,
            "the model is closed and emits light: the camera is inside");
     return true;
   }
-  for (int i = 0; inside && i < 3;
-       i++) { /* the half on the camera's side: light comes from there */
-    double away = closed->kind == VL_CLOSED_EMPTY
-                      ? v->front[i]
-                      : scene->defs.camera.eye[i] - closed->middle[i];
-    eye[i] =
-        closed->middle[i] + 1e4 * size * away / (closed->kind == VL_CLOSED_EMPTY ? 1 : size);
-  }
-  if (!vl_closed_open(scene, closed, eye, &count))
+  if (!vl_closed_open(scene, closed, from, &count))
     return false;
   vl_log(scene->context, VL_LOG_INFO, NULL,
          "the model is closed: %s%llu of its faces, on the camera's side, are hidden",
          inside ? "the camera is inside, and " : "", (unsigned long long)count);
   return true;
+}
+
+/* Leaves out the walls of a closed model. *box: what the camera and the ground are for. */
+static bool open_walls(vlScene *scene, const View *v, bool camera, vlExtent *box,
+                       const vlExtent *boxes, vlClosed *closed) {
+  vlCompleteDef *done = &scene->completed;
+  const vlExtent whole = *box;
+  double from[3];
+  bool given = !vl_is_unset(done->walls_from[0]);
+  memcpy(from, given ? done->walls_from : scene->defs.camera.eye, sizeof from);
+  bool ok = given ? vl_closed_find(scene, &whole, boxes, from, closed)
+                  : choose_walls(scene, v, &whole, boxes, from, closed);
+  done->open_walls = ok && closed->kind != VL_CLOSED_NOT;
+  if (done->open_walls) {
+    memcpy(done->walls_from, from, sizeof from);
+    frame_closed(scene, v, camera, closed, box, boxes);
+    ok = open_model(scene, closed, from);
+  }
+  vl_free(scene->context, closed->shell);
+  return ok;
 }
 
 static void tell_camera(const vlScene *scene, const char *view, const vlExtent *box) {
@@ -245,9 +318,8 @@ static bool fade_texture(vlScene *scene, vlTextureId *id) {
   return id->index != 0;
 }
 
-/* A disk under everything. fades: with the radiance of the studio's floor, into which it
- * fades. */
-static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool fades) {
+/* Middle and radius of a disk under everything, where they are not given. */
+static void place_ground(vlCompleteDef *def, const View *v, const vlExtent *box, bool fades) {
   double center[3], size = 0;
   for (int i = 0; i < 3; i++) {
     bool some = box->low[i] <= box->high[i];
@@ -267,10 +339,21 @@ static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool 
   }
   if (!isfinite(lowest))
     lowest = 0;
+  for (int i = 0; i < 3; i++)
+    if (vl_is_unset(def->ground_middle[i]))
+      def->ground_middle[i] = center[i] + (lowest - 1e-4 * size) * v->up[i];
+  if (vl_is_unset(def->ground_radius))
+    def->ground_radius = (fades ? 2.5 : 40) * size;
+  def->ground_radius = (double)(float)def->ground_radius;
+}
+
+/* A disk. fades: with the radiance of the studio's floor, into which it fades. */
+static bool add_ground(vlScene *scene, const View *v, bool fades) {
+  const vlCompleteDef *def = &scene->completed;
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   material.name = "ground";
   vlShapeDef disk = vl_default_shape_def(VL_SHAPE_DISK);
-  disk.radius = (float)((fades ? 2.5 : 40) * size);
+  disk.radius = (float)def->ground_radius;
   disk.backdrop = fades;
   if (fades && !fade_texture(scene, &disk.alpha.texture))
     return false;
@@ -282,7 +365,7 @@ static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool 
     disk.group_from_shape[4 * i] = v->right[i];
     disk.group_from_shape[4 * i + 1] = -v->front[i];
     disk.group_from_shape[4 * i + 2] = v->up[i];
-    disk.group_from_shape[4 * i + 3] = center[i] + (lowest - 1e-4 * size) * v->up[i];
+    disk.group_from_shape[4 * i + 3] = def->ground_middle[i];
   }
   return vl_scene_add_shape(scene, &disk).index != 0;
 }
@@ -301,41 +384,76 @@ static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDe
     vl_log(scene->context, VL_LOG_DEBUG, NULL, "light: the studio");
 }
 
-/* Camera, opening and ground. *studio: the studio will be added. */
-static bool complete_geometry(vlScene *scene, vlCompleteDef *def, const View *axes, bool camera,
-                              bool studio, const vlExtent *boxes) {
+static bool ground_is_given(const vlCompleteDef *def) {
+  return !vl_is_unset(def->ground_middle[0]) || !vl_is_unset(def->ground_radius);
+}
+
+static bool walls_are_given(const vlCompleteDef *def) {
+  return def->open_walls && !vl_is_unset(def->walls_from[0]);
+}
+
+/* Camera, opening and ground. The scene's `completed` has what is asked for and gets what is
+ * chosen. */
+static bool complete_geometry(vlScene *scene, const View *axes, bool camera,
+                              const vlExtent *boxes) {
+  vlCompleteDef *done = &scene->completed;
+  const bool studio = done->environment == VL_ENVIRONMENT_STUDIO;
   vlExtent box = vl_extent_nothing;
   View view = *axes;
   vlClosed closed = {.kind = VL_CLOSED_NOT};
   bool ok = true;
   vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box);
   if (camera) {
-    const char *from = choose_view(scene, def, &box, &view);
+    const char *from = choose_view(scene, done, &box, &view);
     tell_camera(scene, from, &box);
     frame_camera(scene, &view, &box, boxes, NULL);
-    if (studio)
-      def->rotation += view.azimuth - 0.45; /* the key light stays to the camera's left */
+    done->azimuth = view.azimuth;
+    done->elevation = view.elevation;
   }
-  if (camera && def->open_walls) {
-    double eye[3];
-    memcpy(eye, scene->defs.camera.eye, sizeof eye);
-    ok = vl_closed_find(scene, &box, boxes, eye, &closed);
-    if (ok && closed.kind != VL_CLOSED_NOT)
-      ok = open_model(scene, &view, &closed, &box, boxes);
-    vl_free(scene->context, closed.shell);
-  }
-  bool inside = closed.kind == VL_CLOSED_DOME || closed.kind == VL_CLOSED_EMPTY;
-  bool fades = camera && studio && def->backdrop && !inside && view.elevation >= 0;
-  if (ok && (def->ground || fades))
-    ok = add_ground(scene, &view, &box, fades && !def->ground);
-  if (ok && fades && !def->ground)
+  if (studio && vl_is_unset(done->rotation))
+    done->rotation = camera ? view.azimuth - 0.45 : 0; /* the key light stays to its left */
+  if ((camera && done->open_walls) || walls_are_given(done))
+    ok = open_walls(scene, &view, camera, &box, boxes, &closed);
+  else
+    done->open_walls = false;
+  bool wanted =
+      ground_is_given(done) || (camera && studio && !is_inside(&closed) && view.elevation >= 0);
+  bool fades = done->backdrop && wanted && !done->ground;
+  done->backdrop = fades;
+  if (done->ground || fades)
+    place_ground(done, &view, &box, fades);
+  if (ok && (done->ground || fades))
+    ok = add_ground(scene, &view, fades);
+  if (ok && fades)
     vl_log(scene->context, VL_LOG_DEBUG, NULL, "ground: under the model, fading");
   return ok;
 }
 
+/* Of a def in which every choice is made, what was not added is not asked for; azimuth and
+ * elevation say what the framing said. */
+static void leave_out(vlCompleteDef *done, bool camera) {
+  done->framing = VL_FRAMING_AUTO;
+  if (!camera)
+    done->azimuth = done->elevation = VL_UNSET;
+  if (!done->open_walls)
+    done->walls_from[0] = done->walls_from[1] = done->walls_from[2] = VL_UNSET;
+  if (!done->ground && !done->backdrop)
+    done->ground_middle[0] = done->ground_middle[1] = done->ground_middle[2] =
+        done->ground_radius = VL_UNSET;
+  if (done->environment == VL_ENVIRONMENT_NONE)
+    done->rotation = VL_UNSET;
+}
+
+static void choose_size(vlSceneDefs *s, const vlCompleteDef *def) {
+  const uint32_t whole[4] = {0, 0, def->width, def->height};
+  s->film.width = def->width;
+  s->film.height = def->height;
+  memcpy(s->film.crop, whole, sizeof whole);
+}
+
 vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *error) {
   vl_error_clear(error);
-  vlCompleteDef def = given ? *given : vl_default_complete_def();
+  const vlCompleteDef def = given ? *given : vl_default_complete_def();
   if (!scene)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
   if (def.cookie != VL_COOKIE_COMPLETE)
@@ -343,16 +461,14 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   if (scene->error.code != VL_OK)
     return vl_scene_result(scene, error);
   vlSceneDefs *s = &scene->defs;
+  vlCompleteDef *done = &scene->completed;
+  *done = def;
   bool camera = s->camera_missing || def.reframe;
-  if (camera && def.width && def.height) {
-    const uint32_t whole[4] = {0, 0, def.width, def.height};
-    s->film.width = def.width;
-    s->film.height = def.height;
-    memcpy(s->film.crop, whole, sizeof whole);
-  }
-  vlEnvironmentKind kind = def.environment;
-  if (kind == VL_ENVIRONMENT_AUTO)
-    kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
+  if (camera && def.width && def.height)
+    choose_size(s, &def);
+  if (def.environment == VL_ENVIRONMENT_AUTO)
+    done->environment = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
+  const vlEnvironmentKind kind = done->environment;
   bool fits = def.environment == VL_ENVIRONMENT_AUTO && kind == VL_ENVIRONMENT_STUDIO;
   View axes = {.azimuth = 0};
   if (!vl_scene_axes(&def, axes.right, axes.up, axes.front)) {
@@ -360,16 +476,23 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
                   "camera: the axes up and front make no sense");
     return vl_scene_result(scene, error);
   }
+  bool geometry =
+      camera || def.ground || (def.backdrop && ground_is_given(&def)) || walls_are_given(&def);
   vlExtent *boxes = NULL;
   bool ok = true;
-  if (camera || def.ground || fits)
+  if (geometry || fits)
     ok = vl_extent_groups(scene, &boxes);
   if (ok && fits)
-    fit_studio(scene, boxes, &def);
-  if (ok && (camera || def.ground))
-    ok = complete_geometry(scene, &def, &axes, camera, kind == VL_ENVIRONMENT_STUDIO, boxes);
+    fit_studio(scene, boxes, done);
+  if (ok && geometry)
+    ok = complete_geometry(scene, &axes, camera, boxes);
+  else
+    done->open_walls = done->backdrop = false;
   vl_free(scene->context, boxes);
-  if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind))
+  if (vl_is_unset(done->rotation))
+    done->rotation = 0;
+  if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, done, kind))
     s->light_missing = false;
+  leave_out(done, camera);
   return vl_scene_result(scene, error);
 }

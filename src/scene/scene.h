@@ -10,6 +10,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "velo/check.h"
+#include "velo/load.h"
 #include "velo/render.h"
 #include "velo/schema.h"
 
@@ -74,6 +75,7 @@ struct vlScene {
   vlSceneMarks texture_marks, light_marks, medium_marks, shape_marks;
   VL_ARRAY(vlSceneEdit) edits;
   vlSceneDefs defs;
+  vlCompleteDef completed; /* what vl_scene_complete has added; cookie 0: it was not called */
   bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras
                           of a glTF file */
   VL_ARRAY(vlAperture *) apertures; /* aperture objects to which defs.camera may point */

@@ -153,8 +153,10 @@ static const vlParameter complete_parameters[] = {
              .unit = "pixels"),
     COMPLETE(CHOICE, environment, "light from all directions", .choices = environments),
     COMPLETE(FILE, path, "image of the environment", .text = NULL),
-    COMPLETE(DOUBLE, rotation, "rotation of the environment about the vertical axis",
-             WITHIN(-1e6 * DEGREES, 1e6 * DEGREES), .unit = "degrees", .factor = DEGREES,
+    COMPLETE(DOUBLE, rotation,
+             "rotation of the environment about the vertical axis; unset: the studio's key "
+             "light is on the added camera's left",
+             WITHIN(-1e6 * DEGREES, 1e6 * DEGREES), UNSET, .unit = "degrees", .factor = DEGREES,
              .alias = "environment_rotation"),
     COMPLETE(FLOAT, strength, "factor on the radiance of the environment", WITHIN(0, 1e6),
              VL_DEFAULT(1), .alias = "environment_strength"),
@@ -165,9 +167,24 @@ static const vlParameter complete_parameters[] = {
     COMPLETE(BOOL, ground, "add a wide grey disk as ground", .unit = NULL),
     COMPLETE(BOOL, reframe, "replace the file's camera", .unit = NULL),
     COMPLETE(CHOICE, framing, "where the added camera stands", .choices = framings),
+    COMPLETE(DOUBLE, azimuth,
+             "where the added camera stands: angle from the front to the right; unset: as "
+             "framing says",
+             WITHIN(-1e6 * DEGREES, 1e6 * DEGREES), UNSET, .unit = "degrees",
+             .factor = DEGREES),
+    COMPLETE(DOUBLE, elevation, "its angle above the horizon",
+             WITHIN(-89 * DEGREES, 89 * DEGREES), UNSET, .unit = "degrees", .factor = DEGREES),
     COMPLETE(BOOL, backdrop, "add a ground of the studio's colour", .unit = NULL),
+    COMPLETE(DOUBLE3, ground_middle, "middle of the ground; unset: under the model",
+             .flags = VL_PARAMETER_VECTOR | VL_PARAMETER_UNSET),
+    COMPLETE(DOUBLE, ground_radius, "radius of the ground; unset: by the size of the model",
+             WITHIN(0, 1e30), .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_UNSET),
     COMPLETE(BOOL, open_walls, "leave out walls between the added camera and the middle",
              .unit = NULL),
+    COMPLETE(DOUBLE3, walls_from,
+             "the point that stands for the camera when walls are left out; unset: where the "
+             "added camera stands",
+             .flags = VL_PARAMETER_VECTOR | VL_PARAMETER_UNSET),
 };
 VL_KIND_ROW(complete, .name = "complete",
             .description = "what a scene gets that lacks camera, light or ground")

@@ -136,4 +136,23 @@ if any(data[:12]) or not any(data): bad.append("premultiplied")  # the corner is
 print(bad)
 sys.exit(len(bad))
 END
+
+# What was chosen is in the receipt's command, with numbers that read back as the same bits: the command makes the same image
+# and chooses nothing again.
+for m in plain sun dim room box "plain --framing front" "plain --up z --environment-rotation 30" "sun --ground" "room --walls keep" \
+    "plain --environment sky" "plain --no-ground" "plain --framing 190,20" "plain --ground-radius 1 --environment-rotation 0.3rad"; do
+  name=chosen_${m//[ .,]/_}
+  read -r -a words <<<"$m"
+  check "$name" "$VELO" render "${words[0]}.glb" "${words[@]:1}" --resolution 48x36 --spp 2 --quiet -o first.exr
+  "$VELO" image info first.exr >first.txt
+  read -r -a words < <(sed -n 's/^  command  *velo render //p' first.txt)
+  case "${words[*]}" in
+    *'--framing '*,*'--walls '*'--up '*) pass "${name}_is_told" ;;
+    *) fail "${name}_is_told" ;;
+  esac
+  check "${name}_repeats" "$VELO" render "${words[@]}" --strict-options --quiet -o second.exr
+  same "${name}_same" first.exr second.exr
+  check "${name}_again" "$VELO" render --again first.exr --quiet -o second.exr
+  same "${name}_again_same" first.exr second.exr
+done
 finish

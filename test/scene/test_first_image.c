@@ -241,12 +241,103 @@ static void lamps(void **state) {
     }
 }
 
+/* ---- what was chosen, as a def ----------------------------------------------------------- */
+
+enum { PLAIN, FLAT, FROM_BEHIND, LAMP, ROOM, DOME, LIT_DOME, SHELL, CASES };
+
+static void add_shell(Model *m, float side, bool lit) {
+  const float low[3] = {-side, -side, -side}, high[3] = {side, side, side};
+  add_box(m, low, high, true, true);
+  if (!lit)
+    return;
+  vlShapeDef *d = &m->scene->shapes.items[0];
+  vlEmissionDef light = vl_default_emission_def();
+  light.radiance = vl_spectrum_rgb(1, 1, 1);
+  d->emission = vl_scene_add_emission(m->scene, &light);
+  assert_int_not_equal(d->emission.index, 0);
+}
+
+static Model begin_case(int k) {
+  Model m = begin();
+  const float low[3] = {-1, 0, -0.01f}, high[3] = {1, 1.3f, 0.01f};
+  if (k == ROOM)
+    add_box(&m, wall_low, wall_high, true, true);
+  if (k == DOME || k == LIT_DOME || k == SHELL)
+    add_shell(&m, 50, k == LIT_DOME);
+  if (k == FLAT || k == FROM_BEHIND)
+    add_box(&m, low, high, k == FROM_BEHIND, false);
+  else if (k != SHELL)
+    add_box(&m, table_low, table_high, false, false);
+  if (k != LAMP)
+    return m;
+  vlLightDef light = vl_default_light_def(VL_LIGHT_DISTANT);
+  light.scale = 1234;
+  assert_int_not_equal(vl_scene_add_light(m.scene, &light).index, 0);
+  return m;
+}
+
+static void assert_same_scenes(const Model *a, const Model *b, bool cameras) {
+  const vlScene *s = a->scene, *t = b->scene;
+  assert_int_equal(s->shapes.count, t->shapes.count);
+  for (size_t i = 0; i < s->shapes.count; i++) {
+    const vlShapeDef *c = &s->shapes.items[i], *d = &t->shapes.items[i];
+    assert_int_equal(c->faces, d->faces);
+    assert_int_equal(c->backdrop, d->backdrop);
+    assert_memory_equal(&c->radius, &d->radius, sizeof c->radius);
+    assert_memory_equal(c->group_from_shape, d->group_from_shape, sizeof c->group_from_shape);
+    if (c->faces)
+      assert_memory_equal(c->indices, d->indices, 3 * c->faces * sizeof *c->indices);
+  }
+  assert_int_equal(s->lights.count, t->lights.count);
+  for (size_t i = 0; i < s->lights.count; i++) {
+    const vlLightDef *c = &s->lights.items[i], *d = &t->lights.items[i];
+    assert_memory_equal(&c->scale, &d->scale, sizeof c->scale);
+    assert_memory_equal(c->world_from_light, d->world_from_light, sizeof c->world_from_light);
+  }
+  const vlCameraDef *c = &s->defs.camera, *d = &t->defs.camera;
+  for (int i = 0; i < 3 && cameras; i++)
+    assert_true(c->eye[i] == d->eye[i] && c->lookat[i] == d->lookat[i] && c->up[i] == d->up[i]);
+  assert_true(!cameras || c->fov == d->fov);
+}
+
+/* A scene that is completed by what was chosen has the same camera, lights, ground and walls;
+ * all but the camera also where the camera is another. */
+static void choices_as_a_def(void **state) {
+  (void)state;
+  for (int k = 0; k < CASES; k++)
+    for (int variant = 0; variant < 8; variant++) {
+      vlCompleteDef def = first_image();
+      def.ground = variant & 1;
+      def.framing = variant & 2 ? VL_FRAMING_FRONT : VL_FRAMING_AUTO;
+      if (variant & 4)
+        memcpy(def.up, (double[3]){0, 0, 1}, sizeof def.up);
+      if (variant & 4)
+        memcpy(def.front, (double[3]){0, -1, 0}, sizeof def.front);
+      Model m = begin_case(k), again = begin_case(k), other = begin_case(k);
+      complete(&m, &def);
+      vlCompleteDef chosen = vl_scene_completed(m.scene);
+      assert_int_not_equal(chosen.environment, VL_ENVIRONMENT_AUTO);
+      complete(&again, &chosen);
+      assert_same_scenes(&m, &again, true);
+      const vlCompleteDef twice = vl_scene_completed(again.scene);
+      assert_memory_equal(&chosen, &twice, sizeof twice);
+      other.scene->defs.camera_missing = false;
+      other.scene->defs.camera.eye[0] = 77;
+      complete(&other, &chosen);
+      assert_same_scenes(&m, &other, false);
+      assert_true(other.scene->defs.camera.eye[0] == 77);
+      end(&m);
+      end(&again);
+      end(&other);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(flat_models), cmocka_unit_test(sheet_from_behind),
       cmocka_unit_test(rooms),       cmocka_unit_test(objects),
       cmocka_unit_test(dome),        cmocka_unit_test(ground),
-      cmocka_unit_test(lamps),
+      cmocka_unit_test(lamps),       cmocka_unit_test(choices_as_a_def),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

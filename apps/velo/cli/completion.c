@@ -33,6 +33,8 @@ static Values option_values(const Option *o) {
     case OPTION_FLAG:
     case OPTION_INTEGER:
     case OPTION_NUMBER:
+    case OPTION_ANGLE:
+    case OPTION_POINT:
     case OPTION_TIME:
     case OPTION_BYTES:
     case OPTION_SIZE:

@@ -145,13 +145,32 @@ static bool read_bytes(const char *text, int64_t *bytes) {
   return !*unit && *bytes > 0;
 }
 
-/* Reads four values separated by commas; either pointer may be null. */
-static bool read_four(const char *text, int64_t *integers, double *numbers) {
-  for (int i = 0; i < 4; i++) {
-    const char *end = i < 3 ? strchr(text, ',') : text + strlen(text);
+double option_radians(double degrees) {
+  return degrees * 3.14159265358979323846 / 180.0;
+}
+
+/* Reads degrees, or radians with the unit: 0.5rad. */
+static bool read_angle(const char *text, const char *end, double *radians) {
+  if (!end)
+    end = text + strlen(text);
+  if (end - text > 3 && memcmp(end - 3, "rad", 3) == 0)
+    return read_number(text, end - 3, radians);
+  if (!read_number(text, end, radians))
+    return false;
+  *radians = option_radians(*radians);
+  return true;
+}
+
+/* Reads `count` values separated by commas, into integers or numbers. angles: the numbers are
+ * angles. */
+static bool read_list(const char *text, int count, int64_t *integers, double *numbers,
+                      bool angles) {
+  for (int i = 0; i < count; i++) {
+    const char *end = i + 1 < count ? strchr(text, ',') : text + strlen(text);
     if (!end)
       return false;
     if (integers ? !read_integer(text, end, &integers[i])
+        : angles ? !read_angle(text, end, &numbers[i])
                  : !read_number(text, end, &numbers[i]))
       return false;
     text = end + 1;
@@ -227,6 +246,17 @@ static int read_size(const Option *option, const char *text, int64_t size[2]) {
   return -1;
 }
 
+/* Reads numbers in place of a name. */
+static int read_choice_list(const Option *option, const char *text, OptionValue *value) {
+  const bool angles = option->list == OPTION_LIST_ANGLES;
+  value->integer = OPTION_LIST_GIVEN;
+  if (read_list(text, angles ? 2 : 3, NULL, value->numbers, angles))
+    return -1;
+  return bad_value(
+      option, text,
+      angles ? "must be a name, or A,E: two angles in degrees" : "must be a name, or X,Y,Z");
+}
+
 static int read_choice(const Option *option, const char *text, OptionValue *value) {
   enum { MAX_NAMES = 64 };
   const Choice *choices = option_choices(option);
@@ -234,6 +264,8 @@ static int read_choice(const Option *option, const char *text, OptionValue *valu
   char what[80];
   char message[VL_GIVEN_MESSAGE];
   double index;
+  if (option->list != OPTION_NO_LIST && *text && strchr("+-.0123456789", *text))
+    return read_choice_list(option, text, value);
   for (int i = 0; i < MAX_NAMES && choices[i].name; i++)
     names[i] = choices[i].name;
   const vlParameter row = {.type = VL_PARAMETER_CHOICE, .choices = names};
@@ -256,6 +288,22 @@ static int read_row(const Option *option, const char *text, OptionValue *value) 
   return status;
 }
 
+/* Reads a value of OPTION_ANGLE, in the range of its row. */
+static int read_angle_row(const Option *option, const char *text, OptionValue *value) {
+  const vlParameter row = option_row(option);
+  char name[80], message[VL_GIVEN_MESSAGE];
+  snprintf(name, sizeof name, "--%s", option->name);
+  if (!read_angle(text, NULL, &value->numbers[0]))
+    return option_number(name, text, &row, &value->number);
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER,
+                         .number = value->numbers[0] / row.factor,
+                         .text = text,
+                         .shown = text,
+                         .factor = row.factor};
+  value->number = given.number;
+  return vl_given_check(&row, name, &given, NULL, message) ? -1 : report_usage("%s", message);
+}
+
 static int read_value(const Option *option, const char *text, Arguments *arguments) {
   OptionValue *value = &arguments->values[option->id];
   value->text = text;
@@ -269,6 +317,16 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
         return status;
       break;
     }
+    case OPTION_ANGLE: {
+      int status = read_angle_row(option, text, value);
+      if (status >= 0)
+        return status;
+      break;
+    }
+    case OPTION_POINT:
+      if (read_list(text, 3, NULL, value->numbers, false))
+        break;
+      return bad_value(option, text, "must be X,Y,Z");
     case OPTION_TIME:
       if (read_time(text, &value->number))
         break;
@@ -284,13 +342,13 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
       break;
     }
     case OPTION_CROP:
-      if (read_four(text, value->integers, NULL) && value->integers[0] >= 0 &&
+      if (read_list(text, 4, value->integers, NULL, false) && value->integers[0] >= 0 &&
           value->integers[1] >= 0 && value->integers[0] < value->integers[2] &&
           value->integers[1] < value->integers[3])
         break;
       return bad_value(option, text, "must be x0,y0,x1,y1 in pixels with x0 < x1 and y0 < y1");
     case OPTION_FRACTIONS:
-      if (read_four(text, NULL, value->numbers) && value->numbers[0] >= 0 &&
+      if (read_list(text, 4, NULL, value->numbers, false) && value->numbers[0] >= 0 &&
           value->numbers[0] < value->numbers[1] && value->numbers[1] <= 1 &&
           value->numbers[2] >= 0 && value->numbers[2] < value->numbers[3] &&
           value->numbers[3] <= 1)

@@ -13,6 +13,8 @@ typedef enum OptionKind {
   OPTION_FLAG,
   OPTION_INTEGER,   /* in [min, max] */
   OPTION_NUMBER,    /* in [min, max] */
+  OPTION_ANGLE,     /* degrees, or 0.5rad; sets number (degrees) and numbers[0] (radians) */
+  OPTION_POINT,     /* X,Y,Z; sets numbers */
   OPTION_TIME,      /* in seconds: 30, 30s, 5m, 1h30m */
   OPTION_BYTES,     /* 500M, 2G, 1.5GiB; sets integer */
   OPTION_SIZE,      /* WxH, each in [min, max] */
@@ -26,6 +28,14 @@ typedef enum OptionKind {
   OPTION_SEARCH   /* likewise: folders, joined by ':' */
 } OptionKind;
 
+/* Numbers in place of a name: the value's integer is then OPTION_LIST_GIVEN. */
+typedef enum OptionList {
+  OPTION_NO_LIST,
+  OPTION_LIST_ANGLES, /* A,B: as of OPTION_ANGLE; sets numbers, radians */
+  OPTION_LIST_POINT   /* as of OPTION_POINT */
+} OptionList;
+enum { OPTION_LIST_GIVEN = -1 };
+
 /* A row of a table ends with its last member that is not zero. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct Option {
@@ -37,6 +47,7 @@ typedef struct Option {
   const char *help;  /* the help page wraps it */
   double min, max;   /* both 0: the range of the setting of that name (velo/setting.h) */
   const Choice *choices;
+  OptionList list; /* of OPTION_CHOICE: what may stand in place of a name */
 } Option;
 
 enum { MAX_OPTIONS = 112, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
@@ -108,6 +119,8 @@ vlParameter option_row(const Option *option);
 /* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a
  * report. name: of the value in the message. number may be null. */
 int option_number(const char *name, const char *text, const vlParameter *row, double *number);
+/* Radians of degrees, as options convert them. */
+double option_radians(double degrees);
 /* The names that an option takes; null: any text. */
 const Choice *option_choices(const Option *option);
 /* The name of a choice's value. */

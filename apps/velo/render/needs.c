@@ -19,6 +19,7 @@ typedef enum Need {
   NEED_ANIMATE,
   NEED_ADDED,
   NEED_ADDED_CAMERA,
+  NEED_ADDED_CAMERA_OR_POINT,
   NEED_ADDED_GROUND,
   NEED_ADDED_LIGHT,
   NEED_CAMERA_FILE,
@@ -52,7 +53,7 @@ static const Need needs_of[MAX_OPTIONS] = {
     [RENDER_FPS] = NEED_ANIMATE,
     [RENDER_UP] = NEED_ADDED,
     [RENDER_FRAMING] = NEED_ADDED_CAMERA,
-    [RENDER_WALLS] = NEED_ADDED_CAMERA,
+    [RENDER_WALLS] = NEED_ADDED_CAMERA_OR_POINT,
     [RENDER_NO_GROUND] = NEED_ADDED_GROUND,
     [RENDER_ENVIRONMENT_ROTATION] = NEED_ADDED_LIGHT,
     [RENDER_ENVIRONMENT_STRENGTH] = NEED_ADDED_LIGHT,
@@ -112,6 +113,10 @@ static bool has_added_camera(const Facts *f) {
   return f->needs->opening->camera_added;
 }
 
+static bool has_added_camera_or_point(const Facts *f) {
+  return has_added_camera(f) || f->v[RENDER_WALLS].integer == OPTION_LIST_GIVEN;
+}
+
 static bool has_added_light(const Facts *f) {
   return f->needs->opening->environment != VL_ENVIRONMENT_NONE;
 }
@@ -123,6 +128,7 @@ static bool has_added_ground(const Facts *f) {
 
 static bool has_added(const Facts *f) {
   return has_added_camera(f) || has_added_light(f) || f->v[RENDER_GROUND].given ||
+         f->v[RENDER_GROUND_MIDDLE].given || f->v[RENDER_GROUND_RADIUS].given ||
          f->v[RENDER_TURN].given || f->v[RENDER_TURNTABLE].given;
 }
 
@@ -221,6 +227,8 @@ static const struct {
     [NEED_ANIMATE] = {has_animate, "it goes with --animate"},
     [NEED_ADDED] = {has_added, " has a camera and light of its own", .names_scene = true},
     [NEED_ADDED_CAMERA] = {has_added_camera, "no camera is added, the camera is given"},
+    [NEED_ADDED_CAMERA_OR_POINT] = {has_added_camera_or_point,
+                                    "no camera is added, the camera is given"},
     [NEED_ADDED_GROUND] = {has_added_ground, "no ground would be added"},
     [NEED_ADDED_LIGHT] = {has_added_light, "no environment map is added (--environment)"},
     [NEED_CAMERA_FILE] =

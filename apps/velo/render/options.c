@@ -98,8 +98,9 @@ const Option render_options[] = {
      "environment map that lights the scene: studio, sky, white, none, or an image file (2:1: "
      "longitude and latitude; "
      "square: equal-area octahedral). Default: studio, if the file has none"},
-    {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_NUMBER, "DEG",
-     "rotation of the environment map about the vertical axis, in degrees"},
+    {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_ANGLE, "DEG",
+     "rotation of the environment map about the vertical axis, in degrees; default: 0, of the "
+     "studio so that its key light is on the left of the camera that velo adds"},
     {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X",
      "factor on the radiance of the environment map"},
     {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL,
@@ -107,14 +108,21 @@ const Option render_options[] = {
     {RENDER_NO_GROUND, 0, "no-ground", OPTION_FLAG, NULL,
      "add no ground below a model without a camera of its own. Default: a ground that shows "
      "the model's shadows and fades into the studio"},
-    {RENDER_FRAMING, 0, "framing", OPTION_CHOICE, "NAME",
+    {RENDER_GROUND_MIDDLE, 0, "ground-middle", OPTION_POINT, "X,Y,Z",
+     "middle of the ground, also of one below a model with a camera of its own. Default: under "
+     "the model"},
+    {RENDER_GROUND_RADIUS, 0, "ground-radius", OPTION_NUMBER, "R",
+     "radius of the ground, in scene units. Default: by the size of the model"},
+    {RENDER_FRAMING, 0, "framing", OPTION_CHOICE, "NAME | A,E",
      "viewpoint of the camera that velo adds to a model without one; auto: flat models from "
-     "the front, others from a corner:",
-     0, 0, framing_choices},
-    {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME",
+     "the front, others from a corner; A,E: A degrees from the front to the right, E degrees "
+     "above the horizon:",
+     0, 0, framing_choices, OPTION_LIST_ANGLES},
+    {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME | X,Y,Z",
      "closed models, such as a room, without a camera of their own: hide the walls between "
-     "the added camera and the middle, or keep them:",
-     0, 0, walls_choices},
+     "the added camera and the middle, or keep them; X,Y,Z: hide those between this point and "
+     "the middle, whatever the camera is:",
+     0, 0, walls_choices, OPTION_LIST_POINT},
     {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS",
      "axis of the model that points up, for the camera, light and ground that velo adds; "
      "default: y, of .stl files z:",

@@ -8,6 +8,7 @@
 
 #include "cli/kinds.h"
 #include "cli/report.h"
+#include "render/added.h"
 #include "render/lens_options.h"
 
 extern const char velo_commit[]; /* written by cmake/commit.cmake */
@@ -42,6 +43,7 @@ typedef struct Words {
   const char *words[2 * MAX_OPTIONS + 4];
   uint32_t count;
   char names[MAX_OPTIONS][32], path[4100], spp[16], frame[16], light_paths[16];
+  AddedOptions added;
 } Words;
 
 static void add_option(Words *w, const Option *option, const char *value) {
@@ -65,8 +67,10 @@ static const char *raced_value(Words *w, int option, const Job *job) {
   return w->light_paths;
 }
 
-static void find_words(Words *w, const Arguments *arguments, const Job *job,
+static void find_words(Words *w, const ReceiptPlan *plan, const Job *job,
                        const ReceiptImage *which) {
+  const Arguments *arguments = plan->arguments;
+  added_options(plan->opening, arguments, plan->opening->camera_added, &w->added);
   snprintf(w->path, sizeof w->path, "%s%s", job->path[0] == '-' ? "./" : "", job->path);
   snprintf(w->spp, sizeof w->spp, "%u", job->defs->render.spp);
   snprintf(w->frame, sizeof w->frame, "%u", which->frame);
@@ -76,11 +80,15 @@ static void find_words(Words *w, const Arguments *arguments, const Job *job,
   w->words[w->count++] = w->path;
   for (const Option *option = render_options; option->name; option++) {
     const OptionValue *value = &arguments->values[option->id];
-    const char *raced = raced_value(w, option->id, job);
+    const char *raced = raced_value(w, option->id, job), *added = NULL;
     if (option->id == RENDER_SPP)
       add_option(w, option, w->spp);
     else if (raced)
       add_option(w, option, raced);
+    else if (added_has(&w->added, option->id, &added))
+      add_option(w, option, added);
+    else if (added_replaces(option->id))
+      continue;
     else if (option->id == RENDER_EYE && which->eye)
       add_option(w, option, which->eye);
     else if (option->id == RENDER_FRAMES && which->is_frame)
@@ -123,7 +131,7 @@ static bool is_autofocused(const Job *job, const Arguments *arguments) {
 vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job,
                       const ReceiptImage *which, vlReceipt **receipt) {
   Words words;
-  find_words(&words, plan->arguments, job, which);
+  find_words(&words, plan, job, which);
   vlSceneDefs defs = defs_of(job, which);
   vlReceiptDef def = vl_default_receipt_def();
   def.commit = velo_commit;

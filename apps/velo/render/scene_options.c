@@ -54,7 +54,7 @@ const Choice walls_choices[] = {{"hide", 0}, {"keep", 1}, {NULL, 0}};
 const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {NULL, 0}};
 
 /* The front is +z, for z upwards -y, as modellers have it. */
-static void choose_up(int axis, vlCompleteDef *def) {
+void scene_choose_up(int axis, vlCompleteDef *def) {
   for (int i = 0; i < 3; i++) {
     def->up[i] = i == axis;
     def->front[i] = axis == 2 ? -(i == 1) : i == 2;
@@ -100,6 +100,38 @@ static int choose_times(const OptionValue *v, vlLoadDef *load) {
   return -1;
 }
 
+/* The ground. Ground truth is of the file alone. A film that is continued keeps the ground that
+ * it has. */
+static void choose_ground(const Arguments *arguments, bool model, vlCompleteDef *complete) {
+  const OptionValue *v = arguments->values;
+  const bool channels = v[RENDER_CHANNELS].given && !arguments->channels_later;
+  const bool placed = v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given;
+  complete->ground = v[RENDER_GROUND].given;
+  complete->backdrop = placed || (model && !v[RENDER_NO_GROUND].given && !channels);
+  for (int i = 0; i < 3 && v[RENDER_GROUND_MIDDLE].given; i++)
+    complete->ground_middle[i] = v[RENDER_GROUND_MIDDLE].numbers[i];
+  if (v[RENDER_GROUND_RADIUS].given)
+    complete->ground_radius = v[RENDER_GROUND_RADIUS].number;
+}
+
+static void choose_walls(const OptionValue *walls, vlCompleteDef *complete) {
+  complete->open_walls = !walls->given || walls->integer != 1;
+  for (int i = 0; i < 3 && walls->given && walls->integer == OPTION_LIST_GIVEN; i++)
+    complete->walls_from[i] = walls->numbers[i];
+}
+
+static int check_completion(const OptionValue *v) {
+  const double most = vl_setting(VL_SETTING_COMPLETE, "elevation")->high;
+  if (v[RENDER_NO_GROUND].given &&
+      (v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given))
+    return report_usage("--no-ground does not go with --ground-middle and --ground-radius");
+  if (v[RENDER_FRAMING].given && v[RENDER_FRAMING].integer == OPTION_LIST_GIVEN &&
+      fabs(v[RENDER_FRAMING].numbers[1]) > most)
+    return report_usage("--framing A,E: E must be from -89 to 89 degrees; it is \"%s\"",
+                        v[RENDER_FRAMING].text);
+  return -1;
+}
+
 /* What is added to the scene. */
 static void choose_completion(const char *path, const Arguments *arguments, bool model,
                               vlCompleteDef *complete) {
@@ -111,21 +143,22 @@ static void choose_completion(const char *path, const Arguments *arguments, bool
   if (v[RENDER_ENVIRONMENT].given)
     choose_environment(v[RENDER_ENVIRONMENT].text, complete);
   if (v[RENDER_ENVIRONMENT_ROTATION].given)
-    complete->rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
+    complete->rotation = v[RENDER_ENVIRONMENT_ROTATION].numbers[0];
   if (v[RENDER_ENVIRONMENT_STRENGTH].given)
     complete->strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
-  complete->ground = v[RENDER_GROUND].given;
-  /* Ground truth is of the file alone. A film that is continued keeps the ground that it
-   * has. */
-  complete->backdrop = model && !v[RENDER_NO_GROUND].given &&
-                       (!v[RENDER_CHANNELS].given || arguments->channels_later);
-  complete->open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
-  if (v[RENDER_FRAMING].given)
-    complete->framing = (vlFraming)v[RENDER_FRAMING].integer;
+  choose_ground(arguments, model, complete);
+  choose_walls(&v[RENDER_WALLS], complete);
+  const OptionValue *framing = &v[RENDER_FRAMING];
+  if (framing->given && framing->integer == OPTION_LIST_GIVEN) {
+    complete->azimuth = framing->numbers[0];
+    complete->elevation = framing->numbers[1];
+  } else if (framing->given) {
+    complete->framing = (vlFraming)framing->integer;
+  }
   if (v[RENDER_UP].given)
-    choose_up((int)v[RENDER_UP].integer, complete);
+    scene_choose_up((int)v[RENDER_UP].integer, complete);
   else if (text_ends_with(path, ".stl") || text_ends_with(path, ".stl.gz"))
-    choose_up(2, complete);
+    scene_choose_up(2, complete);
 }
 
 int scene_open(vlContext *context, const char *path, const Arguments *arguments,
@@ -139,6 +172,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (v[RENDER_SEARCH].given)
     load.search_path = v[RENDER_SEARCH].text;
   int status = choose_times(v, &load);
+  if (status < 0)
+    status = check_completion(v);
   if (status >= 0)
     return status;
   if (v[RENDER_SCENE].given)
@@ -166,14 +201,12 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   opening->model = scene_is_model(path);
   opening->lamps = info.lights > 0 && opening->model;
   choose_completion(path, arguments, opening->model, &complete);
-  opening->environment = complete.environment;
-  if (opening->environment == VL_ENVIRONMENT_AUTO)
-    opening->environment = defs->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
   opening->load = load;
-  opening->complete = complete;
+  opening->complete = vl_scene_completed(*scene);
+  opening->environment = opening->complete.environment;
   if (v[RENDER_TURN].given && v[RENDER_CAMERA].given && !load.camera)
     return report_usage(
         "--turn turns the scene's own camera: it does not go with --camera FILE");

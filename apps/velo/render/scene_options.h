@@ -7,7 +7,8 @@
 #include "velo/load.h"
 #include "velo/render.h"
 
-/* How a scene was loaded and completed. */
+/* How a scene was loaded and completed. complete: what was added, with nothing left to
+ * choose. */
 typedef struct SceneOpening {
   vlLoadDef load;
   vlCompleteDef complete;
@@ -28,6 +29,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
                vlScene **scene, SceneOpening *opening);
 /* Turns the camera as it was opened as --turn asks. *defs: the scene's. */
 void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs);
+/* Sets the directions up and front for an axis (0: x) that points up. */
+void scene_choose_up(int axis, vlCompleteDef *def);
 /* Whether the file holds a model: a format other than pbrt. */
 bool scene_is_model(const char *path);
 /* Whether it is a glTF file, by its name. */

@@ -8,6 +8,7 @@
 #include "camera/camera.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
+#include "render/added.h"
 #include "render/attributes.h"
 #include "render/outputs.h"
 #include "view/engine_status.h"
@@ -173,11 +174,16 @@ static bool option_is_replaced(int id) {
   return false;
 }
 
+/* Options that were given, and those that say what velo chose. */
 static void put_options(FILE *out, const Engine *e) {
   const Arguments *arguments = e->def.arguments;
+  AddedOptions added;
+  added_options(&e->model.opening, arguments, false, &added);
   for (const Option *o = view_options; o->name; o++) {
     const OptionValue *value = &arguments->values[o->id];
-    if (!value->given || option_is_replaced(o->id))
+    const char *text = value->text;
+    const bool replaced = added_replaces(o->id) || option_is_replaced(o->id);
+    if (!added_has(&added, o->id, &text) && (!value->given || replaced))
       continue;
     if (o->kind == OPTION_FOLDERS) {
       for (int i = 0; i < arguments->folder_count; i++) {
@@ -188,14 +194,28 @@ static void put_options(FILE *out, const Engine *e) {
     }
     fprintf(out, " --%s", o->name);
     if (o->kind != OPTION_FLAG)
-      put_word(out, value->text);
+      put_word(out, text);
   }
+}
+
+/* Names of the camera's file and of the image: STEM.json and STEM.png, with a number after the
+ * stem where a file has one of them already. */
+static bool free_pair(const char *stem, char camera[NAME_SIZE], char image[NAME_SIZE]) {
+  char number[16] = "";
+  for (int i = 2; i < 10000; i++) {
+    snprintf(camera, NAME_SIZE, "%s%s.json", stem, number);
+    snprintf(image, NAME_SIZE, "%s%s.png", stem, number);
+    if (access(camera, F_OK) != 0 && access(image, F_OK) != 0)
+      return true;
+    snprintf(number, sizeof number, "-%d", i);
+  }
+  return false;
 }
 
 /* Writes the camera and returns the command's text, which the caller frees; null after posting
  * why not. */
 static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
-  char stem[NAME_SIZE - 40], whole[NAME_SIZE], *text = NULL;
+  char stem[NAME_SIZE - 40], whole[NAME_SIZE], image[NAME_SIZE], *text = NULL;
   size_t size;
   vlError error = {0};
   const ViewMessage *m = &task->message;
@@ -204,8 +224,7 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   const vlCamera *made = &e->now.camera.made;
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.200s-view", whole);
-  snprintf(whole, sizeof whole, "%s.json", stem);
-  if (!free_name(whole, camera)) {
+  if (!free_pair(stem, camera, image)) {
     engine_refuse(e, task, "there are too many files of this name");
     return NULL;
   }
@@ -240,8 +259,7 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   fprintf(out, " --spp %u --sequence %u --view %s --exposure %s --no-receipt -o",
           vl_film_spp(e->film), render->sequence ? render->sequence : 65536,
           choice_name(view_choices, choice_value(view_choices, m->view, 0)), number);
-  snprintf(whole, sizeof whole, "%s.png", stem);
-  put_word(out, whole);
+  put_word(out, image);
   return fclose(out) == 0 ? text : NULL;
 }
 

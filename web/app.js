@@ -43,6 +43,7 @@ const app = {
   // Sends a question; the answer calls back.
   ask(message, answer) {
     const id = app.nextId++;
+    if (!app.connected) return void setTimeout(() => answer({ type: "refused", id, message: "velo cannot be reached" }));
     app.waiting.set(id, answer);
     app.connection.send({ ...message, id });
   },
@@ -62,7 +63,7 @@ const app = {
   choose(name) {
     app.tool = name;
     byId("stage").dataset.tool = name;
-    for (const button of byId("tools").children) button.setAttribute("aria-checked", String(button.dataset.tool === name));
+    for (const button of byId("tools").children) button.setAttribute("aria-pressed", String(button.dataset.tool === name));
   },
 
   pick(x, y, kind) {
@@ -136,8 +137,7 @@ function showState(state) {
   display.show(state, first);
   byId("scene").textContent = state.scene.split("/").pop();
   document.title = `${state.scene.split("/").pop()} – velo`;
-  byId("undo").disabled = !state.can_undo || !app.steers;
-  byId("redo").disabled = !state.can_redo || !app.steers;
+  enable();
   byId("pause").setAttribute("aria-pressed", String(state.paused));
   const c = state.crop;
   app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
@@ -147,6 +147,36 @@ function showState(state) {
   const camera = JSON.stringify(state.camera);
   if (camera !== app.lastCamera) paths.stale();
   app.lastCamera = camera;
+}
+
+// What changes things is off where this page may not, or cannot; so are tools that move the camera.
+function enable() {
+  const on = Boolean(app.steers && app.connected && app.state);
+  panel.enable(on);
+  display.enable(on);
+  byId("undo").disabled = !on || !app.state.can_undo;
+  byId("redo").disabled = !on || !app.state.can_redo;
+  for (const control of [byId("reset"), byId("pause"), ...byId("save").querySelectorAll("button, select")]) control.disabled = !on;
+  for (const button of byId("tools").children) button.disabled = !on && button.dataset.tool !== "inspect";
+  if (!on && app.tool !== "inspect") {
+    app.toolBefore = app.tool;
+    app.choose("inspect");
+  } else if (on && app.toolBefore) {
+    app.choose(app.toolBefore);
+    app.toolBefore = null;
+  }
+  tellRole();
+}
+
+// Who steers, as long as that is not this page alone.
+function tellRole() {
+  const others = app.pages - 1, box = byId("role");
+  const text = !app.connected ? "no connection" : app.steers ? (others > 0 ? `you steer, ${others} look${others > 1 ? "" : "s"} on` : "")
+    : app.steering ? "another page steers" : app.steers === false ? "looks on" : "";
+  box.hidden = !text;
+  byId("role-text").textContent = text;
+  box.classList.toggle("off", !app.steers || !app.connected);
+  byId("take-over").hidden = !(app.connected && app.steering && !app.steers);
 }
 
 // The tool Focus has found a distance.
@@ -173,10 +203,10 @@ const handlers = {
   status: showStatus,
   lists: message => { panel.lists(message); display.lists(message); app.lists = message; app.onlists?.(message); },
   role(message) {
-    app.steers = message.steers;
-    panel.enable(message.steers);
-    for (const id of ["reset", "pause"]) byId(id).disabled = !message.steers;
-    app.notice(message.steers ? "" : message.steering ? "Another page steers; this one looks on." : "This page looks on.", true);
+    if (app.steers && !message.steers) app.notice("Another page has taken over; this one looks on.", true);
+    if (!app.steers && message.steers) app.notice("");
+    Object.assign(app, { steers: message.steers, steering: message.steering, pages: message.pages });
+    enable();
   },
   refused(message) {
     if (message.id && app.waiting.has(message.id)) return answered(message);
@@ -199,6 +229,16 @@ function answered(message) {
   app.waiting.delete(message.id);
 }
 
+// The connection is lost: no answer comes any more, and edits on their way do not arrive.
+function forget() {
+  const lost = [...app.waiting.values()];
+  app.waiting.clear();
+  for (const answer of lost) answer({ type: "refused", message: "velo cannot be reached" });
+  app.sent = [];
+  app.queued = null;
+  app.steers = undefined;
+}
+
 app.connection = { send() {} }; // before the engine is there
 connect({
   text(message) {
@@ -216,6 +256,9 @@ connect({
   },
   state(connected, reason) {
     document.body.classList.toggle("away", !connected);
+    app.connected = connected;
+    if (!connected) forget();
+    enable();
     if (!connected) byId("status").textContent = reason ? `closed: ${reason}` : "velo has ended or cannot be reached; trying again";
     if (!connected && engineName() === "browser") app.notice(`velo does not run in this page: ${reason}`);
   },
@@ -224,12 +267,13 @@ connect({
 // ---- controls ----
 
 for (const tool of tools) {
-  const button = make("button", { textContent: tool.label, title: tool.title, role: "radio", onclick: () => app.choose(tool.name) });
+  const button = make("button", { textContent: tool.label, title: tool.title, onclick: () => app.choose(tool.name) });
   button.dataset.tool = tool.name;
   byId("tools").append(button);
 }
 app.choose("orbit");
 for (const name of ["undo", "redo", "reset", "pause"]) byId(name).onclick = app[name];
+byId("take-over").onclick = () => app.connection.send({ type: "steer" });
 byId("notice-close").onclick = () => app.notice("");
 byId("side-toggle").onclick = () => {
   const side = byId("side");

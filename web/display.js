@@ -50,7 +50,10 @@ export class Display {
     }
     this.channel.value = this.channels[state.channel] || "image";
     if (document.activeElement !== this.spp) this.spp.value = state.spp;
-    for (const input of [this.channel, this.spp, this.mark]) input.disabled = !this.app.steers;
+  }
+
+  enable(on) {
+    for (const input of [this.channel, this.spp, this.mark]) input.disabled = !on;
   }
 
   expose(step) { this.set(this.ev + step); }

@@ -33,6 +33,7 @@ export class Outside {
 
   open() { if (this.box.hidden) this.toggle(); }
   toggle() {
+    if (!this.app.camera()) return;
     this.box.hidden = !this.box.hidden;
     this.button?.setAttribute("aria-pressed", String(!this.box.hidden));
     this.drawing = null; // it is not of the present camera

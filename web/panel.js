@@ -152,10 +152,12 @@ export class Panel {
     this.size = size;
     for (const [name, entry] of this.fields) {
       const value = camera[name], values = entry.field.text ? [value.map(v => short(v, 9)).join(" ")] : [value].flat();
+      const most = entry.field.count === 3 ? Math.max(...values.map(Math.abs)) : 0;
       entry.inputs.forEach((input, i) => {
         if (input === document.activeElement && input.type === "text" && input.value !== input.shown) return;
         input.exact = values[i] ?? null;
-        input.whole = typeof values[i] === "string" ? values[i] : values[i] === null && name === "far" ? "∞" : short(values[i], 9);
+        const rounded = Math.abs(values[i]) < 1e-12 * most ? 0 : values[i]; // the rest of a rounding beside other numbers
+        input.whole = typeof values[i] === "string" ? values[i] : values[i] === null && name === "far" ? "∞" : short(rounded, 9);
         if (input.type !== "text") input.value = input.whole;
         else if (input === document.activeElement) input.value = input.shown = input.whole;
         else this.fit(input);
@@ -168,7 +170,7 @@ export class Panel {
   fit(input) {
     const number = typeof input.exact === "number" ? input.exact : NaN;
     let text = input.whole;
-    for (let digits = 8; digits > 2 && Number.isFinite(number) && !this.hasRoom(input, text); digits--) text = short(number, digits);
+    for (let digits = 8; digits > 2 && Number(text) && Number.isFinite(number) && !this.hasRoom(input, text); digits--) text = short(number, digits);
     input.value = input.shown = text;
     input.title = text === input.whole ? "" : input.whole;
   }

@@ -513,8 +513,15 @@ def test_many(view):
     other.change = 1
     check("second_looks", not looks["steers"])
     check("second_is_refused", edit(other, fov=20)["type"] == "refused")
+    check("pages_are_counted", looks["pages"] == 2 and page.wait_text("role")["pages"] == 2, looks)
+    other.send(type="steer")
+    check("takes_over", other.wait_text("role")["steers"] and not page.wait_text("role")["steers"])
+    check("first_is_refused", edit(page, fov=20)["type"] == "refused")
+    page.send(type="steer")
+    check("takes_over_again", page.wait_text("role")["steers"] and not other.wait_text("role")["steers"])
     page.close()
-    check("heir_steers", other.wait_text("role")["steers"])
+    role = other.wait_text("role")
+    check("heir_steers", role["steers"] and role["pages"] == 1, role)
     check("heir_edits", edit(other, fov=20)["type"] == "state")
     # not by the status: one from before the edit may still be on its way, and the film would have no sample
     other.wait_frame(lambda f: f.change == other.change and f.scale == 1 and f.spp == 3)
@@ -572,6 +579,45 @@ def threads_of(process):
             yield dict(line.rstrip("\n").split(":\t", 1) for line in file if ":\t" in line)
 
 
+def arguments_of_all():
+    """The arguments of every process of this machine, as every user can read them."""
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/cmdline", "rb") as file:
+                yield file.read()
+        except OSError:
+            pass  # it has ended
+
+
+def test_same_port(folder):
+    """Runs on one port have one token, which only the user can read; other ports have others."""
+    private = os.path.join(folder, "private")
+    os.mkdir(private, 0o700)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+
+    def run(*options, **env):
+        view = View(VELO, os.path.join(folder, "confined.pbrt"), *options, cwd=folder, env={**os.environ, "XDG_RUNTIME_DIR": private, **env})
+        view.end()
+        return view.path
+    first = run("--port", str(port))
+    check("same_port_same_token", run("--port", str(port)) == first)
+    names = os.listdir(private)
+    check("token_is_private", len(names) == 1 and os.stat(os.path.join(private, names[0])).st_mode & 0o777 == 0o600, names)
+    check("free_port_new_token", run() != first)
+    check("listen_new_token", run("--port", str(port), "--listen", "127.0.0.1") != first)
+    with open(os.path.join(private, names[0]), "w") as file:
+        file.write("../../etc")
+    second = run("--port", str(port))
+    check("broken_token", second != first and run("--port", str(port)) == second, second)
+    os.chmod(private, 0o755)
+    check("folder_of_others", run("--port", str(port), TMPDIR=folder) != second)
+    os.unlink(os.path.join(private, names[0]))
+    os.chmod(private, 0o700)
+    os.symlink(os.path.join(folder, "confined.pbrt"), os.path.join(private, names[0]))
+    check("no_link_is_followed", run("--port", str(port)) != run("--port", str(port)))
+
+
 def test_sandbox(folder):
     """The system confines velo and all its threads; the page, the browser, saved files and reloads work."""
     for name in ("box", "work", "films", "programs", "elsewhere"):
@@ -579,7 +625,7 @@ def test_sandbox(folder):
     scene, opener = os.path.join(folder, "confined.pbrt"), os.path.join(folder, "programs/xdg-open")
     opened, work = os.path.join(folder, "opened"), os.path.join(folder, "work")
     with open(opener, "w") as file:
-        file.write(f'#!/bin/sh\nprintf %s "$1" >{shlex.quote(opened)}.part && mv {shlex.quote(opened)}.part {shlex.quote(opened)}\n')
+        file.write(f'#!/bin/sh\nprintf %s "$1" >{shlex.quote(opened)}.part && mv {shlex.quote(opened)}.part {shlex.quote(opened)}\nsleep 2\n')
     os.chmod(opener, 0o755)
 
     def replace(more):
@@ -600,7 +646,9 @@ def test_sandbox(folder):
     until = time.monotonic() + 20
     while not os.path.exists(opened) and time.monotonic() < until:
         time.sleep(0.05)
-    check("sandbox_opens_the_browser", os.path.exists(opened) and open(opened).read() == view.address)
+    way = open(opened).read()
+    check("sandbox_opens_the_browser", view.address in open(way).read() and os.stat(way).st_mode & 0o777 == 0o600, way)
+    check("no_argument_has_the_token", not [line for line in arguments_of_all() if view.path.strip("/").encode() in line])
     saved = answer(page, "saved", type="save", what="camera", name="camera.json", dialect="velo")
     check("sandbox_saves_a_camera", saved["type"] == "saved" and os.path.exists(os.path.join(work, "camera.json")), saved)
     saved = answer(page, "saved", type="save", what="image", name="shown.png", view="standard", exposure=0)
@@ -615,6 +663,7 @@ def test_sandbox(folder):
     wait_done(page)
     page.close()
     code, errors = view.end()
+    check("way_is_removed", not os.path.exists(way))
     check("sandbox_ends", code == 0 and os.path.exists(os.path.join(folder, "films/a.film")), code, errors)
     if "files by folder" in errors and "network open" not in errors:
         check("sandbox_confines_each_thread", len(threads) > 5 and
@@ -685,6 +734,7 @@ def main():
     test_trajectory(folder)
     test_watch(folder)
     test_sandbox(folder)
+    test_same_port(folder)
     test_serve(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)
     check("film", info.returncode == 0, info.stderr)

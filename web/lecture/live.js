@@ -278,6 +278,7 @@ export class Live {
   }
 
   receiveRole(message) {
+    if (this.steers === message.steers) return; // the number of pages changed
     this.steers = message.steers;
     const figure = this.figures.find((f) => f.seen);
     if (figure) figure.start(); // the connection is new, or the page that steered is closed

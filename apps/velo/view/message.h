@@ -32,7 +32,7 @@ typedef enum MessageKind {
   MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
   MESSAGE_PATHS,    /* the paths of a pixel: id, x, y, samples, show, by_sample */
   MESSAGE_CAMERAS,  /* the cameras of --trajectory as lines: id */
-  MESSAGE_STEER,    /* the sender wants to steer, if nobody does */
+  MESSAGE_STEER,    /* the sender steers from now on, and no other page */
   MESSAGE_SCENE     /* another scene of the lecture: name, change */
 } MessageKind;
 

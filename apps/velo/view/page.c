@@ -140,7 +140,8 @@ int view_run(const Arguments *arguments) {
     return status;
   engine_attach(engine, &server);
   server.calls = engine_calls(engine);
-  velo_page_post("{\"type\":\"role\",\"client\":1,\"steers\":true,\"steering\":true}");
+  velo_page_post(
+      "{\"type\":\"role\",\"client\":1,\"steers\":true,\"steering\":true,\"pages\":1}");
   server.calls.greet(server.calls.user, 1);
   server.calls.clients(server.calls.user, 1);
   emscripten_exit_with_live_runtime(); /* the functions above follow; the arguments stay */

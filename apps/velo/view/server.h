@@ -23,7 +23,8 @@ typedef struct ServerCalls {
 
 typedef struct ServerDef {
   const char *address; /* to listen on: an address of this machine; null: 127.0.0.1 */
-  int port;            /* 0: a free one */
+  int port;            /* 0: a free one. Without an address, runs on one port have one token, so
+                          that their pages find them again */
   const char *home;    /* file of the page: "index.html" */
   const char *query;   /* what the address ends with: "", "?language=it" */
   bool steering;       /* one page steers; false: all only look */

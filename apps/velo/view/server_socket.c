@@ -39,13 +39,17 @@ static bool is_ours(struct lws *wsi) {
   return name && strcmp(name, "socket") == 0 && server->client_count < MOST_CLIENTS;
 }
 
-/* Tells a page whether it steers. */
-static void post_role(Server *server, const Client *client) {
-  char text[160];
-  snprintf(text, sizeof text, "{\"type\":\"role\",\"client\":%u,\"steers\":%s,\"steering\":%s}",
-           client->id, client->steers ? "true" : "false",
-           server->def.steering ? "true" : "false");
-  server_post(server, client->id, text);
+/* Tells each page whether it steers, and how many there are. */
+static void post_roles(Server *server) {
+  for (unsigned i = 0; i < server->client_count; i++) {
+    const Client *client = server->clients[i];
+    char text[160];
+    snprintf(text, sizeof text,
+             "{\"type\":\"role\",\"client\":%u,\"steers\":%s,\"steering\":%s,\"pages\":%u}",
+             client->id, client->steers ? "true" : "false",
+             server->def.steering ? "true" : "false", server->client_count);
+    server_post(server, client->id, text);
+  }
 }
 
 static int begin(struct lws *wsi, Connection *connection) {
@@ -71,7 +75,7 @@ static int begin(struct lws *wsi, Connection *connection) {
     return -1;
   }
   connection->client = client;
-  post_role(server, client);
+  post_roles(server);
   server->calls.greet(server->calls.user, client->id);
   server->calls.clients(server->calls.user, count);
   lws_callback_on_writable(wsi);
@@ -92,7 +96,7 @@ static void free_client(Client *client) {
 
 static void end(struct lws *wsi, Connection *connection) {
   Server *server = server_of(wsi);
-  Client *client = connection->client, *heir = NULL;
+  Client *client = connection->client;
   connection->client = NULL;
   if (!client)
     return;
@@ -102,15 +106,11 @@ static void end(struct lws *wsi, Connection *connection) {
     if (server->clients[i] != client)
       server->clients[kept++] = server->clients[i];
   server->client_count = kept;
-  if (client->steers && kept) {
-    /* the page that has looked on for the longest time steers now */
-    heir = server->clients[0];
-    heir->steers = true;
-  }
+  if (client->steers && kept) /* the page that has looked on for the longest time */
+    server->clients[0]->steers = true;
   pthread_mutex_unlock(&server->lock);
   free_client(client);
-  if (heir)
-    post_role(server, heir);
+  post_roles(server);
   server->calls.clients(server->calls.user, kept);
 }
 
@@ -226,13 +226,11 @@ static int send_next(struct lws *wsi, Connection *connection) {
 /* ---- receiving --------------------------------------------------------------------------- */
 
 static void take_over(Server *server, Client *client) {
-  bool free_seat = server->def.steering;
   pthread_mutex_lock(&server->lock);
   for (unsigned i = 0; i < server->client_count; i++)
-    free_seat &= !server->clients[i]->steers;
-  client->steers |= free_seat;
+    server->clients[i]->steers = server->def.steering && server->clients[i] == client;
   pthread_mutex_unlock(&server->lock);
-  post_role(server, client);
+  post_roles(server);
 }
 
 static int handle(struct lws *wsi, Client *client, const char *text, size_t size) {

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "cli/report.h"
+#include "view/private_file.h"
 #include "view/server_parts.h"
 
 bool server_check_host(struct lws *wsi, const Server *server, char *host, size_t size) {
@@ -77,6 +78,8 @@ int server_open(const ServerDef *def, Server **result) {
   int status = access_make_token(server->token)
                    ? -1
                    : report_failure(STATUS_OTHER, "the system gives no random numbers");
+  if (def->port && !def->address)
+    private_file_token(def->port, server->token);
   if (status < 0)
     status = open_port(server);
   if (status < 0) {

@@ -160,9 +160,8 @@ int view_run(const Arguments *arguments) {
     browser_open(&browser, server_address(server));
     wait_for_end(&browser);
     status = STATUS_OK;
-  } else {
-    browser_open(&browser, NULL);
   }
+  browser_end(&browser);
   int stopped = engine ? engine_stop(engine) : STATUS_OK;
   server_stop(server);
   engine_destroy(engine);

@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+"""Pages of velo view in real browsers: who steers and taking over, velo that ends and begins again on its port, browsers without
+WebGL2 or whose context is lost, the file that leads the browser to the page, a file whose image size changes. Skipped without chromium."""
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import Browser  # noqa: E402
+from live import View  # noqa: E402
+import results  # noqa: E402
+from results import check  # noqa: E402
+
+ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
+SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the images of the page are written
+SCENE = '''LookAt 0 1 5 0 0 0 0 1 0
+Camera "perspective" "float fov" %s
+Sampler "halton" "integer pixelsamples" 4
+Film "rgb" "integer xresolution" %d "integer yresolution" 120
+WorldBegin
+LightSource "infinite" "rgb L" [0.5 0.6 0.9]
+Material "diffuse" "rgb reflectance" [0.7 0.2 0.1]
+Shape "sphere" "float radius" 0.8
+'''
+READY = "window.velo?.frames > 0 && velo.state && velo.steers"
+
+
+def write_scene(folder, fov=40, width=160):
+    path = os.path.join(folder, "shown.pbrt")
+    with open(path + ".new", "w") as file:
+        file.write(SCENE % (fov, width))
+    os.rename(path + ".new", path)
+    return path
+
+
+def shot(b, name):
+    if SHOTS:
+        b.screenshot(os.path.join(SHOTS, name + ".png"))
+
+
+def test_roles(folder):
+    """A lasting sign says who steers; what a page may not do looks off, until it takes over."""
+    view = View(VELO, write_scene(folder), cwd=folder)
+    first, second = Browser(), Browser()
+    off = "[...document.querySelectorAll('header button, #tools button, #side input, #side select, #side button')].filter(e => e.disabled).map(e => e.id || e.dataset.tool)"
+    said = "document.getElementById('role').hidden ? '' : document.getElementById('role-text').textContent"
+    try:
+        first.open(view.address)
+        first.wait(READY)
+        check("alone_no_sign", first.run(said) == "", first.run(said))
+        second.open(view.address)
+        second.wait("window.velo?.frames > 0 && velo.state && velo.steers === false")
+        time.sleep(7)  # longer than a calm notice stays
+        check("says_who_steers", (first.run(said), second.run(said)) == ("you steer, 1 looks on", "another page steers"), first.run(said), second.run(said))
+        names = set(second.run(off))
+        check("others_are_off", {"undo", "reset", "pause", "orbit", "look", "turn", "focus", "crop", "channel", "spp", "save-image", "copy-command",
+                                 "field-eye", "field-fov"} <= names and "inspect" not in names, names)
+        faint = second.run("Number(getComputedStyle(document.getElementById('reset')).opacity)")
+        check("off_looks_off", faint < 0.5 and first.run("Number(getComputedStyle(document.getElementById('reset')).opacity)") == 1, faint)
+        shot(second, "looks_on")
+        shot(first, "steers")
+        second.click_on("#take-over")
+        second.wait("velo.steers === true")
+        first.wait("velo.steers === false")
+        check("taken_over", second.run(said) == "you steer, 1 looks on" and first.run(said) == "another page steers")
+        check("all_is_on", set(second.run(off)) <= {"undo", "redo"} and second.run("velo.tool") == "orbit", second.run(off))
+        second.run("velo.edit({eye: [1, 1, 5]})")
+        first.wait("velo.state.camera.eye[0] === 1")
+        check("the_other_edits", True)
+        first.click_on("#take-over")
+        first.wait("velo.steers === true && !document.getElementById('reset').disabled")
+        first.run("velo.edit({eye: [2, 1, 5]})")
+        second.wait("velo.state.camera.eye[0] === 2")
+        check("taken_back", second.run(said) == "another page steers")
+        check("roles_no_errors", not first.problems() + second.problems(), first.problems(), second.problems())
+    finally:
+        first.end()
+        second.end()
+        view.end()
+
+
+def test_again(folder):
+    """velo ends and begins again on the same port: the page finds it. Another token: the page says so."""
+    private = os.path.join(folder, "private")
+    os.mkdir(private, 0o700)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+
+    def start():
+        return View(VELO, write_scene(folder), "--port", port, cwd=folder, env={**os.environ, "XDG_RUNTIME_DIR": private})
+    view = start()
+    b = Browser()
+    try:
+        b.open(view.address)
+        b.wait(READY)
+        b.click_on("#outside-toggle")
+        b.wait("velo.outside.drawing && !!velo.outside.image")
+        b.run("velo.edit({eye: [1, 1, 5]})")
+        b.wait("velo.state.camera.eye[0] === 1")
+        view.end()
+        b.wait("!velo.connected && document.getElementById('role-text').textContent === 'no connection'", 20)
+        check("away_is_off", b.run("document.getElementById('reset').disabled && document.getElementById('field-fov').disabled"))
+        b.run("velo.edit({eye: [3, 1, 5]})")
+        b.run("velo.outside.render()")
+        shot(b, "away")
+        frames = b.run("velo.frames")
+        view = start()
+        b.wait(f"velo.connected && velo.steers && velo.frames > {frames} && velo.state.camera.eye[0] === 0", 30)
+        check("found_again", True)
+        b.run("velo.edit({eye: [2, 1, 5]})")
+        b.wait("velo.state.camera.eye[0] === 2 && velo.local.eye[0] === 2", 20)
+        b.run("window.drawingBefore = velo.outside.drawing, velo.outside.image = null, velo.outside.render(), velo.outside.outline()")
+        b.wait("!!velo.outside.image && velo.outside.drawing !== drawingBefore", 20)
+        check("works_again", not [p for p in b.problems() if "WebSocket" not in p and "Failed to load" not in p and "ERR_" not in p], b.problems())
+        view.end()
+        os.unlink(os.path.join(private, f"velo-view-{port}.token"))
+        view = start()
+        text = b.wait("document.getElementById('status').textContent.includes('another address') && document.getElementById('status').textContent", 20)
+        check("another_address", "printed" in text, text)
+    finally:
+        b.end()
+        view.end()
+
+
+def test_way(folder):
+    """The file that xdg-open gets leads a browser to the page, though its name tells nothing."""
+    opened, opener = os.path.join(folder, "opened"), os.path.join(folder, "xdg-open")
+    with open(opener, "w") as file:
+        file.write(f'#!/bin/sh\nprintf %s "$1" >"{opened}.part" && mv "{opened}.part" "{opened}"\n')
+    os.chmod(opener, 0o755)
+    view = View(VELO, write_scene(folder), cwd=folder, opens=True, env={**os.environ, "DISPLAY": ":none", "PATH": f"{folder}:{os.environ['PATH']}"})
+    b = Browser()
+    try:
+        until = time.monotonic() + 20
+        while not os.path.exists(opened) and time.monotonic() < until:
+            time.sleep(0.05)
+        way = open(opened).read()
+        check("way_without_token", view.path.strip("/") not in way and os.stat(way).st_mode & 0o777 == 0o600, way)
+        b.open("file://" + way)
+        b.wait(READY, 30)
+        check("way_leads_to_the_page", b.run("location.href") == view.address, b.run("location.href"))
+    finally:
+        b.end()
+        view.end()
+    check("way_is_gone", not os.path.exists(way))
+
+
+def main():
+    if not any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")):
+        print("skip view_pages: there is no chromium")
+        return
+    missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
+    if "without libwebsockets" in missing.stderr:
+        print("skip view_pages: velo was built without libwebsockets")
+        return
+    for test in (test_roles, test_again, test_way):
+        folder = tempfile.mkdtemp(prefix="velo-view-")
+        test(folder)
+        shutil.rmtree(folder)
+
+
+main()
+results.end()

@@ -29,6 +29,7 @@
 #include "velo/medium.h"
 #include "velo/own.h"
 #include "velo/paths.h"
+#include "velo/pending.h"
 #include "velo/projection.h"
 #include "velo/receipt.h"
 #include "velo/render.h"

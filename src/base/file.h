@@ -48,6 +48,10 @@ typedef struct vlFileWriter {
 } vlFileWriter;
 vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char *path,
                             vlOutputKind kind, vlError *error);
+/* As vl_file_open_write, for a file whose bytes another program writes to `temporary`, which
+ * exists. Errors also: IO (a stream). */
+vlResult vl_file_open_named(vlFileWriter *writer, vlContext *context, const char *path,
+                            vlError *error);
 /* Starts a writer to memory; name: for messages. It is not committed; the caller takes `memory`
  * and frees it with vl_free. If memory runs out, failed_errno is ENOMEM. */
 void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *name);

@@ -83,9 +83,9 @@ static bool give_name(vlFileWriter *writer) {
   return false;
 }
 
-/* Opens a new file and locks it. False: errno is set. */
-static bool open_temporary(vlFileWriter *writer) {
-  if (open_nameless(writer)) {
+/* Opens a new file and locks it; named: it has a name at once. False: errno is set. */
+static bool open_temporary(vlFileWriter *writer, bool named) {
+  if (!named && open_nameless(writer)) {
     flock(writer->descriptor, LOCK_EX | LOCK_NB);
     return true;
   }
@@ -149,12 +149,8 @@ void vl_remove_leftovers(const char *path) {
   closedir(directory);
 }
 
-vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char *path,
-                            vlOutputKind kind, vlError *error) {
-  vl_file_open_memory(writer, context, path);
-  vlResult result = vl_check_output(context, path, kind, error);
-  if (result != VL_OK || vl_path_is_stream(path))
-    return result;
+/* Opens what is no stream, after its checks. */
+static vlResult open_file(vlFileWriter *writer, const char *path, bool named, vlError *error) {
   struct stat info;
   writer->in_memory = false;
   writer->replaces = stat(path, &info) == 0;
@@ -164,12 +160,32 @@ vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char
     writer->group = info.st_gid;
   }
   if (vl_follow_links(path, writer->target, sizeof writer->target))
-    open_temporary(writer);
+    open_temporary(writer, named);
   if (writer->descriptor >= 0)
     return VL_OK;
   if (errno == ENOMEM)
     return vl_fail_memory(error);
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+}
+
+vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char *path,
+                            vlOutputKind kind, vlError *error) {
+  vl_file_open_memory(writer, context, path);
+  vlResult result = vl_check_output(context, path, kind, error);
+  if (result != VL_OK || vl_path_is_stream(path))
+    return result;
+  return open_file(writer, path, false, error);
+}
+
+vlResult vl_file_open_named(vlFileWriter *writer, vlContext *context, const char *path,
+                            vlError *error) {
+  vl_file_open_memory(writer, context, path);
+  vlResult result = vl_check_output(context, path, VL_OUTPUT_PLAIN, error);
+  if (result != VL_OK)
+    return result;
+  if (vl_path_is_stream(path))
+    return vl_fail(error, VL_ERROR_IO, "cannot write %s: it is no regular file", path);
+  return open_file(writer, path, true, error);
 }
 
 void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *name) {

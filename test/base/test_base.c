@@ -20,6 +20,7 @@
 #include "base/isa.h"
 #include "base/text.h"
 #include "failing_allocator.h"
+#include "velo/pending.h"
 
 static char folder[256];
 
@@ -318,6 +319,50 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   vl_context_destroy(context);
 }
 
+/* A file that another program writes: its temporary file is named and kept by other processes,
+ * and replaces the target by its commit alone. */
+static void pending_files_replace_by_their_commit(void **state) {
+  (void)state;
+  vlPendingFile *pending = NULL;
+  vlError error;
+  vlContext *context = NULL;
+  struct stat info;
+  char text[8] = {0}, temporary[400];
+  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+  put_file(in_folder("video"), "before", 6);
+  assert_int_equal(chmod(in_folder("video"), 0600), 0);
+  const int entries = count_entries();
+  for (int commits = 0; commits < 2; commits++) {
+    assert_int_equal(vl_pending_file_create(context, in_folder("video"), &pending, &error),
+                     VL_OK);
+    snprintf(temporary, sizeof temporary, "%s", vl_pending_file_path(pending));
+    assert_int_equal(stat(temporary, &info), 0);
+    put_file(temporary, "after", 5);
+    vl_remove_leftovers(in_folder("video"));
+    assert_int_equal(stat(temporary, &info), 0);
+    assert_int_equal(count_entries(), entries + 1);
+    if (commits) {
+      assert_int_equal(vl_pending_file_commit(pending, &error), VL_OK);
+      assert_int_equal(vl_pending_file_commit(pending, &error), VL_ERROR_ARGUMENT);
+    }
+    vl_pending_file_destroy(pending);
+    assert_int_equal(count_entries(), entries);
+    FILE *file = fopen(in_folder("video"), "rb");
+    memset(text, 0, sizeof text);
+    assert_true(fread(text, 1, 7, file) > 0);
+    fclose(file);
+    assert_string_equal(text, commits ? "after" : "before");
+  }
+  assert_int_equal(stat(in_folder("video"), &info), 0);
+  assert_int_equal(info.st_mode & 0777, 0600);
+  assert_int_equal(vl_pending_file_create(context, "/dev/null", &pending, &error), VL_ERROR_IO);
+  assert_null(pending);
+  assert_int_equal(vl_pending_file_create(context, folder, &pending, &error), VL_ERROR_IO);
+  assert_int_equal(vl_pending_file_create(context, NULL, &pending, &error), VL_ERROR_ARGUMENT);
+  vl_pending_file_destroy(NULL);
+  vl_context_destroy(context);
+}
+
 static void instruction_sets(void **state) {
   (void)state;
   vlIsa isa = VL_ISA_AUTO;
@@ -429,6 +474,7 @@ int main(void) {
       cmocka_unit_test(files_are_read_whole),
       cmocka_unit_test(gzip_is_unpacked),
       cmocka_unit_test(files_are_written_whole_or_not_at_all),
+      cmocka_unit_test(pending_files_replace_by_their_commit),
       cmocka_unit_test(instruction_sets),
   };
   int result = cmocka_run_group_tests(tests, NULL, NULL);

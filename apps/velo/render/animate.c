@@ -109,7 +109,8 @@ static bool all_exist(const Arguments *arguments) {
 
 /* The command line of one frame: the animation's options become --at or --turn. */
 static int render_frame(const Command *command, const Arguments *arguments, const Animation *a,
-                        uint32_t frame, AnimateRender *render, AnimateShared *shared) {
+                        uint32_t frame, Videos *videos, AnimateRender *render,
+                        AnimateShared *shared) {
   char(*paths)[PATH_SIZE] = malloc(MAX_TEXTS * sizeof *paths), moment[40];
   Arguments one = *arguments;
   const PatternValues values = {.number = frame};
@@ -131,7 +132,7 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   if (status < 0 && skip && all_exist(&one))
     status = STATUS_OK;
   if (status < 0)
-    status = render(command, &one, shared);
+    status = render(command, &one, shared, videos);
   free(paths);
   return status;
 }
@@ -147,16 +148,17 @@ static bool needs_first(const Arguments *arguments, const Animation *a) {
 }
 
 static int prepare(const Command *command, const Arguments *arguments, const Animation *a,
-                   AnimateRender *render, AnimateShared *shared) {
+                   Videos *videos, AnimateRender *render, AnimateShared *shared) {
   Arguments all = *arguments;
   all.values[RENDER_SKIP_EXISTING].given = false;
   shared->preparing = true;
-  int status = render_frame(command, &all, a, 0, render, shared);
+  int status = render_frame(command, &all, a, 0, videos, render, shared);
   shared->preparing = false;
   return status;
 }
 
-int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render) {
+int animate_run(const Command *command, const Arguments *arguments, Videos *videos,
+                AnimateRender *render) {
   Animation a = {0};
   AnimateShared shared = {.exposure = NAN, .whole = arguments};
   int status = check(arguments);
@@ -167,10 +169,16 @@ int animate_run(const Command *command, const Arguments *arguments, AnimateRende
   if (status >= 0)
     return status;
   shared.still = a.turns;
-  status =
-      needs_first(arguments, &a) ? prepare(command, arguments, &a, render, &shared) : STATUS_OK;
+  if (videos)
+    videos_range(videos, a.first, (a.last - a.first) / a.step + 1, a.step);
+  status = needs_first(arguments, &a) ? prepare(command, arguments, &a, videos, render, &shared)
+                                      : STATUS_OK;
   for (uint64_t i = a.first; i <= a.last && status == STATUS_OK; i += a.step) {
-    status = render_frame(command, arguments, &a, (uint32_t)i, render, &shared);
+    if (videos)
+      videos->number = (uint32_t)i;
+    status = render_frame(command, arguments, &a, (uint32_t)i, videos, render, &shared);
+    if (videos)
+      videos->shown.done++;
     if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given)
       break;
   }

@@ -6,6 +6,7 @@
 
 #include "render/job.h"
 #include "render/scene_options.h"
+#include "render/video.h"
 #include "velo/choose.h"
 
 /* What the frames have in common. They are built in one context, each with the world of the
@@ -29,12 +30,13 @@ typedef struct AnimateShared {
   vlSceneDefs defs; /* of the scene as it was opened */
 } AnimateShared;
 
-/* Renders one image. */
+/* Renders one image. videos: what becomes of it; null: it stays an image. */
 typedef int AnimateRender(const Command *command, const Arguments *arguments,
-                          AnimateShared *shared);
+                          AnimateShared *shared, Videos *videos);
 
 bool animate_wanted(const Arguments *arguments);
 /* Renders the frames one after the other. Returns the exit code; the first failure ends it. */
-int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render);
+int animate_run(const Command *command, const Arguments *arguments, Videos *videos,
+                AnimateRender *render);
 
 #endif

@@ -18,55 +18,23 @@ typedef struct Run {
   const Outputs *outputs;
   const Channels *channels; /* what is wanted; layers are empty */
   bool layers;              /* whether some file holds layers */
-  uint32_t count, done;
-  Progress progress;
-  double start, last_shown;
-  vlFilm *film; /* of the view that is rendered */
+  Progress progress;        /* of one image */
+  FrameProgress shown;      /* of all */
+  uint32_t number;          /* of the frame that is rendered */
+  vlFilm *film;             /* of the view that is rendered */
   FilmKeeper keeper;
   vlRenderStats total;
 } Run;
 
 static bool on_progress(void *user, const vlProgress *now) {
   Run *run = user;
-  if (run->count == 1)
+  if (run->shown.count == 1)
     progress_show(&run->progress, now);
+  else
+    progress_show_frames(&run->shown, run->number, now->fraction);
   if (now->pass_done && now->spp_done < now->spp_total && !signals_pending())
     film_keeper_checkpoint(&run->keeper, run->film);
   return !signals_pending();
-}
-
-/* Shows at intervals how many frames are done. */
-static void show(Run *run, const Frame *frame) {
-  double now = monotonic_seconds();
-  if (run->count == 1 || report_is_quiet() ||
-      now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0))
-    return;
-  run->last_shown = now;
-  char text[200], elapsed[32], left[32];
-  double each = run->done ? (now - run->start) / run->done
-                          : INFINITY; /* infinite until the first frame is done */
-  if (report_is_json()) {
-    Json json = report_json_begin("progress");
-    json_integer(&json, "frame", frame->number);
-    json_integer(&json, "frames_done", run->done);
-    json_integer(&json, "frames", run->count);
-    json_number(&json, "elapsed", now - run->start);
-    json_number(&json, "remaining", each * (run->count - run->done));
-    report_json_end(&json);
-    return;
-  }
-  format_seconds(elapsed, sizeof elapsed, now - run->start);
-  format_seconds(left, sizeof left, each * (run->count - run->done));
-  bool narrow = report_is_terminal() && report_terminal_columns() < 60;
-  int n = snprintf(text, sizeof text, "frame %u: %u/%u", frame->number, run->done, run->count);
-  if (!narrow)
-    n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", elapsed);
-  if (run->done)
-    snprintf(text + n, sizeof text - (size_t)n, "  %s left", left);
-  if (report_is_terminal())
-    report_status_line(text);
-  else if (run->done)
-    report_note("%3.0f %%  %s", 100.0 * run->done / run->count, text);
 }
 
 /* Text that names the frame in messages. */
@@ -208,7 +176,7 @@ static bool keep_stopped(Run *run, FrameImage *image) {
 }
 
 static void report_end(const Run *run, uint32_t written, int status) {
-  double seconds = monotonic_seconds() - run->start;
+  double seconds = monotonic_seconds() - run->shown.start;
   const vlRenderStats *t = &run->total;
   if (t->not_finite)
     report_warning(
@@ -218,7 +186,7 @@ static void report_end(const Run *run, uint32_t written, int status) {
   if (report_is_json()) {
     Json json = report_json_begin("result");
     json_integer(&json, "status", status);
-    json_integer(&json, "frames", run->count);
+    json_integer(&json, "frames", run->shown.count);
     json_integer(&json, "written", written);
     json_integer(&json, "spp", t->spp);
     json_number(&json, "seconds", seconds);
@@ -233,13 +201,17 @@ static void report_end(const Run *run, uint32_t written, int status) {
   char time[32], speed[32];
   format_seconds(time, sizeof time, seconds);
   format_count(speed, sizeof speed, seconds > 0 ? (double)t->paths / seconds : 0);
-  const bool images = run->outputs->count && written;
-  report_note("%u of %u frames%s in %s, %u spp, %s paths/s; %s%s%s", written, run->count,
+  const char *video = run->outputs->video;
+  const bool images = run->outputs->count && written && !video;
+  report_note("%u of %u frames%s in %s, %u spp, %s paths/s; %s%s%s", written, run->shown.count,
               run->frames->views == 2 ? " (two eyes)" : "", time, t->spp, speed,
               images                ? "wrote "
+              : video               ? "for "
               : run->outputs->count ? "no image is written"
                                     : "kept in films",
-              images ? run->outputs->paths[0] : "",
+              images  ? run->outputs->paths[0]
+              : video ? video
+                      : "",
               images && run->outputs->count > 1 ? ", ..." : "");
 }
 
@@ -250,8 +222,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
              .world = world,
              .outputs = outputs,
              .channels = channels,
-             .count = frames_count(frames),
-             .start = monotonic_seconds()};
+             .shown = progress_frames(frames_count(frames))};
   for (int i = 0; i < outputs->count; i++)
     run.layers = run.layers || output_holds_layers(outputs->paths[i]);
   int checked = check_films(&run);
@@ -262,7 +233,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
     return report_error(NULL, VL_ERROR_MEMORY, NULL);
   signals_remember();
   int status = STATUS_OK;
-  const uint32_t all = run.count;
+  const uint32_t all = run.shown.count;
   for (uint32_t i = 0; i < all && status < 128; i++) {
     if (signals_pending())
       status = 128 + signals_pending();
@@ -272,10 +243,12 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
     memset(&image, 0, sizeof image);
     image.frame = frames_at(frames, i);
     if (frames->skip_existing && frames_exist(frames, &image.frame, outputs)) {
-      run.count--;
+      run.shown.count--;
       continue;
     }
-    show(&run, &image.frame);
+    run.number = image.frame.number;
+    if (run.shown.count > 1)
+      progress_show_frames(&run.shown, run.number, 0);
     int code = STATUS_OK;
     for (int v = 0; v < frames->views && code == STATUS_OK; v++) {
       progress_start(&run.progress, image.frame.camera->job.defs->render.time_limit);
@@ -287,17 +260,17 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
       frame_image_free(&image);
     if (code != STATUS_OK && (status == STATUS_OK || code >= 128))
       status = code;
-    run.done++;
+    run.shown.done++;
   }
   uint32_t written;
   int code = frame_writer_finish(writer, &written);
   report_status_line(NULL);
   if (status < 128 && code != STATUS_OK)
     status = code;
-  if (run.count < all)
-    report_note("%u frames exist and were left out", all - run.count);
+  if (run.shown.count < all)
+    report_note("%u frames exist and were left out", all - run.shown.count);
   if (status >= 128)
-    report_note("interrupted; %u of %u frames are written", written, run.count);
+    report_note("interrupted; %u of %u frames are written", written, run.shown.count);
   report_end(&run, written, status);
   return status;
 }

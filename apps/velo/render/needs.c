@@ -106,7 +106,7 @@ static bool has_played_time(const Facts *f) {
 }
 
 static bool has_animate(const Facts *f) {
-  return f->v[RENDER_ANIMATE].given;
+  return f->v[RENDER_ANIMATE].given || (f->render && f->render->videos);
 }
 
 static bool has_added_camera(const Facts *f) {
@@ -224,7 +224,7 @@ static const struct {
                          .before = NEED_GLTF},
     [NEED_PLAYED_TIME] = {has_played_time, "no animation is played (--at, --animate)",
                           .before = NEED_ANIMATIONS},
-    [NEED_ANIMATE] = {has_animate, "it goes with --animate"},
+    [NEED_ANIMATE] = {has_animate, "it goes with --animate, or with a video"},
     [NEED_ADDED] = {has_added, " has a camera and light of its own", .names_scene = true},
     [NEED_ADDED_CAMERA] = {has_added_camera, "no camera is added, the camera is given"},
     [NEED_ADDED_CAMERA_OR_POINT] = {has_added_camera_or_point,

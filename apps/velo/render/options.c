@@ -14,7 +14,8 @@ static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {NULL, 0
 const Option render_options[] = {
     {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "image file to write; may be given several times. The suffix chooses the format: .exr "
-     ".hdr .pfm (linear), .png .jpg .tga (display). Default: in the current folder, the file "
+     ".hdr .pfm (linear), .png .jpg .tga (display); of several frames also a video by ffmpeg: "
+     ".mp4 .gif. Default: in the current folder, the file "
      "name that the scene gives, otherwise the name of FILE with .exr, or with .png if FILE "
      "is a model"},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel"},
@@ -143,8 +144,8 @@ const Option render_options[] = {
     {RENDER_ANIMATE, 0, "animate", OPTION_TEXT, "T0:T1",
      "glTF: render the frames of the animation from T0 up to, but not including, T1, in "
      "seconds; %d (%04d) in the name of -o is the frame's number"},
-    {RENDER_FPS, 0, "fps", OPTION_NUMBER, "N", "frames per second of --animate; default 24",
-     1e-3, 1e5, NULL},
+    {RENDER_FPS, 0, "fps", OPTION_NUMBER, "N",
+     "frames per second of --animate and of videos; default 24", 1e-3, 1e5, NULL},
     {RENDER_TURNTABLE, 0, "turntable", OPTION_INTEGER, "N",
      "render N frames with a camera that makes one turn around the scene", 1, 1000000, NULL},
     {RENDER_STEREO, 0, "stereo", OPTION_CHOICE, "MODE",

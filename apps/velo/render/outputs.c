@@ -34,8 +34,7 @@ const char *output_opened(const char *path) {
   return output_is_stdout(path) ? stdout_path : path;
 }
 
-/* The suffix with its dot; null: the name has none. */
-static const char *suffix_of(const char *path) {
+const char *output_dot(const char *path) {
   if (strcmp(path, "-") == 0)
     return ".exr";
   const char *slash = strrchr(path, '/');
@@ -43,7 +42,7 @@ static const char *suffix_of(const char *path) {
 }
 
 static const struct Suffix *find_suffix(const char *path) {
-  const char *dot = suffix_of(path);
+  const char *dot = output_dot(path);
   for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; i++)
     if (strcasecmp(dot + 1, suffixes[i].name) == 0)
       return &suffixes[i];
@@ -63,12 +62,12 @@ uint32_t output_largest_side(const char *path) {
 }
 
 bool output_holds_alpha(const char *path) {
-  const char *dot = suffix_of(path);
+  const char *dot = output_dot(path);
   return output_holds_layers(path) || (dot && strcasecmp(dot, ".png") == 0);
 }
 
 bool output_holds_layers(const char *path) {
-  const char *dot = suffix_of(path);
+  const char *dot = output_dot(path);
   return dot && strcasecmp(dot, ".exr") == 0;
 }
 
@@ -77,7 +76,7 @@ static int fail_suffix(const char *path) {
   int count = 0;
   for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++)
     names[count++] = suffixes[i].name;
-  const char *dot = suffix_of(path);
+  const char *dot = output_dot(path);
   const char *near = dot ? did_you_mean(".", dot + 1, names, count) : "";
   return report_usage(
       "output \"%s\": the suffix must be .exr, .png, .jpg, .hdr, .pfm or .tga%s", path, near);
@@ -208,7 +207,7 @@ static void keep_part(Outputs *outputs, int i, const char *part, OutputStage sta
 vlResult output_write_layers(const vlImage *const *images, uint32_t count, const char *path,
                              vlWriteDef def, vlError *error) {
   const char *opened = output_opened(path);
-  def.format = suffix_of(path);
+  def.format = output_dot(path);
   return count > 1 ? vl_image_write_layers(images, count, opened, &def, error)
                    : vl_image_write(images[0], opened, &def, error);
 }

@@ -29,6 +29,7 @@ typedef struct Outputs {
   bool meter;          /* meter the exposure from the image; `exposure` is not used */
   float *shared; /* with meter: the exposure of several images; NaN until the first is metered;
                     null: none */
+  const char *video;        /* what is made of the frames (video.h); null: nothing */
   const vlImage *layers[4]; /* further channels of .exr files; null: none */
   struct {
     uint32_t part_spp; /* samples per pixel in NAME.part.EXT; 0: it was not written */
@@ -46,6 +47,8 @@ bool output_is_stream(const char *path);
 bool output_holds_layers(const char *path);
 /* Whether the file's format holds an alpha channel. */
 bool output_holds_alpha(const char *path);
+/* The suffix of the name with its dot; null: it has none. */
+const char *output_dot(const char *path);
 /* Whether velo writes files with this suffix. *eight_bit: whether the format holds display
  * values. */
 bool output_suffix(const char *path, bool *eight_bit);

@@ -148,3 +148,42 @@ void progress_show(Progress *progress, const vlProgress *now) {
   else
     report_note("%3.0f %%  %s", 100 * fraction, text);
 }
+
+/* ---- several images ---------------------------------------------------------------------- */
+
+FrameProgress progress_frames(uint32_t count) {
+  return (FrameProgress){.start = monotonic_seconds(), .count = count};
+}
+
+void progress_show_frames(FrameProgress *progress, uint32_t number, double part) {
+  const double now = monotonic_seconds(), elapsed = now - progress->start,
+               done = progress->done + part;
+  if (report_is_quiet() || now - progress->last_shown < (report_is_terminal() ? 0.1 : 5.0))
+    return;
+  progress->last_shown = now;
+  const double remaining = done > 0 ? elapsed / done * (progress->count - done) : INFINITY;
+  if (report_is_json()) {
+    Json json = report_json_begin("progress");
+    json_integer(&json, "frame", number);
+    json_integer(&json, "frames_done", progress->done);
+    json_integer(&json, "frames", progress->count);
+    json_number(&json, "elapsed", elapsed);
+    json_number(&json, "remaining", remaining);
+    report_json_end(&json);
+    return;
+  }
+  char text[200], time[32], left[32];
+  const bool narrow = report_is_terminal() && report_terminal_columns() < 60;
+  format_seconds(time, sizeof time, elapsed);
+  format_seconds(left, sizeof left, remaining);
+  int n =
+      snprintf(text, sizeof text, "frame %u: %u/%u", number, progress->done, progress->count);
+  if (!narrow)
+    n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", time);
+  if (isfinite(remaining))
+    snprintf(text + n, sizeof text - (size_t)n, "  %s left", left);
+  if (report_is_terminal())
+    draw_bar(done / progress->count, text);
+  else if (progress->done)
+    report_note("%3.0f %%  %s", 100 * done / progress->count, text);
+}

@@ -11,8 +11,19 @@ typedef struct Progress {
   uint32_t last_spp;
 } Progress;
 
+/* Progress of several images, of which `done` are complete. */
+typedef struct FrameProgress {
+  double start, last_shown; /* of monotonic_seconds */
+  uint32_t done, count;
+} FrameProgress;
+
 void progress_start(Progress *progress, double time_limit);
 void progress_show(Progress *progress, const vlProgress *now);
+
+FrameProgress progress_frames(uint32_t count);
+/* Shows at intervals how many frames are done. number: of the frame that is rendered; part: its
+ * finished share. */
+void progress_show_frames(FrameProgress *progress, uint32_t number, double part);
 
 /* Formats a count: "1.27 M", "950", "3.4 G". */
 void format_count(char *text, size_t size, double count);

@@ -22,6 +22,7 @@
 #include "render/race.h"
 #include "render/run.h"
 #include "render/shard.h"
+#include "render/video.h"
 
 /* A model becomes a .png, unless something is asked for that only .exr holds. */
 static const char *default_suffix(const Render *render, const Arguments *arguments) {
@@ -349,13 +350,16 @@ static int meter_model(Render *render, const Arguments *arguments) {
 /* Opens the scene, or takes that of the frame before. */
 static int open_scene(Render *render, const char *path, const Arguments *arguments) {
   AnimateShared *shared = render->shared;
+  const bool silent = render->videos && render->videos->shown.done;
   if (shared && shared->scene) {
     render->scene = shared->scene;
     render->opening = shared->opening;
+    render->opening.silent = silent;
     *vl_scene_defs(render->scene) = shared->defs;
     scene_turn(&render->opening, arguments, vl_scene_defs(render->scene));
     return -1;
   }
+  render->opening.silent = silent;
   int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
   if (status < 0 && shared && shared->still) {
     shared->scene = render->scene;
@@ -419,6 +423,9 @@ static int claim_films(Render *render, const Arguments *arguments) {
 static int load_frames(Render *render, const Arguments *arguments) {
   render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
   int status = frames_load(&render->frames, render->context, &render->job, arguments);
+  const Frames *frames = &render->frames;
+  if (status < 0 && render->videos)
+    videos_range(render->videos, frames->first, frames_count(frames), frames->step);
   if (status < 0)
     status = frames_check_names(&render->frames, &render->outputs);
   if (status < 0)
@@ -470,6 +477,9 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   if (status >= 0)
     return status;
   render->many = frames_wanted(arguments, &render->job);
+  if (render->many && render->videos && render->job.defs->camera.stereo.mode != VL_STEREO_NONE)
+    return report_usage("output \"%s\": a video is of one eye", render->videos->paths[0]);
+  render->outputs.video = render->videos ? render->videos->paths[0] : NULL;
   if (render->many && arguments->values[RENDER_SERVE].given)
     return report_usage("--serve goes with one image");
   if (render->many && render->denoised.outputs.count)
@@ -560,13 +570,15 @@ static void free_render(Render *render) {
   continue_close(&render->resumed);
 }
 
-/* shared: what the frames of an animation have in common; null: this is one image. */
+/* shared: what the frames of an animation have in common; null: this is one image. videos: what
+ * becomes of the frames; may be null. */
 static int render_once(const Command *command, const Arguments *arguments,
-                       AnimateShared *shared) {
+                       AnimateShared *shared, Videos *videos) {
   Render render;
   memset(&render, 0, sizeof render);
   render.start = monotonic_seconds();
   render.shared = shared;
+  render.videos = videos;
   render.outputs.shared = shared ? &shared->exposure : NULL;
   render.context = shared ? shared->context : NULL;
   set_up_reports(arguments);
@@ -616,10 +628,22 @@ static int render_once(const Command *command, const Arguments *arguments,
   return status;
 }
 
-static int run_render(const Command *command, const Arguments *arguments) {
+static int render_all(const Command *command, const Arguments *arguments, Videos *videos) {
   if (arguments->operand_count && animate_wanted(arguments))
-    return animate_run(command, arguments, render_once);
-  return render_once(command, arguments, NULL);
+    return animate_run(command, arguments, videos, render_once);
+  return render_once(command, arguments, NULL, videos);
+}
+
+static int run_render(const Command *command, const Arguments *arguments) {
+  if (!videos_wanted(arguments))
+    return render_all(command, arguments, NULL);
+  Videos videos;
+  Arguments frames;
+  set_up_reports(arguments);
+  const int status = videos_plan(&videos, arguments, &frames);
+  if (status >= 0)
+    return status;
+  return videos_finish(&videos, arguments, render_all(command, &frames, &videos));
 }
 
 const Command render_command = {

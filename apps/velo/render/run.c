@@ -69,7 +69,7 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
 /* Reported once, when the render outlasts its first progress images. */
 static void name_parts(Render *render, const vlProgress *now) {
   char files[1200];
-  if (render->part_named || now->remaining < WRITE_EVERY)
+  if (render->part_named || render->videos || now->remaining < WRITE_EVERY)
     return;
   render->part_named = true;
   list_files(render, OUTPUT_PROGRESS, files, sizeof files);
@@ -139,7 +139,10 @@ static void write_checkpoint(Render *render, const vlProgress *now) {
 
 static bool on_progress(void *user, const vlProgress *now) {
   Render *render = user;
-  progress_show(&render->progress, now);
+  if (render->videos)
+    progress_show_frames(&render->videos->shown, render->videos->number, now->fraction);
+  else
+    progress_show(&render->progress, now);
   if (now->pass_done && !signals_pending()) {
     if (!(render->first_pass > 0))
       render->first_pass = now->elapsed;
@@ -221,6 +224,8 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     report_json_end(&json);
     return;
   }
+  if (render->videos)
+    return; /* the video is reported */
   char time[32], speed[32], ray_count[32], files[1200];
   format_seconds(time, sizeof time, stats->seconds);
   format_count(speed, sizeof speed,

@@ -14,6 +14,7 @@
 #include "render/outputs.h"
 #include "render/progress.h"
 #include "render/scene_options.h"
+#include "render/video.h"
 #include "view/serve.h"
 
 typedef struct Render {
@@ -46,7 +47,8 @@ typedef struct Render {
   ReceiptPlan receipt;
   Serve *serve; /* the page of --serve; null: none */
   struct AnimateShared
-      *shared; /* what the frames of an animation have in common; null: this is one image */
+      *shared;    /* what the frames of an animation have in common; null: this is one image */
+  Videos *videos; /* what becomes of the frames; null: they stay images */
 } Render;
 
 /* Whether an output holds ground truth. */

@@ -224,6 +224,6 @@ void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlScene
   if (turned->given)
     turn_camera(&defs->camera, opening->low, opening->high, opening->camera_added,
                 opening->complete.up, turned->number);
-  if (opening->camera_added)
+  if (opening->camera_added && !opening->silent)
     tell_camera(defs);
 }

@@ -13,6 +13,7 @@ typedef struct SceneOpening {
   vlLoadDef load;
   vlCompleteDef complete;
   bool lamps;             /* a file of a model (glTF, OBJ, PLY) with lights of its own */
+  bool silent;            /* input: the camera that is added is not reported */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
   const char *text; /* input: a pbrt scene in memory, in place of the file; null: the file */
   bool model; /* a file of a model: its exposure is metered, its default output is a .png */

@@ -93,17 +93,10 @@ const app = {
   },
 };
 
-function openScreen() {
-  try {
-    return new Screen(byId("screen"));
-  } catch (error) {
-    byId("status").textContent = `${error.message}: use a current Firefox, Chrome, Edge or Safari`;
-    throw error;
-  }
-}
-
-const screen = app.screen = openScreen();
-screen.onlost = () => app.notice("The browser took away what draws the image; the image is back as soon as the browser allows it.");
+const screen = app.screen = new Screen(byId("screen"), true);
+const slowly = "The processor draws the image, which takes longer.";
+if (!screen.gl) app.notice(`This browser has no WebGL2. ${slowly}`, true);
+screen.onlost = () => app.notice(`The browser took the graphics processor away. ${slowly}`, true);
 screen.onrestored = () => app.notice("");
 const panel = new Panel(byId("camera"), app);
 const display = app.display = new Display(byId("display"), app);

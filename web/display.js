@@ -1,6 +1,7 @@
 // How the image is shown: exposure, view transform, which channel, false colours and their legend, histogram.
 import { byId, make, row, short } from "./dom.js";
 import { fromHalf } from "./half.js";
+import { flowColour, viridis } from "./plain.js";
 
 const kinds = { Z: 1, distance: 1, P: 3, N: 2, Ng: 2, uv: 4, albedo: 5, ray: 2, "id.object": 6, "id.material": 6,
   "id.instance": 6, "id.primitive": 6, samples: 1, film: 4, error: 8, forward: 7 };
@@ -116,7 +117,7 @@ export class Display {
       return;
     }
     const bar = make("canvas", { width: 128, height: 1 }), context = bar.getContext("2d");
-    for (let x = 0; x < 128; x++) { context.fillStyle = viridis(x / 127); context.fillRect(x, 0, 1, 1); }
+    for (let x = 0; x < 128; x++) { context.fillStyle = `rgb(${viridis(x / 127).map(v => Math.round(255 * v))})`; context.fillRect(x, 0, 1, 1); }
     box.append(bar, make("div", { class: "ends" }, make("span", { textContent: short(d.low[0], 4) }), make("span", { textContent: short(d.high[0], 4) })));
   }
 
@@ -141,23 +142,13 @@ export class Display {
   }
 }
 
-// The colours of flow: the direction is the hue, the length the saturation; as in shaders.js.
+// The colours of flow.
 function wheel() {
   const n = 64, canvas = make("canvas", { width: n, height: n, class: "wheel" }), g = canvas.getContext("2d"), image = g.createImageData(n, n);
   for (let i = 0; i < n * n; i++) {
-    const x = (i % n + 0.5) / n * 2 - 1, y = (Math.floor(i / n) + 0.5) / n * 2 - 1, r = Math.hypot(x, y), hue = (Math.atan2(y, x) / 2 / Math.PI + 1) % 1;
-    if (r > 1) continue;
-    const c = [0, 2, 1].map(k => 1 - r * (1 - Math.max(0, Math.min(1, Math.abs((hue + k / 3) % 1 * 6 - 3) - 1))));
-    image.data.set([...c.map(v => 255 * v), 255], 4 * i);
+    const x = (i % n + 0.5) / n * 2 - 1, y = (Math.floor(i / n) + 0.5) / n * 2 - 1, r = Math.hypot(x, y);
+    if (r <= 1) image.data.set([...flowColour(x, y, r).map(v => 255 * v), 255], 4 * i);
   }
   g.putImageData(image, 0, 0);
   return canvas;
-}
-
-function viridis(t) {
-  const k = [[0.2777273, 0.0054073, 0.3340998], [0.1050930, 1.4046135, 1.3845902], [-0.3308618, 0.2148476, 0.0950952],
-    [-4.6342305, -5.7991010, -19.3324410], [6.2282699, 14.1799334, 56.6905526], [4.7763850, -13.7451454, -65.3530326],
-    [-5.4354559, 4.6458526, 26.3124352]];
-  const c = [0, 1, 2].map(i => Math.round(255 * Math.max(0, Math.min(1, k.reduceRight((sum, row) => sum * t + row[i], 0)))));
-  return `rgb(${c})`;
 }

@@ -1,6 +1,7 @@
 // The canvas: develops frames into 8-bit pixels and lays them on the page, whole or zoomed in, through WebGL2.
 import { develop, lay, vertex } from "./shaders.js";
 import { Pixels } from "./frame.js";
+import { Plain, developed } from "./plain.js";
 
 function compile(gl, fragment) {
   const program = gl.createProgram();
@@ -73,15 +74,18 @@ class Layer {
 }
 
 export class Screen {
-  constructor(canvas) {
+  // plain: without WebGL2 the processor draws; else that is an error.
+  constructor(canvas, plain = false) {
     this.canvas = canvas;
+    this.plain = plain ? new Plain(canvas) : null;
     this.gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: false });
-    if (!this.gl) throw new Error("this browser has no WebGL2");
+    if (!this.gl && !plain) throw new Error("this browser has no WebGL2");
     this.pixels = new Pixels();
-    this.begin();
+    if (this.gl) this.begin();
     canvas.addEventListener("webglcontextlost", event => {
       event.preventDefault(); // so that it can come back
-      this.lost = true;
+      this.lost = this.stale = true;
+      this.draw();
       this.onlost?.();
     });
     canvas.addEventListener("webglcontextrestored", () => {
@@ -115,14 +119,17 @@ export class Screen {
   }
 
   get frame() { return this.pixels.frame; }
+  get hasGL() { return Boolean(this.gl) && !this.lost && !this.gl.isContextLost(); }
 
   take(frame) {
     const fits = this.pixels.fits(frame);
     const isWhole = frame.columns * frame.scale >= frame.width && frame.rows * frame.scale >= frame.height;
-    if (!isWhole && this.layer.frame && !fits && !this.cropped) [this.layer, this.whole] = [this.whole, this.layer];
+    const { hasGL } = this;
+    if (hasGL && !isWhole && this.layer.frame && !fits && !this.cropped) [this.layer, this.whole] = [this.whole, this.layer];
     this.cropped = !isWhole;
-    if (!this.lost) this.layer.take(frame, fits && this.layer.frame !== null);
+    if (hasGL) this.layer.take(frame, fits && this.layer.frame !== null);
     this.pixels.take(frame);
+    this.stale = true;
     this.draw();
   }
 
@@ -185,12 +192,14 @@ export class Screen {
 
   // The exposure, the view or the range changed: all is developed anew.
   redevelop() {
-    this.layer.stale = this.whole.stale = true;
+    this.stale = true;
+    if (this.gl) this.layer.stale = this.whole.stale = true;
     this.draw();
   }
 
   drawNow() {
-    if (this.lost) return;
+    if (this.plain) this.plain.canvas.hidden = this.hasGL;
+    if (!this.hasGL) return this.plain && this.drawPlain();
     const gl = this.gl, ratio = window.devicePixelRatio || 1, k = this.factor(), [left, top] = this.origin();
     if (this.cropped) this.develop(this.whole);
     this.develop(this.layer);
@@ -203,10 +212,30 @@ export class Screen {
     this.ondraw?.();
   }
 
+  drawPlain() {
+    const ratio = window.devicePixelRatio || 1, k = this.factor(), [left, top] = this.origin();
+    if (this.stale) this.plain.develop(this.frame, this.cropped, () => this.plainValues());
+    this.stale = false;
+    this.plain.draw(this.canvas.width, this.canvas.height, left * ratio, top * ratio, k * ratio, this.cropped, this.isSmooth(this.frame, k * ratio));
+    this.drawn++;
+    this.ondraw?.();
+  }
+
+  // How a frame is developed: kind and view of shaders.js.
+  look(f) {
+    const d = this.display, kind = f.channel === 0 ? 0 : d.kind || 6;
+    return [kind, kind === 0 ? d.view : 0];
+  }
+
+  plainValues() { return developed(this.frame, this.pixels.data, this.display, ...this.look(this.frame)); }
+
+  // A coarse image and a reduced one are smooth; pixels that are magnified on purpose stay pixels.
+  isSmooth(f, k) { return f.format === 0 && (f.scale > 1 || k < 1 || (k < 2 && this.zoom === 1 && k !== 1)); }
+
   develop(layer) {
     const d = this.display, f = layer.frame;
     if (!f) return;
-    const kind = f.channel === 0 ? 0 : d.kind || 6, view = kind === 0 ? d.view : 0, key = 16 * view + kind;
+    const [kind, view] = this.look(f), key = 16 * view + kind;
     if (!this.programs.has(key)) this.programs.set(key, compile(this.gl, develop(view, kind)));
     layer.develop(this.programs.get(key), d);
   }
@@ -216,8 +245,7 @@ export class Screen {
     const gl = this.gl, f = layer.frame, w = this.canvas.width / 2, h = this.canvas.height / 2, p = this.laying;
     if (!f) return;
     const x0 = left + f.x0 * k, y0 = top + f.y0 * k, x1 = x0 + f.columns * f.scale * k, y1 = y0 + f.rows * f.scale * k;
-    // A coarse image and a reduced one are smooth; pixels that are magnified on purpose stay pixels.
-    const smooth = f.format === 0 && (f.scale > 1 || k < 1 || (k < 2 && this.zoom === 1 && k !== 1)) ? gl.LINEAR : gl.NEAREST;
+    const smooth = this.isSmooth(f, k) ? gl.LINEAR : gl.NEAREST;
     gl.enable(gl.SCISSOR_TEST); // the last pixels of a coarse image reach beyond the image
     gl.scissor(Math.round(left), Math.round(2 * h - top - f.height * k), Math.max(0, Math.round(f.width * k)), Math.max(0, Math.round(f.height * k)));
     gl.useProgram(p.program);
@@ -233,6 +261,7 @@ export class Screen {
   // The display values of the frame, 8-bit RGBA, rows from the top: to compare, and for tests.
   values() {
     const gl = this.gl, f = this.frame;
+    if (!this.hasGL) return this.plainValues();
     this.develop(this.layer);
     const bytes = new Uint8Array(4 * f.columns * f.rows);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.layer.target);

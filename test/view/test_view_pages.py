@@ -127,6 +127,62 @@ def test_again(folder):
         view.end()
 
 
+def test_plain(folder):
+    """Without WebGL2, and when the browser takes it away, the image is there with the same values."""
+    view = View(VELO, write_scene(folder, width=200), cwd=folder)
+    b = Browser()
+    # the same frame by the graphics processor, then by the processor alone
+    both = "(() => { const g = velo.screen.values(), p = velo.screen.plainValues(); let most = 0; for (let i = 0; i < g.length; i++) most = Math.max(most, Math.abs(g[i] - p[i])); return most; })()"
+    seen = ("(() => { const c = document.getElementById('plain'); if (c.hidden) return null; const d = c.getContext('2d').getImageData(c.width / 2, c.height / 2, 1, 1).data;"
+            " return [...d]; })()")
+    try:
+        b.open(view.address)
+        b.wait(READY)
+        b.wait("document.getElementById('status').textContent.includes('done') && velo.screen.frame.scale === 1")
+        for i, name in enumerate(("standard", "neutral", "agx", "raw")):
+            b.run(f"velo.display.view.value = {i}; velo.display.set({0.7 * i - 0.5})")
+            check(f"plain_{name}", b.run(both) <= 1, b.run(both))
+        b.run("velo.display.view.value = 0; velo.display.set(0)")
+        for channel in ("Z", "N", "P", "uv", "albedo", "id.object", "error", "forward"):
+            b.run(f"velo.settings({{channel: '{channel}'}})")
+            b.wait(f"velo.display.channels[velo.screen.frame.channel] === '{channel}'")
+            check(f"plain_{channel}", b.run(both) <= 1, b.run(both))
+        b.run("velo.settings({channel: 'image'})")
+        b.wait("velo.screen.frame.channel === 0 && velo.screen.frame.scale === 1")
+        b.run("window.taker = velo.screen.gl.getExtension('WEBGL_lose_context'); window.before = velo.screen.values(); taker.loseContext()")
+        colour = b.wait(seen, 10)
+        check("lost_context_shows_the_image", colour[0] > 1.5 * colour[2] and colour[3] == 255, colour)
+        check("lost_context_says_so", "graphics processor" in b.run("document.getElementById('notice').textContent"))
+        b.run("velo.display.view.value = 2; velo.display.set(1); document.getElementById('keep').click(); velo.edit({eye: [0.1, 1, 5]})")
+        b.wait("velo.screen.frame.change === velo.change")
+        b.run("velo.crop([60, 20, 140, 100])")
+        b.wait("velo.cropped && velo.screen.frame.columns < 200 && velo.screen.frame.scale === 1")
+        shot(b, "lost")
+        b.run("velo.crop(null); velo.edit({eye: [0, 1, 5]}); velo.display.view.value = 0; velo.display.set(0)")
+        b.wait("!velo.cropped && velo.screen.frame.columns === 200 && velo.screen.frame.change === velo.change")
+        b.run("taker.restoreContext()")
+        b.wait("document.getElementById('plain').hidden && velo.screen.hasGL && document.getElementById('notice').hidden", 20)
+        b.wait("document.getElementById('status').textContent.includes('done') && velo.screen.frame.scale === 1 && velo.screen.frame.spp === 4")
+        check("context_comes_back", b.run("velo.screen.values().every((v, i) => v === before[i])"))
+        check("lost_no_errors", not b.problems(), b.problems())
+    finally:
+        b.end()
+    b = Browser(more_flags=["--disable-3d-apis"])
+    try:
+        b.open(view.address)
+        b.wait(READY, 20)
+        check("no_webgl2", b.run("velo.screen.gl === null") and "spp" in b.run("document.getElementById('status').textContent"))
+        colour = b.wait(seen, 10)
+        check("no_webgl2_shows_the_image", colour[0] > 1.5 * colour[2] and colour[3] == 255, colour)
+        shot(b, "no_webgl2")
+        b.run("velo.edit({eye: [0, 1, 9]})")
+        b.wait("velo.screen.frame.change === velo.change")
+        check("no_webgl2_no_errors", not b.problems(), b.problems())
+    finally:
+        b.end()
+        view.end()
+
+
 def test_way(folder):
     """The file that xdg-open gets leads a browser to the page, though its name tells nothing."""
     opened, opener = os.path.join(folder, "opened"), os.path.join(folder, "xdg-open")
@@ -158,7 +214,7 @@ def main():
     if "without libwebsockets" in missing.stderr:
         print("skip view_pages: velo was built without libwebsockets")
         return
-    for test in (test_roles, test_again, test_way):
+    for test in (test_roles, test_again, test_plain, test_way):
         folder = tempfile.mkdtemp(prefix="velo-view-")
         test(folder)
         shutil.rmtree(folder)

@@ -183,6 +183,43 @@ def test_plain(folder):
         view.end()
 
 
+def test_size(folder):
+    """The file's image size changes: the page's camera and its undo stay. The file's camera changes: it is the page's."""
+    view = View(VELO, write_scene(folder), cwd=folder)
+    b = Browser()
+    here = "[velo.state.camera.width, velo.state.camera.eye[0], Math.round(1000 * velo.state.camera.fov_vertical) / 1000]"
+    try:
+        b.open(view.address)
+        b.wait(READY)
+        b.run("velo.edit({eye: [1, 1, 5]})")
+        b.wait("velo.state.camera.eye[0] === 1")
+        write_scene(folder, width=240)
+        b.wait("velo.state.camera.width === 240 && velo.screen.frame.width === 240", 20)
+        check("size_keeps_the_pose", b.run(here) == [240, 1, 40], b.run(here))
+        b.run("velo.edit({fx: 100, fy: 100})")
+        b.wait("velo.state.camera.fx === 100")
+        field = b.run("velo.state.camera.fov_vertical")
+        write_scene(folder, width=90)
+        b.wait("velo.state.camera.width === 90", 20)
+        check("size_keeps_the_field", b.run("[velo.state.camera.fx, velo.state.camera.spelled]") == [75, "matrix"], b.run("velo.state.camera.fx"), field)
+        write_scene(folder, width=160)
+        b.wait("velo.state.camera.width === 160", 20)
+        b.click_on("#undo")
+        b.wait("Math.abs(velo.state.camera.fov_vertical - 40) < 1e-6", 20)
+        check("size_keeps_the_undo", b.run(here) == [160, 1, 40], b.run(here))
+        b.click_on("#undo")
+        b.wait("velo.state.camera.eye[0] === 0", 20)
+        b.click_on("#redo")
+        b.wait("velo.state.camera.eye[0] === 1", 20)
+        write_scene(folder, fov=50)
+        b.wait("Math.abs(velo.state.camera.fov_vertical - 50) < 1e-6", 20)
+        check("the_file's_camera", b.run(here) == [160, 0, 50] and not b.run("velo.state.can_undo"), b.run(here))
+        check("size_no_errors", not b.problems(), b.problems())
+    finally:
+        b.end()
+        view.end()
+
+
 def test_way(folder):
     """The file that xdg-open gets leads a browser to the page, though its name tells nothing."""
     opened, opener = os.path.join(folder, "opened"), os.path.join(folder, "xdg-open")
@@ -214,7 +251,7 @@ def main():
     if "without libwebsockets" in missing.stderr:
         print("skip view_pages: velo was built without libwebsockets")
         return
-    for test in (test_roles, test_again, test_plain, test_way):
+    for test in (test_roles, test_again, test_plain, test_size, test_way):
         folder = tempfile.mkdtemp(prefix="velo-view-")
         test(folder)
         shutil.rmtree(folder)

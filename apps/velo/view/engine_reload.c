@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "view/camera_keep.h"
 #include "view/engine_status.h"
 
 void engine_report(void *user, const char *kind, const vlError *what) {
@@ -76,17 +77,32 @@ void *engine_load_chosen(void *user) {
 
 /* ---- the render thread ------------------------------------------------------------------- */
 
-/* Whether two cameras are described by the same numbers. */
-static bool same_pose(const ViewCamera *a, const ViewCamera *b) {
-  const vlCamera *c = &a->made, *d = &b->made;
-  return c->projection == d->projection && c->width == d->width && c->height == d->height &&
-         c->fx == d->fx && c->fy == d->fy && c->cx == d->cx && c->cy == d->cy &&
-         c->lens_radius == d->lens_radius && c->focus_distance == d->focus_distance &&
-         memcmp(c->world_from_camera, d->world_from_camera, sizeof c->world_from_camera) == 0 &&
-         memcmp(&c->distortion, &d->distortion, sizeof c->distortion) == 0;
+/* Goes on with the page's camera and those of its history, if the scene's camera changed in
+ * nothing but the size of the image; else all begin with the scene's. before: the scene's
+ * camera before; crop, history: of the page. The caller holds the lock. */
+static void keep_cameras(Engine *e, const ViewCamera *before, const ViewCamera *shown,
+                         const uint32_t crop[4], const History *history) {
+  const ViewCamera *now = &e->scene_camera;
+  Wanted *w = &e->wanted;
+  if (!camera_keep(before, now, shown, &w->camera)) {
+    w->camera = *now;
+    return;
+  }
+  if (before->made.width == now->made.width && before->made.height == now->made.height)
+    memcpy(w->crop, crop, sizeof w->crop);
+  e->history = *history;
+  for (uint32_t i = 0; i < e->history.count; i++) {
+    ViewCamera *camera = &e->history.cameras[i];
+    if (camera_keep(before, now, camera, camera))
+      continue;
+    e->history.cameras[0] = w->camera; /* one has parts of the old scene */
+    e->history.count = 1;
+    e->history.at = 0;
+  }
 }
 
 bool engine_swap_model(Engine *e) {
+  static History history; /* the render thread alone uses it */
   pthread_mutex_lock(&e->lock);
   Model *next = e->next;
   pthread_mutex_unlock(&e->lock);
@@ -109,17 +125,9 @@ bool engine_swap_model(Engine *e) {
     e->wanted.channel = 0;
     e->wanted.paused = false;
   }
-  bool taken = engine_take_model(e) < 0,
-       sized = shown.made.width == e->scene_camera.made.width &&
-               shown.made.height == e->scene_camera.made.height;
-  /* the page's camera stays unless the file's camera changed, or it has parts of the old
-   * scene */
-  bool keep = !other && sized && same_pose(&before, &e->scene_camera) &&
-              !shown.def.lens.optics && !shown.def.lens.aperture;
-  if (taken && keep) {
-    e->wanted.camera = e->history.cameras[0] = shown;
-    memcpy(e->wanted.crop, crop, sizeof crop);
-  }
+  history = e->history;
+  if (engine_take_model(e) < 0 && !other)
+    keep_cameras(e, &before, &shown, crop, &history);
   if (spp != old_spp && !other)
     e->wanted.spp = spp;
   engine_post_state(e, 0);

@@ -15,7 +15,7 @@ def box(a, b, inward=False):
     v = [tuple((b if i >> k & 1 else a)[k] for k in range(3)) for i in range(8)]
     t = [(4,5,7),(4,7,6),(1,0,2),(1,2,3),(5,1,3),(5,3,7),(0,4,6),(0,6,2),(6,7,3),(6,3,2),(0,1,5),(0,5,4)]
     return v, [x[::-1] for x in t] if inward else t
-def write(path, parts, light=None):
+def write(path, parts, light=None, glass=False):
     data, views, accessors, meshes, materials, nodes = b"", [], [], [], [], []
     for (v, t), color, two in parts:
         for values, kind, name in ((v, "f", "VEC3"), (t, "I", "SCALAR")):
@@ -27,10 +27,12 @@ def write(path, parts, light=None):
         k = len(meshes)
         meshes.append({"primitives": [{"attributes": {"POSITION": 2 * k}, "indices": 2 * k + 1, "material": k}]})
         materials.append({"doubleSided": two, "pbrMetallicRoughness": {
-            "baseColorFactor": color + [1], "metallicFactor": 0, "roughnessFactor": 0.6}})
+            "baseColorFactor": color + [1], "metallicFactor": 0, "roughnessFactor": 0 if glass else 0.6}})
+        if glass: materials[-1]["extensions"] = {"KHR_materials_transmission": {"transmissionFactor": 1}}
         nodes.append({"mesh": k})
     g = {"asset": {"version": "2.0"}, "scene": 0, "buffers": [{"byteLength": len(data)}], "bufferViews": views,
          "accessors": accessors, "meshes": meshes, "materials": materials}
+    if glass: g["extensionsUsed"] = ["KHR_materials_transmission"]
     if light:
         g["extensionsUsed"] = ["KHR_lights_punctual"]
         g["extensions"] = {"KHR_lights_punctual": {"lights": [light]}}
@@ -49,6 +51,8 @@ write("plain.glb", sofa)
 write("white.glb", white)
 for name, kind, strength in (("sun", "directional", 6830), ("noon", "directional", 100000), ("dim", "point", 0.1)):
     write(name + ".glb", sofa, {"type": kind, "intensity": strength})
+write("glass.glb", white, glass=True)
+write("glass_sun.glb", white, {"type": "directional", "intensity": 6830}, True)
 write("white_sun.glb", white, {"type": "directional", "intensity": 6830})
 ball = (box((-0.3, 0.7, -0.3), (0.3, 1.3, 0.3)), [0.6, 0.05, 0.04], False)
 for name, inward, two in (("room", True, False), ("box", False, True)):
@@ -73,6 +77,13 @@ expect_text decisions_exposure 'exposure: white has'
 check switched "$VELO" render sun.glb $small -v --no-ground --framing front --exposure -10 --environment none -o switched.png
 expect_text switched_camera 'from the front, as asked'
 for word in 'ground:' 'light:' 'exposure:'; do expect_absent "switched_${word%:}" "$word"; done
+# What one sees through does not set the exposure, unless there is nothing else and the file has lamps.
+check glass "$VELO" render glass.glb $small -o glass.png
+expect_absent glass_as_it_is 'exposed by'
+check glass_sun "$VELO" render glass_sun.glb $small -o glass_sun.png
+expect_text glass_in_the_sun 'exposed by -'
+# A turned camera stands as near as the model asks for, not as its ground does.
+check turned "$VELO" render white.glb $small --turn 90 --transparent -o turned.png --quiet
 expect_code 2 bad_framing "$VELO" render sun.glb --framing above
 check jpeg_warns "$VELO" render plain.glb $small --transparent -o plain.jpg
 expect_text jpeg_warns_says 'cannot hold alpha'
@@ -126,6 +137,9 @@ for name in ("room", "box"):
 c, _ = model("kept.png")
 print("kept", c)
 if not c[1] < 30: bad.append("kept")  # nothing lights it
+_, count = model("turned.png")
+print("turned", count)
+if not count > 300: bad.append("turned")  # of 3072 pixels
 def darkest(name):  # of the ground beside the box's foot
     row = read(name)[44]
     return min(sum(p) for p in row)

@@ -8,6 +8,8 @@
 
 #include "cli/report.h"
 #include "velo/channels.h"
+#include "velo/edit.h"
+#include "velo/material.h"
 
 int exposure_parse(const OptionValue *value, float *ev, bool *meter) {
   *ev = 0;
@@ -64,12 +66,14 @@ float exposure_meter(const vlImage *image) {
 /* ---- models ------------------------------------------------------------------------------ */
 
 enum { METER_SIDE = 96, METER_SPP = 8, METER_DEPTH = 6 };
+#define WHITE 0.62 /* mean of a white model in the studio */
 
-/* Sums of a model's pixels: luminance of radiance and albedo. */
+/* Sums of a model's pixels: luminance of radiance and albedo; and the luminance of all pixels
+ * of the image. */
 typedef struct ModelLight {
   double radiance[METER_SIDE * METER_SIDE], albedo[METER_SIDE * METER_SIDE],
-      ratio[METER_SIDE * METER_SIDE];
-  size_t count;
+      ratio[METER_SIDE * METER_SIDE], all[METER_SIDE * METER_SIDE];
+  size_t count, all_count;
 } ModelLight;
 
 static int ascending(const void *a, const void *b) {
@@ -100,34 +104,66 @@ static double mean_light(ModelLight *light) {
   return radiance / albedo;
 }
 
-/* The luminance that a tenth of the pixels exceeds. Call after mean_light. */
-static double bright(ModelLight *light) {
-  qsort(light->radiance, light->count, sizeof *light->radiance, ascending);
-  return light->radiance[light->count * 9 / 10];
+/* The luminance that a tenth of the pixels exceeds; sorts them. */
+static double bright(double *pixels, size_t count) {
+  qsort(pixels, count, sizeof *pixels, ascending);
+  return pixels[count * 9 / 10];
 }
 
-static void gather(ModelLight *light, const vlImage *image, const vlImage *albedos) {
+/* The most stops by which the image may be made brighter: a tenth of the model's pixels may
+ * become white (mirrors and glass show little of a lamp's light), and a tenth of all pixels
+ * brighter than a white model. Call after mean_light. */
+static double most_stops(ModelLight *light, double white) {
+  double model = -log2(bright(light->radiance, light->count)),
+         all = log2(white) - log2(bright(light->all, light->all_count));
+  double most = model < all ? model : all;
+  return most > 0 ? most : 0;
+}
+
+/* Whether one sees through the material: what it shows is the light behind it. id: of the
+ * channel id.material. */
+static bool is_clear(const vlScene *scene, uint32_t id) {
+  const vlMaterialId material = {id - 1}; /* 1 is the default material */
+  const vlMaterialDef *m = id > 1 ? vl_scene_material(scene, material) : NULL;
+  if (!m || m->kind == VL_MATERIAL_DIELECTRIC || m->kind == VL_MATERIAL_THIN_DIELECTRIC)
+    return m != NULL;
+  const vlFloatInput *through = &m->principled.transmission;
+  return m->kind == VL_MATERIAL_PRINCIPLED && (through->value > 0.5f || through->texture.index);
+}
+
+/* A small render of the model. */
+typedef struct SmallRender {
+  vlImage *color, *albedos, *ids;
+} SmallRender;
+
+/* clear: what one sees through counts, too. */
+static void gather(ModelLight *light, const vlScene *scene, bool clear,
+                   const SmallRender *small) {
+  const vlImage *image = small->color;
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")},
-            own[3] = {vl_image_find_channel(albedos, "albedo.R"),
-                      vl_image_find_channel(albedos, "albedo.G"),
-                      vl_image_find_channel(albedos, "albedo.B")};
+            own[3] = {vl_image_find_channel(small->albedos, "albedo.R"),
+                      vl_image_find_channel(small->albedos, "albedo.G"),
+                      vl_image_find_channel(small->albedos, "albedo.B")};
   int alpha = vl_image_find_channel(image, "A");
+  const uint32_t *id = vl_image_const_pixels(small->ids);
   for (uint32_t y = 0; y < vl_image_height(image); y++)
-    for (uint32_t x = 0; x < vl_image_width(image); x++) {
+    for (uint32_t x = 0; x < vl_image_width(image); x++, id++) {
+      light->all[light->all_count++] = luminance(image, rgb, x, y);
       if (!(vl_image_get(image, x, y, (uint32_t)alpha) > 0.99f))
         continue;
-      double albedo = luminance(albedos, own, x, y);
+      double albedo = luminance(small->albedos, own, x, y);
       if (!(albedo > 1e-4))
         continue; /* it only emits light, or is black */
+      if (!clear && is_clear(scene, *id))
+        continue;
       light->radiance[light->count] = luminance(image, rgb, x, y);
       light->albedo[light->count++] = albedo;
     }
 }
 
 static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera,
-                             const vlSceneDefs *defs, vlImage **image, vlImage **albedos,
-                             vlError *error) {
+                             const vlSceneDefs *defs, SmallRender *small, vlError *error) {
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
   render.tracer = defs->render.tracer == VL_TRACER_PATH ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
@@ -137,54 +173,84 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = defs->develop.exposure;
   vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
-  channels.channels = VL_CHANNEL_ALBEDO;
+  channels.channels = VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_MATERIAL;
   vlFilm *film = NULL;
   vlResult result = vl_film_create(context, &film_def, &film);
   if (result == VL_OK)
     result = vl_render(world, camera, film, &render, NULL, error);
   if (result == VL_OK)
-    result = vl_film_develop(film, &develop, image);
+    result = vl_film_develop(film, &develop, &small->color);
   if (result == VL_OK)
-    result = vl_render_channels(world, camera, &channels, albedos, NULL, error);
+    result = vl_render_channels(world, camera, &channels, &small->albedos, &small->ids, error);
   vl_film_destroy(film);
   return result;
 }
 
-int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera,
-                         const vlSceneDefs *defs, double leave, float *ev) {
-  const double white = 0.62; /* mean of a white model in the studio */
+/* The light on the model: the radiance of a white surface (0: no pixel shows the model) and the
+ * share of the model's pixels that get less than a quarter of it. */
+typedef struct Metered {
+  double white, unlit, most_stops;
+  size_t pixels, all;
+} Metered;
+
+/* lamps: the light is not that of the studio alone: a model of glass, too, is metered. */
+static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld *world,
+                        const vlCamera *camera, const vlSceneDefs *defs, bool lamps,
+                        Metered *metered, vlError *error) {
   double k =
       METER_SIDE / (double)(camera->width > camera->height ? camera->width : camera->height);
   uint32_t width = (uint32_t)(camera->width * k + 0.5),
            height = (uint32_t)(camera->height * k + 0.5);
-  vlCamera small = *camera;
-  vlImage *image = NULL, *albedos = NULL;
-  vlError error = {0};
-  *ev = 0;
+  vlCamera camera_small = *camera;
+  SmallRender small = {NULL, NULL, NULL};
+  *metered = (Metered){.white = 0};
   if (k < 1 &&
-      vl_camera_resize(camera, width ? width : 1, height ? height : 1, &small) != VL_OK)
-    return -1;
-  vlResult result = render_small(context, world, &small, defs, &image, &albedos, &error);
+      vl_camera_resize(camera, width ? width : 1, height ? height : 1, &camera_small) != VL_OK)
+    return VL_OK;
+  vlResult result = render_small(context, world, &camera_small, defs, &small, error);
   ModelLight *light = result == VL_OK ? calloc(1, sizeof *light) : NULL;
   if (result == VL_OK && !light)
     result = VL_ERROR_MEMORY;
   if (result == VL_OK) {
-    gather(light, image, albedos);
-    double mean = mean_light(light), stops = mean > 0 ? log2(white / mean) : 0;
-    double most = mean > 0 ? -log2(bright(light))
-                           : 0; /* mirrors and glass may show little of a lamp's light */
-    stops = stops > 0 && most < stops ? (most > 0 ? most : 0) : stops;
-    stops = round(10 * (fabs(stops) <= leave ? 0 : stops)) / 10;
-    *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);
-    if (report_is_verbose())
-      report_note(
-          "exposure: white has %.3g on %zu of %u pixels of the model, %.2g is wanted: %+.1f EV",
-          mean, light->count, small.width * small.height, white, (double)*ev);
+    gather(light, scene, false, &small);
+    if (light->count == 0 && lamps) {
+      light->all_count = 0;
+      gather(light, scene, true, &small);
+    }
+    metered->white = mean_light(light);
+    metered->pixels = light->count;
+    metered->all = light->all_count;
+    size_t unlit = 0;
+    for (size_t i = 0; i < light->count; i++)
+      unlit += light->ratio[i] <= 0.25 * metered->white;
+    metered->unlit = light->count ? (double)unlit / (double)light->count : 0;
+    metered->most_stops = light->count ? most_stops(light, WHITE) : 0;
   }
   free(light);
-  vl_image_destroy(image);
-  vl_image_destroy(albedos);
-  return result == VL_OK ? -1 : report_error(&error, result, "metering");
+  vl_image_destroy(small.color);
+  vl_image_destroy(small.albedos);
+  vl_image_destroy(small.ids);
+  return result;
+}
+
+int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld *world,
+                         const vlCamera *camera, const vlSceneDefs *defs, double leave,
+                         float *ev) {
+  Metered m;
+  vlError error = {0};
+  *ev = 0;
+  vlResult result = measure(context, scene, world, camera, defs, leave <= 0, &m, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, "metering");
+  double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
+  stops = stops > 0 && stops > m.most_stops ? m.most_stops : stops;
+  stops = round(10 * (fabs(stops) <= leave ? 0 : stops)) / 10;
+  *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);
+  if (report_is_verbose() && m.all)
+    report_note(
+        "exposure: white has %.3g on %zu of %zu pixels of the model, %.2g is wanted: %+.1f EV",
+        m.white, m.pixels, m.all, WHITE, (double)*ev);
+  return -1;
 }
 
 void exposure_tell(float ev) {

@@ -15,9 +15,12 @@ float exposure_meter(const vlImage *image);
 /* Meters the light that falls on a model, not its colours: renders the whole image small and
  * compares the radiance of the model's pixels (alpha > 0) with their albedo. *ev: the exposure
  * in stops, rounded to a tenth, that makes a white surface in this light bright; within `leave`
- * of 0 it becomes 0. Returns -1, or the exit code after reporting the error. */
-int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera,
-                         const vlSceneDefs *defs, double leave, float *ev);
+ * of 0 it becomes 0. What one sees through (glass) does not count, and a tenth of all pixels at
+ * most becomes brighter than a white model. scene: that of the world. Returns -1, or the exit
+ * code after reporting the error. */
+int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld *world,
+                         const vlCamera *camera, const vlSceneDefs *defs, double leave,
+                         float *ev);
 /* Prints the metered exposure. */
 void exposure_tell(float ev);
 

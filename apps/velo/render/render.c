@@ -338,8 +338,8 @@ static int meter_model(Render *render, const Arguments *arguments) {
     outputs->exposure = *outputs->shared;
     return -1;
   }
-  int status = exposure_meter_model(render->context, render->world, camera, render->job.defs,
-                                    given ? 0 : 1, &outputs->exposure);
+  int status = exposure_meter_model(render->context, render->scene, render->world, camera,
+                                    render->job.defs, given ? 0 : 1, &outputs->exposure);
   if (status < 0 && outputs->shared)
     *outputs->shared = outputs->exposure;
   if (status < 0 && (given || outputs->exposure != 0))

@@ -201,6 +201,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   opening->model = scene_is_model(path);
   opening->lamps = info.lights > 0 && opening->model;
   choose_completion(path, arguments, opening->model, &complete);
+  if (v[RENDER_TURN].given) /* of the file alone: an added ground is several times as wide */
+    vl_scene_bounds(*scene, opening->low, opening->high);
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
@@ -212,8 +214,6 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
         "--turn turns the scene's own camera: it does not go with --camera FILE");
   opening->camera_added = camera;
   opening->camera = defs->camera;
-  if (v[RENDER_TURN].given)
-    vl_scene_bounds(*scene, opening->low, opening->high);
   scene_turn(opening, arguments, defs);
   return -1;
 }

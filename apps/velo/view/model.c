@@ -18,8 +18,9 @@ static int choose_exposure(vlContext *context, const Arguments *arguments, Model
   bool wanted = meter || !arguments->values[RENDER_EXPOSURE].given;
   if (status >= 0 || !model->opening.model || !wanted)
     return status;
-  return exposure_meter_model(context, model->world, &model->job.camera, model->job.defs,
-                              meter || model->opening.lamps ? 0 : 1, &model->exposure);
+  return exposure_meter_model(context, model->scene, model->world, &model->job.camera,
+                              model->job.defs, meter || model->opening.lamps ? 0 : 1,
+                              &model->exposure);
 }
 
 /* The depth of what the middle of the image shows; where it shows nothing, of the middle of the

@@ -116,6 +116,8 @@ typedef struct vlProgress {
   uint64_t paths, rays; /**< numbers of paths and rays traced so far */
   bool pass_done; /**< true: a pass is finished, and the film may be read; false: a pass is
                      running, and the film must not be read */
+  uint32_t rows;  /**< the rows of the film, from its top, whose pixels have spp_done samples;
+                     after a pass, else 0. Fewer than all with vlRenderDef.pass_rows */
 } vlProgress;
 /** Called after each pass, and about ten times a second inside one, on the thread that called
  * vl_render. Return false to stop the render; a pass that is running is then discarded. */
@@ -188,6 +190,12 @@ typedef struct vlRenderDef {
   /** Stops the render within one batch of at most 1024 paths; the pass that is running is
    * discarded, and the film keeps whole passes. Default null. */
   const vlCancel *cancel;
+  /** A pass goes over at most so many rows of the image, rounded up to blocks of 32 rows, from
+   * the top: so the image of a slow scene can be shown while it grows (vlProgress.rows). The
+   * pixels of the other rows have the samples of the pass before, or none. The image at the end
+   * is the same; passes cost a little more. Ignored by tracers with light paths. Default 0: all
+   * rows. */
+  uint32_t pass_rows;
   /** Of several calls that run at once in a context, those with the highest priority get all
    * workers; the others wait between two batches, except for one batch each 50 ms. Default
    * 0. */

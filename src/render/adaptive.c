@@ -109,6 +109,35 @@ void vl_adaptive_destroy(vlAdaptive *a) {
   vl_free(a->context, a->pass);
 }
 
+static void block_area(const vlAdaptive *a, uint32_t block, uint32_t area[4]) {
+  vl_film_block_window(vl_film_def(a->film)->crop, block, area);
+}
+
+/* Takes the blocks below the first rows of the pass out of it. */
+static void keep_rows(vlAdaptive *a) {
+  uint64_t end = 0;
+  for (uint32_t i = 0; i < a->blocks && a->rows; i++) {
+    uint32_t area[4];
+    if (!a->pass[i])
+      continue;
+    block_area(a, i, area);
+    if (!end)
+      end = (uint64_t)area[1] + a->rows;
+    a->pass[i] = area[1] < end;
+    a->in_pass -= !a->pass[i];
+  }
+}
+
+uint32_t vl_adaptive_rows(const vlAdaptive *a) {
+  const uint32_t *crop = vl_film_def(a->film)->crop;
+  uint32_t area[4] = {0, crop[3]}, i = 0;
+  while (i < a->blocks && vl_film_block_spp(a->film, i) == vl_film_spp(a->film))
+    i++;
+  if (i < a->blocks)
+    block_area(a, i, area);
+  return area[1] - crop[1];
+}
+
 bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *count) {
   uint32_t least = total, end = total;
   for (uint32_t i = 0; i < a->blocks; i++)
@@ -126,6 +155,7 @@ bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *
   }
   if (a->noise > 0 && next_comparison(least) < end)
     end = next_comparison(least);
+  keep_rows(a);
   *first = least;
   *count = end - least;
   return a->in_pass > 0;

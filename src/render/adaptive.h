@@ -29,6 +29,7 @@ typedef struct vlAdaptive {
   float exposure, scale;
   double correlation; /* as in vl_film_block_noise */
   uint32_t blocks;
+  uint32_t rows; /* of pixels, which a pass covers at most; 0: all */
   uint32_t *end; /* of each block: the samples at which it ends; UINT32_MAX: not known yet */
   vlComparedNoise *compared; /* the film's, of each block; null without a threshold */
   uint8_t *pass;             /* of each block: it gets samples in this pass */
@@ -54,6 +55,8 @@ vlResult vl_adaptive_end_pass(vlAdaptive *a, uint32_t count);
  * the end. The error falls as the square root of the number of samples. */
 double vl_adaptive_mean_spp(const vlAdaptive *a);
 double vl_adaptive_expected_spp(const vlAdaptive *a, uint32_t total);
+/* The rows of the film, from its top, whose pixels have as many samples as any. */
+uint32_t vl_adaptive_rows(const vlAdaptive *a);
 /* The number of blocks that did not get the samples that they need. */
 uint32_t vl_adaptive_noisy(const vlAdaptive *a);
 

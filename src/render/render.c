@@ -42,6 +42,7 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double work) {
     p.fraction = fmax(p.fraction, fmin(1, p.elapsed / r->def->time_limit));
   }
   p.pass_done = pass_done;
+  p.rows = pass_done ? vl_adaptive_rows(&r->adaptive) : 0;
   count_rays(r, &p.paths, &p.rays);
   return r->def->progress(r->def->progress_user, &p);
 }
@@ -424,6 +425,7 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   if (result == VL_OK &&
       vl_adaptive_create(&r->adaptive, world->context, film, def, correlation) != VL_OK)
     result = vl_fail_memory(error);
+  r->adaptive.rows = r->two_way ? 0 : def->pass_rows;
   if (result == VL_OK)
     result = render_passes(r, error);
   if (stats && r->workers)

@@ -79,6 +79,8 @@ static const vlParameter render_parameters[] = {
     RENDER(FLOAT, render.noise_exposure, "exposure before this view", WITHIN(-100, 100),
            .unit = "stops"),
     RENDER(FLOAT, render.noise_scale, "factor before this view", ABOVE(0), VL_DEFAULT(1)),
+    RENDER(COUNT, render.pass_rows, "rows of the image that a pass goes over; 0: all",
+           .unit = "pixels"),
     WHOLE(vlSceneDefs, render.priority,
           "of several renders at once, the highest gets all threads", WITHIN(0, 1e6)),
     RENDER(CHOICE, film.filter.kind, "pixel filter", .choices = filters, .keyword = "filter",

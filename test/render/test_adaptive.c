@@ -1,6 +1,6 @@
 /* Adaptive sampling: for every tracer, a film whose blocks have different numbers of samples is
- * filled up to the film of a plain render; a threshold that every block is below stops all at
- * the first comparison; wrong defs. */
+ * filled up to the film of a plain render; so is one whose passes go over a part of the rows; a
+ * threshold that every block is below stops all at the first comparison; wrong defs. */
 #include "loaded.h"
 #include "velo/render.h"
 
@@ -84,6 +84,53 @@ static void first_comparison(void **state) {
   vl_film_destroy(film);
 }
 
+typedef struct Rows {
+  const vlFilm *film;
+  uint32_t passes, rows[4];
+  uint64_t empty[4]; /* of each pass: pixels of the rows without samples that have a value */
+} Rows;
+
+static bool note_rows(void *user, const vlProgress *p) {
+  Rows *r = user;
+  vlImage *image = NULL;
+  if (!p->pass_done || r->passes == 4)
+    return true;
+  assert_int_equal(vl_film_develop(r->film, NULL, &image), VL_OK);
+  const float *pixels = vl_image_const_pixels(image);
+  for (size_t i = (size_t)WIDTH * p->rows; i < (size_t)WIDTH * HEIGHT; i++)
+    r->empty[r->passes] += pixels[4 * i + 3] != 0.0f;
+  vl_image_destroy(image);
+  r->rows[r->passes++] = p->rows;
+  return true;
+}
+
+/* Passes over a part of the rows: the film can be read after each, and ends with the samples
+ * of whole passes. */
+static void rows(void **state) {
+  (void)state;
+  vlFilm *parts = make_film(true), *whole = make_film(true);
+  Rows seen = {.film = parts};
+  vlRenderDef def = render_def(VL_TRACER_PATH, 0, 1);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, whole, &def, NULL, NULL), VL_OK);
+  def.pass_rows = 32;
+  def.progress = note_rows;
+  def.progress_user = &seen;
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, NULL, NULL), VL_OK);
+  assert_int_equal(seen.passes, 2);
+  assert_int_equal(seen.rows[0], 32);
+  assert_int_equal(seen.rows[1], HEIGHT);
+  assert_int_equal(seen.empty[0], 0);
+  assert_int_equal(vl_film_spp(parts), 1);
+  def.progress = NULL;
+  def.spp = 5; /* the samples 1 to 4 come in passes over parts, too */
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, NULL, NULL), VL_OK);
+  def.pass_rows = 0;
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, whole, &def, NULL, NULL), VL_OK);
+  assert_true(same(parts, whole));
+  vl_film_destroy(parts);
+  vl_film_destroy(whole);
+}
+
 static void wrong_defs(void **state) {
   (void)state;
   vlFilm *plain = make_film(false), *film = make_film(true);
@@ -109,7 +156,7 @@ static void wrong_defs(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(filled),
-                                     cmocka_unit_test(first_comparison),
+                                     cmocka_unit_test(first_comparison), cmocka_unit_test(rows),
                                      cmocka_unit_test(wrong_defs)};
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -72,8 +72,27 @@ def test_flood():
         check("ends", view.end()[0] == 0)
 
 
+def test_growth():
+    """A slow image gets finer step by step, and its first samples are shown while they come."""
+    view = View(VELO, SCENE, "--resolution", "1280x960", "--threads", "1", "--spp", "1")
+    try:
+        page, frames = Page(view), []
+        while not (frames and frames[-1].spp):
+            frames.append(page.wait_frame())
+        page.close()
+    finally:
+        check("growth_ends", view.end()[0] == 0)
+    widths = [f.columns for f in frames]
+    check("growth_is_steady", widths == sorted(widths) and len(set(widths)) >= 3, widths)
+    parts = [f for f in frames if f.columns == 1280 and not f.spp]
+    check("growth_of_the_whole_image", len(parts) >= 2 and all(f.change == frames[-1].change for f in parts), widths)
+    rows = [min(y for _, y, _, _, _ in f.parts) for f in parts[1:] + frames[-1:]]
+    check("growth_from_the_top", rows == sorted(rows) and rows[-1] > 0, rows)
+
+
 def main():
     test_flood()
+    test_growth()
 
 
 main()

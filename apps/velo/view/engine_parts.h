@@ -85,7 +85,10 @@ struct Engine {
   Model model;
   Wanted now; /* what is being rendered */
   vlFilm *film;
-  ViewTracer best;    /* of new films */
+  ViewTracer best; /* of new films */
+  /* the last coarse image of this camera, R G B A, and its scale; null: none */
+  vlImage *coarser;
+  uint32_t coarser_scale;
   uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
@@ -141,11 +144,22 @@ void engine_interrupt(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */
 bool engine_interrupted(Engine *engine);
 /* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per
- * pixel of the frame. */
+ * pixel of the frame; spp: samples per pixel of the whole image; 0: it has none yet. */
 void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels,
-                    uint32_t scale);
-/* Sends the film, or a coarse one. */
-void engine_publish_film(Engine *engine, const vlFilm *film, uint32_t scale);
+                    uint32_t scale, uint32_t spp);
+/* Sends the film, or a coarse one, whose rows from the top have samples. The others are those
+ * of the last coarser one of this image. A coarse one that is whole is kept for this. */
+void engine_publish_film(Engine *engine, const vlFilm *film, uint32_t scale, uint32_t rows);
+void engine_forget_coarser(Engine *engine);
+/* A film that gets its first sample. */
+typedef struct PartOfFilm {
+  Engine *engine;
+  const vlFilm *film;
+  uint32_t scale, width, height; /* width, height: of its crop */
+} PartOfFilm;
+/* Where that takes long, has its parts sent while it grows. part: valid until the render ends.
+ */
+void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds);
 /* The number of pixels of the present image. */
 double engine_pixels(const Engine *engine);
 /* Notes the time of one sample in a mean of the last ones. */

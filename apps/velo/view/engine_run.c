@@ -100,7 +100,7 @@ static void publish_if_due(Engine *e) {
   if (e->now.channel == CHANNEL_ERROR)
     engine_render_error(e);
   else
-    engine_publish_film(e, e->film, 1);
+    engine_publish_film(e, e->film, 1, UINT32_MAX);
 }
 
 static void tell_if_due(Engine *e, bool always) {
@@ -138,12 +138,21 @@ static bool render_pass(Engine *e) {
   render.time_limit = 0;
   render.spp = vl_film_spp(film) +
                pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
+  const uint32_t *crop = e->now.crop;
+  PartOfFilm part = {e, film, 1, crop[2] - crop[0], crop[3] - crop[1]};
+  const bool first = vl_film_spp(film) == 0;
+  if (first && !e->successor && e->now.channel == 0)
+    engine_render_in_parts(&part, &render,
+                           e->pixel_seconds > 0 ? e->pixel_seconds : e->coarse_seconds);
   double start = engine_clock();
   vlResult result =
       vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
   double seconds = engine_clock() - start;
-  if (result == VL_CANCELLED)
+  if (result == VL_CANCELLED) {
+    if (first)
+      vl_film_clear(film); /* some rows may have samples */
     return false;
+  }
   if (result != VL_OK) {
     status_error(e, &error, result);
     e->failed = true; /* until the next change */
@@ -192,6 +201,7 @@ static bool take_wanted(Engine *e) {
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
+  engine_forget_coarser(e);
   e->paths = 0;
   e->rendered = 0;
   e->noise = NAN;
@@ -262,7 +272,7 @@ static void begin_work(Engine *e) {
   else if (e->now.channel || !e->film)
     engine_coarse_begin(e);
   else
-    engine_publish_film(e, e->film, 1);
+    engine_publish_film(e, e->film, 1, UINT32_MAX);
   if (!e->coarse && (e->film || e->now.channel))
     end_first(e);
 }
@@ -374,6 +384,7 @@ void engine_destroy(Engine *engine) {
     return;
   vl_film_destroy(engine->film);
   vl_film_destroy(engine->successor);
+  vl_image_destroy(engine->coarser);
   model_free(&engine->model);
   if (engine->next)
     model_free(engine->next);

@@ -350,7 +350,7 @@ MISTAKES = [
      r"lights spot: .*gltf", "src/export/gltf/scene.c",
      "\"outerConeAngle\", outer",
      "\"outerConeAngle\", inner"),
-    ("glTF: sheen's roughness squared", "gltf materials:principled",
+    ("glTF: the sheen is as rough as the clear coat", "gltf materials:principled",
      r"materials principled: .*gltf", "src/export/gltf/material.c",
      "put_channel(x, e, \"sheenRoughnessFactor\", \"sheenRoughnessTexture\", 3, &p->sheen_roughness);",
      "put_channel(x, e, \"sheenRoughnessFactor\", \"sheenRoughnessTexture\", 3, &p->clearcoat_roughness);"),

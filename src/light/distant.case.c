@@ -13,5 +13,7 @@ const LightCase distant_light = {
              .known = {{0, 0, {5, 5, 5}}},
              .known_count = 1},
         },
+    .illuminated = {"\"point3 from\" [1 3 2]"},
+    .faced = {1, 3, 1},
     .parameters = {{.base = "\"point3 from\" [1 3 2]"}},
 };

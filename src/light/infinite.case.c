@@ -10,6 +10,8 @@ const LightCase infinite_light = {
                  "\"string filename\" \"sky.pfm\" \"point3 portal\" [-2 0 -3 2 0 -3 2 4 "
                  "-3 -2 4 -3]"},
         },
+    .illuminated = {"\"rgb L\" [1 1 1]", "\"string filename\" \"sky.pfm\""},
+    .faced = {0, 0, 1},
     .parameters = {{.parameter = "portal",
                     .base = "\"string filename\" \"sky.pfm\"",
                     .value = "\"point3 portal\" [-2 0 -3 -2 4 -3 2 4 -3 2 0 -3]"}},

@@ -28,6 +28,10 @@ enum { LIGHT_VARIANTS = 4 };
 typedef struct LightCase {
   const char *before; /* statements before the light, such as its place; null: none */
   LightVariant variants[LIGHT_VARIANTS];
+  /* Of kinds whose illuminance can be given: parameters, and the normal of the surface that
+   * gets it. */
+  const char *illuminated[LIGHT_VARIANTS];
+  double faced[3];
   ParameterCase parameters[PARAMETER_CASES];
 } LightCase;
 

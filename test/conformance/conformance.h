@@ -251,6 +251,19 @@ static void even_direction(uint32_t i, uint32_t count, double turn, double d[3])
   d[2] = z;
 }
 
+/* A camera just above the floor y = 0 that sees the square of this size around (x, z). */
+static void look_down(vlCameraDef *def, double x, double z, double size) {
+  *def = vl_default_camera_def(WIDTH, WIDTH);
+  def->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  def->fx = def->fy = WIDTH / size;
+  def->eye[0] = def->lookat[0] = x;
+  def->eye[1] = 0.04;
+  def->lookat[1] = 0;
+  def->eye[2] = def->lookat[2] = z;
+  def->up[0] = def->up[1] = 0;
+  def->up[2] = -1;
+}
+
 /* ---- forms of scenes --------------------------------------------------------------------- */
 
 #define HEAD                                                                                \

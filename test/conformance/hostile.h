@@ -80,9 +80,15 @@ static vlResult offer(const char *family, AnyDef *def, vlError *error) {
   return result;
 }
 
-/* Puts the number into the member. False: it holds no number with a fraction. */
+/* Puts the number into the member. False: it holds no number, or not this one. */
 static bool put_number(const vlParameter *p, char *def, double number) {
   char *at = def + p->offset;
+  if (p->type == VL_PARAMETER_COUNT && number == floor(number) && number >= 0 &&
+      number <= UINT32_MAX) {
+    uint32_t count = (uint32_t)number;
+    memcpy(at, &count, sizeof count);
+    return true;
+  }
   float single = (float)number;
   switch (p->type) {
     case VL_PARAMETER_FLOAT:
@@ -132,14 +138,15 @@ static bool must_fail(const vlParameter *p, double x) {
 }
 
 static void check_def(const vlKindFamily *family, int kind, const vlParameter *p) {
-  static const double hostile[] = {NAN, -NAN, INFINITY, -INFINITY, -1, 4294967304.0};
+  const double hostile[] = {NAN,        -NAN,        INFINITY,   -INFINITY,   -1,
+                            4294967304, p->high + 1, 4294967295, 4000000000.0};
   AnyDef def;
   vlError error;
   for (size_t i = 0; i < sizeof hostile / sizeof *hostile; i++) {
     memset(&error, 0, sizeof error);
     usual_def(family->name, kind, &def);
     if (!put_number(p, (char *)&def, hostile[i]))
-      return;
+      continue;
     vlResult result = offer(family->name, &def, &error);
     if (result == VL_OK && must_fail(p, hostile[i]))
       broken(family->name, family->constants[kind], "%s = %g is accepted", p->member,

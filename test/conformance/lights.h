@@ -18,6 +18,7 @@ typedef struct LightLaws {
   vlTraceHits *hits;
   vlTraceLights *lights;
   Mean sampled[3], integral[3];
+  Mean irradiance; /* green, from directions above the floor */
   uint32_t compared, wrong, deltas;
 } LightLaws;
 
@@ -35,6 +36,8 @@ static void ask_light(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   vl_world_occluded(trace, &l->lights->rays, hidden);
   /* the emission of even directions of the upper half */
   double sum[3] = {0, 0, 0};
+  double cosines[VL_OWN_BATCH];
+  double falls = 0;
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     double w[3];
     const double from[3] = {l->x, 1e-5, l->z};
@@ -42,6 +45,7 @@ static void ask_light(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
     double y = w[1];
     w[1] = w[2];
     w[2] = y;
+    cosines[i] = w[1];
     set_ray(l->rays, i, from, w);
   }
   vl_world_trace(trace, l->rays, l->hits);
@@ -50,6 +54,9 @@ static void ask_light(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
       sum[c] += (double)l->hits->emission[c][i];
   for (int c = 0; c < 3; c++)
     mean_add(&l->integral[c], sum[c] * 2 * PI / VL_OWN_BATCH);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    falls += (double)l->hits->emission[1][i] * cosines[i];
+  mean_add(&l->irradiance, falls * 2 * PI / VL_OWN_BATCH);
   /* the emission along the samples */
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     const double from[3] = {l->x, 1e-5, l->z};
@@ -88,6 +95,44 @@ static LightLaws ask_floor(const char *text, double x, double z, uint32_t batche
   return l;
 }
 
+/* The path tracer's radiance of a small part of the floor around (x, z), by light that comes
+ * straight from the lights. */
+static Mean floor_seen(const char *text, double x, double z) {
+  enum { FLOOR_SAMPLES = 512 };
+  vlError error = {0};
+  vlScene *scene = load_text(context, text, &error);
+  if (!scene)
+    fail_msg("%s\n%s", error.message, text);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.color = VL_COLOR_RGB;
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.tracer = VL_TRACER_PATH;
+  defs->render.max_depth = 1;
+  defs->render.spp = FLOOR_SAMPLES;
+  look_down(&defs->camera, x, z, 0.02);
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image)
+    fail_msg("%s\n%s", error.message, text);
+  Mean mean = {0};
+  for (uint32_t i = 0; i < WIDTH * WIDTH; i++)
+    mean_add(&mean, (double)vl_image_get(image, i % WIDTH, i / WIDTH, 1));
+  vl_image_destroy(image);
+  return mean;
+}
+
+/* The floor reflects half of the light that falls on it, evenly over all directions. */
+static void check_reflected(const char *family, const char *kind, const char *parameters,
+                            const char *text, const double at[2], const Mean *irradiance) {
+  Mean seen = floor_seen(text, at[0], at[1]);
+  Mean falls = {.sum = irradiance->sum * 0.5 / PI,
+                .squares = irradiance->squares * 0.25 / (PI * PI),
+                .count = irradiance->count};
+  double whole = mean_of(&falls);
+  char what[400];
+  snprintf(what, sizeof what, "%.200s: reflected, and what falls on the floor", parameters);
+  check_same_mean(family, kind, what, &seen, &falls, (Sight){0.008 * whole, 0.08 * whole});
+}
+
 /* The laws of light that rays can hit, at a few points of the floor. */
 static void check_hit_light(const char *family, const char *kind, const char *parameters,
                             const char *text, bool compensated) {
@@ -100,6 +145,7 @@ static void check_hit_light(const char *family, const char *kind, const char *pa
     if (l.wrong > l.compared / 50)
       broken(family, kind, "%s: %u of %u samples are not emission over density", parameters,
              l.wrong, l.compared);
+    check_reflected(family, kind, parameters, text, points[k], &l.irradiance);
     for (int c = 0; c < 3 && !compensated; c++) {
       double whole = mean_of(&l.integral[c]);
       snprintf(what, sizeof what, "%s: samples, and the emission's integral", parameters);

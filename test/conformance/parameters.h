@@ -244,6 +244,117 @@ static bool render_written(const char *text, const char *file, float pixels[PIXE
   return true;
 }
 
+/* glTF has only meshes: forms of scenes with meshes in place of patches and balls. */
+static const char *const meshes[][2] = {
+    {GROUND,
+     "Material \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] "
+     "\"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"},
+    {BALL,
+     "Rotate 70 1 .3 .2 Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2 0 2 4 2 3 4 1 "
+     "0 5 3 1 5 0 4 5 4 3 5] \"point3 P\" [.8 0 0 0 .8 0 0 0 .8 -.8 0 0 0 -.8 0 0 0 -.8] "
+     "\"point2 uv\" [0 0 1 0 .5 1 0 1 .3 .6 .8 .4]\n"},
+    {"Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]",
+     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 "
+     "1 1 0]"},
+};
+
+static void with_meshes(const char *text, char out[2 * TEXT]) {
+  while (*text) {
+    size_t k = 0;
+    while (k < 3 && strncmp(text, meshes[k][0], strlen(meshes[k][0])) != 0)
+      k++;
+    size_t length = k < 3 ? strlen(meshes[k][1]) : 1;
+    memcpy(out, k < 3 ? meshes[k][1] : text, length);
+    out += length;
+    text += k < 3 ? strlen(meshes[k][0]) : 1;
+  }
+  *out = 0;
+}
+
+/* The scenes that glTF holds, by the writer's own word, and the comparisons of quarters of
+ * their images that would and would not find a mistake of a fifth. */
+static int held_by_gltf;
+static int sharp;
+static int blurred;
+
+/* What a scene's text, or the glTF file that is written of it (suffix not null), looks like
+ * with many samples. Null: glTF loses a part of it, or failed. */
+enum { GLTF_SPP = 192 };
+static vlImage *image_by_gltf(const char *text, bool written, int *losses, vlError *error) {
+  char path[100];
+  vlScene *scene = load_text(context, text, error);
+  if (!scene)
+    return NULL;
+  if (written) {
+    snprintf(path, sizeof path, "%s/written.gltf", folder);
+    vlSaveDef save = vl_default_save_def();
+    save.lost = count_loss;
+    save.lost_user = losses;
+    vlResult result = vl_scene_save(scene, path, &save, error);
+    vl_scene_destroy(scene);
+    if (*losses || result != VL_OK)
+      return NULL;
+    assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+    if (vl_scene_load(scene, path, NULL, error) != VL_OK) {
+      vl_scene_destroy(scene);
+      return NULL;
+    }
+  }
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->camera.width = defs->camera.height = WIDTH;
+  defs->film = vl_default_film_def(WIDTH, WIDTH);
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.spp = GLTF_SPP;
+  defs->render.sampler = VL_SAMPLER_INDEPENDENT;
+  defs->render.tracer = VL_TRACER_VOLPATH;
+  defs->render.max_depth = 6;
+  return render_scene(context, scene, error);
+}
+
+/* A scene that glTF holds is the same scene when it is read again: the writer says what it
+ * loses, or the image has the same light in each of its quarters, but for colours in bytes and
+ * skies as cube maps. */
+static void check_gltf(const char *family, const char *kind, const char *name,
+                       const char *text) {
+  static char mesh_text[2 * TEXT];
+  vlError error = {0};
+  int losses = 0;
+  with_meshes(text, mesh_text);
+  vlImage *again = image_by_gltf(mesh_text, true, &losses, &error);
+  if (losses)
+    return;
+  vlImage *plain = again ? image_by_gltf(mesh_text, false, &losses, &error) : NULL;
+  if (!plain) {
+    broken(family, kind, "\"%s\": as gltf: %s", name, error.message);
+    vl_image_destroy(again);
+    return;
+  }
+  held_by_gltf++;
+  for (int part = 0; part < 4; part++)
+    for (int c = 0; c < 3; c++) {
+      Mean off = {0};
+      double whole = 0;
+      const uint32_t half = WIDTH / 2;
+      for (uint32_t i = 0; i < half * half; i++) {
+        const uint32_t x = i % half + (part & 1 ? half : 0);
+        const uint32_t y = i / half + (part & 2 ? half : 0);
+        mean_add(&off, (double)vl_image_get(again, x, y, (uint32_t)c) -
+                           (double)vl_image_get(plain, x, y, (uint32_t)c));
+        whole += (double)vl_image_get(plain, x, y, (uint32_t)c) / (half * half);
+      }
+      const double error = sqrt(variance_of_mean(&off));
+      if (fabs(mean_of(&off)) > 5 * error + 0.04 * whole)
+        broken(family, kind,
+               "\"%s\": as gltf, part %d, channel %d: off by %.4f +- %.4f of %.4f", name, part,
+               c, mean_of(&off), error, whole);
+      bool sees = 8.1 * error + 0.04 * whole <= 0.2 * whole;
+      sharp += sees;
+      blurred += !sees;
+    }
+  vl_image_destroy(again);
+  vl_image_destroy(plain);
+}
+
 /* The largest difference of two images, over the brightest pixel. */
 static double difference(const float a[PIXELS], const float b[PIXELS]) {
   double most = 1e-9;
@@ -271,6 +382,8 @@ static void check_text(const char *family, const char *kind, const char *name, c
            (strcmp(kind, "principled") == 0 ? 0.02 : 1e-4)) /* pbrt has it not */
     broken(family, kind, "\"%s\": written and read again, the image differs by %.2g", name,
            difference(pixels, other));
+  if (strcmp(family, "filters") != 0) /* of the film, not of the scene */
+    check_gltf(family, kind, name, text);
 }
 
 /* ---- the effect of a parameter ----------------------------------------------------------- */
@@ -431,6 +544,9 @@ static void parameters_of_all_families(void **state) {
           check_parameter(family, row, &row->parameters[k]);
     }
   }
+  print_message("scenes that glTF holds: %d; quarters compared: %d, too noisy: %d\n",
+                held_by_gltf, sharp, blurred);
+  assert_true(held_by_gltf > 20 && sharp > 10 * blurred);
   expect_no_failures();
 }
 

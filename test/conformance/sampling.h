@@ -112,6 +112,16 @@ static double spread(double u[SETS][SET], double v[SETS][SET]) {
   return variance * SET / (1.0 / 9 - 1.0 / 16);
 }
 
+/* How many pairs of numbers are nearer to each other than 2^-12. Of pairs of independent
+ * numbers 2 are, and more than 14 in one of ten million runs. */
+static int twins(double a[SETS][SET], double b[SETS][SET]) {
+  int found = 0;
+  for (int p = 0; p < SETS; p++)
+    for (int i = 0; i < SET; i++)
+      found += fabs(a[p][i] - b[p][i]) < 0x1p-12;
+  return found;
+}
+
 static int empty_cells(double numbers[SETS][SET], double others[SETS][SET], int columns,
                        int rows) {
   int empty = 0;
@@ -148,6 +158,10 @@ static void laws_of_samplers(void **state) {
     double pairs = fmax(fabs(correlation(n->u, n->v)), fabs(correlation(n->u, n->other)));
     if (!(pairs < 5.0 / 64))
       broken("samplers", name, "numbers correlate by %.3f", pairs);
+    int equal =
+        twins(n->u, n->v) > twins(n->u, n->other) ? twins(n->u, n->v) : twins(n->u, n->other);
+    if (!c->centre && equal > 14)
+      broken("samplers", name, "%d of %d pairs have the same number twice", equal, SETS * SET);
     if (c->rows && (empty_cells(n->u, n->u, SET, 1) || empty_cells(n->v, n->v, SET, 1)))
       broken("samplers", name, "%d columns and %d rows are empty",
              empty_cells(n->u, n->u, SET, 1), empty_cells(n->v, n->v, SET, 1));

@@ -7,6 +7,7 @@
 #include "lights.h"
 #include "materials.h"
 #include "parameters.h"
+#include "radiometry.h"
 #include "sampling.h"
 #include "shapes.h"
 #include "textures.h"
@@ -40,6 +41,9 @@ int main(int argc, char **argv) {
       cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(laws_of_lights),
+      cmocka_unit_test(powers),
+      cmocka_unit_test(illuminances),
+      cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_textures),

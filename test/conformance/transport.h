@@ -75,6 +75,8 @@ typedef struct MediumCase {
   const char *absorbs;  /* absorbs alone */
   double transmittance; /* of that; 0: not known, but below 1 */
   double glow;          /* where the emission fades at the box's sides; 0: 1 */
+  const char *layers;   /* absorbs alone, most of it in one of eight layers; null: cannot */
+  double passes;        /* the transmittance of that */
 } MediumCase;
 
 #define BOX "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] "
@@ -90,6 +92,13 @@ static const MediumCase homogeneous_medium = {
         "Lescale\" 2",
     .absorbs = "\"rgb sigma_a\" [.2 .2 .2] \"rgb sigma_s\" [0 0 0] \"float scale\" 2",
     .transmittance = 0.44932896};
+/* Eight layers of thickness .25, sigma_a .5 times .1, but 3 in the third from the back. The
+ * last half of a layer at the box's side fades to half, so the layers at the sides count 7/8:
+ * exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)). */
+#define LAYERS BOX "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 8 "
+#define FOUR_THIN ".1 .1 .1 .1 "
+#define FOUR_COLORS ".05 .05 .05 .05 .05 .05 .05 .05 .05 .05 .05 .05 "
+#define THICK_COLORS "1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 "
 /* As of the next: exp(-.5 * 1.75). */
 static const MediumCase grid_medium = {
     .shape = BLOCKS,
@@ -104,7 +113,11 @@ static const MediumCase grid_medium = {
     .absorbs =
         "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [1 1 1 1 1 1 1 "
         "1]",
-    .transmittance = 0.416862};
+    .transmittance = 0.416862,
+    .layers = LAYERS
+    "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
+    "3 3 3 3 " FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN "]",
+    .passes = 0.631678};
 /* Le of these grids, as in pbrt, is in units of a constant spectrum's luminance, 106.857. It is
  * interpolated, too: both fade to half at the box's sides, w(z) = 1.5 - |z| from |z| = .5 on.
  * The integrals of that: */
@@ -115,7 +128,14 @@ static const MediumCase rgb_grid_medium = {
              " \"float Lescale\" .00935831",
     .absorbs = "\"rgb sigma_a\" " HALF_OF " \"rgb sigma_s\" " NONE,
     .transmittance = 0.416862,
-    .glow = 0.942249};
+    .glow = 0.942249,
+    .layers = LAYERS
+    "\"rgb sigma_a\" [" FOUR_COLORS FOUR_COLORS THICK_COLORS FOUR_COLORS FOUR_COLORS FOUR_COLORS
+        FOUR_COLORS FOUR_COLORS
+    "] \"rgb sigma_s\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
+    "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
+    "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]",
+    .passes = 0.631678};
 static const MediumCase cloud_medium = {
     .shape = BOX "\"float density\" 3 ",
     .scatters = "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" .5",
@@ -176,6 +196,14 @@ static void check_medium(const char *name, const MediumCase *c) {
     check_mean("media", name, "light that passes", &passes, c->transmittance, sight);
   check_mean("media", name, "light that is not scattered, beyond what is not absorbed", &more,
              0, sight);
+  if (c->layers) {
+    static char text[TEXT];
+    scene_text(text, medium_form, name, c->layers);
+    vlImage *image = image_of(text, NULL, MEDIUM_SPP);
+    Mean through = mean_of_image(image);
+    vl_image_destroy(image);
+    check_mean("media", name, "light that passes layers", &through, c->passes, sight);
+  }
   if (!(mean_of(&passes) < 0.98 && mean_of(&passes) > 0.001))
     broken("media", name, "lets %.4f of the light pass", mean_of(&passes));
 }

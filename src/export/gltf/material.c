@@ -57,6 +57,8 @@ static void put_color(vlExport *x, json_t *to, const char *factor_key, const cha
                       bool bounded, const vlSpectrumInput *input, double coverage) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
   json_t *info = t && !t->invert ? vl_gltf_texture_info(x, t, false) : NULL;
+  if (t && t->invert)
+    vl_export_lose(x, "inverted images in %s: a colour stands in", texture_key);
   float rgb[3];
   vl_export_rgb(x, input, rgb);
   json_t *factor = json_array();
@@ -260,22 +262,28 @@ static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m
 
 /* ---- others ------------------------------------------------------------------------------ */
 
+/* One roughness for both directions. */
+static double own_roughness(vlExport *x, const vlMaterialDef *m) {
+  const float u = vl_export_alpha(x, m, &m->u_roughness);
+  if (u != vl_export_alpha(x, m, &m->v_roughness))
+    vl_export_lose(x, "roughness that differs by direction: that along u");
+  return sqrt((double)u);
+}
+
 static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
                       double coverage) {
   vlSpectrumInput white = vl_spectrum_input(vl_spectrum_constant(1));
   bool thin = m->kind == VL_MATERIAL_THIN_DIELECTRIC;
-  put_base(x, material, &white, coverage, 0,
-           thin ? 0 : sqrt((double)vl_export_alpha(x, m, &m->u_roughness)));
+  const double roughness = thin ? 0 : own_roughness(x, m);
+  if (roughness > 0)
+    vl_export_lose(x, "rough glass: as glTF's, which keeps the light of several reflections");
+  put_base(x, material, &white, coverage, 0, roughness);
   put_ior(x, material, vl_export_eta(&m->eta.value));
   set_number(extension(x, material, "KHR_materials_transmission"), "transmissionFactor", 1);
   if (!thin)
     put_volume(x, material, inside);
   if (m->eta.value.kind != VL_SPECTRUM_CONSTANT)
     vl_export_lose(x, "indices of refraction by wavelength: that at 589 nm");
-}
-
-static double own_roughness(vlExport *x, const vlMaterialDef *m) {
-  return sqrt((double)vl_export_alpha(x, m, &m->u_roughness));
 }
 
 static void put_diffuse(vlExport *x, json_t *material, const vlMaterialDef *m,

@@ -274,8 +274,8 @@ static void with_meshes(const char *text, char out[2 * TEXT]) {
 /* The scenes that glTF holds, by the writer's own word, and the comparisons of quarters of
  * their images that would and would not find a mistake of a fifth. */
 static int held_by_gltf;
-static int sharp;
-static int blurred;
+static int quarters_seen;
+static int quarters_blurred;
 
 /* What a scene's text, or the glTF file that is written of it (suffix not null), looks like
  * with many samples. Null: glTF loses a part of it, or failed. */
@@ -342,14 +342,14 @@ static void check_gltf(const char *family, const char *kind, const char *name,
                            (double)vl_image_get(plain, x, y, (uint32_t)c));
         whole += (double)vl_image_get(plain, x, y, (uint32_t)c) / (half * half);
       }
-      const double error = sqrt(variance_of_mean(&off));
-      if (fabs(mean_of(&off)) > 5 * error + 0.04 * whole)
+      const double deviation = sqrt(variance_of_mean(&off));
+      if (fabs(mean_of(&off)) > 5 * deviation + 0.04 * whole)
         broken(family, kind,
                "\"%s\": as gltf, part %d, channel %d: off by %.4f +- %.4f of %.4f", name, part,
-               c, mean_of(&off), error, whole);
-      bool sees = 8.1 * error + 0.04 * whole <= 0.2 * whole;
-      sharp += sees;
-      blurred += !sees;
+               c, mean_of(&off), deviation, whole);
+      bool sees = 8.1 * deviation + 0.04 * whole <= 0.2 * whole;
+      quarters_seen += sees;
+      quarters_blurred += !sees;
     }
   vl_image_destroy(again);
   vl_image_destroy(plain);
@@ -545,8 +545,8 @@ static void parameters_of_all_families(void **state) {
     }
   }
   print_message("scenes that glTF holds: %d; quarters compared: %d, too noisy: %d\n",
-                held_by_gltf, sharp, blurred);
-  assert_true(held_by_gltf > 20 && sharp > 10 * blurred);
+                held_by_gltf, quarters_seen, quarters_blurred);
+  assert_true(held_by_gltf > 20 && quarters_seen > 10 * quarters_blurred);
   expect_no_failures();
 }
 

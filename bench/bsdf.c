@@ -9,7 +9,7 @@
 
 #include "base/context.h"
 #include "material/bsdf.hot.h"
-#include "material/bsdf_kind.h"
+#include "material/kinds.row.h"
 
 /* The same kernels for one lane, without padding and vectors (VL_SCALAR, CMakeLists.txt). */
 extern const vlBsdfKernels vl_bsdf_kernel_table_scalar;

@@ -25,16 +25,9 @@ enum {
  * number. */
 VL_API const char *vl_projection_name(vlProjection projection);
 
-/** The distortion model of a calibrated lens and the order of its coefficients. It acts on the
- * projection plane. */
-typedef enum vlDistortion {
-  VL_DISTORTION_NONE,   /**< ideal */
-  VL_DISTORTION_OPENCV, /**< k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]: 4, 5, 8,
-                           12 or 14 numbers */
-  VL_DISTORTION_RADIAL, /**< k1 [k2 [k3 [k4]]]; with EQUIDISTANT: OpenCV's and COLMAP's fisheye
-                         */
-  VL_DISTORTION_THIN_PRISM /**< COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
-} vlDistortion;
+/** The distortion model of a calibrated lens: a number, VL_DISTORTION_NONE (0) or another kind
+ * of velo/distortion.h. It acts on the plane of the projection. */
+typedef uint32_t vlDistortion;
 
 /** The extent of the image that vlCameraDef.fov spans. SMALLER and LARGER mean the smaller and
  * the larger of width and height. */
@@ -171,7 +164,7 @@ typedef struct vlCameraDef {
                      * (given, or its default of 180 degrees) */
   vlDistortion distortion;            /**< default none */
   uint32_t distortion_count;          /**< number of coefficients */
-  double distortion_coefficients[14]; /**< in the order of vlDistortion */
+  double distortion_coefficients[14]; /**< in the order of the kind */
 
   vlStereo stereo;  /**< default none */
   vlEye stereo_eye; /**< the eye that vl_camera_make makes; default BOTH */

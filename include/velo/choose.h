@@ -14,7 +14,7 @@ extern "C" {
 
 /** One competitor of a race: a tracer with a number of light paths. */
 typedef struct vlTracerTrial {
-  vlTracer tracer;      /**< VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL or VL_TRACER_MERGING */
+  uint32_t tracer;      /**< VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL or VL_TRACER_MERGING */
   uint32_t light_paths; /**< for vlRenderDef.light_paths */
   double error; /**< relative squared error of an image with the samples of the race, from the
                    difference of two seeds, without the worst 0.1 % of pixels; with `tail`,
@@ -31,7 +31,7 @@ typedef struct vlTracerTrial {
 
 /** The result of a race. */
 typedef struct vlTracerChoice {
-  vlTracer tracer;      /**< the best tracer, for vlRenderDef.tracer */
+  uint32_t tracer;      /**< the best tracer, for vlRenderDef.tracer */
   uint32_t light_paths; /**< for vlRenderDef.light_paths */
   uint32_t count; /**< number of trials; 0: there was no race. The tracer is then VL_TRACER_PATH
                      where the def's tracer looks past something of the world, else

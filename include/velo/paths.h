@@ -133,7 +133,7 @@ typedef struct vlPath {
 /** Paths of a pixel, of one block of memory. */
 typedef struct vlPixelPaths {
   uint32_t x, y;       /**< the pixel */
-  vlTracer tracer;     /**< the tracer that was used */
+  uint32_t tracer;     /**< the tracer that was used */
   uint32_t samples;    /**< number of samples per pixel that were traced */
   uint32_t count;      /**< number of paths: samples, or more if pixels share samples */
   const vlPath *paths; /**< in the order of samples; of one index the pixel's own comes first */

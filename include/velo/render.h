@@ -9,9 +9,7 @@
 #include "velo/filter.h"
 #include "velo/image.h"
 #include "velo/own.h"
-#include "velo/sampler.h"
 #include "velo/spectrum.h"
-#include "velo/tracer.h"
 #include "velo/world.h"
 
 #ifdef __cplusplus
@@ -129,8 +127,8 @@ typedef bool vlProgressFn(void *user, const vlProgress *progress);
 /** How to render. */
 typedef struct vlRenderDef {
   uint32_t cookie;
-  vlTracer tracer;       /**< light transport algorithm */
-  vlSamplerKind sampler; /**< sample generator */
+  uint32_t tracer;  /**< light transport algorithm: a vlTracer (velo/tracer.h) */
+  uint32_t sampler; /**< sample generator: a vlSamplerKind (velo/sampler.h) */
   uint32_t spp;  /**< samples per pixel that the film has after the render; includes the samples
                     that  it has before, and those before its first_sample */
   uint32_t seed; /**< seed of the random numbers */
@@ -228,7 +226,7 @@ typedef struct vlRenderStats {
  * such as "material \"hair\""; null: it renders all. vl_render then uses VL_TRACER_VOLPATH in
  * its place, and tells the log. docs/tracers.md lists the features. The string is constant. */
 VL_API const char *vl_tracer_lacks(const vlWorld *world, const vlCamera *camera,
-                                   const vlFilmDef *film, vlTracer tracer);
+                                   const vlFilmDef *film, uint32_t tracer);
 /** Adds samples to the film until each pixel has def->spp. The bits depend neither on the
  * number of threads, nor on the crop, nor on the division into passes and calls. VL_CANCELLED
  * when the callback or def->cancel stopped the render; the film then holds whole passes. Only

@@ -21,7 +21,7 @@ extern "C" {
   X(HALTON, halton)                 \
   X(SOBOL, sobol)                   \
   X(ZSOBOL, zsobol)
-/** Sample generators (src/trace/sampler/sampler.h): those of the lecture and the
+/** Sample generators (src/sampler/sampler.h): those of the lecture and the
  * low-discrepancy samplers of pbrt book 8.6-8.7. */
 typedef enum vlSamplerKind {
 #define VL_KIND(NAME, name) VL_SAMPLER_##NAME,

@@ -9,6 +9,7 @@
 #include "velo/base.h"
 #include "velo/camera.h"
 #include "velo/filter.h"
+#include "velo/filter_kinds.h"
 #include "velo/image.h"
 #include "velo/light.h"
 #include "velo/load.h"

@@ -3,6 +3,9 @@
 #include <string.h>
 
 #include "module.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 /* ---- settings ---------------------------------------------------------------------------- */
 

@@ -12,7 +12,7 @@
 #include "camera/aperture.h"
 #include "camera/parts.h"
 #include "camera_files/files.h"
-#include "trace/sampler/sampler.h"
+#include "sampler/sampler.h"
 #include "velo/projection.h"
 
 uint32_t vl_sample_sequence(void) {

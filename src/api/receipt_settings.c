@@ -6,7 +6,7 @@
 
 #include "api/receipt.h"
 #include "camera/parts.h"
-#include "trace/sampler/sampler.h"
+#include "sampler/sampler.h"
 #include "velo/schema.h"
 #include "velo/trace.h"
 #include "world/accel/accel.h"

@@ -6,9 +6,13 @@
 #include "base/text.h"
 #include "camera/parts.h"
 #include "camera/points.h"
+#include "distortion/compile.h"
+#include "distortion/distortion.row.h"
+#include "distortion/kinds.row.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "projection/properties.row.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) {
@@ -44,17 +48,19 @@ static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) 
   return VL_OK;
 }
 
-/* OpenCV's tilted sensor: rotation about x by tau_x, then y by tau_y, then projection along the
- * axis onto the plane. */
-static void tilt(vlDistortionMap *m, double tau_x, double tau_y) {
-  vlSinCosDouble x = vl_sincos_double(tau_x), y = vl_sincos_double(tau_y);
-  const double about_x[9] = {1, 0, 0, 0, x.cos, x.sin, 0, -x.sin, x.cos};
-  const double about_y[9] = {y.cos, 0, -y.sin, 0, 1, 0, y.sin, 0, y.cos};
-  double r[9];
-  vl_mat3_multiply(about_y, about_x, r);
-  const double back[9] = {r[8], 0, -r[2], 0, r[8], -r[5], 0, 0, 1};
-  vl_mat3_multiply(back, r, m->tilt);
-  vl_mat3_inverse(m->tilt, m->untilt);
+#define DECLARE(kind, row, compile) vlDistortionCompile compile;
+VL_DISTORTION_FUNCTIONS(DECLARE)
+
+static vlResult compile_kind(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {
+  switch (def->distortion) {
+#define COMPILE(kind, row, compile) \
+  case kind:                        \
+    return compile(def->distortion_coefficients, def->distortion_count, m, error);
+    VL_DISTORTION_FUNCTIONS(COMPILE)
+#undef COMPILE
+    default:
+      return VL_ERROR_ARGUMENT;
+  }
 }
 
 static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {
@@ -78,56 +84,17 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
     if (!isfinite(k[i]) || fabs(k[i]) > 1e30)
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: distortion coefficient %u is %g", i + 1,
                      k[i]);
-  if ((uint32_t)def->distortion > VL_DISTORTION_THIN_PRISM)
+  const vlDistortionRow *row = vl_distortion_row(def->distortion);
+  if (!row)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown distortion %d",
                    (int)def->distortion);
-  switch (def->distortion) {
-    case VL_DISTORTION_NONE:
-      break;
-    case VL_DISTORTION_OPENCV: {
-      if (n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: %u OpenCV distortion coefficients; there are 4, 5, 8, 12 or 14",
-                       n);
-      double c[14] = {0};
-      memcpy(c, k, n * sizeof *c);
-      m->numerator[0] = c[0];
-      m->numerator[1] = c[1];
-      m->numerator[2] = c[4];
-      for (int i = 0; i < 3; i++)
-        m->denominator[i] = c[5 + i];
-      m->tangential[0] = c[2];
-      m->tangential[1] = c[3];
-      for (int i = 0; i < 4; i++)
-        m->prism[i] = c[8 + i];
-      if (!(fabs(c[12]) < 1.5 && fabs(c[13]) < 1.5))
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: the sensor's tilt %g, %g radians must be below 1.5", c[12],
-                       c[13]);
-      if (c[12] != 0.0 || c[13] != 0.0)
-        tilt(m, c[12], c[13]);
-      break;
-    }
-    case VL_DISTORTION_RADIAL:
-      if (n < 1 || n > 4)
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: %u radial distortion coefficients; there are 1 to 4", n);
-      memcpy(m->numerator, k, n * sizeof *k);
-      break;
-    case VL_DISTORTION_THIN_PRISM:
-      if (n != 8)
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: %u thin-prism distortion coefficients; there are 8", n);
-      m->numerator[0] = k[0];
-      m->numerator[1] = k[1];
-      m->numerator[2] = k[4];
-      m->numerator[3] = k[5];
-      m->tangential[0] = k[2];
-      m->tangential[1] = k[3];
-      m->prism[0] = k[6];
-      m->prism[2] = k[7];
-      break;
-  }
+  if (n > 14 || !(row->counts >> n & 1))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: %u %s distortion coefficients; there are %s", n, row->title,
+                   row->how_many);
+  vlResult result = compile_kind(def, m, error);
+  if (result != VL_OK)
+    return result;
   for (uint32_t i = 0; i < n; i++)
     if (k[i] != 0.0)
       m->steps = 1; /* if all are zero there is no distortion */

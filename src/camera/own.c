@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {

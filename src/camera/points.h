@@ -4,7 +4,7 @@
 #ifndef CAMERA_POINTS_H
 #define CAMERA_POINTS_H
 
-#include "camera/distortion.h"
+#include "distortion/distortion.h"
 #include "projection/kinds.h"
 
 /* Maps pixels from the principal point to the plane. */

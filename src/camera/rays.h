@@ -1,8 +1,8 @@
 /* camera/rays.h: the camera's interface to the render loop: film samples in, rays out, a batch
  * at a time.
  *
- *     film sample -> distortion (distortion.h) -> projection (projection.h and what it
- *       includes) -> lens (lens.h)
+ *     film sample -> distortion (distortion/distortion.h) -> projection (projection.h and what
+ * it includes) -> lens (lens.h)
  *     -> pose -> world-space ray
  *
  * Each stage is a plain function by value; the projection is chosen once per batch. Positions

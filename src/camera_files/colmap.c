@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "camera_files/colmap.h"
 #include "camera_files/trajectory.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 typedef struct {

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "camera_files/files.h"
 #include "math/transform.h"
+#include "velo/distortion.h"
 
 bool vl_camera_drops(const vlCameraFile *file, const char *field) {
   for (uint32_t i = 0; i < file->def->drop_count; i++)

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/transform.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 typedef struct {

@@ -4,6 +4,7 @@
 
 #include "camera_files/files.h"
 #include "math/transform.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy) {

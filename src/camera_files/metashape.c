@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 /* Reads the numbers of <calibration>. Files of version 1.1 and before have fx, fy, and cx, cy

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "math/elementary.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 /* Returns the object that holds a key. The value in a frame overrides the value of the file. */

@@ -5,6 +5,7 @@
 #include "camera_files/opencv.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 /* The names of lens models in both dialects; without a name the number of coefficients

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
+#include "velo/distortion.h"
 
 /* The numbers that both forms have. */
 typedef struct {

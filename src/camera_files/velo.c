@@ -7,7 +7,9 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "distortion/distortion.row.h"
 #include "projection/properties.row.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 #include "velo/setting.h"
 
@@ -18,7 +20,6 @@ static const char *projection_key(vlProjection kind) {
   const char *key = vl_projection_row(kind)->key;
   return key ? key : "";
 }
-static const char *const distortions[] = {"none", "opencv", "radial", "thin-prism"};
 
 /* ---- fields ------------------------------------------------------------------------------ */
 
@@ -220,7 +221,10 @@ static vlResult read_distortion(const vlCameraFile *file, const json_t *tree,
     return VL_OK;
   if (!json_is_object(lens))
     return vl_camera_wrong(file, "velo: \"distortion\" must have a model and coefficients");
-  vlResult result = word(file, lens, "model", distortions, 4, &kind);
+  const char *keys[VL_DISTORTION_KIND_COUNT];
+  for (uint32_t i = 0; i < VL_DISTORTION_KIND_COUNT; i++)
+    keys[i] = vl_distortion_row(i)->key;
+  vlResult result = word(file, lens, "model", keys, VL_DISTORTION_KIND_COUNT, &kind);
   d->distortion = (vlDistortion)kind;
   if (result == VL_OK && kind)
     result = vl_camera_numbers(file, lens, "coefficients", d->distortion_coefficients, 1, 14,
@@ -388,7 +392,7 @@ static void put_distortion(vlCameraText *text, const Field *field, const vlCamer
   if (d->distortion == VL_DISTORTION_NONE)
     return;
   vl_camera_put(text, ",\n  \"%s\": {\"model\": \"%s\", \"coefficients\": [", field->name,
-                distortions[d->distortion]);
+                vl_distortion_row(d->distortion)->key);
   put_list(text, d->distortion_coefficients, d->distortion_count);
   vl_camera_put(text, "]}");
 }

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "velo/distortion.h"
 
 static const char with_distortion[] = "perspectiveProjWithDistortion";
 static const char without_distortion[] = "perspectiveProjWithoutDistortion";

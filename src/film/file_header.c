@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "film/file.h"
+#include "velo/filter_kinds.h"
 #include "velo/schema.h"
 
 typedef enum Type { COUNT, FLOAT, DOUBLE, BOOL } Type;

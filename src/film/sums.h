@@ -4,7 +4,7 @@
 
 #include "base/context.h"
 #include "film/film.h"
-#include "film/filter.h"
+#include "filter/filter.h"
 #include "math/approx.h"
 
 __extension__ typedef __int128 vlInt128;

@@ -13,6 +13,7 @@
 #include "velo/material.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 void vl_import_plain_settings(vlScene *scene) {
   vlSceneDefs *s = vl_scene_defs(scene);

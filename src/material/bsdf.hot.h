@@ -19,7 +19,7 @@
 #include "material/measured_tables.h"
 #include "velo/base.h"
 
-/* A kind of BSDF: VL_BSDF_DIFFUSE and so on, in material/bsdf_kind.h. */
+/* A kind of BSDF: VL_BSDF_DIFFUSE and so on, in material/kinds.row.h. */
 typedef uint32_t vlBsdfKind;
 
 /* Number of parameter rows whose meaning depends on the kind. The enums below name the rows of

@@ -10,7 +10,8 @@
 
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(coat)
+vlBsdfEval vl_bsdf_coat_eval;
+vlBsdfSample vl_bsdf_coat_sample;
 
 enum { CHUNK = 64 };
 

@@ -26,7 +26,7 @@ vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *flo
   return r;
 }
 
-#define NAME(NAME, name) [VL_BSDF_##NAME] = #name,
+#define NAME(kind, name, parameters, eval, sample) name,
 const char *const vl_bsdf_names[] = {VL_BSDF_KINDS(NAME)};
 #undef NAME
 
@@ -324,9 +324,16 @@ vlResult vl_compile_interface_material(const vlMaterialBuild *b) {
   return VL_OK;
 }
 
-#define COMPILE(NAME, name) [VL_MATERIAL_##NAME] = vl_compile_##name##_material,
-static vlCompileMaterial *const compile[] = {VL_MATERIAL_KINDS(COMPILE)};
-enum { KINDS = sizeof compile / sizeof *compile };
+static vlResult compile_kind(const vlMaterialBuild *b) {
+  switch (b->def->kind) {
+#define COMPILE(kind, row, compile) \
+  case kind:                        \
+    return compile(b);
+    VL_MATERIAL_FUNCTIONS(COMPILE)
+#undef COMPILE
+  }
+  return VL_ERROR_ARGUMENT;
+}
 
 static vlResult bumps(const vlMaterialBuild *b) {
   vlResult r = VL_OK;
@@ -354,7 +361,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   m.remap = def->remap_roughness;
   m.eta_s = 1.5f;
   const vlMaterialBuild b = {world, scene, def, &m, error};
-  vlResult r = compile[def->kind](&b);
+  vlResult r = compile_kind(&b);
   m.diffuse = m.bsdf == VL_BSDF_DIFFUSE;
   if (r == VL_OK)
     r = bumps(&b);
@@ -381,7 +388,7 @@ vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *e
       !(world->rank = vl_world_block(world, world->materials.count, sizeof(uint32_t))))
     return vl_fail_memory(error);
   uint32_t next = 0;
-  for (int kind = 0; r == VL_OK && kind < KINDS; kind++)
+  for (int kind = 0; r == VL_OK && kind < (int)vl_material_family.kind_count; kind++)
     for (size_t i = 0; i < world->materials.count; i++)
       if ((int)world->materials.items[i].kind == kind)
         world->rank[i] = next++;

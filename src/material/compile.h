@@ -4,7 +4,7 @@
 #define MATERIAL_COMPILE_H
 
 #include "base/error.h"
-#include "material/bsdf_kind.h"
+#include "material/kinds.row.h"
 #include "scene/scene.h"
 #include "velo/material.h"
 #include "world/world.h"
@@ -19,8 +19,9 @@ typedef struct vlMaterialBuild {
 } vlMaterialBuild;
 
 typedef vlResult vlCompileMaterial(const vlMaterialBuild *b);
-#define VL_DECLARE_COMPILE(NAME, name) vlCompileMaterial vl_compile_##name##_material;
-VL_MATERIAL_KINDS(VL_DECLARE_COMPILE)
+#define VL_DECLARE_COMPILE(kind, row, compile) vlCompileMaterial compile;
+VL_MATERIAL_FUNCTIONS(VL_DECLARE_COMPILE)
+#undef VL_DECLARE_COMPILE
 
 /* Compiles an input into a texture node. */
 static inline vlResult vl_material_float(const vlMaterialBuild *b, vlFloatInput input,

@@ -2,7 +2,8 @@
  * scattering (pbrt book 9.3.6, 9.6.5). */
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(conductor)
+vlBsdfEval vl_bsdf_conductor_eval;
+vlBsdfSample vl_bsdf_conductor_sample;
 
 void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
                             vlBsdfDirections wi, float *const value[4], float *pdf) {

@@ -5,7 +5,8 @@
  * refraction compresses the solid angle. */
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(dielectric)
+vlBsdfEval vl_bsdf_dielectric_eval;
+vlBsdfSample vl_bsdf_dielectric_sample;
 
 void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
                              vlBsdfDirections wi, float *const value[4], float *pdf) {

@@ -1,7 +1,8 @@
 /* material/diffuse.hot.c: Lambertian reflection (pbrt book 9.2). */
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(diffuse)
+vlBsdfEval vl_bsdf_diffuse_eval;
+vlBsdfSample vl_bsdf_diffuse_sample;
 
 void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
                           vlBsdfDirections wi, float *const value[4], float *pdf) {

@@ -3,7 +3,8 @@
  * channel of each. Both sides of the surface have the same values. */
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(translucent)
+vlBsdfEval vl_bsdf_translucent_eval;
+vlBsdfSample vl_bsdf_translucent_sample;
 
 /* Probability of reflection; any value if both are 0. */
 static inline float share(float r0, float r1, float r2, float r3, float t0, float t1, float t2,

@@ -9,7 +9,8 @@
  * not depend on the side of the surface. */
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(hair)
+vlBsdfEval vl_bsdf_hair_eval;
+vlBsdfSample vl_bsdf_hair_sample;
 
 enum { LOBES = 4 }; /* p = 0, 1, 2 internal segments, and all larger p */
 

@@ -11,7 +11,8 @@
  * is scalar because walks diverge. */
 #include "material/layers.hot.h"
 
-VL_BSDF_DECLARE(layered)
+vlBsdfEval vl_bsdf_layered_eval;
+vlBsdfSample vl_bsdf_layered_sample;
 
 static inline float next(uint32_t *state) {
   *state += 0x9e3779b9u;

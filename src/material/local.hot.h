@@ -28,11 +28,6 @@ typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirectio
                           const float *u_lobe, const float *u, const float *v,
                           vlBsdfDirections wi, float *const weight[4], float *pdf,
                           uint32_t *flags, float *eta_scale);
-/* Declares the kernels of a kind: in the file that defines them, and for all in table.hot.c. */
-#define VL_BSDF_DECLARE(name)       \
-  vlBsdfEval vl_bsdf_##name##_eval; \
-  vlBsdfSample vl_bsdf_##name##_sample;
-
 /* Samples a cosine-weighted direction around +z. u, v: uniform in [0, 1). z is always above 0,
  * so that no sample is lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {

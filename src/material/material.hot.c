@@ -1,6 +1,6 @@
 /* material/material.hot.c: shading of a run of lanes with one material: bump and normal
  * maps, BSDF parameters from textures; then shading frames for all lanes. */
-#include "material/bsdf_kind.h"
+#include "material/kinds.row.h"
 #include "material/rows.hot.h"
 #include "velo/schema.h"
 #include "velo/shape.h"
@@ -162,7 +162,7 @@ static void index_of_refraction(vlTextureRun *r, const vlWorldMaterial *m) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
 }
 
-#define DECLARE(NAME, name) vlParametersFn vl_parameters_##name;
+#define DECLARE(kind, name, parameters, eval, sample) vlParametersFn parameters;
 VL_BSDF_KINDS(DECLARE)
 
 void vl_parameters_diffuse(vlTextureRun *r, const vlWorldMaterial *m) {
@@ -255,7 +255,7 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
   }
 }
 
-#define PARAMETERS(NAME, name) [VL_BSDF_##NAME] = vl_parameters_##name,
+#define PARAMETERS(kind, name, parameters, eval, sample) [kind] = parameters,
 static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
 
 /* Dispersion: directions depend on the wavelength, so the path keeps only the hero wavelength,

@@ -1,6 +1,12 @@
 /* material/material.row.c: the family of materials: the list of its rows, each from the file of
  * its kind. */
 #include "material/material.row.h"
+#include "material/kinds.row.h"
 
-#define ROW(NAME, name) [VL_MATERIAL_##NAME] = &vl_material_row_##name,
-VL_KIND_FAMILY(vl_material_family, VL_MATERIAL_KINDS, ROW, "materials", "material", "Material")
+#define DECLARE(kind, row, compile) extern const vlKindRow row;
+VL_MATERIAL_FUNCTIONS(DECLARE)
+
+#define ROW(kind, row, compile) [kind] = &row,
+static const vlKindRow *const rows[] = {VL_MATERIAL_FUNCTIONS(ROW)};
+VL_KIND_FAMILY_OF(vl_material_family, rows, VL_MATERIAL_KINDS, "materials", "material",
+                  "Material")

@@ -7,11 +7,6 @@
 #include "schema/schema.h"
 #include "velo/material.h"
 
-/* Declares the row of each kind, which is in the file of the kind: material/NAME.row.c. */
-#define VL_MATERIAL_ROW(NAME, name) extern const vlKindRow vl_material_row_##name;
-VL_MATERIAL_KINDS(VL_MATERIAL_ROW)
-#undef VL_MATERIAL_ROW
-
 #define BOOL(...) VL_PARAMETER(BOOL, vlMaterialDef, __VA_ARGS__)
 #define COUNT(...) VL_PARAMETER(COUNT, vlMaterialDef, __VA_ARGS__)
 #define FLOAT(...) VL_PARAMETER(FLOAT, vlMaterialDef, __VA_ARGS__)

@@ -6,7 +6,8 @@
 #include "material/local.hot.h"
 #include "material/measured_lookup.h"
 
-VL_BSDF_DECLARE(measured)
+vlBsdfEval vl_bsdf_measured_eval;
+vlBsdfSample vl_bsdf_measured_sample;
 
 /* wo in the file's frame, and the table slices for it. */
 typedef struct Seen {

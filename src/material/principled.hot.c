@@ -8,7 +8,8 @@
  * and wi; for refraction, up to the squared index of refraction. */
 #include "material/principled.hot.h"
 
-VL_BSDF_DECLARE(principled)
+vlBsdfEval vl_bsdf_principled_eval;
+vlBsdfSample vl_bsdf_principled_sample;
 
 static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
   vlPrincipledSlice s;

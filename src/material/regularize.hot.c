@@ -2,7 +2,7 @@
  * lobes rougher for paths that have already been scattered, so that light samples can find
  * light that otherwise only a nearly specular lobe would reach. Kinds without alpha do not
  * change. */
-#include "material/bsdf_kind.h"
+#include "material/kinds.row.h"
 #include "math/ggx.h"
 #include "trace/stages.h"
 #include "velo/schema.h"

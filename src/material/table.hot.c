@@ -1,15 +1,17 @@
 /* material/table.hot.c: the tables of the BSDF kernels by kind, one table per instruction
  * set. */
-#include "material/bsdf_kind.h"
+#include "material/kinds.row.h"
 #include "material/local.hot.h"
 
-#define DECLARE(NAME, name) VL_BSDF_DECLARE(name)
+#define DECLARE(kind, name, parameters, eval, sample) \
+  vlBsdfEval eval;                                    \
+  vlBsdfSample sample;
 VL_BSDF_KINDS(DECLARE)
 
-#define EVAL(NAME, name) [VL_BSDF_##NAME] = vl_bsdf_##name##_eval,
+#define EVAL(kind, name, parameters, eval, sample) [kind] = eval,
 static vlBsdfEval *const evals[] = {VL_BSDF_KINDS(EVAL)};
 
-#define SAMPLE(NAME, name) [VL_BSDF_##NAME] = vl_bsdf_##name##_sample,
+#define SAMPLE(kind, name, parameters, eval, sample) [kind] = sample,
 static vlBsdfSample *const samples[] = {VL_BSDF_KINDS(SAMPLE)};
 
 static void eval(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,

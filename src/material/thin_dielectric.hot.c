@@ -2,7 +2,8 @@
  * reflections (pbrt book 9.5.1). */
 #include "material/local.hot.h"
 
-VL_BSDF_DECLARE(thin)
+vlBsdfEval vl_bsdf_thin_eval;
+vlBsdfSample vl_bsdf_thin_sample;
 
 /* Reflection and transmission of a pane are deltas. */
 void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,

@@ -19,6 +19,7 @@
 #include "render/support.h"
 #include "velo/camera.h"
 #include "velo/schema.h"
+#include "velo/tracer.h"
 
 enum {
   LEAST_SAMPLES = 8,

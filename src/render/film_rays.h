@@ -5,7 +5,7 @@
 
 #include "camera/rays.h"
 #include "film/film.h"
-#include "trace/sampler/sampler.h"
+#include "sampler/sampler.h"
 
 /* Everything that determines the ray of a film sample. */
 typedef struct vlFilmRays {

@@ -6,6 +6,8 @@
 #include "camera/rays.h"
 #include "render/support.h"
 #include "trace/trace.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 enum { SIDE = 32, DEPTH = 8, ROWS = 22 };
 /* Media differ if this share of the radiance arrives over such segments, or if this share of

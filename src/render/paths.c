@@ -11,9 +11,10 @@
 #include "base/free.h"
 #include "film/expose.h"
 #include "render/block.h"
-#include "trace/tracer/record.h"
+#include "tracer/record.h"
 #include "velo/focus.h"
 #include "velo/trace.h"
+#include "velo/tracer.h"
 
 enum { MOST_PATHS = 1 << 20 };
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "velo/filter_kinds.h"
 
 static uint32_t border_of(double radius) {
   return (uint32_t)ceil(radius - 0.5);

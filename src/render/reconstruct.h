@@ -10,7 +10,7 @@
 #ifndef RENDER_RECONSTRUCT_H
 #define RENDER_RECONSTRUCT_H
 
-#include "film/filter.h"
+#include "filter/filter.h"
 #include "velo/render.h"
 
 enum { VL_SHARED_SIDE = 128, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 2 };

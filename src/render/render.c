@@ -13,6 +13,7 @@
 #include "velo/focus.h"
 #include "velo/schema.h"
 #include "velo/trace.h"
+#include "velo/tracer.h"
 
 enum { MAX_PASS = 16, PASS_SECONDS = 5 };
 static const double NEARLY = 0.97; /* share of the time limit after which no new pass begins */

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "film/filter.h"
 #include "film/sums.h"
+#include "filter/filter.h"
 
 static void add(vlSplatSum *sum, float value) {
   vlInt128 units = vl_film_product(value, INT64_C(1) << VL_WEIGHT_BITS);

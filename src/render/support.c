@@ -4,6 +4,7 @@
 
 #include "render/camera_view.h"
 #include "velo/shape.h"
+#include "velo/tracer.h"
 
 #define BIT VL_TRACER_BIT
 enum {

@@ -5,6 +5,7 @@
 #define RENDER_SUPPORT_H
 
 #include "velo/render.h"
+#include "velo/tracer.h"
 #include "world/world.h"
 
 /* A set of tracers. */

@@ -12,6 +12,7 @@
 #include "math/hash.h"
 #include "render/camera_view.h"
 #include "render/splats.h"
+#include "velo/tracer.h"
 
 enum {
   MOST_PATHS = 1 << 20,   /* light paths in a pass, where the scene gives no number */

@@ -11,6 +11,7 @@
 #include "velo/material.h"
 #include "velo/medium.h"
 #include "velo/shape.h"
+#include "velo/tracer.h"
 
 typedef struct Box {
   double low[3], high[3];

@@ -1,5 +1,6 @@
 /* schema/cameras.c: rows of the cameras in files: those of pbrt and calibrated lenses; the rows
  * of the projections are in src/projection. */
+#include "distortion/distortion.row.h"
 #include "projection/rows.row.h"
 
 const char *const vl_camera_fov_axes[] = {"vertical", "horizontal", "diagonal",
@@ -99,7 +100,6 @@ static const char *const projections[] = {
     VL_PROJECTION_KINDS(NAME)
 #undef NAME
         NULL};
-static const char *const distortions[] = {"none", "opencv", "radial", "thin_prism", NULL};
 #define SIDE(member, line) \
   PARAMETER(COUNT, NULL, member, line, VL_RANGE(1, 16777216), VL_DEFAULT(640), .unit = "pixels")
 #define SCREEN(member, line) OPTIONAL(NULL, member, line, .unit = NULL)
@@ -120,7 +120,8 @@ static const vlParameter camera_settings_parameters[] = {
              .unit = "s"),
     OPTIONAL(NULL, pose_times[1],
              "time of the second pose; unset: when the last row's shutter closes", .unit = "s"),
-    PARAMETER(CHOICE, NULL, distortion, "model of the lens distortion", .choices = distortions),
+    PARAMETER(CHOICE, NULL, distortion, "model of the lens distortion",
+              .choices = vl_distortion_names),
     MODEL};
 const vlKindRow vl_camera_settings_row = {
     .name = "camera",

@@ -7,10 +7,13 @@
 #include "color/color.h"
 #include "color/named.h"
 #include "schema/schema.h"
+#include "velo/filter_kinds.h"
 #include "velo/load.h"
 #include "velo/material.h"
 #include "velo/render.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 

@@ -6,10 +6,13 @@
 
 #include "schema/schema.h"
 #include "velo/channels.h"
+#include "velo/filter_kinds.h"
 #include "velo/image.h"
 #include "velo/load.h"
 #include "velo/render.h"
+#include "velo/sampler.h"
 #include "velo/setting.h"
+#include "velo/tracer.h"
 
 #define DEGREES 0.017453292519943295
 #define WITHIN(least, most) .low = (least), .high = (most)

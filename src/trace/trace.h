@@ -12,7 +12,7 @@
 
 #include "base/cancel.h"
 #include "base/isa.h"
-#include "trace/sampler/sampler.h"
+#include "sampler/sampler.h"
 #include "world/world.h"
 
 struct vlTwoWay; /* two_way.h */

@@ -14,6 +14,7 @@
 #include "velo/load.h"
 #include "velo/render.h"
 #include "velo/schema.h"
+#include "velo/tracer.h"
 
 enum { WORKERS = 3 };
 

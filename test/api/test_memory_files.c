@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "api/small_world.h"
+#include "velo/filter_kinds.h"
 #include "velo/load.h"
 
 static vlContext *make_context(void) {

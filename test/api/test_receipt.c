@@ -17,6 +17,7 @@
 #include "velo/projection.h"
 #include "velo/receipt.h"
 #include "velo/render.h"
+#include "velo/tracer.h"
 
 typedef struct Fixture {
   vlContext *context;

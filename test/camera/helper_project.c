@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "velo/camera.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 enum { HEADER = 8 + 14 + 16 + 1 };

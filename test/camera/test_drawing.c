@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "velo/distortion.h"
 #include "velo/drawing.h"
 #include "velo/projection.h"
 

@@ -6,6 +6,7 @@
 #include "camera/lens.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 enum { N = 1 << 18, CHUNK = 1024 };

@@ -5,6 +5,7 @@
 
 #include "camera/parts.h"
 #include "camera/rays.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static const double pi = 3.14159265358979323846;

@@ -11,6 +11,7 @@
 
 #include "camera/rays.h"
 #include "velo/camera.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static const double pi = 3.14159265358979323846;

@@ -3,6 +3,7 @@
  * rejected. */
 #include "camera/cameras.h"
 
+#include "velo/distortion.h"
 #include "velo/projection.h"
 #include "velo/vanishing.h"
 

@@ -2,6 +2,7 @@
  * published examples with numbers computed by hand, matrices as those APIs use them, rejected
  * content by name. */
 #include "camera_files/files.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static void lens(vlCameraDef *d, vlDistortion kind, uint32_t count, const double *k) {

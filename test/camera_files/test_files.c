@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "velo/distortion.h"
 #include "velo/load.h"
 #include "velo/projection.h"
 #include "velo/render.h"

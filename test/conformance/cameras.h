@@ -5,9 +5,11 @@
 #define TEST_CONFORMANCE_CAMERAS_H
 
 #include "conformance.h"
+#include "distortion/distortion.case.h"
 #include "files.h"
 #include "projection/projection.case.h"
 #include "velo/camera_file.h"
+#include "velo/distortion.h"
 #include "velo/export.h"
 #include "velo/setting.h"
 #include "velo/shape.h"
@@ -19,58 +21,9 @@ enum { PROJECTIONS = VL_PROJECTION_OWN };
 _Static_assert(sizeof projection_cases / sizeof *projection_cases == PROJECTIONS,
                "a case for each projection");
 
-/* The distortions, their coefficients and the point to which (.3, .2) goes. */
-typedef struct DistortionCase {
-  const char *name;
-  vlDistortion kind;
-  uint32_t count;
-  double k[14];
-} DistortionCase;
-static const DistortionCase distortion_cases[] = {
-    {"none", VL_DISTORTION_NONE, 0, {0}},
-    {"opencv",
-     VL_DISTORTION_OPENCV,
-     12,
-     {-.2, .05, .003, -.004, .01, .02, .01, .003, .002, .001, -.003, .002}},
-    {"opencv of 5", VL_DISTORTION_OPENCV, 5, {.1, .02, .02, -.01, .01}},
-    {"radial", VL_DISTORTION_RADIAL, 4, {-.1, .03, .01, -.002}},
-    {"thin prism",
-     VL_DISTORTION_THIN_PRISM,
-     8,
-     {-.1, .02, .003, -.004, .01, .002, .005, -.006}},
-};
-
-/* The published equations, written apart from the library: a point of the plane z = 1 to its
- * distorted point. */
-static void distort_plainly(const DistortionCase *d, double x, double y, double at[2]) {
-  const double *k = d->k;
-  double s = x * x + y * y;
-  double radial = 1;
-  double p1 = 0;
-  double p2 = 0;
-  double prism[4] = {0, 0, 0, 0};
-  if (d->kind == VL_DISTORTION_OPENCV) {
-    double k4 = d->count > 5 ? k[5] : 0;
-    double k5 = d->count > 5 ? k[6] : 0;
-    double k6 = d->count > 5 ? k[7] : 0;
-    radial = (1 + k[0] * s + k[1] * s * s + k[4] * s * s * s) /
-             (1 + k4 * s + k5 * s * s + k6 * s * s * s);
-    p1 = k[2];
-    p2 = k[3];
-    for (int i = 0; i < 4 && d->count > 8; i++)
-      prism[i] = k[8 + i];
-  } else if (d->kind == VL_DISTORTION_RADIAL) {
-    radial = 1 + k[0] * s + k[1] * s * s + k[2] * s * s * s + k[3] * s * s * s * s;
-  } else if (d->kind == VL_DISTORTION_THIN_PRISM) {
-    radial = 1 + k[0] * s + k[1] * s * s + k[4] * s * s * s + k[5] * s * s * s * s;
-    p1 = k[2];
-    p2 = k[3];
-    prism[0] = k[6];
-    prism[2] = k[7];
-  }
-  at[0] = x * radial + 2 * p1 * x * y + p2 * (s + 2 * x * x) + prism[0] * s + prism[1] * s * s;
-  at[1] = y * radial + p1 * (s + 2 * y * y) + 2 * p2 * x * y + prism[2] * s + prism[3] * s * s;
-}
+#define CASE(NAME, name) &name##_distortion,
+static const DistortionCase *const distortion_cases[] = {VL_DISTORTION_KINDS(CASE)};
+#undef CASE
 
 /* ---- the laws ---------------------------------------------------------------------------- */
 
@@ -420,39 +373,42 @@ static void laws_of_projections(void **state) {
   expect_no_failures();
 }
 
+static void check_distortion(const char *name, const DistortionCase *c, vlDistortion kind,
+                             const DistortionVariant *variant) {
+  vlCameraDef def = vl_default_camera_def(FILM_WIDTH, FILM_HEIGHT);
+  vlCamera camera;
+  def.fx = def.fy = 70;
+  def.distortion = kind;
+  def.distortion_count = variant->count;
+  memcpy(def.distortion_coefficients, variant->k, sizeof variant->k);
+  if (!make_camera("distortions", name, &def, &camera))
+    return;
+  check_round_trip("distortions", name, &camera, 1e-8);
+  check_file("distortions", name, &def, &camera);
+  check_scene_file("distortions", name, &def, "pbrt");
+  check_scene_file("distortions", name, &def, "gltf");
+  for (int k = 0; k < 4; k++) {
+    const double point[3] = {k & 1 ? 0.3 : -0.4, k & 2 ? 0.25 : -0.1, 1};
+    double known[2];
+    double at[2] = {0, 0};
+    c->plain(variant, point[0], point[1], known);
+    vl_camera_project(&camera, point, at, NULL);
+    for (int j = 0; j < 2; j++)
+      if (fabs((at[j] - (j ? camera.cy : camera.cx)) / 70 - known[j]) > 1e-10)
+        broken("distortions", name, "(%g, %g) goes to %.9f along %c, not to %.9f", point[0],
+               point[1], (at[j] - (j ? camera.cy : camera.cx)) / 70, j ? 'y' : 'x', known[j]);
+  }
+}
+
 static void laws_of_distortions(void **state) {
   (void)state;
-  uint32_t kinds = 0;
-  for (size_t i = 0; i < sizeof distortion_cases / sizeof *distortion_cases; i++) {
-    const DistortionCase *c = &distortion_cases[i];
-    vlCameraDef def = vl_default_camera_def(FILM_WIDTH, FILM_HEIGHT);
-    vlCamera camera;
-    kinds |= 1u << c->kind;
-    def.fx = def.fy = 70;
-    def.distortion = c->kind;
-    def.distortion_count = c->count;
-    memcpy(def.distortion_coefficients, c->k, sizeof c->k);
-    if (!make_camera("distortions", c->name, &def, &camera))
-      continue;
-    check_round_trip("distortions", c->name, &camera, 1e-8);
-    check_file("distortions", c->name, &def, &camera);
-    check_scene_file("distortions", c->name, &def, "pbrt");
-    check_scene_file("distortions", c->name, &def, "gltf");
-    for (int k = 0; k < 4; k++) {
-      const double point[3] = {k & 1 ? 0.3 : -0.4, k & 2 ? 0.25 : -0.1, 1};
-      double known[2];
-      double at[2] = {0, 0};
-      distort_plainly(c, point[0], point[1], known);
-      vl_camera_project(&camera, point, at, NULL);
-      for (int j = 0; j < 2; j++)
-        if (fabs((at[j] - (j ? camera.cy : camera.cx)) / 70 - known[j]) > 1e-10)
-          broken("distortions", c->name, "(%g, %g) goes to %.9f along %c, not to %.9f",
-                 point[0], point[1], (at[j] - (j ? camera.cy : camera.cx)) / 70, j ? 'y' : 'x',
-                 known[j]);
-    }
-  }
-  for (int k = 0; k <= VL_DISTORTION_THIN_PRISM; k++)
-    assert_true(kinds >> k & 1);
+#define NAME(NAME, name) #name,
+  static const char *const names[] = {VL_DISTORTION_KINDS(NAME)};
+#undef NAME
+  for (uint32_t k = 0; k < VL_DISTORTION_KIND_COUNT; k++)
+    for (int i = 0; i < DISTORTION_VARIANTS; i++)
+      if (i == 0 || distortion_cases[k]->variants[i].count)
+        check_distortion(names[k], distortion_cases[k], k, &distortion_cases[k]->variants[i]);
   expect_no_failures();
 }
 

@@ -19,8 +19,10 @@
 
 #include <cmocka.h>
 
+#include "velo/filter_kinds.h"
 #include "velo/load.h"
 #include "velo/render.h"
+#include "velo/sampler.h"
 #include "velo/schema.h"
 #include "velo/trace.h"
 

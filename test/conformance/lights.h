@@ -8,7 +8,9 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "velo/filter_kinds.h"
 #include "velo/light.h"
+#include "velo/tracer.h"
 
 /* ---- asking ------------------------------------------------------------------------------ */
 

@@ -11,6 +11,9 @@
 #include "parameter_cases.h"
 #include "velo/check.h"
 #include "velo/export.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 enum { VALUES = 3 };
 

@@ -8,7 +8,9 @@
 #include "conformance.h"
 #include "parameters.h"
 #include "transport.h"
+#include "velo/filter_kinds.h"
 #include "velo/light.h"
+#include "velo/tracer.h"
 
 static double luminance_of(const float rgb[3]) {
   return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];

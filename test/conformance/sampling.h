@@ -5,27 +5,14 @@
 #define TEST_CONFORMANCE_SAMPLING_H
 
 #include "conformance.h"
+#include "filter/filter.case.h"
+#include "sampler/sampler.case.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
 
 /* ---- samplers ---------------------------------------------------------------------------- */
 
 enum { SETS = 64, SET = 64, SIDE = 8 }; /* pixels; samples of each; cells along a side */
-
-typedef struct SamplerCase {
-  bool rows;   /* each of 64 intervals has one u of a pixel, and one v */
-  bool cells;  /* each of 8 x 8 cells has one pair of a pixel */
-  bool centre; /* numbers are the centres of cells: not even inside */
-  bool hash;   /* no better than independent numbers */
-} SamplerCase;
-
-static const SamplerCase independent_sampler = {.hash = true};
-static const SamplerCase regular_sampler = {.cells = true, .centre = true};
-static const SamplerCase stratified_sampler = {.cells = true};
-static const SamplerCase nrooks_sampler = {.rows = true};
-static const SamplerCase multi_jittered_sampler = {.rows = true, .cells = true};
-static const SamplerCase hammersley_sampler = {.rows = true, .cells = true};
-static const SamplerCase halton_sampler = {0};
-static const SamplerCase sobol_sampler = {.rows = true, .cells = true};
-static const SamplerCase zsobol_sampler = {.rows = true, .cells = true};
 
 #define SAMPLER_CASE(NAME, name) &name##_sampler,
 static const SamplerCase *const sampler_cases[] = {VL_SAMPLER_KINDS(SAMPLER_CASE)};
@@ -177,41 +164,7 @@ static void laws_of_samplers(void **state) {
 
 /* ---- filters ----------------------------------------------------------------------------- */
 
-/* The formulas, written apart from the library; x: distance from the centre, pixels. */
-typedef double FilterShape(double x, double radius);
-static double box_shape(double x, double radius) {
-  (void)x;
-  (void)radius;
-  return 1;
-}
-static double triangle_shape(double x, double radius) {
-  return radius - x;
-}
-static double gaussian_shape(double x, double radius) {
-  return exp(-x * x / (2 * .5 * .5)) - exp(-radius * radius / (2 * .5 * .5));
-}
-static double mitchell_shape(double x, double radius) {
-  double b = 1.0 / 3;
-  double c = 1.0 / 3;
-  double t = 2 * x / radius;
-  double near = (12 - 9 * b - 6 * c) * t * t * t + (-18 + 12 * b + 6 * c) * t * t + 6 - 2 * b;
-  double far = (-b - 6 * c) * t * t * t + (6 * b + 30 * c) * t * t + (-12 * b - 48 * c) * t +
-               8 * b + 24 * c;
-  return t < 1 ? near : far;
-}
-static double sinc_of(double x) {
-  return x == 0 ? 1 : sin(PI * x) / (PI * x);
-}
-static double lanczos_shape(double x, double radius) {
-  (void)radius;
-  return sinc_of(x) * sinc_of(x / 3);
-}
-static double blackman_harris_shape(double x, double radius) {
-  double t = PI * (x / radius + 1);
-  return 0.35875 - 0.48829 * cos(t) + 0.14128 * cos(2 * t) - 0.01168 * cos(3 * t);
-}
-
-#define FILTER_CASE(NAME, name) name##_shape,
+#define FILTER_CASE(NAME, name) name##_filter,
 static FilterShape *const filter_shapes[] = {VL_PIXEL_FILTER_KINDS(FILTER_CASE)};
 
 enum { FILTERED = 16 };

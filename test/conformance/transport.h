@@ -5,7 +5,10 @@
 #define TEST_CONFORMANCE_TRANSPORT_H
 
 #include "conformance.h"
+#include "tracer/tracer.case.h"
+#include "velo/filter_kinds.h"
 #include "velo/medium.h"
+#include "velo/tracer.h"
 
 /* The image of the scene by a tracer (null: the scene's own) and with a pixel filter. */
 static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilterKind filter,
@@ -257,34 +260,7 @@ static double ball_share_of_pixel(uint32_t column, uint32_t row) {
   return sum / (PLATE_STEPS * PLATE_STEPS);
 }
 
-/* The radiance of the plate: `even` of a sky of 1 or of the eye, and `ball` times the share of
- * the hemisphere that the ball covers. */
-typedef struct Plate {
-  double even, ball;
-} Plate;
-
-typedef struct TracerCase {
-  Plate sky, lamp;
-  uint32_t spp; /* 0: 64 */
-  double least; /* the least mistake that must be found, of the mean; 0: .03 */
-} TracerCase;
-
-/* Below a sky of 1: half of it. Below the ball: half of 4 times its share. */
-#define TRANSPORT .sky = {.even = 0.5}, .lamp = {.ball = 2}
-static const TracerCase path_tracer = {TRANSPORT};
-static const TracerCase raycast_tracer = {
-    .sky = {.even = 0.25},
-    .lamp = {.even = 0.25}}; /* the reflectance times the cosine to the eye */
-static const TracerCase ambient_occlusion_tracer = {
-    .spp = 320, .sky = {.even = 1}, .lamp = {.even = 1, .ball = -1}};
-static const TracerCase volpath_tracer = {TRANSPORT};
-static const TracerCase bidirectional_tracer = {TRANSPORT, .spp = 128};
-static const TracerCase merging_tracer = {TRANSPORT, .spp = 128};
-static const TracerCase sppm_tracer = {TRANSPORT, .spp = 128};
-static const TracerCase light_path_tracer = {TRANSPORT, .spp = 512};
-static const TracerCase random_walk_tracer = {TRANSPORT, .spp = 8192,
-                                              .least = 0.1}; /* it finds the ball by chance */
-
+/* The kinds of tracers with what the plate looks like by them. */
 #define TRACER_CASE(NAME, name) &name##_tracer,
 static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 

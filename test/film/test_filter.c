@@ -7,8 +7,9 @@
 #include <cmocka.h>
 
 #include "base/context.h"
-#include "film/filter.h"
+#include "filter/filter.h"
 #include "statistics.h"
+#include "velo/filter_kinds.h"
 
 enum { KINDS = VL_PIXEL_FILTER_BLACKMAN_HARRIS + 1, BATCH = 4096, TESTS = KINDS * 3 * 2 };
 static const char *const NAMES[KINDS] = {"box",      "triangle", "gaussian",

@@ -9,6 +9,7 @@
 
 #include "film/film.h"
 #include "statistics.h"
+#include "velo/filter_kinds.h"
 
 enum { WIDTH = 100, HEIGHT = 70, SPP = 16 };
 static const uint32_t crop_[4] = {16, 8, 96, 70};

@@ -1,7 +1,10 @@
 /* test/import/test_builder_camera.c: statements for pbrt's and the lecture's cameras, and the
  * defs of the image. */
 #include "import/load.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
 #include "velo/shape.h"
+#include "velo/tracer.h"
 
 #define W "WorldBegin\n"
 

@@ -5,6 +5,8 @@
 #include "base/text.h"
 #include "import/load.h"
 #include "import/ply/ply.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
 
 #define SCENES VELO_SOURCE_DIR "/../shared/scenes/pbrt"
 

@@ -23,8 +23,10 @@
 
 #include <cmocka.h>
 
+#include "velo/filter_kinds.h"
 #include "velo/load.h"
 #include "velo/render.h"
+#include "velo/tracer.h"
 
 #define ONE_ROW 0.05 /* pixels: bound for the worst single row */
 #define FITTED 0.02  /* pixels: bound for a mean or a fitted line within its measured range */

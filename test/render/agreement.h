@@ -5,6 +5,7 @@
 #define TEST_RENDER_AGREEMENT_H
 
 #include "render/shots.h"
+#include "velo/tracer.h"
 
 enum { AGREEMENT_SEEDS = 6, AGREEMENT_BANDS = 4, AGREEMENT_CHANNELS = 3 };
 

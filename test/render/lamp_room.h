@@ -5,6 +5,7 @@
 
 #include "render/agreement.h"
 #include "shots.h"
+#include "velo/tracer.h"
 
 /* A tube that is closed below. */
 static UNUSED void add_tube(Stage *s, float y, float height, float radius,

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"

@@ -3,6 +3,7 @@
  * threshold that every block is below stops all at the first comparison; wrong defs. */
 #include "loaded.h"
 #include "velo/render.h"
+#include "velo/tracer.h"
 
 #define ONE(NAME, name) +1
 enum { WIDTH = 72, HEIGHT = 40, TRACERS = VL_TRACER_KINDS(ONE) };

@@ -1,6 +1,8 @@
 /* Effects of the camera on the image: circle of confusion, near and far plane, orthographic
  * projection, exposure time, crop; also depths and tracers of a render. */
 #include "render/shots.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 /* ---- lens -------------------------------------------------------------------------------- */
 

@@ -2,6 +2,8 @@
  * variances over that of the true ones, for each sampler, for own and shared samples, filters,
  * colours, numbers of samples. */
 #include "render/shots.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
 
 enum { WIDTH = 32, HEIGHT = 24, SEEDS = 20, VALUES = WIDTH * HEIGHT * 3 };
 

@@ -4,6 +4,7 @@
 #include "render/shots.h"
 #include "velo/channels.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 /* ---- bump maps --------------------------------------------------------------------------- */
 

@@ -1,7 +1,9 @@
 /* Lights against formulas of the book: inverse square and cosine laws, cones, photometric
  * scales, images on lights and in the sky, and the three light samplers. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 32 };
 

@@ -1,5 +1,6 @@
 /* Materials in images: mixes, bump and normal maps, interfaces, dispersive glass. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
 
 enum { SIZE = 32 };

@@ -3,6 +3,8 @@
  * nothing else. */
 #include "render/ground_truths.h"
 #include "velo/boxes.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
 
 static const uint32_t MATTES =
     VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;

@@ -3,7 +3,9 @@
  * that must not affect the image. */
 #include "fog.h"
 #include "velo/medium.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 static const float eights[64] = {1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1,
                                  1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1,

@@ -6,6 +6,8 @@
 
 #include "fog.h"
 #include "velo/medium.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 #include "world/nanovdb_file.h"
 
 static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};

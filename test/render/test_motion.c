@@ -2,7 +2,9 @@
  * every instruction set, no self-intersection, moving vertices against equally moving
  * instances, the slope of an edge with a rolling shutter. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 enum { W = 24, H = 18 };
 

@@ -3,6 +3,8 @@
  * single render. */
 #include "loaded.h"
 #include "velo/render.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 #define ONE(NAME, name) +1
 enum { SIDE = 24, TRACERS = VL_TRACER_KINDS(ONE), SAMPLERS = VL_SAMPLER_KINDS(ONE) };

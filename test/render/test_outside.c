@@ -1,6 +1,7 @@
 /* test/render/test_outside.c: pixels without a camera ray are black with alpha 0, under a sky
  * and inside a closed room. Within the image circle the image is as without the limit. */
 #include "render/shots.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static void image_circle(void **state) {

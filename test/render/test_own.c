@@ -11,9 +11,12 @@
 #include "velo/camera_file.h"
 #include "velo/channels.h"
 #include "velo/film.h"
+#include "velo/filter_kinds.h"
 #include "velo/paths.h"
 #include "velo/projection.h"
+#include "velo/sampler.h"
 #include "velo/trace.h"
+#include "velo/tracer.h"
 
 /* ---- an own camera that is velo's perspective camera ------------------------------------- */
 

@@ -8,6 +8,7 @@
 #include "failing_allocator.h"
 #include "velo/film.h"
 #include "velo/trace.h"
+#include "velo/tracer.h"
 
 enum { WIDTH = 8, HEIGHT = 6, WIDER = 30 * WIDTH }; /* wider: several batches in a pass */
 

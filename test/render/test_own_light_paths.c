@@ -6,7 +6,9 @@
 #include "api/small_world.h"
 #include "render/own_pinhole.h"
 #include "render/own_view.h"
+#include "velo/filter_kinds.h"
 #include "velo/medium.h"
+#include "velo/tracer.h"
 
 /* Equidistant, 20 pixels per radian; it has no rays beyond 0.7 radians. */
 static void fisheye_rays(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {

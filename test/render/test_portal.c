@@ -1,6 +1,8 @@
 /* Portals: a portal over a room's only window gives the same image as without it, with every
  * tracer, with less noise. Behind a portal and beside it there is no light. */
 #include "render/shots.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 16, SEEDS = 20, BLOCKS = 4, SKY = 32 };
 

@@ -5,6 +5,7 @@
 #include "render/shots.h"
 
 #include "import/import.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 12 };
 

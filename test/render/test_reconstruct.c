@@ -10,8 +10,9 @@
 #include <cmocka.h>
 
 #include "base/context.h"
-#include "film/filter.h"
+#include "filter/filter.h"
 #include "render/reconstruct.h"
+#include "velo/filter_kinds.h"
 
 enum { WIDTH = 13, HEIGHT = 9 };
 

@@ -3,6 +3,7 @@
  * those of the larger alpha. */
 #include "render/shots.h"
 #include "velo/medium.h"
+#include "velo/tracer.h"
 
 enum { DIELECTRIC, CONDUCTOR, COAT, COATED_METAL, WALKED_COAT, PRINCIPLED, KINDS };
 

@@ -3,6 +3,7 @@
 
 #include "render/shots.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 static double seconds(void) {
   struct timespec t;

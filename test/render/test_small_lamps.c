@@ -2,6 +2,7 @@
  * radiance times solid angle. By camera rays alone they are a firefly in one image of many. */
 #include "fog.h"
 #include "velo/medium.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 32 };
 static const float RADIANCE = 1000;

@@ -2,6 +2,7 @@
  * after reflection; glass without dispersion loses nothing; the colours beside the buckets are
  * those of the same light; any number of threads and any crop give the same bytes. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 
 enum { SIZE = 8, BUCKETS = 12 };
 

@@ -3,6 +3,7 @@
  * deviations come from repeated renders with other seeds, which is valid for correlated
  * samples, too. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 
 enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SEEDS = 12, BLOCK = 8 };
 

@@ -4,7 +4,9 @@
 #include "material/bssrdf.h"
 #include "shots.h"
 #include "velo/medium.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 static vlMaterialDef body(float sigma_a, float sigma_s) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_SUBSURFACE);

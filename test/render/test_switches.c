@@ -2,7 +2,9 @@
  * disabletexturefiltering): samples at the pixel's centre, the same wavelengths for all
  * samples, textures without a footprint. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 16 };
 

@@ -5,6 +5,7 @@
 #include "render/lamp_room.h"
 #include "render/tails.h"
 #include "velo/choose.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 48, RACE_SAMPLES = 8 };
 

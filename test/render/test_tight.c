@@ -2,6 +2,7 @@
  * distant instances. A closed emissive room shows both: a leak darkens it (outside is black),
  * self-intersection brightens or darkens it. */
 #include "render/shots.h"
+#include "velo/sampler.h"
 
 typedef struct Room {
   double size;    /* radius */

@@ -9,6 +9,7 @@
 #include "velo/load.h"
 #include "velo/medium.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 static const float blue[3] = {0.8f, 0.95f, 1.0f}, amber[3] = {0.9f, 0.6f, 0.2f};
 

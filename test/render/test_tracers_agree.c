@@ -20,6 +20,7 @@
 
 #include "velo/choose.h"
 #include "velo/load.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 12, SEEDS = 12, SAMPLES = 16, PARTS = 5, CHANNELS = 3 };
 static const double POWER = 0.008, BLUR = 0.01; /* BLUR: of merging */

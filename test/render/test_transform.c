@@ -13,8 +13,10 @@
 #include <cmocka.h>
 
 #include "velo/edit.h"
+#include "velo/filter_kinds.h"
 #include "velo/load.h"
 #include "velo/render.h"
+#include "velo/tracer.h"
 
 enum { SIDE = 24, BANDS = 4 };
 

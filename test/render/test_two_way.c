@@ -2,6 +2,8 @@
  * errors, for every kind of light and surface; the same bits for any threads; failing
  * allocations. */
 #include "render/agreement.h"
+#include "velo/filter_kinds.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 24, FINE = 96 };
 

@@ -3,6 +3,7 @@
  * less noise than the path tracer there. */
 #include "render/agreement.h"
 #include "render/lamp_room.h"
+#include "velo/tracer.h"
 
 enum { SIZE = 24, FURNACE = 32 };
 

@@ -12,6 +12,7 @@
 
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/filter_kinds.h"
 #include "velo/material.h"
 #include "velo/render.h"
 #include "velo/texture.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "material/bsdf.hot.h"
-#include "material/bsdf_kind.h"
+#include "material/kinds.row.h"
 #include "statistics.h"
 
 enum { BATCH = 1024 };

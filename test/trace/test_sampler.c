@@ -6,8 +6,8 @@
 
 #include <cmocka.h>
 
+#include "sampler/sobol.hot.h"
 #include "statistics.h"
-#include "trace/sampler/sobol.h"
 #include "velo/sampler.h"
 
 enum { KINDS = VL_SAMPLER_ZSOBOL + 1, BATCH = 4096 };

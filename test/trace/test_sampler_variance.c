@@ -6,8 +6,8 @@
 
 #include <cmocka.h>
 
+#include "sampler/sampler.h"
 #include "statistics.h"
-#include "trace/sampler/sampler.h"
 #include "velo/sampler.h"
 
 enum { WIDTH = 32, PIXELS = WIDTH * WIDTH, KINDS = VL_SAMPLER_ZSOBOL + 1 };

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
+#include "velo/tracer.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum {

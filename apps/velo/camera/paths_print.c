@@ -4,6 +4,7 @@
 
 #include "camera/paths.h"
 #include "velo/channels.h"
+#include "velo/tracer.h"
 
 static const char *const events[] = {"surface", "medium", "exit", "nothing"};
 static const char *const fates[] = {"on", "left", "absorbed", "roulette", "depth"};

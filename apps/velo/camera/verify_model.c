@@ -7,6 +7,7 @@
 
 #include "camera/verify.h"
 #include "cli/vector.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 /* Computes *r, the distance from the principal point in focal lengths, for a direction at

@@ -8,7 +8,9 @@
 #include "camera/verify.h"
 #include "cli/report.h"
 #include "render/output_names.h"
+#include "velo/filter_kinds.h"
 #include "velo/render.h"
+#include "velo/sampler.h"
 
 enum { TRIES = 400, ROOM = 4096, MARGIN = 3 };
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static bool number(const vlImage *image, const char *name, double *value) {

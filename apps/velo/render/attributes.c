@@ -10,6 +10,7 @@
 #include "cli/kinds.h"
 #include "cli/vector.h"
 #include "render/receipt.h"
+#include "velo/distortion.h"
 
 typedef struct Header {
   vlImage *image;

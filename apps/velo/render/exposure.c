@@ -10,6 +10,7 @@
 #include "velo/channels.h"
 #include "velo/edit.h"
 #include "velo/material.h"
+#include "velo/tracer.h"
 
 int exposure_parse(const OptionValue *value, float *ev, bool *meter) {
   *ev = 0;

@@ -12,6 +12,9 @@
 #include "cli/report.h"
 #include "render/lens_options.h"
 #include "render/scene_options.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 const Choice sensor_choices[] = {
     /* the names of vl_sensor_name, with their indices */

@@ -10,6 +10,7 @@
 #include "render/lens_options.h"
 #include "render/shard.h"
 #include "velo/check.h"
+#include "velo/tracer.h"
 
 typedef enum Need {
   NEED_NOTHING,

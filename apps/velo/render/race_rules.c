@@ -6,6 +6,7 @@
 
 #include "cli/kinds.h"
 #include "cli/report.h"
+#include "velo/tracer.h"
 
 /* The race is planned for at most MOST_SAMPLES, so that all longer renders of an image have the
  * same race: a film of 64 samples that is continued to 256 is that of 256. With --time,

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "cli/report.h"
+#include "velo/tracer.h"
 
 bool shard_read(const Arguments *arguments, uint32_t *index, uint32_t *count) {
   const OptionValue *v = &arguments->values[RENDER_SHARD];

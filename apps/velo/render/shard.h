@@ -4,6 +4,7 @@
 #define APP_RENDER_SHARD_H
 
 #include "render/job.h"
+#include "velo/tracer.h"
 
 enum { FILM_BLOCK = 32 }; /* side of a film block in pixels (docs/film-files.md) */
 

@@ -8,6 +8,7 @@
 #include "render/scene_options.h"
 #include "scene/verify_statistics.h"
 #include "velo/light.h"
+#include "velo/tracer.h"
 
 /* Replicates of each run: images with different seeds. Samples per pixel of the second look,
  * relative to the first. */

@@ -8,6 +8,7 @@
 #include "velo/material.h"
 #include "velo/schema.h"
 #include "velo/shape.h"
+#include "velo/tracer.h"
 
 void verify_note(Verify *v, const char *format, ...) {
   va_list arguments;

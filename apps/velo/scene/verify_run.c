@@ -9,6 +9,8 @@
 #include "scene/verify.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
+#include "velo/filter_kinds.h"
+#include "velo/tracer.h"
 
 enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096, LEAST_MET = 100 };
 

@@ -1,6 +1,7 @@
 /* view/camera_edit.c: see camera_edit.h. Each field has a row with a function that puts its
  * value into the def and removes the spellings that it replaces. */
 #include "view/camera_edit.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 
+#include "velo/tracer.h"
 #include "view/camera_edit.h"
 #include "view/engine.h"
 

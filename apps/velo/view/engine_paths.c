@@ -5,6 +5,7 @@
 
 #include "camera/paths.h"
 #include "cli/kinds.h"
+#include "velo/tracer.h"
 #include "view/engine_status.h"
 
 enum { DEFAULT_SAMPLES = 16, DEFAULT_SHOWN = 16 };

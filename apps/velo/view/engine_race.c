@@ -7,6 +7,7 @@
 
 #include "cli/report.h"
 #include "render/race_rules.h"
+#include "velo/tracer.h"
 #include "view/engine_status.h"
 
 /* The samples per pixel of the race's images are not more. */

@@ -8,9 +8,12 @@
 #include "color/color.h"
 #include "export/pbrt/pbrt.h"
 #include "velo/camera_file.h"
+#include "velo/filter_kinds.h"
 #include "velo/light.h"
+#include "velo/sampler.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
+#include "velo/tracer.h"
 
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 

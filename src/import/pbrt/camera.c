@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/lens.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 
 static const double degrees = 0.017453292519943295;

@@ -9,6 +9,7 @@
 #include "velo/light.h"
 #include "velo/medium.h"
 #include "velo/shape.h"
+#include "velo/tracer.h"
 
 /* ---- parameters -------------------------------------------------------------------------- */
 

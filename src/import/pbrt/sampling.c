@@ -3,6 +3,9 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "velo/filter_kinds.h"
+#include "velo/sampler.h"
+#include "velo/tracer.h"
 
 /* Finds the row of the kind that the file names. Null for an unknown kind; *good then says
  * whether the import continues. */

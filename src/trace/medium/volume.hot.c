@@ -13,7 +13,7 @@
 #include "trace/medium/volume.h"
 #include "trace/medium/phase.h"
 #include "trace/surface/probes.h"
-#include "trace/tracer/record.h"
+#include "tracer/record.h"
 
 /* ---- weights and densities --------------------------------------------------------------- */
 

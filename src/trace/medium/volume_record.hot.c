@@ -1,7 +1,7 @@
 /* trace/medium/volume_record.hot.c: records paths through media for vl_trace_paths
  * (tracer/record.h). It computes again what the tracer added. */
 #include "trace/medium/volume.h"
-#include "trace/tracer/record.h"
+#include "tracer/record.h"
 
 static void record_met(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                        const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {

@@ -17,7 +17,7 @@
 #include "math/warp.h"
 #include "trace/medium/volume.h"
 #include "trace/surface/probes.h"
-#include "trace/tracer/record.h"
+#include "tracer/record.h"
 
 /* Largest number of crossings of one probe. */
 enum { MOST_CROSSINGS = 1024 };

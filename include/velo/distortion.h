@@ -1,0 +1,31 @@
+/** @file
+ * velo/distortion.h: models of lens distortion: their kinds. */
+#ifndef VELO_DISTORTION_H
+#define VELO_DISTORTION_H
+
+#include "velo/camera.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** X(NAME, name) for each distortion, with the order of its coefficients. They act on the plane
+ * of the projection. */
+#define VL_DISTORTION_KINDS(X)                                                               \
+  X(NONE, none) /* ideal */                                                                  \
+  X(OPENCV,                                                                                  \
+    opencv) /* k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]: 4, 5, 8, 12 or 14 */ \
+  X(RADIAL, radial) /* k1 [k2 [k3 [k4]]]; with EQUIDISTANT: OpenCV's and COLMAP's fisheye */ \
+  X(THIN_PRISM, thin_prism) /* COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
+/** The kinds of distortion: VL_DISTORTION_NONE and so on, from VL_DISTORTION_KINDS. */
+enum {
+#define VL_KIND(NAME, name) VL_DISTORTION_##NAME,
+  VL_DISTORTION_KINDS(VL_KIND)
+#undef VL_KIND
+      VL_DISTORTION_KIND_COUNT /**< their number */
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,20 @@
+/* distortion/distortion.row.c: the table of the distortions' rows, each from the file of its
+ * kind. */
+#include "distortion/distortion.row.h"
+
+#include "distortion/kinds.row.h"
+#include "velo/distortion.h"
+
+#define DECLARE(kind, row, compile) extern const vlDistortionRow row;
+VL_DISTORTION_FUNCTIONS(DECLARE)
+
+#define ROW(kind, row, compile) [kind] = &row,
+static const vlDistortionRow *const rows[] = {VL_DISTORTION_FUNCTIONS(ROW)};
+enum { KINDS = sizeof rows / sizeof *rows };
+
+const vlDistortionRow *vl_distortion_row(vlDistortion kind) {
+  return kind < KINDS ? rows[kind] : NULL;
+}
+
+#define NAME(NAME, name) #name,
+const char *const vl_distortion_names[] = {VL_DISTORTION_KINDS(NAME) NULL};

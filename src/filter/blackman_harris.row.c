@@ -1,0 +1,12 @@
+/* filter/blackman_harris.row.c: the name and the parameters of the pixel filter blackman
+ * harris. */
+#include "filter/filter.row.h"
+
+static const vlParameter parameters[] = {RADII(2)};
+
+const vlKindRow vl_filter_row_blackman_harris = {
+    .name = "blackmanharris",
+    .alias = "blackman-harris",
+    .description = "the Blackman-Harris window",
+    VL_ROW_PARAMETERS(parameters),
+};

@@ -1,0 +1,10 @@
+/* filter/gaussian.c: a Gaussian that ends at 0. */
+#include "filter/value.h"
+
+vlFilterValue vl_filter_value_gaussian;
+
+double vl_filter_value_gaussian(const vlPixelFilter *filter,
+                                vlFilterAt at) { /* minus its value at the radius */
+  double s = 0.5 / ((double)filter->sigma * filter->sigma);
+  return vl_series_exp(-s * at.x * at.x) - vl_series_exp(-s * at.radius * at.radius);
+}

@@ -1,0 +1,16 @@
+/* sampler/sampler.row.c: the family of samplers: the list of its rows, each from the file of
+ * its kind. */
+#include "sampler/sampler.row.h"
+
+#include "sampler/kinds.row.h"
+#include "velo/sampler.h"
+
+const char *const vl_sampler_randomizations[] = {"none", "permutedigits", "fastowen", "owen",
+                                                 NULL};
+
+#define DECLARE(kind, row, one, two) extern const vlKindRow row;
+VL_SAMPLER_FUNCTIONS(DECLARE)
+
+#define ROW(kind, row, one, two) [kind] = &row,
+static const vlKindRow *const rows[] = {VL_SAMPLER_FUNCTIONS(ROW)};
+VL_KIND_FAMILY_OF(vl_sampler_family, rows, VL_SAMPLER_KINDS, "samplers", "sampler", "Sampler")

@@ -1,0 +1,328 @@
+/* tracer/path.hot.c: path tracing with next-event estimation, multiple importance
+ * sampling (power heuristic) and Russian roulette (pbrt book 13.4), bounce by bounce over a
+ * batch. */
+#include "tracer/record.h"
+
+/* ---- runs of one BSDF -------------------------------------------------------------------- */
+
+/* A run of lanes that share a BSDF kind, with parameter rows shifted to the run's start. A run
+ * may start at any lane, because a lane's result does not depend on its place in the vector
+ * loop. */
+typedef struct Run {
+  vlBsdfKind kind;
+  uint32_t first, last;
+} Run;
+
+static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
+  Run r = {world->materials.items[h->material[first]].bsdf, first, first + 1};
+  while (r.last < n && world->materials.items[h->material[r.last]].bsdf == r.kind)
+    r.last++;
+  return r;
+}
+
+/* The BSDFs' kernels only read them. */
+static float *from(const float *row, uint32_t first) {
+  return (float *)(uintptr_t)row + first;
+}
+static vlBsdfDirections directions(const float w[3][VL_ROW_SIZE], uint32_t first) {
+  return (vlBsdfDirections){from(w[0], first), from(w[1], first), from(w[2], first)};
+}
+static vlBsdfParams params_of(const vlWorld *world, const vlVertices *at, uint32_t first) {
+  const vlShade *s = &at->shade;
+  vlBsdfParams p;
+  for (int c = 0; c < 4; c++) {
+    p.reflectance[c] = from(s->reflectance[c], first);
+    p.tint[c] = s->tint ? s->tint->at[c] + first : NULL;
+    p.eta[c] = from(s->eta[c], first);
+    p.k[c] = from(s->k[c], first);
+    p.lambda[c] = world->def.color == VL_COLOR_RGB ? NULL : at->paths.lambda[c] + first;
+  }
+  for (int k = 0; k < VL_BSDF_ROWS; k++)
+    p.own[k] = from(s->own[k], first);
+  p.alpha_x = from(s->alpha_x, first);
+  p.alpha_y = from(s->alpha_y, first);
+  p.eta_s = from(s->eta_s, first);
+  p.coat = (const vlCoatTable **)(uintptr_t)(s->coat + first);
+  p.seed = s->seed + first;
+  p.measured = s->measured + first;
+  return p;
+}
+
+/* ---- direct light ------------------------------------------------------------------------ */
+
+void vl_stage_local(uint32_t n, const vlVertices *at, const float *wx, const float *wy,
+                    const float *wz, float wi[3][VL_ROW_SIZE]) {
+  const vlShade *sh = &at->shade;
+  const vlSurface *f = &at->surface;
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float x = wx[i], y = wy[i], z = wz[i];
+    wi[0][i] = x * sh->tx[i] + y * sh->ty[i] + z * sh->tz[i];
+    wi[1][i] = x * sh->bx[i] + y * sh->by[i] + z * sh->bz[i];
+    wi[2][i] = x * f->nx[i] + y * f->ny[i] + z * f->nz[i];
+  }
+}
+
+void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
+                   const float wo[3][VL_ROW_SIZE], vlBsdfValues *to) {
+  for (uint32_t first = 0; first < n;) {
+    Run r = next_kind(t->world, &at->hits, first, n);
+    vlBsdfParams params = params_of(t->world, at, first);
+    float *const value[4] = {to->value[0] + first, to->value[1] + first, to->value[2] + first,
+                             to->value[3] + first};
+    t->bsdf->eval(r.kind, r.last - first, &params, directions(wo, first),
+                  directions((const float(*)[VL_ROW_SIZE])to->wi, first), value,
+                  to->pdf + first);
+    first = r.last;
+  }
+}
+
+void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
+                         const vlLightSamples *light, vlBsdfValues *to) {
+  vl_stage_local(n, at, light->wx, light->wy, light->wz, to->wi);
+  vl_stage_bsdf(t, n, at, at->shade.wo, to);
+}
+
+void vl_stage_light_samples(const vlTracing *t, uint32_t n, const vlPaths *p,
+                            const vlSurface *surface, uint32_t dimension,
+                            vlLightSamples *light) {
+  vlNumbers r;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT,
+                     r.u0);
+  /* The direct light at the first hit is a function of film point and light point: the four
+   * numbers are drawn together (docs/tracers.md). Deeper vertices gain nothing from it. */
+  if (dimension == VL_DIM_BOUNCE)
+    t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_FIRST_LIGHT,
+                            VL_DIM_FILM, r.u1, r.u2);
+  else
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
+                       r.u1, r.u2);
+  vl_stage_lights(t->world, n, p, surface, r.u1, r.u2, r.u0, light);
+}
+
+/* Shadow rays for the light samples that contribute, in the order of the vertices, and their
+ * radiance, weighted by BSDF and multiple importance sampling. Returns their number. */
+static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLightSamples *l,
+                                 const vlBsdfValues *bsdf, vlShadowRays *q) {
+  const vlPaths *p = &at->paths;
+  const vlSurface *f = &at->surface;
+  uint32_t padded = VL_PAD(n), lit[VL_ROW_SIZE];
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float v0 = bsdf->value[0][i], v1 = bsdf->value[1][i], v2 = bsdf->value[2][i],
+          v3 = bsdf->value[3][i], sum = v0 + v1 + v2 + v3;
+    vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
+    vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
+                                vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    int distant = l->distant[i], delta = l->delta[i];
+    float x = l->tx[i] - o.x, y = l->ty[i] - o.y, z = l->tz[i] - o.z;
+    float mis = vl_power_heuristic(l->pdf[i], bsdf->pdf[i]), weight = delta ? 1.0f : mis;
+    lit[i] = (l->pdf[i] > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
+    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
+    q->dx[i] = distant ? w.x : x;
+    q->dy[i] = distant ? w.y : y;
+    q->dz[i] = distant ? w.z : z;
+    q->t_max[i] = distant ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
+    q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * weight;
+    q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * weight;
+    q->radiance[2][i] = p->beta[2][i] * v2 * l->radiance[2][i] * weight;
+    q->radiance[3][i] = p->beta[3][i] * v3 * l->radiance[3][i] * weight;
+  }
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!lit[i])
+      continue;
+    uint32_t k = count++;
+    q->lane[k] = p->lane[i];
+    if (p->time)
+      q->time[k] = vl_path_time(p, i);
+    if (k != i)
+      vl_shadow_move(q, i, k);
+  }
+  return count;
+}
+
+/* Which of the shadow rays of the paths p are occluded. */
+void vl_stage_occluded(vlTracing *t, uint32_t count, const vlPaths *p, vlShadowRays *q) {
+  vlRays rays = {
+      q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
+  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
+}
+
+/* Takes light samples, and adds the radiance of those that arrive. light, values, shadow:
+ * memory for what is between. */
+static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension, const vlVertices *at,
+                         vlLightSamples *light, vlBsdfValues *values, vlShadowRays *shadow) {
+  if (t->world->lights.count == 0)
+    return;
+  vl_stage_light_samples(t, n, &at->paths, &at->surface, dimension, light);
+  vl_stage_light_bsdf(t, n, at, light, values);
+  uint32_t count = make_shadow_rays(n, at, light, values, shadow);
+  vl_stage_occluded(t, count, &at->paths, shadow);
+  t->batch->shadow_rays += count;
+  if (t->batch->recorder)
+    vl_record_direct_light(t, n, count, at, light, values, shadow);
+  for (uint32_t k = 0; k < count; k++)
+    if (!shadow->occluded[k])
+      for (int c = 0; c < 4; c++)
+        t->batch->radiance[c][shadow->lane[k]] += shadow->radiance[c][k];
+}
+
+/* ---- the next direction ------------------------------------------------------------------ */
+
+/* Width and spread of the cone that leaves a surface. Specular reflection and transmission
+ * change the spread by the curvature perpendicular to the plane of incidence (Coddington's
+ * sagittal equations). This is the smaller of the changes in the two planes, so textures are
+ * not blurred. All other lobes restart with the camera's spread and the present width. */
+static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, float distance,
+                                float bend, float wo_z, float wi_z, float eta_scale,
+                                uint32_t specular) {
+  float width = cone + spread * distance;
+  float sign = width < 0.0f ? -1.0f : 1.0f; /* past a focus */
+  width = width * sign;
+  spread = spread * sign;
+  float side = wo_z < 0.0f ? -1.0f : 1.0f, k = bend * side, in = wo_z * side,
+        out = vl_abs(wi_z);
+  float ratio = eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale)
+                                 : 1.0f; /* ratio of the indices, incident over transmitted */
+  float reflected = spread + 2.0f * k * in * width;
+  float refracted = ratio * spread - k * (out - ratio * in) * width;
+  float smooth = wi_z * side > 0.0f ? reflected : refracted;
+  return (vlVec2){width, specular ? smooth : pixel_spread};
+}
+
+/* Samples the BSDFs of n vertices. */
+static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
+                         const vlVertices *at, vlBsdfSamples *to) {
+  const vlPaths *p = &at->paths;
+  vlNumbers u;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE, u.u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV,
+                     u.u1, u.u2);
+  /* a run is padded to whole lanes from its own first one: the last run reads past VL_PAD(n) */
+  for (uint32_t i = n; i < n + VL_LANES && i < VL_ROW_SIZE; i++)
+    u.u0[i] = u.u1[i] = u.u2[i] = 0.0f;
+  for (uint32_t first = 0; first < n;) {
+    Run r = next_kind(t->world, &at->hits, first, n);
+    vlBsdfParams params = params_of(t->world, at, first);
+    vlBsdfDirections wi = {to->wi[0] + first, to->wi[1] + first, to->wi[2] + first};
+    float *const weight[4] = {to->weight[0] + first, to->weight[1] + first,
+                              to->weight[2] + first, to->weight[3] + first};
+    t->bsdf->sample(r.kind, r.last - first, &params, directions(at->shade.wo, first),
+                    u.u0 + first, u.u1 + first, u.u2 + first, wi, weight, to->pdf + first,
+                    to->flags + first, to->eta_scale + first);
+    first = r.last;
+  }
+}
+
+/* The rays that leave n vertices, ray i from vertex i, with Russian roulette by the numbers u.
+ * alive: 1 for those that go on; broken: 1 where the throughput is no number. Sets all of the
+ * rays but what remains the same along a path. */
+static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at,
+                      const vlBsdfSamples *s, const float *u, vlPaths *to, uint32_t *alive,
+                      float *broken) {
+  const vlPaths *p = &at->paths;
+  const vlSurface *f = &at->surface;
+  const vlShade *sh = &at->shade;
+  float pixel_spread = t->def->pixel_spread;
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float x = s->wi[0][i], y = s->wi[1][i], z = s->wi[2][i];
+    vlVec3 w = vl_vec3(x * sh->tx[i] + y * sh->bx[i] + z * f->nx[i],
+                       x * sh->ty[i] + y * sh->by[i] + z * f->ny[i],
+                       x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i]);
+    w = vl_normalize(w);
+    vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
+                                vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    float b0 = p->beta[0][i] * s->weight[0][i], b1 = p->beta[1][i] * s->weight[1][i];
+    float b2 = p->beta[2][i] * s->weight[2][i], b3 = p->beta[3][i] * s->weight[3][i];
+    float eta = p->eta_scale[i] * s->eta_scale[i];
+    float most = vl_max(vl_max(b0, b1), vl_max(b2, b3));
+    float survive = vl_roulette_survival(most * eta, depth);
+    uint32_t lives = most > 0.0f && !(s->flags[i] & VL_SAMPLED_NONE) && u[i] < survive ? 1 : 0;
+    float inv = survive > 0.0f ? 1.0f / survive : 0.0f;
+    float sum = b0 + b1 + b2 + b3;
+    alive[i] = lives;
+    broken[i] = sum == sum ? 0.0f : 1.0f;
+    vl_set_lane3(to->ox, to->oy, to->oz, i, o);
+    vl_set_lane3(to->dx, to->dy, to->dz, i, w);
+    to->beta[0][i] = b0 * inv;
+    to->beta[1][i] = b1 * inv;
+    to->beta[2][i] = b2 * inv;
+    to->beta[3][i] = b3 * inv;
+    to->pdf[i] = s->pdf[i];
+    to->specular[i] = s->flags[i] & VL_SAMPLED_SPECULAR;
+    to->eta_scale[i] = eta;
+    vlVec2 cone =
+        cone_after(pixel_spread, p->cone[i], p->spread[i], f->t[i], f->curvature[i],
+                   sh->wo[2][i], z, s->eta_scale[i], s->flags[i] & VL_SAMPLED_SPECULAR);
+    to->cone[i] = cone.x;
+    to->spread[i] = cone.y;
+    float c = 1.0f - f->no_cosine[i];
+    to->from_nx[i] = c * f->nx[i];
+    to->from_ny[i] = c * f->ny[i];
+    to->from_nz[i] = c * f->nz[i];
+    to->from_side[i] = f->side[i];
+  }
+}
+
+uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
+                          const vlVertices *at, vlBsdfSamples *samples, uint32_t *order,
+                          vlPaths *next) {
+  const vlPaths *p = &at->paths;
+  float u[VL_ROW_SIZE], broken[VL_ROW_SIZE];
+  uint32_t alive[VL_ROW_SIZE], count = 0;
+  sample_bsdfs(t, n, dimension, at, samples);
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE,
+                     u);
+  make_rays(t, n, depth, at, samples, u, next, alive, broken);
+  for (uint32_t i = 0; i < n; i++) {
+    order[count] = i;
+    count += alive[i];
+    if (alive[i] && !(samples->flags[i] & VL_SAMPLED_SPECULAR))
+      vl_note_scattered(t, p->lane[i]);
+    if (broken[i] > 0.0f)
+      t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
+  }
+  for (uint32_t k = 0; t->world->by_channel && k < count; k++)
+    vl_passed_go_on(t, at, order[k], samples->wi[2][order[k]]);
+  if (t->batch->recorder)
+    vl_record_scatter(t, n, depth, at, samples, next, order, count);
+  vl_gather_rays(p, order, count, next);
+  return count;
+}
+
+/* ---- the path tracer --------------------------------------------------------------------- */
+
+static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+  const vlPaths *rays = &t->s->rays;
+  const vlHits *hits = &t->s->hits;
+  vl_stage_emission(t, n, rays, hits);
+  if (!t->batch->recorder)
+    return true;
+  vl_record_arrivals(t, n, depth, rays, hits);
+  vl_record_emission(t, n, rays, hits);
+  if (depth >= t->def->max_depth)
+    vl_record_depth(t, n, rays);
+  return true;
+}
+
+static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  uint32_t dimension = vl_bounce_dimension(depth);
+  vl_stage_regularize(t, n, &s->at);
+  if (t->batch->recorder)
+    vl_record_shaded(t, n, &s->at);
+  direct_light(t, n, dimension, &s->at, &s->light, &s->values, &s->shadow);
+  return vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
+}
+
+void vl_path_tracer(vlTracing *t) {
+  static const vlBounceSteps steps = {arrive, NULL, on_surfaces};
+  vl_trace_bounces(t, t->batch->n, t->def->max_depth, &steps);
+}

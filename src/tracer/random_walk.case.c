@@ -1,0 +1,5 @@
+/* tracer/random_walk.case.c: what tests know of the tracer random walk. */
+#include "tracer/tracer.case.h"
+
+/* it finds the ball by chance */
+const TracerCase random_walk_tracer = {TRANSPORT, .spp = 8192, .least = 0.1};

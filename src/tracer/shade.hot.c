@@ -1,0 +1,142 @@
+/* tracer/shade.hot.c: sorts hits by material and shades each run of lanes that have the
+ * same material. */
+#include <stddef.h>
+#include <string.h>
+
+#include "material/rows.hot.h"
+
+/* ---- sorting ----------------------------------------------------------------------------- */
+
+enum { BLOCK = 8, PATH_ROWS = offsetof(vlPaths, time) / sizeof(float[VL_ROW_SIZE]) };
+_Static_assert(PATH_ROWS * sizeof(float[VL_ROW_SIZE]) == offsetof(vlPaths, time),
+               "rows of 4 bytes without gaps");
+
+/* Whether a block of the order is a block of neighbours, as most blocks of the first bounces
+ * are. */
+static inline bool neighbours(const uint32_t *order) {
+  uint32_t different = 0;
+  for (uint32_t j = 1; j < BLOCK; j++)
+    different |= order[j] ^ (order[0] + j);
+  return !different;
+}
+
+/* Copies blocks of neighbours row by row. Copies others path by path, because a gather
+ * instruction per row takes longer than single moves. */
+void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
+  uint32_t k = 0;
+  while (k < n) {
+    if (n - k >= BLOCK && neighbours(order + k)) {
+      for (size_t row = 0; row < PATH_ROWS; row++)
+        memcpy((char *)b + row * sizeof b->ox + k * sizeof(float),
+               (const char *)a + row * sizeof a->ox + order[k] * sizeof(float),
+               BLOCK * sizeof(float));
+      k += BLOCK;
+    } else {
+      for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++)
+        vl_path_copy(a, order[k], b, k);
+    }
+  }
+}
+static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
+  for (uint32_t k = 0; k < n; k++) {
+    uint32_t i = order[k];
+    b->shape[k] = a->shape[i];
+    b->prim[k] = a->prim[i];
+    b->instance[k] = a->instance[i];
+    b->material[k] = a->material[i];
+    b->t[k] = a->t[i];
+  }
+}
+
+/* The rows that stay the same along a path. */
+static void complete_ray(const vlPaths *p, uint32_t i, vlPaths *to, uint32_t k) {
+  for (int c = 0; c < 4; c++)
+    to->lambda[c][k] = p->lambda[c][i];
+  to->px[k] = p->px[i];
+  to->py[k] = p->py[i];
+  to->index[k] = p->index[i];
+  to->lane[k] = p->lane[i];
+}
+
+/* Moves ray i to place k <= i, without what complete_ray sets. */
+static void move_ray(vlPaths *r, uint32_t i, uint32_t k) {
+  vl_set_lane3(r->ox, r->oy, r->oz, k, vl_lane3(r->ox, r->oy, r->oz, i));
+  vl_set_lane3(r->dx, r->dy, r->dz, k, vl_lane3(r->dx, r->dy, r->dz, i));
+  vl_set_lane3(r->from_nx, r->from_ny, r->from_nz, k,
+               vl_lane3(r->from_nx, r->from_ny, r->from_nz, i));
+  for (int c = 0; c < 4; c++)
+    r->beta[c][k] = r->beta[c][i];
+  r->pdf[k] = r->pdf[i];
+  r->from_side[k] = r->from_side[i];
+  r->eta_scale[k] = r->eta_scale[i];
+  r->cone[k] = r->cone[i];
+  r->spread[k] = r->spread[i];
+  r->specular[k] = r->specular[i];
+}
+
+void vl_gather_rays(const vlPaths *p, const uint32_t *order, uint32_t n, vlPaths *to) {
+  for (uint32_t k = 0; k < n; k++) {
+    if (order[k] != k)
+      move_ray(to, order[k], k);
+    complete_ray(p, order[k], to, k);
+  }
+}
+
+/* A counting sort by the material's rank (materials of one kind are adjacent) that keeps the
+ * order of the tile. */
+uint32_t vl_stage_sort(const vlWorld *world, uint32_t n, const vlPaths *rays,
+                       const vlHits *hits, uint32_t *order, vlVertices *at) {
+  uint32_t materials = (uint32_t)world->materials.count, count = 0;
+  if (materials <= VL_BATCH) {
+    uint32_t start[VL_BATCH]; /* where each material's lanes start */
+    for (uint32_t m = 0; m < materials; m++)
+      start[m] = 0;
+    uint32_t total = 0;
+    for (uint32_t i = 0; i < n; i++)
+      if (hits->shape[i] != VL_NONE)
+        start[world->rank[hits->material[i]]]++;
+    for (uint32_t m = 0; m < materials; m++) {
+      uint32_t c = start[m];
+      start[m] = total;
+      total += c;
+    }
+    for (uint32_t i = 0; i < n; i++)
+      if (hits->shape[i] != VL_NONE)
+        order[start[world->rank[hits->material[i]]]++] = i;
+    count = total;
+  } else { /* more materials than lanes: insertion by rank, stable */
+    for (uint32_t i = 0; i < n; i++) {
+      if (hits->shape[i] == VL_NONE)
+        continue;
+      uint32_t k = count++, rank = world->rank[hits->material[i]];
+      for (; k > 0 && world->rank[hits->material[order[k - 1]]] > rank; k--)
+        order[k] = order[k - 1];
+      order[k] = i;
+    }
+  }
+  vl_permute_paths(rays, &at->paths, order, count);
+  permute_hits(hits, &at->hits, order, count);
+  return count;
+}
+
+/* ---- shading ----------------------------------------------------------------------------- */
+
+void vl_stage_shade(const vlTracing *t, uint32_t n, vlVertices *at) {
+  vlTraceScratch *s = t->s;
+  const vlHits *h = &at->hits;
+  vl_stage_surface(t->world, n, &at->paths, h, &s->corners, &at->surface);
+  for (uint32_t first = 0, last; first < n; first = last) {
+    uint32_t material = h->material[first];
+    for (last = first + 1; last < n && h->material[last] == material;)
+      last++;
+    vl_stage_material(t->world, first, last, material, at, s);
+  }
+  vl_stage_frames(n, &at->paths, &at->surface, &at->shade);
+  for (uint32_t first = 0, last; first < n; first = last) {
+    const vlWorldMaterial *m = &t->world->materials.items[h->material[first]];
+    for (last = first + 1; last < n && h->material[last] == h->material[first];)
+      last++;
+    if (m->principled && m->principled->has_coat)
+      vl_stage_coat_frames(&at->surface, &at->shade, first, last);
+  }
+}

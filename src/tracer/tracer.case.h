@@ -1,0 +1,31 @@
+/* tracer/tracer.case.h: what the tests of tracers must know of a kind beyond its row: what a
+ * tilted plate looks like below a sky, and below a ball that shines
+ * (test/conformance/transport.h). */
+#ifndef TRACER_TRACER_CASE_H
+#define TRACER_TRACER_CASE_H
+
+#include <stdint.h>
+
+#include "velo/tracer.h"
+
+/* The radiance of the plate: `even` of a sky of 1 or of the eye, and `ball` times the share of
+ * the hemisphere that the ball covers. */
+typedef struct Plate {
+  double even, ball;
+} Plate;
+
+typedef struct TracerCase {
+  Plate sky, lamp;
+  uint32_t spp; /* 0: 64 */
+  double least; /* the least mistake that must be found, of the mean; 0: .03 */
+} TracerCase;
+
+/* Below a sky of 1: half of it. Below the ball: half of 4 times its share. */
+#define TRANSPORT .sky = {.even = 0.5}, .lamp = {.ball = 2}
+
+/* Declares the case of each kind, which is in the file of the kind: tracer/NAME.case.c. */
+#define TRACER_CASE(NAME, name) extern const TracerCase name##_tracer;
+VL_TRACER_KINDS(TRACER_CASE)
+#undef TRACER_CASE
+
+#endif

@@ -18,12 +18,12 @@ extern "C" {
   X(RADIAL, radial) /* k1 [k2 [k3 [k4]]]; with EQUIDISTANT: OpenCV's and COLMAP's fisheye */ \
   X(THIN_PRISM, thin_prism) /* COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
 /** The kinds of distortion: VL_DISTORTION_NONE and so on, from VL_DISTORTION_KINDS. */
-enum {
+typedef enum vlDistortionKind {
 #define VL_KIND(NAME, name) VL_DISTORTION_##NAME,
   VL_DISTORTION_KINDS(VL_KIND)
 #undef VL_KIND
       VL_DISTORTION_KIND_COUNT /**< their number */
-};
+} vlDistortionKind;
 
 #ifdef __cplusplus
 }

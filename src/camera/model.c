@@ -52,15 +52,16 @@ static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) 
 VL_DISTORTION_FUNCTIONS(DECLARE)
 
 static vlResult compile_kind(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {
-  switch (def->distortion) {
+  switch ((vlDistortionKind)def->distortion) {
 #define COMPILE(kind, row, compile) \
   case kind:                        \
     return compile(def->distortion_coefficients, def->distortion_count, m, error);
     VL_DISTORTION_FUNCTIONS(COMPILE)
 #undef COMPILE
-    default:
-      return VL_ERROR_ARGUMENT;
+    case VL_DISTORTION_KIND_COUNT:
+      break;
   }
+  return VL_ERROR_ARGUMENT;
 }
 
 static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {

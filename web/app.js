@@ -52,6 +52,7 @@ const app = {
   redo: () => app.connection.send({ type: "redo", change: ++app.change }),
   reset: () => app.connection.send({ type: "reset", change: ++app.change }),
   pause: () => app.connection.send({ type: "settings", paused: !app.state.paused }),
+  denoise: () => app.settings({ denoise: !app.state.denoise }),
   settings: message => app.connection.send({ type: "settings", ...message }),
   wholeImage: () => { screen.zoom = 1; screen.centre = [0.5, 0.5]; screen.draw(); screen.onplace?.(); },
   crop: rectangle => app.settings({ crop: rectangle, change: ++app.change }),
@@ -104,6 +105,7 @@ const overlay = new Overlay(byId("overlays"), app);
 const compare = new Compare(byId("compare"), app);
 new Save(byId("save"), app);
 byId("save").hidden = engineName() === "browser"; // it has no folder to save into
+byId("denoise").hidden = engineName() === "browser";
 const outside = app.outside = new Outside(app);
 screen.onplace = () => { overlay.draw(); compare.draw(); };
 const inspector = new Inspector(byId("pixel"), app);
@@ -132,6 +134,7 @@ function showState(state) {
   document.title = `${state.scene.split("/").pop()} – velo`;
   enable();
   byId("pause").setAttribute("aria-pressed", String(state.paused));
+  byId("denoise").setAttribute("aria-pressed", String(state.denoise));
   const c = state.crop;
   app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
   if (app.focused === state.change) tellFocus(state.camera);
@@ -149,7 +152,7 @@ function enable() {
   display.enable(on);
   byId("undo").disabled = !on || !app.state.can_undo;
   byId("redo").disabled = !on || !app.state.can_redo;
-  for (const control of [byId("reset"), byId("pause"), ...byId("save").querySelectorAll("button, select")]) control.disabled = !on;
+  for (const control of [byId("reset"), byId("pause"), byId("denoise"), ...byId("save").querySelectorAll("button, select")]) control.disabled = !on;
   for (const button of byId("tools").children) button.disabled = !on && button.dataset.tool !== "inspect";
   if (!on && app.tool !== "inspect") {
     app.toolBefore = app.tool;
@@ -189,6 +192,14 @@ function showStatus(s) {
   const end = s.spp >= s.target && !busy ? "  ·  done" : s.paused ? "  ·  paused" : speed;
   byId("status").textContent = `${s.spp} of ${s.target} spp${tracer}${end}${error}`;
   byId("progress").firstElementChild.style.width = `${100 * s.spp / s.target}%`;
+}
+
+// Says which image one sees. While the camera moves it would change all the time: then it waits.
+function showSeen(frame) {
+  clearTimeout(app.seenTimer);
+  const many = frame.spp > 0 ? `, ${frame.spp} spp` : "";
+  const text = frame.channel ? "" : `seen: ${frame.denoised ? "denoised preview" : "samples"}${many}`;
+  app.seenTimer = setTimeout(() => { byId("seen").textContent = text; }, 200);
 }
 
 const handlers = {
@@ -242,6 +253,7 @@ connect({
     const frame = parseFrame(buffer);
     display.frame(frame);
     screen.take(frame);
+    showSeen(frame);
     app.connection.send({ type: "seen", serial: frame.serial });
     inspector.frame();
     compare.frame();
@@ -265,7 +277,7 @@ for (const tool of tools) {
   byId("tools").append(button);
 }
 app.choose("orbit");
-for (const name of ["undo", "redo", "reset", "pause"]) byId(name).onclick = app[name];
+for (const name of ["undo", "redo", "reset", "pause", "denoise"]) byId(name).onclick = app[name];
 byId("take-over").onclick = () => app.connection.send({ type: "steer" });
 byId("notice-close").onclick = () => app.notice("");
 byId("side-toggle").onclick = () => {

@@ -2,7 +2,7 @@
 import { fromHalf } from "./half.js";
 
 const names = ["type", "serial", "change", "width", "height", "x0", "y0", "scale", "columns", "rows", "format",
-  "channels", "channel", "spp", "tileCount"];
+  "channels", "channel", "spp", "tileCount", "denoised"];
 
 // The header and the tiles; the tiles' pixels are views of the buffer.
 export function parseFrame(buffer) {

@@ -117,7 +117,7 @@ export class Pointer {
 export const keys = [
   ["Arrows", "orbit; with Shift: look round"], ["W A S D", "fly forward, left, back, right"], ["Q E", "fly down, up"],
   ["+ −", "nearer, farther"], [", .", "roll"], ["Z, Shift+Z", "undo, redo"], ["Home", "the scene's camera"],
-  ["P", "pause"], ["Enter", "pick a pixel: arrows, by 10 with Shift; Enter; Esc"], ["O", "the camera from outside"], ["1 … 6", "tools"], ["0", "the whole image"], ["[ ]", "exposure"], ["Esc", "no rectangle, no message"],
+  ["P", "pause"], ["N", "denoised or as sampled"], ["Enter", "pick a pixel: arrows, by 10 with Shift; Enter; Esc"], ["O", "the camera from outside"], ["1 … 6", "tools"], ["0", "the whole image"], ["[ ]", "exposure"], ["Esc", "no rectangle, no message"],
 ];
 
 // Whether the element that has the focus needs a key itself.
@@ -140,7 +140,7 @@ export function keyAction(event, app) {
     ",": () => steer.roll(c, -2), ".": () => steer.roll(c, 2),
   };
   const commands = {
-    o: app.seeOutside, z: app.undo, Z: app.redo, Home: app.reset, p: app.pause, 0: app.wholeImage, Escape: app.escape,
+    o: app.seeOutside, z: app.undo, Z: app.redo, Home: app.reset, p: app.pause, n: app.denoise, 0: app.wholeImage, Escape: app.escape,
     "[": () => app.expose(-0.25), "]": () => app.expose(0.25),
   };
   if (event.ctrlKey || event.metaKey || event.altKey) return null;

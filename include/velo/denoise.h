@@ -23,6 +23,10 @@ typedef struct vlDenoiseDef {
   /** File of the Open Image Denoise library; null (default): the names above (also without
    * number), in the loader's search path. Read during the call only. */
   const char *library;
+  /** VL_DENOISER_VELO: stops the call within one tile of 64 x 16 pixels per worker. Default
+   * null.
+   */
+  const vlCancel *cancel;
 } vlDenoiseDef;
 /** The default def. */
 VL_API vlDenoiseDef vl_default_denoise_def(void);
@@ -51,7 +55,8 @@ typedef struct vlDenoiseStats {
  *
  * def, stats and error may be null. Errors: ARGUMENT, SCENE (channels are missing, or the image
  * has fewer than two samples per pixel), MISSING (no Open Image Denoise library), UNSUPPORTED
- * (the library lacks a function or reports an error), MEMORY. *clean is null after an error. */
+ * (the library lacks a function or reports an error), CANCELLED, MEMORY. *clean is null after
+ * an error. */
 VL_API vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **clean,
                            vlDenoiseStats *stats, vlError *error);
 

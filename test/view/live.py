@@ -59,7 +59,7 @@ class Frame:
 
     def __init__(self, data):
         names = ("type serial change width height x0 y0 scale columns rows format channels channel spp tiles "
-                 "unused").split()
+                 "denoised").split()
         for name, value in zip(names, struct.unpack("<16I", data[:64])):
             setattr(self, name, value)
         self.size, self.parts, at = len(data), [], 64

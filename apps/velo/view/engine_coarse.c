@@ -64,15 +64,19 @@ static bool render_colours(Engine *e, uint32_t scale) {
   vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
   if (result == VL_OK)
     result = vl_film_create(e->def.context, &def, &film);
-  PartOfFilm part = {e, film, scale, def.crop[2] - def.crop[0], def.crop[3] - def.crop[1]};
+  PartOfFilm part = {.engine = e, .film = film, .camera = &camera, .scale = scale};
+  memcpy(part.crop, def.crop, sizeof part.crop);
+  part.denoise = !e->first_runs && engine_can_denoise(e, engine_pixels(e) / (scale * scale));
   engine_render_in_parts(&part, &render, e->coarse_seconds);
   double start = engine_clock();
   if (result == VL_OK)
     result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
     engine_note_speed(&e->coarse_seconds, stats.camera_rays, engine_clock() - start);
-    engine_publish_film(e, film, scale, UINT32_MAX);
+    if (!part.denoise || !engine_denoise(&part, def.crop[3] - def.crop[1]))
+      engine_publish_film(e, film, scale, UINT32_MAX);
   }
+  engine_free_part(&part);
   vl_film_destroy(film);
   return result == VL_OK;
 }
@@ -131,9 +135,12 @@ static bool render_channel(Engine *e, uint32_t scale) {
       engine_note_speed(&e->channel_seconds,
                         (uint64_t)vl_image_width(image) * vl_image_height(image),
                         engine_clock() - start);
-    engine_publish(e, image, FRAME_FLOAT,
-                   vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, scale,
-                   e->film && scale == 1 ? vl_film_spp(e->film) : 0);
+    const FrameKind kind = {
+        .format = FRAME_FLOAT,
+        .channels = vl_image_channels(image) < 3 ? vl_image_channels(image) : 3,
+        .scale = scale,
+        .spp = e->film && scale == 1 ? vl_film_spp(e->film) : 0};
+    engine_publish(e, image, &kind);
   }
   if (result != VL_OK && result != VL_CANCELLED)
     status_error(e, &error, result);

@@ -8,12 +8,12 @@
 /* Seconds of a part of an image that is shown while it grows. */
 #define PART_SECONDS 0.4
 
-void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels,
-                    uint32_t scale, uint32_t spp) {
+void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   double start = engine_clock();
+  const uint32_t scale = kind->scale;
   const float *matrix =
-      format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
-  ViewFrame *frame = frame_make(image, format, channels, matrix);
+      kind->format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
+  ViewFrame *frame = frame_make(image, kind->format, kind->channels, matrix);
   if (!frame)
     return;
   frame->serial = ++e->serial;
@@ -24,7 +24,8 @@ void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_
   frame->y0 = e->now.crop[1] / scale * scale;
   frame->scale = scale;
   frame->channel = e->now.channel;
-  frame->spp = spp;
+  frame->spp = kind->spp;
+  frame->denoised = kind->denoised;
   server_show(e->server, frame);
   frame_drop(frame);
   e->published = engine_clock();
@@ -49,9 +50,8 @@ static Place place(uint32_t i, uint32_t scale, uint32_t first, uint32_t coarse_s
   return (Place){low, low + 1 < count ? low + 1 : low, (float)(at - low)};
 }
 
-/* Fills the rows from `rows` on with the coarser image, between its pixels linearly. Both are
- * R G B A. */
-static void fill_rows(const Engine *e, vlImage *image, uint32_t scale, uint32_t rows) {
+/* Between the pixels of the coarser image it is linear. */
+void engine_fill_rows(const Engine *e, vlImage *image, uint32_t scale, uint32_t rows) {
   const vlImage *from = e->coarser;
   const uint32_t width = vl_image_width(image), height = vl_image_height(image),
                  columns = vl_image_width(from), *crop = e->now.crop;
@@ -75,6 +75,15 @@ static void fill_rows(const Engine *e, vlImage *image, uint32_t scale, uint32_t 
 void engine_forget_coarser(Engine *e) {
   vl_image_destroy(e->coarser);
   e->coarser = NULL;
+  e->coarser_denoised = false;
+}
+
+void engine_keep_coarser(Engine *e, vlImage **image, uint32_t scale, bool denoised) {
+  engine_forget_coarser(e);
+  e->coarser = *image;
+  e->coarser_scale = scale;
+  e->coarser_denoised = denoised;
+  *image = NULL;
 }
 
 /* ---- the film ---------------------------------------------------------------------------- */
@@ -85,32 +94,36 @@ void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t
   if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK) {
     bool part = rows < vl_image_height(image) && e->coarser;
     if (part)
-      fill_rows(e, image, scale, rows);
-    engine_publish(e, image, FRAME_HALF, 3, scale, part || scale > 1 ? 0 : vl_film_spp(film));
+      engine_fill_rows(e, image, scale, rows);
+    const FrameKind kind = {.format = FRAME_HALF,
+                            .channels = 3,
+                            .scale = scale,
+                            .spp = part || scale > 1 ? 0 : vl_film_spp(film)};
+    engine_publish(e, image, &kind);
     e->publish_seconds = engine_clock() - start;
-    if (!part && scale > 1) {
-      engine_forget_coarser(e);
-      e->coarser = image;
-      e->coarser_scale = scale;
-      image = NULL;
-    }
+    if (!part && scale > 1)
+      engine_keep_coarser(e, &image, scale, false);
   }
   vl_image_destroy(image);
   e->frame_seconds += engine_thread_seconds() - used;
 }
 
 static bool publish_rows(void *user, const vlProgress *progress) {
-  const PartOfFilm *part = user;
-  if (progress->pass_done && progress->rows < part->height)
-    engine_publish_film(part->engine, part->film, part->scale, progress->rows);
+  PartOfFilm *part = user;
+  const uint32_t rows = progress->rows;
+  if (!progress->pass_done || rows >= part->crop[3] - part->crop[1])
+    return true;
+  if (!part->denoise || !engine_denoise(part, rows))
+    engine_publish_film(part->engine, part->film, part->scale, rows);
   return true;
 }
 
 void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds) {
-  const double whole = pixel_seconds * part->width * part->height;
+  const uint32_t height = part->crop[3] - part->crop[1];
+  const double whole = pixel_seconds * (part->crop[2] - part->crop[0]) * height;
   if (!part->engine->coarser || whole < 2 * PART_SECONDS)
     return;
-  render->pass_rows = (uint32_t)ceil(part->height * PART_SECONDS / whole);
+  render->pass_rows = (uint32_t)ceil(height * PART_SECONDS / whole);
   render->progress = publish_rows;
   render->progress_user = part;
 }

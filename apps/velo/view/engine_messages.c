@@ -13,6 +13,7 @@ static char *engine_state(const Engine *e) {
                            .change = w->change,
                            .spp = w->spp,
                            .channel = w->channel,
+                           .denoise = w->denoise,
                            .paused = w->paused,
                            .can_undo = e->history.at > 0,
                            .can_redo = e->history.at + 1 < e->history.count,
@@ -170,11 +171,15 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
     e->wanted.mark = e->wanted.camera.made;
     e->wanted.generation += e->wanted.channel == CHANNEL_FLOW;
   }
+  if (m->has_denoise && m->denoise && (e->def.lecture || e->def.stepwise))
+    post_refusal(e, client, m, "this page has no denoised preview");
+  else if (m->has_denoise)
+    e->wanted.denoise = m->denoise;
   if (m->has_spp)
     e->wanted.spp = m->spp;
   if (m->has_paused)
     e->wanted.paused = m->paused;
-  if (m->has_crop || m->has_channel || m->mark || e->wanted.paused)
+  if (m->has_crop || m->has_channel || m->has_denoise || m->mark || e->wanted.paused)
     engine_interrupt(e);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);

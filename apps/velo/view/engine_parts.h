@@ -26,6 +26,7 @@ typedef struct Wanted {
   uint32_t generation; /* counts changes of what the image shows */
   uint32_t spp;        /* samples per pixel at which the image is done */
   bool paused;
+  bool denoise;     /* the preview is denoised */
   uint32_t crop[4]; /* pixels */
   uint32_t channel; /* 1 + index of a ground truth channel; 0: the image */
   vlCamera mark;    /* to which flow leads */
@@ -37,6 +38,17 @@ typedef struct History {
   uint32_t count, at; /* cameras[at] is the present one */
   uint32_t gesture;   /* edits of one gesture are one step */
 } History;
+
+/* The denoised preview (engine_denoise.c). */
+typedef struct DenoisedPreview {
+  uint32_t spp;         /* samples of the film that it shows; 0: none of them */
+  vlImage *features;    /* of the film's pixels; null: none */
+  bool failed;          /* it cannot be made */
+  uint32_t feature_spp; /* samples of the film when they were made */
+  double pixel_seconds; /* processor time for one pixel; 0: not known */
+  double seconds;       /* processor time for this image */
+  double before;        /* processor time of the program when this image began */
+} DenoisedPreview;
 
 /* A message that needs the world. */
 typedef struct Task {
@@ -90,6 +102,8 @@ struct Engine {
   /* the last coarse image of this camera, R G B A, and its scale; null: none */
   vlImage *coarser;
   uint32_t coarser_scale;
+  bool coarser_denoised;
+  DenoisedPreview preview;
   uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
@@ -144,20 +158,45 @@ int engine_take_model(Engine *engine);
 void engine_interrupt(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */
 bool engine_interrupted(Engine *engine);
-/* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per
- * pixel of the frame; spp: samples per pixel of the whole image; 0: it has none yet. */
-void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels,
-                    uint32_t scale, uint32_t spp);
+/* Sends a frame of `image`. spp: samples per pixel of the whole image; 0: it has none yet. */
+typedef struct FrameKind {
+  FrameFormat format; /* and channels: as frame_make's */
+  uint32_t channels;
+  uint32_t scale; /* pixels of the image per pixel of the frame */
+  uint32_t spp;
+  bool denoised;
+} FrameKind;
+void engine_publish(Engine *engine, const vlImage *image, const FrameKind *kind);
 /* Sends the film, or a coarse one, whose rows from the top have samples. The others are those
  * of the last coarser one of this image. A coarse one that is whole is kept for this. */
 void engine_publish_film(Engine *engine, const vlFilm *film, uint32_t scale, uint32_t rows);
 void engine_forget_coarser(Engine *engine);
-/* A film that gets its first sample. */
+/* Takes a coarse image, which becomes null. */
+void engine_keep_coarser(Engine *engine, vlImage **image, uint32_t scale, bool denoised);
+/* Fills the rows of an image R G B A from `rows` on with the coarser one, which must be there.
+ */
+void engine_fill_rows(const Engine *engine, vlImage *image, uint32_t scale, uint32_t rows);
+/* A film with its camera, of the whole image or of a coarse one. */
 typedef struct PartOfFilm {
   Engine *engine;
   const vlFilm *film;
-  uint32_t scale, width, height; /* width, height: of its crop */
+  const vlCamera *camera;
+  uint32_t scale;
+  uint32_t crop[4];
+  bool denoise;   /* what is shown of it is denoised */
+  uint32_t rows;  /* from the top, those that are denoised */
+  vlImage *clean; /* R G B A; the rows that are not denoised are those of the coarser image */
 } PartOfFilm;
+void engine_free_part(PartOfFilm *part);
+/* Whether an image of so many pixels may be denoised now. */
+bool engine_can_denoise(const Engine *engine, double pixels);
+/* Whether a film with so many samples per pixel is to be denoised now. */
+bool engine_denoise_due(const Engine *engine, uint32_t spp);
+/* Denoises the rows of the part up to `rows`, and sends them with what is above and below.
+ * False: interrupted, or it failed: the samples are to be sent. */
+bool engine_denoise(PartOfFilm *part, uint32_t rows);
+/* The image begins anew. */
+void engine_forget_denoised(Engine *engine);
 /* Where that takes long, has its parts sent while it grows. part: valid until the render ends.
  */
 void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds);

@@ -103,6 +103,31 @@ static void publish_if_due(Engine *e) {
     engine_publish_film(e, e->film, 1, UINT32_MAX);
 }
 
+static PartOfFilm whole_film(Engine *e, const vlFilm *film) {
+  PartOfFilm part = {.engine = e, .film = film, .camera = &e->now.camera.made, .scale = 1};
+  memcpy(part.crop, e->now.crop, sizeof part.crop);
+  return part;
+}
+
+static bool denoise_due(const Engine *e) {
+  return e->film && !e->successor && engine_denoise_due(e, vl_film_spp(e->film));
+}
+
+/* Sends the film's image, if it is not about to be denoised. A denoised one stays until the
+ * next. */
+static void show_film(Engine *e) {
+  bool stays = e->now.denoise && e->preview.spp && !e->now.channel;
+  if (e->first_runs || (!stays && !denoise_due(e)))
+    publish_if_due(e);
+}
+
+static void denoise_film(Engine *e) {
+  PartOfFilm part = whole_film(e, e->film);
+  if (!engine_denoise(&part, part.crop[3] - part.crop[1]) && e->preview.failed)
+    publish_if_due(e);
+  engine_free_part(&part);
+}
+
 static void tell_if_due(Engine *e, bool always) {
   double now = engine_clock();
   if (!always && now - e->reported < status_seconds)
@@ -138,9 +163,9 @@ static bool render_pass(Engine *e) {
   render.time_limit = 0;
   render.spp = vl_film_spp(film) +
                pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
-  const uint32_t *crop = e->now.crop;
-  PartOfFilm part = {e, film, 1, crop[2] - crop[0], crop[3] - crop[1]};
+  PartOfFilm part = whole_film(e, film);
   const bool first = vl_film_spp(film) == 0;
+  part.denoise = first && !e->first_runs && engine_denoise_due(e, 1);
   if (first && !e->successor && e->now.channel == 0)
     engine_render_in_parts(&part, &render,
                            e->pixel_seconds > 0 ? e->pixel_seconds : e->coarse_seconds);
@@ -148,6 +173,9 @@ static bool render_pass(Engine *e) {
   vlResult result =
       vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
   double seconds = engine_clock() - start;
+  if (part.clean && result == VL_OK) /* parts of it are shown */
+    engine_denoise(&part, part.crop[3] - part.crop[1]);
+  engine_free_part(&part);
   if (result == VL_CANCELLED) {
     if (first)
       vl_film_clear(film); /* some rows may have samples */
@@ -168,16 +196,24 @@ static bool render_pass(Engine *e) {
 static bool render_film(Engine *e) {
   if (!e->film)
     begin_film(e);
-  if (!e->film || !is_unfinished(e, e->now.spp) || (!e->first_runs && engine_interrupted(e)))
+  if (!e->film || (!e->first_runs && engine_interrupted(e)))
+    return false;
+  if (!e->first_runs && denoise_due(e)) {
+    denoise_film(e);
+    return true;
+  }
+  if (!is_unfinished(e, e->now.spp))
     return false;
   if (!e->successor && engine_race_due(e, e->now.spp))
     return engine_race(e);
   if (!render_pass(e))
     return false;
-  if (engine_succeed(e))
+  if (engine_succeed(e)) {
     e->published = e->reported = 0; /* both are due */
+    e->preview.spp = 0;
+  }
   if (!e->successor)
-    publish_if_due(e);
+    show_film(e);
   tell_if_due(e, !is_unfinished(e, e->now.spp));
   return true;
 }
@@ -188,20 +224,24 @@ static bool render_film(Engine *e) {
 static bool take_wanted(Engine *e) {
   pthread_mutex_lock(&e->lock);
   bool anew = e->wanted.generation != e->now.generation;
-  bool channel = e->wanted.channel != e->now.channel;
+  bool channel = e->wanted.channel != e->now.channel,
+       denoise = e->wanted.denoise != e->now.denoise;
   e->now = e->wanted;
   if (!e->quit && !e->next)
     vl_cancel_clear(e->stop);
   e->interrupted = 0;
   e->first_runs = anew || channel;
   pthread_mutex_unlock(&e->lock);
+  if (denoise)
+    e->preview.spp = 0;
   if (!anew)
-    return channel;
+    return channel || denoise;
   e->failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
   engine_forget_coarser(e);
+  engine_forget_denoised(e);
   e->paths = 0;
   e->rendered = 0;
   e->noise = NAN;
@@ -214,8 +254,8 @@ static bool take_wanted(Engine *e) {
 static bool has_work(const Engine *e) {
   const Wanted *w = &e->wanted;
   bool samples = w->channel == 0 || w->channel == CHANNEL_ERROR,
-       other_channel = w->channel != e->now.channel;
-  bool unfinished = samples && is_unfinished(e, w->spp),
+       other_channel = w->channel != e->now.channel || w->denoise != e->now.denoise;
+  bool unfinished = samples && (is_unfinished(e, w->spp) || denoise_due(e)),
        changed = other_channel || w->spp != e->now.spp;
   return must_stop(e) ||
          (e->clients && ((!w->paused && (unfinished || changed)) || other_channel));
@@ -271,8 +311,10 @@ static void begin_work(Engine *e) {
     engine_render_error(e);
   else if (e->now.channel || !e->film)
     engine_coarse_begin(e);
-  else
-    engine_publish_film(e, e->film, 1, UINT32_MAX);
+  else if (vl_film_spp(e->film)) {
+    e->published = 0;
+    show_film(e);
+  }
   if (!e->coarse && (e->film || e->now.channel))
     end_first(e);
 }
@@ -364,6 +406,7 @@ int engine_create(const EngineDef *def, Engine **result) {
   if (status < 0)
     status = engine_take_model(engine);
   engine->wanted.paused = def->lecture; /* until a page chooses a scene */
+  engine->wanted.denoise = !def->lecture && !def->stepwise;
   *result = engine;
   return status;
 }
@@ -385,6 +428,7 @@ void engine_destroy(Engine *engine) {
   vl_film_destroy(engine->film);
   vl_film_destroy(engine->successor);
   vl_image_destroy(engine->coarser);
+  vl_image_destroy(engine->preview.features);
   model_free(&engine->model);
   if (engine->next)
     model_free(engine->next);

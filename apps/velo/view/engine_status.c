@@ -75,6 +75,7 @@ void status_tell(Engine *e, bool estimate) {
   json_number(&json.json, "error", e->noise);
   json_number(&json.json, "program_seconds", engine_program_seconds());
   json_number(&json.json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
+  json_number(&json.json, "denoise_seconds", e->preview.seconds);
   if (stop > 0)
     json_number(&json.json, "stop_seconds", stop);
   json_bool(&json.json, "paused", paused);

@@ -190,10 +190,22 @@ uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t bef
     *size += tile_bytes(now, tiles[i]);
   uint8_t *message = malloc(before_room + *size);
   if (message) {
-    const uint32_t header[FRAME_HEADER / 4] = {
-        1,           now->serial,   now->change,  now->width,   now->height,
-        now->x0,     now->y0,       now->scale,   now->columns, now->rows,
-        now->format, now->channels, now->channel, now->spp,     count};
+    const uint32_t header[FRAME_HEADER / 4] = {1,
+                                               now->serial,
+                                               now->change,
+                                               now->width,
+                                               now->height,
+                                               now->x0,
+                                               now->y0,
+                                               now->scale,
+                                               now->columns,
+                                               now->rows,
+                                               now->format,
+                                               now->channels,
+                                               now->channel,
+                                               now->spp,
+                                               count,
+                                               now->denoised};
     memcpy(message + before_room, header, sizeof header);
     uint8_t *to = message + before_room + FRAME_HEADER;
     for (uint32_t i = 0; i < count; i++)

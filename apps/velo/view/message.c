@@ -179,6 +179,7 @@ static bool read_members(const Reader *r, ViewMessage *m) {
          read_count(r, "show", show, &m->show, NULL) &&
          read_count(r, "spp", vl_setting(VL_SETTING_RENDER, "spp"), &m->spp, &m->has_spp) &&
          read_bool(r, "paused", &m->paused, &m->has_paused) &&
+         read_bool(r, "denoise", &m->denoise, &m->has_denoise) &&
          read_bool(r, "boxes", &m->boxes, NULL) && read_bool(r, "curves", &m->curves, NULL) &&
          read_bool(r, "field", &m->field, NULL) && read_bool(r, "mark", &m->mark, NULL) &&
          read_bool(r, "by_sample", &m->by_sample, NULL) &&

@@ -22,7 +22,7 @@ typedef enum MessageKind {
   MESSAGE_UNDO,     /* the camera before the last gesture */
   MESSAGE_REDO,     /* the camera before the last undo */
   MESSAGE_RESET,    /* the camera of the scene */
-  MESSAGE_SETTINGS, /* spp, paused, crop, channel, mark: those that are given */
+  MESSAGE_SETTINGS, /* spp, paused, crop, channel, denoise, mark: those that are given */
   MESSAGE_PICK,     /* what a pixel sees: id, x, y */
   MESSAGE_FOCUS,    /* focus on a pixel: x, y */
   MESSAGE_SAVE,     /* write a file: id, what, name, dialect, exposure, view */
@@ -52,10 +52,10 @@ typedef struct ViewMessage {
   double x, y; /* pixels */
   uint32_t field_count;
   MessageField fields[MESSAGE_FIELDS];
-  bool has_spp, has_paused, has_crop, has_channel, has_size; /* of settings */
+  bool has_spp, has_paused, has_crop, has_channel, has_size, has_denoise; /* of settings */
   uint32_t spp;
   uint32_t samples, show; /* numbers of paths; 0: not given */
-  bool paused, boxes, curves, field, mark, by_sample;
+  bool paused, denoise, boxes, curves, field, mark, by_sample;
   uint32_t crop[4]; /* all 0: none */
   uint32_t size[2]; /* pixels */
   char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME],

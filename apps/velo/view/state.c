@@ -28,6 +28,7 @@ char *state_text(const ViewState *s) {
   json_integer(json, "change", s->change);
   json_integer(json, "spp", s->spp);
   json_bool(json, "paused", s->paused);
+  json_bool(json, "denoise", s->denoise);
   json_integer(json, "channel", s->channel);
   json_bool(json, "can_undo", s->can_undo);
   json_bool(json, "can_redo", s->can_redo);

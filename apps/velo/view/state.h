@@ -9,6 +9,7 @@
 typedef struct ViewState {
   const char *scene; /* path */
   uint32_t change, spp, channel;
+  bool denoise; /* the preview is denoised */
   bool paused, can_undo, can_redo;
   const uint32_t *crop; /* x0, y0, x1, y1 */
   double exposure;      /* EV of the first view */

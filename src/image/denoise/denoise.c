@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/cancel.h"
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -14,6 +15,7 @@ enum { COLOR = 3, PLANES = 3 * COLOR + VL_DENOISE_FEATURES + 1 };
 
 typedef struct Denoise {
   const vlImage *image;
+  const vlCancel *cancel;
   vlContext *context;
   vlDenoiseChannels channels;
   vlDenoisePlanes planes;
@@ -285,6 +287,8 @@ static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
 static void fit_tile(void *user, uint32_t index, uint32_t worker) {
   const Denoise *d = user;
   uint32_t across = tiles_across(&d->planes);
+  if (vl_is_cancelled(d->cancel))
+    return;
   d->kernels->tile(&d->planes, &d->scratch[worker], index % across * VL_DENOISE_TILE_X,
                    index / across * VL_DENOISE_TILE_Y);
 }
@@ -331,7 +335,9 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
       mirror_plane(p, p->variance[c]);
     }
     vl_parallel_for(context, tiles_across(p) * tiles_down(p), fit_tile, d);
-    for (uint32_t y = 0; y < p->height; y++)
+    if (vl_is_cancelled(d->cancel))
+      result = vl_fail(error, VL_CANCELLED, "stopped");
+    for (uint32_t y = 0; y < p->height && result == VL_OK; y++)
       write_row(d, y, clean);
   }
   vl_free(context, d->memory);
@@ -373,7 +379,7 @@ vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **cle
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "denoise: def.cookie or def.denoiser is not that of a default def of this version");
-  Denoise work = {.image = image, .context = image->context};
+  Denoise work = {.image = image, .context = image->context, .cancel = def->cancel};
   vlResult result =
       find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
   if (result != VL_OK)

@@ -123,6 +123,16 @@ def test_camera(b):
     return x, y
 
 
+def test_denoise(b):
+    """The switch says which of the two one sees. The tests after it want the samples."""
+    said = "document.getElementById('seen').textContent"
+    b.wait(f"{said}.startsWith('seen: denoised preview') && velo.screen.frame.denoised === 1")
+    check("denoise_is_on", b.run("document.getElementById('denoise').getAttribute('aria-pressed')") == "true")
+    b.click_on("#denoise")
+    b.wait(f"{said}.startsWith('seen: samples') && velo.screen.frame.denoised === 0")
+    check("denoise_is_off", b.run("document.getElementById('denoise').getAttribute('aria-pressed')") == "false")
+
+
 def test_pixel(b, x, y):
     b.click(x, y)
     b.wait("document.querySelector('#pixel dl').textContent.includes('position')")
@@ -365,6 +375,7 @@ def main():
         try:
             b.open(view.address)
             x, y = test_camera(b)
+            test_denoise(b)
             test_pixel(b, x, y)
             test_views(b, folder)
             test_panels(b, folder)

@@ -187,7 +187,7 @@ static void count_camera_loss(void *user, const char *what, uint64_t count) {
 
 /* Whether two numbers are the same but for a float's rounding. */
 static bool same_number(double a, double b) {
-  return a == b || fabs(a - b) <= 2e-6 * fmax(fabs(a), fabs(b));
+  return a == b || (isfinite(a) && isfinite(b) && fabs(a - b) <= 2e-6 * fmax(fabs(a), fabs(b)));
 }
 
 /* What two cameras differ in; null: nothing. */
@@ -256,10 +256,11 @@ static void check_plain_gltf(const char *family, const char *kind, const char *p
     broken(family, kind, "as .gltf without extras: %s", error.message);
     return;
   }
-  /* glTF's near plane is above 0 */
+  /* glTF's near plane is above 0, and its orthographic cameras have a far plane */
+  bool flat = made->projection == VL_PROJECTION_ORTHOGRAPHIC;
   const double members[3][2] = {
       {made->near_plane > 0 ? made->near_plane : again.near_plane, again.near_plane},
-      {made->far_plane, again.far_plane},
+      {flat && isinf(made->far_plane) ? again.far_plane : made->far_plane, again.far_plane},
       {made->height / made->fy, again.height / again.fy}};
   static const char *const names[3] = {"near_plane", "far_plane", "field of view"};
   for (int i = 0; i < 3; i++)

@@ -418,7 +418,7 @@ static void laws_of_distortions(void **state) {
 /* Puts another value than the default into a member; false: it has no number. */
 static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {
   bool limited = p->low != 0 || p->high != 0;
-  double number = p->value[0] + 0.25;
+  double number = isinf(p->value[0]) ? 50 : p->value[0] + 0.25;
   if (limited && number <= p->low)
     number = p->low + 0.25;
   if (limited && number >= p->high)

@@ -148,7 +148,9 @@ def test_plain(folder):
             b.wait(f"velo.display.channels[velo.screen.frame.channel] === '{channel}'")
             check(f"plain_{channel}", b.run(both) <= 1, b.run(both))
         b.run("velo.settings({channel: 'image'})")
+        b.run("velo.settings({denoise: false})")  # the values are compared with those after the context is back
         b.wait("velo.screen.frame.channel === 0 && velo.screen.frame.scale === 1")
+        b.wait("document.getElementById('denoise').getAttribute('aria-pressed') === 'false' && velo.screen.frame.denoised === 0")
         b.run("window.taker = velo.screen.gl.getExtension('WEBGL_lose_context'); window.before = velo.screen.values(); taker.loseContext()")
         colour = b.wait(seen, 10)
         check("lost_context_shows_the_image", colour[0] > 1.5 * colour[2] and colour[3] == 255, colour)
@@ -163,7 +165,7 @@ def test_plain(folder):
         b.run("taker.restoreContext()")
         b.wait("document.getElementById('plain').hidden && velo.screen.hasGL && document.getElementById('notice').hidden", 20)
         b.wait("document.getElementById('status').textContent.includes('done') && velo.screen.frame.scale === 1 && velo.screen.frame.spp === 4")
-        check("context_comes_back", b.run("velo.screen.values().every((v, i) => v === before[i])"))
+        check("context_comes_back", b.wait("velo.screen.values().every((v, i) => v === before[i])", 20))
         check("lost_no_errors", not b.problems(), b.problems())
     finally:
         b.end()

@@ -135,7 +135,7 @@ with_fake closed box.obj --turntable 3 $options -o v.mp4 -o long%d.png --skip-ex
 expect_line broken_pipe 'ffmpeg: it ended with exit code 0 before it had all frames; the frames are in long%d.png'
 check broken_pipe_keeps test "$code$(cat v.mp4)$(left)" = 5before0
 # A disk that is full: the limit of the size of files, which the frames are below.
-with_limit() { (ulimit -f 8 && trap '' XFSZ && exec "$@"); }
+with_limit() { (ulimit -f 14 && trap '' XFSZ && exec "$@"); }
 if [ -n "$real" ]; then
   run with_limit "$VELO" render box.obj --turntable 24 --resolution 80x60 --spp 1 --exposure 0 -o v.gif
   expect_text full_disk_says 'v.gif is not written: ffmpeg: '

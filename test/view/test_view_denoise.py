@@ -4,6 +4,7 @@ import os
 import struct
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from live import Page, View  # noqa: E402
@@ -82,6 +83,13 @@ def test_preview(folder):
     check("on_again_is_the_same", halves(page) == clean)
     again = ask(page, "saved", type="save", what="image", name="saved.pfm")
     check("saved_is_the_same", read_pfm(os.path.join(folder, again["file"])) == exact)
+    for i in range(8):  # off again while the denoiser works
+        page.send(type="settings", denoise=True)
+        time.sleep(0.01 * i)
+        page.send(type="settings", denoise=False)
+        page.wait(lambda m: isinstance(m, dict) and m["type"] == "state" and not m["denoise"])
+    page.wait_frame(lambda f: not f.denoised and f.spp == SPP)
+    check("off_while_it_works", worst(halves(page), exact) <= 2 ** -11 * 1.001)
     page.close()
     check("ends", view.end()[0] == 0)
 

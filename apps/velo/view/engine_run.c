@@ -121,11 +121,14 @@ static void show_film(Engine *e) {
     publish_if_due(e);
 }
 
-static void denoise_film(Engine *e) {
+/* False: interrupted. */
+static bool denoise_film(Engine *e) {
   PartOfFilm part = whole_film(e, e->film);
-  if (!engine_denoise(&part, part.crop[3] - part.crop[1]) && e->preview.failed)
-    publish_if_due(e);
+  bool done = engine_denoise(&part, part.crop[3] - part.crop[1]);
   engine_free_part(&part);
+  if (!done && e->preview.failed)
+    publish_if_due(e);
+  return done || e->preview.failed;
 }
 
 static void tell_if_due(Engine *e, bool always) {
@@ -198,10 +201,8 @@ static bool render_film(Engine *e) {
     begin_film(e);
   if (!e->film || (!e->first_runs && engine_interrupted(e)))
     return false;
-  if (!e->first_runs && denoise_due(e)) {
-    denoise_film(e);
-    return true;
-  }
+  if (!e->first_runs && denoise_due(e))
+    return denoise_film(e);
   if (!is_unfinished(e, e->now.spp))
     return false;
   if (!e->successor && engine_race_due(e, e->now.spp))

@@ -4,6 +4,16 @@ from urllib.parse import urlsplit
 
 from live import Page
 
+PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+
+
+def cannot_view(velo, browser=True):
+    """Why `velo view` cannot be tested here, in a browser or without; None: it can."""
+    if browser and not any(shutil.which(name) for name in PROGRAMS):
+        return "there is no chromium"
+    missing = subprocess.run([velo, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
+    return "velo was built without libwebsockets" if "without libwebsockets" in missing.stderr else None
+
 
 class Socket(Page):
     """The DevTools connection: the same WebSocket, without velo's protocol."""
@@ -16,7 +26,7 @@ class Socket(Page):
 
 class Browser:
     def __init__(self, width=1280, height=720, dark=False, phone=False, more_flags=()):
-        program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+        program = next(filter(None, map(shutil.which, PROGRAMS)), None)
         self.folder = tempfile.mkdtemp(prefix="velo-browser-")
         flags = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                  "--remote-debugging-port=0", "--remote-allow-origins=*", "--no-first-run", "--disable-background-networking",

@@ -6,14 +6,13 @@ import json
 import math
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from browser import Browser  # noqa: E402
+from browser import Browser, cannot_view  # noqa: E402
 from lamp import SCENE as LAMP  # noqa: E402
 from live import View  # noqa: E402
 import results  # noqa: E402
@@ -358,12 +357,9 @@ def test_race(folder):
 
 
 def main():
-    if not any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")):
-        print("skip view_browser: there is no chromium")
-        return
-    missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
-    if "without libwebsockets" in missing.stderr:
-        print("skip view_browser: velo was built without libwebsockets")
+    reason = cannot_view(VELO)
+    if reason:
+        print(f"skip view_browser: {reason}")
         return
     folder = tempfile.mkdtemp(prefix="velo-view-")
     open(os.path.join(folder, "things.pbrt"), "w").write(THINGS % "0.7 0.2 0.1")

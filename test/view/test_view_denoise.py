@@ -7,6 +7,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import cannot_view  # noqa: E402
 from live import Page, View  # noqa: E402
 import results  # noqa: E402
 from results import check  # noqa: E402
@@ -107,6 +108,10 @@ def test_lecture():
 
 
 def main():
+    reason = cannot_view(VELO, browser=False)
+    if reason:
+        print(f"skip view_denoise: {reason}")
+        return
     test_preview(tempfile.mkdtemp(prefix="velo-denoise-"))
     test_lecture()
 

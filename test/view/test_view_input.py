@@ -3,12 +3,11 @@
 the notice and what the tool Focus says. Skipped without chromium."""
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from browser import Browser  # noqa: E402
+from browser import Browser, cannot_view  # noqa: E402
 from live import View  # noqa: E402
 import results  # noqa: E402
 from results import check  # noqa: E402
@@ -219,12 +218,9 @@ def test_exposure(folder):
 
 
 def main():
-    if not any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")):
-        print("skip view_input: there is no chromium")
-        return
-    missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
-    if "without libwebsockets" in missing.stderr:
-        print("skip view_input: velo was built without libwebsockets")
+    reason = cannot_view(VELO)
+    if reason:
+        print(f"skip view_input: {reason}")
         return
     folder = tempfile.mkdtemp(prefix="velo-view-")
     with open(os.path.join(folder, "shown.pbrt"), "w") as file:

@@ -4,13 +4,12 @@ WebGL2 or whose context is lost, the file that leads the browser to the page, a 
 import os
 import shutil
 import socket
-import subprocess
 import sys
 import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from browser import Browser  # noqa: E402
+from browser import Browser, cannot_view  # noqa: E402
 from live import View  # noqa: E402
 import results  # noqa: E402
 from results import check  # noqa: E402
@@ -246,12 +245,9 @@ def test_way(folder):
 
 
 def main():
-    if not any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")):
-        print("skip view_pages: there is no chromium")
-        return
-    missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
-    if "without libwebsockets" in missing.stderr:
-        print("skip view_pages: velo was built without libwebsockets")
+    reason = cannot_view(VELO)
+    if reason:
+        print(f"skip view_pages: {reason}")
         return
     for test in (test_roles, test_again, test_plain, test_size, test_way):
         folder = tempfile.mkdtemp(prefix="velo-view-")

@@ -25,6 +25,7 @@
 #include "velo/sampler.h"
 #include "velo/schema.h"
 #include "velo/trace.h"
+#include "velo/tracer.h"
 
 #define PI 3.14159265358979323846
 
@@ -264,6 +265,36 @@ static void look_down(vlCameraDef *def, double x, double z, double size) {
   def->eye[2] = def->lookat[2] = z;
   def->up[0] = def->up[1] = 0;
   def->up[2] = -1;
+}
+
+/* The image of a square of the floor, `size` wide, around (x, 0, z), in RGB and with the box
+ * filter, by light that comes straight from the lights. */
+static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp, double x,
+                               double z, double size) {
+  vlError error = {0};
+  vlScene *scene = load_text(context, text, &error);
+  if (!scene)
+    fail_msg("%s\n%s", error.message, text);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.color = VL_COLOR_RGB;
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.tracer = tracer;
+  defs->render.max_depth = 1;
+  defs->render.spp = spp;
+  look_down(&defs->camera, x, z, size);
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image)
+    fail_msg("%s\n%s", error.message, text);
+  return image;
+}
+
+/* The mean of green over the image, each pixel a number of its own. */
+static Mean mean_of_image(const vlImage *image) {
+  Mean mean = {0};
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = 0; x < vl_image_width(image); x++)
+      mean_add(&mean, (double)vl_image_get(image, x, y, 1));
+  return mean;
 }
 
 /* ---- forms of scenes --------------------------------------------------------------------- */

@@ -101,23 +101,8 @@ static LightLaws ask_floor(const char *text, double x, double z, uint32_t batche
  * straight from the lights. */
 static Mean floor_seen(const char *text, double x, double z) {
   enum { FLOOR_SAMPLES = 512 };
-  vlError error = {0};
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
-  vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->build.color = VL_COLOR_RGB;
-  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  defs->render.tracer = VL_TRACER_PATH;
-  defs->render.max_depth = 1;
-  defs->render.spp = FLOOR_SAMPLES;
-  look_down(&defs->camera, x, z, 0.02);
-  vlImage *image = render_scene(context, scene, &error);
-  if (!image)
-    fail_msg("%s\n%s", error.message, text);
-  Mean mean = {0};
-  for (uint32_t i = 0; i < WIDTH * WIDTH; i++)
-    mean_add(&mean, (double)vl_image_get(image, i % WIDTH, i / WIDTH, 1));
+  vlImage *image = image_of_floor(text, VL_TRACER_PATH, FLOOR_SAMPLES, x, z, 0.02);
+  Mean mean = mean_of_image(image);
   vl_image_destroy(image);
   return mean;
 }

@@ -198,24 +198,6 @@ static void illuminances(void **state) {
 
 enum { LIGHT_PATH_SPP = 2048, FLOOR_SPP = 256 };
 
-static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp) {
-  vlError error = {0};
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
-  vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->build.color = VL_COLOR_RGB;
-  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  defs->render.tracer = tracer;
-  defs->render.max_depth = 1;
-  defs->render.spp = spp;
-  look_down(&defs->camera, 0, 0, 2);
-  vlImage *image = render_scene(context, scene, &error);
-  if (!image)
-    fail_msg("%s\n%s", error.message, text);
-  return image;
-}
-
 /* The mean difference over a part of the image: one of its quarters, or for 4 the whole. */
 static Mean difference_of_part(const vlImage *image, const vlImage *other, int part) {
   Mean mean = {0};
@@ -230,8 +212,8 @@ static Mean difference_of_part(const vlImage *image, const vlImage *other, int p
 
 static void check_light_paths(const char *family, const char *kind, const char *parameters,
                               const char *text) {
-  vlImage *paths = image_of_floor(text, VL_TRACER_PATH, FLOOR_SPP);
-  vlImage *light = image_of_floor(text, VL_TRACER_LIGHT_PATH, LIGHT_PATH_SPP);
+  vlImage *paths = image_of_floor(text, VL_TRACER_PATH, FLOOR_SPP, 0, 0, 2);
+  vlImage *light = image_of_floor(text, VL_TRACER_LIGHT_PATH, LIGHT_PATH_SPP, 0, 0, 2);
   double whole = 0;
   for (uint32_t i = 0; i < WIDTH * WIDTH; i++)
     whole += (double)vl_image_get(paths, i % WIDTH, i / WIDTH, 1) / (WIDTH * WIDTH);

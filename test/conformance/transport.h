@@ -35,14 +35,6 @@ static vlImage *image_of(const char *text, const char *tracer, uint32_t spp) {
   return filtered_image(text, tracer, VL_PIXEL_FILTER_BOX, spp);
 }
 
-/* The mean of green over the image, each pixel a number of its own. */
-static Mean mean_of_image(const vlImage *image) {
-  Mean mean = {0};
-  for (uint32_t y = 0; y < vl_image_height(image); y++)
-    for (uint32_t x = 0; x < vl_image_width(image); x++)
-      mean_add(&mean, (double)vl_image_get(image, x, y, 1));
-  return mean;
-}
 /* The mean of the differences of their pixels, whose true values may differ from each other. */
 static Mean mean_difference(const vlImage *image, const vlImage *other) {
   Mean mean = {0};

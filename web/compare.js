@@ -48,7 +48,8 @@ export class Compare {
     if (!on) { this.number.textContent = ""; return; }
     const f = this.app.screen.frame, k = this.app.screen.factor(), [left, top] = this.app.screen.origin();
     const { width, height } = this.other;
-    this.canvas.width = width, this.canvas.height = height;
+    this.canvas.width = width;
+    this.canvas.height = height;
     Object.assign(this.canvas.style, { position: "absolute", left: `${left}px`, top: `${top}px`, width: `${f.width * k}px`,
       height: `${f.height * k}px`, pointerEvents: "none", imageRendering: k > 1.5 ? "pixelated" : "auto" });
     const g = this.canvas.getContext("2d");

@@ -86,10 +86,12 @@ export class Display {
 
   range(frame, name) {
     const d = this.app.screen.display, n = frame.channels, data = frame.tiles[0].pixels;
-    d.low = [0, 0, 0], d.high = [1, 1, 1];
+    d.low = [0, 0, 0];
+    d.high = [1, 1, 1];
     if (d.kind === 3) {
       const b = this.app.state.bounds;
-      d.low = b.slice(0, 3), d.high = b.slice(3);
+      d.low = b.slice(0, 3);
+      d.high = b.slice(3);
     } else if ([1, 7, 8].includes(d.kind)) {
       const values = [];
       for (let i = 0; i < data.length; i += n * Math.max(1, Math.floor(data.length / n / 20000))) {

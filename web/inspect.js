@@ -15,7 +15,8 @@ export class Inspector {
   }
 
   hover(x, y) {
-    this.x = x, this.y = y;
+    this.x = x;
+    this.y = y;
     this.frame();
   }
 

@@ -71,7 +71,8 @@ export class Outside {
       this.asked = false;
       if (answer.type === "outline") {
         this.drawing = answer;
-        this.scale = answer.plane / d, this.projection = projection;
+        this.scale = answer.plane / d;
+        this.projection = projection;
         this.draw();
       }
       if (this.again) { this.again = false; this.outline(); }
@@ -114,7 +115,10 @@ export class Outside {
     if (za < near && zb < near) return;
     if (za < near) a = cut(a, b, za, zb); else if (zb < near) b = cut(b, a, zb, za);
     const [p, q] = [this.project(a), this.project(b)];
-    g.strokeStyle = colour, g.lineWidth = width, g.lineCap = "round", g.globalAlpha = alpha;
+    g.strokeStyle = colour;
+    g.lineWidth = width;
+    g.lineCap = "round";
+    g.globalAlpha = alpha;
     g.setLineDash(dash || []);
     g.beginPath();
     g.moveTo(p[0], p[1]);
@@ -136,7 +140,8 @@ export class Outside {
   draw() {
     if (this.box.hidden || !this.pose) return;
     const [w, h] = this.size(), g = this.canvas.getContext("2d"), ratio = window.devicePixelRatio || 1, d = this.drawing;
-    this.canvas.width = w * ratio, this.canvas.height = h * ratio;
+    this.canvas.width = w * ratio;
+    this.canvas.height = h * ratio;
     g.scale(ratio, ratio);
     if (this.image) g.drawImage(this.image, 0, 0, w, h);
     g.fillStyle = "#0006";
@@ -149,7 +154,9 @@ export class Outside {
     for (const [text, ...at] of d?.labels || []) {
       const p = this.project(at);
       if (p[2] <= 0) continue;
-      g.strokeStyle = "#000c", g.lineWidth = 3, g.strokeText(text, p[0] + 6, p[1] - 5);
+      g.strokeStyle = "#000c";
+      g.lineWidth = 3;
+      g.strokeText(text, p[0] + 6, p[1] - 5);
       g.fillStyle = basis["uvw".indexOf(text)] ?? "#fff", g.fillText(text, p[0] + 6, p[1] - 5);
     }
     this.handles = {};
@@ -158,7 +165,9 @@ export class Outside {
     this.handles = { eye: c.eye, plane: add(c.eye, scale(towards, d.plane)) };
     for (const at of Object.values(this.handles)) {
       const p = this.project(at);
-      g.fillStyle = "#f5a623", g.strokeStyle = "#fff", g.lineWidth = 1.5;
+      g.fillStyle = "#f5a623";
+      g.strokeStyle = "#fff";
+      g.lineWidth = 1.5;
       g.beginPath();
       g.arc(p[0], p[1], 6, 0, 7);
       g.fill();

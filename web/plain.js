@@ -101,14 +101,16 @@ export class Plain {
   develop(frame, cropped, bytes) {
     const to = cropped ? this.now : this.whole;
     to.frame = frame;
-    to.width = frame.columns, to.height = frame.rows;
+    to.width = frame.columns;
+    to.height = frame.rows;
     to.getContext("2d").putImageData(new ImageData(bytes(), frame.columns, frame.rows), 0, 0);
   }
 
   // left, top: of the image, k: size of its pixels; all in pixels of the canvas.
   draw(width, height, left, top, k, cropped, smooth) {
     const g = this.canvas.getContext("2d");
-    this.canvas.width = width, this.canvas.height = height;
+    this.canvas.width = width;
+    this.canvas.height = height;
     for (const [layer, alpha] of cropped ? [[this.whole, 0.45], [this.now, 1]] : [[this.whole, 1]]) {
       const f = layer.frame;
       if (!f) continue;

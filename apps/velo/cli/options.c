@@ -145,6 +145,13 @@ static bool read_bytes(const char *text, int64_t *bytes) {
   return !*unit && *bytes > 0;
 }
 
+bool option_is_in(int id, const int *ids, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (ids[i] == id)
+      return true;
+  return false;
+}
+
 double option_radians(double degrees) {
   return degrees * 3.14159265358979323846 / 180.0;
 }

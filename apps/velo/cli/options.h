@@ -119,6 +119,8 @@ vlParameter option_row(const Option *option);
 /* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a
  * report. name: of the value in the message. number may be null. */
 int option_number(const char *name, const char *text, const vlParameter *row, double *number);
+/* Whether an option's id is among `count` others. */
+bool option_is_in(int id, const int *ids, size_t count);
 /* Radians of degrees, as options convert them. */
 double option_radians(double degrees);
 /* The names that an option takes; null: any text. */

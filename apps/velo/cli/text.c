@@ -1,7 +1,6 @@
 /* cli/text.c: see text.h. */
 #include "cli/text.h"
 
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -13,4 +12,21 @@ bool text_ends_with(const char *text, const char *suffix) {
 void text_print_plain(const char *text) {
   for (const char *s = text; *s; s++)
     putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+}
+
+void text_shell_word(FILE *out, const char *word) {
+  static const char plain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
+  if (*word && strspn(word, plain) == strlen(word)) {
+    fprintf(out, " %s", word);
+    return;
+  }
+  fputs(" '", out);
+  for (; *word; word++) {
+    if (*word == '\'')
+      fputs("'\\''", out);
+    else
+      fputc(*word, out);
+  }
+  fputc('\'', out);
 }

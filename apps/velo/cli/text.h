@@ -3,10 +3,13 @@
 #define APP_CLI_TEXT_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 /* In upper case or lower. */
 bool text_ends_with(const char *text, const char *suffix);
 /* Prints a string of a file to stdout, with ? for control characters. */
 void text_print_plain(const char *text);
+/* Writes a space and a word, quoted so that a POSIX shell reads it as one. */
+void text_shell_word(FILE *out, const char *word);
 
 #endif

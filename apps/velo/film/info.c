@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "film/blocks.h"
 #include "image/image.h"
 
@@ -28,29 +29,11 @@ static uint32_t planned_of(const vlFilmFile *file) {
   return planned;
 }
 
-/* Prints a word, quoted for a POSIX shell. */
-static void print_word(const char *word) {
-  static const char plain[] =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
-  if (*word && strspn(word, plain) == strlen(word)) {
-    printf(" %s", word);
-    return;
-  }
-  printf(" '");
-  for (; *word; word++) {
-    if (*word == '\'')
-      printf("'\\''");
-    else
-      putchar(*word);
-  }
-  putchar('\'');
-}
-
 static void print_command(const vlReceipt *receipt) {
   const char *word;
   printf("velo");
   for (uint32_t i = 1; (word = vl_receipt_command(receipt, i)); i++)
-    print_word(word);
+    text_shell_word(stdout, word);
 }
 
 static void print_contents(const char *path, const vlFilmFile *file, const FilmParts *parts) {
@@ -91,13 +74,13 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
 static void print_merge(const char *path, const char *stem, uint32_t count) {
   char name[4200];
   printf("velo film merge");
-  print_word(path);
+  text_shell_word(stdout, path);
   for (uint32_t i = 1; i <= count; i++) {
     snprintf(name, sizeof name, "%s-missing-%u.film", stem, i);
-    print_word(name);
+    text_shell_word(stdout, name);
   }
   printf(" -o");
-  print_word(path);
+  text_shell_word(stdout, path);
   putchar('\n');
 }
 
@@ -130,14 +113,14 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
         printf(" --tiles %u,%u,%u,%u", p->window[0], p->window[1], p->window[2], p->window[3]);
       printf(" --film");
       snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
-      print_word(name);
+      text_shell_word(stdout, name);
       putchar('\n');
     }
   if (count)
     print_merge(path, stem, count);
   if (noise > 0) {
     printf("velo render --continue");
-    print_word(path);
+    text_shell_word(stdout, path);
     putchar('\n');
   }
   return STATUS_OK;

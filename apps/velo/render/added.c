@@ -135,10 +135,7 @@ bool added_replaces(int option) {
                             RENDER_FRAMING,
                             RENDER_WALLS,
                             RENDER_UP};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (all[i] == option)
-      return true;
-  return false;
+  return option_is_in(option, all, sizeof all / sizeof *all);
 }
 
 bool added_has(const AddedOptions *added, int option, const char **text) {

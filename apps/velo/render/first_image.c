@@ -45,10 +45,7 @@ static const int harmless[] = {RENDER_OUTPUT,
                                RENDER_LOG_JSON};
 
 static bool is_harmless(int option) {
-  for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
-    if (harmless[i] == option)
-      return true;
-  return false;
+  return option_is_in(option, harmless, sizeof harmless / sizeof *harmless);
 }
 
 bool first_image_wanted(const Render *render, const Arguments *arguments) {

@@ -8,6 +8,7 @@
 #include "camera/camera.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/added.h"
 #include "render/attributes.h"
 #include "render/outputs.h"
@@ -138,25 +139,6 @@ void engine_save(Engine *e, const Task *task) {
 
 /* ---- the command ------------------------------------------------------------------------- */
 
-/* Writes a word so that a shell reads it as one. */
-static void put_word(FILE *out, const char *word) {
-  bool plain =
-      *word &&
-      strspn(word,
-             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:=@%") ==
-          strlen(word);
-  fputc(' ', out);
-  if (!plain)
-    fputc('\'', out);
-  for (const char *s = word; *s; s++)
-    if (*s == '\'')
-      fputs("'\\''", out);
-    else
-      fputc(*s, out);
-  if (!plain)
-    fputc('\'', out);
-}
-
 /* Options that the camera file and the following words of the command replace, or that do not
  * matter. */
 static bool option_is_replaced(int id) {
@@ -168,10 +150,7 @@ static bool option_is_replaced(int id) {
       RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,         RENDER_MAX_MEMORY,
       RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,          RENDER_TRAJECTORY,
       RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS};
-  for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
-    if (replaced[i] == id)
-      return true;
-  return false;
+  return option_is_in(id, replaced, sizeof replaced / sizeof *replaced);
 }
 
 /* Options that were given, and those that say what velo chose. */
@@ -188,13 +167,13 @@ static void put_options(FILE *out, const Engine *e) {
     if (o->kind == OPTION_FOLDERS) {
       for (int i = 0; i < arguments->folder_count; i++) {
         fprintf(out, " --%s", o->name);
-        put_word(out, arguments->folders[i]);
+        text_shell_word(out, arguments->folders[i]);
       }
       continue;
     }
     fprintf(out, " --%s", o->name);
     if (o->kind != OPTION_FLAG)
-      put_word(out, text);
+      text_shell_word(out, text);
   }
 }
 
@@ -242,9 +221,9 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   const vlRenderDef *render = &e->model.job.defs->render;
   char number[40];
   fputs("velo render", out);
-  put_word(out, e->def.path);
+  text_shell_word(out, e->def.path);
   fputs(" --camera", out);
-  put_word(out, camera);
+  text_shell_word(out, camera);
   if (record.camera.width != made->width || record.camera.height != made->height)
     fprintf(out, " --resolution %ux%u", made->width, made->height);
   const uint32_t *c = e->now.crop;
@@ -259,7 +238,7 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   fprintf(out, " --spp %u --sequence %u --view %s --exposure %s --no-receipt -o",
           vl_film_spp(e->film), render->sequence ? render->sequence : 65536,
           choice_name(view_choices, choice_value(view_choices, m->view, 0)), number);
-  put_word(out, image);
+  text_shell_word(out, image);
   return fclose(out) == 0 ? text : NULL;
 }
 

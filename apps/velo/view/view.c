@@ -15,10 +15,7 @@ static bool goes_with_lecture(int option) {
   static const int all[] = {VIEW_PORT,          VIEW_LISTEN,       VIEW_NO_OPEN,   VIEW_LECTURE,
                             VIEW_LANGUAGE,      RENDER_SPP,        RENDER_THREADS, RENDER_BITS,
                             RENDER_ACCELERATOR, RENDER_MAX_MEMORY, RENDER_QUIET};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (all[i] == option)
-      return true;
-  return false;
+  return option_is_in(option, all, sizeof all / sizeof *all);
 }
 
 /* Returns -1, or the exit code after reporting the error. */

@@ -1,7 +1,10 @@
 /* base/array.h: a growable array of any type, by macros. `VL_ARRAY(T)` is the type; a zeroed
  * array is empty.
- *     VL_ARRAY(int) a = {0};  int *p = VL_PUSH(ctx, &a);  if (p) *p = 3;  for (size_t i = 0; i
- *                             < a.count; i++) ... */
+ *     VL_ARRAY(int) a = {0};
+ *     int *p = VL_PUSH(ctx, &a);
+ *     if (p)
+ *       *p = 3;
+ *     for (size_t i = 0; i < a.count; i++) ... */
 #ifndef BASE_ARRAY_H
 #define BASE_ARRAY_H
 

@@ -139,6 +139,11 @@ bool vl_coat_in_closed_form(const vlMaterialDef *def) {
          !def->thickness.texture.index;
 }
 
+bool vl_principled_transmits(const vlMaterialDef *def) {
+  const vlFloatInput *share = &def->principled.transmission;
+  return def->kind == VL_MATERIAL_PRINCIPLED && (share->value > 0 || share->texture.index);
+}
+
 /* Members that the kind's row does not describe are not stored. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};

@@ -162,8 +162,7 @@ static bool is_solid(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
   return m &&
          ((vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_REFRACTS) ||
-          (m->kind == VL_MATERIAL_PRINCIPLED && !m->principled.thin_walled &&
-           (m->principled.transmission.texture.index || m->principled.transmission.value > 0)));
+          (vl_principled_transmits(m) && !m->principled.thin_walled));
 }
 
 typedef struct Key {

@@ -7,8 +7,7 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
-#include "schema/schema.h"
-#include "velo/material.h"
+#include "velo/edit.h"
 #include "velo/shape.h"
 
 enum {
@@ -260,11 +259,8 @@ static bool survey_meshes(const vlScene *scene, Survey *s) {
 static bool is_opaque(const vlScene *scene, const vlShapeDef *d) {
   if (d->alpha.texture.index || d->alpha.value < 1)
     return false;
-  if (!d->material.index)
-    return true;
-  const vlMaterialDef *m = &scene->materials.items[d->material.index - 1];
-  return m->kind != VL_MATERIAL_PRINCIPLED ||
-         !(m->principled.transmission.value > 0 || m->principled.transmission.texture.index);
+  const vlMaterialDef *m = vl_scene_material(scene, d->material);
+  return !m || !vl_principled_transmits(m);
 }
 
 /* Whether no vertex lies far outside of any face's plane, whichever way the faces look. */

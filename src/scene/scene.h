@@ -104,6 +104,8 @@ static inline vlSceneMark vl_scene_mark(const vlSceneMarks *marks, size_t index)
 /* Whether the coat of this material has a closed form. It has one if the base is diffuse, the
  * layer does not scatter, and its thickness is constant. */
 bool vl_coat_in_closed_form(const vlMaterialDef *def);
+/* Whether it is a principled material that transmits light. */
+bool vl_principled_transmits(const vlMaterialDef *def);
 
 /* Stores the error in the scene if it is the first one. Returns the code. */
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Writes parts/*.pbrt, the meshes of this folder's scenes: control meshes for Loop subdivision, and a tuft of hair.
-Run it in this folder; it needs nothing but Python. The same files each time."""
+"""Writes parts/*.pbrt for still_life, shaft and materials: control meshes for Loop subdivision, and a tuft of hair.
+Run it in the folder above; it needs nothing but Python. The same files each time."""
 import math
 import random
 

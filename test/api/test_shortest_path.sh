@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The library's shortest path (examples/render_file.c, the lines of the README) and `velo render` give the same bytes:
+# The library's shortest path (examples/render_file.c, the lines of docs/embedding.md) and `velo render` give the same bytes:
 # what a scene's file says about its image reaches both. Every scene of scenes/, cut to a window and 2 samples by its own
 # file; then one that says everything.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
@@ -52,17 +52,17 @@ both "a glTF file with a lens" lens.gltf
 run "$VELO" image info --json a.pfm
 expect_text "the size of the extras" '"width": 64, "height": 48'
 
-# The README shows these calls.
-awk '/^## Embedding/ { on = 1 } on && /^```c$/ { code = 1; next } code && /^```$/ { exit } code' "$VELO_SOURCE_DIR/README.md" >readme.c
-check "the README has the lines" test "$(grep -c 'vl_' readme.c)" -ge 8
+# docs/embedding.md shows these calls.
+awk '/^## The shortest program/ { on = 1 } on && /^```c$/ { code = 1; next } code && /^```$/ { exit } code' "$VELO_SOURCE_DIR/docs/embedding.md" >readme.c
+check "docs/embedding.md has the lines" test "$(grep -c 'vl_' readme.c)" -ge 8
 squeeze() { tr -s ' \n' ' '; }
 example=$(sed -e 's/ = NULL;/;/' -e 's/if (result == VL_OK) //; s/result = //; s/vlResult //' -e 's,/\*.*\*/,,' "$VELO_SOURCE_DIR/examples/render_file.c" | squeeze)
 calls=$(sed -E -e 's,//.*,,; s,/\*.*\*/,,' -e 's/"room.pbrt"/path/; s/"room.exr"/result_path/; s/&error/error/' \
   -e 's/^vl(Scene|World|Camera|Film|Image) \*?[a-z]+; +//' readme.c | grep -oE 'vl_[a-z_]+\(.*\);')
 while read -r call; do
   case $example in
-    *"$call"*) pass "README: ${call%%(*}" ;;
-    *) fail "README: $call is not in examples/render_file.c" ;;
+    *"$call"*) pass "docs/embedding.md: ${call%%(*}" ;;
+    *) fail "docs/embedding.md: $call is not in examples/render_file.c" ;;
   esac
 done <<<"$calls"
 finish

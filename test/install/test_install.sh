@@ -1,5 +1,5 @@
 # An installed velo serves a program from outside: examples/build_world.c is compiled against a temporary prefix by
-# pkg-config and by CMake's find_package, shared and static, and its image is checked. The README's lines run as
+# pkg-config and by CMake's find_package, shared and static, and its image is checked. The lines of docs/embedding.md run as
 # written. What was installed is removed again, and nothing else.
 . "$VELO_SOURCE_DIR/test/harness.sh"
 prefix=$work/prefix
@@ -46,15 +46,15 @@ flags=$(pkg-config --cflags --libs velo)
 check "compiles by pkg-config" gcc -std=c17 -Wall -Wextra -Werror "$example" $flags -Wl,-rpath,"$prefix/lib" -o "$work/by_pkg_config"
 check "runs" "$work/by_pkg_config" "$work/a.png" "$work/a.exr"
 
-# ---- the README's lines, as written, from the tree's root; the prefix stands for one that the loader searches ----
-readme() { grep -m1 "^cc .*$1" "$VELO_SOURCE_DIR/README.md" | sed "s,-o build_world,-o '$work/readme',"; }
+# ---- the lines of docs/embedding.md, as written, from the tree's root; the prefix stands for one that the loader searches ----
+readme() { grep -m1 "^cc .*$1" "$VELO_SOURCE_DIR/docs/embedding.md" | sed "s,-o build_world,-o '$work/readme',"; }
 for kind in "libs velo)" "libs velo-static)"; do
   line=$(readme "$kind")
-  check "README: $kind has a line" test -n "$line"
+  check "docs/embedding.md: $kind has a line" test -n "$line"
   rm -f "$work/readme"
-  check "README: $line" sh -c "cd '$VELO_SOURCE_DIR' && $line"
-  check "README: $kind runs" env LD_LIBRARY_PATH="$prefix/lib" "$work/readme" "$work/readme.exr"
-  check "README: $kind has the same image" cmp "$work/a.exr" "$work/readme.exr"
+  check "docs/embedding.md: $line" sh -c "cd '$VELO_SOURCE_DIR' && $line"
+  check "docs/embedding.md: $kind runs" env LD_LIBRARY_PATH="$prefix/lib" "$work/readme" "$work/readme.exr"
+  check "docs/embedding.md: $kind has the same image" cmp "$work/a.exr" "$work/readme.exr"
 done
 check "the static program needs no libvelo.so" sh -c "! ldd '$work/readme' | grep -q libvelo"
 # shellcheck disable=SC2046

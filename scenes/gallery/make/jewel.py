@@ -15,9 +15,7 @@ Film "rgb" "float maxcomponentvalue" 20 "string filename" "jewel.exr" "integer x
 WorldBegin
 LightSource "infinite" "rgb L" [0.10 0.115 0.15]
 %(lamps)s
-Texture "grain" "float" "fbm" "integer octaves" 7
 MakeNamedMaterial "slate" "string type" "coateddiffuse" "rgb reflectance" [0.022 0.023 0.028] "float roughness" 0.32
-MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.1
 MakeNamedMaterial "diamond" "string type" "dielectric" "spectrum eta" [380 2.464 420 2.449 460 2.438 500 2.430 550 2.423 600 2.416 650 2.411 700 2.406 780 2.401]
 MakeNamedMaterial "ruby" "string type" "dielectric" "spectrum eta" [380 1.79 500 1.774 600 1.766 780 1.76]
 MakeNamedMaterial "sapphire" "string type" "dielectric" "spectrum eta" [380 1.79 500 1.774 600 1.766 780 1.76]

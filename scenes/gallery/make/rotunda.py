@@ -19,7 +19,6 @@ AttributeBegin
   Shape "sphere" "float radius" 4.6
 AttributeEnd
 
-Texture "veins" "spectrum" "marble" "float scale" 0.35 "float variation" 0.35
 Texture "tiles" "spectrum" "checkerboard" "float uscale" 14 "float vscale" 14 "rgb tex1" [0.62 0.58 0.51] "rgb tex2" [0.30 0.13 0.10]
 MakeNamedMaterial "dome" "string type" "diffuse" "rgb reflectance" [0.78 0.73 0.65]
 MakeNamedMaterial "wall" "string type" "diffuse" "rgb reflectance" [0.66 0.52 0.38]

@@ -29,14 +29,12 @@ MakeNamedMaterial "wood" "string type" "coateddiffuse" "texture reflectance" "wo
 MakeNamedMaterial "linen" "string type" "diffusetransmission" "rgb reflectance" [0.58 0.55 0.49] "rgb transmittance" [0.16 0.15 0.13]
 MakeNamedMaterial "porcelain" "string type" "coateddiffuse" "rgb reflectance" [0.78 0.77 0.73] "float roughness" 0.03
 MakeNamedMaterial "blue" "string type" "coateddiffuse" "rgb reflectance" [0.05 0.12 0.30] "float roughness" 0.05
-Texture "skin" "float" "fbm" "integer octaves" 4
 MakeNamedMaterial "lemon" "string type" "coateddiffuse" "rgb reflectance" [0.83 0.58 0.035] "float roughness" 0.22
 MakeNamedMaterial "leaf" "string type" "diffusetransmission" "rgb reflectance" [0.16 0.22 0.10] "rgb transmittance" [0.10 0.15 0.04]
 MakeNamedMaterial "bark" "string type" "diffuse" "rgb reflectance" [0.14 0.10 0.07]
 MakeNamedMaterial "glass" "string type" "dielectric" "float eta" 1.5
 MakeNamedMaterial "glass in water" "string type" "dielectric" "float eta" 1.128
 MakeNamedMaterial "water" "string type" "dielectric" "float eta" 1.333
-MakeNamedMaterial "silver" "string type" "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k" "float roughness" 0.07
 
 """
 

@@ -30,7 +30,6 @@ AttributeBegin # a dim one above
   ReverseOrientation
 AttributeEnd
 
-Texture "brushed" "float" "wrinkled" "integer octaves" 4
 MakeNamedMaterial "plate" "string type" "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float uroughness" 0.32 "float vroughness" 0.2
 MakeNamedMaterial "brass" "string type" "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float roughness" 0.14
 MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.12

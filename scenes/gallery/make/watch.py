@@ -4,7 +4,7 @@ import math
 
 from solids import attribute, circle, lathe, mesh, number, numbers, prism
 
-HEAD = """# The movement of a watch, seen through a macro lens: gears and bridges of brushed steel and gilded brass, rubies, blued
+HEAD = """# The movement of a watch, seen through a macro lens: gears and bridges of steel and gilded brass, rubies, blued
 # screws, a balance wheel with its spring. Written by make/watch.py.
 Scale -1 1 1
 LookAt -4.2 -19 17   0.2 -0.7 0.4   0 0 1
@@ -30,12 +30,12 @@ AttributeBegin # a dim one above
   ReverseOrientation
 AttributeEnd
 
-MakeNamedMaterial "plate" "string type" "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float uroughness" 0.32 "float vroughness" 0.2
-MakeNamedMaterial "brass" "string type" "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float roughness" 0.14
-MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.12
-MakeNamedMaterial "steel" "string type" "conductor" "rgb reflectance" [0.42 0.43 0.46] "float uroughness" 0.34 "float vroughness" 0.13
-MakeNamedMaterial "polished" "string type" "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k" "float roughness" 0.05
-MakeNamedMaterial "blued" "string type" "conductor" "rgb reflectance" [0.05 0.11 0.42] "float roughness" 0.1
+MakeNamedMaterial "plate" "string type" "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float roughness" 0.05
+MakeNamedMaterial "brass" "string type" "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float roughness" 0.02
+MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.02
+MakeNamedMaterial "steel" "string type" "conductor" "rgb reflectance" [0.42 0.43 0.46] "float roughness" 0.02
+MakeNamedMaterial "polished" "string type" "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k" "float roughness" 0.004
+MakeNamedMaterial "blued" "string type" "conductor" "rgb reflectance" [0.05 0.11 0.42] "float roughness" 0.02
 MakeNamedMaterial "ruby" "string type" "coateddiffuse" "rgb reflectance" [0.62 0.015 0.06] "float roughness" 0.02
 MakeNamedMaterial "dark" "string type" "diffuse" "rgb reflectance" [0.015 0.015 0.018]
 

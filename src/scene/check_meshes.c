@@ -178,23 +178,45 @@ static int by_key(const void *a, const void *b) {
   return x->shape < y->shape ? -1 : x->shape > y->shape;
 }
 
+/* Whether the box of q contains the box of p. */
+static bool box_contains(const vlMeshSolidPart *q, const vlMeshSolidPart *p) {
+  bool within = true;
+  for (int k = 0; k < 3; k++)
+    within = within && q->low[k] <= p->low[k] && q->high[k] >= p->high[k];
+  return within;
+}
+
 /* Whether the box of another part contains this part. Then this part may be a cavity. */
 static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
-  const vlMeshSolidPart *p = &b->parts[part];
-  for (uint32_t i = 0; i < b->part_count; i++) {
-    const vlMeshSolidPart *q = &b->parts[i];
-    bool within = i != part;
-    for (int k = 0; k < 3 && within; k++)
-      within = q->low[k] <= p->low[k] && q->high[k] >= p->high[k];
-    if (within)
+  for (uint32_t i = 0; i < b->part_count; i++)
+    if (i != part && box_contains(&b->parts[i], &b->parts[part]))
       return true;
-  }
   return false;
 }
 
+/* Sets the number of open edges of each part to 0 if other transmissive materials of its group
+ * close it: a glass of water has a surface of each of its three interfaces, and only together
+ * they are closed. group: all meshes of such materials in the group. */
+static void close_by_others(vlCheck *c, const uint32_t *group, size_t count,
+                            vlMeshSolid *solid) {
+  vlMeshSolid all;
+  if (!vl_mesh_solid_make(c->scene, group, count, &all))
+    c->no_memory = true;
+  for (uint32_t i = 0; i < solid->part_count && !c->no_memory; i++) {
+    bool open = false;
+    for (uint32_t j = 0; j < all.part_count && !open; j++)
+      open = all.parts[j].open_edges && box_contains(&all.parts[j], &solid->parts[i]);
+    if (!open)
+      solid->parts[i].open_edges = 0;
+  }
+  vl_mesh_solid_free(c->scene, &all);
+}
+
 /* Checks one solid. After welding it is unknown from which shape a part comes, so findings name
- * the solid's first shape. This is exact for solids of one shape. */
-static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count) {
+ * the solid's first shape. This is exact for solids of one shape. group: see close_by_others.
+ */
+static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count, const uint32_t *group,
+                        size_t group_count) {
   const vlScene *s = c->scene;
   const vlShapeDef *first = &s->shapes.items[shapes[0]];
   vlMeshSolid solid;
@@ -204,9 +226,15 @@ static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count) {
   uint64_t edges = 0;
   for (uint32_t i = 0; i < solid.part_count && !c->no_memory; i++) {
     const vlMeshSolidPart *p = &solid.parts[i];
-    edges += p->open_edges;
     open += p->open_edges > 0;
     inverted += !p->open_edges && p->volume < 0 && !lies_in_another(&solid, i);
+  }
+  if (open && group_count > count)
+    close_by_others(c, group, group_count, &solid);
+  open = 0;
+  for (uint32_t i = 0; i < solid.part_count && !c->no_memory; i++) {
+    edges += solid.parts[i].open_edges;
+    open += solid.parts[i].open_edges > 0;
   }
   vlCheckName name = vl_check_material_name(vl_check_material(c, first->material));
   if (open)
@@ -253,17 +281,21 @@ static void check_solids(vlCheck *c) {
   }
   if (n)
     qsort(keys, n, sizeof *keys, by_key);
+  for (size_t i = 0; i < n; i++)
+    shapes[i] = keys[i].shape;
+  size_t group = 0, group_end = 0; /* the meshes of the group of solid i */
   for (size_t i = 0, j; i < n && !c->no_memory; i = j) {
-    size_t count = 0;
+    if (i == group_end) {
+      group = i;
+      while (group_end < n && keys[group_end].group == keys[i].group)
+        group_end++;
+    }
     bool round =
         false; /* the solid has disks or cylinders, which may close it; this is not checked */
-    for (j = i; j < n && keys[j].group == keys[i].group && keys[j].material == keys[i].material;
-         j++) {
+    for (j = i; j < group_end && keys[j].material == keys[i].material; j++)
       round |= !vl_shape_is_mesh(s->shapes.items[keys[j].shape].kind);
-      shapes[count++] = keys[j].shape;
-    }
     if (!round)
-      check_solid(c, shapes, count);
+      check_solid(c, shapes + i, j - i, shapes + group, group_end - group);
   }
   vl_free(c->context, keys);
   vl_free(c->context, shapes);

@@ -46,6 +46,7 @@ sound() {
 cube='"point3 P" [-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1]'
 outward='[0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  3 7 6 3 6 2  0 4 7 0 7 3  1 2 6 1 6 5]'
 lid='[0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  3 7 6 3 6 2  0 4 7 0 7 3]'
+top='[1 2 6 1 6 5]'
 glass='Material "dielectric"'
 
 # ---- right scenes ----------------------------------------------------------------------------------------------------
@@ -109,6 +110,10 @@ finds 3 named_twice ':5:1: error: float texture "t" is made a second time' again
 
 scene open.pbrt "$glass" "Shape \"trianglemesh\" $cube \"integer indices\" $lid"
 finds 1 open_solid 'open\.pbrt:5:1: warning: the solid of the material of line 4 is not closed: 4 edges.*\[open-dielectric\]' open.pbrt
+scene closed_by_water.pbrt "$glass" "Shape \"trianglemesh\" $cube \"integer indices\" $lid" 'Material "dielectric" "float eta" 1.1' "Shape \"trianglemesh\" $cube \"integer indices\" $top"
+clean closed_by_water closed_by_water.pbrt
+scene open_beside.pbrt "$glass" "Shape \"trianglemesh\" $cube \"integer indices\" $lid" 'Material "dielectric" "float eta" 1.1' 'Translate 5 0 0' "Shape \"trianglemesh\" $cube \"integer indices\" $top"
+finds 1 open_beside '4 edges.*\[open-dielectric\]' open_beside.pbrt
 scene bowl.pbrt "$glass" 'Shape "sphere" "float zmax" 0.5'
 finds 1 open_sphere ':5:1: warning: .*not closed.*\[open-dielectric\]' bowl.pbrt
 scene inverted.pbrt "$glass" 'ReverseOrientation' "Shape \"trianglemesh\" $cube \"integer indices\" $outward"

@@ -17,6 +17,19 @@ async function fetchPacked(url) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+// The words of 32 bits that tools/pack_rgb_table has packed, as bytes. steps: words from one entry to the next, and entries,
+// along x, y and z.
+function unpackTable(bytes) {
+  const steps = [[3, 40], [3 * 40, 40], [3 * 40 * 40, 48]];
+  const count = bytes.length / 4;
+  const words = new Uint32Array(count);
+  for (let i = 0; i < count; i++)
+    words[i] = bytes[i] | (bytes[count + i] << 8) | (bytes[2 * count + i] << 16) | (bytes[3 * count + i] << 24);
+  for (const [step, size] of steps)
+    for (let i = step; i < count; i++) if (Math.floor(i / step) % size) words[i] += words[i - step];
+  return new Uint8Array(words.buffer);
+}
+
 // A module with one function that has an instruction on vectors.
 const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 
@@ -63,7 +76,7 @@ export class Velo {
   }
 
   async #table(space) {
-    this.#tables[space] ??= await fetchPacked(new URL(`rgb_${space}.bin.gz`, this.#base));
+    this.#tables[space] ??= unpackTable(await fetchPacked(new URL(`rgb_${space}.bin.gz`, this.#base)));
   }
 
   // Does something that may need a table: then it is fetched, and it is done again.

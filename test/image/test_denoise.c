@@ -165,6 +165,86 @@ static void test_noise_goes(void **state) {
   end_context(context);
 }
 
+/* The light on an even ground. */
+static float ground(uint32_t x, uint32_t y) {
+  return 1.0f + 0.001f * (float)(x + y);
+}
+
+/* Noise of low frequencies: the means of 8 x 8 pixels of an even ground, over which the light
+ * falls off, are nearer to the truth than a window of 15 x 15 pixels can bring them. */
+static void test_low_frequencies(void **state) {
+  (void)state;
+  failAllocator failing;
+  vlContext *context = make_context(&failing);
+  enum { BLOCK = 8 };
+  const float sigma = 0.3f;
+  vlImage *image = make(context, CHANNELS);
+  uint32_t seed = 11;
+  for (uint32_t y = 0; y < H; y++)
+    for (uint32_t x = 0; x < W; x++) {
+      float *p = at(image, x, y);
+      for (int c = 0; c < 3; c++) {
+        float sum = 0;
+        for (int k = 0; k < 12; k++)
+          sum += (float)noise(&seed) * 0x1p-24f;
+        p[c] = ground(x, y) + sigma * (sum - 6.0f);
+        p[4 + c] = sigma;
+      }
+      p[12] = 1.0f;
+      p[13] = 0.25f;
+    }
+  vlImage *clean = clean_of(image, NULL);
+  double squares = 0;
+  uint32_t blocks = 0;
+  for (uint32_t y = 0; y + BLOCK <= H; y += BLOCK)
+    for (uint32_t x = 0; x + BLOCK <= W; x += BLOCK)
+      for (int c = 0; c < 3; c++, blocks++) {
+        double sum = 0;
+        for (uint32_t i = 0; i < BLOCK * BLOCK; i++) {
+          uint32_t column = x + i % BLOCK, row = y + i / BLOCK;
+          sum += (double)(at(clean, column, row)[c] - ground(column, row));
+        }
+        squares += sum * sum;
+      }
+  double error = sqrt(squares / blocks) / (BLOCK * BLOCK);
+  if (!(error < 0.05 * (double)sigma))
+    fail_msg("error of the means: %g of the pixels'", error / (double)sigma);
+  vl_image_destroy(image);
+  vl_image_destroy(clean);
+  end_context(context);
+}
+
+/* The image times a power of two gives the result times it, to the bit. */
+static void test_exposure(void **state) {
+  (void)state;
+  failAllocator failing;
+  vlContext *context = make_context(&failing);
+  vlImage *image = textured(context, 0.3f), *clean = clean_of(image, NULL);
+  static const float factors[] = {0x1p-24f, 0x1p-9f, 0x1p16f};
+  for (size_t k = 0; k < sizeof factors / sizeof *factors; k++) {
+    float factor = factors[k];
+    vlImage *scaled = textured(context, 0.3f);
+    for (uint32_t y = 0; y < H; y++)
+      for (uint32_t x = 0; x < W; x++)
+        for (int c = 0; c < 3; c++) {
+          at(scaled, x, y)[c] *= factor;
+          at(scaled, x, y)[4 + c] *= factor;
+        }
+    vlImage *result = clean_of(scaled, NULL);
+    for (uint32_t y = 0; y < H; y++)
+      for (uint32_t x = 0; x < W; x++)
+        for (int c = 0; c < 3; c++)
+          if (at(result, x, y)[c] != factor * at(clean, x, y)[c])
+            fail_msg("factor %g, pixel %u, %u: %g, not %g", (double)factor, x, y,
+                     (double)at(result, x, y)[c], (double)(factor * at(clean, x, y)[c]));
+    vl_image_destroy(scaled);
+    vl_image_destroy(result);
+  }
+  vl_image_destroy(image);
+  vl_image_destroy(clean);
+  end_context(context);
+}
+
 /* A pixel that is thousands of times brighter than its neighbours, because of one sample, does
  * not brighten them. */
 static void test_outlier(void **state) {
@@ -293,7 +373,8 @@ static void test_out_of_memory(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_constant_stays),  cmocka_unit_test(test_edges_stay),
-      cmocka_unit_test(test_noise_goes),      cmocka_unit_test(test_outlier),
+      cmocka_unit_test(test_noise_goes),      cmocka_unit_test(test_low_frequencies),
+      cmocka_unit_test(test_exposure),        cmocka_unit_test(test_outlier),
       cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_bits),
       cmocka_unit_test(test_wrong_arguments), cmocka_unit_test(test_out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -65,13 +65,13 @@ int denoised_check(const Denoised *d, vlContext *context) {
 }
 
 uint64_t denoised_memory(uint64_t pixels) {
-  enum { INPUT = 14, PLANES = 17, RESULT = 4, CHANNELS = 10 };
+  enum { INPUT = 14, PLANES = 23, RESULT = 4, CHANNELS = 10 };
   return pixels * sizeof(float) * (INPUT + PLANES + RESULT + CHANNELS);
 }
 
 double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing,
                         uint32_t threads) {
-  const double per_pixel = 2.5e-6, ray = 0.3; /* measured on one thread: seconds per pixel; cost
+  const double per_pixel = 1e-6, ray = 0.3; /* measured on one thread: seconds per pixel; cost
                                                  of a camera ray relative to a sample */
   uint32_t features = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
   return per_pixel * (double)pixels / threads + ray * sample * features + writing;

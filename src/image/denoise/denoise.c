@@ -11,16 +11,24 @@
 #include "image/denoise/denoise.h"
 #include "math/approx.h"
 
-enum { COLOR = 3, PLANES = 3 * COLOR + VL_DENOISE_FEATURES + 1 };
+enum {
+  LEVELS = 2,
+  COLOR = 3,
+  PLANES = 4 * COLOR + VL_DENOISE_FEATURES + 1,
+  SLOPES = COLOR * (VL_DENOISE_FEATURES + 2)
+};
 
 typedef struct Denoise {
   const vlImage *image;
   const vlCancel *cancel;
   vlContext *context;
   vlDenoiseChannels channels;
-  vlDenoisePlanes planes;
-  float *memory; /* one block that holds all planes */
-  float nearest; /* largest disparity in the image */
+  /* The image, then lattices of every VL_DENOISE_STEPth pixel of every VL_DENOISE_STEPth row of
+   * the planes before. */
+  vlDenoisePlanes planes[LEVELS];
+  float *memory[LEVELS]; /* the blocks that hold the planes */
+  int level;             /* of the planes that the workers fit */
+  float nearest;         /* largest disparity in the image */
   vlDenoiseScratch *scratch;
   const vlDenoiseKernels *kernels;
   atomic_uint_fast64_t not_finite;
@@ -73,18 +81,20 @@ static uint32_t tiles_down(const vlDenoisePlanes *p) {
   return (p->height + VL_DENOISE_TILE_Y - 1) / VL_DENOISE_TILE_Y;
 }
 
-static vlResult make_planes(Denoise *d) {
-  vlDenoisePlanes *p = &d->planes;
-  p->width = d->image->width;
-  p->height = d->image->height;
+/* Allocates planes of the given size in one block. */
+static float *make_planes(Denoise *d, vlDenoisePlanes *p, uint32_t width, uint32_t height,
+                          bool slopes) {
+  p->width = width;
+  p->height = height;
+  p->bandwidth2 = slopes ? 1.0f : 0.36f;
   size_t stride = (size_t)tiles_across(p) * VL_DENOISE_TILE_X + 2 * VL_DENOISE_BORDER;
   size_t size = stride * ((size_t)tiles_down(p) * VL_DENOISE_TILE_Y + 2 * VL_DENOISE_BORDER);
   p->stride = (ptrdiff_t)stride;
-  d->memory = vl_alloc_zero(d->context, size, PLANES * sizeof(float));
-  d->scratch = vl_alloc_array(d->context, vl_context_threads(d->context), sizeof *d->scratch);
-  if (!d->memory || !d->scratch)
-    return VL_ERROR_MEMORY;
-  float *at = d->memory + VL_DENOISE_BORDER * stride + VL_DENOISE_BORDER;
+  float *memory =
+      vl_alloc_zero(d->context, size, (slopes ? PLANES + SLOPES : PLANES) * sizeof(float));
+  if (!memory)
+    return NULL;
+  float *at = memory + VL_DENOISE_BORDER * stride + VL_DENOISE_BORDER;
   for (int c = 0; c < COLOR; c++) {
     p->color[c] = at;
     at += size;
@@ -92,17 +102,28 @@ static vlResult make_planes(Denoise *d) {
     at += size;
     p->result[c] = at;
     at += size;
+    p->noise[c] = at;
+    at += size;
   }
   for (int k = 0; k < VL_DENOISE_FEATURES; k++) {
     p->feature[k] = at;
     at += size;
   }
   p->valid = at;
-  return VL_OK;
+  for (int c = 0; c < COLOR && slopes; c++)
+    for (int k = 0; k < VL_DENOISE_FEATURES + 2; k++) {
+      at += size;
+      p->slope[c][k] = at;
+    }
+  return memory;
 }
 
-static float get(const Denoise *d, uint32_t x, uint32_t y, int channel) {
-  return vl_image_get(d->image, x, y, (uint32_t)channel);
+static inline float get(const Denoise *d, uint32_t x, uint32_t y, int channel) {
+  const vlImage *i = d->image;
+  if (i->type == VL_PIXEL_F32)
+    return (
+        (const float *)i->pixels)[((size_t)y * i->width + x) * i->channels + (size_t)channel];
+  return vl_image_get(i, x, y, (uint32_t)channel);
 }
 
 static ptrdiff_t index_of(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
@@ -113,8 +134,8 @@ static ptrdiff_t index_of(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
  * thousandth of it to that value, also the 0 of pixels that hit nothing. */
 static float find_nearest(const Denoise *d) {
   float most = 0.0f;
-  for (uint32_t y = 0; y < d->planes.height && d->channels.features; y++)
-    for (uint32_t x = 0; x < d->planes.width; x++) {
+  for (uint32_t y = 0; y < d->planes[0].height && d->channels.features; y++)
+    for (uint32_t x = 0; x < d->planes[0].width; x++) {
       float v = get(d, x, y, d->channels.feature[VL_DENOISE_FEATURES - 1]);
       if (isfinite(v) && v > most)
         most = v;
@@ -125,7 +146,7 @@ static float find_nearest(const Denoise *d) {
 static void read_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   Denoise *d = user;
-  const vlDenoisePlanes *p = &d->planes;
+  const vlDenoisePlanes *p = &d->planes[0];
   const vlDenoiseChannels *from = &d->channels;
   float farthest = 1e-3f * d->nearest;
   for (uint32_t x = 0; x < p->width; x++) {
@@ -187,9 +208,9 @@ static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
 static void fill_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const Denoise *d = user;
-  for (uint32_t x = 0; x < d->planes.width; x++)
-    if (d->planes.valid[index_of(&d->planes, x, y)] == 0.0f)
-      fill(&d->planes, index_of(&d->planes, x, y));
+  for (uint32_t x = 0; x < d->planes[0].width; x++)
+    if (d->planes[0].valid[index_of(&d->planes[0], x, y)] == 0.0f)
+      fill(&d->planes[0], index_of(&d->planes[0], x, y));
 }
 
 /* ---- outliers ---------------------------------------------------------------------------- */
@@ -226,7 +247,7 @@ static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
  * result[0], since neighbours still need the original values. */
 static void cap_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
-  const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
+  const vlDenoisePlanes *p = &((const Denoise *)user)->planes[0];
   for (uint32_t x = 0; x < p->width; x++) {
     ptrdiff_t at = index_of(p, x, y);
     float v = mean3(p->color, at), factor = 1.0f;
@@ -241,7 +262,7 @@ static void cap_row(void *user, uint32_t y, uint32_t worker) {
 
 static void scale_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
-  const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
+  const vlDenoisePlanes *p = &((const Denoise *)user)->planes[0];
   for (uint32_t x = 0; x < p->width; x++) {
     ptrdiff_t at = index_of(p, x, y);
     float factor = p->result[0][at];
@@ -286,17 +307,142 @@ static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
 
 static void fit_tile(void *user, uint32_t index, uint32_t worker) {
   const Denoise *d = user;
-  uint32_t across = tiles_across(&d->planes);
+  const vlDenoisePlanes *p = &d->planes[d->level];
+  uint32_t across = tiles_across(p);
   if (vl_is_cancelled(d->cancel))
     return;
-  d->kernels->tile(&d->planes, &d->scratch[worker], index % across * VL_DENOISE_TILE_X,
+  d->kernels->tile(p, &d->scratch[worker], index % across * VL_DENOISE_TILE_X,
                    index / across * VL_DENOISE_TILE_Y);
 }
+
+static void fit(Denoise *d) {
+  const vlDenoisePlanes *p = &d->planes[d->level];
+  vl_parallel_for(d->context, tiles_across(p) * tiles_down(p), fit_tile, d);
+}
+
+/* ---- wide windows ------------------------------------------------------------------------ */
+
+/* The lattice's points are the pixels STEP i + STEP / 2 of the rows STEP j + STEP / 2. Their
+ * values are the results of the fits, their variances those of the results' noise. */
+static void lattice_row(void *user, uint32_t j, uint32_t worker) {
+  (void)worker;
+  const Denoise *d = user;
+  const vlDenoisePlanes *p = &d->planes[d->level - 1], *to = &d->planes[d->level];
+  for (uint32_t i = 0; i < to->width; i++) {
+    ptrdiff_t from = index_of(p, VL_DENOISE_STEP * i + VL_DENOISE_STEP / 2,
+                              VL_DENOISE_STEP * j + VL_DENOISE_STEP / 2),
+              at = index_of(to, i, j);
+    for (int c = 0; c < COLOR; c++) {
+      to->color[c][at] = p->result[c][from];
+      to->variance[c][at] = p->noise[c][from] * VL_DENOISE_CORRELATION;
+    }
+    for (int k = 0; k < VL_DENOISE_FEATURES; k++)
+      to->feature[k][at] = p->feature[k][from];
+    to->valid[at] = p->valid[from];
+  }
+}
+
+/* Turns the fits of a row of the lattice into functions of the features' values instead of
+ * their differences. noise[0] becomes the share of the noise that a fit has removed. */
+static void finish_lattice_row(void *user, uint32_t j, uint32_t worker) {
+  (void)worker;
+  const Denoise *d = user;
+  const vlDenoisePlanes *p = &d->planes[d->level];
+  ptrdiff_t at = index_of(p, 0, j), width = p->width;
+  for (int c = 0; c < COLOR; c++)
+    for (int k = 0; k < VL_DENOISE_FEATURES; k++) {
+      float *restrict to = p->result[c] + at;
+      const float *slope = p->slope[c][k] + at, *feature = p->feature[k] + at;
+      for (ptrdiff_t i = 0; i < width; i++)
+        to[i] -= slope[i] * feature[i];
+    }
+  for (ptrdiff_t i = at; i < at + width; i++) {
+    float gain = 0.0f;
+    for (int c = 0; c < COLOR; c++) {
+      float before = p->variance[c][i], after = p->noise[c][i];
+      if (after > 0.0f && after < before)
+        gain += (1.0f - after / before) * (1.0f / COLOR);
+    }
+    p->noise[0][i] = gain;
+  }
+}
+
+/* Copies the fit at index `from` to a neighbour outside of the lattice, (dx, dy) points away.
+ */
+static void extend(const vlDenoisePlanes *p, ptrdiff_t from, int dx, int dy) {
+  ptrdiff_t to = from + dy * p->stride + dx;
+  for (int c = 0; c < COLOR; c++) {
+    for (int k = 0; k < VL_DENOISE_FEATURES + 2; k++)
+      p->slope[c][k][to] = p->slope[c][k][from];
+    p->result[c][to] =
+        p->result[c][from] + (p->slope[c][VL_DENOISE_FEATURES][from] * (float)dx +
+                              p->slope[c][VL_DENOISE_FEATURES + 1][from] * (float)dy) *
+                                 (1.0f / VL_DENOISE_RADIUS);
+  }
+  p->noise[0][to] = p->noise[0][from];
+}
+
+static void extend_lattice(const vlDenoisePlanes *p) {
+  for (uint32_t j = 0; j < p->height; j++) {
+    extend(p, index_of(p, 0, j), -1, 0);
+    extend(p, index_of(p, p->width - 1, j), 1, 0);
+  }
+  for (ptrdiff_t i = -1; i <= (ptrdiff_t)p->width; i++) {
+    extend(p, i, 0, -1);
+    extend(p, (ptrdiff_t)(p->height - 1) * p->stride + i, 0, 1);
+  }
+}
+
+static void correct_rows(void *user, uint32_t index, uint32_t worker) {
+  (void)worker;
+  const Denoise *d = user;
+  const vlDenoisePlanes *lattice = &d->planes[d->level];
+  for (uint32_t i = 0; i <= lattice->width; i += VL_LANES)
+    d->kernels->correct(lattice - 1, lattice, (int32_t)i - 1, (int32_t)index - 1);
+}
+
+static void mirror_planes(const vlDenoisePlanes *p) {
+  for (int c = 0; c < COLOR; c++) {
+    mirror_plane(p, p->color[c]);
+    mirror_plane(p, p->variance[c]);
+  }
+  for (int k = 0; k < VL_DENOISE_FEATURES; k++)
+    mirror_plane(p, p->feature[k]);
+}
+
+/* Corrects the low frequencies of the result of a level by fits of wide windows, which are
+ * corrected by those of still wider ones. */
+static vlResult correct_widely(Denoise *d) {
+  int level = d->level + 1;
+  const vlDenoisePlanes *p = &d->planes[d->level];
+  uint32_t width = (p->width + VL_DENOISE_STEP / 2 - 1) / VL_DENOISE_STEP,
+           height = (p->height + VL_DENOISE_STEP / 2 - 1) / VL_DENOISE_STEP;
+  if (level == LEVELS || width == 0 || height == 0)
+    return VL_OK;
+  vlDenoisePlanes *lattice = &d->planes[level];
+  d->memory[level] = make_planes(d, lattice, width, height, true);
+  if (!d->memory[level])
+    return VL_ERROR_MEMORY;
+  d->level = level;
+  vl_parallel_for(d->context, height, lattice_row, d);
+  mirror_planes(lattice);
+  fit(d);
+  vlResult result = correct_widely(d);
+  if (result != VL_OK)
+    return result;
+  d->level = level;
+  vl_parallel_for(d->context, height, finish_lattice_row, d);
+  extend_lattice(lattice);
+  vl_parallel_for(d->context, height + 1, correct_rows, d);
+  return VL_OK;
+}
+
+/* ---- the result -------------------------------------------------------------------------- */
 
 /* Writes a row of the result. A value is at least 0, or at least the input's value if that is
  * negative. A pixel that is not finite becomes the mean of the nearest denoised pixels. */
 static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
-  const vlDenoisePlanes *p = &d->planes;
+  const vlDenoisePlanes *p = &d->planes[0];
   float *to = vl_image_row(clean, y), filled[COLOR], variance[COLOR];
   for (uint32_t x = 0; x < p->width; x++, to += clean->channels) {
     ptrdiff_t at = index_of(p, x, y);
@@ -312,10 +458,12 @@ static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
 }
 
 static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
-  vlDenoisePlanes *p = &d->planes;
+  vlDenoisePlanes *p = &d->planes[0];
   vlContext *context = d->context;
-  vlResult result = make_planes(d);
-  if (result == VL_OK) {
+  vlResult result = VL_OK;
+  d->memory[0] = make_planes(d, p, d->image->width, d->image->height, false);
+  d->scratch = vl_alloc_array(context, vl_context_threads(context), sizeof *d->scratch);
+  if (d->memory[0] && d->scratch) {
     d->kernels = vl_denoise_kernels(vl_context_isa(context));
     d->nearest = find_nearest(d);
     vl_parallel_for(context, p->height, read_row, d);
@@ -324,23 +472,24 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
                        "denoise: no pixel has a finite value and standard error; at least 2 "
                        "samples per pixel are needed");
   } else {
-    vl_fail_memory(error);
+    result = vl_fail_memory(error);
   }
   if (result == VL_OK) {
     vl_parallel_for(context, p->height, fill_row, d);
     vl_parallel_for(context, p->height, cap_row, d);
     vl_parallel_for(context, p->height, scale_row, d);
-    for (int c = 0; c < COLOR; c++) {
-      mirror_plane(p, p->color[c]);
-      mirror_plane(p, p->variance[c]);
-    }
-    vl_parallel_for(context, tiles_across(p) * tiles_down(p), fit_tile, d);
-    if (vl_is_cancelled(d->cancel))
+    mirror_planes(p);
+    fit(d);
+    result = correct_widely(d);
+    if (result != VL_OK)
+      vl_fail_memory(error);
+    else if (vl_is_cancelled(d->cancel))
       result = vl_fail(error, VL_CANCELLED, "stopped");
-    for (uint32_t y = 0; y < p->height && result == VL_OK; y++)
-      write_row(d, y, clean);
   }
-  vl_free(context, d->memory);
+  for (uint32_t y = 0; y < p->height && result == VL_OK; y++)
+    write_row(d, y, clean);
+  for (int k = 0; k < LEVELS; k++)
+    vl_free(context, d->memory[k]);
   vl_free(context, d->scratch);
   return result;
 }

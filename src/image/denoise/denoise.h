@@ -14,10 +14,11 @@ enum {
   VL_DENOISE_TILE_X = 64,
   VL_DENOISE_TILE_Y = 16,
   VL_DENOISE_TILE = VL_DENOISE_TILE_X * VL_DENOISE_TILE_Y,
-  VL_DENOISE_RADIUS = 7,
-  VL_DENOISE_PATCH = 2,
-  VL_DENOISE_BORDER = 16, /* width of the planes' border in pixels; at least radius + patch */
-  VL_DENOISE_WINDOW = 2 * VL_DENOISE_RADIUS + 1,
+  VL_DENOISE_RADIUS = 6,
+  VL_DENOISE_PATCH = 1,
+  VL_DENOISE_BORDER = 32, /* width of the planes' border in pixels; at least radius + patch */
+  VL_DENOISE_NEIGHBOURS = 81, /* pixels of a window that are used */
+  VL_DENOISE_STEP = 4, /* distance of the points of the lattice for wide windows in pixels */
   VL_DENOISE_FEATURES = 7, /* albedo, normal, logarithm of the disparity */
   VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 +
                         1 /* slopes of the features, slopes of x and y, and the constant */
@@ -25,20 +26,29 @@ enum {
 _Static_assert((int)VL_DENOISE_BORDER >= (int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH,
                "windows end in the border");
 
+/* Variance of a mean of pixels, over that of pixels with independent noise: pixels share
+ * samples (docs/filters.md). */
+#define VL_DENOISE_CORRELATION 3.0f
+
 /* Planes with a border on all sides. The pointers are to pixel (0, 0); rows are `stride` floats
  * apart. */
 typedef struct vlDenoisePlanes {
   uint32_t width, height;
   ptrdiff_t stride;
+  float bandwidth2;              /* square of k in docs/denoising.md */
   float *color[3], *variance[3]; /* the colour, and the variance of its noise */
   float *feature[VL_DENOISE_FEATURES];
   float *valid; /* 1 for valid pixels; 0 outside of the image and where a value is not finite */
   float *result[3];
+  float *noise[3]; /* the variance of the result's noise, if the pixels' noise is independent */
+  float *slope[3][VL_DENOISE_FEATURES + 2]; /* slopes of the fits; null: not wanted */
 } vlDenoisePlanes;
 
 /* Working memory of one worker. */
 typedef struct vlDenoiseScratch {
-  float weight[VL_DENOISE_WINDOW * VL_DENOISE_WINDOW][VL_DENOISE_TILE];
+  float weight[VL_DENOISE_NEIGHBOURS][VL_DENOISE_TILE];
+  int8_t dx[VL_DENOISE_NEIGHBOURS], dy[VL_DENOISE_NEIGHBOURS]; /* their offsets */
+  int neighbours;                                              /* their number */
   float distance[VL_DENOISE_TILE_Y + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X + 16];
   float sums[VL_DENOISE_TILE_Y + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X];
 } vlDenoiseScratch;
@@ -47,8 +57,16 @@ typedef struct vlDenoiseKernels {
   /* Fits the pixels of the tile whose first pixel is (x, y). */
   void (*tile)(const vlDenoisePlanes *planes, vlDenoiseScratch *scratch, uint32_t x,
                uint32_t y);
+  /* Corrects pixels by the fits of the lattice: rows from the lattice's row j to the next,
+   * VL_DENOISE_STEP * VL_LANES pixels from column i on. */
+  void (*correct)(const vlDenoisePlanes *planes, const vlDenoisePlanes *lattice, int32_t i,
+                  int32_t j);
 } vlDenoiseKernels;
 VL_KERNEL_TABLE(vlDenoiseKernels, vl_denoise)
+
+/* The kernel `correct`, for hot files. */
+void vl_denoise_correct(const vlDenoisePlanes *planes, const vlDenoisePlanes *lattice,
+                        int32_t i, int32_t j);
 
 /* The image's channels that the denoisers read; -1: there is none. */
 typedef struct vlDenoiseChannels {

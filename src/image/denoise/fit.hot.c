@@ -14,54 +14,66 @@ enum {
   R = VL_DENOISE_RADIUS,
   P = VL_DENOISE_PATCH,
   SIDE = 2 * P + 1,
-  U = VL_DENOISE_UNKNOWNS,
   F = VL_DENOISE_FEATURES,
+  U = VL_DENOISE_UNKNOWNS, /* the most; without features that are the same in a window, fewer */
   TERMS = U * (U + 1) / 2,
   N = VL_LANES, /* pixels whose equations are added up at once */
   G = 8         /* neighbours added at once */
 };
 _Static_assert((int)VL_DENOISE_TILE_X % (int)N == 0, "tiles are divided into runs of N pixels");
+_Static_assert((int)VL_DENOISE_BORDER >= (int)R + (int)N,
+               "windows, rounded up to N pixels, end in the border");
 
-static const float BANDWIDTH2 = 0.36f; /* square of k in docs/denoising.md */
 static const float PIXEL_SHARE =
-    0.02f;                          /* factor on the distance between the two single pixels */
-static const float FARTHEST = 6.0f; /* distance from which on the weight is 0 */
+    0.02f;            /* factor on the distance between the two single pixels */
+#define FARTHEST 8.0f /* distance from which on the weight is 0 */
 static const float
     RIDGE_FEATURE = 1e-3f,
     RIDGE_PLACE = 3e-2f; /* ridge terms lambda of features and positions, per unit of weight */
+/* Features that differ by less in all pixels that a run may use are left out. Their slope would
+ * be driven to 0 by the ridge. */
+static const float SAME = 1e-2f;
+/* The least divisor of a distance. It decides only where values and noise are 0. */
+static const float TINY = 1e-37f;
 
 /* ---- weights ----------------------------------------------------------------------------- */
 
-/* For each pixel of the tile and of a margin of P pixels: the squared difference from the pixel
- * at the offset (dx, dy) minus the variance of that difference, divided by a multiple of this
- * variance and summed over the channels. */
+/* The squared difference of two values minus its variance, divided by a multiple of this
+ * variance. */
+static inline float distance(float a, float b, float va, float vb, float bandwidth2) {
+  float d = a - b, sum = a + b, v = va + vb, scale = 1e-6f * sum * sum + bandwidth2 * v;
+  return (d * d - v) / (scale > TINY ? scale : TINY);
+}
+
+/* For each pixel of the tile and of a margin of P pixels, its distance from the pixel at the
+ * offset (dx, dy), summed over the channels. The margin on the right is rounded up to whole
+ * vectors. */
 static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x,
                             uint32_t y, int dx, int dy) {
+  float bandwidth2 = p->bandwidth2;
   for (int j = 0; j < Y + 2 * P; j++) {
     ptrdiff_t at = ((ptrdiff_t)y + j - P) * p->stride + (ptrdiff_t)x - P,
               to = at + dy * p->stride + dx;
-    float *row = s->distance[j];
-    for (int i = 0; i < X + 2 * P; i++)
-      row[i] = 0.0f;
-    for (int c = 0; c < 3; c++) {
-      const float *a = p->color[c] + at, *b = p->color[c] + to, *va = p->variance[c] + at,
-                  *vb = p->variance[c] + to;
-      /* must vectorise */
-      VL_SIMD for (int i = 0; i < X + 2 * P; i++) {
-        float d = a[i] - b[i], sum = a[i] + b[i], v = va[i] + vb[i];
-        row[i] += (d * d - v) / (1e-10f + 1e-6f * sum * sum + BANDWIDTH2 * v);
-      }
+    const float *r = p->color[0] + at, *g = p->color[1] + at, *b = p->color[2] + at;
+    const float *vr = p->variance[0] + at, *vg = p->variance[1] + at, *vb = p->variance[2] + at;
+    ptrdiff_t off = to - at;
+    float *restrict row = s->distance[j];
+    /* must vectorise */
+    VL_SIMD for (int i = 0; i < X + N; i++) {
+      row[i] = distance(r[i], r[i + off], vr[i], vr[i + off], bandwidth2) +
+               distance(g[i], g[i + off], vg[i], vg[i + off], bandwidth2) +
+               distance(b[i], b[i + off], vb[i], vb[i + off], bandwidth2);
     }
   }
 }
 
-/* For each pixel of the tile, the weight of its neighbour at the offset (dx, dy):
- * exp(-distance), and 0 from FARTHEST on, since neighbours without weight cost nothing and
- * products of tiny weights are subnormal numbers, which processors multiply slowly. The
- * distance is the larger of the mean over the patches and PIXEL_SHARE times the distance
- * between the two single pixels. The latter excludes a neighbour that clearly differs, as the
- * test of Sakai et al. 2024 does, although the patches are similar: a pixel at the edge of a
- * lamp has so large a variance that the patches hardly differ. */
+/* For each pixel of the tile, the weight of its neighbour at the offset (dx, dy): (1 -
+ * distance / FARTHEST)^8, which is nearly exp(-distance), and 0 from FARTHEST on, since
+ * neighbours without weight cost nothing. The distance is the larger of the mean over the
+ * patches and PIXEL_SHARE times the distance between the two single pixels. The latter excludes
+ * a neighbour that clearly differs, as the test of Sakai et al. 2024 does, although the patches
+ * are similar: a pixel at the edge of a lamp has so large a variance that the patches hardly
+ * differ. */
 static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y,
                     int dx, int dy, float *to) {
   pixel_distances(p, s, x, y, dx, dy);
@@ -87,87 +99,168 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, u
         d += a[i + k * X];
       d *= 1.0f / (3 * SIDE * SIDE);
       d = d > own ? d : own;
-      float w = valid[i] * vl_exp(d > 0.0f ? -d : 0.0f);
-      row[i] = d < FARTHEST ? w : 0.0f;
+      float t = 1.0f - d * (1.0f / FARTHEST);
+      t = t > 0.0f ? t : 0.0f;
+      t = t < 1.0f ? t : 1.0f;
+      t *= t;
+      t *= t;
+      row[i] = valid[i] * t * t;
     }
   }
 }
 
 /* ---- the fit ----------------------------------------------------------------------------- */
 
+/* The features that a run's equations have. */
+typedef struct Used {
+  int index[F], count;
+} Used;
+
 /* Normal equations of N pixels of a row. a: the lower triangle of the symmetric matrix, row by
- * row; the unknowns are the slopes of the features, of x and of y, then the constant. b: the
- * right-hand sides for R, G and B. */
+ * row; the unknowns are the slopes of the used features, of x and of y, then the constant. b:
+ * the right-hand sides for R, G and B. variance: the weighted sum of the neighbours' variances.
+ * squares: the sum of the squared weights. */
 typedef struct Equations {
-  float a[TERMS][N], b[3][U][N];
+  float a[TERMS][N], b[3][U][N], variance[3][N], squares[N];
 } Equations;
 
-/* Up to G neighbours of N pixels: their differences from the pixels and their colours, and the
- * differences times the weights. The equations are read and written once per group. */
+/* Up to G neighbours of N pixels: the differences of their features from the pixels', also
+ * times the weights; the weights; the offsets in units of the window's radius; their indices in
+ * the planes. The equations are read and written once per group. */
 typedef struct Group {
-  float value[G][U + 3][N], weighted[G][U][N];
+  float value[G][F][N], weighted[G][U][N];
+  float x[G], y[G];
+  ptrdiff_t at[G];
 } Group;
+
+/* Finds the features that differ by SAME or more among the pixels in reach of the rows y to y +
+ * Y - 1 of N pixels from x on. */
+static Used used_features(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
+  Used used = {.count = 0};
+  for (int k = 0; k < F; k++) {
+    float low[N], high[N];
+    const float *from = p->feature[k] + ((ptrdiff_t)y - R) * p->stride + (ptrdiff_t)x - R;
+    memcpy(low, from, sizeof low);
+    memcpy(high, from, sizeof high);
+    for (int j = 0; j < Y + 2 * R; j++, from += p->stride)
+      for (int start = 0; start < 2; start++) {
+        const float *row = from + start * 2 * R;
+        /* must vectorise (gcc) */
+        VL_SIMD for (int i = 0; i < N; i++) {
+          low[i] = row[i] < low[i] ? row[i] : low[i];
+          high[i] = row[i] > high[i] ? row[i] : high[i];
+        }
+      }
+    float least = low[0], most = high[0];
+    for (int i = 1; i < N; i++) {
+      least = low[i] < least ? low[i] : least;
+      most = high[i] > most ? high[i] : most;
+    }
+    if (!(most - least < SAME))
+      used.index[used.count++] = k;
+  }
+  return used;
+}
+_Static_assert((int)N >= 2 * (int)R, "two runs of N pixels cover a run and its windows");
 
 /* Sets neighbour g of the group: the pixels at the offset (dx, dy) from the N pixels from index
  * `at` on. */
-static void set_neighbour(const vlDenoisePlanes *p, Group *q, int g, const float *w,
-                          ptrdiff_t at, int dx, int dy) {
+static void set_neighbour(const vlDenoisePlanes *p, const Used *used, Group *q, int g,
+                          const float *w, ptrdiff_t at, int dx, int dy) {
   ptrdiff_t to = at + dy * p->stride + dx;
-  for (int k = 0; k < F; k++) {
-    const float *f = p->feature[k] + at, *h = p->feature[k] + to;
+  int count = used->count;
+  for (int k = 0; k < count; k++) {
+    const float *f = p->feature[used->index[k]] + at, *h = p->feature[used->index[k]] + to;
     VL_SIMD for (int i = 0; i < N; i++) {
       q->value[g][k][i] = h[i] - f[i];
       q->weighted[g][k][i] = w[i] * q->value[g][k][i];
     }
   }
-  float ox = (float)dx * (1.0f / R), oy = (float)dy * (1.0f / R);
+  q->x[g] = (float)dx * (1.0f / R);
+  q->y[g] = (float)dy * (1.0f / R);
+  q->at[g] = to;
   VL_SIMD for (int i = 0; i < N; i++) {
-    q->value[g][F][i] = ox;
-    q->value[g][F + 1][i] = oy;
-    q->value[g][F + 2][i] = 1.0f;
-    q->weighted[g][F][i] = w[i] * ox;
-    q->weighted[g][F + 1][i] = w[i] * oy;
-    q->weighted[g][F + 2][i] = w[i];
+    q->weighted[g][count][i] = w[i] * q->x[g];
+    q->weighted[g][count + 1][i] = w[i] * q->y[g];
+    q->weighted[g][count + 2][i] = w[i];
   }
-  for (int c = 0; c < 3; c++)
-    memcpy(q->value[g][U + c], p->color[c] + to, N * sizeof(float));
 }
 
-/* Adds a group of neighbours to the equations. */
-static void add(Equations *restrict e, const Group *restrict q) {
-  for (int k = 0, term = 0; k < U; k++) {
-    for (int l = 0; l <= k; l++, term++) {
-      /* must vectorise */
-      VL_SIMD for (int i = 0; i < N; i++) {
-        float sum = e->a[term][i];
-        for (int g = 0; g < G; g++)
-          sum += q->weighted[g][k][i] * q->value[g][l][i];
-        e->a[term][i] = sum;
-      }
+/* N values that are kept in registers while many sums are made of them. */
+typedef float Lanes __attribute__((vector_size(N * sizeof(float))));
+
+static inline Lanes load(const float from[N]) {
+  Lanes v;
+  memcpy(&v, from, sizeof v);
+  return v;
+}
+static inline void store(float to[N], const Lanes *v) {
+  memcpy(to, v, sizeof *v);
+}
+
+/* Adds a group of neighbours to the equations of `used` features: for each k, the products of
+ * weighted[k] and the features' differences, x and y up to k, and the colours. */
+static void add(const vlDenoisePlanes *p, Equations *restrict e, const Group *restrict q,
+                int used) {
+  int term = 0;
+  for (int k = 0; k < used + 3; k++) {
+    Lanes w[G], sum;
+    for (int g = 0; g < G; g++)
+      w[g] = load(q->weighted[g][k]);
+    for (int l = 0; l <= k && l < used; l++, term++) {
+      sum = load(e->a[term]);
+      for (int g = 0; g < G; g++)
+        sum += w[g] * load(q->value[g][l]);
+      store(e->a[term], &sum);
     }
     for (int c = 0; c < 3; c++) {
-      /* must vectorise */
-      VL_SIMD for (int i = 0; i < N; i++) {
-        float sum = e->b[c][k][i];
-        for (int g = 0; g < G; g++)
-          sum += q->weighted[g][k][i] * q->value[g][U + c][i];
-        e->b[c][k][i] = sum;
-      }
+      sum = load(e->b[c][k]);
+      for (int g = 0; g < G; g++)
+        sum += w[g] * load(p->color[c] + q->at[g]);
+      store(e->b[c][k], &sum);
+    }
+    if (k < used)
+      continue;
+    sum = load(e->a[term]);
+    for (int g = 0; g < G; g++)
+      sum += w[g] * q->x[g];
+    store(e->a[term++], &sum);
+    if (k == used)
+      continue;
+    sum = load(e->a[term]);
+    for (int g = 0; g < G; g++)
+      sum += w[g] * q->y[g];
+    store(e->a[term++], &sum);
+    if (k == used + 1)
+      continue;
+    sum = load(e->a[term]);
+    Lanes squares = load(e->squares);
+    for (int g = 0; g < G; g++) {
+      sum += w[g];
+      squares += w[g] * w[g];
+    }
+    store(e->a[term], &sum);
+    store(e->squares, &squares);
+    for (int c = 0; c < 3; c++) {
+      sum = load(e->variance[c]);
+      for (int g = 0; g < G; g++)
+        sum += w[g] * load(p->variance[c] + q->at[g]);
+      store(e->variance[c], &sum);
     }
   }
 }
 
 /* Eliminates the slopes by Gaussian elimination; the last equation then gives the constant. The
  * ridge terms keep the pivots above 0. */
-static void solve(const vlDenoisePlanes *p, Equations *e, ptrdiff_t at) {
-  const float *total = e->a[TERMS - 1];
-  float sum[N];
-  for (int i = 0; i < N; i++)
-    sum[i] = total[i];
-  for (int k = 0; k < U - 1; k++) {
-    float *pivot = e->a[k * (k + 1) / 2 + k], ridge = k < F ? RIDGE_FEATURE : RIDGE_PLACE;
+static void solve(const vlDenoisePlanes *p, const Used *used, Equations *e, ptrdiff_t at) {
+  int count = used->count + 3;
+  float *total = e->a[count * (count + 1) / 2 - 1], sum[N];
+  memcpy(sum, total, sizeof sum);
+  for (int k = 0; k < count - 1; k++) {
+    float *pivot = e->a[k * (k + 1) / 2 + k],
+          ridge = k < used->count ? RIDGE_FEATURE : RIDGE_PLACE;
     VL_SIMD for (int i = 0; i < N; i++) pivot[i] = 1.0f / (pivot[i] + ridge * sum[i] + 1e-20f);
-    for (int m = k + 1; m < U; m++) {
+    for (int m = k + 1; m < count; m++) {
       const float *lead = e->a[m * (m + 1) / 2 + k];
       float factor[N];
       VL_SIMD for (int i = 0; i < N; i++) factor[i] = lead[i] * pivot[i];
@@ -183,51 +276,95 @@ static void solve(const vlDenoisePlanes *p, Equations *e, ptrdiff_t at) {
       }
     }
   }
+  VL_SIMD for (int i = 0; i < N; i++) total[i] = 1.0f / (total[i] + 1e-20f);
   for (int c = 0; c < 3; c++)
-    for (int i = 0; i < N; i++)
-      p->result[c][at + i] = e->b[c][U - 1][i] / (total[i] + 1e-20f);
+    VL_SIMD for (int i = 0; i < N; i++) p->result[c][at + i] = e->b[c][count - 1][i] * total[i];
+  for (int c = 0; c < 3; c++)
+    VL_SIMD for (int i = 0; i < N; i++) {
+      float all = sum[i] + 1e-20f;
+      p->noise[c][at + i] = e->variance[c][i] * e->squares[i] * total[i] / (all * all);
+    }
+  if (!p->slope[0][0])
+    return;
+  for (int c = 0; c < 3; c++) {
+    float(*b)[N] = e->b[c];
+    VL_SIMD for (int i = 0; i < N; i++) b[count - 1][i] *= total[i];
+    for (int k = count - 2; k >= 0; k--) {
+      for (int m = k + 1; m < count; m++) {
+        const float *lead = e->a[m * (m + 1) / 2 + k];
+        VL_SIMD for (int i = 0; i < N; i++) b[k][i] -= lead[i] * b[m][i];
+      }
+      const float *pivot = e->a[k * (k + 1) / 2 + k];
+      VL_SIMD for (int i = 0; i < N; i++) b[k][i] *= pivot[i];
+    }
+    for (int k = 0; k < F; k++)
+      memset(p->slope[c][k] + at, 0, N * sizeof(float));
+    for (int k = 0; k < count - 1; k++)
+      memcpy(p->slope[c][k < used->count ? used->index[k] : F + k - used->count] + at, b[k],
+             sizeof b[k]);
+  }
 }
 
 static bool any(const float w[N]) {
-  uint32_t bits = 0;
-  for (int i = 0; i < N; i++)
-    bits |= vl_float_bits(w[i]);
-  return bits != 0;
+  uint64_t bits[N / 2];
+  memcpy(bits, w, sizeof bits);
+  for (int half = N / 4; half > 0; half /= 2)
+    for (int i = 0; i < half; i++)
+      bits[i] |= bits[i + half];
+  return bits[0] != 0;
 }
 
 /* Fits N pixels from index `at` of the planes and index `first` of the tile on. Neighbours
  * without weight for any of the pixels are left out. */
-static void fit(const vlDenoisePlanes *p, float (*weight)[VL_DENOISE_TILE], int first,
-                ptrdiff_t at) {
+static void fit(const vlDenoisePlanes *p, const Used *used, const vlDenoiseScratch *s,
+                int first, ptrdiff_t at) {
   Equations e = {0};
   Group q;
   int g = 0;
-  for (int dy = -R, k = 0; dy <= R; dy++)
-    for (int dx = -R; dx <= R; dx++, k++) {
-      const float *w = weight[k] + first;
-      if (!any(w))
-        continue;
-      set_neighbour(p, &q, g++, w, at, dx, dy);
-      if (g < G)
-        continue;
-      add(&e, &q);
-      g = 0;
-    }
+  for (int k = 0; k < s->neighbours; k++) {
+    const float *w = s->weight[k] + first;
+    if (!any(w))
+      continue;
+    set_neighbour(p, used, &q, g++, w, at, s->dx[k], s->dy[k]);
+    if (g < G)
+      continue;
+    add(p, &e, &q, used->count);
+    g = 0;
+  }
   if (g > 0) {
     memset(q.value[g], 0, (size_t)(G - g) * sizeof q.value[g]);
     memset(q.weighted[g], 0, (size_t)(G - g) * sizeof q.weighted[g]);
-    add(&e, &q);
+    for (int k = g; k < G; k++)
+      q.x[k] = q.y[k] = 0.0f, q.at[k] = at;
+    add(p, &e, &q, used->count);
   }
-  solve(p, &e, at);
+  solve(p, used, &e, at);
+}
+
+/* Lists the neighbours: all up to a distance of 2 in x and y, beyond it every second one of a
+ * round window. */
+static void list_neighbours(vlDenoiseScratch *s) {
+  enum { NEAR = 2 };
+  s->neighbours = 0;
+  for (int dy = -R; dy <= R; dy++)
+    for (int dx = -R; dx <= R; dx++) {
+      bool near = dx >= -NEAR && dx <= NEAR && dy >= -NEAR && dy <= NEAR;
+      if (dx * dx + dy * dy > R * R + R || (!near && ((dx + dy) & 1)))
+        continue;
+      s->dx[s->neighbours] = (int8_t)dx;
+      s->dy[s->neighbours++] = (int8_t)dy;
+    }
 }
 
 static void tile(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y) {
-  for (int dy = -R, k = 0; dy <= R; dy++)
-    for (int dx = -R; dx <= R; dx++, k++)
-      weights(p, s, x, y, dx, dy, s->weight[k]);
-  for (int j = 0; j < Y && y + (uint32_t)j < p->height; j++)
-    for (int i = 0; i < X && x + (uint32_t)i < p->width; i += N)
-      fit(p, s->weight, j * X + i, ((ptrdiff_t)y + j) * p->stride + (ptrdiff_t)x + i);
+  list_neighbours(s);
+  for (int k = 0; k < s->neighbours; k++)
+    weights(p, s, x, y, s->dx[k], s->dy[k], s->weight[k]);
+  for (int i = 0; i < X && x + (uint32_t)i < p->width; i += N) {
+    Used used = used_features(p, x + (uint32_t)i, y);
+    for (int j = 0; j < Y && y + (uint32_t)j < p->height; j++)
+      fit(p, &used, s, j * X + i, ((ptrdiff_t)y + j) * p->stride + (ptrdiff_t)x + i);
+  }
 }
 
-const vlDenoiseKernels vl_denoise_kernel_table = {tile};
+const vlDenoiseKernels vl_denoise_kernel_table = {tile, vl_denoise_correct};

@@ -245,6 +245,59 @@ static void test_exposure(void **state) {
   end_context(context);
 }
 
+/* No specks on an even wall whose pixels have few samples with much light, and share them with
+ * their neighbours: dark pixels' standard errors are too small. */
+static void test_specks(void **state) {
+  (void)state;
+  failAllocator failing;
+  vlContext *context = make_context(&failing);
+  enum { SAMPLES = 24, LIT = 4 };
+  static float sum[H + 2][W + 2], squares[H + 2][W + 2];
+  uint32_t seed = 5;
+  for (uint32_t y = 0; y < H + 2; y++)
+    for (uint32_t x = 0; x < W + 2; x++) {
+      sum[y][x] = squares[y][x] = 0;
+      for (int k = 0; k < SAMPLES; k++) {
+        float light = noise(&seed) % LIT == 0 ? (float)LIT : 0.0f;
+        sum[y][x] += light;
+        squares[y][x] += light * light;
+      }
+    }
+  vlImage *image = make(context, CHANNELS);
+  for (uint32_t y = 0; y < H; y++)
+    for (uint32_t x = 0; x < W; x++) {
+      float total = 0, square = 0, weights = 0, weights2 = 0;
+      for (uint32_t k = 0; k < 9; k++) {
+        float w = (k % 3 == 1 ? 2.0f : 1.0f) * (k / 3 == 1 ? 2.0f : 1.0f) / 16;
+        total += w * sum[y + k / 3][x + k % 3];
+        square += w * w * squares[y + k / 3][x + k % 3];
+        weights += w * SAMPLES;
+        weights2 += w * w * SAMPLES;
+      }
+      float mean = total / weights;
+      float variance =
+          square / (weights * weights) - mean * mean * weights2 / (weights * weights);
+      float *p = at(image, x, y);
+      for (int c = 0; c < 3; c++) {
+        p[c] = mean;
+        p[4 + c] = sqrtf(fmaxf(variance, 0));
+        p[7 + c] = 0.5f;
+      }
+      p[12] = 1.0f;
+      p[13] = 0.25f;
+    }
+  vlImage *clean = clean_of(image, NULL);
+  int specks = 0;
+  for (uint32_t y = 0; y < H; y++)
+    for (uint32_t x = 0; x < W; x++)
+      specks += fabsf(at(clean, x, y)[0] - 1.0f) > 0.15f;
+  if (specks > 6)
+    fail_msg("%d specks", specks);
+  vl_image_destroy(image);
+  vl_image_destroy(clean);
+  end_context(context);
+}
+
 /* A pixel that is thousands of times brighter than its neighbours, because of one sample, does
  * not brighten them. */
 static void test_outlier(void **state) {
@@ -372,10 +425,11 @@ static void test_out_of_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_constant_stays),  cmocka_unit_test(test_edges_stay),
-      cmocka_unit_test(test_noise_goes),      cmocka_unit_test(test_low_frequencies),
-      cmocka_unit_test(test_exposure),        cmocka_unit_test(test_outlier),
-      cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_bits),
-      cmocka_unit_test(test_wrong_arguments), cmocka_unit_test(test_out_of_memory)};
+      cmocka_unit_test(test_constant_stays), cmocka_unit_test(test_edges_stay),
+      cmocka_unit_test(test_noise_goes),     cmocka_unit_test(test_low_frequencies),
+      cmocka_unit_test(test_exposure),       cmocka_unit_test(test_specks),
+      cmocka_unit_test(test_outlier),        cmocka_unit_test(test_not_finite),
+      cmocka_unit_test(test_bits),           cmocka_unit_test(test_wrong_arguments),
+      cmocka_unit_test(test_out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

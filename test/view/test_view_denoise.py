@@ -75,7 +75,7 @@ def test_preview(folder):
     exact = read_pfm(os.path.join(folder, saved["file"]))
     check("preview_is_cleaner", roughness(clean) < 0.7 * roughness(exact), roughness(clean), roughness(exact))
     command = ask(page, "command", type="command")["command"]
-    check("command_denoises_nothing", "denoise" not in command, command)
+    check("command_denoises_nothing", "--denoise" not in command, command)
     page.send(type="settings", denoise=False)
     frame = page.wait_frame(lambda f: not f.denoised)
     check("off_shows_the_samples", frame.spp == SPP and worst(halves(page), exact) <= 2 ** -11 * 1.001)

@@ -303,6 +303,27 @@ static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
   }
 }
 
+/* ---- variances --------------------------------------------------------------------------- */
+
+static void raise_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  const Denoise *d = user;
+  d->kernels->raise(&d->planes[0], y);
+}
+
+/* Raises variances that seem too small. */
+static void raise_variances(Denoise *d) {
+  vlDenoisePlanes *p = &d->planes[0];
+  for (int c = 0; c < COLOR; c++)
+    mirror_plane(p, p->variance[c]);
+  vl_parallel_for(d->context, p->height, raise_row, d);
+  for (int c = 0; c < COLOR; c++) {
+    float *raised = p->result[c];
+    p->result[c] = p->variance[c];
+    p->variance[c] = raised;
+  }
+}
+
 /* ---- the fit ----------------------------------------------------------------------------- */
 
 static void fit_tile(void *user, uint32_t index, uint32_t worker) {
@@ -478,6 +499,7 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     vl_parallel_for(context, p->height, fill_row, d);
     vl_parallel_for(context, p->height, cap_row, d);
     vl_parallel_for(context, p->height, scale_row, d);
+    raise_variances(d);
     mirror_planes(p);
     fit(d);
     result = correct_widely(d);

@@ -15,7 +15,7 @@ enum {
   VL_DENOISE_TILE_Y = 16,
   VL_DENOISE_TILE = VL_DENOISE_TILE_X * VL_DENOISE_TILE_Y,
   VL_DENOISE_RADIUS = 6,
-  VL_DENOISE_PATCH = 1,
+  VL_DENOISE_PATCH = 2,
   VL_DENOISE_BORDER = 32, /* width of the planes' border in pixels; at least radius + patch */
   VL_DENOISE_NEIGHBOURS = 81, /* pixels of a window that are used */
   VL_DENOISE_STEP = 4, /* distance of the points of the lattice for wide windows in pixels */
@@ -61,12 +61,16 @@ typedef struct vlDenoiseKernels {
    * VL_DENOISE_STEP * VL_LANES pixels from column i on. */
   void (*correct)(const vlDenoisePlanes *planes, const vlDenoisePlanes *lattice, int32_t i,
                   int32_t j);
+  /* Writes the variances of a row, raised, to the planes `result`. Reads those of rows up to a
+   * distance of 3, and of the border. */
+  void (*raise)(const vlDenoisePlanes *planes, uint32_t y);
 } vlDenoiseKernels;
 VL_KERNEL_TABLE(vlDenoiseKernels, vl_denoise)
 
-/* The kernel `correct`, for hot files. */
+/* The kernels `correct` and `raise`, for hot files. */
 void vl_denoise_correct(const vlDenoisePlanes *planes, const vlDenoisePlanes *lattice,
                         int32_t i, int32_t j);
+void vl_denoise_raise(const vlDenoisePlanes *planes, uint32_t y);
 
 /* The image's channels that the denoisers read; -1: there is none. */
 typedef struct vlDenoiseChannels {

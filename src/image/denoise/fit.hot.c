@@ -367,4 +367,4 @@ static void tile(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint
   }
 }
 
-const vlDenoiseKernels vl_denoise_kernel_table = {tile, vl_denoise_correct};
+const vlDenoiseKernels vl_denoise_kernel_table = {tile, vl_denoise_correct, vl_denoise_raise};

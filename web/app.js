@@ -103,7 +103,7 @@ const panel = new Panel(byId("camera"), app);
 const display = app.display = new Display(byId("display"), app);
 const overlay = new Overlay(byId("overlays"), app);
 const compare = new Compare(byId("compare"), app);
-new Save(byId("save"), app);
+app.save = new Save(byId("save"), app);
 byId("save").hidden = engineName() === "browser"; // it has no folder to save into
 byId("denoise").hidden = engineName() === "browser";
 const outside = app.outside = new Outside(app);

@@ -11,6 +11,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+from hashlib import sha256
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from live import Page, View  # noqa: E402
@@ -61,9 +62,14 @@ def look(velo, page, folder, name):
         return run.stderr.strip(), answer["command"]
     if os.path.basename(words[-1]) in (shown["png"], shown["exr"]):
         return f"the command writes {words[-1]}, which is there already", answer["command"]
-    differ = [a for a, b in ((shown["exr"], f"{name}-copy.exr"), (shown["png"], words[-1]))
-              if bytes_of(folder, a) != bytes_of(folder, b)]
-    return ", ".join(differ) + " differs" if differ else None, answer["command"]
+    verified = ask(page, "verified", type="verify")
+    made = {"exr": bytes_of(folder, f"{name}-copy.exr"), "png": bytes_of(folder, words[-1])}
+    differ = [shown[suffix] for suffix in shown if bytes_of(folder, shown[suffix]) != made[suffix]]
+    if verified.get("same") != (not differ):
+        return f"the page says {verified}", answer["command"]
+    if not differ and (verified["sha256"], verified["sha256_exr"]) != tuple(sha256(made[s]).hexdigest() for s in ("png", "exr")):
+        return f"the hashes are others: {verified}", answer["command"]
+    return ", ".join(differ) + f" differs: {verified['message']}" if differ else None, answer["command"]
 
 
 def copied(velo, scene, *options):

@@ -2,9 +2,11 @@
 """The page of velo view in a real browser: open, orbit, change d and fx, pick a pixel, compare, save camera and image, the
 view transforms, edit the file, break it, mend it; light and dark, wide and narrow. Skipped without chromium."""
 import base64
+import hashlib
 import json
 import math
 import os
+import shlex
 import shutil
 import sys
 import tempfile
@@ -192,6 +194,14 @@ def test_panels(b, folder):
     b.click_on("#copy-command")
     command = b.wait("document.querySelector('code.command').textContent")
     check("command", command.startswith("velo render "), command)
+    b.click_on("#verify-command")
+    check("verify_runs", b.run("document.getElementById('verify-command').textContent") in ("Stop", "Verify"))
+    verdict = b.wait("!velo.save.verifying && document.getElementById('verdict').textContent")
+    words = shlex.split(command)
+    subprocess.run([VELO, *words[1:], "--quiet"], cwd=folder, check=True)
+    made = hashlib.sha256(open(os.path.join(folder, words[-1]), "rb").read()).hexdigest()
+    check("verified", verdict == f"{words[-1]}: same bytes ✓ SHA-256 {made}", verdict, made)
+    shot(b, "verified")
     for name in ("axes", "vanishing", "horizon", "grid", "boxes", "centre"):
         b.run(f"document.getElementById('overlay-{name}').click()")
     b.wait("document.querySelectorAll('#overlay rect').length >= 2 && document.querySelectorAll('#overlay text').length > 3")

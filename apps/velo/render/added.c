@@ -1,37 +1,28 @@
 /* render/added.c: see added.h. */
 #include "render/added.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/json.h"
 #include "cli/options.h"
 #include "render/job.h"
 
 /* ---- numbers ----------------------------------------------------------------------------- */
 
-/* Writes the shortest decimal number that reads back as these bits. single: as a float. */
-static void put_number(char *text, size_t size, double value, bool single) {
-  for (int digits = 1; digits <= 17; digits++) {
-    snprintf(text, size, "%.*g", digits, value);
-    const double read = strtod(text, NULL);
-    if (strchr(text, 'e') && digits < 17 && value > -1e15 && value < 1e15 &&
-        (value > 1e-5 || value < -1e-5))
-      continue; /* 30, not 3e+01 */
-    if (single ? (float)read == (float)value : read == value)
-      return;
-  }
+/* Writes a number that reads back as the same float. */
+static void put_float(char *text, float value) {
+  snprintf(text, ADDED_TEXT, "%.6g", (double)value);
+  if ((float)strtod(text, NULL) != value)
+    snprintf(text, ADDED_TEXT, "%.9g", (double)value);
 }
 
-static void put_point(char *text, size_t size, const double p[3]) {
-  size_t n = 0;
-  for (int i = 0; i < 3; i++) {
-    if (i)
-      text[n++] = ',';
-    put_number(text + n, size - n, p[i], false);
-    n += strlen(text + n);
-  }
+static void put_point(char *text, const double p[3]) {
+  char numbers[3][30];
+  for (int i = 0; i < 3; i++)
+    format_number(numbers[i], sizeof numbers[i], p[i]);
+  snprintf(text, ADDED_TEXT, "%s,%s,%s", numbers[0], numbers[1], numbers[2]);
 }
 
 /* Writes an angle in degrees or, where no number of degrees reads back as the same bits, in
@@ -42,7 +33,7 @@ static void put_angle(char *text, size_t size, double radians) {
     if (!strchr(text, 'e') && option_radians(strtod(text, NULL)) == radians)
       return;
   }
-  put_number(text, size, radians, false);
+  format_number(text, size, radians);
   strncat(text, "rad", size - strlen(text) - 1);
 }
 
@@ -71,7 +62,7 @@ static void add_light(const SceneOpening *opening, const Arguments *arguments,
   if (d->environment == VL_ENVIRONMENT_STUDIO || d->rotation != 0)
     put_angle(add(added, RENDER_ENVIRONMENT_ROTATION), ADDED_TEXT, d->rotation);
   if (d->strength != 1.0f)
-    put_number(add(added, RENDER_ENVIRONMENT_STRENGTH), ADDED_TEXT, (double)d->strength, true);
+    put_float(add(added, RENDER_ENVIRONMENT_STRENGTH), d->strength);
 }
 
 static void add_ground(const SceneOpening *opening, bool camera, AddedOptions *added) {
@@ -87,8 +78,8 @@ static void add_ground(const SceneOpening *opening, bool camera, AddedOptions *a
     add(added, RENDER_GROUND);
     added->items[added->count - 1].text = NULL;
   }
-  put_point(add(added, RENDER_GROUND_MIDDLE), ADDED_TEXT, d->ground_middle);
-  put_number(add(added, RENDER_GROUND_RADIUS), ADDED_TEXT, d->ground_radius, true);
+  put_point(add(added, RENDER_GROUND_MIDDLE), d->ground_middle);
+  put_float(add(added, RENDER_GROUND_RADIUS), (float)d->ground_radius);
 }
 
 /* The name of the axis that points up; null: it has none. */
@@ -116,7 +107,7 @@ void added_options(const SceneOpening *opening, const Arguments *arguments, bool
     put_angle(text + strlen(text), ADDED_TEXT - strlen(text), d->elevation);
   }
   if (d->open_walls)
-    put_point(add(added, RENDER_WALLS), ADDED_TEXT, d->walls_from);
+    put_point(add(added, RENDER_WALLS), d->walls_from);
   else if (camera)
     strcpy(add(added, RENDER_WALLS), "keep");
   const char *up = name_of_up(d);

@@ -207,6 +207,25 @@ static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tas
   tasks[(*count)++] = (Task){.client = client, .message = *m};
 }
 
+/* Has the command run that was copied last, or ends that run. */
+static void verify_command(Engine *e, uint32_t client, const ViewMessage *m) {
+  if (m->end) {
+    e->verify_end = true;
+  } else if (!e->verifies) {
+    post_refusal(e, client, m, "this page runs no commands");
+  } else if (e->def.arguments->folder_count) {
+    post_refusal(e, client, m, "--sandbox allows no other programs");
+  } else if (e->verifying) {
+    post_refusal(e, client, m, "a command is being verified");
+  } else if (!e->copied) {
+    post_refusal(e, client, m, "no command was copied");
+  } else {
+    e->verification = (Task){.client = client, .message = *m};
+    e->verify_end = false;
+    e->verifying = true;
+  }
+}
+
 /* Messages that change nothing that others see. */
 static bool is_harmless(MessageKind kind) {
   return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE ||
@@ -237,6 +256,9 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
           post_refusal(e, client, m, "this page saves nothing");
         else
           add_task(e, client, m, e->tasks, &e->task_count);
+        break;
+      case MESSAGE_VERIFY:
+        verify_command(e, client, m);
         break;
       case MESSAGE_SCENE:
         choose_scene(e, client, m);

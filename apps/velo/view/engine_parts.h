@@ -59,8 +59,8 @@ typedef struct Task {
 struct Engine {
   EngineDef def;
   Server *server;
-  pthread_t thread, watcher, answerer, tracer;
-  bool started, watching, answering, tracing;
+  pthread_t thread, watcher, answerer, tracer, verifier;
+  bool started, watching, answering, tracing, verifies;
   pthread_mutex_t lock;
   pthread_cond_t wake;
   pthread_rwlock_t model_lock; /* held by those who use the model outside the render thread */
@@ -92,6 +92,10 @@ struct Engine {
   uint32_t trace_count,
       trace_client; /* trace_client: the page whose paths are being traced; 0: none */
   ViewTracer shown; /* of `film`; without one, of the next film */
+  /* the command that a page has copied last; null: none, or it is being verified */
+  struct Copied *copied;
+  Task verification;          /* the message that asks for a verification */
+  bool verifying, verify_end; /* one is wanted or goes on; it shall end */
   /* the watcher's own */
   FileList files; /* of which the scene was made */
   /* the render thread's own; the model is replaced under the lock */
@@ -237,6 +241,8 @@ bool engine_answer_question(Engine *engine);
 void engine_save(Engine *engine, const Task *task);
 /* Writes the camera and posts the command that renders the present image. */
 void engine_command(Engine *engine, const Task *task);
+/* The thread that runs the copied command and compares its image. */
+void *engine_verify_commands(void *engine);
 /* The settings of the present image; its crop, its samples and its tracer are those of the
  * film. */
 vlSceneDefs engine_present_defs(const Engine *engine);

@@ -9,6 +9,7 @@
 
 #include "cli/report.h"
 #include "render/needs.h"
+#include "view/engine_copied.h"
 #include "view/engine_parts.h"
 #include "view/engine_status.h"
 #include "view/view.h"
@@ -436,6 +437,7 @@ void engine_destroy(Engine *engine) {
   free(engine->next);
   file_list_free(&engine->files);
   free(engine->last_status);
+  copied_free(engine->copied);
   vl_cancel_destroy(engine->stop);
   vl_cancel_destroy(engine->end);
   vl_cancel_destroy(engine->trace_stop);

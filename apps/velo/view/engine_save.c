@@ -1,5 +1,6 @@
 /* view/engine_save.c: writes cameras and images into the folder in which the program was
  * started, and makes the command that renders the present image again. */
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "render/added.h"
 #include "render/attributes.h"
 #include "render/outputs.h"
+#include "view/engine_copied.h"
 #include "view/engine_status.h"
 #include "view/view.h"
 
@@ -96,6 +98,14 @@ static Job present_job(const Engine *e, vlSceneDefs *defs) {
   return job;
 }
 
+/* The present image, with the header that saved images have. */
+static vlResult present_image(Engine *e, vlImage **image) {
+  vlSceneDefs defs;
+  const Job job = present_job(e, &defs);
+  vlResult result = vl_film_develop(e->film, &defs.develop, image);
+  return result == VL_OK ? attributes_set(*image, &job, defs.render.spp) : result;
+}
+
 static void save_image(Engine *e, const Task *task, const char *wanted) {
   char name[NAME_SIZE];
   bool eight_bit;
@@ -110,15 +120,11 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
                      .count = 1,
                      .view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD),
                      .exposure = (float)m->exposure};
-  vlSceneDefs defs;
-  const Job job = present_job(e, &defs);
   vlImage *image = NULL;
-  vlResult result = vl_film_develop(e->film, &defs.develop, &image);
-  if (result == VL_OK)
-    result = attributes_set(image, &job, defs.render.spp);
   int status = STATUS_OTHER;
-  if (result == VL_OK)
-    status = outputs_write(e->def.context, &outputs, image, defs.render.spp, OUTPUT_FINISHED);
+  if (present_image(e, &image) == VL_OK)
+    status =
+        outputs_write(e->def.context, &outputs, image, vl_film_spp(e->film), OUTPUT_FINISHED);
   vl_image_destroy(image);
   if (status == STATUS_OK)
     post_saved(e, task, name);
@@ -138,6 +144,16 @@ void engine_save(Engine *e, const Task *task) {
 }
 
 /* ---- the command ------------------------------------------------------------------------- */
+
+/* Writes a word of the command with its zero. */
+static void put_word(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put_word(FILE *out, const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  vfprintf(out, format, list);
+  va_end(list);
+  fputc(0, out);
+}
 
 /* Options that the camera file and the following words of the command replace, or that do not
  * matter. */
@@ -166,14 +182,14 @@ static void put_options(FILE *out, const Engine *e) {
       continue;
     if (o->kind == OPTION_FOLDERS) {
       for (int i = 0; i < arguments->folder_count; i++) {
-        fprintf(out, " --%s", o->name);
-        text_shell_word(out, arguments->folders[i]);
+        put_word(out, "--%s", o->name);
+        put_word(out, "%s", arguments->folders[i]);
       }
       continue;
     }
-    fprintf(out, " --%s", o->name);
+    put_word(out, "--%s", o->name);
     if (o->kind != OPTION_FLAG)
-      text_shell_word(out, text);
+      put_word(out, "%s", text);
   }
 }
 
@@ -191,69 +207,139 @@ static bool free_pair(const char *stem, char camera[NAME_SIZE], char image[NAME_
   return false;
 }
 
-/* Writes the camera and returns the command's text, which the caller frees; null after posting
- * why not. */
-static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
-  char stem[NAME_SIZE - 40], whole[NAME_SIZE], image[NAME_SIZE], *text = NULL;
-  size_t size;
+static bool write_camera(Engine *e, const Task *task, const char *path) {
   vlError error = {0};
-  const ViewMessage *m = &task->message;
   vlCameraFileDef def = vl_default_camera_file_def();
   const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
+  def.dialect = VL_CAMERA_DIALECT_VELO;
+  vlResult result = vl_camera_write(e->def.context, path, &def, &record, &error);
+  if (result != VL_OK)
+    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+  return result == VL_OK;
+}
+
+static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
+  const vlRenderDef *render = &e->model.job.defs->render;
   const vlCamera *made = &e->now.camera.made;
+  const uint32_t *c = e->now.crop;
+  char number[40];
+  put_word(out, "velo");
+  put_word(out, "render");
+  put_word(out, "%s", e->def.path);
+  put_word(out, "--camera");
+  put_word(out, "%s", camera);
+  if (e->now.camera.def.width != made->width || e->now.camera.def.height != made->height) {
+    put_word(out, "--resolution");
+    put_word(out, "%ux%u", made->width, made->height);
+  }
+  if (c[0] || c[1] || c[2] < made->width || c[3] < made->height) {
+    put_word(out, "--crop");
+    put_word(out, "%u,%u,%u,%u", c[0], c[1], c[2], c[3]);
+  }
+  put_options(out, e);
+  /* the tracer of the image, so that there is no race */
+  put_word(out, "--tracer");
+  put_word(out, "%s", kind_name("tracers", (int)e->shown.tracer));
+  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS) {
+    put_word(out, "--light-paths");
+    put_word(out, "%u", e->shown.light_paths);
+  }
+  format_number(number, sizeof number, copied->exposure);
+  put_word(out, "--spp");
+  put_word(out, "%u", copied->spp);
+  put_word(out, "--sequence");
+  put_word(out, "%u", render->sequence ? render->sequence : 65536);
+  put_word(out, "--view");
+  put_word(out, "%s", choice_name(view_choices, (int)copied->view));
+  put_word(out, "--exposure");
+  put_word(out, "%s", number);
+  put_word(out, "--no-receipt");
+  put_word(out, "-o");
+  put_word(out, "%s", copied->file);
+}
+
+/* Null after posting why not. */
+static Copied *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
+  char stem[NAME_SIZE - 40], whole[NAME_SIZE];
+  const ViewMessage *m = &task->message;
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.200s-view", whole);
-  if (!free_pair(stem, camera, image)) {
-    engine_refuse(e, task, "there are too many files of this name");
-    return NULL;
-  }
-  def.dialect = VL_CAMERA_DIALECT_VELO;
-  vlResult result = vl_camera_write(e->def.context, camera, &def, &record, &error);
-  if (result != VL_OK) {
-    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
-    return NULL;
-  }
-  FILE *out = open_memstream(&text, &size);
+  Copied *copied = calloc(1, sizeof *copied);
+  FILE *out = copied ? open_memstream(&copied->words, &copied->size) : NULL;
   if (!out) {
+    copied_free(copied);
     engine_refuse(e, task, "out of memory");
     return NULL;
   }
-  const vlRenderDef *render = &e->model.job.defs->render;
-  char number[40];
-  fputs("velo render", out);
-  text_shell_word(out, e->def.path);
-  fputs(" --camera", out);
-  text_shell_word(out, camera);
-  if (record.camera.width != made->width || record.camera.height != made->height)
-    fprintf(out, " --resolution %ux%u", made->width, made->height);
-  const uint32_t *c = e->now.crop;
-  if (c[0] || c[1] || c[2] < made->width || c[3] < made->height)
-    fprintf(out, " --crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
-  put_options(out, e);
-  /* the tracer of the image, so that there is no race */
-  fprintf(out, " --tracer %s", kind_name("tracers", (int)e->shown.tracer));
-  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS)
-    fprintf(out, " --light-paths %u", e->shown.light_paths);
-  format_number(number, sizeof number, m->exposure);
-  fprintf(out, " --spp %u --sequence %u --view %s --exposure %s --no-receipt -o",
-          vl_film_spp(e->film), render->sequence ? render->sequence : 65536,
-          choice_name(view_choices, choice_value(view_choices, m->view, 0)), number);
-  text_shell_word(out, image);
+  copied->exposure = m->exposure;
+  copied->view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD);
+  copied->spp = vl_film_spp(e->film);
+  bool ok = free_pair(stem, camera, copied->file);
+  if (!ok)
+    engine_refuse(e, task, "there are too many files of this name");
+  ok = ok && write_camera(e, task, camera);
+  if (ok)
+    put_command(out, e, copied, camera);
+  bool whole_text = fclose(out) == 0;
+  if (ok && (!whole_text || present_image(e, &copied->image) != VL_OK)) {
+    engine_refuse(e, task, "out of memory");
+    ok = false;
+  }
+  if (ok)
+    return copied;
+  copied_free(copied);
+  return NULL;
+}
+
+void copied_free(Copied *copied) {
+  if (!copied)
+    return;
+  vl_image_destroy(copied->image);
+  free(copied->words);
+  free(copied);
+}
+
+/* The command as a shell reads it; null: memory is exhausted. The caller frees it. */
+static char *command_text(const Copied *copied) {
+  char *text = NULL;
+  size_t size;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  const char *word = copied->words, *end = copied->words + copied->size;
+  fputs(word, out);
+  for (word += strlen(word) + 1; word < end; word += strlen(word) + 1)
+    text_shell_word(out, word);
   return fclose(out) == 0 ? text : NULL;
+}
+
+/* The command is the one to verify from now on. */
+static void keep_command(Engine *e, Copied *copied) {
+  pthread_mutex_lock(&e->lock);
+  Copied *before = e->copied;
+  e->copied = copied;
+  pthread_mutex_unlock(&e->lock);
+  copied_free(before);
 }
 
 void engine_command(Engine *e, const Task *task) {
   char camera[NAME_SIZE];
   if (!e->film || !vl_film_spp(e->film))
     return engine_refuse(e, task, "the image has no samples yet");
-  char *command = make_command(e, task, camera);
+  Copied *copied = make_command(e, task, camera);
+  char *command = copied ? command_text(copied) : NULL;
   JsonText text;
-  if (command && json_text_begin(&text, "command")) {
+  const bool begun = command && json_text_begin(&text, "command");
+  if (begun) {
     json_integer(&text.json, "id", task->message.id);
     json_text(&text.json, "command", command);
     json_text(&text.json, "file", camera);
-    json_integer(&text.json, "spp", vl_film_spp(e->film));
-    json_text_post(&text, e->server, task->client);
+    json_text(&text.json, "image", copied->file);
+    json_integer(&text.json, "spp", copied->spp);
   }
+  if (copied)
+    keep_command(e, copied);
+  if (begun)
+    json_text_post(&text, e->server, task->client);
   free(command);
 }

@@ -153,8 +153,9 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_CAMERAS:
       engine_cameras(e, task);
       break;
-    case MESSAGE_PATHS: /* engine_trace answers it */
-    case MESSAGE_SEEN:  /* these need no world */
+    case MESSAGE_PATHS:  /* engine_trace answers it */
+    case MESSAGE_VERIFY: /* engine_verify_commands answers it */
+    case MESSAGE_SEEN:   /* these need no world */
     case MESSAGE_CAMERA:
     case MESSAGE_UNDO:
     case MESSAGE_REDO:

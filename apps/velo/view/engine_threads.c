@@ -1,5 +1,6 @@
 /* view/engine_threads.c: the engine's threads: one renders, one answers questions, one traces
- * the paths of pixels, one loads scenes. Where there are no threads, page.c calls engine_work.
+ * the paths of pixels, one runs copied commands, one loads scenes. Where there are no threads,
+ * page.c calls engine_work.
  */
 #include "cli/report.h"
 #include "view/engine_parts.h"
@@ -12,6 +13,9 @@ int engine_start(Engine *engine, Server *server) {
   engine->answering =
       pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
   engine->tracing = pthread_create(&engine->tracer, NULL, engine_trace, engine) == 0;
+  if (!engine->def.lecture)
+    engine->verifies =
+        pthread_create(&engine->verifier, NULL, engine_verify_commands, engine) == 0;
   void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
   engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
   return -1;
@@ -34,6 +38,8 @@ int engine_stop(Engine *engine) {
     pthread_join(engine->answerer, NULL);
   if (engine->tracing)
     pthread_join(engine->tracer, NULL);
+  if (engine->verifies)
+    pthread_join(engine->verifier, NULL);
   engine->started = false;
   return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
 }

@@ -6,9 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const kinds[] = {
-    "seen",    "camera",  "undo",    "redo",    "reset", "settings", "pick",  "focus", "save",
-    "command", "overlay", "outline", "outside", "paths", "cameras",  "steer", "scene"};
+static const char *const kinds[] = {"seen",     "camera",  "undo",    "redo",    "reset",
+                                    "settings", "pick",    "focus",   "save",    "command",
+                                    "verify",   "overlay", "outline", "outside", "paths",
+                                    "cameras",  "steer",   "scene"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The following functions return false for a value of a wrong type or out of range, and say
@@ -182,7 +183,7 @@ static bool read_members(const Reader *r, ViewMessage *m) {
          read_bool(r, "denoise", &m->denoise, &m->has_denoise) &&
          read_bool(r, "boxes", &m->boxes, NULL) && read_bool(r, "curves", &m->curves, NULL) &&
          read_bool(r, "field", &m->field, NULL) && read_bool(r, "mark", &m->mark, NULL) &&
-         read_bool(r, "by_sample", &m->by_sample, NULL) &&
+         read_bool(r, "by_sample", &m->by_sample, NULL) && read_bool(r, "end", &m->end, NULL) &&
          read_counts(r, "crop", 4, m->crop, &m->has_crop) &&
          read_counts(r, "size", 2, m->size, &m->has_size) &&
          read_text(r, "channel", m->channel, &m->has_channel) &&

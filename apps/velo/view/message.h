@@ -27,6 +27,7 @@ typedef enum MessageKind {
   MESSAGE_FOCUS,    /* focus on a pixel: x, y */
   MESSAGE_SAVE,     /* write a file: id, what, name, dialect, exposure, view */
   MESSAGE_COMMAND,  /* write the camera and tell the command: id, exposure, view */
+  MESSAGE_VERIFY,   /* run the command that was told last: id; end: ends that */
   MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes, curves: id, boxes, curves, field */
   MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
   MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
@@ -55,7 +56,7 @@ typedef struct ViewMessage {
   bool has_spp, has_paused, has_crop, has_channel, has_size, has_denoise; /* of settings */
   uint32_t spp;
   uint32_t samples, show; /* numbers of paths; 0: not given */
-  bool paused, denoise, boxes, curves, field, mark, by_sample;
+  bool paused, denoise, boxes, curves, field, mark, by_sample, end;
   uint32_t crop[4]; /* all 0: none */
   uint32_t size[2]; /* pixels */
   char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME],

@@ -1,0 +1,273 @@
+/* view/engine_verify.c: runs the command that a page copied last, as a program of its own
+ * without a shell, and compares the bytes of its image with those of the image that the page
+ * showed. */
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/report.h"
+#include "cli/sha256.h"
+#include "render/outputs.h"
+#include "view/engine_copied.h"
+#include "view/engine_status.h"
+#include "view/view.h"
+
+enum { KINDS = 2, MOST_WORDS = 2 * MAX_OPTIONS + 40 };
+/* The command yields to the page, which goes on. */
+static const int niceness = 5;
+static const char *const kinds[KINDS] = {"png", "exr"};
+
+/* A verification. folder: has the images of the page (shown) and of the command (made). */
+typedef struct Verification {
+  Engine *engine;
+  Copied *copied;
+  char folder[40], message[300];
+  char shown[KINDS][64], made[KINDS][64], report[64];
+  char sha256[KINDS][SHA256_TEXT];
+} Verification;
+
+static bool fail(Verification *v, const char *what, const char *why) {
+  snprintf(v->message, sizeof v->message, "%s%s%s", what, why ? ": " : "", why ? why : "");
+  return false;
+}
+
+/* ---- files ------------------------------------------------------------------------------- */
+
+static bool make_folder(Verification *v) {
+  snprintf(v->folder, sizeof v->folder, "/tmp/velo-view-XXXXXX");
+  if (!mkdtemp(v->folder)) {
+    v->folder[0] = 0;
+    return fail(v, "no folder for the command's image can be made in /tmp", strerror(errno));
+  }
+  for (int k = 0; k < KINDS; k++) {
+    snprintf(v->shown[k], sizeof v->shown[k], "%s/shown.%s", v->folder, kinds[k]);
+    snprintf(v->made[k], sizeof v->made[k], "%s/made.%s", v->folder, kinds[k]);
+  }
+  snprintf(v->report, sizeof v->report, "%s/report.txt", v->folder);
+  return true;
+}
+
+static void remove_folder(const Verification *v) {
+  char part[80];
+  if (!v->folder[0])
+    return;
+  for (int k = 0; k < KINDS; k++) {
+    unlink(v->shown[k]);
+    unlink(v->made[k]);
+    if (output_part_path(v->made[k], part, sizeof part))
+      unlink(part);
+  }
+  unlink(v->report);
+  rmdir(v->folder);
+}
+
+/* Writes the page's image as *Save image* does. */
+static bool write_shown(Verification *v) {
+  Outputs outputs = {.paths = {v->shown[0], v->shown[1]},
+                     .count = KINDS,
+                     .view = v->copied->view,
+                     .exposure = (float)v->copied->exposure};
+  return outputs_write(v->engine->def.context, &outputs, v->copied->image, v->copied->spp,
+                       OUTPUT_FINISHED) == STATUS_OK ||
+         fail(v, "the image of the page cannot be written in /tmp", NULL);
+}
+
+/* ---- the command ------------------------------------------------------------------------- */
+
+/* The words of the copied command but for its -o IMAGE, and what makes no difference to the
+ * image. */
+static int find_words(Verification *v, char *words[MOST_WORDS]) {
+  static char quiet[] = "--quiet", output[] = "-o", threads[] = "--threads";
+  const OptionValue *given = &v->engine->def.arguments->values[RENDER_THREADS];
+  int count = 0;
+  for (char *word = v->copied->words; word < v->copied->words + v->copied->size;
+       word += strlen(word) + 1)
+    if (count < MOST_WORDS - 10)
+      words[count++] = word;
+  count -= 2;
+  words[count++] = quiet;
+  if (given->given) {
+    words[count++] = threads;
+    words[count++] = (char *)(uintptr_t)given->text;
+  }
+  for (int k = 0; k < KINDS; k++) {
+    words[count++] = output;
+    words[count++] = v->made[k];
+  }
+  words[count] = NULL;
+  return count;
+}
+
+static bool start(Verification *v, pid_t *child) {
+  char *words[MOST_WORDS];
+  find_words(v, words);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, v->report, O_WRONLY | O_CREAT,
+                                   0600);
+  const int wrong = posix_spawn(child, "/proc/self/exe", &actions, NULL, words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (wrong)
+    return fail(v, "the command cannot be started", strerror(wrong));
+  setpriority(PRIO_PROCESS, (id_t)*child, niceness);
+  return true;
+}
+
+static bool is_ended(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  bool ended = e->quit || e->verify_end;
+  pthread_mutex_unlock(&e->lock);
+  return ended;
+}
+
+/* Waits for the child, or ends it where a page or the end of the program asks for that. */
+static bool wait_for(Verification *v, pid_t child) {
+  const struct timespec pause = {.tv_nsec = 10000000};
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (is_ended(v->engine)) {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+      return fail(v, "ended", NULL);
+    }
+    nanosleep(&pause, NULL);
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == STATUS_OK)
+    return true;
+  char line[200] = "";
+  FILE *report = fopen(v->report, "r");
+  if (report && !fgets(line, sizeof line, report))
+    line[0] = 0;
+  if (report)
+    fclose(report);
+  line[strcspn(line, "\n")] = 0;
+  return fail(v, "the command made no image", line[0] ? line : NULL);
+}
+
+/* ---- the comparison ---------------------------------------------------------------------- */
+
+static bool same_bytes(const char *a, const char *b) {
+  FILE *one = fopen(a, "rb"), *two = fopen(b, "rb");
+  bool same = one && two;
+  char block[2][4096];
+  for (size_t n = 1; same && n > 0;) {
+    n = fread(block[0], 1, sizeof block[0], one);
+    same = fread(block[1], 1, sizeof block[1], two) == n && memcmp(block[0], block[1], n) == 0;
+  }
+  if (one)
+    fclose(one);
+  if (two)
+    fclose(two);
+  return same;
+}
+
+/* Says in which pixels the images differ, and by how much. */
+static void describe_difference(Verification *v) {
+  static const char *const names[3] = {"R", "G", "B"};
+  const vlImage *shown = v->copied->image;
+  const uint32_t width = vl_image_width(shown), height = vl_image_height(shown);
+  vlImage *made = NULL;
+  uint64_t count = 0;
+  double most = 0;
+  if (vl_image_read(v->engine->def.context, v->made[1], &made, NULL) != VL_OK ||
+      vl_image_width(made) != width || vl_image_height(made) != height) {
+    fail(v, "the command's image has another size", NULL);
+    vl_image_destroy(made);
+    return;
+  }
+  for (uint32_t y = 0; y < height; y++)
+    for (uint32_t x = 0; x < width; x++) {
+      double d = 0;
+      for (int c = 0; c < 3; c++)
+        d = fmax(d, fabs((double)vl_image_get(
+                             shown, x, y, (uint32_t)vl_image_find_channel(shown, names[c])) -
+                         (double)vl_image_get(
+                             made, x, y, (uint32_t)vl_image_find_channel(made, names[c]))));
+      count += d > 0;
+      most = fmax(most, d);
+    }
+  vl_image_destroy(made);
+  if (count)
+    snprintf(v->message, sizeof v->message, "%llu of %llu pixels differ, by up to %.3g",
+             (unsigned long long)count, (unsigned long long)width * height, most);
+  else
+    fail(v, "the pixels are the same, the headers differ", NULL);
+}
+
+static bool compare(Verification *v) {
+  bool same = true;
+  for (int k = 0; k < KINDS; k++) {
+    if (!sha256_file(v->made[k], v->sha256[k]))
+      return fail(v, "the command made no image", strerror(errno));
+    same = same_bytes(v->shown[k], v->made[k]) && same;
+  }
+  if (!same)
+    describe_difference(v);
+  return same;
+}
+
+/* ---- the thread -------------------------------------------------------------------------- */
+
+static void post_verified(const Verification *v, const Task *task, bool same) {
+  JsonText text;
+  if (!json_text_begin(&text, "verified"))
+    return;
+  json_integer(&text.json, "id", task->message.id);
+  json_bool(&text.json, "same", same);
+  json_text(&text.json, "file", v->copied->file);
+  if (same) {
+    json_text(&text.json, "sha256", v->sha256[0]);
+    json_text(&text.json, "sha256_exr", v->sha256[1]);
+  } else {
+    json_text(&text.json, "message", v->message);
+  }
+  json_text_post(&text, v->engine->server, task->client);
+}
+
+static bool verify(Verification *v) {
+  pid_t child = 0;
+  const bool same =
+      make_folder(v) && write_shown(v) && start(v, &child) && wait_for(v, child) && compare(v);
+  remove_folder(v);
+  return same;
+}
+
+void *engine_verify_commands(void *user) {
+  Engine *e = user;
+  static Task task; /* this thread alone uses it */
+  for (;;) {
+    pthread_mutex_lock(&e->lock);
+    while (!e->quit && !e->verifying)
+      pthread_cond_wait(&e->wake, &e->lock);
+    const bool quit = e->quit;
+    Copied *copied = e->copied;
+    e->copied = NULL;
+    task = e->verification;
+    pthread_mutex_unlock(&e->lock);
+    Verification v = {.engine = e, .copied = copied};
+    const bool same = !quit && verify(&v);
+    pthread_mutex_lock(&e->lock);
+    if (!quit)
+      post_verified(&v, &task, same);
+    e->verifying = false;
+    if (!e->copied) { /* it may be verified again */
+      e->copied = copied;
+      copied = NULL;
+    }
+    pthread_mutex_unlock(&e->lock);
+    copied_free(copied);
+    if (quit)
+      return NULL;
+  }
+}

@@ -16,6 +16,7 @@ import { Paths } from "./paths.js";
 import { byId, make, metric, short } from "./dom.js";
 import { addHelp } from "./help.js";
 import { Gestures } from "./gestures.js";
+import { dress } from "./icons.js";
 
 const app = {
   tool: "orbit", change: 0, state: null, local: null, waiting: new Map(), nextId: 1, gestures: new Gestures(), sent: [],
@@ -272,12 +273,20 @@ connect({
 // ---- controls ----
 
 for (const tool of tools) {
-  const button = make("button", { textContent: tool.label, title: tool.title, onclick: () => app.choose(tool.name) });
+  const button = make("button", { onclick: () => app.choose(tool.name) });
+  dress(button, tool.name, tool.label, tool.title);
   button.dataset.tool = tool.name;
   byId("tools").append(button);
 }
 app.choose("orbit");
 for (const name of ["undo", "redo", "reset", "pause", "denoise"]) byId(name).onclick = app[name];
+dress(byId("undo"), "undo", "Undo", "Z");
+dress(byId("redo"), "redo", "Redo", "Shift+Z");
+dress(byId("reset"), "reset", "Reset", "the scene's camera (Home)");
+dress(byId("pause"), "pause", "Pause", "P");
+dress(byId("denoise"), "denoise", "Denoise", "the image denoised, or its samples as they are (N); what is saved is never denoised");
+dress(byId("outside-toggle"), "outside", "Outside", "the camera from outside (O)");
+dress(byId("side-toggle"), "panel", "Panel", "shows or hides it");
 byId("take-over").onclick = () => app.connection.send({ type: "steer" });
 byId("notice-close").onclick = () => app.notice("");
 byId("side-toggle").onclick = () => {

@@ -2,12 +2,12 @@
 import * as steer from "./steer.js";
 
 export const tools = [
-  { name: "orbit", label: "Orbit", key: "1", title: "Drag: orbit. Shift or right button: pan. Ctrl: look round. Wheel: nearer, farther (1)" },
-  { name: "look", label: "Look", key: "2", title: "Drag: look round from where the camera is (2)" },
-  { name: "inspect", label: "Inspect", key: "3", title: "Wheel: magnify. Drag: move the image. Click: pick a pixel (3)" },
-  { name: "turn", label: "Turn round", key: "4", title: "Click a point: the camera turns round it (4)" },
-  { name: "focus", label: "Focus", key: "5", title: "Click a point: the lens focuses on it (5)" },
-  { name: "crop", label: "Crop", key: "6", title: "Drag a rectangle: only it is rendered. Click: the whole image (6)" },
+  { name: "orbit", label: "Orbit", key: "1", title: "drag turns the camera round lookat; Shift or the right button: pan; Ctrl: look round; wheel: nearer, farther (1)" },
+  { name: "look", label: "Look", key: "2", title: "drag looks round from where the camera is (2)" },
+  { name: "inspect", label: "Inspect", key: "3", title: "the wheel magnifies, drag moves the image, a click picks a pixel (3)" },
+  { name: "turn", label: "Turn", key: "4", title: "click a point: the camera turns round it (4)" },
+  { name: "focus", label: "Focus", key: "5", title: "click a point: the lens focuses on it (5)" },
+  { name: "crop", label: "Crop", key: "6", title: "drag a rectangle: only it is rendered; a click: the whole image (6)" },
 ];
 
 export class Pointer {

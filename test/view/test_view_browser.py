@@ -317,6 +317,29 @@ def test_file(b, folder):
     check("file_mended", not b.run("document.getElementById('notice').textContent.includes('spere')"))
 
 
+SMALL = """[...document.querySelectorAll('button, select, summary, input:not([type=file]), .check label')].filter(e => e.checkVisibility()).filter(e => {
+  const b = (e.type === 'checkbox' ? e.closest('.check') : e).getBoundingClientRect(); return b.height < 39.5 || (b.width < 39.5); }).map(e => e.outerHTML.slice(0, 80))"""
+SIDEWAYS = """[...document.querySelectorAll('*')].filter(e => e.checkVisibility() && !e.closest('svg') && (e.getBoundingClientRect().right > innerWidth + 1 ||
+  (e.scrollWidth > e.clientWidth + 1 && ['auto', 'scroll'].includes(getComputedStyle(e).overflowX)))).map(e => e.outerHTML.slice(0, 80))"""
+
+
+def test_touch(b):
+    """On a phone, with all sections open and a pixel picked: what is touched is large, and nothing scrolls sideways."""
+    b.run("velo.pick(160, 120, 'orbit'); document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    b.wait("document.querySelectorAll('#path-list table').length > 0")
+    b.run("document.querySelectorAll('#path-list details').forEach(d => { d.open = true; })")
+    b.run("document.getElementById('outside-toggle').click()")
+    b.run("velo.notice('an error that is told in a sentence')")
+    time.sleep(0.5)
+    check("touch_is_large", not b.run(SMALL), b.run(SMALL))
+    check("nothing_sideways", not b.run(SIDEWAYS), b.run(SIDEWAYS))
+    shot(b, "phone_open")
+    for i in range(1, 6):
+        b.run(f"(() => {{ const s = document.getElementById('side'); s.scrollTop = {i} * s.clientHeight * 0.95; }})()")
+        shot(b, f"phone_open_{i}")
+    b.run("document.getElementById('notice').hidden = true; document.getElementById('side').scrollTop = 0; document.getElementById('outside-toggle').click()")
+
+
 def test_layout(view):
     """Light, dark and narrow: nothing reaches beyond the page, every control has a name."""
     for name, width, height, dark, phone in (("dark", 1280, 720, True, False), ("phone", 390, 844, False, True)):
@@ -329,6 +352,8 @@ def test_layout(view):
             nameless = b.run("[...document.querySelectorAll('button, input, select')].filter(e => !e.hidden && !(e.textContent.trim() || "
                              "e.getAttribute('aria-label') || e.labels?.length || e.title)).map(e => e.outerHTML)")
             check(name + "_names", not nameless, nameless)
+            if phone:
+                test_touch(b)
             check(name + "_no_errors", not b.problems(), b.problems())
             shot(b, name)
         finally:

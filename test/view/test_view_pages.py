@@ -137,7 +137,8 @@ def test_plain(folder):
     try:
         b.open(view.address)
         b.wait(READY)
-        b.wait("document.getElementById('status').textContent.includes('done') && velo.screen.frame.scale === 1")
+        b.run("velo.settings({denoise: false})")
+        b.wait("document.getElementById('status').textContent.includes('done') && velo.screen.frame.scale === 1 && !velo.screen.frame.denoised")
         for i, name in enumerate(("standard", "neutral", "agx", "raw")):
             b.run(f"velo.display.view.value = {i}; velo.display.set({0.7 * i - 0.5})")
             check(f"plain_{name}", b.run(both) <= 1, b.run(both))

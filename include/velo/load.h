@@ -81,9 +81,11 @@ typedef struct vlCompleteDef {
                       left, all others are not rotated */
   float strength;  /**< factor on the environment's radiance */
   double up[3], front[3]; /**< directions in world space; default +y and +z, as in glTF */
-  bool ground;            /**< adds a wide grey disk under everything */
-  bool reframe;           /**< replaces the file's camera by one that frames the scene */
-  vlFraming framing;      /**< where the added camera stands */
+  bool find_up; /**< `up` is y or z, and a guess: the other one is taken if the model stands on
+                   its base only so; default false */
+  bool ground;  /**< adds a wide grey disk under everything */
+  bool reframe; /**< replaces the file's camera by one that frames the scene */
+  vlFraming framing; /**< where the added camera stands */
   /** Where the added camera stands, as seen from the model's middle: radians from `front` to
    * the right, and above the horizon. Unset: as `framing` says. */
   double azimuth, elevation;

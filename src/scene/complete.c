@@ -11,6 +11,7 @@
 #include "scene/closed.h"
 #include "scene/environment.h"
 #include "scene/lamps.h"
+#include "scene/upright.h"
 #include "schema/schema.h"
 #include "velo/material.h"
 #include "velo/shape.h"
@@ -66,8 +67,10 @@ static double extent_along(const vlExtent *box, const double axis[3]) {
   return sum;
 }
 
-/* Sum of the faces' normals, weighted by area. */
+/* Sum of the faces' normals, weighted by area, divided by the sum of the areas. Of a closed
+ * surface it is zero but for rounding: then neither side is its front. */
 static void mean_normal(const vlScene *scene, double n[3]) {
+  double area = 0;
   n[0] = n[1] = n[2] = 0;
   for (size_t k = 0; k < scene->shapes.count; k++) {
     const vlShapeDef *d = &scene->shapes.items[k];
@@ -80,17 +83,22 @@ static void mean_normal(const vlScene *scene, double n[3]) {
         const double q[3] = {v[0], v[1], v[2]};
         vl_mat4_point(&m, q, p[c]);
       }
+      double own[3];
       for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, l = (i + 2) % 3;
-        double x = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) -
-                   (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
-        n[i] += d->reverse_orientation ? -x : x;
+        own[i] = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) -
+                 (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
+        n[i] += d->reverse_orientation ? -own[i] : own[i];
       }
+      area += vl_norm3(own);
     }
   }
+  for (int i = 0; i < 3; i++)
+    n[i] = area > 0 ? n[i] / area : 0;
 }
 
-/* Flat models are seen nearly along their normal, from the side of their faces' fronts. */
+/* Flat models are seen nearly along their normal, from the side of their faces' fronts; charts
+ * that are less flat, from the front. */
 static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
                              const vlExtent *box, View *v) {
   v->azimuth = 0.45;
@@ -103,22 +111,22 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
          z = extent_along(box, v->front), n[3];
   if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0))
     return "from the front, a little from the right and above";
-  const double flat = 0.2, half_turn = 3.14159265358979323846;
+  const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = 3.14159265358979323846;
   mean_normal(scene, n);
   if (y <= flat * fmin(x, z)) {
-    bool below = vl_dot3(n, v->up) < -0.1 * vl_norm3(n);
+    bool below = vl_dot3(n, v->up) < against;
     v->elevation = below ? -0.9 : 0.9;
     v->azimuth = 0.25;
     return below ? "flat: from below" : "flat: from above";
   }
-  if (z <= flat * fmin(x, y)) {
-    bool behind = vl_dot3(n, v->front) < -0.1 * vl_norm3(n);
+  if (z <= chart * fmin(x, y)) {
+    bool behind = z <= flat * fmin(x, y) && vl_dot3(n, v->front) < against;
     v->azimuth = (behind ? half_turn : 0) + 0.25;
     v->elevation = 0.15;
     return behind ? "flat: from behind" : "flat: from the front";
   }
   if (x <= flat * fmin(y, z)) {
-    bool left = vl_dot3(n, v->right) < -0.1 * vl_norm3(n);
+    bool left = vl_dot3(n, v->right) < against;
     v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25;
     v->elevation = 0.15;
     return left ? "flat: from the left" : "flat: from the right";
@@ -451,6 +459,21 @@ static void choose_size(vlSceneDefs *s, const vlCompleteDef *def) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
+/* Where the direction upwards is to be found. False: the scene holds the error. */
+static bool choose_up(vlScene *scene, vlCompleteDef *done) {
+  vlExtent *boxes = NULL;
+  if (!done->find_up)
+    return true;
+  if (!vl_extent_groups(scene, &boxes))
+    return false;
+  if (vl_upright_find(scene, boxes, done->up, done->front))
+    vl_log(scene->context, VL_LOG_DEBUG, NULL, "up: %s: the model stands on its base only so",
+           done->up[2] != 0 ? "z" : "y");
+  done->find_up = false;
+  vl_free(scene->context, boxes);
+  return true;
+}
+
 vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *error) {
   vl_error_clear(error);
   const vlCompleteDef def = given ? *given : vl_default_complete_def();
@@ -471,7 +494,9 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   const vlEnvironmentKind kind = done->environment;
   bool fits = def.environment == VL_ENVIRONMENT_AUTO && kind == VL_ENVIRONMENT_STUDIO;
   View axes = {.azimuth = 0};
-  if (!vl_scene_axes(&def, axes.right, axes.up, axes.front)) {
+  if (!choose_up(scene, done))
+    return vl_scene_result(scene, error);
+  if (!vl_scene_axes(done, axes.right, axes.up, axes.front)) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
                   "camera: the axes up and front make no sense");
     return vl_scene_result(scene, error);

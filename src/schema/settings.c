@@ -169,6 +169,8 @@ static const vlParameter complete_parameters[] = {
              .flags = VL_PARAMETER_VECTOR),
     COMPLETE(DOUBLE3, front, "the direction to the front", VL_DEFAULT(0, 0, 1),
              .flags = VL_PARAMETER_VECTOR),
+    COMPLETE(BOOL, find_up, "y or z is upwards: the one with which the model stands",
+             .unit = NULL),
     COMPLETE(BOOL, ground, "add a wide grey disk as ground", .unit = NULL),
     COMPLETE(BOOL, reframe, "replace the file's camera", .unit = NULL),
     COMPLETE(CHOICE, framing, "where the added camera stands", .choices = framings),

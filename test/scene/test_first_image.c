@@ -133,6 +133,92 @@ static void sheet_from_behind(void **state) {
   }
 }
 
+/* A thin box has no front but by the rounding of its sums: it is seen from the front, and so is
+ * a chart of the given depth. */
+static void charts(void **state) {
+  (void)state;
+  for (int k = 0; k < 8; k++) {
+    Model m = begin();
+    const float s = 1 + 0.137f * (float)k, depth = k & 1 ? 0.03f : 0.38f,
+                low[3] = {-0.31f * s, 0.17f, -depth * s}, high[3] = {0.83f * s, 0.17f + s, 0};
+    add_box(&m, low, high, false, false);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    double d[3];
+    toward_eye(&m, d);
+    assert_true(d[2] > 0.9);
+    end(&m);
+  }
+}
+
+/* A body that is turned about y: radii and heights from the lowest to the highest. z: turned
+ * about z. */
+static void add_turned(Model *m, const float (*profile)[2], uint32_t rows, bool z) {
+  enum { AROUND = 24, MOST = 16 };
+  float p[3 * AROUND * MOST];
+  uint32_t indices[6 * AROUND * MOST], n = 0;
+  for (uint32_t i = 0; i < rows; i++)
+    for (uint32_t k = 0; k < AROUND; k++) {
+      const double turn = 2 * M_PI * k / AROUND;
+      float *v = p + 3 * (i * AROUND + k);
+      v[0] = profile[i][0] * (float)cos(turn);
+      v[z ? 2 : 1] = profile[i][1];
+      v[z ? 1 : 2] = profile[i][0] * (float)(z ? sin(turn) : -sin(turn));
+    }
+  for (uint32_t i = 0; i + 1 < rows; i++)
+    for (uint32_t k = 0; k < AROUND; k++) {
+      const uint32_t a = i * AROUND + k, b = i * AROUND + (k + 1) % AROUND;
+      const uint32_t own[6] = {a, b, b + AROUND, a, b + AROUND, a + AROUND};
+      memcpy(indices + n, own, sizeof own);
+      n += 6;
+    }
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = rows * AROUND;
+  def.faces = n / 3;
+  def.positions = p;
+  def.indices = indices;
+  assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
+}
+
+/* A figure on a plinth, a vase, a post and a ball: turned about y or z, while y or z is taken
+ * for upwards. What stands only one way stands so; what lies either way stays as it was. */
+static void upright(void **state) {
+  (void)state;
+  static const float figure[8][2] = {{0, 0},        {0.5f, 0},     {0.5f, 0.3f}, {0.2f, 0.5f},
+                                     {0.15f, 0.9f}, {0.35f, 1.2f}, {0.3f, 1.6f}, {0, 1.8f}};
+  static const float vase[5][2] = {
+      {0.2f, 0}, {0.45f, 0.6f}, {0.5f, 0.8f}, {0.25f, 1.3f}, {0.4f, 1.5f}};
+  static const float post[2][2] = {{0.5f, 0}, {0.5f, 1.5f}};
+  static const float ball[9][2] = {{0, -1},         {0.38f, -0.92f}, {0.71f, -0.71f},
+                                   {0.92f, -0.38f}, {1, 0},          {0.92f, 0.38f},
+                                   {0.71f, 0.71f},  {0.38f, 0.92f},  {0, 1}};
+  static const struct {
+    const float (*profile)[2];
+    uint32_t rows;
+    bool stands;
+  } bodies[4] = {{figure, 8, true}, {vase, 5, true}, {post, 2, false}, {ball, 9, false}};
+  for (int k = 0; k < 4; k++)
+    for (int z = 0; z < 2; z++)
+      for (int guess = 0; guess < 2; guess++)
+        for (int find = 0; find < 2; find++) {
+          Model m = begin();
+          add_turned(&m, bodies[k].profile, bodies[k].rows, z);
+          vlCompleteDef def = first_image();
+          const double up[2][3] = {{0, 1, 0}, {0, 0, 1}}, front[2][3] = {{0, 0, 1}, {0, -1, 0}};
+          memcpy(def.up, up[guess], sizeof def.up);
+          memcpy(def.front, front[guess], sizeof def.front);
+          def.find_up = find;
+          complete(&m, &def);
+          const int is_z = find && bodies[k].stands ? z : guess;
+          const vlCompleteDef done = vl_scene_completed(m.scene);
+          assert_memory_equal(done.up, up[is_z], sizeof def.up);
+          assert_memory_equal(done.front, front[is_z], sizeof def.front);
+          assert_memory_equal(m.scene->defs.camera.up, up[is_z], sizeof def.up);
+          assert_false(done.find_up);
+          end(&m);
+        }
+}
+
 static const float wall_low[3] = {-2, 0, -2}, wall_high[3] = {2, 2.5f, 2};
 static const float table_low[3] = {-0.5f, 0, -0.5f}, table_high[3] = {0.5f, 0.8f, 0.5f};
 
@@ -335,6 +421,7 @@ static void choices_as_a_def(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(flat_models), cmocka_unit_test(sheet_from_behind),
+      cmocka_unit_test(charts),      cmocka_unit_test(upright),
       cmocka_unit_test(rooms),       cmocka_unit_test(objects),
       cmocka_unit_test(dome),        cmocka_unit_test(ground),
       cmocka_unit_test(lamps),       cmocka_unit_test(choices_as_a_def),

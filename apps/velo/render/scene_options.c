@@ -159,6 +159,7 @@ static void choose_completion(const char *path, const Arguments *arguments, bool
     scene_choose_up((int)v[RENDER_UP].integer, complete);
   else if (text_ends_with(path, ".stl") || text_ends_with(path, ".stl.gz"))
     scene_choose_up(2, complete);
+  complete->find_up = model && !v[RENDER_UP].given && !scene_is_gltf(path);
 }
 
 int scene_open(vlContext *context, const char *path, const Arguments *arguments,

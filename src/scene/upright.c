@@ -1,0 +1,117 @@
+/* scene/upright.c: see upright.h. The measure of an end of the model along an axis is the area
+ * of the convex hull of what lies in the outermost fiftieth there, divided by that of the whole
+ * model, both seen along the axis. */
+#include "scene/upright.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "math/elementary.h"
+
+enum { DIRECTIONS = 24, LOW = 0, HIGH = 1, WHOLE = 2 };
+
+/* The support of a set of points in a plane: the largest coordinate in each direction. */
+typedef struct Hull {
+  double most[DIRECTIONS];
+} Hull;
+
+typedef struct Ends {
+  vlExtent box;
+  double cosine[DIRECTIONS], sine[DIRECTIONS];
+  Hull hulls[3][3]; /* of each axis: low end, high end, the whole */
+} Ends;
+
+static void grow(const Ends *e, Hull *hull, double x, double y) {
+  for (int k = 0; k < DIRECTIONS; k++)
+    hull->most[k] = fmax(hull->most[k], x * e->cosine[k] + y * e->sine[k]);
+}
+
+static void visit(void *user, const double p[3]) {
+  Ends *e = user;
+  for (int axis = 0; axis < 3; axis++) {
+    const double low = e->box.low[axis], size = e->box.high[axis] - low,
+                 at = (p[axis] - low) / size;
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const double x = p[i] - e->box.low[i], y = p[j] - e->box.low[j];
+    grow(e, &e->hulls[axis][WHOLE], x, y);
+    if (at <= 0.02)
+      grow(e, &e->hulls[axis][LOW], x, y);
+    if (at >= 0.98)
+      grow(e, &e->hulls[axis][HIGH], x, y);
+  }
+}
+
+/* The area of the polygon whose edges have the directions' distances from the origin. */
+static double area(const Hull *hull) {
+  const double turn = 2 * 3.14159265358979323846 / DIRECTIONS, c = vl_precise_cos(turn),
+               s = vl_precise_sin(turn);
+  double sum = 0;
+  for (int k = 0; k < DIRECTIONS; k++) {
+    const double h = hull->most[k], before = hull->most[(k + DIRECTIONS - 1) % DIRECTIONS],
+                 after = hull->most[(k + 1) % DIRECTIONS];
+    sum += 0.5 * h * (before + after - 2 * h * c) / s;
+  }
+  return sum;
+}
+
+static double share(const Ends *e, int axis, int end) {
+  const double whole = area(&e->hulls[axis][WHOLE]), part = area(&e->hulls[axis][end]);
+  return whole > 0 && isfinite(part) ? part / whole : 0;
+}
+
+static bool measure(const vlScene *scene, const vlExtent *boxes, Ends *e) {
+  e->box = vl_extent_nothing;
+  vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &e->box);
+  for (int i = 0; i < 3; i++)
+    if (!(e->box.high[i] > e->box.low[i]))
+      return false;
+  for (int k = 0; k < DIRECTIONS; k++) {
+    const double turn = 2 * 3.14159265358979323846 * k / DIRECTIONS;
+    e->cosine[k] = vl_precise_cos(turn);
+    e->sine[k] = vl_precise_sin(turn);
+    for (int axis = 0; axis < 3; axis++)
+      for (int part = 0; part < 3; part++)
+        e->hulls[axis][part].most[k] = -INFINITY;
+  }
+  vl_extent_visit(scene, boxes, NULL, visit, e);
+  return true;
+}
+
+static double size_of(const Ends *e, int axis) {
+  return e->box.high[axis] - e->box.low[axis];
+}
+
+/* Whether the model looks turned about the axis: the other two have the same ends. */
+static bool is_round(const Ends *e, int axis) {
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const double most = fmax(size_of(e, i), size_of(e, j));
+  if (fabs(size_of(e, i) - size_of(e, j)) > 0.02 * most)
+    return false;
+  const double ends[4] = {share(e, i, LOW), share(e, i, HIGH), share(e, j, LOW),
+                          share(e, j, HIGH)};
+  double low = ends[0], high = ends[0];
+  for (int k = 1; k < 4; k++) {
+    low = fmin(low, ends[k]);
+    high = fmax(high, ends[k]);
+  }
+  return high - low < 0.03;
+}
+
+bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
+                     double front[3]) {
+  const double no_base = 0.12, base = 0.15, larger = 0.25;
+  const int now = up[1] != 0 ? 1 : 2, other = 3 - now;
+  Ends e;
+  if (!measure(scene, boxes, &e) || share(&e, now, LOW) >= no_base)
+    return false;
+  const double most = fmax(size_of(&e, 0), fmax(size_of(&e, 1), size_of(&e, 2)));
+  const double low = share(&e, other, LOW), high = share(&e, other, HIGH);
+  const bool stands = low - high >= larger || (low >= base && is_round(&e, other));
+  if (!stands || size_of(&e, other) < 0.5 * most)
+    return false;
+  for (int i = 0; i < 3; i++) {
+    up[i] = i == other;
+    front[i] = other == 2 ? -(i == 1) : i == 2;
+  }
+  return true;
+}

@@ -1,0 +1,15 @@
+/* scene/upright.h: which way is up in a file that does not say it: on which side a model
+ * stands. */
+#ifndef SCENE_UPRIGHT_H
+#define SCENE_UPRIGHT_H
+
+#include "scene/extent.h"
+
+/* Of y and z, one is `up` already. Takes the other, with its front (of z: -y, as modellers have
+ * it), if the model stands on its lowest part only so: a bust on its plinth, a figure on its
+ * feet, a vase on its foot. Otherwise up and front stay as they are, as of models that lie
+ * either way. boxes: those of the groups. Returns whether they changed. */
+bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
+                     double front[3]);
+
+#endif

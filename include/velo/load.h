@@ -58,7 +58,10 @@ typedef enum vlEnvironmentKind {
   VL_ENVIRONMENT_STUDIO, /**< neutral: soft lights above and in front in a grey room */
   VL_ENVIRONMENT_SKY,    /**< a clear sky and the sun */
   VL_ENVIRONMENT_WHITE,  /**< radiance 1 from all directions */
-  VL_ENVIRONMENT_FILE    /**< the image at `path` */
+  VL_ENVIRONMENT_FILE,   /**< the image at `path` */
+  VL_ENVIRONMENT_LAMPS   /**< for models that enclose their camera: the studio, and lamps in the
+                            free space around the camera or, if it is not inside the model,
+                            around the model's middle */
 } vlEnvironmentKind;
 /** From where the added camera looks. */
 typedef enum vlFraming {

@@ -396,6 +396,16 @@ static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *
       closed->kind = VL_CLOSED_ROOM;
 }
 
+static void free_survey(vlScene *scene, Survey *s) {
+  for (size_t i = 0; s && s->blocks && i < scene->shapes.count; i++)
+    vl_free(scene->context, s->blocks[i]);
+  if (s)
+    vl_free(scene->context, s->blocks);
+  if (s)
+    vl_free(scene->context, s->placed);
+  vl_free(scene->context, s);
+}
+
 bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
                     const double eye[3], vlClosed *closed) {
   *closed = (vlClosed){.kind = VL_CLOSED_NOT};
@@ -416,13 +426,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
     if (found)
       memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
   }
-  for (size_t i = 0; s && s->blocks && i < scene->shapes.count; i++)
-    vl_free(scene->context, s->blocks[i]);
-  if (s)
-    vl_free(scene->context, s->blocks);
-  if (s)
-    vl_free(scene->context, s->placed);
-  vl_free(scene->context, s);
+  free_survey(scene, s);
   if (!ok)
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
   if (found)
@@ -432,6 +436,26 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
     closed->shell = NULL;
   }
   return ok;
+}
+
+bool vl_closed_reach(vlScene *scene, const double (*from)[3], const double (*toward)[3],
+                     uint32_t count, double *reach) {
+  Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
+  for (uint32_t k = 0; k < count; k++)
+    reach[k] = INFINITY;
+  if (s && survey_meshes(scene, s))
+    for (uint32_t first = 0; first < count; first += RAYS) {
+      const uint32_t n = count - first < RAYS ? count - first : RAYS;
+      memcpy(s->o, from + first, n * sizeof *s->o);
+      memcpy(s->d, toward + first, n * sizeof *s->d);
+      vl_parallel_for(scene->context, n, cast, s);
+      for (uint32_t k = 0; k < n; k++)
+        reach[first + k] = s->seen[k].t;
+    }
+  free_survey(scene, s);
+  if (!s)
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return s != NULL;
 }
 
 /* ---- the opening ------------------------------------------------------------------------- */

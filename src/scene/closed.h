@@ -27,6 +27,12 @@ typedef struct vlClosed {
 bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
                     const double eye[3], vlClosed *closed);
 
+/* How far each of `count` rays gets until it meets a mesh, in lengths of its direction;
+ * INFINITY where it meets none, or the scene has more than 8 million faces. False: the scene
+ * holds the error. */
+bool vl_closed_reach(vlScene *scene, const double (*from)[3], const double (*toward)[3],
+                     uint32_t count, double *reach);
+
 /* Leaves out the shell's faces between `eye` and the middle. *count: their number. False: the
  * scene holds the error. */
 bool vl_closed_open(vlScene *scene, const vlClosed *closed, const double eye[3],

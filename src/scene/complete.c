@@ -10,6 +10,7 @@
 #include "math/transform.h"
 #include "scene/closed.h"
 #include "scene/environment.h"
+#include "scene/inside.h"
 #include "scene/lamps.h"
 #include "scene/upright.h"
 #include "schema/schema.h"
@@ -505,7 +506,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
       camera || def.ground || (def.backdrop && ground_is_given(&def)) || walls_are_given(&def);
   vlExtent *boxes = NULL;
   bool ok = true;
-  if (geometry || fits)
+  const bool lamps = kind == VL_ENVIRONMENT_LAMPS;
+  if (geometry || fits || lamps)
     ok = vl_extent_groups(scene, &boxes);
   if (ok && fits)
     fit_studio(scene, boxes, done);
@@ -513,6 +515,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
     ok = complete_geometry(scene, &axes, camera, boxes);
   else
     done->open_walls = done->backdrop = false;
+  if (ok && lamps)
+    ok = vl_scene_add_lamps(scene, boxes, axes.up, done->strength);
   vl_free(scene->context, boxes);
   if (vl_is_unset(done->rotation))
     done->rotation = 0;

@@ -201,6 +201,10 @@ static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *
   return vl_scene_add_light(scene, &sun).index != 0;
 }
 
+static bool has_studio(vlEnvironmentKind kind) {
+  return kind == VL_ENVIRONMENT_STUDIO || kind == VL_ENVIRONMENT_LAMPS;
+}
+
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
                               vlEnvironmentKind kind) {
   vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
@@ -221,7 +225,7 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
   bool ok = true;
   if (kind == VL_ENVIRONMENT_FILE)
     ok = read_environment(scene, def->path, &image);
-  if (kind == VL_ENVIRONMENT_STUDIO && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image)))
+  if (has_studio(kind) && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image)))
     fill_studio(scene, image);
   if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image)))
     fill_sky(image);

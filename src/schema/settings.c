@@ -148,7 +148,7 @@ static const vlParameter load_parameters[] = {
 VL_KIND_ROW(load, .name = "load", .description = "how a file of a scene is read")
 
 static const char *const environments[] = {"auto",  "none", "studio", "sky",
-                                           "white", "file", NULL};
+                                           "white", "file", "lamps",  NULL};
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 #define COMPLETE(TYPE, ...) VL_PARAMETER(TYPE, vlCompleteDef, NULL, __VA_ARGS__)
 static const vlParameter complete_parameters[] = {

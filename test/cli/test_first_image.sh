@@ -15,7 +15,7 @@ def box(a, b, inward=False):
     v = [tuple((b if i >> k & 1 else a)[k] for k in range(3)) for i in range(8)]
     t = [(4,5,7),(4,7,6),(1,0,2),(1,2,3),(5,1,3),(5,3,7),(0,4,6),(0,6,2),(6,7,3),(6,3,2),(0,1,5),(0,5,4)]
     return v, [x[::-1] for x in t] if inward else t
-def write(path, parts, light=None, glass=False):
+def write(path, parts, light=None, glass=False, eye=None):
     data, views, accessors, meshes, materials, nodes = b"", [], [], [], [], []
     for (v, t), color, two in parts:
         for values, kind, name in ((v, "f", "VEC3"), (t, "I", "SCALAR")):
@@ -27,12 +27,16 @@ def write(path, parts, light=None, glass=False):
         k = len(meshes)
         meshes.append({"primitives": [{"attributes": {"POSITION": 2 * k}, "indices": 2 * k + 1, "material": k}]})
         materials.append({"doubleSided": two, "pbrMetallicRoughness": {
-            "baseColorFactor": color + [1], "metallicFactor": 0, "roughnessFactor": 0 if glass else 0.6}})
+            "baseColorFactor": color[:3] + [1], "metallicFactor": 0, "roughnessFactor": 0 if glass else 0.6}})
+        if len(color) > 3: materials[-1]["emissiveFactor"] = color[3]
         if glass: materials[-1]["extensions"] = {"KHR_materials_transmission": {"transmissionFactor": 1}}
         nodes.append({"mesh": k})
     g = {"asset": {"version": "2.0"}, "scene": 0, "buffers": [{"byteLength": len(data)}], "bufferViews": views,
          "accessors": accessors, "meshes": meshes, "materials": materials}
     if glass: g["extensionsUsed"] = ["KHR_materials_transmission"]
+    if eye:
+        g["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.9, "aspectRatio": 1.5, "znear": 0.01}}]
+        nodes.append({"camera": 0, "translation": eye})
     if light:
         g["extensionsUsed"] = ["KHR_lights_punctual"]
         g["extensions"] = {"KHR_lights_punctual": {"lights": [light]}}
@@ -57,6 +61,17 @@ write("white_sun.glb", white, {"type": "directional", "intensity": 6830})
 ball = (box((-0.3, 0.7, -0.3), (0.3, 1.3, 0.3)), [0.6, 0.05, 0.04], False)
 for name, inward, two in (("room", True, False), ("box", False, True)):
     write(name + ".glb", [(box((-2, 0, -2), (2, 2.5, 2), inward), [0.8, 0.78, 0.7], two), ball])
+# Rooms with a camera inside: closed; with a ceiling that emits light; without a ceiling. A street under a roof, with a red lamp.
+walls = box((-2, 0, -2), (2, 2.5, 2), True)
+write("inside.glb", [(walls, [0.8, 0.78, 0.7], False), ball], eye=[0, 1.4, 1.9])
+glow = [0.5, 0.5, 0.5, [1, 1, 1]]
+write("glow.glb", [(walls, [0.8, 0.78, 0.7], False), ball, (box((-1, 2.4, -1), (1, 2.45, 1)), glow, True)], eye=[0, 1.4, 1.9])
+open_top = (walls[0], [t for t in walls[1] if any(walls[0][i][1] < 2 for i in t)])
+write("open.glb", [(open_top, [0.8, 0.78, 0.7], True), ball], eye=[0, 1.4, 1.9])
+street = [(box((x, 0, z), (x + 4, 6 + z % 3, z + 4)), [0.4, 0.4, 0.45], True) for x in (-6, 2) for z in range(-25, 20, 5)]
+red = [0, 0, 0, [1, 0, 0]]
+write("city.glb", street + [(box((-30, -1, -30), (30, 20, 30), True), [0.3, 0.5, 0.9], False), (box((1.2, 2, 4), (1.4, 2.2, 4.2)), red, True)],
+      eye=[0, 1.5, 15])
 END
 small="--resolution 64x48 --spp 16"
 for m in plain white sun noon dim white_sun room box; do
@@ -82,6 +97,22 @@ check glass "$VELO" render glass.glb $small -o glass.png
 expect_absent glass_as_it_is 'exposed by'
 check glass_sun "$VELO" render glass_sun.glb $small -o glass_sun.png
 expect_text glass_in_the_sun 'exposed by -'
+# A model that encloses its own camera is lit by lamps, if nothing else lights it; the option says so, and repeats it.
+for m in inside city; do
+  check "lit_$m" "$VELO" render $m.glb $small -o $m.png -o $m.exr
+  expect_text "lit_${m}_says" 'lamps are added around its camera'
+  check "lit_${m}_given" "$VELO" render $m.glb $small --environment lamps -o given.exr --quiet
+  same "lit_${m}_same" $m.exr given.exr
+  check "lit_${m}_again" "$VELO" render --again $m.exr -o again.exr
+  expect_absent "lit_${m}_again_given" 'lamps are added'
+  same "lit_${m}_again_same" $m.exr again.exr
+done
+for m in glow open; do
+  check "own_light_$m" "$VELO" render $m.glb $small -o $m.png
+  expect_absent "own_light_${m}_says" 'lamps are added'
+done
+check dark "$VELO" render inside.glb $small --environment studio -o dark.png
+expect_absent dark_says 'lamps are added'
 # A turned camera stands as near as the model asks for, not as its ground does.
 check turned "$VELO" render white.glb $small --turn 90 --transparent -o turned.png --quiet
 expect_code 2 bad_framing "$VELO" render sun.glb --framing above
@@ -137,6 +168,13 @@ for name in ("room", "box"):
 c, _ = model("kept.png")
 print("kept", c)
 if not c[1] < 30: bad.append("kept")  # nothing lights it
+for name in ("inside", "city"):
+    pixels = [p for row in read(name + ".png") for p in row]
+    mean = sum(sum(p[:3]) for p in pixels) / 3 / len(pixels)
+    dark, burnt = (sum(f(p) for p in pixels) / len(pixels) for f in (lambda p: max(p) < 20, lambda p: min(p) > 250))
+    print(name, mean, dark, burnt)
+    if not (70 < mean < 220 and dark < 0.1 and burnt < 0.1): bad.append(name)
+if sum(sum(p) for row in read("dark.png") for p in row): bad.append("dark")
 _, count = model("turned.png")
 print("turned", count)
 if not count > 300: bad.append("turned")  # of 3072 pixels

@@ -49,7 +49,7 @@ static char *add(AddedOptions *added, int id) {
 
 static void add_light(const SceneOpening *opening, const Arguments *arguments,
                       AddedOptions *added) {
-  static const char *const names[] = {"auto", "none", "studio", "sky", "white", ""};
+  static const char *const names[] = {"auto", "none", "studio", "sky", "white", "", "lamps"};
   const vlCompleteDef *d = &opening->complete;
   const bool none = d->environment == VL_ENVIRONMENT_NONE;
   if (none && !opening->model && !arguments->values[RENDER_ENVIRONMENT].given)

@@ -254,6 +254,18 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
   return -1;
 }
 
+int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld *world,
+                        const vlCamera *camera, const vlSceneDefs *defs, bool *unlit) {
+  Metered m;
+  vlError error = {0};
+  *unlit = false;
+  vlResult result = measure(context, scene, world, camera, defs, false, &m, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, "metering");
+  *unlit = m.pixels > 0 && (m.white < WHITE / 1024 || (m.white < WHITE / 32 && m.unlit > 0.5));
+  return -1;
+}
+
 void exposure_tell(float ev) {
   report_note("exposed by %+.1f EV, as metered (--exposure 0 leaves the light as it is)",
               (double)ev);

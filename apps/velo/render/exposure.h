@@ -21,6 +21,11 @@ float exposure_meter(const vlImage *image);
 int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld *world,
                          const vlCamera *camera, const vlSceneDefs *defs, double leave,
                          float *ev);
+/* Whether the model's surfaces get hardly any light: a white one less than a 32nd of what it
+ * has in the studio, and most of them still much less than the mean, or all of them nothing.
+ * Returns -1, or the exit code after reporting the error. */
+int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld *world,
+                        const vlCamera *camera, const vlSceneDefs *defs, bool *unlit);
 /* Prints the metered exposure. */
 void exposure_tell(float ev);
 

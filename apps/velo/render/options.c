@@ -96,7 +96,8 @@ const Option render_options[] = {
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME",
      "glTF: material variant to use, by name"},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
-     "environment map that lights the scene: studio, sky, white, none, or an image file (2:1: "
+     "environment map that lights the scene: studio, sky, white, none, lamps (inside of a room), "
+     "or an image file (2:1: "
      "longitude and latitude; "
      "square: equal-area octahedral). Default: studio, if the file has none"},
     {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_ANGLE, "DEG",

@@ -9,9 +9,11 @@
 
 #include "cli/report.h"
 #include "cli/text.h"
+#include "render/exposure.h"
 #include "render/job.h"
 #include "render/turn.h"
 #include "velo/check.h"
+#include "velo/world.h"
 
 bool scene_is_model(const char *path) {
   return !text_ends_with(path, ".pbrt") && !text_ends_with(path, ".pbrt.gz");
@@ -32,11 +34,9 @@ static void choose_environment(const char *text, vlCompleteDef *def) {
   static const struct {
     const char *name;
     vlEnvironmentKind kind;
-  } kinds[] = {{"auto", VL_ENVIRONMENT_AUTO},
-               {"none", VL_ENVIRONMENT_NONE},
-               {"studio", VL_ENVIRONMENT_STUDIO},
-               {"sky", VL_ENVIRONMENT_SKY},
-               {"white", VL_ENVIRONMENT_WHITE}};
+  } kinds[] = {{"auto", VL_ENVIRONMENT_AUTO},     {"none", VL_ENVIRONMENT_NONE},
+               {"studio", VL_ENVIRONMENT_STUDIO}, {"sky", VL_ENVIRONMENT_SKY},
+               {"white", VL_ENVIRONMENT_WHITE},   {"lamps", VL_ENVIRONMENT_LAMPS}};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
     if (strcmp(text, kinds[i].name) == 0) {
       def->environment = kinds[i].kind;
@@ -162,60 +162,127 @@ static void choose_completion(const char *path, const Arguments *arguments, bool
   complete->find_up = model && !v[RENDER_UP].given && !scene_is_gltf(path);
 }
 
-int scene_open(vlContext *context, const char *path, const Arguments *arguments,
-               vlScene **scene, SceneOpening *opening) {
+static int choose_load(const char *path, const Arguments *arguments,
+                       const SceneOpening *opening, vlLoadDef *load) {
   const OptionValue *v = arguments->values;
-  vlError error = {0};
-  vlLoadDef load = vl_default_load_def();
-  load.cancel = opening->cancel;
-  load.permissive = v[RENDER_PERMISSIVE].given;
-  load.strict = v[RENDER_STRICT].given;
+  load->cancel = opening->cancel;
+  load->permissive = v[RENDER_PERMISSIVE].given;
+  load->strict = v[RENDER_STRICT].given;
   if (v[RENDER_SEARCH].given)
-    load.search_path = v[RENDER_SEARCH].text;
-  int status = choose_times(v, &load);
+    load->search_path = v[RENDER_SEARCH].text;
+  int status = choose_times(v, load);
   if (status < 0)
     status = check_completion(v);
   if (status >= 0)
     return status;
   if (v[RENDER_SCENE].given)
-    load.scene = v[RENDER_SCENE].text;
+    load->scene = v[RENDER_SCENE].text;
   if (v[RENDER_ANIMATION].given)
-    load.animation = v[RENDER_ANIMATION].text;
+    load->animation = v[RENDER_ANIMATION].text;
   if (v[RENDER_VARIANT].given)
-    load.variant = v[RENDER_VARIANT].text;
+    load->variant = v[RENDER_VARIANT].text;
   if (scene_camera_is_own(path, arguments))
-    load.camera = v[RENDER_CAMERA].text;
+    load->camera = v[RENDER_CAMERA].text;
+  return -1;
+}
+
+/* Loads the scene and adds what it lacks. lit_inside: with lamps. */
+static int load_and_complete(vlContext *context, const char *path, const Arguments *arguments,
+                             bool lit_inside, vlScene **scene, SceneOpening *opening) {
+  const OptionValue *v = arguments->values;
+  const vlLoadDef *load = &opening->load;
+  vlError error = {0};
   vlResult result = vl_scene_create(context, scene);
   if (result == VL_OK)
     result = opening->text ? vl_scene_load_memory(*scene, path, opening->text,
-                                                  strlen(opening->text), &load, &error)
-                           : vl_scene_load(*scene, path, &load, &error);
+                                                  strlen(opening->text), load, &error)
+                           : vl_scene_load(*scene, path, load, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
 
   vlCompleteDef complete = vl_default_complete_def();
   vlSceneDefs *defs = vl_scene_defs(*scene);
-  bool camera = defs->camera_missing && (!v[RENDER_CAMERA].given || load.camera);
+  const bool camera = defs->camera_missing && (!v[RENDER_CAMERA].given || load->camera);
   defs->camera_missing = camera; /* another file gives the camera */
   vlSceneInfo info;
   vl_scene_info(*scene, &info);
   opening->model = scene_is_model(path);
-  opening->lamps = info.lights > 0 && opening->model;
   choose_completion(path, arguments, opening->model, &complete);
-  if (v[RENDER_TURN].given) /* of the file alone: an added ground is several times as wide */
-    vl_scene_bounds(*scene, opening->low, opening->high);
+  if (lit_inside)
+    complete.environment = VL_ENVIRONMENT_LAMPS;
+  vl_scene_bounds(*scene, opening->low, opening->high);
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
-  opening->load = load;
   opening->complete = vl_scene_completed(*scene);
   opening->environment = opening->complete.environment;
-  if (v[RENDER_TURN].given && v[RENDER_CAMERA].given && !load.camera)
-    return report_usage(
-        "--turn turns the scene's own camera: it does not go with --camera FILE");
+  opening->lamps =
+      opening->model && (info.lights > 0 || opening->environment == VL_ENVIRONMENT_LAMPS);
   opening->camera_added = camera;
   opening->camera = defs->camera;
-  scene_turn(opening, arguments, defs);
+  return -1;
+}
+
+/* Whether the model's own camera may be inside it, where the studio's light does not come: a
+ * room, a city under a dome. */
+static bool may_be_inside(const Arguments *arguments, const SceneOpening *opening,
+                          const vlCamera *camera) {
+  const OptionValue *v = arguments->values;
+  bool inside = opening->model && !opening->lamps && !opening->camera_added &&
+                opening->environment == VL_ENVIRONMENT_STUDIO && !v[RENDER_ENVIRONMENT].given &&
+                (!v[RENDER_CAMERA].given || opening->load.camera);
+  for (int i = 0; i < 3 && inside; i++) {
+    const double at = camera->world_from_camera[4 * i + 3];
+    inside = at > opening->low[i] && at < opening->high[i];
+  }
+  return inside;
+}
+
+/* Renders a tiny image: whether the model, seen by its own camera, is dark. */
+static int find_unlit(vlContext *context, const char *path, vlScene *scene,
+                      const Arguments *arguments, const SceneOpening *opening, bool *unlit) {
+  const vlSceneDefs *defs = vl_scene_defs(scene);
+  vlCamera camera;
+  vlError error = {0};
+  *unlit = false;
+  if (vl_camera_make(&defs->camera, &camera, NULL, NULL) != VL_OK ||
+      !may_be_inside(arguments, opening, &camera))
+    return -1; /* a camera that cannot be is reported later */
+  vlBuildDef build = defs->build;
+  build.cancel = opening->cancel;
+  vlWorld *world = NULL;
+  vlResult result = vl_world_build(scene, &build, &world, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
+  int status = exposure_find_unlit(context, scene, world, &camera, defs, unlit);
+  vl_world_destroy(world);
+  return status;
+}
+
+int scene_open(vlContext *context, const char *path, const Arguments *arguments,
+               vlScene **scene, SceneOpening *opening) {
+  const OptionValue *v = arguments->values;
+  bool unlit = false;
+  opening->load = vl_default_load_def();
+  int status = choose_load(path, arguments, opening, &opening->load);
+  if (status < 0)
+    status = load_and_complete(context, path, arguments, false, scene, opening);
+  if (status < 0)
+    status = find_unlit(context, path, *scene, arguments, opening, &unlit);
+  if (status < 0 && unlit) {
+    vl_scene_destroy(*scene);
+    *scene = NULL;
+    status = load_and_complete(context, path, arguments, true, scene, opening);
+    report_note(
+        "the model is dark inside: lamps are added around its camera "
+        "(--environment lamps; --environment studio leaves them out)");
+  }
+  if (status >= 0)
+    return status;
+  if (v[RENDER_TURN].given && v[RENDER_CAMERA].given && !opening->load.camera)
+    return report_usage(
+        "--turn turns the scene's own camera: it does not go with --camera FILE");
+  scene_turn(opening, arguments, vl_scene_defs(*scene));
   return -1;
 }
 

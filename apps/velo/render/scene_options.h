@@ -21,7 +21,8 @@ typedef struct SceneOpening {
                                     VL_ENVIRONMENT_AUTO */
   bool camera_added;             /* the file has no camera: one was made for the scene */
   vlCameraDef camera;            /* before it was turned */
-  double low[3], high[3]; /* the scene's bounds, if the camera turns; low > high: it is empty */
+  double low[3], high[3];        /* the bounds of the file's scene, without an added ground;
+        low > high: it is empty */
 } SceneOpening;
 
 /* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after

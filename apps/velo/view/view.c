@@ -119,7 +119,7 @@ const Option view_options[] = {
      "rotate the scene's camera about the vertical axis"},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant"},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
-     "environment map that lights the scene: studio, sky, white, none, or an image file"},
+     "environment map that lights the scene: studio, sky, white, none, lamps, or an image file"},
     {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_ANGLE, "DEG",
      "rotation of the environment map about the vertical axis, in degrees"},
     {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X",

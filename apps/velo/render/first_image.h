@@ -1,5 +1,5 @@
 /* render/first_image.h: the image of a model that nothing but its file describes: few samples,
- * denoised (docs/denoising.md, docs/decisions/0027-a-denoised-first-image.md). */
+ * denoised (docs/denoising.md, docs/decisions/0028-a-denoised-first-image.md). */
 #ifndef APP_RENDER_FIRST_IMAGE_H
 #define APP_RENDER_FIRST_IMAGE_H
 

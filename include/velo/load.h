@@ -52,17 +52,24 @@ VL_API vlResult vl_scene_load_memory(vlScene *scene, const char *name, const voi
 /** The environment (light from all directions) that vl_scene_complete adds. */
 typedef enum vlEnvironmentKind {
   VL_ENVIRONMENT_AUTO,   /**< STUDIO if vlSceneDefs.light_missing, else none. If the scene has
-                            other   lights, its   strength is such that a surface gets 0.3 times
-                            as   much light   from it as from them */
+                            other lights, its strength is such that a surface gets 0.3 times as
+                            much light from it as from them. None if the file has a camera and
+                            surfaces that emit light, brighter than white, light the others */
   VL_ENVIRONMENT_NONE,   /**< none is added */
-  VL_ENVIRONMENT_STUDIO, /**< neutral: soft lights above and in front in a grey room */
+  VL_ENVIRONMENT_STUDIO, /**< a studio: soft boxes above and in front in a cool grey room */
   VL_ENVIRONMENT_SKY,    /**< a clear sky and the sun */
   VL_ENVIRONMENT_WHITE,  /**< radiance 1 from all directions */
   VL_ENVIRONMENT_FILE,   /**< the image at `path` */
-  VL_ENVIRONMENT_LAMPS   /**< for models that enclose their camera: the studio, and lamps in the
+  VL_ENVIRONMENT_LAMPS,  /**< for models that enclose their camera: the studio, and lamps in the
                             free space around the camera or, if it is not inside the model,
                             around the model's middle */
+  VL_ENVIRONMENT_WINDOW, /**< a studio: daylight through a tall window on the left, in a warm
+                            room */
+  VL_ENVIRONMENT_EVENING /**< a studio: a low warm sun on the left, and a blue sky */
 } vlEnvironmentKind;
+/** Whether the environment is a studio: its main light is on the left of the camera, and it has
+ * a floor (vlCompleteDef.backdrop). Any thread. */
+VL_API bool vl_environment_is_studio(vlEnvironmentKind kind);
 /** From where the added camera looks. */
 typedef enum vlFraming {
   VL_FRAMING_AUTO,   /**< CORNER; flat models nearly along their normal; the middle of a shell
@@ -80,8 +87,8 @@ typedef struct vlCompleteDef {
       *path; /**< FILE: path of an image, either twice as wide as high (longitude and latitude;
                 its centre is in the direction -front) or square (equal-area octahedral) */
   double rotation; /**< rotation of the environment about `up`, radians, counter-clockwise as
-                      seen from above; unset: the studio's key light is on the added camera's
-                      left, all others are not rotated */
+                      seen from above; unset: a studio's main light is on the left of the
+                      added or the file's camera, all others are not rotated */
   float strength;  /**< factor on the environment's radiance */
   double up[3], front[3]; /**< directions in world space; default +y and +z, as in glTF */
   bool find_up; /**< `up` is y or z, and a guess: the other one is taken if the model stands on
@@ -92,12 +99,12 @@ typedef struct vlCompleteDef {
   /** Where the added camera stands, as seen from the model's middle: radians from `front` to
    * the right, and above the horizon. Unset: as `framing` says. */
   double azimuth, elevation;
-  /** With the added camera and the studio: a ground of the studio's colour under the model,
-   * which catches its shadows and becomes transparent away from it. It is a backdrop
-   * (vlShapeDef.backdrop). Default false. */
+  /** With a studio: a ground of the studio's colour under the model, which catches its shadows
+   * and becomes transparent away from it. It is a backdrop (vlShapeDef.backdrop). None where
+   * the camera is inside the model or does not look from above. Default false. */
   bool backdrop;
   /** Middle, in world space, and radius of the ground. Unset: under the model, by its size.
-   * With either the backdrop does not depend on the added camera and the studio. */
+   * With either the backdrop does not depend on the camera and the studio. */
   double ground_middle[3], ground_radius;
   /** With the added camera: of a closed model (a room whose walls hide it, a dome around it)
    * the faces between the camera and the middle are left out; a note gives their number. The

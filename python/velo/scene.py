@@ -19,7 +19,7 @@ AnyCamera = Union[Camera, OwnCamera, None]
 
 # Keywords of vlLoadDef; the other keywords of load() are those of vlCompleteDef.
 _LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera")
-_ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file", "lamps")
+_ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file", "lamps", "window", "evening")
 # Settings that the world depends on; the others belong to the film and the render.
 _BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits", "accelerator")
 _MOST_RACED = 64  # samples for which a race is planned, as by velo render: longer renders have the same tracer
@@ -467,7 +467,7 @@ def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = 
     CancelledError.
 
     Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera) and of
-    vlCompleteDef (environment: auto, none, studio, sky, white, lamps or the path of an image; rotation in radians, strength, up,
+    vlCompleteDef (environment: auto, none, studio, window, evening, sky, white, lamps or the path of an image; rotation in radians, strength, up,
     front, ground, reframe, framing, azimuth, elevation, backdrop, ground_middle, ground_radius, open_walls, walls_from)."""
     scene = Scene(context=context)
     loading = {name: keywords.pop(name) for name in _LOAD if name in keywords}

@@ -46,8 +46,8 @@ static const char *const light_samplers[] = {"bvh", "power", "uniform", NULL};
 static const char *const bits[] = {"portable", "fast", NULL};
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", NULL};
 static const char *const views[] = {"standard", "khronos-neutral", "agx", "raw", NULL};
-static const char *const environments[] = {"auto",  "none", "studio", "sky",
-                                           "white", "file", "lamps",  NULL};
+static const char *const environments[] = {"auto", "none",  "studio", "sky",     "white",
+                                           "file", "lamps", "window", "evening", NULL};
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 
 static const Field load_fields[] = {

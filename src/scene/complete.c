@@ -5,6 +5,7 @@
 
 #include "base/cookie.h"
 #include "base/unset.h"
+#include "math/approx_double.h"
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
@@ -12,6 +13,7 @@
 #include "scene/environment.h"
 #include "scene/inside.h"
 #include "scene/lamps.h"
+#include "scene/studio.h"
 #include "scene/upright.h"
 #include "schema/schema.h"
 #include "velo/material.h"
@@ -356,7 +358,7 @@ static void place_ground(vlCompleteDef *def, const View *v, const vlExtent *box,
   def->ground_radius = (double)(float)def->ground_radius;
 }
 
-/* A disk. fades: with the radiance of the studio's floor, into which it fades. */
+/* A disk. fades: with the radiance of a studio's floor, into which it fades. */
 static bool add_ground(vlScene *scene, const View *v, bool fades) {
   const vlCompleteDef *def = &scene->completed;
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
@@ -366,9 +368,10 @@ static bool add_ground(vlScene *scene, const View *v, bool fades) {
   disk.backdrop = fades;
   if (fades && !fade_texture(scene, &disk.alpha.texture))
     return false;
+  const vlStudio *studio = vl_studio(def->environment);
+  const float *albedo = (studio ? studio : vl_studio(VL_ENVIRONMENT_STUDIO))->floor;
   if (fades)
-    material.reflectance =
-        vl_spectrum_input(vl_spectrum_rgb(VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO));
+    material.reflectance = vl_spectrum_input(vl_spectrum_rgb(albedo[0], albedo[1], albedo[2]));
   disk.material = vl_scene_add_material(scene, &material);
   for (int i = 0; i < 3; i++) {
     disk.group_from_shape[4 * i] = v->right[i];
@@ -381,11 +384,23 @@ static bool add_ground(vlScene *scene, const View *v, bool fades) {
 
 /* ---- the steps --------------------------------------------------------------------------- */
 
-/* The studio is the fill light of the scene's own lamps: 0.3 times their light. */
-static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDef *def) {
-  double lux = vl_lamp_illuminance(scene, boxes), pi = 3.14159265358979323846;
+/* Lux that light a scene well enough without the studio, which gives about 2. */
+static const double LIT_BY_SURFACES = 0.2;
+
+/* The studio is the fill light of the scene's own lamps: 0.3 times their light. A file with a
+ * camera is a scene, not a model alone, and gets none where its surfaces light it. */
+static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDef *done) {
+  double lux = vl_lamp_illuminance(scene, boxes), pi = 3.14159265358979323846,
+         own = vl_surface_illuminance(scene, boxes);
+  if (own > 0)
+    vl_log(scene->context, VL_LOG_DEBUG, NULL,
+           "light: surfaces of the file that emit light give %.3g lux", own);
+  if (own >= LIT_BY_SURFACES && scene->camera_read) {
+    done->environment = VL_ENVIRONMENT_NONE;
+    return;
+  }
   if (lux > 0)
-    def->strength *= (float)(0.3 * lux / pi);
+    done->strength *= (float)(0.3 * lux / pi);
   if (lux > 0)
     vl_log(scene->context, VL_LOG_DEBUG, NULL,
            "light: the file's lamps give %.3g lux; the studio adds 0.3 times that", lux);
@@ -401,12 +416,33 @@ static bool walls_are_given(const vlCompleteDef *def) {
   return def->open_walls && !vl_is_unset(def->walls_from[0]);
 }
 
+/* Where the file's camera is, as an added one's place is described. Returns whether it looks
+ * from above at a model that it is not in, so that a ground does not come between them. */
+static bool find_own_view(const vlScene *scene, const vlExtent *box, View *v) {
+  const vlCameraDef *c = &scene->defs.camera;
+  const double *m = c->world_from_camera;
+  double eye[3], back[3], inside = 1, above = 0;
+  for (int i = 0; i < 3; i++) {
+    eye[i] = c->has_matrix ? m[4 * i + 3] : c->eye[i];
+    back[i] = c->has_matrix ? -m[4 * i + 2] : c->eye[i] - c->lookat[i];
+    inside *= eye[i] > box->low[i] && eye[i] < box->high[i];
+    above += v->up[i] * (eye[i] - (v->up[i] > 0 ? box->low[i] : box->high[i]));
+  }
+  const double length = vl_norm3(back);
+  if (!(length > 0) || !isfinite(length + above))
+    return false;
+  v->azimuth = vl_atan2_double(vl_dot3(back, v->right), vl_dot3(back, v->front));
+  v->elevation = vl_dot3(back, v->up) / length; /* its sine: only the sign is used */
+  return !(inside > 0) && above > 0 && v->elevation >= 0;
+}
+
 /* Camera, opening and ground. The scene's `completed` has what is asked for and gets what is
  * chosen. */
 static bool complete_geometry(vlScene *scene, const View *axes, bool camera,
                               const vlExtent *boxes) {
   vlCompleteDef *done = &scene->completed;
-  const bool studio = done->environment == VL_ENVIRONMENT_STUDIO;
+  const bool studio = vl_environment_is_studio(done->environment);
+  const bool own = !camera && scene->camera_read;
   vlExtent box = vl_extent_nothing;
   View view = *axes;
   vlClosed closed = {.kind = VL_CLOSED_NOT};
@@ -419,14 +455,15 @@ static bool complete_geometry(vlScene *scene, const View *axes, bool camera,
     done->azimuth = view.azimuth;
     done->elevation = view.elevation;
   }
-  if (studio && vl_is_unset(done->rotation))
-    done->rotation = camera ? view.azimuth - 0.45 : 0; /* the key light stays to its left */
+  bool stands = camera || (own && find_own_view(scene, &box, &view));
+  if (studio && vl_is_unset(done->rotation) && (camera || own))
+    done->rotation = view.azimuth - 0.45; /* the main light stays to its left */
   if ((camera && done->open_walls) || walls_are_given(done))
     ok = open_walls(scene, &view, camera, &box, boxes, &closed);
   else
     done->open_walls = false;
   bool wanted =
-      ground_is_given(done) || (camera && studio && !is_inside(&closed) && view.elevation >= 0);
+      ground_is_given(done) || (stands && studio && !is_inside(&closed) && view.elevation >= 0);
   bool fades = done->backdrop && wanted && !done->ground;
   done->backdrop = fades;
   if (done->ground || fades)
@@ -492,8 +529,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
     choose_size(s, &def);
   if (def.environment == VL_ENVIRONMENT_AUTO)
     done->environment = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
-  const vlEnvironmentKind kind = done->environment;
-  bool fits = def.environment == VL_ENVIRONMENT_AUTO && kind == VL_ENVIRONMENT_STUDIO;
+  bool fits =
+      done->environment != def.environment && done->environment == VL_ENVIRONMENT_STUDIO;
   View axes = {.azimuth = 0};
   if (!choose_up(scene, done))
     return vl_scene_result(scene, error);
@@ -502,15 +539,18 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
                   "camera: the axes up and front make no sense");
     return vl_scene_result(scene, error);
   }
-  bool geometry =
-      camera || def.ground || (def.backdrop && ground_is_given(&def)) || walls_are_given(&def);
   vlExtent *boxes = NULL;
   bool ok = true;
-  const bool lamps = kind == VL_ENVIRONMENT_LAMPS;
-  if (geometry || fits || lamps)
-    ok = vl_extent_groups(scene, &boxes);
-  if (ok && fits)
+  if (fits && (ok = vl_extent_groups(scene, &boxes)))
     fit_studio(scene, boxes, done);
+  const vlEnvironmentKind kind = done->environment;
+  bool own_studio = scene->camera_read && vl_environment_is_studio(kind) &&
+                    (def.backdrop || vl_is_unset(def.rotation));
+  bool geometry = camera || def.ground || own_studio ||
+                  (def.backdrop && ground_is_given(&def)) || walls_are_given(&def);
+  const bool lamps = kind == VL_ENVIRONMENT_LAMPS;
+  if (ok && (geometry || lamps) && !boxes)
+    ok = vl_extent_groups(scene, &boxes);
   if (ok && geometry)
     ok = complete_geometry(scene, &axes, camera, boxes);
   else

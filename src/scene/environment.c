@@ -11,6 +11,7 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/octahedral.h"
+#include "scene/studio.h"
 #include "velo/light.h"
 
 enum { BUILT_IN_SIDE = 512, MOST_SIDE = 2048 };
@@ -33,7 +34,7 @@ bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], doub
   return l > 0 && f > 1e-12 && isfinite(l + f);
 }
 
-/* ---- the studio -------------------------------------------------------------------------- */
+/* ---- built-in environments --------------------------------------------------------------- */
 
 static float ramp(float x, float from, float to) {
   float t = (x - from) / (to - from);
@@ -41,46 +42,28 @@ static float ramp(float x, float from, float to) {
   return t * t * (3 - 2 * t);
 }
 
-/* A soft box: a rectangle on the sphere; angles in degrees: azimuth from straight ahead to the
- * right, elevation above the horizon. */
-static float soft_box(float azimuth, float elevation, float at, float height, float half_width,
-                      float half_height, float edge) {
-  float a = fabsf(azimuth - at);
-  a = a > 180 ? 360 - a : a;
-  return ramp(half_width - a, 0, edge) * ramp(half_height - fabsf(elevation - height), 0, edge);
-}
-
-static float studio(vlVec3 d) {
-  float azimuth = vl_atan2(d.x, d.y) * 57.29578f,
-        elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
-  /* A grey room without edges: the floor goes over into walls that become brighter upwards and
-   * towards the back, and darker on the viewer's side. */
-  float back = 0.5f + 0.5f * d.y, floor = 0.17f + 0.05f * ramp(elevation, -80, -20);
-  float wall = (0.20f + 0.12f * back) + 0.22f * ramp(elevation, 5, 90);
-  float y = floor + (wall - floor) * ramp(elevation, -12, 24);
-  /* The viewer is at azimuth 180: key light over the left shoulder, fill light on the right,
-   * two rim lights behind the subject, one above; each is brighter towards its top. A white
-   * diffuse surface that faces the viewer has radiance 0.7, a horizontal one 1.1. */
-  float above = ramp(elevation, 0, 90);
-  y += (3.0f + 3.0f * above) * soft_box(azimuth, elevation, -135, 44, 32, 26, 12);
-  y += (0.8f + 1.2f * above) * soft_box(azimuth, elevation, 105, 24, 15, 34, 10);
-  y += 2.6f * soft_box(azimuth, elevation, 38, 40, 16, 16, 8);
-  y += 1.7f * soft_box(azimuth, elevation, -52, 42, 12, 24, 8);
-  y += 1.2f * ramp(elevation, 64, 80);
-  return y;
-}
+/* Fills an image of direction. */
+typedef struct StudioFill {
+  const vlStudio *studio;
+  vlImage *image;
+} StudioFill;
 
 static void fill_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
-  vlImage *image = user;
-  float *row = vl_image_row(image, y);
-  for (uint32_t x = 0; x < image->width; x++)
-    row[x] = studio(vl_octahedral_decode(((float)x + 0.5f) / (float)image->width,
-                                         ((float)y + 0.5f) / (float)image->height));
+  const StudioFill *fill = user;
+  const float side = (float)fill->image->width;
+  float *row = vl_image_row(fill->image, y);
+  for (uint32_t x = 0; x < fill->image->width; x++) {
+    float *rgb = row + 3 * (size_t)x;
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    fill->studio->radiance(
+        vl_octahedral_decode(((float)x + 0.5f) / side, ((float)y + 0.5f) / side), rgb);
+  }
 }
 
-static void fill_studio(vlScene *scene, vlImage *image) {
-  vl_parallel_for(scene->context, image->height, fill_row, image);
+static void fill_studio(vlScene *scene, const vlStudio *studio, vlImage *image) {
+  StudioFill fill = {studio, image};
+  vl_parallel_for(scene->context, image->height, fill_row, &fill);
 }
 
 /* Fills the image with skylight. The sun is a separate light. */
@@ -201,10 +184,6 @@ static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *
   return vl_scene_add_light(scene, &sun).index != 0;
 }
 
-static bool has_studio(vlEnvironmentKind kind) {
-  return kind == VL_ENVIRONMENT_STUDIO || kind == VL_ENVIRONMENT_LAMPS;
-}
-
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
                               vlEnvironmentKind kind) {
   vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
@@ -225,8 +204,9 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
   bool ok = true;
   if (kind == VL_ENVIRONMENT_FILE)
     ok = read_environment(scene, def->path, &image);
-  if (has_studio(kind) && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image)))
-    fill_studio(scene, image);
+  const vlStudio *studio = vl_studio(kind);
+  if (studio && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image)))
+    fill_studio(scene, studio, image);
   if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image)))
     fill_sky(image);
   light.image = image;

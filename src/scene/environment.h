@@ -4,9 +4,6 @@
 
 #include "scene/scene.h"
 
-/* The albedo of a floor in the studio that has the radiance of the studio's floor. */
-#define VL_FLOOR_ALBEDO 0.2f
-
 /* Adds an environment light; its kind is neither AUTO nor NONE. False: the scene holds the
  * error. */
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind);

@@ -3,10 +3,13 @@
 
 #include <math.h>
 
+#include "base/unset.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "schema/schema.h"
 #include "velo/light.h"
+#include "velo/shape.h"
 
 /* A histogram of illuminances: bins of a quarter of a stop. */
 enum { STOPS = 64, PER_STOP = 4, BINS = 2 * STOPS * PER_STOP };
@@ -42,16 +45,31 @@ static double lit_by(const vlLightDef *l, double strength, const double p[3]) {
   return outside ? 0 : strength / d2;
 }
 
-static void meter(void *user, const double p[3]) {
-  Meter *m = user;
-  double sum = 0;
-  for (size_t i = 0; i < m->scene->lights.count; i++)
-    sum += lit_by(&m->scene->lights.items[i], m->strength[i], p);
+static void count(Meter *m, double sum) {
   if (!(sum > 0) || !isfinite(sum))
     return;
   double bin = PER_STOP * (vl_precise_log2(sum) + STOPS);
   m->bins[bin < 0 ? 0 : bin >= BINS ? BINS - 1 : (int)bin]++;
   m->count++;
+}
+
+static void meter(void *user, const double p[3]) {
+  Meter *m = user;
+  double sum = 0;
+  for (size_t i = 0; i < m->scene->lights.count; i++)
+    sum += lit_by(&m->scene->lights.items[i], m->strength[i], p);
+  count(m, sum);
+}
+
+/* The median of what was counted; 0: nothing was. */
+static double median(const Meter *m) {
+  uint64_t below = 0;
+  for (int i = 0; i < BINS; i++) {
+    below += m->bins[i];
+    if (2 * below >= m->count && m->count)
+      return vl_precise_exp2((i + 0.5) / PER_STOP - STOPS);
+  }
+  return 0;
 }
 
 double vl_lamp_illuminance(const vlScene *scene, const vlExtent *boxes) {
@@ -67,11 +85,93 @@ double vl_lamp_illuminance(const vlScene *scene, const vlExtent *boxes) {
   }
   vl_extent_visit(scene, boxes, NULL, meter, &m);
   vl_free(scene->context, m.strength);
-  uint64_t below = 0;
-  for (int i = 0; i < BINS; i++) {
-    below += m.bins[i];
-    if (2 * below >= m.count && m.count)
-      return vl_precise_exp2((i + 0.5) / PER_STOP - STOPS);
+  return median(&m);
+}
+
+/* ---- surfaces ---------------------------------------------------------------------------- */
+
+/* A surface that emits light, as a point light. */
+typedef struct Emitter {
+  double middle[3], candela, area;
+} Emitter;
+
+typedef struct EmitterMeter {
+  Meter meter;
+  Emitter *emitters;
+  size_t count;
+} EmitterMeter;
+
+static double area_of(const vlShapeDef *d, const vlMat4 *m) {
+  double sum = 0;
+  for (size_t face = 0; face < d->faces; face++) {
+    double p[3][3], a[3], b[3], n[3];
+    for (int c = 0; c < 3; c++) {
+      const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)c];
+      const double q[3] = {(double)v[0], (double)v[1], (double)v[2]};
+      vl_mat4_point(m, q, p[c]);
+    }
+    for (int i = 0; i < 3; i++) {
+      a[i] = p[1][i] - p[0][i];
+      b[i] = p[2][i] - p[0][i];
+    }
+    vl_cross3(a, b, n);
+    sum += 0.5 * vl_norm3(n);
   }
-  return 0;
+  return sum;
+}
+
+/* False: the shape is no lamp. */
+static bool take_emitter(const vlScene *scene, const vlShapeDef *d, Emitter *emitter) {
+  if (!d->emission.index || d->group.index || d->kind != VL_SHAPE_TRIANGLES || !d->positions ||
+      !d->indices)
+    return false;
+  const vlEmissionDef *e = &scene->emissions.items[d->emission.index - 1];
+  const double radiance = vl_light_def_luminance(&e->radiance) * (double)e->scale;
+  if (e->image || e->texture.index || !vl_is_unset(e->power) || !(radiance > 1))
+    return false;
+  const vlMat4 m = vl_mat4_load(d->group_from_shape);
+  vlExtent box = vl_extent_nothing;
+  for (size_t i = 0; i < d->vertices; i++) {
+    const float *v = d->positions + 3 * i;
+    const double q[3] = {(double)v[0], (double)v[1], (double)v[2]};
+    double p[3];
+    vl_mat4_point(&m, q, p);
+    vl_extent_grow(&box, p);
+  }
+  for (int i = 0; i < 3; i++)
+    emitter->middle[i] = 0.5 * (box.low[i] + box.high[i]);
+  emitter->area = area_of(d, &m);
+  emitter->candela = radiance * emitter->area;
+  return true;
+}
+
+static void meter_emitters(void *user, const double p[3]) {
+  EmitterMeter *m = user;
+  double sum = 0;
+  for (size_t i = 0; i < m->count; i++) {
+    const Emitter *g = &m->emitters[i];
+    double d2 = g->area / 3.14159265358979323846; /* no more than beside a plane of it */
+    for (int k = 0; k < 3; k++)
+      d2 += (p[k] - g->middle[k]) * (p[k] - g->middle[k]);
+    sum += d2 > 0 ? g->candela / d2 : 0;
+  }
+  count(&m->meter, sum);
+}
+
+double vl_surface_illuminance(const vlScene *scene, const vlExtent *boxes) {
+  const size_t shapes = scene->shapes.count;
+  EmitterMeter m = {.meter = {.scene = scene}};
+  if (scene->emissions.count == 0 || shapes == 0)
+    return 0;
+  bool *lamps = vl_alloc_array(scene->context, shapes, sizeof *lamps);
+  m.emitters = vl_alloc_array(scene->context, shapes, sizeof *m.emitters);
+  for (size_t i = 0; i < shapes && lamps && m.emitters; i++) {
+    lamps[i] = take_emitter(scene, &scene->shapes.items[i], &m.emitters[m.count]);
+    m.count += lamps[i];
+  }
+  if (m.count)
+    vl_extent_visit(scene, boxes, lamps, meter_emitters, &m);
+  vl_free(scene->context, lamps);
+  vl_free(scene->context, m.emitters);
+  return median(&m.meter);
 }

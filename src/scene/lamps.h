@@ -13,4 +13,10 @@ double vl_light_def_luminance(const vlSpectrum *spectrum);
  * point. boxes: those of the groups. */
 double vl_lamp_illuminance(const vlScene *scene, const vlExtent *boxes);
 
+/* The same of the surfaces that emit light and are brighter than white (radiance 1): lamps, not
+ * displays. It is the median over points of the other surfaces; a surface is a point light in
+ * the middle of its box that faces everything. Emission by images and surfaces in groups do
+ * not count. */
+double vl_surface_illuminance(const vlScene *scene, const vlExtent *boxes);
+
 #endif

@@ -76,6 +76,7 @@ struct vlScene {
   VL_ARRAY(vlSceneEdit) edits;
   vlSceneDefs defs;
   vlCompleteDef completed; /* what vl_scene_complete has added; cookie 0: it was not called */
+  bool camera_read;        /* defs.camera is that of the file that was read */
   bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras
                           of a glTF file */
   VL_ARRAY(vlAperture *) apertures; /* aperture objects to which defs.camera may point */

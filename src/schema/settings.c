@@ -147,8 +147,8 @@ static const vlParameter load_parameters[] = {
 };
 VL_KIND_ROW(load, .name = "load", .description = "how a file of a scene is read")
 
-static const char *const environments[] = {"auto",  "none", "studio", "sky",
-                                           "white", "file", "lamps",  NULL};
+static const char *const environments[] = {"auto", "none",  "studio", "sky",     "white",
+                                           "file", "lamps", "window", "evening", NULL};
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 #define COMPLETE(TYPE, ...) VL_PARAMETER(TYPE, vlCompleteDef, NULL, __VA_ARGS__)
 static const vlParameter complete_parameters[] = {
@@ -159,8 +159,8 @@ static const vlParameter complete_parameters[] = {
     COMPLETE(CHOICE, environment, "light from all directions", .choices = environments),
     COMPLETE(FILE, path, "image of the environment", .text = NULL),
     COMPLETE(DOUBLE, rotation,
-             "rotation of the environment about the vertical axis; unset: the studio's key "
-             "light is on the added camera's left",
+             "rotation of the environment about the vertical axis; unset: a studio's main "
+             "light is on the camera's left",
              WITHIN(-1e6 * DEGREES, 1e6 * DEGREES), UNSET, .unit = "degrees", .factor = DEGREES,
              .alias = "environment_rotation"),
     COMPLETE(FLOAT, strength, "factor on the radiance of the environment", WITHIN(0, 1e6),
@@ -181,7 +181,7 @@ static const vlParameter complete_parameters[] = {
              .factor = DEGREES),
     COMPLETE(DOUBLE, elevation, "its angle above the horizon",
              WITHIN(-89 * DEGREES, 89 * DEGREES), UNSET, .unit = "degrees", .factor = DEGREES),
-    COMPLETE(BOOL, backdrop, "add a ground of the studio's colour", .unit = NULL),
+    COMPLETE(BOOL, backdrop, "with a studio: add a ground of its colour", .unit = NULL),
     COMPLETE(DOUBLE3, ground_middle, "middle of the ground; unset: under the model",
              .flags = VL_PARAMETER_VECTOR | VL_PARAMETER_UNSET),
     COMPLETE(DOUBLE, ground_radius, "radius of the ground; unset: by the size of the model",

@@ -11,6 +11,7 @@
 
 #include "scene/lamps.h"
 #include "scene/scene.h"
+#include "scene/studio.h"
 #include "velo/light.h"
 #include "velo/shape.h"
 
@@ -418,13 +419,54 @@ static void choices_as_a_def(void **state) {
     }
 }
 
+/* A floor of the studio's albedo has the radiance of the studio's floor where a camera sees one
+ * go over into the other, no studio has a colour cast on it that its floor has not, and other
+ * environments are no studios. */
+static void studios_have_floors(void **state) {
+  (void)state;
+  static const vlEnvironmentKind kinds[] = {VL_ENVIRONMENT_STUDIO, VL_ENVIRONMENT_WINDOW,
+                                            VL_ENVIRONMENT_EVENING};
+  enum { ROWS = 180, COLUMNS = 360 };
+  const double degree = 3.14159265358979323846 / 180;
+  for (int k = 0; k < 3; k++) {
+    const vlStudio *studio = vl_studio(kinds[k]);
+    double white[3] = {0, 0, 0}; /* radiance of a white floor */
+    for (int row = 0; row < ROWS; row++)
+      for (int column = 0; column < COLUMNS; column++) {
+        const double e = 90.0 * (row + 0.5) / ROWS * degree, a = (column + 0.5) * degree;
+        const vlVec3 d = {(float)(cos(e) * sin(a)), (float)(cos(e) * cos(a)), (float)sin(e)};
+        float rgb[3] = {0, 0, 0};
+        studio->radiance(d, rgb);
+        for (int c = 0; c < 3; c++)
+          white[c] += (double)rgb[c] * sin(e) * cos(e) * degree * degree * 0.5 / (180 * degree);
+      }
+    float rgb[3] = {0, 0, 0};
+    studio->radiance((vlVec3){0, (float)cos(25 * degree), -(float)sin(25 * degree)}, rgb);
+    for (int c = 0; c < 3; c++) {
+      const double ratio = (double)studio->floor[c] * white[c] / (double)rgb[c];
+      if (!(fabs(ratio - 1) < 0.15))
+        print_message("studio %d, channel %d: %.3f\n", k, c, ratio);
+      assert_true(fabs(ratio - 1) < 0.15);
+    }
+    assert_true(vl_environment_is_studio(kinds[k]));
+  }
+  assert_false(vl_environment_is_studio(VL_ENVIRONMENT_SKY));
+  assert_false(vl_environment_is_studio(VL_ENVIRONMENT_FILE));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(flat_models), cmocka_unit_test(sheet_from_behind),
-      cmocka_unit_test(charts),      cmocka_unit_test(upright),
-      cmocka_unit_test(rooms),       cmocka_unit_test(objects),
-      cmocka_unit_test(dome),        cmocka_unit_test(ground),
-      cmocka_unit_test(lamps),       cmocka_unit_test(choices_as_a_def),
+      cmocka_unit_test(flat_models),
+      cmocka_unit_test(sheet_from_behind),
+      cmocka_unit_test(charts),
+      cmocka_unit_test(upright),
+      cmocka_unit_test(rooms),
+      cmocka_unit_test(objects),
+      cmocka_unit_test(dome),
+      cmocka_unit_test(ground),
+      cmocka_unit_test(lamps),
+      cmocka_unit_test(choices_as_a_def),
+      cmocka_unit_test(studios_have_floors),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static char *add(AddedOptions *added, int id) {
 
 static void add_light(const SceneOpening *opening, const Arguments *arguments,
                       AddedOptions *added) {
-  static const char *const names[] = {"auto", "none", "studio", "sky", "white", "", "lamps"};
+  const char *const *names = vl_setting(VL_SETTING_COMPLETE, "environment")->choices;
   const vlCompleteDef *d = &opening->complete;
   const bool none = d->environment == VL_ENVIRONMENT_NONE;
   if (none && !opening->model && !arguments->values[RENDER_ENVIRONMENT].given)
@@ -59,16 +59,16 @@ static void add_light(const SceneOpening *opening, const Arguments *arguments,
     added->items[added->count - 1].text = d->path;
   if (none)
     return;
-  if (d->environment == VL_ENVIRONMENT_STUDIO || d->rotation != 0)
+  if (vl_environment_is_studio(d->environment) || d->rotation != 0)
     put_angle(add(added, RENDER_ENVIRONMENT_ROTATION), ADDED_TEXT, d->rotation);
   if (d->strength != 1.0f)
     put_float(add(added, RENDER_ENVIRONMENT_STRENGTH), d->strength);
 }
 
-static void add_ground(const SceneOpening *opening, bool camera, AddedOptions *added) {
+static void add_ground(const SceneOpening *opening, AddedOptions *added) {
   const vlCompleteDef *d = &opening->complete;
   if (!d->ground && !d->backdrop) {
-    if (camera && opening->model && d->environment == VL_ENVIRONMENT_STUDIO) {
+    if (opening->model && vl_environment_is_studio(d->environment)) {
       add(added, RENDER_NO_GROUND);
       added->items[added->count - 1].text = NULL;
     }
@@ -99,7 +99,7 @@ void added_options(const SceneOpening *opening, const Arguments *arguments, bool
   const vlCompleteDef *d = &opening->complete;
   added->count = 0;
   add_light(opening, arguments, added);
-  add_ground(opening, camera, added);
+  add_ground(opening, added);
   if (camera) {
     char *text = add(added, RENDER_FRAMING);
     put_angle(text, ADDED_TEXT, d->azimuth);

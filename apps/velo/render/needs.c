@@ -123,8 +123,7 @@ static bool has_added_light(const Facts *f) {
 }
 
 static bool has_added_ground(const Facts *f) {
-  return f->needs->opening->model && has_added_camera(f) &&
-         f->needs->opening->environment == VL_ENVIRONMENT_STUDIO;
+  return f->needs->opening->model && vl_environment_is_studio(f->needs->opening->environment);
 }
 
 static bool has_added(const Facts *f) {

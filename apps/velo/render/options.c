@@ -95,9 +95,9 @@ const Option render_options[] = {
      "rotate the scene's camera about the vertical axis through the middle of the scene"},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME",
      "glTF: material variant to use, by name"},
-    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
-     "environment map that lights the scene: studio, sky, white, none, lamps (inside of a room), "
-     "or an image file (2:1: "
+    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "NAME",
+     "environment that lights the scene: a studio (studio: soft boxes, window, evening), sky, "
+     "white, none, lamps (inside of a room), or an image file (2:1: "
      "longitude and latitude; "
      "square: equal-area octahedral). Default: studio, if the file has none"},
     {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_ANGLE, "DEG",
@@ -108,8 +108,8 @@ const Option render_options[] = {
     {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL,
      "add a wide grey disk below the scene as ground"},
     {RENDER_NO_GROUND, 0, "no-ground", OPTION_FLAG, NULL,
-     "add no ground below a model without a camera of its own. Default: a ground that shows "
-     "the model's shadows and fades into the studio"},
+     "add no ground below a model in a studio. Default: a ground that shows the model's "
+     "shadows and fades into the studio"},
     {RENDER_GROUND_MIDDLE, 0, "ground-middle", OPTION_POINT, "X,Y,Z",
      "middle of the ground, also of one below a model with a camera of its own. Default: under "
      "the model"},

@@ -678,7 +678,7 @@ const Command render_command = {
         "      --film FILE         keep the samples; the same command again goes on\n"
         "      --channels LIST     depth, normals, ids and more in the .exr\n"
         "      --exposure EV       brightness of .png and .jpg in stops, or auto\n"
-        "      --environment FILE  light of a model: studio, sky, white or an image\n"
+        "      --environment NAME  light of a model: studio, window, evening, sky ...\n"
         "      --camera FILE       another camera; --trajectory FILE: many poses\n"
         "  -t, --threads N         default: all processors\n"
         "\n"

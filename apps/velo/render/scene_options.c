@@ -29,21 +29,15 @@ bool scene_camera_is_own(const char *path, const Arguments *arguments) {
   return camera->given && scene_is_gltf(path) && stat(camera->text, &info) != 0;
 }
 
-/* Parses studio, sky, white, none, or a file name. */
+/* Parses the name of an environment, or a file's. */
 static void choose_environment(const char *text, vlCompleteDef *def) {
-  static const struct {
-    const char *name;
-    vlEnvironmentKind kind;
-  } kinds[] = {{"auto", VL_ENVIRONMENT_AUTO},     {"none", VL_ENVIRONMENT_NONE},
-               {"studio", VL_ENVIRONMENT_STUDIO}, {"sky", VL_ENVIRONMENT_SKY},
-               {"white", VL_ENVIRONMENT_WHITE},   {"lamps", VL_ENVIRONMENT_LAMPS}};
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    if (strcmp(text, kinds[i].name) == 0) {
-      def->environment = kinds[i].kind;
-      return;
-    }
+  const char *const *names = vl_setting(VL_SETTING_COMPLETE, "environment")->choices;
   def->environment = VL_ENVIRONMENT_FILE;
-  def->path = text;
+  for (int i = 0; names[i]; i++)
+    if (strcmp(text, names[i]) == 0)
+      def->environment = (vlEnvironmentKind)i;
+  if (def->environment == VL_ENVIRONMENT_FILE)
+    def->path = text;
 }
 
 const Choice framing_choices[] = {{"auto", VL_FRAMING_AUTO},
@@ -162,6 +156,13 @@ static void choose_completion(const char *path, const Arguments *arguments, bool
   complete->find_up = model && !v[RENDER_UP].given && !scene_is_gltf(path);
 }
 
+/* The file's own camera is not the one that renders: neither studio nor ground follow it. */
+static void leave_camera(const OptionValue *v, vlCompleteDef *complete) {
+  if (!v[RENDER_ENVIRONMENT_ROTATION].given)
+    complete->rotation = 0;
+  complete->backdrop &= v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given;
+}
+
 static int choose_load(const char *path, const Arguments *arguments,
                        const SceneOpening *opening, vlLoadDef *load) {
   const OptionValue *v = arguments->values;
@@ -211,13 +212,16 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
   if (lit_inside)
     complete.environment = VL_ENVIRONMENT_LAMPS;
   vl_scene_bounds(*scene, opening->low, opening->high);
+  if (v[RENDER_CAMERA].given && !load->camera)
+    leave_camera(v, &complete);
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
   opening->complete = vl_scene_completed(*scene);
   opening->environment = opening->complete.environment;
   opening->lamps =
-      opening->model && (info.lights > 0 || opening->environment == VL_ENVIRONMENT_LAMPS);
+      opening->model && (info.lights > 0 || opening->environment == VL_ENVIRONMENT_NONE ||
+                         opening->environment == VL_ENVIRONMENT_LAMPS);
   opening->camera_added = camera;
   opening->camera = defs->camera;
   return -1;

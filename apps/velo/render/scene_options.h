@@ -12,7 +12,8 @@
 typedef struct SceneOpening {
   vlLoadDef load;
   vlCompleteDef complete;
-  bool lamps;             /* a file of a model (glTF, OBJ, PLY) with lights of its own */
+  bool lamps;             /* a file of a model (glTF, OBJ, PLY) that its own lights or
+                                    surfaces light */
   bool silent;            /* input: the camera that is added is not reported */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
   const char *text; /* input: a pbrt scene in memory, in place of the file; null: the file */

@@ -118,8 +118,9 @@ const Option view_options[] = {
     {RENDER_TURN, 0, "turn", OPTION_NUMBER, "DEGREES",
      "rotate the scene's camera about the vertical axis"},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant"},
-    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
-     "environment map that lights the scene: studio, sky, white, none, lamps, or an image file"},
+    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "NAME",
+     "environment that lights the scene: studio, window, evening, sky, white, none, lamps, or an "
+     "image file"},
     {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_ANGLE, "DEG",
      "rotation of the environment map about the vertical axis, in degrees"},
     {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X",

@@ -286,7 +286,7 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Trajectory: {"file": text, "keywords": _KEYWORDS, "name": file_name},
     kinds.Rig: {"base": lambda value, where: member(*_MOVED)(value, where), "parts": items(_part, 1, 1000)},
     kinds.Lights: {"count": count(10000), "low": vector(3), "high": vector(3), "power": range_(0, 1e12), "kelvin": range_(1, 1e6)},
-    kinds.Environment: {"kind": choice("studio", "sky", "white", "auto", "none"), "files": items(text, 0, 100000), "strength": either(setting("complete", "strength"), "a number"),
+    kinds.Environment: {"kind": choice("studio", "window", "evening", "sky", "white", "auto", "none"), "files": items(text, 0, 100000), "strength": either(setting("complete", "strength"), "a number"),
                         "rotation": optional(setting("complete", "rotation"))},
     kinds.Materials: {"color": bounds(vector(3, 0, 1)), "roughness": range_(0, 1), "metallic": range_(0, 1), "textures": items(text, 0, 100000)},
     kinds.Ground: {"size": number(1e-12, 1e12), "height": number(), "up": direction, "materials": lambda v, w: member(kinds.Materials)(v, w)},

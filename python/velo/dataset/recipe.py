@@ -103,7 +103,7 @@ class Lights:
 
 @dataclass
 class Environment:
-    """Light from all directions: studio, sky, white, or one of these images. Rotation is at random unless given."""
+    """Light from all directions: studio, window, evening, sky, white, or one of these images. Rotation is at random unless given."""
     kind: str = "studio"
     files: Sequence[str] = ()
     strength: Range = 1.0

@@ -114,6 +114,7 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   s->camera = def;
   s->camera_source.file = NULL;
   s->camera_missing = false;
+  g->scene->camera_read = true;
   g->scene->camera_in_full = json_object_get(json_object_get(json, "extras"), "velo") != NULL;
   return true;
 }

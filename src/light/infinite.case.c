@@ -7,8 +7,8 @@ const LightCase infinite_light = {
             {.parameters = "\"rgb L\" [.5 1 2]"},
             {.parameters = "\"string filename\" \"sky.pfm\"", .compensated = true},
             {.parameters =
-                 "\"string filename\" \"sky.pfm\" \"point3 portal\" [-2 0 -3 2 0 -3 2 4 "
-                 "-3 -2 4 -3]"},
+                 "\"string filename\" \"sky.pfm\" \"point3 portal\" [-1.2 0 -1.2 1.2 0 -1.2 1.2 2 "
+                 "-1.2 -1.2 2 -1.2]"},
         },
     .illuminated = {"\"rgb L\" [1 1 1]", "\"string filename\" \"sky.pfm\""},
     .faced = {0, 0, 1},

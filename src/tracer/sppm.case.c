@@ -1,4 +1,4 @@
 /* tracer/sppm.case.c: what tests know of the tracer sppm. */
 #include "tracer/tracer.case.h"
 
-const TracerCase sppm_tracer = {TRANSPORT, .spp = 128};
+const TracerCase sppm_tracer = {TRANSPORT, .spp = 192};

@@ -107,6 +107,11 @@ static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
     result = vl_camera_make(&defs->camera, &camera, NULL, error);
   if (result == VL_OK)
     result = vl_film_create(in, &defs->film, &film);
+  const char *lack = result == VL_OK
+                         ? vl_tracer_lacks(world, &camera, &defs->film, defs->render.tracer)
+                         : NULL;
+  if (lack)
+    fail_msg("the path tracer stands in for the tracer of this scene, which lacks %s", lack);
   if (result == VL_OK)
     result = vl_render(world, &camera, film, &defs->render, NULL, error);
   if (result == VL_OK)
@@ -254,13 +259,14 @@ static void even_direction(uint32_t i, uint32_t count, double turn, double d[3])
   d[2] = z;
 }
 
-/* A camera just above the floor y = 0 that sees the square of this size around (x, z). */
+/* A camera close above the floor y = 0 that sees the square of this size around (x, z). Light
+ * paths find it: it is a perspective one. All pixels see the same area. */
 static void look_down(vlCameraDef *def, double x, double z, double size) {
   *def = vl_default_camera_def(WIDTH, WIDTH);
-  def->projection = VL_PROJECTION_ORTHOGRAPHIC;
-  def->fx = def->fy = WIDTH / size;
+  const double height = 0.04 + 0.1 * size;
+  def->fx = def->fy = WIDTH / size * height;
   def->eye[0] = def->lookat[0] = x;
-  def->eye[1] = 0.04;
+  def->eye[1] = height;
   def->lookat[1] = 0;
   def->eye[2] = def->lookat[2] = z;
   def->up[0] = def->up[1] = 0;

@@ -13,6 +13,7 @@ import { Compare } from "./compare.js";
 import { Save } from "./save.js";
 import { Outside } from "./outside.js";
 import { Paths } from "./paths.js";
+import { makeTimeline } from "./timeline.js";
 import { byId, make, metric, short } from "./dom.js";
 import { addHelp } from "./help.js";
 import { Gestures } from "./gestures.js";
@@ -111,6 +112,7 @@ const outside = app.outside = new Outside(app);
 screen.onplace = () => { overlay.draw(); compare.draw(); };
 const inspector = new Inspector(byId("pixel"), app);
 const paths = app.paths = new Paths(byId("pixel"), app);
+const timeline = app.timeline = makeTimeline(app);
 paths.onpaths = () => inspector.texture(paths);
 new Pointer(byId("stage"), app);
 const crosshair = new Crosshair(byId("stage"), app);
@@ -131,6 +133,7 @@ function showState(state) {
   panel.accepted();
   panel.show(app.local, size);
   display.show(state, first);
+  timeline.state(state);
   byId("scene").textContent = state.scene.split("/").pop();
   document.title = `${state.scene.split("/").pop()} – velo`;
   enable();
@@ -151,6 +154,7 @@ function enable() {
   const on = Boolean(app.steers && app.connected && app.state);
   panel.enable(on);
   display.enable(on);
+  timeline.enable(on);
   byId("undo").disabled = !on || !app.state.can_undo;
   byId("redo").disabled = !on || !app.state.can_redo;
   for (const control of [byId("reset"), byId("pause"), byId("denoise"), ...byId("save").querySelectorAll("button, select")]) control.disabled = !on;
@@ -216,16 +220,18 @@ const handlers = {
   refused(message) {
     if (message.id && app.waiting.has(message.id)) return answered(message);
     if (message.change) app.sent = app.sent.filter(edit => edit.change > message.change);
+    timeline.refused();
     if (app.state) expect();
     if (!panel.refused(message.field, message.message)) app.notice(message.message);
   },
   loading: () => { byId("status").textContent = "a file changed: loading"; },
-  loaded() { app.notice("The scene was loaded again.", true); outside.loaded(); paths.stale(); },
+  loaded() { app.notice("The scene was loaded again.", true); outside.loaded(); timeline.loaded(); paths.stale(); },
   warning: message => app.notice(message.message, true),
   note: message => app.notice(message.message, true),
   error(message) {
     const place = message.file ? `${message.file}${message.line ? `:${message.line}` : ""}${message.column ? `:${message.column}` : ""}\n` : "";
     app.notice(place + message.message);
+    timeline.refused();
   },
 };
 
@@ -255,6 +261,7 @@ connect({
     display.frame(frame);
     screen.take(frame);
     showSeen(frame);
+    timeline.frame(frame);
     app.connection.send({ type: "seen", serial: frame.serial });
     inspector.frame();
     compare.frame();

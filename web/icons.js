@@ -16,6 +16,9 @@ const paths = {
   turn: "M20 12a8 8 0 1 1-3-6.2M20 3v5h-5M11 12a1 1 0 1 0 2 0 1 1 0 1 0-2 0",
   focus: "M4 8V4h4M16 4h4v4M20 16v4h-4M8 20H4v-4M9 12a3 3 0 1 0 6 0 3 3 0 1 0-6 0",
   crop: "M6 2v16h16M2 6h16v16",
+  play: "M7 4v16l13-8z",
+  loop: "m17 2 4 4-4 4M3 11V9a3 3 0 0 1 3-3h15M7 22l-4-4 4-4M21 13v2a3 3 0 0 1-3 3H3",
+  blur: "M14 12a4 4 0 1 0 8 0 4 4 0 1 0-8 0M2 8h9M5 12h6M2 16h9",
 };
 
 export function icon(name) {

@@ -1,7 +1,7 @@
 // The camera from outside: the scene, rendered small, and over it eye, view plane, pyramid and axes. Dragging the eye
 // moves e, dragging the view plane moves d, dragging elsewhere turns the view.
 import { add, cross, dot, length, scale, sub, unit } from "./vec.js";
-import { orbit } from "./steer.js";
+import { orbit, takePose } from "./steer.js";
 import { byId, make } from "./dom.js";
 
 const fov = 40 * Math.PI / 180; // vertical; as apps/velo/view/engine_outside.c
@@ -223,8 +223,7 @@ export class Outside {
     const near = m => { const p = this.project(eyeOf(m)); return p[2] > 0 ? Math.hypot(p[0] - this.last[0], p[1] - this.last[1]) : Infinity; };
     const m = this.string.poses.reduce((a, b) => near(b) < (a ? near(a) : 12) ? b : a, null);
     if (!m) return;
-    const c = this.app.camera(), eye = eyeOf(m), arm = length(sub(c.lookat, c.eye));
-    this.app.edit({ eye, lookat: add(eye, scale([m[2], m[6], m[10]], arm)), up: [-m[1], -m[5], -m[9]], roll: 0 }, this.gesture);
+    this.app.edit(takePose(this.app.camera(), m), this.gesture);
   }
 
   wheel(event) {

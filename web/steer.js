@@ -69,3 +69,9 @@ export function pivot(c, point) {
   const { forward } = axes(c), depth = dot(sub(point, c.eye), forward);
   return depth > 0 ? { lookat: add(c.eye, scale(forward, depth)) } : {};
 }
+
+// The pose world_from_camera, looking as far as before.
+export function takePose(c, m) {
+  const eye = [m[3], m[7], m[11]], arm = length(sub(c.lookat, c.eye));
+  return { eye, lookat: add(eye, scale([m[2], m[6], m[10]], arm)), up: [-m[1], -m[5], -m[9]], roll: 0 };
+}

@@ -99,3 +99,22 @@ bool camera_keep(const ViewCamera *before, const ViewCamera *now, const ViewCame
   *kept = next;
   return same_size(kept, now);
 }
+
+bool camera_follow(const ViewCamera *before, const ViewCamera *now, const ViewCamera *shown,
+                   bool added, ViewCamera *kept) {
+  vlError error;
+  if (has_parts_of_scene(shown))
+    return false;
+  if (!added && same_size(before, shown) && same_rest(&before->made, &shown->made) &&
+      same_field(&before->made, &shown->made)) {
+    *kept = *now;
+    return true;
+  }
+  ViewCamera next = *shown;
+  next.def.shutter_open = now->def.shutter_open;
+  next.def.shutter_close = now->def.shutter_close;
+  if (vl_camera_make(&next.def, &next.made, NULL, &error) != VL_OK)
+    return false;
+  *kept = next;
+  return true;
+}

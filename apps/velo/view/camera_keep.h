@@ -12,4 +12,11 @@
 bool camera_keep(const ViewCamera *before, const ViewCamera *now, const ViewCamera *shown,
                  ViewCamera *kept);
 
+/* For another time of the same animation; the arguments are as camera_keep's. added: the
+ * scene's camera is not the file's. False: the page's camera has parts of the old scene. Else
+ * *kept is the scene's camera if it is the file's and the page has not moved it; otherwise the
+ * page's, with the shutter of the new one. */
+bool camera_follow(const ViewCamera *before, const ViewCamera *now, const ViewCamera *shown,
+                   bool added, ViewCamera *kept);
+
 #endif

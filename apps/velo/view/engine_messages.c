@@ -9,6 +9,7 @@
 
 static char *engine_state(const Engine *e) {
   const Wanted *w = &e->wanted;
+  const vlLoadDef *load = &e->model.opening.load;
   const ViewState state = {.scene = e->def.path,
                            .change = w->change,
                            .spp = w->spp,
@@ -21,6 +22,10 @@ static char *engine_state(const Engine *e) {
                            .exposure = (double)e->model.exposure,
                            .view = (int)e->def.arguments->values[RENDER_VIEW].integer,
                            .info = &e->model.info,
+                           .seconds = e->watching ? e->model.seconds : 0,
+                           .at = load->time,
+                           .close = load->time_close,
+                           .poses = e->model.camera_count,
                            .camera = &w->camera};
   return state_text(&state);
 }
@@ -197,6 +202,17 @@ static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
   e->chosen_change = m->change;
 }
 
+static void set_time(Engine *e, uint32_t client, const ViewMessage *m) {
+  if (!(e->model.seconds > 0) || !e->watching) {
+    post_refusal(e, client, m, "there is no animation");
+    return;
+  }
+  e->at = m->at;
+  e->shutter = m->shutter;
+  e->time_change = m->change;
+  e->has_time = e->time_due = true;
+}
+
 /* Adds a message to a list of tasks. */
 static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks,
                      uint32_t *count) {
@@ -262,6 +278,9 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
         break;
       case MESSAGE_SCENE:
         choose_scene(e, client, m);
+        break;
+      case MESSAGE_TIME:
+        set_time(e, client, m);
         break;
       case MESSAGE_PATHS:
         engine_add_trace(e, client, m);

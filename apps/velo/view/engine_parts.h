@@ -85,7 +85,13 @@ struct Engine {
   /* of the lecture: the scene that a page has chosen and that is not loaded yet, null: none;
    * the scene of `next` */
   const char *chosen, *next_path;
-  uint32_t chosen_change, next_change;           /* the page's numbers of these choices */
+  uint32_t chosen_change, next_change; /* the page's numbers of these choices */
+  /* the time of the animation that a page asks for, if it asked for one: in seconds, when the
+   * shutter opens, how long it stays open; the page's number of this change; whether the model
+   * is to be loaded for it */
+  double at, shutter;
+  bool has_time, time_due;
+  uint32_t time_change;
   Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
   uint32_t task_count, question_count;
   Task traces[MOST_TASKS]; /* pixels whose paths are to be traced: at most one of each page */

@@ -38,9 +38,9 @@ bool engine_load_choice(Engine *e) {
   Model *model = calloc(1, sizeof *model);
   FileList files = {.count = 0};
   report_listen(engine_report, e);
-  int status =
-      model ? model_load(e->def.context, path, e->def.arguments, NULL, e->end, model, &files)
-            : STATUS_OTHER;
+  int status = model ? model_load(e->def.context, path, e->def.arguments, NULL, NULL, e->end,
+                                  model, &files)
+                     : STATUS_OTHER;
   report_listen(NULL, NULL);
   file_list_free(&files);
   if (status >= 0) {
@@ -101,6 +101,20 @@ static void keep_cameras(Engine *e, const ViewCamera *before, const ViewCamera *
   }
 }
 
+/* Another time of the animation: the page's camera stays, or follows the file's if the page has
+ * not moved it; the settings stay. The caller holds the lock. */
+static void follow_cameras(Engine *e, const ViewCamera *before, const ViewCamera *shown,
+                           const uint32_t crop[4], const History *history) {
+  const bool added = e->model.opening.camera_added;
+  const ViewCamera now = e->scene_camera;
+  if (!camera_follow(before, &now, shown, added, &e->wanted.camera))
+    return;
+  memcpy(e->wanted.crop, crop, sizeof e->wanted.crop);
+  e->history = *history;
+  for (uint32_t i = 0; i < e->history.count; i++)
+    camera_follow(before, &now, &e->history.cameras[i], added, &e->history.cameras[i]);
+}
+
 bool engine_swap_model(Engine *e) {
   static History history; /* the render thread alone uses it */
   pthread_mutex_lock(&e->lock);
@@ -126,9 +140,15 @@ bool engine_swap_model(Engine *e) {
     e->wanted.paused = false;
   }
   history = e->history;
-  if (engine_take_model(e) < 0 && !other)
+  const bool timed = e->model.timed;
+  if (timed)
+    e->wanted.change = e->next_change;
+  const bool taken = engine_take_model(e) < 0;
+  if (taken && timed)
+    follow_cameras(e, &before, &shown, crop, &history);
+  else if (taken && !other)
     keep_cameras(e, &before, &shown, crop, &history);
-  if (spp != old_spp && !other)
+  if ((spp != old_spp || timed) && !other)
     e->wanted.spp = spp;
   engine_post_state(e, 0);
   pthread_mutex_unlock(&e->lock);
@@ -136,7 +156,8 @@ bool engine_swap_model(Engine *e) {
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
-  e->pixel_seconds = e->coarse_seconds = e->channel_seconds = 0;
+  if (!timed)
+    e->pixel_seconds = e->coarse_seconds = e->channel_seconds = 0;
   model_free(&old);
   free(next);
   return true;

@@ -401,8 +401,8 @@ int engine_create(const EngineDef *def, Engine **result) {
               vl_cancel_create(def->context, &engine->trace_stop) == VL_OK;
   int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
   if (status < 0)
-    status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model,
-                        &engine->files);
+    status = model_load(def->context, def->path, def->arguments, NULL, NULL, NULL,
+                        &engine->model, &engine->files);
   if (status < 0)
     status = check_options(engine);
   if (status < 0)

@@ -1,5 +1,6 @@
 /* view/engine_save.c: writes cameras and images into the folder in which the program was
  * started, and makes the command that renders the present image again. */
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -159,13 +160,14 @@ static void put_word(FILE *out, const char *format, ...) {
  * matter. */
 static bool option_is_replaced(int id) {
   static const int replaced[] = {
-      VIEW_PORT,       VIEW_LISTEN,           VIEW_NO_OPEN,         RENDER_SPP,
-      RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,          RENDER_CAMERA,
-      RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,      RENDER_VIEW,
-      RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,   RENDER_F_NUMBER,
-      RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,         RENDER_MAX_MEMORY,
-      RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,          RENDER_TRAJECTORY,
-      RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS};
+      VIEW_PORT,       VIEW_LISTEN,           VIEW_NO_OPEN,          RENDER_SPP,
+      RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,           RENDER_CAMERA,
+      RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,       RENDER_VIEW,
+      RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,    RENDER_F_NUMBER,
+      RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,          RENDER_MAX_MEMORY,
+      RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,           RENDER_TRAJECTORY,
+      RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS, RENDER_AT,
+      RENDER_SHUTTER};
   return option_is_in(id, replaced, sizeof replaced / sizeof *replaced);
 }
 
@@ -218,6 +220,21 @@ static bool write_camera(Engine *e, const Task *task, const char *path) {
   return result == VL_OK;
 }
 
+/* The time at which the model is shown, and how long the shutter is open. */
+static void put_time(FILE *out, const vlLoadDef *load) {
+  char open[40], close[40];
+  if (isnan(load->time))
+    return;
+  format_number(open, sizeof open, load->time);
+  put_word(out, "--at");
+  if (isnan(load->time_close)) {
+    put_word(out, "%s", open);
+    return;
+  }
+  format_number(close, sizeof close, load->time_close);
+  put_word(out, "%s:%s", open, close);
+}
+
 static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
   const vlRenderDef *render = &e->model.job.defs->render;
   const vlCamera *made = &e->now.camera.made;
@@ -237,6 +254,7 @@ static void put_command(FILE *out, const Engine *e, const Copied *copied, const 
     put_word(out, "%u,%u,%u,%u", c[0], c[1], c[2], c[3]);
   }
   put_options(out, e);
+  put_time(out, &e->model.opening.load);
   /* the tracer of the image, so that there is no race */
   put_word(out, "--tracer");
   put_word(out, "%s", kind_name("tracers", (int)e->shown.tracer));

@@ -13,19 +13,25 @@ static void post(Engine *e, const char *type) {
     json_text_post(&text, e->server, 0);
 }
 
-/* Loads the scene again. Returns whether it could be loaded. */
-static bool load_again(Engine *e, Watch *watch) {
+/* Loads the scene again, because a file changed or, `timed`, because a page asks for another
+ * time of the animation. Returns whether it could be loaded. */
+static bool load_again(Engine *e, Watch *watch, bool timed) {
   Model *model = calloc(1, sizeof *model);
   if (!model)
     return false;
-  post(e, "loading");
+  if (!timed)
+    post(e, "loading");
   pthread_mutex_lock(&e->lock);
   uint32_t load = ++e->loads;
+  ModelTime time = {e->at, e->shutter, e->model.exposure};
+  const bool at = e->has_time;
+  const uint32_t change = e->time_change;
+  e->time_due = false;
   pthread_mutex_unlock(&e->lock);
   report_listen(engine_report, e);
   pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
-  int status = model_load(e->def.context, e->def.path, e->def.arguments, e->model.world, e->end,
-                          model, &e->files);
+  int status = model_load(e->def.context, e->def.path, e->def.arguments, at ? &time : NULL,
+                          e->model.world, e->end, model, &e->files);
   pthread_rwlock_unlock(&e->model_lock);
   report_listen(NULL, NULL);
   watch_files(watch, &e->files);
@@ -34,10 +40,13 @@ static bool load_again(Engine *e, Watch *watch) {
     return false;
   }
   model->load = load;
-  post(e, "loaded");
+  model->timed = timed;
+  if (!timed)
+    post(e, "loaded");
   pthread_mutex_lock(&e->lock);
   Model *unused = e->next;
   e->next = model;
+  e->next_change = change;
   engine_interrupt(e);
   engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
@@ -55,6 +64,20 @@ static bool ends(Engine *e) {
   return quit;
 }
 
+static double model_seconds(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  double seconds = e->model.seconds;
+  pthread_mutex_unlock(&e->lock);
+  return seconds;
+}
+
+static bool time_is_due(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  bool due = e->time_due;
+  pthread_mutex_unlock(&e->lock);
+  return due;
+}
+
 void *engine_watch(void *user) {
   Engine *e = user;
   Watch *watch = watch_create();
@@ -64,9 +87,12 @@ void *engine_watch(void *user) {
     return NULL;
   }
   watch_files(watch, &e->files);
-  while (!ends(e))
-    if (watch_wait(watch, 0.1, !good) && !ends(e))
-      good = load_again(e, watch);
+  while (!ends(e)) {
+    if (time_is_due(e))
+      good = load_again(e, watch, true);
+    else if (watch_wait(watch, model_seconds(e) > 0 ? 0.01 : 0.1, !good) && !ends(e))
+      good = load_again(e, watch, false);
+  }
   watch_destroy(watch);
   return NULL;
 }

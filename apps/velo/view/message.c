@@ -9,7 +9,7 @@
 static const char *const kinds[] = {"seen",     "camera",  "undo",    "redo",    "reset",
                                     "settings", "pick",    "focus",   "save",    "command",
                                     "verify",   "overlay", "outline", "outside", "paths",
-                                    "cameras",  "steer",   "scene"};
+                                    "cameras",  "steer",   "scene",   "time"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The following functions return false for a value of a wrong type or out of range, and say
@@ -21,6 +21,7 @@ typedef struct Reader {
 } Reader;
 
 static const vlParameter serial_row = {.type = VL_PARAMETER_COUNT};
+static const vlParameter shutter_row = {.type = VL_PARAMETER_DOUBLE, .low = 0, .high = 1e6};
 
 static bool refuse(const Reader *r, const char *format, const char *key) {
   snprintf(r->why, VL_GIVEN_MESSAGE, format, key);
@@ -171,11 +172,14 @@ static bool read_fields(const Reader *r, ViewMessage *message) {
 static bool read_members(const Reader *r, ViewMessage *m) {
   const vlParameter *samples = vl_setting(VL_SETTING_PROGRAM, "samples");
   const vlParameter *show = vl_setting(VL_SETTING_PROGRAM, "show");
+  const vlParameter *time = vl_setting(VL_SETTING_LOAD, "time");
   return read_count(r, "serial", &serial_row, &m->serial, NULL) &&
          read_count(r, "change", &serial_row, &m->change, NULL) &&
          read_count(r, "gesture", &serial_row, &m->gesture, NULL) &&
          read_count(r, "id", &serial_row, &m->id, NULL) && read_setting(r, "x", &m->x) &&
          read_setting(r, "y", &m->y) && read_setting(r, "exposure", &m->exposure) &&
+         read_number(r, "at", time, &m->at, NULL) &&
+         read_number(r, "shutter", &shutter_row, &m->shutter, NULL) &&
          read_count(r, "samples", samples, &m->samples, NULL) &&
          read_count(r, "show", show, &m->show, NULL) &&
          read_count(r, "spp", vl_setting(VL_SETTING_RENDER, "spp"), &m->spp, &m->has_spp) &&

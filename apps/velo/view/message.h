@@ -34,7 +34,8 @@ typedef enum MessageKind {
   MESSAGE_PATHS,    /* the paths of a pixel: id, x, y, samples, show, by_sample */
   MESSAGE_CAMERAS,  /* the cameras of --trajectory as lines: id */
   MESSAGE_STEER,    /* the sender steers from now on, and no other page */
-  MESSAGE_SCENE     /* another scene of the lecture: name, change */
+  MESSAGE_SCENE,    /* another scene of the lecture: name, change */
+  MESSAGE_TIME      /* another time of the animation: at, shutter, change */
 } MessageKind;
 
 /* A field of an edit: numbers, or a text. */
@@ -61,7 +62,8 @@ typedef struct ViewMessage {
   uint32_t size[2]; /* pixels */
   char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME],
       view[MESSAGE_NAME];
-  double exposure; /* EV */
+  double exposure;    /* EV */
+  double at, shutter; /* seconds: when it opens, how long it stays open */
 } ViewMessage;
 
 /* Parses a message of `size` bytes. False: it is malformed; why then holds the reason. */

@@ -2,13 +2,16 @@
 #include "view/model.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "camera/poses.h"
+#include "cli/json.h"
 #include "cli/report.h"
 #include "render/exposure.h"
 #include "velo/channels.h"
+#include "velo/check.h"
 #include "view/lecture.h"
 #include "view/view.h"
 
@@ -59,8 +62,42 @@ static int load_poses(vlContext *context, const Arguments *arguments, Model *mod
   return result == VL_OK ? -1 : report_error(&error, result, value->text);
 }
 
+/* Gives the arguments the time. text: of --at; it must live as long as the arguments. */
+static void set_time(Arguments *arguments, const ModelTime *time, char *text, size_t size) {
+  char open[32], close[32];
+  format_number(open, sizeof open, time->at);
+  format_number(close, sizeof close, time->at + time->shutter);
+  snprintf(text, size, time->shutter > 0 ? "%s:%s" : "%s", open, close);
+  arguments->values[RENDER_AT] = (OptionValue){.given = true, .text = text};
+  arguments->values[RENDER_SHUTTER].given = false;
+}
+
+/* The duration of the animation that is chosen; 0: there is none. */
+static double find_seconds(const Model *model) {
+  const char *wanted = model->opening.load.animation;
+  const uint32_t count = vl_scene_choice_count(model->scene, VL_CHOICE_ANIMATION);
+  uint32_t index = wanted ? (uint32_t)strtoul(wanted, NULL, 10) : 0;
+  vlChoiceInfo info = {.seconds = 0};
+  for (uint32_t i = 0; i < count; i++)
+    if (wanted && vl_scene_choice_info(model->scene, VL_CHOICE_ANIMATION, i, &info) == VL_OK &&
+        info.name && strcmp(info.name, wanted) == 0)
+      index = i;
+  if (index >= count ||
+      vl_scene_choice_info(model->scene, VL_CHOICE_ANIMATION, index, &info) != VL_OK)
+    return 0;
+  return info.seconds;
+}
+
 int model_load(vlContext *context, const char *path, const Arguments *arguments,
-               const vlWorld *previous, const vlCancel *cancel, Model *model, FileList *files) {
+               const ModelTime *time, const vlWorld *previous, const vlCancel *cancel,
+               Model *model, FileList *files) {
+  Arguments timed;
+  char at[80];
+  if (time) {
+    timed = *arguments;
+    set_time(&timed, time, at, sizeof at);
+    arguments = &timed;
+  }
   memset(model, 0, sizeof *model);
   model->opening.cancel = cancel;
   char *text = NULL;
@@ -95,7 +132,9 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
     status = lens_autofocus(&model->job, model->scene, model->world);
   if (status < 0)
     status = load_poses(context, arguments, model, files);
-  if (status < 0)
+  if (status < 0 && time)
+    model->exposure = time->exposure;
+  else if (status < 0)
     status = choose_exposure(context, arguments, model);
   if (status >= 0) {
     model_free(model);
@@ -103,6 +142,8 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   }
   vl_world_info(model->world, &model->info);
   model->lookat = find_lookat(model);
+  model->seconds = find_seconds(model);
+  model->timed = time != NULL;
   return status;
 }
 

@@ -7,6 +7,12 @@
 #include "render/scene_options.h"
 #include "view/file_list.h"
 
+/* The time at which an animated model is shown. */
+typedef struct ModelTime {
+  double at, shutter; /* seconds, as --at and --shutter; shutter 0: no motion blur */
+  float exposure;     /* EV; it is not metered anew for each time */
+} ModelTime;
+
 typedef struct Model {
   vlScene *scene;
   vlWorld *world;
@@ -17,14 +23,17 @@ typedef struct Model {
   float exposure; /* EV of the first view */
   vlCamera *cameras; /* of --trajectory; null: none */
   uint32_t camera_count;
-  uint32_t load; /* Engine.loads at this load */
+  uint32_t load;  /* Engine.loads at this load */
+  double seconds; /* duration of the animation that is chosen; 0: none */
+  bool timed;     /* loaded for another time of the same file */
 } Model;
 
-/* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. Adds the
- * paths of the files that were read to the list. Returns -1, or the exit code after reporting
- * the error; *model is empty then. */
+/* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. time:
+ * null: as the arguments give it. Adds the paths of the files that were read to the list.
+ * Returns -1, or the exit code after reporting the error; *model is empty then. */
 int model_load(vlContext *context, const char *path, const Arguments *arguments,
-               const vlWorld *previous, const vlCancel *cancel, Model *model, FileList *files);
+               const ModelTime *time, const vlWorld *previous, const vlCancel *cancel,
+               Model *model, FileList *files);
 /* Frees what the model has and empties it. */
 void model_free(Model *model);
 

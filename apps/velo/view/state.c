@@ -1,5 +1,8 @@
 /* view/state.c: see state.h. */
 #include "view/state.h"
+
+#include <math.h>
+
 #include "velo/camera_file.h"
 #include "velo/channels.h"
 #include "velo/projection.h"
@@ -40,6 +43,12 @@ char *state_text(const ViewState *s) {
     json_number(json, NULL,
                 (double)(i < 3 ? s->info->bounds_min[i] : s->info->bounds_max[i - 3]));
   json_end(json, ']');
+  json_begin(json, "time", '{');
+  json_number(json, "seconds", s->seconds);
+  json_number(json, "at", s->at);
+  json_number(json, "shutter", isnan(s->close) ? 0 : s->close - s->at);
+  json_end(json, '}');
+  json_integer(json, "poses", s->poses);
   json_begin(json, "camera", '{');
   camera_spellings(json, s->camera);
   json_end(json, '}');

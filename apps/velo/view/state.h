@@ -16,6 +16,9 @@ typedef struct ViewState {
   int view;             /* vlView of the first view */
   const vlWorldInfo *info;
   const ViewCamera *camera;
+  double seconds;   /* duration of the animation that can be played; 0: none */
+  double at, close; /* seconds: when the shutter opens and closes; unset: as vlLoadDef */
+  uint32_t poses;   /* cameras of --trajectory */
 } ViewState;
 
 /* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to

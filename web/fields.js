@@ -46,6 +46,9 @@ export const groups = [
     { name: "tilt_x", label: "tilt x °", title: "of the plane in focus" }, { name: "tilt_y", label: "tilt y °" },
     { name: "lens_tilt_x", label: "lens tilt x °", title: "Scheimpflug" }, { name: "lens_tilt_y", label: "lens tilt y °" },
   ] },
+  { title: "Shutter", brief: c => `${short(c.shutter_open, 3)} to ${short(c.shutter_close, 3)} s`, unusual: c => c.shutter_open !== 0 || c.shutter_close !== 1, fields: [
+    { name: "shutter_open", label: "opens at s" }, { name: "shutter_close", label: "closes at s", title: "at the time when it opens: no motion blur" },
+  ] },
   { title: "Clipping", brief: c => c.near > 0 || c.far !== null ? `${short(c.near, 3)} to ${c.far === null ? "∞" : short(c.far, 3)}` : "none", unusual: c => c.near > 0 || c.far !== null, fields: [
     { name: "near", label: "near" }, { name: "far", label: "far", empty: true },
   ] },

@@ -93,6 +93,44 @@ def test_own_camera(folder):
         view.end()
 
 
+MOVING = '''LookAt 0 1 5  0 0 0  0 1 0
+Camera "perspective" "float fov" 40 "float shutteropen" 0 "float shutterclose" 1
+Film "rgb" "integer xresolution" 64 "integer yresolution" 48
+TransformTimes 0 1
+WorldBegin
+LightSource "infinite" "rgb L" [0.5 0.6 0.9]
+Material "diffuse" "rgb reflectance" [0.6 0.3 0.1]
+ActiveTransform EndTime
+Translate 1.5 0 0
+ActiveTransform All
+Shape "sphere" "float radius" 0.8
+'''
+
+
+def test_shutter(folder):
+    """The shutter of a scene that moves by itself: an instant, a while; the copied command has it."""
+    view = View(VELO, "moving.pbrt", *OPTIONS, cwd=folder)
+    page = Page(view)
+    try:
+        files = []
+        for change, (opens, closes) in enumerate(((0, 1), (0.5, 0.5)), 2):
+            page.send(type="camera", change=change, set={"shutter_open": opens, "shutter_close": closes})
+            state = state_of(page, change)
+            check(f"shutter_{change}", (state["camera"]["shutter_open"], state["camera"]["shutter_close"]) == (opens, closes), state)
+            finished(page, change)
+            saved = ask(page, "saved", type="save", what="image", name="moving.exr", exposure=0, view="standard")["file"]
+            words = shlex.split(ask(page, "command", type="command", exposure=0, view="standard")["command"])
+            subprocess.run([VELO, *words[1:], "-o", f"still{change}.exr"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
+            check(f"same_bytes_{change}", bytes_of(folder, saved) == bytes_of(folder, f"still{change}.exr"), words)
+            files.append(bytes_of(folder, saved))
+        check("shutter_is_seen", files[0] != files[1])
+        page.send(type="camera", change=9, set={"shutter_open": 2})
+        check("shutter_refused", state_of(page, 9)["type"] == "refused")
+    finally:
+        page.socket.close()
+        view.end()
+
+
 def test_none(folder):
     view = View(VELO, "still.pbrt", *OPTIONS, cwd=folder)
     page = Page(view)
@@ -155,6 +193,9 @@ def main():
         test_engine(folder)
         test_own_camera(folder)
         test_none(folder)
+        with open(os.path.join(folder, "moving.pbrt"), "w", encoding="utf-8") as file:
+            file.write(MOVING)
+        test_shutter(folder)
         if reason:
             print(f"skip browser: {reason}")
         else:

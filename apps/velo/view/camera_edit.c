@@ -322,6 +322,12 @@ static bool set_far(Edit *e, const MessageField *f) {
     e->def->far_plane = INFINITY;
   return f->null || one(f, &e->def->far_plane);
 }
+static bool set_shutter_open(Edit *e, const MessageField *f) {
+  return f->count == 1 && one(f, &e->def->shutter_open);
+}
+static bool set_shutter_close(Edit *e, const MessageField *f) {
+  return f->count == 1 && one(f, &e->def->shutter_close);
+}
 static bool set_exposure_time(Edit *e, const MessageField *f) {
   return f->count == 1 && one(f, &e->def->exposure_time);
 }
@@ -367,6 +373,8 @@ static const struct {
                {"lens_tilt_y", "lens_tilt_y", set_lens_tilt_y},
                {"near", "near_plane", set_near},
                {"far", "far_plane", set_far},
+               {"shutter_open", "shutter_open", set_shutter_open},
+               {"shutter_close", "shutter_close", set_shutter_close},
                {"exposure_time", "exposure_time", set_exposure_time}};
 enum { SETTERS = sizeof setters / sizeof *setters };
 

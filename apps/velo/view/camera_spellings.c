@@ -109,6 +109,8 @@ static void put_lens(Json *json, const ViewCamera *camera) {
   json_number(json, "lens_tilt_y", lens->lens_tilt_y * degrees);
   json_number(json, "near", c->near_plane);
   json_number(json, "far", c->far_plane);
+  json_number(json, "shutter_open", c->shutter_open);
+  json_number(json, "shutter_close", c->shutter_close);
   json_number(json, "exposure_time", c->exposure_time);
   json_bool(json, "optics", lens->optics != NULL);
 }

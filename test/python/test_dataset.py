@@ -315,6 +315,54 @@ def nerfstudio_frames_are_read_by_velo():
     assert depth.dtype.itemsize == 2 and 300 < numpy.median(depth) < 2000
 
 
+LENSES = {
+    "plain": {"fov": 0.9}, "brown": {"fov": 0.9, "distortion": "opencv", "distortion_coefficients": [-0.15, 0.03, 1e-3, -2e-3, 0.01]},
+    "fisheye": {"projection": "equidistant", "fov": 2.0, "distortion": "radial", "distortion_coefficients": [0.02, -0.01, 0.003, 0.001]},
+    "double_sphere": {"projection": "double_sphere", "fx": 30.0, "fy": 30.0, "shape": [-0.2, 0.6]},
+    "moving": {"fov": 0.9, "world_from_camera_close": [[1, 0, 0, 0.1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}}
+HELD = {"bop": ["plain"], "nerfstudio": ["plain", "brown", "fisheye"], "exr": list(LENSES)}
+
+
+def small(lens, distance=2.0, **changes):
+    pose = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, distance], [0, 0, 0, 1]]
+    keywords = dict(LENSES[lens], world_from_camera=[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    return dataset.Recipe(frames=1, resolution=(64, 48), spp=1, cameras=[dataset.Fixed(keywords)], models=[
+        dataset.Model(name="block", positions=MESHES["block"][0], indices=MESHES["block"][1], scale=distance / 2)], placing=dataset.Poses([[("block", pose)]]), **changes)
+
+
+@case
+def a_writer_reads_back_as_the_same_camera_or_refuses_it():
+    points = numpy.random.default_rng(5).uniform([-0.5, -0.4, 1.5], [0.5, 0.4, 3.0], (200, 3))
+    for writer, held in HELD.items():
+        for lens in LENSES:
+            folder = work(f"lens_{writer}_{lens}")
+            if lens not in held:
+                with raises(velo.UnsupportedError, writer, "exr"):
+                    dataset.generate(small(lens), folder, writers=[writer])
+                assert not os.path.exists(folder), "a refused camera has written files"
+                continue
+            dataset.generate(small(lens), folder, writers=[writer])
+            path = {"bop": "bop/train_pbr/000000/scene_camera.json", "nerfstudio": "nerfstudio/transforms.json",
+                    "exr": "exr/cameras/000000_camera.json"}[writer]
+            unit = 1000 if writer == "bop" else 1
+            wanted = dataset.Stage(small(lens)).plan(0).views[0].camera.project(points)
+            found = velo.read_camera(os.path.join(folder, path), width=64, height=48).project(points * unit)
+            assert wanted.valid.sum() > 100 and numpy.array_equal(wanted.valid, found.valid), (writer, lens)
+            assert numpy.abs((wanted.pixels - found.pixels)[wanted.valid]).max() < 1e-9, (writer, lens)
+
+
+@case
+def depths_beyond_a_png_are_an_error():
+    for writer, distance, remedy in (("bop", 7.0, "depth_scale"), ("nerfstudio", 70.0, "exr")):
+        with raises(velo.UnsupportedError, writer, "16 bits", remedy):
+            dataset.generate(small("plain", distance), work("far"), writers=[writer])
+    dataset.generate(small("plain", 7.0, depth_scale=0.5), work("far_enough"), writers=["bop"])
+    folder = os.path.join(work("far_enough"), "bop/train_pbr/000000")
+    scale = json.load(open(os.path.join(folder, "scene_camera.json")))["0"]["depth_scale"]
+    depth = read_png(os.path.join(folder, "depth/000000.png"))
+    assert scale == 0.5 and abs(depth[24, 32] * scale - 6720) < 0.5
+
+
 def digests(folder):
     result = {}
     for path in sorted(glob.glob(os.path.join(folder, "**"), recursive=True)):

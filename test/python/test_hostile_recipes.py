@@ -26,7 +26,7 @@ with open("poses.tum", "w") as file:
 
 EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 FULL = {"seed": 1, "frames": 2, "resolution": [8, 6], "spp": 1, "scene": "", "render": {"max_depth": 2}, "channels": ["P"],
-        "occluded": True, "folder": "", "path": "",
+        "depth_scale": 0.1, "occluded": True, "folder": "", "path": "",
         "models": [{"path": "a.obj", "name": "a", "count": [0, 1], "scale": 1.0, "keypoints": {"top": [0, 1, 0]}, "skeleton": [[1, 1]]},
                    {"name": "b", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "indices": [[0, 1, 2]],
                     "material": {"kind": "diffuse", "reflectance": 0.5}}],

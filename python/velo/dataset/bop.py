@@ -1,7 +1,8 @@
 """Writes the BOP challenge's format (https://github.com/thodan/bop_toolkit, docs/bop_datasets_format.md).
 
 Poses are those of the models in millimetres, model to camera; cameras are OpenCV's (x right, y down, z forward, the first
-pixel's centre at (0, 0)). depth * depth_scale is the depth along the view axis in millimetres; 0: nothing, or beyond 16 bits."""
+pixel's centre at (0, 0)). depth * depth_scale is the depth along the view axis in millimetres; 0: nothing. The format has perspective
+cameras without lens distortion only."""
 from __future__ import annotations
 
 import os
@@ -9,11 +10,12 @@ from typing import Any, Iterator
 
 import numpy
 
+from velo._errors import UnsupportedError
 from velo.dataset.geometry import multiply
 from velo.dataset.models import diameter, ply, triangles
 from velo.dataset.png import png
 from velo.dataset.stage import Frame, Stage
-from velo.dataset.writer import Writer, box_of, display
+from velo.dataset.writer import Writer, box_of, depth_steps, display, refuse_moving
 
 MM = 1000.0
 
@@ -21,9 +23,17 @@ MM = 1000.0
 class BopWriter(Writer):
     """OUT/bop: models/models_info.json, models/obj_000001.ply, ..., camera.json, and a scene for each camera: train_pbr/000000."""
 
-    def __init__(self, stage: Stage, folder: str, depth_scale: float = 0.1) -> None:
+    def __init__(self, stage: Stage, folder: str) -> None:
         super().__init__(stage, os.path.join(folder, "bop"))
-        self.depth_scale = depth_scale
+        self.depth_scale = float(stage.recipe.depth_scale)
+
+    def check_camera(self, camera: Any) -> None:
+        distorted = any(camera.distortion_coefficients)
+        if camera.projection != "perspective" or distorted:
+            lens = "lens distortion" if distorted else f"the projection {camera.projection}"
+            raise UnsupportedError(f"bop holds perspective cameras without distortion only; this one has {lens}: render without it, "
+                                   "or use the writers nerfstudio or exr")
+        refuse_moving("bop", camera)
 
     def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
         folder, name = os.path.join("train_pbr", f"{scene:06d}"), f"{frame:06d}"
@@ -59,9 +69,7 @@ class BopWriter(Writer):
         folder = os.path.join(self.folder, "train_pbr", f"{scene:06d}")
         name = f"{frame.frame:06d}"
         self.write_bytes(os.path.join(folder, "rgb", f"{name}.png"), png(display(frame)))
-        steps = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * MM / self.depth_scale)
-        known = numpy.isfinite(steps) & (steps > 0) & (steps < 65536)
-        depth = numpy.where(known, steps, 0).astype("uint16")
+        depth = depth_steps("bop", frame, self.depth_scale, "give Recipe.depth_scale a larger value, or use the writer exr")
         self.write_bytes(os.path.join(folder, "depth", f"{name}.png"), png(depth))
         k = numpy.array(frame.camera.K)
         k[0, 2] -= 0.5

@@ -300,7 +300,8 @@ _RULES: dict[type, dict[str, Check]] = {
         "cameras": lambda v, w: items(member(*_MOVED, kinds.Rig), 1, 1000)(v, w),
         "lights": lambda v, w: optional(member(kinds.Lights))(v, w), "environment": lambda v, w: optional(member(kinds.Environment))(v, w),
         "ground": lambda v, w: optional(member(kinds.Ground))(v, w), "distractors": lambda v, w: optional(member(kinds.Distractors))(v, w),
-        "render": _KEYWORDS, "channels": items(text, 0, 100), "occluded": flag, "folder": text, "path": text},
+        "render": _KEYWORDS, "channels": items(text, 0, 100), "depth_scale": number(1e-6, 1e6),
+        "occluded": flag, "folder": text, "path": text},
 }
 _MORE: dict[type, Callable[[Any, str], None]] = {
     kinds.Model: _model, kinds.Fixed: _fixed, kinds.Around: _around, kinds.Trajectory: _trajectory, kinds.InVolume: _volume,

@@ -61,12 +61,15 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
     def begin(views: Sequence[View]) -> None:
         for writer in made:
             writer.check(numbers, [view.name for view in views])
+            for view in views:
+                writer.check_camera(view.camera)
         for writer in made:
             writer.begin()
 
     def write(images: list[Frame]) -> None:
         for scene, frame in enumerate(images):
             for writer in made:
+                writer.check_camera(frame.camera)
                 writer.write(frame, scene)
 
     begun = False

@@ -11,7 +11,7 @@ import numpy
 from velo._errors import UnsupportedError
 from velo.dataset.png import png
 from velo.dataset.stage import Frame, Stage
-from velo.dataset.writer import Writer, display
+from velo.dataset.writer import Writer, depth_steps, display, refuse_moving
 
 _NAMES = {"opencv": ("k1", "k2", "p1", "p2", "k3"), "radial": ("k1", "k2", "k3", "k4")}
 
@@ -23,10 +23,11 @@ def intrinsics(camera: Any) -> dict[str, Any]:
     fisheye = camera.projection.startswith("equidistant")
     names = _NAMES.get(distortion, ())
     if (camera.projection != "perspective" and not fisheye) or any(numbers[len(names):]) or (distortion == "radial") != fisheye and any(numbers):
-        raise UnsupportedError(f"nerfstudio cannot hold this camera ({camera.projection}, distortion {distortion})")
+        raise UnsupportedError(f"nerfstudio cannot hold this camera ({camera.projection}, distortion {distortion}): it has perspective "
+                               "cameras with k1 k2 p1 p2 k3 and fisheyes with k1 to k4; the writer exr holds any")
     k = camera.K
     if k[0, 1] != 0:
-        raise UnsupportedError("nerfstudio cannot hold a camera with skew")
+        raise UnsupportedError("nerfstudio cannot hold a camera with skew; the writers bop and exr can")
     return {"camera_model": "OPENCV_FISHEYE" if fisheye else "OPENCV", "fl_x": float(k[0, 0]), "fl_y": float(k[1, 1]),
             "cx": float(k[0, 2]), "cy": float(k[1, 2]), "w": camera.width, "h": camera.height, **dict(zip(names, numbers))}
 
@@ -45,12 +46,15 @@ class NerfstudioWriter(Writer):
     def tables(self, scenes: int) -> Iterator[str]:
         yield "transforms.json"
 
+    def check_camera(self, camera: Any) -> None:
+        intrinsics(camera)
+        refuse_moving("nerfstudio", camera)
+
     def write(self, frame: Frame, scene: int) -> None:
         name = f"{frame.frame:06d}_{frame.view}.png"
         self.write_bytes(os.path.join(self.folder, "images", name), png(display(frame)))
-        millimetres = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * 1000)
-        known = numpy.isfinite(millimetres) & (millimetres > 0) & (millimetres < 65536)
-        self.write_bytes(os.path.join(self.folder, "depth", name), png(numpy.where(known, millimetres, 0).astype("uint16")))
+        depth = depth_steps("nerfstudio", frame, 1.0, "use the writer exr")
+        self.write_bytes(os.path.join(self.folder, "depth", name), png(depth))
         pose = numpy.array(frame.camera.world_from_camera) * [1, -1, -1, 1]  # the axes are columns
         self.part(frame, {"file_path": f"images/{name}", "depth_file_path": f"depth/{name}",
                           "transform_matrix": pose.tolist(), **intrinsics(frame.camera)})

@@ -153,6 +153,7 @@ class Recipe:
     distractors: Optional[Distractors] = None
     render: dict[str, Any] = field(default_factory=dict)  #: further keywords of Scene.render: max_depth, exposure, ...
     channels: Sequence[str] = ()  #: further channels of the EXR writer
+    depth_scale: float = 0.1  #: millimetres of a step of the BOP writer's 16-bit depth
     occluded: bool = True  #: also find the masks of whole objects, behind what occludes them
     folder: str = ""  #: relative paths are relative to it
     path: str = ""  #: the recipe's file, if it came from one

@@ -9,6 +9,7 @@ from typing import Any, Iterable, Iterator, Sequence
 
 import numpy
 
+from velo._errors import UnsupportedError
 from velo.dataset.files import read_json, write_bytes
 from velo.dataset.stage import Frame, Stage
 
@@ -44,6 +45,10 @@ class Writer:
     def tables(self, scenes: int) -> Iterator[str]:
         """The files that begin() and finish() may write; scenes: the number of cameras."""
         raise NotImplementedError
+
+    def check_camera(self, camera: Any) -> None:
+        """Raises velo.UnsupportedError for a camera that the format cannot hold; called before the first frame is rendered, and
+        for each frame."""
 
     def begin(self) -> None:
         """Writes what is about the models, before the first frame."""
@@ -102,6 +107,26 @@ def box_of(mask: Any, nothing: Sequence[int]) -> list[int]:
     if not len(rows):
         return list(nothing)
     return [int(columns[0]), int(rows[0]), int(columns[-1] - columns[0] + 1), int(rows[-1] - rows[0] + 1)]
+
+
+def refuse_moving(format: str, camera: Any) -> None:
+    """Raises velo.UnsupportedError if the camera moves while the shutter is open: a format with one pose for an image cannot
+    hold it."""
+    ends = [camera.at(time).world_from_camera.tolist() for time in (-1e30, 1e30)]
+    if ends[0] != ends[1]:
+        raise UnsupportedError(f"{format} has one pose for an image and cannot hold a camera that moves; the writer exr can")
+
+
+def depth_steps(format: str, frame: Frame, step: float, remedy: str) -> Any:
+    """The depth along the view axis in whole steps of so many millimetres, uint16; 0: nothing is seen. A depth beyond 65535
+    steps is a velo.UnsupportedError, which names the remedy."""
+    steps = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * 1000 / step)
+    known = numpy.isfinite(steps) & (steps > 0)
+    farthest = steps[known].max() if known.any() else 0
+    if farthest > 65535:
+        raise UnsupportedError(f"{format}: frame {frame.frame} has a depth of {farthest * step / 1000:.6g} m; 16 bits hold up to "
+                               f"{65.535 * step:.6g} m in steps of {step:g} mm; {remedy}")
+    return numpy.where(known, steps, 0).astype("uint16")
 
 
 def display(frame: Frame) -> Any:

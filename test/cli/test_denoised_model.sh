@@ -109,4 +109,21 @@ check receipt "$VELO" render slab.gltf --resolution 24x16 --quiet -o receipt.exr
 check again "$VELO" render --again receipt.exr -o again.exr -o again.png
 same again_same receipt.exr again.exr
 grep -aq denoised again.png && fail again_plain || pass again_plain
+
+# The options that say what velo has chosen ask for no other quality: the receipt's command without its --spp and its .exr makes
+# the first image, byte for byte.
+for m in "slab.gltf" "slab.gltf --ground" "slab.gltf --no-ground" "slab.gltf --environment evening" "own_camera.gltf"; do
+  name=chosen_${m//[ .]/_}
+  read -r -a words <<<"$m"
+  check "$name" "$VELO" render "${words[@]}" --resolution 24x16 --quiet -o chosen.exr
+  check "${name}_first" "$VELO" render "${words[@]}" --resolution 24x16 -o chosen.png
+  "$VELO" image info chosen.exr >chosen.txt
+  words=()
+  while read -r word; do
+    words+=("$word")
+  done < <(sed -n 's/^  command  *velo render //p' chosen.txt | sed 's/ -o [^ ]*//; s/ --spp [^ ]*//' | tr ' ' '\n')
+  check "${name}_said" "$VELO" render "${words[@]}" -o said.png
+  expect_text "${name}_is_denoised" "8 spp, denoised, in"
+  same "${name}_same" chosen.png said.png
+done
 finish

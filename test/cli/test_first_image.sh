@@ -28,7 +28,9 @@ def write(path, parts, light=None, glass=False, eye=None):
         meshes.append({"primitives": [{"attributes": {"POSITION": 2 * k}, "indices": 2 * k + 1, "material": k}]})
         materials.append({"doubleSided": two, "pbrMetallicRoughness": {
             "baseColorFactor": color[:3] + [1], "metallicFactor": 0, "roughnessFactor": 0 if glass else 0.6}})
-        if len(color) > 3: materials[-1]["emissiveFactor"] = color[3]
+        if len(color) > 3: materials[-1]["emissiveFactor"] = color[3][:3]
+        if len(color) > 3 and len(color[3]) > 3:
+            materials[-1]["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": color[3][3]}}
         if glass: materials[-1]["extensions"] = {"KHR_materials_transmission": {"transmissionFactor": 1}}
         nodes.append({"mesh": k})
     g = {"asset": {"version": "2.0"}, "scene": 0, "buffers": [{"byteLength": len(data)}], "bufferViews": views,
@@ -72,6 +74,10 @@ street = [(box((x, 0, z), (x + 4, 6 + z % 3, z + 4)), [0.4, 0.4, 0.45], True) fo
 red = [0, 0, 0, [1, 0, 0]]
 write("city.glb", street + [(box((-30, -1, -30), (30, 20, 30), True), [0.3, 0.5, 0.9], False), (box((1.2, 2, 4), (1.4, 2.2, 4.2)), red, True)],
       eye=[0, 1.5, 15])
+# The same with strong signs, which the camera's street has nothing of.
+signs = [(box((20, 1, z), (21, 4, z + 2)), red[:3] + [[1, 0.1, 0.1, 100]], True) for z in range(-20, 20, 5)]
+back = [(box((9, -1, -30), (9.5, 20, 30)), [0.4, 0.4, 0.45], True)]
+write("signs.glb", street + signs + back + [(box((-30, -1, -30), (30, 20, 30), True), [0.3, 0.5, 0.9], False)], eye=[0, 1.5, 15])
 END
 small="--resolution 64x48 --spp 16"
 for m in plain white sun noon dim white_sun room box; do
@@ -98,7 +104,7 @@ expect_absent glass_as_it_is 'exposed by'
 check glass_sun "$VELO" render glass_sun.glb $small -o glass_sun.png
 expect_text glass_in_the_sun 'exposed by -'
 # A model that encloses its own camera is lit by lamps, if nothing else lights it; the option says so, and repeats it.
-for m in inside city; do
+for m in inside city signs; do
   check "lit_$m" "$VELO" render $m.glb $small -o $m.png -o $m.exr
   expect_text "lit_${m}_says" 'lamps are added around its camera'
   check "lit_${m}_given" "$VELO" render $m.glb $small --environment lamps -o given.exr --quiet
@@ -168,7 +174,7 @@ for name in ("room", "box"):
 c, _ = model("kept.png")
 print("kept", c)
 if not c[1] < 30: bad.append("kept")  # nothing lights it
-for name in ("inside", "city"):
+for name in ("inside", "city", "signs"):
     pixels = [p for row in read(name + ".png") for p in row]
     mean = sum(sum(p[:3]) for p in pixels) / 3 / len(pixels)
     dark, burnt = (sum(f(p) for p in pixels) / len(pixels) for f in (lambda p: max(p) < 20, lambda p: min(p) > 250))

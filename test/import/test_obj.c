@@ -222,6 +222,23 @@ static void materials(void **state) {
   end_load(&l);
 }
 
+/* Glass that is partly transparent has the colour Kd, unless that is black: then it has Tf. */
+static void partly_glass(void **state) {
+  (void)state;
+  write_text("g.mtl",
+             "newmtl black\nKd 0 0 0\nd 0.1\nillum 7\nTf 0.7 0.8 0.9\n"
+             "newmtl grey\nKd 0.2 0.2 0.2\nd 0.1\nillum 7\nTf 0.7 0.8 0.9\n");
+  Loaded l;
+  load_obj(&l, "mtllib g.mtl\n" SQUARE "usemtl black\nf 1 2 3\nusemtl grey\nf 1 2 3\n");
+  assert_int_equal(l.result, VL_OK);
+  const vlMaterialDef *m = l.scene->materials.items;
+  for (int i = 0; i < 2; i++) {
+    assert_float_equal(m[i].principled.transmission.value, 0.9, 1e-6);
+    assert_float_equal(m[i].reflectance.value.rgb[0], i ? 0.2 : 0.7, 1e-6);
+  }
+  end_load(&l);
+}
+
 /* Images of each kind, with the options before their names. */
 static void maps(void **state) {
   (void)state;
@@ -391,10 +408,10 @@ static void memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(corners),   cmocka_unit_test(polygons),
-                                     cmocka_unit_test(smoothing), cmocka_unit_test(colors),
-                                     cmocka_unit_test(materials), cmocka_unit_test(missing),
-                                     cmocka_unit_test(errors),    cmocka_unit_test(damaged),
-                                     cmocka_unit_test(memory),    cmocka_unit_test(maps)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(corners), cmocka_unit_test(polygons),    cmocka_unit_test(smoothing),
+      cmocka_unit_test(colors),  cmocka_unit_test(materials),   cmocka_unit_test(missing),
+      cmocka_unit_test(errors),  cmocka_unit_test(damaged),     cmocka_unit_test(memory),
+      cmocka_unit_test(maps),    cmocka_unit_test(partly_glass)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

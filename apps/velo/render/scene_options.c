@@ -222,18 +222,23 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
   opening->lamps =
       opening->model && (info.lights > 0 || opening->environment == VL_ENVIRONMENT_NONE ||
                          opening->environment == VL_ENVIRONMENT_LAMPS);
+  opening->self_lit = opening->model && info.lights == 0 &&
+                      complete.environment == VL_ENVIRONMENT_AUTO &&
+                      opening->environment == VL_ENVIRONMENT_NONE;
   opening->camera_added = camera;
   opening->camera = defs->camera;
   return -1;
 }
 
 /* Whether the model's own camera may be inside it, where the studio's light does not come: a
- * room, a city under a dome. */
+ * room, a city under a dome. Surfaces that emit light may be elsewhere in it. */
 static bool may_be_inside(const Arguments *arguments, const SceneOpening *opening,
                           const vlCamera *camera) {
   const OptionValue *v = arguments->values;
-  bool inside = opening->model && !opening->lamps && !opening->camera_added &&
-                opening->environment == VL_ENVIRONMENT_STUDIO && !v[RENDER_ENVIRONMENT].given &&
+  const bool studio =
+      opening->model && !opening->lamps && opening->environment == VL_ENVIRONMENT_STUDIO;
+  bool inside = (studio || opening->self_lit) && !opening->camera_added &&
+                !v[RENDER_ENVIRONMENT].given &&
                 (!v[RENDER_CAMERA].given || opening->load.camera);
   for (int i = 0; i < 3 && inside; i++) {
     const double at = camera->world_from_camera[4 * i + 3];

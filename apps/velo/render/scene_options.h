@@ -14,6 +14,7 @@ typedef struct SceneOpening {
   vlCompleteDef complete;
   bool lamps;             /* a file of a model (glTF, OBJ, PLY) that its own lights or
                                     surfaces light */
+  bool self_lit;          /* surfaces of a model's file light it, and nothing is added */
   bool silent;            /* input: the camera that is added is not reported */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
   const char *text; /* input: a pbrt scene in memory, in place of the file; null: the file */

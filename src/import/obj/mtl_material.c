@@ -107,13 +107,15 @@ static float brightest(const float c[3]) {
 }
 
 /* Refractive solids: illum 6 and 7. Transmission is 1 - d where d is below 1, otherwise 1 when
- * the filter Tf is not black. */
+ * the filter Tf is not black. The colour is Tf; of a share that is transmitted, Kd, unless that
+ * is black. */
 static void glass(const vlMtl *m, vlMaterialDef *def, float base[3]) {
   float passes = m->d < 1 ? 1 - clamp01(m->d) : 1;
   def->principled.transmission = vl_float_input(passes);
   def->principled.thin_walled = false;
+  const bool own = passes < 1 && brightest(base) > 0;
   for (int i = 0; i < 3; i++)
-    base[i] = isnan(m->tf[i]) || passes < 1 ? base[i] : clamp01(m->tf[i]);
+    base[i] = isnan(m->tf[i]) || own ? base[i] : clamp01(m->tf[i]);
   if (isnan(m->tf[0]) && brightest(base) == 0)
     base[0] = base[1] = base[2] = 1;
 }

@@ -27,6 +27,9 @@ typedef struct vlDenoiseDef {
    * null.
    */
   const vlCancel *cancel;
+  /** VL_DENOISER_VELO: the result also has the channels error.R .G .B: the estimated standard
+   * error of its remaining noise, without its bias. Default false. */
+  bool errors;
 } vlDenoiseDef;
 /** The default def. */
 VL_API vlDenoiseDef vl_default_denoise_def(void);
@@ -40,11 +43,11 @@ typedef struct vlDenoiseStats {
 } vlDenoiseStats;
 
 /** Makes a denoised copy of `image` in *clean, owned by the caller: a float image R G B (A is
- * copied if there is one), with much less noise and some bias. `image` must have the linear
- * channels R G B. VL_DENOISER_VELO also needs their standard errors: feature.error.R .G .B,
- * which VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES gives, or error.R .G .B. Both denoisers use the
- * features feature.albedo, feature.N and feature.disparity (VL_CHANNEL_FEATURES) if all their
- * channels are there. Attributes are copied.
+ * copied if there is one; see also def.errors), with much less noise and some bias. `image`
+ * must have the linear channels R G B. VL_DENOISER_VELO also needs their standard errors:
+ * feature.error.R .G .B, which VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES gives, or error.R .G .B.
+ * Both denoisers use the features feature.albedo, feature.N and feature.disparity
+ * (VL_CHANNEL_FEATURES) if all their channels are there. Attributes are copied.
  *
  * VL_DENOISER_VELO runs on the workers of the image's context. Its bits depend neither on the
  * number of threads nor on the instruction set. It fits the radiance around a pixel by a

@@ -74,8 +74,7 @@ static int check(const Arguments *arguments) {
                 {RENDER_FILM, "--film"},
                 {RENDER_CONTINUE, "--continue"},
                 {RENDER_SHARD, "--shard"},
-                {RENDER_STEREO, "--stereo"},
-                {RENDER_DENOISE, "--denoise"}};
+                {RENDER_STEREO, "--stereo"}};
   const OptionValue *v = arguments->values;
   const char *own = v[RENDER_ANIMATE].given ? "--animate" : "--turntable";
   if (v[RENDER_ANIMATE].given && v[RENDER_TURNTABLE].given)
@@ -87,6 +86,12 @@ static int check(const Arguments *arguments) {
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (v[others[i].id].given)
       return report_usage("%s does not go with %s", own, others[i].name);
+  const OptionValue *denoise = &v[RENDER_DENOISE];
+  if (v[RENDER_ANIMATE].given && denoise->given)
+    return report_usage("--animate does not go with --denoise; --turntable does");
+  if (denoise->given && v[RENDER_DENOISER].given &&
+      v[RENDER_DENOISER].integer != VL_DENOISER_VELO)
+    return report_usage("--turntable goes with velo's own denoiser: leave out --denoiser");
   if (!arguments->text_count)
     return report_usage("%s: give the files' name with -o, such as -o f%%04d.png", own);
   for (int i = 0; i < arguments->text_count; i++) {
@@ -97,28 +102,42 @@ static int check(const Arguments *arguments) {
       return report_usage("output \"%s\": put %%04d, the frame's number, into the name",
                           arguments->texts[i]);
   }
-  return -1;
+  const int status = denoise->given ? pattern_check(denoise->text) : -1;
+  if (status < 0 && denoise->given && !pattern_has(denoise->text, 'd'))
+    return report_usage("--denoise \"%s\": put %%04d, the frame's number, into the name",
+                        denoise->text);
+  return status;
 }
 
 static bool all_exist(const Arguments *arguments) {
+  const OptionValue *denoise = &arguments->values[RENDER_DENOISE];
+  if (denoise->given && access(denoise->text, F_OK) != 0)
+    return false;
   for (int i = 0; i < arguments->text_count; i++)
     if (access(arguments->texts[i], F_OK) != 0)
       return false;
   return true;
 }
 
+static int render_before(const Command *command, const Arguments *arguments, const Animation *a,
+                         uint32_t frame, Videos *videos, AnimateRender *render,
+                         AnimateShared *shared);
+
 /* The command line of one frame: the animation's options become --at or --turn. */
 static int render_frame(const Command *command, const Arguments *arguments, const Animation *a,
                         uint32_t frame, Videos *videos, AnimateRender *render,
                         AnimateShared *shared) {
-  char(*paths)[PATH_SIZE] = malloc(MAX_TEXTS * sizeof *paths), moment[40];
+  char(*paths)[PATH_SIZE] = malloc((MAX_TEXTS + 1) * sizeof *paths), moment[40];
   Arguments one = *arguments;
   const PatternValues values = {.number = frame};
   int status = paths ? -1 : report_error(NULL, VL_ERROR_MEMORY, NULL);
-  for (int i = 0; i < one.text_count && status < 0; i++) {
-    if (!pattern_expand(arguments->texts[i], &values, paths[i], PATH_SIZE))
+  for (int i = 0; i <= one.text_count && status < 0; i++) {
+    const char **name = i < one.text_count ? &one.texts[i] : &one.values[RENDER_DENOISE].text;
+    if (i == one.text_count && !one.values[RENDER_DENOISE].given)
+      break;
+    if (!pattern_expand(*name, &values, paths[i], PATH_SIZE))
       status = report_failure(STATUS_IO, "frame %u: the file's name is too long", frame);
-    one.texts[i] = paths[i];
+    *name = paths[i];
   }
   const double angle = a->turns ? 360.0 * frame / a->count : 0, at = a->from + frame / a->fps;
   OptionValue *set = &one.values[a->turns ? RENDER_TURN : RENDER_AT];
@@ -129,12 +148,37 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   one.values[RENDER_FRAMES].given = false;
   const bool skip = one.values[RENDER_SKIP_EXISTING].given;
   one.values[RENDER_SKIP_EXISTING].given = false;
-  if (status < 0 && skip && all_exist(&one))
+  if (status < 0 && skip && !shared->steady.only_kept && all_exist(&one))
     status = STATUS_OK;
+  const bool denoises = one.values[RENDER_DENOISE].given && !one.values[RENDER_DRY_RUN].given;
+  if (status < 0 && denoises && !shared->preparing && !shared->steady.only_kept)
+    status = render_before(command, arguments, a, frame, videos, render, shared);
   if (status < 0)
     status = render(command, &one, shared, videos);
   free(paths);
   return status;
+}
+
+/* Renders those frames that the denoised frame uses and that are not kept: the ones before it,
+ * around the turn. */
+static int render_before(const Command *command, const Arguments *arguments, const Animation *a,
+                         uint32_t frame, Videos *videos, AnimateRender *render,
+                         AnimateShared *shared) {
+  Steady *s = &shared->steady;
+  s->count = a->count - 1 < STEADY_BEFORE ? a->count - 1 : STEADY_BEFORE;
+  for (uint32_t k = 0; k < s->count; k++)
+    s->before[k] = (frame + a->count - 1 - k) % a->count;
+  int status = STATUS_OK;
+  for (uint32_t k = 0; k < s->count && status == STATUS_OK; k++) {
+    if (steady_find(s, s->before[k]))
+      continue;
+    s->number = s->before[k];
+    s->only_kept = true;
+    status = render_frame(command, arguments, a, s->number, videos, render, shared);
+    s->only_kept = false;
+  }
+  s->number = frame;
+  return status == STATUS_OK ? -1 : status;
 }
 
 /* The first frame of all sets the exposure and the tracer of each part. Whether it does is not
@@ -143,8 +187,8 @@ static bool needs_first(const Arguments *arguments, const Animation *a) {
   const OptionValue *v = arguments->values;
   bool tracer = v[RENDER_TRACER].given && v[RENDER_TRACER].integer != TRACER_AUTO;
   bool exposure = v[RENDER_EXPOSURE].given && strcmp(v[RENDER_EXPOSURE].text, "auto") != 0;
-  return (a->first > 0 || v[RENDER_SKIP_EXISTING].given) && !(tracer && exposure) &&
-         !v[RENDER_DRY_RUN].given;
+  return (a->first > 0 || v[RENDER_SKIP_EXISTING].given || v[RENDER_DENOISE].given) &&
+         !(tracer && exposure) && !v[RENDER_DRY_RUN].given;
 }
 
 static int prepare(const Command *command, const Arguments *arguments, const Animation *a,
@@ -184,6 +228,7 @@ int animate_run(const Command *command, const Arguments *arguments, Videos *vide
   }
   if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given)
     report_note("%u frames", (a.last - a.first) / a.step + 1);
+  steady_free(&shared.steady);
   vl_world_destroy(shared.world);
   vl_scene_destroy(shared.scene);
   context_close(shared.context);

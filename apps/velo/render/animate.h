@@ -6,6 +6,7 @@
 
 #include "render/job.h"
 #include "render/scene_options.h"
+#include "render/steady.h"
 #include "render/video.h"
 #include "velo/choose.h"
 
@@ -22,7 +23,8 @@ typedef struct AnimateShared {
   bool raced;                       /* the first frame had its race, or needed none */
   RaceKind race;                    /* RACE_NONE: none was needed, and choice is not set */
   vlTracerChoice choice;
-  bool still; /* --turntable */
+  bool still;    /* --turntable */
+  Steady steady; /* with --denoise: the frames that the next ones use */
   vlContext *context;
   vlScene *scene; /* with --turntable; null before the first frame */
   vlWorld *world; /* of the last frame; null before the first one */

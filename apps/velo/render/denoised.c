@@ -105,6 +105,25 @@ static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
 
+/* Denoises the image. A frame of several is kept, and blended with those before it. *clean is
+ * null for a frame that is only kept. */
+static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *world,
+                            const Job *job, const vlImage *image, vlImage **clean,
+                            vlDenoiseStats *stats, vlError *error) {
+  vlDenoiseDef def = d->def;
+  def.errors = d->steady != NULL;
+  vlResult result = vl_denoise(image, &def, clean, stats, error);
+  if (result != VL_OK || !d->steady)
+    return result;
+  int signals = signals_count();
+  result =
+      steady_keep(d->steady, context, world, job, image, *clean, stop_asked, &signals, error);
+  *clean = NULL;
+  if (result == VL_OK && !d->steady->only_kept)
+    result = steady_blend(d->steady, context, world, job, stop_asked, &signals, clean, error);
+  return result;
+}
+
 /* Makes the image with its standard errors and the denoiser's features. */
 static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
                        const vlFilm *film, vlImage **joined, vlError *error) {
@@ -153,8 +172,9 @@ int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const 
   vlDenoiseStats stats;
   vlResult result = gather(context, world, job, film, &image, &error);
   if (result == VL_OK)
-    result = vl_denoise(image, &d->def, &clean, &stats, &error);
-  if (result == VL_OK)
+    result = clean_frame(d, context, world, job, image, &clean, &stats, &error);
+  vl_image_destroy(image);
+  if (result == VL_OK && clean)
     result = denoise_name(clean, d->def.denoiser);
   int status = STATUS_OK;
   if (result == VL_CANCELLED) {
@@ -163,12 +183,11 @@ int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const 
   }
   if (result != VL_OK && result != VL_CANCELLED)
     status = report_error(&error, result, d->outputs.paths[0]);
-  if (result == VL_OK) {
+  if (result == VL_OK && clean) {
     denoise_report(&stats);
     status = outputs_write(context, &d->outputs, clean, vl_film_spp(film), stage);
     d->written = status == STATUS_OK;
   }
-  vl_image_destroy(image);
   vl_image_destroy(clean);
   return status;
 }

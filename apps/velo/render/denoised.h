@@ -5,6 +5,7 @@
 
 #include "render/job.h"
 #include "render/outputs.h"
+#include "render/steady.h"
 #include "velo/denoise.h"
 #include "velo/render.h"
 
@@ -14,6 +15,7 @@ typedef struct Denoised {
   char comment[128]; /* of these files */
   float exposure;    /* that of the image, where each of both would be metered */
   bool written;
+  Steady *steady; /* of the frames of a turntable; null: this is one image */
   vlDenoiseDef def;
 } Denoised;
 

@@ -224,6 +224,8 @@ static int prepare(Render *render, const Arguments *arguments) {
     status = frames_check(arguments, outputs);
   if (status < 0)
     status = denoised_choose(&render->denoised, arguments, outputs);
+  if (render->shared && v[RENDER_DENOISE].given)
+    render->denoised.steady = &render->shared->steady;
   if (status < 0)
     status = outputs_check_folders(outputs);
   if (status < 0)
@@ -517,6 +519,8 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
               &render->channels, render->many ? &render->frames : NULL);
   if (render->denoised.outputs.count)
     memory_add(&render->memory, "denoising", denoised_memory(run_pixels(render)));
+  if (render->denoised.steady)
+    memory_add(&render->memory, "frames before", steady_memory(run_pixels(render)));
   if (report_is_json())
     memory_report_json(&render->memory, most);
   if (arguments->values[RENDER_VERBOSE].given) {

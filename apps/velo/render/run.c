@@ -113,8 +113,13 @@ static void limit_time(Render *render) {
     render->job.defs->render.time_limit = 0;
 }
 
+/* The frame is rendered for the denoised frames after it, and not written. */
+static bool is_only_kept(const Render *render) {
+  return render->denoised.steady && render->denoised.steady->only_kept;
+}
+
 static void write_progress_image(Render *render, const vlProgress *now) {
-  if (render->outputs.count == 0)
+  if (render->outputs.count == 0 || is_only_kept(render))
     return;
   double start = monotonic_seconds(), wait = WRITE_SHARE * render->write_cost;
   bool ends = now->spp_done >= now->spp_total || now->remaining <= 2 * render->write_cost;
@@ -373,6 +378,13 @@ int run_image(Render *render) {
    * the limit. */
   if (job->defs->render.noise > 0)
     job->defs->render.spp = spp;
+  if (is_only_kept(render)) {
+    int done = stage == OUTPUT_FINISHED
+                   ? denoised_write(&render->denoised, render->context, render->world, job,
+                                    render->film, stage)
+                   : STATUS_OK;
+    return done == STATUS_OK && signals_pending() ? 128 + signals_pending() : done;
+  }
   int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
   if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
     status = kept;

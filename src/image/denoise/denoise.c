@@ -465,6 +465,7 @@ static vlResult correct_widely(Denoise *d) {
 static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
   const vlDenoisePlanes *p = &d->planes[0];
   float *to = vl_image_row(clean, y), filled[COLOR], variance[COLOR];
+  int error = vl_image_find_channel(clean, "error.R");
   for (uint32_t x = 0; x < p->width; x++, to += clean->channels) {
     ptrdiff_t at = index_of(p, x, y);
     bool valid = p->valid[at] != 0.0f;
@@ -474,6 +475,8 @@ static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
       float own = p->color[c][at], least = own < 0.0f ? own : 0.0f,
             v = valid ? p->result[c][at] : filled[c];
       to[c] = v > least ? v : least;
+      if (error >= 0)
+        to[error + c] = valid ? sqrtf(VL_DENOISE_CORRELATION * p->noise[c][at]) : 0.0f;
     }
   }
 }
@@ -518,13 +521,20 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
 
 /* ---- the call ---------------------------------------------------------------------------- */
 
-/* Makes the image for the result, with the alpha and the attributes of the input. */
-static vlResult make_clean(const vlImage *image, int alpha, vlImage **clean) {
-  vlImageDef def = vl_default_image_def(image->width, image->height, alpha >= 0 ? 4 : 3);
+/* Makes the image for the result, with the alpha and the attributes of the input. errors: with
+ * the channels of its standard error. */
+static vlResult make_clean(const vlImage *image, int alpha, bool errors, vlImage **clean) {
+  static const char *const names[] = {"R", "G", "B", "error.R", "error.G", "error.B"},
+                           *const with_alpha[] = {"R",       "G",       "B",      "A",
+                                                  "error.R", "error.G", "error.B"};
+  uint32_t colors = alpha >= 0 ? 4 : 3;
+  vlImageDef def =
+      vl_default_image_def(image->width, image->height, errors ? colors + COLOR : colors);
+  def.names = alpha >= 0 ? with_alpha : names;
   vlResult result = vl_image_create(image->context, &def, clean);
   float *to = result == VL_OK ? vl_image_pixels(*clean) : NULL;
   for (uint32_t y = 0; y < def.height && to && alpha >= 0; y++)
-    for (uint32_t x = 0; x < def.width; x++, to += 4)
+    for (uint32_t x = 0; x < def.width; x++, to += def.channels)
       to[3] = vl_image_get(image, x, y, (uint32_t)alpha);
   for (uint32_t i = 0; i < vl_image_attribute_count(image) && result == VL_OK; i++) {
     vlAttribute a;
@@ -555,7 +565,8 @@ vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **cle
       find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
   if (result != VL_OK)
     return result;
-  result = make_clean(image, work.channels.alpha, clean);
+  result = make_clean(image, work.channels.alpha,
+                      def->errors && def->denoiser == VL_DENOISER_VELO, clean);
   if (result != VL_OK)
     vl_fail_memory(error);
   else if (def->denoiser == VL_DENOISER_OIDN)

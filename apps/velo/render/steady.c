@@ -1,0 +1,260 @@
+/* render/steady.c: see steady.h. docs/denoising.md describes the method. */
+#include "render/steady.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Features: albedo, normal, disparity. */
+enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
+
+/* Differences of features from which on two pixels show different things. */
+static const float MOST_ALBEDO = 0.1f, MOST_NORMAL2 = 0.1f, MOST_DISPARITY = 0.05f;
+/* Squared difference of two frames, over the variance of their noise, from which on an earlier
+ * frame has no weight. */
+static const float FARTHEST = 9.0f;
+
+uint64_t steady_memory(uint64_t pixels) {
+  enum { CLEAN = 7, IDS = 2, FLOW = 6, SUMS = 4 };
+  const uint64_t kept = CLEAN + FEATURES + IDS;
+  return pixels * sizeof(float) * ((STEADY_BEFORE + 1) * kept + FLOW + SUMS);
+}
+
+const SteadyFrame *steady_find(const Steady *s, uint32_t number) {
+  for (int i = 0; i <= STEADY_BEFORE; i++)
+    if (s->frames[i].used && s->frames[i].number == number)
+      return &s->frames[i];
+  return NULL;
+}
+
+static void forget(SteadyFrame *frame) {
+  vl_image_destroy(frame->clean);
+  vl_image_destroy(frame->features);
+  vl_image_destroy(frame->ids);
+  memset(frame, 0, sizeof *frame);
+}
+
+void steady_free(Steady *s) {
+  for (int i = 0; i <= STEADY_BEFORE; i++)
+    forget(&s->frames[i]);
+}
+
+static bool needed(const Steady *s, const SteadyFrame *frame) {
+  for (uint32_t k = 0; k < s->count; k++)
+    if (frame->number == s->before[k])
+      return true;
+  return false;
+}
+
+static vlChannelsDef channels_def(const Job *job, uint32_t channels, vlStopFn *stop,
+                                  void *stop_user) {
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.channels = channels;
+  def.space = job->defs->film.space;
+  def.time = job_channels_time(job);
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
+  def.stop = stop;
+  def.stop_user = stop_user;
+  return def;
+}
+
+static vlResult copy_features(vlContext *context, const vlImage *from, vlImage **to) {
+  const vlImageDef def =
+      vl_default_image_def(vl_image_width(from), vl_image_height(from), FEATURES);
+  static const char *const names[FEATURES] = {
+      "feature.albedo.R", "feature.albedo.G", "feature.albedo.B",   "feature.N.X",
+      "feature.N.Y",      "feature.N.Z",      "feature.disparity.Y"};
+  vlImageDef named = def;
+  named.names = names;
+  const vlResult result = vl_image_create(context, &named, to);
+  if (result != VL_OK)
+    return result;
+  const size_t stride = vl_image_channels(from);
+  for (int k = 0; k < FEATURES; k++) {
+    const float *value =
+        (const float *)vl_image_const_pixels(from) + vl_image_find_channel(from, names[k]);
+    float *copy = (float *)vl_image_pixels(*to) + k;
+    for (size_t i = 0; i < (size_t)def.width * def.height; i++)
+      copy[i * FEATURES] = value[i * stride];
+  }
+  return VL_OK;
+}
+
+vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const Job *job,
+                     const vlImage *image, vlImage *clean, vlStopFn *stop, void *stop_user,
+                     vlError *error) {
+  SteadyFrame *to = NULL; /* one is free: a frame uses STEADY_BEFORE others */
+  for (int i = 0; i <= STEADY_BEFORE; i++)
+    if (!s->frames[i].used || !needed(s, &s->frames[i]))
+      to = &s->frames[i];
+  forget(to);
+  *to = (SteadyFrame){.used = true, .number = s->number, .camera = job->camera, .clean = clean};
+  const vlChannelsDef def =
+      channels_def(job, VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE, stop, stop_user);
+  vlResult result = copy_features(context, image, &to->features);
+  if (result == VL_OK)
+    result = vl_render_channels(world, &job->camera, &def, NULL, &to->ids, error);
+  if (result != VL_OK)
+    forget(to);
+  return result;
+}
+
+/* ---- one earlier frame ------------------------------------------------------------------- */
+
+/* The values of a frame that are compared. */
+typedef struct View {
+  const float *clean, *features;
+  const uint32_t *ids;
+  size_t stride; /* of clean */
+  int error;
+} View;
+
+static View view_of(const SteadyFrame *f) {
+  return (View){.clean = vl_image_const_pixels(f->clean),
+                .features = vl_image_const_pixels(f->features),
+                .ids = vl_image_const_pixels(f->ids),
+                .stride = vl_image_channels(f->clean),
+                .error = vl_image_find_channel(f->clean, "error.R")};
+}
+
+/* Whether pixel i of one frame and pixel k of another show the same surface. disparity: of the
+ * surface, seen from the other frame's camera; 0: nothing. */
+static bool same_surface(const View *a, size_t i, const View *b, size_t k, float disparity) {
+  const uint32_t *m = a->ids + 2 * i, *n = b->ids + 2 * k;
+  const float *f = a->features + i * FEATURES, *g = b->features + k * FEATURES;
+  if (m[0] != n[0] || m[1] != n[1])
+    return false;
+  float normal2 = 0;
+  for (int c = 0; c < 3; c++) {
+    const float d = f[c] - g[c], e = f[NORMAL + c] - g[NORMAL + c];
+    if (!(fabsf(d) < MOST_ALBEDO))
+      return false;
+    normal2 += e * e;
+  }
+  return normal2 < MOST_NORMAL2 &&
+         fabsf(g[DISPARITY] - disparity) <= MOST_DISPARITY * disparity;
+}
+
+/* Adds an earlier frame's colour to sum[0..2] and its weight to sum[3]. u, v: where it is in
+ * that frame, in pixels from the centre of the first one. */
+static void add_pixel(const View *now, size_t i, const View *before, float u, float v,
+                      const uint32_t size[2], float disparity, float sum[4]) {
+  float color[3] = {0}, variance[3] = {0}, weights = 0;
+  const float left = floorf(u), top = floorf(v);
+  for (int k = 0; k < TAPS; k++) {
+    const float x = left + (float)(k & 1), y = top + (float)(k >> 1);
+    const float w = (k & 1 ? u - left : left + 1 - u) * (k >> 1 ? v - top : top + 1 - v);
+    if (!(w > 0) || !(x >= 0) || !(y >= 0) || !(x < (float)size[0]) || !(y < (float)size[1]))
+      continue;
+    const size_t at = (size_t)y * size[0] + (size_t)x;
+    if (!same_surface(now, i, before, at, disparity))
+      continue;
+    const float *c = before->clean + at * before->stride;
+    weights += w;
+    for (int j = 0; j < 3; j++) {
+      color[j] += w * c[j];
+      variance[j] += w * c[before->error + j] * c[before->error + j];
+    }
+  }
+  if (!(weights > 0.25f))
+    return;
+  const float *own = now->clean + i * now->stride;
+  float distance = 0;
+  for (int j = 0; j < 3; j++) {
+    /* a pixel at an edge has much noise: it is no reason to take its light */
+    const float e = own[now->error + j], noise = e * e, other = variance[j] / weights;
+    const float d = color[j] / weights - own[j],
+                scale =
+                    noise + (other < 4 * noise ? other : 4 * noise) + 1e-6f * own[j] * own[j];
+    if (d != 0)
+      distance += scale > 0 ? d * d / scale : INFINITY;
+  }
+  const float t = 1 - distance / (3 * FARTHEST);
+  if (!(t > 0))
+    return;
+  for (int j = 0; j < 3; j++)
+    sum[j] += t * t * color[j] / weights;
+  sum[3] += t * t;
+}
+
+/* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
+static vlResult add_frame(const SteadyFrame *now, const SteadyFrame *before,
+                          const vlWorld *world, const Job *job, vlStopFn *stop, void *stop_user,
+                          float *sums, vlError *error) {
+  vlChannelsDef def = channels_def(job, VL_CHANNEL_BACKWARD | VL_CHANNEL_P, stop, stop_user);
+  def.backward = &before->camera;
+  vlImage *floats = NULL, *ids = NULL;
+  vlResult result = vl_render_channels(world, &job->camera, &def, &floats, &ids, error);
+  if (result != VL_OK)
+    return result;
+  const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
+  const float *values = vl_image_const_pixels(floats);
+  const uint32_t *hidden = vl_image_const_pixels(ids);
+  const size_t stride = vl_image_channels(floats), hidden_stride = vl_image_channels(ids);
+  const int flow = vl_image_find_channel(floats, "backward.U"),
+            place = vl_image_find_channel(floats, "P.X"),
+            hides = vl_image_find_channel(ids, "backward.hidden");
+  const View a = view_of(now), b = view_of(before);
+  const double *pose = before->camera.world_from_camera;
+  for (size_t i = 0; i < (size_t)size[0] * size[1]; i++) {
+    const float *value = values + i * stride;
+    if (hidden[i * hidden_stride + (size_t)hides] != VL_HIDDEN_NOT)
+      continue;
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+      const double d = (double)value[place + k] - pose[4 * k + 3];
+      square += d * d;
+    }
+    const bool nothing = a.ids[2 * i] == 0;
+    add_pixel(&a, i, &b, (float)(i % size[0]) + value[flow],
+              (float)(i / size[0]) + value[flow + 1], size,
+              nothing || !(square > 0) ? 0 : (float)(1 / sqrt(square)), sums + 4 * i);
+  }
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+  return VL_OK;
+}
+
+/* ---- the result -------------------------------------------------------------------------- */
+
+static vlResult copy_attributes(const vlImage *from, vlImage *to) {
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
+    vlAttribute attribute;
+    result = vl_image_attribute(from, i, &attribute);
+    if (result == VL_OK)
+      result = vl_image_set_attribute(to, &attribute);
+  }
+  return result;
+}
+
+vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
+                      vlStopFn *stop, void *stop_user, vlImage **result, vlError *error) {
+  const SteadyFrame *now = steady_find(s, s->number);
+  const uint32_t width = vl_image_width(now->clean), height = vl_image_height(now->clean);
+  const size_t stride = vl_image_channels(now->clean), pixels = (size_t)width * height;
+  const float *own = vl_image_const_pixels(now->clean);
+  const vlImageDef sums_def = vl_default_image_def(width, height, 4);
+  const int alpha = vl_image_find_channel(now->clean, "A");
+  const vlImageDef def = vl_default_image_def(width, height, alpha >= 0 ? 4 : 3);
+  vlImage *sums = NULL;
+  *result = NULL;
+  vlResult code = vl_image_create(context, &sums_def, &sums);
+  if (code == VL_OK)
+    code = vl_image_create(context, &def, result);
+  for (uint32_t k = 0; k < s->count && code == VL_OK; k++)
+    code = add_frame(now, steady_find(s, s->before[k]), world, job, stop, stop_user,
+                     vl_image_pixels(sums), error);
+  if (code == VL_OK)
+    code = copy_attributes(now->clean, *result);
+  const float *sum = code == VL_OK ? vl_image_const_pixels(sums) : NULL;
+  float *to = code == VL_OK ? vl_image_pixels(*result) : NULL;
+  for (size_t i = 0; i < pixels && to; i++) {
+    for (int c = 0; c < 3; c++)
+      to[i * def.channels + (size_t)c] =
+          (own[i * stride + (size_t)c] + sum[4 * i + (size_t)c]) / (1 + sum[4 * i + 3]);
+    if (alpha >= 0)
+      to[i * 4 + 3] = own[i * stride + (size_t)alpha];
+  }
+  vl_image_destroy(sums);
+  return code;
+}

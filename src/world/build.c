@@ -216,6 +216,9 @@ vlResult vl_world_locate_error(vlSource source, vlError *error, vlResult r) {
 
 void vl_world_info(const vlWorld *world, vlWorldInfo *info) {
   *info = world->info;
+  info->moves = world->moves;
+  info->time_open = world->moves ? world->time_open : 0;
+  info->time_close = world->moves ? world->time_close : 0;
 }
 
 void vl_part_release(vlPart *part) {

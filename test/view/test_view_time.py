@@ -34,12 +34,12 @@ def test_engine(folder):
     page = Page(view)
     try:
         first = page.wait(lambda m: isinstance(m, dict) and m["type"] == "state")
-        check("duration", first["time"] == {"seconds": 2, "at": None, "shutter": 0}, first["time"])
+        check("duration", first["time"] == {"from": 0, "seconds": 2, "at": None, "shutter": 0}, first["time"])
         page.send(type="camera", change=5, set={"roll": 7})
         moved = state_of(page, 5)
         page.send(type="time", at=0.25, shutter=0, change=6)
         later = state_of(page, 6)
-        check("time", later.get("time") == {"seconds": 2, "at": 0.25, "shutter": 0}, later)
+        check("time", later.get("time") == {"from": 0, "seconds": 2, "at": 0.25, "shutter": 0}, later)
         check("camera_stays", later["camera"] == moved["camera"], moved["camera"], later["camera"])
         check("exposure_stays", later["exposure"] == first["exposure"])
         check("undo_stays", later["can_undo"])
@@ -131,6 +131,56 @@ def test_shutter(folder):
         view.end()
 
 
+MOVING_CAMERA = '''Camera "thinlens" "point3 eye" [0 1 5] "point3 lookat" [0 0 0] "point3 eyeclose" [2 1 5] "float shutteropen" 1 "float shutterclose" 3
+  "float focallength" 50 "float sensorwidth" 36 "float iso" 100 "float fnumber" 8
+Film "rgb" "integer xresolution" 64 "integer yresolution" 48
+WorldBegin
+LightSource "infinite" "rgb L" [50 60 90]
+Shape "sphere" "float radius" 0.8
+'''
+
+
+def test_motion(folder):
+    """The timeline of a scene that moves by itself moves the shutter: undo, the copied command; a moving camera keeps the times of its
+    poses and the image its brightness, also by the fields of the panel."""
+    view = View(VELO, "moving.pbrt", *OPTIONS, cwd=folder)
+    page = Page(view)
+    try:
+        first = page.wait(lambda m: isinstance(m, dict) and m["type"] == "state")
+        check("motion", first["time"] == {"from": 0, "seconds": 1, "at": 0, "shutter": 1}, first["time"])
+        page.send(type="time", at=0.25, shutter=0.5, gesture=4, change=2)
+        page.send(type="time", at=0.5, shutter=0, gesture=4, change=3)
+        check("motion_time", state_of(page, 3).get("time") == {"from": 0, "seconds": 1, "at": 0.5, "shutter": 0})
+        page.send(type="undo", change=4)
+        check("motion_undo", state_of(page, 4)["time"] == first["time"])
+    finally:
+        page.socket.close()
+        view.end()
+    view = View(VELO, "moving_camera.pbrt", *OPTIONS, cwd=folder)
+    page = Page(view)
+    try:
+        first = page.wait(lambda m: isinstance(m, dict) and m["type"] == "state")
+        check("camera_motion", first["time"] == {"from": 1, "seconds": 2, "at": 1, "shutter": 2}, first["time"])
+        files = []
+        for change, edit in enumerate(({"type": "time", "at": 1.5, "shutter": 0}, {"type": "time", "at": 2, "shutter": 0},
+                                       {"type": "camera", "set": {"shutter_open": 1.5, "shutter_close": 1.5}}), 2):
+            page.send(change=change, **edit)
+            state = state_of(page, change)
+            check(f"poses_keep_their_times_{change}", state.get("time", {}).get("from") == 1 and state["time"]["seconds"] == 2, state)
+            check(f"brightness_{change}", state["camera"]["exposure_time"] == first["camera"]["exposure_time"])
+            finished(page, change)
+            saved = ask(page, "saved", type="save", what="image", name="camera.exr", exposure=0, view="standard")["file"]
+            words = shlex.split(ask(page, "command", type="command", exposure=0, view="standard")["command"])
+            subprocess.run([VELO, *words[1:], "-o", f"camera_still{change}.exr"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
+            check(f"camera_same_bytes_{change}", bytes_of(folder, saved) == bytes_of(folder, f"camera_still{change}.exr"), words)
+            files.append(bytes_of(folder, saved))
+        check("camera_moved", files[0] != files[1])
+        check("same_as_the_panel", files[0] == files[2])
+    finally:
+        page.socket.close()
+        view.end()
+
+
 def test_none(folder):
     view = View(VELO, "still.pbrt", *OPTIONS, cwd=folder)
     page = Page(view)
@@ -180,6 +230,35 @@ def test_browser(folder):
         view.end()
 
 
+def test_browser_motion(folder):
+    """The timeline of a camera that moves from 1 s to 3 s."""
+    view = View(VELO, "moving_camera.pbrt", *OPTIONS, cwd=folder)
+    b = Browser()
+    try:
+        b.open(view.address)
+        b.wait("window.velo?.state && window.velo.frames > 0 && velo.steers")
+        check("motion_range", b.run("[document.getElementById('time-at').min, document.getElementById('time-at').max]") == ["1", "3"])
+        b.run("(() => { const s = document.getElementById('time-at'); s.value = 2.5; s.dispatchEvent(new Event('input')); })()")
+        check("motion_scrub", bool(b.wait("velo.state.time.at === 2.5 && velo.state.time.shutter === 2")))
+        b.click_on("#blur")
+        check("motion_blur_off", bool(b.wait("velo.state.time.shutter === 0 && document.getElementById('blur').ariaPressed === 'false'")))
+        b.run("window.times = []; setInterval(() => { const t = velo.state.time.at; if (t !== window.times.at(-1)) window.times.push(t); }, 5)")
+        b.click_on("#time-play")
+        b.wait("window.times.some((t, i) => t < window.times[i - 1])")
+        check("motion_loops", b.run("Math.min(...window.times) >= 1 && Math.max(...window.times) <= 3"), b.run("window.times"))
+        b.click_on("#time-play")
+        b.click_on("#blur")
+        check("motion_blur_on", bool(b.wait("velo.state.time.shutter === 2")))
+        b.click_on("#undo")
+        check("motion_undone", bool(b.wait("velo.state.time.shutter === 0")))
+        check("motion_no_errors", not b.problems(), b.problems())
+        if SHOTS:
+            b.screenshot(os.path.join(SHOTS, "motion.png"))
+    finally:
+        b.end()
+        view.end()
+
+
 def main():
     reason = cannot_view(VELO)
     with tempfile.TemporaryDirectory() as folder:
@@ -195,11 +274,15 @@ def main():
         test_none(folder)
         with open(os.path.join(folder, "moving.pbrt"), "w", encoding="utf-8") as file:
             file.write(MOVING)
+        with open(os.path.join(folder, "moving_camera.pbrt"), "w", encoding="utf-8") as file:
+            file.write(MOVING_CAMERA)
         test_shutter(folder)
+        test_motion(folder)
         if reason:
             print(f"skip browser: {reason}")
         else:
             test_browser(folder)
+            test_browser_motion(folder)
     results.end()
 
 

@@ -322,10 +322,21 @@ static bool set_far(Edit *e, const MessageField *f) {
     e->def->far_plane = INFINITY;
   return f->null || one(f, &e->def->far_plane);
 }
+/* With another shutter, the poses of a moving camera keep their times, and the image its
+ * brightness. */
+static void keep_motion(Edit *e) {
+  const vlCameraDef *before = &e->now->def;
+  for (int i = 0; i < 2 && e->now->made.moves; i++)
+    e->def->pose_times[i] = e->now->made.pose_times[i];
+  if (!isnan(before->lens.iso) && isnan(before->lens.seconds))
+    e->def->lens.seconds = before->shutter_close - before->shutter_open;
+}
 static bool set_shutter_open(Edit *e, const MessageField *f) {
+  keep_motion(e);
   return f->count == 1 && one(f, &e->def->shutter_open);
 }
 static bool set_shutter_close(Edit *e, const MessageField *f) {
+  keep_motion(e);
   return f->count == 1 && one(f, &e->def->shutter_close);
 }
 static bool set_exposure_time(Edit *e, const MessageField *f) {
@@ -562,12 +573,25 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
   return status;
 }
 
+static MessageField number_field(const char *name, double value) {
+  MessageField field = {.count = 1, .numbers = {value}};
+  snprintf(field.name, sizeof field.name, "%s", name);
+  return field;
+}
+
 vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result,
                           vlError *error) {
-  ViewMessage message = {.field_count = 1};
-  strcpy(message.fields[0].name, "focus_distance");
-  message.fields[0].count = 1;
-  message.fields[0].numbers[0] = distance;
+  const ViewMessage message = {.field_count = 1,
+                               .fields = {number_field("focus_distance", distance)}};
+  const char *warning;
+  return camera_edit(now, &message, result, &warning, error);
+}
+
+vlResult camera_set_shutter(const ViewCamera *now, double open, double close,
+                            ViewCamera *result, vlError *error) {
+  const ViewMessage message = {
+      .field_count = 2,
+      .fields = {number_field("shutter_open", open), number_field("shutter_close", close)}};
   const char *warning;
   return camera_edit(now, &message, result, &warning, error);
 }

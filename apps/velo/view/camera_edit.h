@@ -16,6 +16,10 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
 /* Replaces the focus of a camera by a distance. Errors as camera_edit. */
 vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result,
                           vlError *error);
+/* Opens and closes the shutter at other times, in seconds. The poses of a moving camera keep
+ * their times, and the image its brightness. Errors as camera_edit. */
+vlResult camera_set_shutter(const ViewCamera *now, double open, double close,
+                            ViewCamera *result, vlError *error);
 /* The camera of a def whose image has the size of `made`. It keeps the def's spelling of the
  * focal length where it can. lookat: see CameraUnits. Errors as camera_edit. */
 vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat,

@@ -9,7 +9,6 @@
 
 static char *engine_state(const Engine *e) {
   const Wanted *w = &e->wanted;
-  const vlLoadDef *load = &e->model.opening.load;
   const ViewState state = {.scene = e->def.path,
                            .change = w->change,
                            .spp = w->spp,
@@ -22,9 +21,7 @@ static char *engine_state(const Engine *e) {
                            .exposure = (double)e->model.exposure,
                            .view = (int)e->def.arguments->values[RENDER_VIEW].integer,
                            .info = &e->model.info,
-                           .seconds = e->watching ? e->model.seconds : 0,
-                           .at = load->time,
-                           .close = load->time_close,
+                           .time = engine_time(e),
                            .poses = e->model.camera_count,
                            .camera = &w->camera};
   return state_text(&state);
@@ -96,6 +93,14 @@ void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
   h->count = h->at + 1;
 }
 
+/* The camera that a message makes. */
+static void take_camera(Engine *e, const ViewMessage *m, const ViewCamera *next) {
+  e->wanted.change = m->change;
+  engine_remember(e, next, m->gesture);
+  show_camera(e, next);
+  engine_post_state(e, 0);
+}
+
 static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
   ViewCamera next;
   vlError error = {0};
@@ -105,10 +110,7 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
     post_refusal(e, client, m, error.message[0] ? error.message : "refused");
     return;
   }
-  e->wanted.change = m->change;
-  engine_remember(e, &next, m->gesture);
-  show_camera(e, &next);
-  engine_post_state(e, 0);
+  take_camera(e, m, &next);
   if (warning) {
     JsonText text;
     if (!json_text_begin(&text, "warning"))
@@ -202,15 +204,23 @@ static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
   e->chosen_change = m->change;
 }
 
+/* Another time: of an animation that is loaded for it, or of the camera's shutter. */
 static void set_time(Engine *e, uint32_t client, const ViewMessage *m) {
-  if (!(e->model.seconds > 0) || !e->watching) {
-    post_refusal(e, client, m, "there is no animation");
-    return;
+  vlError error = {0};
+  ViewCamera next;
+  if (e->model.seconds > 0 && e->watching) {
+    e->at = m->at;
+    e->shutter = m->shutter;
+    e->time_change = m->change;
+    e->has_time = e->time_due = true;
+  } else if (!(engine_time(e).duration > 0)) {
+    post_refusal(e, client, m, "nothing moves in this scene");
+  } else if (camera_set_shutter(&e->wanted.camera, m->at, m->at + m->shutter, &next, &error) !=
+             VL_OK) {
+    post_refusal(e, client, m, error.message);
+  } else {
+    take_camera(e, m, &next);
   }
-  e->at = m->at;
-  e->shutter = m->shutter;
-  e->time_change = m->change;
-  e->has_time = e->time_due = true;
 }
 
 /* Adds a message to a list of tasks. */

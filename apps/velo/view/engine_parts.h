@@ -7,6 +7,7 @@
 #include "velo/tracer.h"
 #include "view/camera_edit.h"
 #include "view/engine.h"
+#include "view/state.h"
 
 enum { MOST_TASKS = 32, HISTORY = 256 };
 /* Values of Wanted.channel that are not plain ground truth: the standard error needs the film,
@@ -225,6 +226,9 @@ void engine_post_state(Engine *engine, uint32_t client);
 /* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of
  * one gesture are one step; 0: none. */
 void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
+/* The timeline: of the animation that is chosen; else of what moves by itself, where the
+ * camera's shutter chooses the time. The caller holds the lock. */
+ViewTime engine_time(const Engine *engine);
 /* The thread that renders. */
 void *engine_render(void *engine);
 /* The thread that watches the files. */

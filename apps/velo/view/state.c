@@ -44,9 +44,10 @@ char *state_text(const ViewState *s) {
                 (double)(i < 3 ? s->info->bounds_min[i] : s->info->bounds_max[i - 3]));
   json_end(json, ']');
   json_begin(json, "time", '{');
-  json_number(json, "seconds", s->seconds);
-  json_number(json, "at", s->at);
-  json_number(json, "shutter", isnan(s->close) ? 0 : s->close - s->at);
+  json_number(json, "from", s->time.from);
+  json_number(json, "seconds", s->time.duration);
+  json_number(json, "at", s->time.at);
+  json_number(json, "shutter", s->time.shutter);
   json_end(json, '}');
   json_integer(json, "poses", s->poses);
   json_begin(json, "camera", '{');

@@ -6,6 +6,12 @@
 #include "velo/world.h"
 #include "view/camera_edit.h"
 
+/* The timeline, in seconds. */
+typedef struct ViewTime {
+  double from, duration; /* of what moves; duration 0: nothing does */
+  double at, shutter;    /* when the shutter opens (unset: the model at rest), for how long */
+} ViewTime;
+
 typedef struct ViewState {
   const char *scene; /* path */
   uint32_t change, spp, channel;
@@ -16,9 +22,8 @@ typedef struct ViewState {
   int view;             /* vlView of the first view */
   const vlWorldInfo *info;
   const ViewCamera *camera;
-  double seconds;   /* duration of the animation that can be played; 0: none */
-  double at, close; /* seconds: when the shutter opens and closes; unset: as vlLoadDef */
-  uint32_t poses;   /* cameras of --trajectory */
+  ViewTime time;
+  uint32_t poses; /* cameras of --trajectory */
 } ViewState;
 
 /* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to

@@ -71,8 +71,9 @@ static double extent_along(const vlExtent *box, const double axis[3]) {
 }
 
 /* Sum of the faces' normals, weighted by area, divided by the sum of the areas. Of a closed
- * surface it is zero but for rounding: then neither side is its front. */
-static void mean_normal(const vlScene *scene, double n[3]) {
+ * surface it is zero but for rounding: then neither side is its front. hidden: only faces count
+ * that are not seen from behind. */
+static void mean_normal(const vlScene *scene, bool hidden, double n[3]) {
   double area = 0;
   n[0] = n[1] = n[2] = 0;
   for (size_t k = 0; k < scene->shapes.count; k++) {
@@ -87,11 +88,12 @@ static void mean_normal(const vlScene *scene, double n[3]) {
         vl_mat4_point(&m, q, p[c]);
       }
       double own[3];
+      const double sign = hidden && !d->one_sided ? 0 : d->reverse_orientation ? -1 : 1;
       for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, l = (i + 2) % 3;
         own[i] = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) -
                  (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
-        n[i] += d->reverse_orientation ? -own[i] : own[i];
+        n[i] += sign * own[i];
       }
       area += vl_norm3(own);
     }
@@ -100,8 +102,9 @@ static void mean_normal(const vlScene *scene, double n[3]) {
     n[i] = area > 0 ? n[i] / area : 0;
 }
 
-/* Flat models are seen nearly along their normal, from the side of their faces' fronts; charts
- * that are less flat, from the front. */
+/* Flat models are seen nearly along their normal, from the side of their faces' fronts (flat
+ * ground from below only if it cannot be seen from above); charts that are less flat, from the
+ * front. */
 static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
                              const vlExtent *box, View *v) {
   v->azimuth = 0.45;
@@ -115,7 +118,7 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
   if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0))
     return "from the front, a little from the right and above";
   const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = 3.14159265358979323846;
-  mean_normal(scene, n);
+  mean_normal(scene, y <= flat * fmin(x, z), n);
   if (y <= flat * fmin(x, z)) {
     bool below = vl_dot3(n, v->up) < against;
     v->elevation = below ? -0.9 : 0.9;

@@ -134,6 +134,29 @@ static void sheet_from_behind(void **state) {
   }
 }
 
+/* A ground whose faces look down is seen from above, unless it cannot be seen from there. */
+static void ground_from_above(void **state) {
+  (void)state;
+  for (int one_sided = 0; one_sided < 2; one_sided++) {
+    Model m = begin();
+    const float p[9] = {0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const uint32_t down[3] = {0, 1, 2};
+    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+    shape.vertices = 3;
+    shape.faces = 1;
+    shape.positions = p;
+    shape.indices = down;
+    shape.one_sided = one_sided;
+    assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    double d[3];
+    toward_eye(&m, d);
+    assert_true(one_sided ? d[1] < -0.7 : d[1] > 0.7);
+    end(&m);
+  }
+}
+
 /* A thin box has no front but by the rounding of its sums: it is seen from the front, and so is
  * a chart of the given depth. */
 static void charts(void **state) {
@@ -458,6 +481,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(flat_models),
       cmocka_unit_test(sheet_from_behind),
+      cmocka_unit_test(ground_from_above),
       cmocka_unit_test(charts),
       cmocka_unit_test(upright),
       cmocka_unit_test(rooms),

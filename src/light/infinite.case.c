@@ -6,6 +6,7 @@ const LightCase infinite_light = {
         {
             {.parameters = "\"rgb L\" [.5 1 2]"},
             {.parameters = "\"string filename\" \"sky.pfm\"", .compensated = true},
+            {.parameters = "\"string filename\" \"quarters.pfm\"", .compensated = true},
             {.parameters =
                  "\"string filename\" \"sky.pfm\" \"point3 portal\" [-1.2 0 -1.2 1.2 0 -1.2 1.2 2 "
                  "-1.2 -1.2 2 -1.2]"},

@@ -2,4 +2,4 @@
 #include "tracer/tracer.case.h"
 
 /* it finds the ball by chance */
-const TracerCase random_walk_tracer = {TRANSPORT, .spp = 8192, .least = 0.1};
+const TracerCase random_walk_tracer = {TRANSPORT, .spp = 8192, .least_of_lamp = 0.1};

@@ -1,9 +1,11 @@
 /* tracer/tracer.case.h: what the tests of tracers must know of a kind beyond its row: what a
- * tilted plate looks like below a sky, and below a ball that shines
+ * tilted plate looks like below a sky, and below a ball that shines;
+ * whether the tracer finds the light of a room
  * (test/conformance/transport.h). */
 #ifndef TRACER_TRACER_CASE_H
 #define TRACER_TRACER_CASE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "velo/tracer.h"
@@ -16,8 +18,10 @@ typedef struct Plate {
 
 typedef struct TracerCase {
   Plate sky, lamp;
-  uint32_t spp; /* 0: 64 */
-  double least; /* the least mistake that must be found, of the mean; 0: .03 */
+  uint32_t spp;         /* 0: 64 */
+  double least_of_lamp; /* the least mistake that must be found of the lamp's light; 0: .03 */
+  uint32_t room_spp;    /* of a room lit from its ceiling; 0: not compared */
+  bool blurs;           /* by up to 2 % of the room's light */
 } TracerCase;
 
 /* Below a sky of 1: half of it. Below the ball: half of 4 times its share. */

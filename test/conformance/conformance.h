@@ -303,6 +303,11 @@ static Mean mean_of_image(const vlImage *image) {
   return mean;
 }
 
+static double mean_of_green(const vlImage *image) {
+  Mean mean = mean_of_image(image);
+  return mean_of(&mean);
+}
+
 /* ---- forms of scenes --------------------------------------------------------------------- */
 
 #define HEAD                                                                                \

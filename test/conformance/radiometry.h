@@ -210,22 +210,32 @@ static Mean difference_of_part(const vlImage *image, const vlImage *other, int p
   return mean;
 }
 
+/* The image by another tracer is the path tracer's, in each quarter and the whole. */
+static void check_floor(const char *family, const char *kind, const char *parameters,
+                        const char *by, const vlImage *image, const vlImage *paths) {
+  double whole = mean_of_green(paths);
+  for (int part = 0; part <= 4; part++) {
+    char what[200];
+    Mean off = difference_of_part(image, paths, part);
+    snprintf(what, sizeof what, "%.100s: %s, part %d", parameters, by, part);
+    check_mean(family, kind, what, &off, 0,
+               (Sight){0.004 * whole, (part < 4 ? 0.25 : 0.12) * whole});
+  }
+}
+
+/* Light paths bring as much light as the path tracer finds. And in the two-way tracer the
+ * weights of all ways sum to 1, which they only do if the density that it computes for a ray
+ * that leaves a light is the one with which light paths leave it. */
 static void check_light_paths(const char *family, const char *kind, const char *parameters,
                               const char *text) {
   vlImage *paths = image_of_floor(text, VL_TRACER_PATH, FLOOR_SPP, 0, 0, 2);
   vlImage *light = image_of_floor(text, VL_TRACER_LIGHT_PATH, LIGHT_PATH_SPP, 0, 0, 2);
-  double whole = 0;
-  for (uint32_t i = 0; i < WIDTH * WIDTH; i++)
-    whole += (double)vl_image_get(paths, i % WIDTH, i / WIDTH, 1) / (WIDTH * WIDTH);
-  for (int part = 0; part <= 4; part++) {
-    char what[200];
-    Mean off = difference_of_part(light, paths, part);
-    snprintf(what, sizeof what, "%.100s: light paths, part %d", parameters, part);
-    check_mean(family, kind, what, &off, 0,
-               (Sight){0.004 * whole, (part < 4 ? 0.25 : 0.12) * whole});
-  }
+  vlImage *both = image_of_floor(text, VL_TRACER_BIDIRECTIONAL, FLOOR_SPP, 0, 0, 2);
+  check_floor(family, kind, parameters, "light paths", light, paths);
+  check_floor(family, kind, parameters, "both ways", both, paths);
   vl_image_destroy(paths);
   vl_image_destroy(light);
+  vl_image_destroy(both);
 }
 
 static void light_paths(void **state) {

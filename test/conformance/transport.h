@@ -258,11 +258,33 @@ static double ball_share_of_pixel(uint32_t column, uint32_t row) {
 #define TRACER_CASE(NAME, name) &name##_tracer,
 static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 
+/* A closed room whose lamp shines at the ceiling: nearly all light comes by two bounces and
+ * more. */
+static const char *const room =
+    "LookAt 0 0 .9 0 0 -1 0 1 0 Camera \"perspective\" \"float fov\" 80\n" VIEW("12")
+    "Integrator \"path\" \"integer maxdepth\" 3 WorldBegin Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer "
+    "indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n"
+    "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20] Shape \"bilinearmesh\" \"point3 P\" "
+    "[-.2 .6 .2 .2 .6 .2 -.2 .6 -.2 .2 .6 -.2]\n";
+
+enum { ROOM_SPP = 1024 };
+
+/* Tracers that find the light of the room agree with the path tracer. */
+static void check_room(const char *name, const vlImage *paths, const TracerCase *c) {
+  vlImage *image = image_of(room, name, c->room_spp);
+  Mean off = mean_difference(image, paths);
+  double whole = mean_of_green(paths);
+  vl_image_destroy(image);
+  check_mean("tracers", name, "room", &off, 0,
+             (Sight){(c->blurs ? 0.02 : 0.002) * whole, (c->blurs ? 0.1 : 0.06) * whole});
+}
+
 /* The mean over the image of what a pixel is beyond its known value, over the mean known. */
 static void check_tracer(const char *name, const char *variant, const char *text, Plate plate,
                          const TracerCase *c) {
   vlImage *image = image_of(text, name, c->spp ? c->spp : 64);
-  double least = c->least > 0 ? c->least : 0.03;
+  double least = c->least_of_lamp > 0 && plate.ball != 0 ? c->least_of_lamp : 0.03;
   Mean off = {0};
   Mean known = {0};
   for (uint32_t y = 0; y < PLATE_SIDE; y++)
@@ -320,9 +342,12 @@ static void laws_of_tracers(void **state) {
   (void)state;
   static char uniform[TEXT];
   const vlKindFamily *family = vl_kind_family_find("tracers");
+  vlImage *paths = image_of(room, "path", ROOM_SPP);
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const char *name = family->rows[k]->name;
     const TracerCase *c = tracer_cases[k];
+    if (c->room_spp)
+      check_room(name, paths, c);
     check_tracer(name, "sky", below_sky, c->sky, c);
     check_tracer(name, "lamp", below_lamp, c->lamp, c);
     if (k != VL_TRACER_AMBIENT_OCCLUSION)
@@ -333,6 +358,7 @@ static void laws_of_tracers(void **state) {
              (int)(rest - below_lamp), below_lamp, rest);
     check_tracer(name, "uniform", uniform, c->lamp, c);
   }
+  vl_image_destroy(paths);
   expect_no_failures();
 }
 

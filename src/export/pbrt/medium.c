@@ -84,6 +84,8 @@ bool vl_pbrt_medium(vlExport *x, size_t i) {
   size_t before = x->text.data.count;
   vl_pbrt_matrix(x, m->world_from_medium);
   bool placed = x->text.data.count > before;
+  if (m->rgb_absorption)
+    vl_export_lose(x, "absorption by RGB channel: by the spectrum of that colour");
   PUT("MakeNamedMedium \"medium%zu\" \"string type\" \"%s\"", i + 1, row->name);
   vl_pbrt_row(x, row, m, false, m->emission_scales ? "Lescale" : NULL);
   put_arrays(x, row, m);

@@ -208,7 +208,11 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
     t.image = d->image;
     if (!vl_pbrt_image(x, &t, VL_PBRT_COLORS, name))
       return false;
+    if (d->space != x->scene->defs.film.space)
+      vl_export_lose(x, "colour spaces of images: the scene's");
   }
+  if (d->kind == VL_LIGHT_SPOT && d->cone_squared)
+    vl_export_lose(x, "edges of spots as glTF has them: pbrt's, which are steeper");
   PUT("AttributeBegin\n");
   put_transform(x, row, d);
   if (d->medium.index)

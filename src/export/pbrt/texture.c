@@ -266,6 +266,8 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
     vl_export_lose(x, "wrap modes of their own for each axis: that of s");
   if (t->colors)
     vl_export_lose(x, "colours of vertices: left out");
+  if (t->spectrum && t->space != x->scene->defs.film.space)
+    vl_export_lose(x, "colour spaces of images: the scene's");
   double scale = (double)t->scale * (plain && t->spectrum ? (double)t->tint[0] : 1);
   PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name,
       wraps[t->wrap], filters[t->filter]);

@@ -212,7 +212,7 @@ def test_browser(folder):
         b.click_on("#time-play")
         b.wait("window.times.some((t, i) => t < window.times[i - 1])")
         times = b.run("window.times")
-        check("loops", len(times) > 4, times)
+        check("loops", len(times) > 2, times)  # how many times fit into one round is a matter of the machine
         b.click_on("#time-loop")
         b.wait("document.getElementById('time-play').ariaPressed === 'false' && window.velo.state.time.at === 2")
         check("ends_at_the_end", True)

@@ -128,10 +128,10 @@ VL_API vlResult vl_image_read_memory(vlContext *context, const char *name, const
 VL_API vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image,
                                      vlError *error);
 
-/** Reads only these `count` channels of an OpenEXR file (of other formats, all channels). If
- * the channels have the same type, the image has that type, so ids stay VL_PIXEL_U32.
- * vl_image_read, in contrast, converts ids beside colours to floats (exact up to 2^24). SCENE
- * when the file lacks one of the channels. */
+/** Reads only these `count` channels of an OpenEXR file (of other formats, all channels); a
+ * name without its last ".Y" will do. If the channels have the same type, the image has that
+ * type, so ids stay VL_PIXEL_U32. vl_image_read, in contrast, converts ids beside colours to
+ * floats (exact up to 2^24). SCENE when the file lacks one of the channels. */
 VL_API vlResult vl_image_read_channels(vlContext *context, const char *path,
                                        const char *const *names, uint32_t count,
                                        vlImage **image, vlError *error);

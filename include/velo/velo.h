@@ -23,6 +23,7 @@
 #include "velo/filter_kinds.h"
 #include "velo/focus.h"
 #include "velo/group.h"
+#include "velo/header.h"
 #include "velo/image.h"
 #include "velo/light.h"
 #include "velo/load.h"

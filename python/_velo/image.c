@@ -232,6 +232,7 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
   (void)module;
   PyObject *images, *path, *keywords, *keep = PyList_New(0);
   const vlImage *list[64];
+  vlImage *shown[64] = {NULL}; /* ids as other programs show them */
   if (!keep || !PyArg_ParseTuple(arguments, "O!OO!:image_write", &PyList_Type, &images, &path,
                                  &PyDict_Type, &keywords)) {
     Py_XDECREF(keep);
@@ -266,8 +267,17 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
     return NULL;
   }
   vlError error = {0};
-  vlResult done = count == 1 ? vl_image_write(list[0], file, &def, &error)
-                             : vl_image_write_layers(list, (uint32_t)count, file, &def, &error);
+  vlResult done = VL_OK;
+  for (Py_ssize_t i = 0; i < count && done == VL_OK; i++)
+    if (vl_image_type(list[i]) == VL_PIXEL_U32) {
+      done = vl_image_show_ids(list[i], &shown[i]);
+      list[i] = shown[i];
+    }
+  if (done == VL_OK)
+    done = count == 1 ? vl_image_write(list[0], file, &def, &error)
+                      : vl_image_write_layers(list, (uint32_t)count, file, &def, &error);
+  for (Py_ssize_t i = 0; i < count; i++)
+    vl_image_destroy(shown[i]);
   call_end(&call);
   Py_DECREF(keep);
   if (done != VL_OK)

@@ -586,7 +586,51 @@ static PyObject *autofocus(PyObject *module, PyObject *arguments) {
   return done == VL_OK ? PyFloat_FromDouble(distance) : raise_result(done, &error);
 }
 
+/* image_describe([images], camera, settings, scene's file or None, samples, time or None, mode
+ * of the channels or None, denoiser or None): sets the header attributes of the first image. */
+static PyObject *image_describe(PyObject *module, PyObject *arguments) {
+  (void)module;
+  PyObject *images, *file, *time, *texts[2];
+  Camera *camera;
+  Settings *settings;
+  vlHeaderDef def = vl_default_header_def();
+  static const char *const names[2] = {"velo.channels", "velo.denoiser"};
+  if (!PyArg_ParseTuple(arguments, "O!O!O!OIOOO:image_describe", &PyList_Type, &images,
+                        base_types[TYPE_CAMERA], &camera, base_types[TYPE_SETTINGS], &settings,
+                        &file, &def.samples, &time, &texts[0], &texts[1]))
+    return NULL;
+  def.camera = &camera->camera;
+  def.defs = &settings->defs;
+  if (time != Py_None && (def.time = PyFloat_AsDouble(time)) == -1.0 && PyErr_Occurred())
+    return NULL;
+  if (file != Py_None && !(def.scene = PyUnicode_AsUTF8AndSize(file, NULL)))
+    return NULL;
+  vlImage *first = NULL;
+  vlResult result = VL_OK;
+  for (Py_ssize_t i = 0; i < PyList_Size(images) && result == VL_OK; i++) {
+    PyObject *item = PyList_GetItem(images, i);
+    if (!is_object(item, TYPE_IMAGE) || !((Image *)item)->image)
+      return raise_usage("expected an Image");
+    if (first)
+      result = vl_image_add_attributes(first, ((Image *)item)->image);
+    else
+      result = vl_image_set_header(first = ((Image *)item)->image, &def);
+  }
+  for (int i = 0; i < 2 && first && result == VL_OK; i++) {
+    vlAttribute text = {.name = names[i], .type = VL_ATTRIBUTE_STRING};
+    if (texts[i] == Py_None)
+      continue;
+    if (!(text.string = PyUnicode_AsUTF8AndSize(texts[i], NULL)))
+      return NULL;
+    result = vl_image_set_attribute(first, &text);
+  }
+  if (result != VL_OK)
+    return raise_result(result, NULL);
+  Py_RETURN_NONE;
+}
+
 PyMethodDef render_functions[] = {
+    {"image_describe", image_describe, METH_VARARGS, "Sets an image's header attributes."},
     {"scene_settings", scene_settings, METH_O, "A copy of a scene's settings."},
     {"render", render, METH_VARARGS, "Adds samples to a film."},
     {"choose_tracer", choose_tracer, METH_VARARGS, "The race of the tracers."},

@@ -81,12 +81,14 @@ class Scene(_velo.Scene):
     _world: Optional[tuple[Any, World]]
     _changed: bool
     _film: Optional[Film]
+    _file: Optional[str]
 
     def __new__(cls, *, context: Any = None) -> "Scene":
         self = super().__new__(cls, context_or_default(context))
         self._world = None
         self._changed = False
         self._film = None
+        self._file = None
         return self
 
     # ---- files and camera
@@ -97,6 +99,7 @@ class Scene(_velo.Scene):
         KeyboardInterrupt, the scene cannot be used further."""
         self._changed = True
         self._load(path, keywords, progress)
+        self._file = self._file or os.fsdecode(path)
 
     def complete(self, **keywords: Any) -> None:
         """Adds a camera and lights if there are none, and what is asked for. Keywords: vlCompleteDef's; environment may also
@@ -411,10 +414,12 @@ class Scene(_velo.Scene):
         wanted = list(channels) + [name for name in ("error", "features") if denoise and name not in channels]
         if wanted and film.spp:
             join(image, _velo.channels(world, view, film, settings, wanted, {}, None, None))
-        if not denoise:
-            return image
-        more = _velo.channels(world, view, film, settings, list(channels), {}, None, None) if channels else ()
-        return join(image.denoise(), more)
+        if denoise:
+            more = _velo.channels(world, view, film, settings, list(channels), {}, None, None) if channels else ()
+            image = join(image.denoise(), more)
+        _velo.image_describe(list(image.parts), view, settings, self._file, film.spp, None, "centre" if channels else None,
+                             "velo" if denoise else None)
+        return image
 
     def ground_truth(self, channels: Sequence[str], *, camera: AnyCamera = None,
                      resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
@@ -431,6 +436,7 @@ class Scene(_velo.Scene):
             options["time"] = time
         parts = [part for part in _velo.channels(self._build(settings), view, film, settings, list(channels), options,
                                                  forward, backward) if part is not None]
+        _velo.image_describe(parts, view, settings, self._file, film.spp if film is not None else 0, time, mode, None)
         return join(parts[0], parts[1:])
 
     def boxes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,

@@ -246,7 +246,10 @@ vlResult vl_image_read_channels(vlContext *context, const char *path, const char
                    "image: context, path, image or names is null, or count is 0");
   vlResult result = read_file(context, path, names, count, image, error);
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
-    if (names[i] && vl_image_find_channel(*image, names[i]) >= 0)
+    char only[260]; /* the layer's only channel */
+    snprintf(only, sizeof only, "%s.Y", names[i] ? names[i] : "");
+    if (names[i] && (vl_image_find_channel(*image, names[i]) >= 0 ||
+                     vl_image_find_channel(*image, only) >= 0))
       continue;
     result = vl_fail(error, VL_ERROR_SCENE, "%s: has no channel \"%s\"", path,
                      names[i] ? names[i] : "");

@@ -129,9 +129,15 @@ static uint32_t rank(const char *name) {
   return 5;
 }
 
+static bool is_only_channel(const char *layer, const char *name) {
+  size_t n = strlen(layer);
+  return strncmp(layer, name, n) == 0 && strcmp(name + n, ".Y") == 0;
+}
+
+/* "id.object" stands for the channel "id.object.Y", too: ids as other programs show them. */
 static bool is_wanted(const vlImageFile *file, const char *name) {
   for (uint32_t i = 0; i < file->wanted_count; i++)
-    if (vl_text_is(file->wanted[i], name))
+    if (vl_text_is(file->wanted[i], name) || is_only_channel(file->wanted[i], name))
       return true;
   return !file->wanted;
 }

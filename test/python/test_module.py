@@ -40,6 +40,24 @@ def an_array_shares_the_image_and_keeps_it_alive():
 
 
 @case
+def the_header_is_that_of_the_program_but_for_the_receipt():
+    channels, program, own = ["Z", "N", "id.object", "crypto.object"], work("header.exr"), work("header_own.exr")
+    subprocess.run([cases.VELO, "render", cases.PINHOLE, "--spp", "2", "--resolution", "32x24", "--channels", ",".join(channels),
+                    "-o", program], check=True, capture_output=True)
+    image = scene.render(spp=2, resolution=(32, 24), channels=channels)
+    image.write(own)
+    wanted, found = velo.read_image(program), velo.read_image(own)
+    header = wanted.attributes
+    assert header.pop("velo.receipt") and len(header) > 30 and header == found.attributes
+    assert wanted.channels == found.channels and numpy.array_equal(numpy.asarray(wanted), numpy.asarray(found), equal_nan=True)
+    assert numpy.array_equal(velo.read_image(own, ["id.object"])["id.object"], image["id.object"])
+    truth = work("truth_own.exr")
+    scene.ground_truth(["Z", "id.object"], resolution=(32, 24)).write(truth)
+    for path in (own, truth):
+        subprocess.run([cases.VELO, "image", "check", path], check=True, capture_output=True)
+
+
+@case
 def the_pixels_are_those_of_the_program():
     path = work("program.exr")
     subprocess.run([cases.VELO, "render", cases.PINHOLE, "--spp", "3", "--resolution", "80x60", "-o", path], check=True,

@@ -1,300 +1,55 @@
-/* render/attributes.c: see attributes.h. Names and meanings are those of OpenEXR's standard
- * attributes (openexr.com, "Standard Attributes") where one exists; other names begin with
- * "velo.". */
+/* render/attributes.c: see attributes.h. velo/header.h makes most of them. */
 #include "render/attributes.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
-#include "cli/kinds.h"
-#include "cli/vector.h"
 #include "render/receipt.h"
-#include "velo/distortion.h"
+#include "velo/header.h"
 
-typedef struct Header {
-  vlImage *image;
-  vlResult result;  /* of the first failure */
-  const char *view; /* prefix of each name; null: none */
-} Header;
-
-static void set(Header *header, const char *name, vlAttributeType type, const double *numbers,
-                int count, const char *text) {
-  char full[100];
-  snprintf(full, sizeof full, "%s%s%s", header->view ? header->view : "",
-           header->view ? "." : "", name);
-  vlAttribute attribute = {.name = full, .type = type, .string = text};
-  for (int i = 0; i < count; i++)
-    attribute.numbers[i] = numbers[i] + 0.0; /* turns -0 into 0 */
-  if (header->result == VL_OK)
-    header->result = vl_image_set_attribute(header->image, &attribute);
-}
-
-static void set_int(Header *header, const char *name, uint32_t value) {
-  double number = value;
-  set(header, name, VL_ATTRIBUTE_INT, &number, 1, NULL);
-}
-static void set_float(Header *header, const char *name, double value) {
-  set(header, name, VL_ATTRIBUTE_FLOAT, &value, 1, NULL);
-}
-static void set_double(Header *header, const char *name, double value) {
-  set(header, name, VL_ATTRIBUTE_DOUBLE, &value, 1, NULL);
-}
-static void set_v2(Header *header, const char *name, double x, double y) {
-  set(header, name, VL_ATTRIBUTE_V2F, (double[]){x, y}, 2, NULL);
-}
-static void set_text(Header *header, const char *name, const char *text) {
-  set(header, name, VL_ATTRIBUTE_STRING, NULL, 0, text);
-}
-/* Corner pixels, both inclusive. */
-static void set_window(Header *header, const char *name, uint32_t x0, uint32_t y0, uint32_t x1,
-                       uint32_t y1) {
-  set(header, name, VL_ATTRIBUTE_BOX2I, (double[]){x0, y0, x1 - 1.0, y1 - 1.0}, 4, NULL);
-}
-
-/* OpenEXR multiplies row vectors from the left, p' = p M, so matrices are transposed. */
-static void set_matrix(Header *header, const char *name, vlAttributeType type,
-                       const double m[16]) {
-  double transposed[16];
-  for (int row = 0; row < 4; row++)
-    for (int column = 0; column < 4; column++)
-      transposed[4 * column + row] = m[4 * row + column];
-  set(header, name, type, transposed, 16, NULL);
-}
-
-/* Whether straight lines project to straight lines, so that matrices and a focal length
- * describe the camera completely. */
-static bool is_linear(const vlCamera *c) {
-  return c->projection == VL_PROJECTION_ORTHOGRAPHIC ||
-         (c->projection == VL_PROJECTION_PERSPECTIVE && c->distortion.steps == 0);
-}
-
-/* worldToCamera: camera space with x right, y up, z forward. worldToNDC: after division by w,
- * (0, 0) is the display window's upper left corner and (1, 1) its lower right one. Its third
- * row is 1/z (perspective) or z, so that the matrix is invertible. Other projections have no
- * such matrix. */
-static void set_camera_matrices(Header *header, const vlCamera *c) {
-  static const double up_from_down[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  double m[16], w = c->width, h = c->height;
-  matrix_multiply(up_from_down, c->camera_from_world, m);
-  set_matrix(header, "worldToCamera", VL_ATTRIBUTE_M44F, m);
-  if (!is_linear(c))
-    return;
-  const double perspective[16] = {
-      c->fx / w, c->skew / w, c->cx / w, 0, 0, c->fy / h, c->cy / h, 0, 0, 0, 0, 1, 0, 0, 1, 0};
-  const double orthographic[16] = {
-      c->fx / w, c->skew / w, 0, c->cx / w, 0, c->fy / h, 0, c->cy / h, 0, 0, 1, 0, 0, 0, 0, 1};
-  matrix_multiply(c->projection == VL_PROJECTION_PERSPECTIVE ? perspective : orthographic,
-                  c->camera_from_world, m);
-  set_matrix(header, "worldToNDC", VL_ATTRIBUTE_M44F, m);
-}
-
-/* The projection's own parameters, and the lens distortion's coefficients in the order of its
- * calibration files. */
-static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def) {
-  static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
-  /* omits parameters that the projection does not have; Panini's has a default */
-  if (!isnan(def->shape[0]) || c->shape[0] != 0)
-    set_double(header, "velo.shape0", c->shape[0]);
-  if (!isnan(def->shape[1]))
-    set_double(header, "velo.shape1", c->shape[1]);
-  if (def->distortion == VL_DISTORTION_NONE)
-    return;
-  char text[14 * 26] = "";
-  for (uint32_t i = 0; i < def->distortion_count; i++) {
-    size_t n = strlen(text);
-    snprintf(text + n, sizeof text - n, "%s%.17g", i ? " " : "",
-             def->distortion_coefficients[i]);
-  }
-  set_text(header, "velo.distortion", names[def->distortion]);
-  set_text(header, "velo.distortionCoefficients", text);
-}
-
-/* Aperture shape, tilt, vignetting; a lens of many elements completely, except an image as
- * aperture stop. */
-static void set_lens(Header *header, const vlCamera *c) {
-  const vlLens *l = &c->lens;
-  if (l->blades)
-    set_int(header, "velo.blades", l->blades);
-  if (l->rotation != 0)
-    set_double(header, "velo.bladeRotation", l->rotation);
-  if (l->ratio != 1)
-    set_double(header, "velo.apertureRatio", l->ratio);
-  if (l->tilt[0] != 0 || l->tilt[1] != 0)
-    set_v2(header, "velo.tilt", l->tilt[0], l->tilt[1]);
-  if (l->hinge[0] != 0 || l->hinge[1] != 0)
-    set_v2(header, "velo.hinge", l->hinge[0], l->hinge[1]);
-  if (l->vignetting)
-    set_int(header, "velo.vignetting", 1);
-  if (!l->optics)
-    return;
-  vlOpticsDef def;
-  vlLensSurface surfaces[64];
-  char text[64 * 4 * 26] = "";
-  size_t n = 0;
-  vl_optics_def(l->optics, &def, surfaces);
-  for (uint32_t i = 0; i < def.count; i++) {
-    const vlLensSurface *s = &surfaces[i];
-    n += (size_t)snprintf(text + n, sizeof text - n, "%s%.17g %.17g %.17g %.17g", i ? " " : "",
-                          s->radius, s->thickness, s->ior, s->aperture);
-  }
-  set_text(header, "velo.optics", text);
-  if (!isnan(def.aperture_diameter))
-    set_double(header, "velo.opticsAperture", def.aperture_diameter);
-  if (isfinite(def.focus_distance))
-    set_double(header, "velo.opticsFocus", def.focus_distance);
-  set_double(header, "velo.opticsDiagonal", def.film_diagonal);
-  set_double(header, "velo.opticsUnit", def.unit_mm);
-}
-
-/* The stereo parameters. The eye's own pose and principal point are in the other attributes,
- * except for omnidirectional stereo's eye circle. */
-static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo) {
-  if (stereo->mode == VL_STEREO_NONE)
-    return;
-  set_text(header, "velo.stereo", choice_name(stereo_choices, (int)stereo->mode));
-  set_double(header, "velo.interocular", stereo->interocular);
-  if (isfinite(stereo->convergence))
-    set_double(header, "velo.convergence", stereo->convergence);
-  if (c->eye_circle != 0)
-    set_double(header, "velo.eyeCircle", c->eye_circle);
-}
-
-/* The motion, if any. The matrices above hold the camera in the middle of the shutter interval,
- * as the ground truth does. */
-static void set_motion(Header *header, const vlCamera *c) {
-  static const char *const directions[] = {"down", "up", "right", "left"};
-  if (c->moves) {
-    set_matrix(header, "velo.worldFromCameraOpen", VL_ATTRIBUTE_M44D, c->world_from_camera);
-    set_matrix(header, "velo.worldFromCameraClose", VL_ATTRIBUTE_M44D,
-               c->world_from_camera_close);
-    set_v2(header, "velo.poseTimes", c->pose_times[0], c->pose_times[1]);
-  }
-  if (c->readout > 0) {
-    set_double(header, "velo.readout", c->readout);
-    set_text(header, "velo.readoutDirection", directions[c->readout_direction]);
-  }
-  if (c->shutter_points == 0)
-    return;
-  char text[VL_SHUTTER_POINTS * 52] = "";
-  for (uint32_t i = 0; i < c->shutter_points; i++) {
-    size_t n = strlen(text);
-    snprintf(text + n, sizeof text - n, "%s%.17g %.17g", i ? " " : "", c->shutter_at[i],
-             c->shutter_value[i]);
-  }
-  set_text(header, "velo.shutterCurve", text);
-}
-
-/* The complete camera: OpenEXR's attributes in single precision, velo's own in double (camera x
- * right, y down, z forward). Lens and sensor are in millimetres. When the scene gives no sensor
- * width, full frame's 36 mm is written, which fixes the scale and nothing else. */
-static void set_camera(Header *header, const Job *job) {
-  vlCamera held = job->camera, *c = &held;
-  vl_camera_at(&job->camera, job_channels_time(job), &held);
-  set_camera_matrices(header, c);
-  if (c->projection == VL_PROJECTION_PERSPECTIVE && is_linear(c)) {
-    double sensor = job->defs->camera.sensor_width_mm;
-    double mm = (sensor > 0 ? sensor : 36.0) / c->width;
-    set_float(header, "pinholeFocalLength", c->fx * mm);
-    set_v2(header, "sensorOverallDimensions", c->width * mm, c->height * mm);
-    set_v2(header, "sensorCenterOffset", (0.5 * c->width - c->cx) * mm,
-           (0.5 * c->height - c->cy) * mm);
-  }
-  set_double(header, "velo.fx", c->fx);
-  set_double(header, "velo.fy", c->fy);
-  set_double(header, "velo.skew", c->skew);
-  set_double(header, "velo.cx", c->cx);
-  set_double(header, "velo.cy", c->cy);
-  set_matrix(header, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, c->world_from_camera);
-  set_text(header, "velo.projection", vl_projection_name(c->projection));
-  if (isfinite(c->limit))
-    set_double(header, "velo.limit", c->limit);
-  set_model(header, c, &job->defs->camera);
-  set_stereo(header, c, &job->defs->camera.stereo);
-  set_float(header, "velo.lensRadius", c->lens_radius);
-  set_lens(header, c);
-  if (isfinite(c->focus_distance))
-    set_float(header, "focus", c->focus_distance);
-  set_v2(header, "velo.shutter", job->camera.shutter_open, job->camera.shutter_close);
-  set_motion(header, &job->camera);
-  set_float(header, "velo.exposureTime", c->exposure_time);
+static vlHeaderDef header_def(const Job *job) {
+  vlHeaderDef def = vl_default_header_def();
+  def.camera = &job->camera;
+  def.defs = job->defs;
+  def.time = job_channels_time(job);
+  return def;
 }
 
 vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
-  Header header = {.image = image, .result = VL_OK};
-  const vlFilmDef *film = &job->defs->film;
-  const vlBuildDef *build = &job->defs->build;
-  const vlRenderDef *render = &job->defs->render;
-  const uint32_t *crop = film->crop;
-  const vlCamera *c = &job->camera;
-  char software[32];
-  snprintf(software, sizeof software, "velo %s", vl_version()->text);
-  set_text(&header, "software", software);
-  set_window(&header, "displayWindow", 0, 0, c->width, c->height);
-  set_window(&header, "dataWindow", crop[0], crop[1], crop[2], crop[3]);
-  set_window(&header, "originalDataWindow", 0, 0, c->width, c->height);
-  set_camera(&header, job);
-
-  const char *scene =
-      job->receipt && job->receipt->again ? vl_receipt_scene(job->receipt->again) : NULL;
-  if (!scene)
-    scene = job->path;
-  const char *slash = strrchr(scene, '/');
-  set_text(&header, "velo.scene", slash ? slash + 1 : scene);
-  set_int(&header, "samplesPerPixel", spp);
-  if (render->noise > 0)
-    set_double(&header, "velo.noise", render->noise);
-  set_text(&header, "velo.sampler", kind_name("samplers", (int)render->sampler));
-  set_double(&header, "velo.seed", render->seed); /* unsigned: does not fit EXR's int */
-  set_text(&header, "velo.filter", kind_name("filters", (int)film->filter.kind));
-  set_v2(&header, "velo.filterRadius", film->filter.radius_x, film->filter.radius_y);
-  set_text(&header, "velo.tracer", kind_name("tracers", (int)render->tracer));
-  set_int(&header, "velo.maxDepth", render->max_depth);
-  set_text(&header, "velo.color", choice_name(color_choices, (int)build->color));
-  set_text(&header, "velo.bits", choice_name(bits_choices, (int)build->bits));
-  set_text(&header, "velo.filterSamples", render->share_samples ? "shared" : "own");
-  if (build->regularize)
-    set_int(&header, "velo.regularize", 1);
-  if (render->merge_radius > 0)
-    set_double(&header, "velo.mergeRadius", render->merge_radius);
-  if (render->light_paths != VL_AS_MANY_AS_PIXELS)
-    set_double(&header, "velo.lightPaths", render->light_paths);
-  set_text(&header, "velo.lightSampler",
-           choice_name(light_sampler_choices, (int)build->light_sampler));
-  return header.result;
+  vlHeaderDef def = header_def(job);
+  const vlReceipt *again = job->receipt ? job->receipt->again : NULL;
+  def.scene = again ? vl_receipt_scene(again) : NULL;
+  if (!def.scene)
+    def.scene = job->path;
+  def.samples = spp;
+  return vl_image_set_header(image, &def);
 }
 
 vlResult attributes_set_view(vlImage *image, const Job *job, const char *view) {
-  Header header = {.image = image, .result = VL_OK, .view = view};
-  set_camera(&header, job);
-  return header.result;
+  vlHeaderDef def = header_def(job);
+  def.view = view;
+  return vl_image_set_header(image, &def);
 }
 
 vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name, double time) {
-  Header header = {.image = image, .result = VL_OK};
-  set_int(&header, "velo.frame", number);
-  if (name && *name)
-    set_text(&header, "velo.frameName", name);
-  if (!isnan(time))
-    set_double(&header, "velo.frameTime", time);
-  return header.result;
+  const vlAttribute attributes[3] = {
+      {.name = "velo.frame", .type = VL_ATTRIBUTE_INT, .numbers = {number}},
+      {.name = "velo.frameTime", .type = VL_ATTRIBUTE_DOUBLE, .numbers = {time + 0.0}},
+      {.name = "velo.frameName", .type = VL_ATTRIBUTE_STRING, .string = name}};
+  const bool has[3] = {true, !isnan(time), name && *name};
+  vlResult result = VL_OK;
+  for (int i = 0; i < 3 && result == VL_OK; i++)
+    if (has[i])
+      result = vl_image_set_attribute(image, &attributes[i]);
+  return result;
 }
 
 vlResult attributes_set_eye(vlImage *image, const char *view) {
-  Header header = {.image = image, .result = VL_OK};
-  set_text(&header, "view", view);
-  return header.result;
+  const vlAttribute attribute = {.name = "view", .type = VL_ATTRIBUTE_STRING, .string = view};
+  return vl_image_set_attribute(image, &attribute);
 }
 
 vlResult attributes_add_layer(vlImage *image, const vlImage *layer) {
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; layer && i < vl_image_attribute_count(layer) && result == VL_OK; i++) {
-    vlAttribute attribute;
-    result = vl_image_attribute(layer, i, &attribute);
-    if (result == VL_OK)
-      result = vl_image_set_attribute(image, &attribute);
-  }
-  return result;
+  return layer ? vl_image_add_attributes(image, layer) : VL_OK;
 }
 
 vlResult attributes_make(vlContext *context, const Job *job, const char *eye, vlImage **image) {

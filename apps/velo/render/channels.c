@@ -238,7 +238,7 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   vlResult result =
       vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
   if (result == VL_OK)
-    result = channels_make_visible(context, &c->layers[1]);
+    result = channels_make_visible(&c->layers[1]);
   if (result != VL_OK)
     return fail_pass(&error, result, job);
   return c->boxes ? find_boxes(c, world, job) : STATUS_OK;

@@ -47,7 +47,7 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
                     const vlFilm *film);
 /* Converts names and types of the ids (vl_render_channels' second image) to their form in
  * files. VL_ERROR_MEMORY or VL_OK. */
-vlResult channels_make_visible(vlContext *context, vlImage **ids);
+vlResult channels_make_visible(vlImage **ids);
 /* Sets the header attributes of the mode and of the layers. They are the last but for the
  * receipt, so that `velo film develop` writes the same file. */
 vlResult channels_describe(const Channels *c, vlImage *image);

@@ -1,7 +1,9 @@
 """Cameras: every model, K and poses as arrays, projection of arrays, camera files."""
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional, Sequence, Union
+import os
+import tempfile
+from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
 
 from velo import _arrays, _check, _velo
 from velo._context import context_or_default
@@ -10,22 +12,28 @@ from velo.own import bare
 
 
 class Projection(NamedTuple):
-    """Where points are seen."""
+    """Where points are seen. n: the shape of the points without their last axis: n, or rows x columns."""
     pixels: Any  #: n x 2: x, y; the first pixel's centre is (0.5, 0.5)
     z: Any  #: n: depth along the view axis, scene units
     valid: Any  #: n: False for points behind the camera or outside its domain, whose numbers are 0
 
 
 class Rays(NamedTuple):
-    """What pixels look along, in world space."""
+    """What pixels look along, in world space. n: as of Projection."""
     origins: Any  #: n x 3, scene units
     directions: Any  #: n x 3, unit vectors
     valid: Any  #: n: False for pixels outside the camera's domain, whose numbers are 0
 
 
-def _flags(data: bytearray, count: int) -> Any:
-    flags = _arrays.from_bytes(data, "B", (count,))
+def _flags(data: bytearray, shape: Sequence[int]) -> Any:
+    flags = _arrays.from_bytes(data, "B", shape)
     return flags.astype(bool) if _arrays.numpy_or_none() is not None else [bool(flag) for flag in flags]
+
+
+def _shape_of(points: Any, count: int) -> tuple[int, ...]:
+    """The shape of an array of points without its last axis; (count,) of what has no shape."""
+    shape = getattr(points, "shape", ())
+    return tuple(shape[:-1]) if len(shape) > 2 and _arrays.numpy_or_none() is not None else (count,)
 
 
 class Camera(_velo.Camera):
@@ -102,18 +110,16 @@ class Camera(_velo.Camera):
         return self._stereo()
 
     def project(self, points: Any) -> Projection:
-        """Where points (n x 3, world space) are seen."""
+        """Where points (n x 3 or rows x columns x 3, world space) are seen."""
         pixels, z, valid = self._project(points)
-        count = len(valid)
-        return Projection(_arrays.from_bytes(pixels, "d", (count, 2)), _arrays.from_bytes(z, "d", (count,)),
-                          _flags(valid, count))
+        n = _shape_of(points, len(valid))
+        return Projection(_arrays.from_bytes(pixels, "d", (*n, 2)), _arrays.from_bytes(z, "d", n), _flags(valid, n))
 
     def unproject(self, pixels: Any) -> Rays:
-        """The rays through film points (n x 2; the first pixel's centre is (0.5, 0.5))."""
+        """The rays through film points (n x 2 or rows x columns x 2; the first pixel's centre is (0.5, 0.5))."""
         origins, directions, valid = self._unproject(pixels)
-        count = len(valid)
-        return Rays(_arrays.from_bytes(origins, "d", (count, 3)), _arrays.from_bytes(directions, "d", (count, 3)),
-                    _flags(valid, count))
+        n = _shape_of(pixels, len(valid))
+        return Rays(_arrays.from_bytes(origins, "d", (*n, 3)), _arrays.from_bytes(directions, "d", (*n, 3)), _flags(valid, n))
 
     def write(self, path: Path, *, dialect: Optional[str] = None, name: str = "", drop: Sequence[str] = (),
               context: Any = None) -> None:
@@ -122,11 +128,33 @@ class Camera(_velo.Camera):
         dialect: "velo", "opencv", "colmap", "nerf", ...; default: by the suffix. drop: fields that may be lost."""
         self._write(context_or_default(context), path, dialect, name, _check.names(drop, "drop"))
 
+    def __copy__(self) -> "Camera":
+        return self  # it never changes
+
+    def __deepcopy__(self, memo: Any) -> "Camera":
+        return self
+
+    def __reduce__(self) -> tuple[Callable[[str], "Camera"], tuple[str]]:
+        """For pickle: the text of velo's camera file, from which the same camera is made. UsageError: an own camera."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "camera.json")
+            self.write(path, dialect="velo")
+            with open(path, encoding="utf-8") as file:
+                return _from_text, (file.read(),)
+
     def __repr__(self) -> str:
         return f"<velo.Camera {self.projection}, {self.width} x {self.height}>"
 
 
 _velo.set_type("Camera", Camera)
+
+
+def _from_text(text: str) -> Camera:
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "camera.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return read_camera(path, dialect="velo")
 
 
 class TrajectoryFrame(NamedTuple):
@@ -141,7 +169,12 @@ def read_camera(path: Path, *, dialect: Optional[str] = None, frame: Union[str, 
                 height: int = 0, context: Any = None) -> Camera:
     """Reads a camera file of velo or of another tool; default: the file's contents decide the dialect.
 
-    frame: name or number (from 0) of one of several cameras. width, height: for files without an image size."""
+    frame: name or number (from 0) of one of several cameras. width, height: for files without an image size. Of a .pbrt file it is
+    the scene's camera."""
+    if dialect is None and isinstance(path, (str, os.PathLike)) and os.fspath(path).endswith((".pbrt", ".pbrt.gz")):
+        from velo.scene import load
+        camera = load(path, context=context).camera
+        return camera.resize(width, height) if width and height else camera
     return _velo.camera_read(context_or_default(context), path, dialect, frame, width, height)[0]
 
 

@@ -10,6 +10,10 @@ from velo._context import context_or_default
 from velo._errors import UsageError, shown, wrong_value
 
 Path = Union[str, "os.PathLike[str]"]
+#: What other programs call the channels.
+OTHER_NAMES = {"depth": "Z", "normal": "N", "normals": "N", "position": "P", "positions": "P", "points": "P", "base_color": "albedo",
+               "basecolor": "albedo", "diffuse": "albedo", "color": "R, G, B", "rgb": "R, G, B", "alpha": "A", "ids": "id.object",
+               "segmentation": "id.object", "instances": "id.instance", "flow": "forward"}
 
 
 class Image(_velo.Image):
@@ -63,10 +67,15 @@ class Image(_velo.Image):
             if layer and layer == list(range(layer[0], layer[0] + len(layer))):
                 return part._plane(layer[0], len(layer), len(layer) == 1)
         known = ", ".join(self.channels)
-        raise UsageError(f"the image has no channel {shown(name)} (it has {known})")
+        other = OTHER_NAMES.get(name.lower())
+        hint = f"; it is called {other}" if other else ""
+        raise UsageError(f"the image has no channel {shown(name)}{hint} (it has {known})")
 
-    def __getitem__(self, name: str) -> Any:
-        return _arrays.from_buffer(self.plane(name))
+    def __getitem__(self, name: Any) -> Any:
+        """A channel or a layer by its name; or pixels, as of the array: image[..., 0], image[10:20, :, :3]."""
+        if isinstance(name, str):
+            return _arrays.from_buffer(self.plane(name))
+        return _arrays.from_buffer(self)[name]
 
     def __contains__(self, name: object) -> bool:
         return any(full == name or full.startswith(f"{name}.") for full in self.channels)
@@ -106,6 +115,16 @@ class Image(_velo.Image):
         joined = numpy.concatenate([numpy.asarray(part) for part in floats], axis=2)
         return Image(joined, [name for part in floats for name in part._names])._denoise(denoiser)
 
+    def __copy__(self) -> "Image":
+        return _of_parts(*(_part(part) for part in self.parts))
+
+    def __deepcopy__(self, memo: Any) -> "Image":
+        return self.__copy__()
+
+    def __reduce__(self) -> Any:
+        """For pickle: the pixels and the names of the channels; not the attributes of a file."""
+        return _of_parts, tuple(_part(part) for part in self.parts)
+
     def _repr_png_(self) -> bytes:
         """The image as a PNG, for notebooks."""
         buffer: Any = self
@@ -135,6 +154,18 @@ class Image(_velo.Image):
 
 
 _velo.set_type("Image", Image)
+
+
+def _part(image: Image) -> tuple[bytes, str, tuple[int, ...], tuple[str, ...]]:
+    buffer: Any = image
+    view = memoryview(buffer)
+    return view.tobytes(), view.format, tuple(view.shape or ()), tuple(image._names)
+
+
+def _of_parts(*parts: tuple[bytes, str, tuple[int, ...], tuple[str, ...]]) -> Image:
+    made = [Image(memoryview(data).cast("B").cast(code, shape), names, encoding="linear")
+            for data, code, shape, names in parts]
+    return join(made[0], made[1:])
 
 
 def join(first: Image, parts: Sequence[Optional[Image]]) -> Image:

@@ -6,10 +6,10 @@ from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Unio
 
 from velo import _arrays, _check, _velo
 from velo._context import context_or_default
-from velo._errors import Progress, Step, UsageError, unknown, wrong_value
+from velo._errors import Progress, Step, UsageError, shown, unknown, wrong_value
 from velo.camera import Camera
 from velo.film import Film
-from velo.image import Image, Path, join
+from velo.image import OTHER_NAMES, Image, Path, join
 from velo.own import OwnCamera, bare
 
 Handle = _velo.Handle
@@ -70,6 +70,15 @@ class Mesh(NamedTuple):
 
 def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
     return value if isinstance(value, Image) else Image(value, encoding=encoding)
+
+
+def _channels(value: Any) -> list[str]:
+    names = _check.names(value, "channels")
+    for name in names:
+        other = OTHER_NAMES.get(name.lower())
+        if other and name not in _velo.channel_names():
+            raise UsageError(f"channels: {shown(name)} is called {other}")
+    return names
 
 
 class Scene(_velo.Scene):
@@ -264,6 +273,8 @@ class Scene(_velo.Scene):
         if crop is not None:
             settings.set_crop(*_check.tuple_of(crop, 4, "crop", "(x0, y0, x1, y1), four whole numbers"))
         for name, value in keywords.items():
+            if name in ("width", "height"):
+                raise UsageError(f"{name}: the size of the image is resolution=(width, height)")
             settings.set(name, bare(value))
         return settings
 
@@ -373,7 +384,7 @@ class Scene(_velo.Scene):
     def _prepare(self, camera: AnyCamera, resolution: Optional[tuple[int, int]], crop: Optional[Sequence[int]],
                  channels: Sequence[str], film: Optional[Film], denoise: bool,
                  keywords: dict[str, Any]) -> tuple[Any, Camera]:
-        channels = _check.names(channels, "channels")
+        channels = _channels(channels)
         if isinstance(camera, OwnCamera):
             size = film.resolution if film is not None else resolution
             base = self.camera if size is None else self.camera.resize(*size)
@@ -427,7 +438,7 @@ class Scene(_velo.Scene):
                      mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Any) -> Image:
         """Ground truth without rendering colours (docs/ground-truth.md). forward, backward: the other cameras of the flow
         channels. mode: centre, nearest or coverage. ranks: of Cryptomatte. time: seconds."""
-        channels = _check.names(channels, "channels")
+        channels = _channels(channels)
         if not channels:
             raise wrong_value("channels", "a list of at least one name", channels)
         settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """The Python module: renders, errors, progress, fork, threads."""
+import copy
 import os
+import pickle
 import subprocess
 import sys
 import threading
@@ -25,6 +27,67 @@ def a_render_is_a_numpy_array():
     assert image["id.object"].dtype == numpy.uint32 and image["id.object"].max() > 1
     hit = numpy.isfinite(image["Z"])
     assert numpy.allclose(numpy.linalg.norm(image["N"][hit], axis=1), 1, atol=1e-5)
+
+
+@case
+def cameras_and_images_are_pickled_and_copied():
+    random = numpy.random.default_rng(7)
+    points, pixels = random.normal(size=(50, 3)) * 3, random.uniform(0, 48, size=(50, 2))
+    for keywords in (dict(fov=1.0), dict(K=[[50, 0.5, 31], [0, 52, 25], [0, 0, 1]], distortion="opencv", distortion_coefficients=[0.1, 0.01, 0, 0]),
+                     dict(projection="equidistant", fov=3.0, lens_radius=0.1, focus_distance=3), dict(shutter=[(0, 0), (0.5, 1), (1, 0)]),
+                     dict(eye=(0, 0, 5), eye_close=(1, 0, 5), readout=0.5)):
+        camera = velo.Camera(64, 48, **keywords)
+        for other in (pickle.loads(pickle.dumps(camera)), copy.copy(camera), copy.deepcopy(camera)):
+            assert numpy.array_equal(other.world_from_camera, camera.world_from_camera)
+            assert all(numpy.array_equal(a, b) for a, b in zip(other.project(points), camera.project(points)))
+            assert all(numpy.array_equal(a, b) for a, b in zip(other.unproject(pixels), camera.unproject(pixels)))
+    image = scene.render(spp=1, resolution=(16, 12), channels=["Z", "N", "id.object"])
+    eight_bits = image.view()
+    for first in (image, eight_bits):
+        for other in (pickle.loads(pickle.dumps(first)), copy.copy(first), copy.deepcopy(first)):
+            assert other.channels == first.channels
+            assert all(numpy.array_equal(other[name], first[name], equal_nan=True) and other[name].dtype == first[name].dtype for name in first.channels)
+    other = copy.copy(image)
+    numpy.asarray(other)[0, 0] = 9
+    assert numpy.asarray(image)[0, 0, 0] != 9
+
+
+@case
+def images_are_indexed_as_arrays():
+    image = scene.render(spp=1, resolution=(16, 12))
+    assert numpy.array_equal(image[..., 0], image["R"]) and image[2:5, :, :3].shape == (3, 16, 3)
+
+
+@case
+def points_keep_their_shape():
+    camera = scene.camera
+    points = numpy.random.default_rng(3).normal(size=(4, 5, 3))
+    many, flat = camera.project(points), camera.project(points.reshape(-1, 3))
+    assert many.pixels.shape == (4, 5, 2) and many.z.shape == many.valid.shape == (4, 5)
+    assert numpy.array_equal(many.pixels.reshape(-1, 2), flat.pixels)
+    rays = camera.unproject(numpy.full((4, 5, 2), 10.0))
+    assert rays.origins.shape == rays.directions.shape == (4, 5, 3) and rays.valid.shape == (4, 5)
+    assert camera.project(numpy.zeros((0, 3))).pixels.shape == (0, 2)
+
+
+@case
+def other_names_are_told():
+    for call, words in ((lambda: scene.render(spp=1, resolution=(8, 8), channels=["depth"]), "is called Z"),
+                        (lambda: scene.render(spp=1, resolution=(8, 8))["Base_Color"], "is called albedo"),
+                        (lambda: scene.ground_truth(["normal"], resolution=(8, 8)), "is called N"),
+                        (lambda: scene.render(width=8), "resolution=")):
+        with raises(velo.UsageError, words):
+            call()
+
+
+@case
+def a_pbrt_camera_is_read_again():
+    camera = velo.Camera(64, 48, fov=0.7, eye=(1, 2, 3), lookat=(0, 0, 0))
+    camera.write(work("camera.pbrt"))
+    back = velo.read_camera(work("camera.pbrt"))
+    assert back.resolution == (64, 48) and numpy.allclose(back.world_from_camera, camera.world_from_camera, atol=1e-12)
+    assert numpy.allclose(back.K, camera.K, rtol=1e-12)
+    assert velo.read_camera(work("camera.pbrt"), width=32, height=24).resolution == (32, 24)
 
 
 @case

@@ -182,9 +182,10 @@ VL_API vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height);
 
 /** Sets projection, distortion, fx, fy, cx, cy from one of COLMAP's camera models by its name
  * (SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV,
- * SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE) with its parameters in COLMAP's
- * order. COLMAP's first pixel is centred at (0.5, 0.5), as here. ARGUMENT: an unknown name (the
- * message has the nearest), a wrong count. */
+ * SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE, SIMPLE_DIVISION, DIVISION,
+ * SIMPLE_FISHEYE, FISHEYE, EUCM, EQUIRECTANGULAR) with its parameters in COLMAP's order.
+ * COLMAP's first pixel is centred at (0.5, 0.5), as here. ARGUMENT: an unknown name (the
+ * message has the nearest), a wrong count. UNSUPPORTED: RAD_TAN_THIN_PRISM_FISHEYE. */
 VL_API vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model,
                                      const double *parameters, uint32_t count, vlError *error);
 

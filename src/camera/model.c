@@ -152,6 +152,12 @@ static const Colmap colmap[] = {
     {"SIMPLE_RADIAL_FISHEYE", 4, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_RADIAL, true},
     {"RADIAL_FISHEYE", 5, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_RADIAL, true},
     {"THIN_PRISM_FISHEYE", 12, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_THIN_PRISM, false},
+    {"SIMPLE_DIVISION", 4, VL_PROJECTION_DIVISION, VL_DISTORTION_NONE, true},
+    {"DIVISION", 5, VL_PROJECTION_DIVISION, VL_DISTORTION_NONE, false},
+    {"SIMPLE_FISHEYE", 3, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_NONE, true},
+    {"FISHEYE", 4, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_NONE, false},
+    {"EUCM", 6, VL_PROJECTION_EUCM, VL_DISTORTION_NONE, false},
+    {"EQUIRECTANGULAR", 2, VL_PROJECTION_EQUIRECTANGULAR, VL_DISTORTION_NONE, false},
 };
 enum { COLMAP_MODELS = VL_LENGTH(colmap) };
 
@@ -167,8 +173,12 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
     if (vl_text_is(model, names[i]))
       found = &colmap[i];
   }
+  if (vl_text_is(model, "RAD_TAN_THIN_PRISM_FISHEYE"))
+    return vl_fail(error, VL_ERROR_UNSUPPORTED,
+                   "camera: the COLMAP camera model RAD_TAN_THIN_PRISM_FISHEYE (Aria's "
+                   "Fisheye624) is not taken; `colmap image_undistorter` makes PINHOLE images");
   if (!found) {
-    char known[300];
+    char known[400];
     vl_tell_names(known, sizeof known, model, names, COLMAP_MODELS);
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%s\"%s",
                    vl_argument_text(model).text, known);
@@ -177,16 +187,25 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: the COLMAP camera model %s has %u parameters, not %u", found->name,
                    found->count, count);
-  uint32_t first = found->one_focal ? 3 : 4, rest = count - first;
   def->projection = found->projection;
   def->distortion = found->distortion;
+  def->distortion_count = 0;
+  if (found->projection == VL_PROJECTION_EQUIRECTANGULAR) {
+    /* width, height: x = w (theta / 2 pi + 1/2), y = h (1/2 - phi / pi) */
+    const double pi = 3.14159265358979323846;
+    def->fx = parameters[0] / (2.0 * pi);
+    def->fy = parameters[1] / pi;
+    def->cx = 0.5 * parameters[0];
+    def->cy = 0.5 * parameters[1];
+    return VL_OK;
+  }
+  uint32_t first = found->one_focal ? 3 : 4, rest = count - first;
   def->fx = parameters[0];
   def->fy = parameters[found->one_focal ? 0 : 1];
   def->cx = parameters[first - 2];
   def->cy = parameters[first - 1];
-  def->distortion_count = 0;
-  if (found->projection == VL_PROJECTION_FOV) {
-    def->shape[0] = parameters[4];
+  if (found->distortion == VL_DISTORTION_NONE) {
+    memcpy(def->shape, parameters + first, rest * sizeof(double));
   } else {
     def->distortion_count = rest;
     memcpy(def->distortion_coefficients, parameters + first, rest * sizeof(double));

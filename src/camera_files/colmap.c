@@ -62,7 +62,7 @@ static char *next_word(char **at) {
 static vlResult read_camera_line(const vlCameraFile *file, const char *path, const Lines *lines,
                                  char *rest, vlCameraDef *d) {
   char *model = next_word(&rest);
-  double size[2], parameters[12];
+  double size[2], parameters[16];
   uint32_t count = 0;
   for (int i = 0; i < 2; i++)
     if (!next_number(&rest, &size[i]) || !(size[i] >= 1.0 && size[i] <= 1 << 24) ||
@@ -70,8 +70,8 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
       return wrong_line(file, path, lines->line,
                         "after the model come width and height in whole pixels");
   for (rest += strspn(rest, " \t"); *rest; rest += strspn(rest, " \t")) {
-    if (count == 12)
-      return wrong_line(file, path, lines->line, "more than 12 parameters");
+    if (count == VL_LENGTH(parameters))
+      return wrong_line(file, path, lines->line, "more than 16 parameters");
     if (!next_number(&rest, &parameters[count++]))
       return wrong_line(file, path, lines->line, "a parameter is no finite number");
   }

@@ -436,7 +436,7 @@ MISTAKES = [
      "(column[i] * n + row[i]) << bits",
      "(column[i] * n) << bits"),
     ("Lanczos: the window as wide as the sinc", "filters:lanczos",
-     r"filters lanczos:", "src/filter/lanczos.c",
+     r"filters sinc:", "src/filter/lanczos.c",
      "vl_sinc(at.x / filter->tau)",
      "vl_sinc(at.x)"),
     ("connections forget one way of others", "tracers:bidirectional",

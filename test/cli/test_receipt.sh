@@ -40,6 +40,14 @@ expect_text info_command "  command     velo render room/room.pbrt --spp 2"
 expect_text info_samples "  samples     2 per pixel"
 expect_text info_files "  files       4"
 expect_text info_digest "  parts/leaf.png"
+# A shell reads the shown command as it was given; a terminal gets no control characters of it.
+odd=$(printf "a\\033[31m b'c")
+cp -r room "$odd"
+render "$odd/room.pbrt" --spp 1 -o odd.exr
+run "$VELO" image info odd.exr
+case $out in *"$(printf '\033')"*) fail shown_command_is_plain ;; *) pass shown_command_is_plain ;; esac
+command=$(printf '%s\n' "$out" | sed -n 's/^  command  *//p')
+if (eval "set -- $command"; [ "$3" = "$odd/room.pbrt" ]); then pass shown_command_is_exact; else fail shown_command_is_exact; fi
 # The files are in it, too, where the image has the scene's name, and beside images without a header.
 mkdir default
 cp -r room default/

@@ -14,6 +14,11 @@ void text_print_plain(const char *text) {
     putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }
 
+/* Control characters that a terminal may obey: all but tab and newline. */
+static bool is_control(char c) {
+  return ((unsigned char)c < 0x20 && c != '\t' && c != '\n') || c == 0x7f;
+}
+
 void text_shell_word(FILE *out, const char *word) {
   static const char plain[] =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
@@ -25,6 +30,8 @@ void text_shell_word(FILE *out, const char *word) {
   for (; *word; word++) {
     if (*word == '\'')
       fputs("'\\''", out);
+    else if (is_control(*word))
+      fprintf(out, "'\"$(printf '\\%03o')\"'", (unsigned)(unsigned char)*word);
     else
       fputc(*word, out);
   }

@@ -9,7 +9,8 @@
 bool text_ends_with(const char *text, const char *suffix);
 /* Prints a string of a file to stdout, with ? for control characters. */
 void text_print_plain(const char *text);
-/* Writes a space and a word, quoted so that a POSIX shell reads it as one. */
+/* Writes a space and a word, quoted so that a POSIX shell reads it as one. No control
+ * characters that a terminal would obey are written: the shell gets them of printf. */
 void text_shell_word(FILE *out, const char *word);
 
 #endif

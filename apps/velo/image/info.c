@@ -129,24 +129,6 @@ static double shown(const vlAttribute *a, int i) {
   return a->numbers[i];
 }
 
-/* Prints a word of a command, quoted if a shell would split it. */
-static void print_word(const char *word) {
-  bool plain =
-      *word &&
-      !word[strspn(word,
-                   "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+,-./:=@_%")];
-  putchar(' ');
-  if (!plain)
-    putchar('\'');
-  for (const char *s = word; *s; s++)
-    if (*s == '\'')
-      printf("'\\''");
-    else
-      putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
-  if (!plain)
-    putchar('\'');
-}
-
 /* Prints what made the image. receipt may be null. */
 static void print_receipt(const vlReceipt *receipt) {
   if (!receipt)
@@ -161,7 +143,7 @@ static void print_receipt(const vlReceipt *receipt) {
   text_print_plain(commit);
   printf("\n  command    ");
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++)
-    print_word(word);
+    text_shell_word(stdout, word);
   printf("\n  samples     %u per pixel", samples);
   if (samples != planned)
     printf(", of %u planned", planned);

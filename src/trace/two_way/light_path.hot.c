@@ -165,24 +165,11 @@ static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
     if (vl_all_specular(t->world, v->at, i) || !(ways->cosine[i] > 0.0f))
       continue;
     vlPhoton *x = &photons[count];
-    uint32_t lane = p->lane[i];
-    x->p[0] = f->px[i];
-    x->p[1] = f->py[i];
-    x->p[2] = f->pz[i];
-    x->w[0] = -p->dx[i];
-    x->w[1] = -p->dy[i];
-    x->w[2] = -p->dz[i];
-    float inv = 1.0f / ways->cosine[i], sum = 0.0f;
+    vl_leave_photon(t, depth, v, i, vl_lane3(f->px, f->py, f->pz, i), 0, x);
+    float inv = 1.0f / ways->cosine[i];
     for (int c = 0; c < 4; c++)
-      sum += x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * inv;
-    x->a = ways->a[i];
-    x->b = ways->b[i];
-    x->bounce = depth + 1;
-    x->id = b->first + lane;
-    x->alone = vl_hero_only(p, i);
-    x->passed = vl_pack_passed(t, lane);
-    x->medium = 0;
-    count += sum > 0.0f && sum < VL_INFINITY;
+      x->power[c] = p->beta[c][i] * t->lanes->flux[c][p->lane[i]] * inv;
+    count += vl_carries_power(x->power);
   }
   if (count)
     b->store(b->user, count, photons);
@@ -202,13 +189,13 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
   const vlWays *ways = v->ways;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = p->lane[i], path = b->first + lane;
-    if (path >= way->inner.paths || !vl_is_inner_end(t->world, v->at, i) ||
+    uint32_t lane = p->lane[i];
+    if (b->first + lane >= way->inner.paths || !vl_is_inner_end(t->world, v->at, i) ||
         !(ways->cosine[i] > 0.0f))
       continue;
     vlLightVertex *x = &vertices[count];
-    float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI,
-          sum = 0.0f;
+    float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI;
+    vl_leave_path(t, depth, v, i, x, &passed[count]);
     x->p[0] = f->px[i];
     x->p[1] = f->py[i];
     x->p[2] = f->pz[i];
@@ -219,17 +206,12 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
     x->n[1] = side * f->ny[i];
     x->n[2] = side * f->nz[i];
     for (int c = 0; c < 4; c++)
-      sum += x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * sh->reflectance[c][i] *
-                           rev / ways->cosine[i];
+      x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * sh->reflectance[c][i] * rev /
+                    ways->cosine[i];
     x->back = ways->a[i] * rev + ways->b[i] + way->merged;
     x->offset = f->offset[i];
-    x->path = path & 0x3ffffu;
-    x->bounce = (depth + 1) & 255u;
-    x->alone = vl_hero_only(p, i);
     x->inside = 0;
-    x->air = v->rows ? vl_air(t->world, v->rows->medium[i]) & 15u : 0;
-    passed[count] = vl_pack_passed(t, lane);
-    count += sum > 0.0f && sum < VL_INFINITY;
+    count += vl_carries_power(x->power);
   }
   if (count)
     b->leave(b->user, count, vertices, passed);

@@ -341,4 +341,45 @@ static inline bool vl_hero_only(const vlPaths *p, uint32_t i) {
   return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;
 }
 
+/* ---- what light paths leave -------------------------------------------------------------- */
+
+/* Whether a photon or vertex of this power is kept. */
+static inline bool vl_carries_power(const float power[4]) {
+  float sum = ((power[0] + power[1]) + power[2]) + power[3];
+  return sum > 0.0f && sum < VL_INFINITY;
+}
+
+/* Sets all of the photon of vertex i at `at` but its power. medium: vlPhoton.medium. */
+static inline void vl_leave_photon(const vlTracing *t, uint32_t depth,
+                                   const vlTwoWayVertices *v, uint32_t i, vlVec3 at,
+                                   uint32_t medium, vlPhoton *x) {
+  const vlPaths *p = v->paths;
+  uint32_t lane = p->lane[i];
+  x->p[0] = at.x;
+  x->p[1] = at.y;
+  x->p[2] = at.z;
+  x->w[0] = -p->dx[i];
+  x->w[1] = -p->dy[i];
+  x->w[2] = -p->dz[i];
+  x->a = v->ways->a[i];
+  x->b = v->ways->b[i];
+  x->bounce = depth + 1;
+  x->id = t->light->first + lane;
+  x->alone = vl_hero_only(p, i);
+  x->passed = vl_pack_passed(t, lane);
+  x->medium = medium;
+}
+
+/* Sets what a vertex that camera paths connect to has of its light path: path, bounce, alone,
+ * and vlPhoton.passed in *passed; `air` where there are media. */
+static inline void vl_leave_path(const vlTracing *t, uint32_t depth, const vlTwoWayVertices *v,
+                                 uint32_t i, vlLightVertex *x, uint32_t *passed) {
+  uint32_t lane = v->paths->lane[i];
+  x->path = (t->light->first + lane) & 0x3ffffu;
+  x->bounce = (depth + 1) & 255u;
+  x->alone = vl_hero_only(v->paths, i);
+  x->air = v->rows ? vl_air(t->world, v->rows->medium[i]) & 15u : 0;
+  *passed = vl_pack_passed(t, lane);
+}
+
 #endif

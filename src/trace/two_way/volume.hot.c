@@ -157,30 +157,17 @@ static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
   for (uint32_t i = 0; i < n; i++) {
     const vlWorldMedium *m = &t->world->media.items[v->rows->medium[i]];
     vlPhoton *x = &photons[count];
-    uint32_t lane = p->lane[i];
-    float lambda[4], sum = 0.0f;
+    float lambda[4];
     vl_path_lambda(p, i, lambda);
     vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
     vlMediumLight k = vl_medium_coefficients(m, lambda);
     if (!m->uniform)
       k = vl_medium_at(m, &k, lambda, at, false);
-    x->p[0] = at.x;
-    x->p[1] = at.y;
-    x->p[2] = at.z;
-    x->w[0] = -p->dx[i];
-    x->w[1] = -p->dy[i];
-    x->w[2] = -p->dz[i];
+    vl_leave_photon(t, depth, v, i, at, 1 + v->rows->medium[i], x);
     for (int c = 0; c < 4; c++)
-      sum += x->power[c] =
-          k.s[c] > 0.0f ? p->beta[c][i] * t->lanes->flux[c][lane] / k.s[c] : 0.0f;
-    x->a = v->ways->a[i];
-    x->b = v->ways->b[i];
-    x->bounce = depth + 1;
-    x->id = b->first + lane;
-    x->alone = vl_hero_only(p, i);
-    x->passed = vl_pack_passed(t, lane);
-    x->medium = 1 + v->rows->medium[i];
-    count += sum > 0.0f && sum < VL_INFINITY;
+      x->power[c] =
+          k.s[c] > 0.0f ? p->beta[c][i] * t->lanes->flux[c][p->lane[i]] / k.s[c] : 0.0f;
+    count += vl_carries_power(x->power);
   }
   if (count)
     b->store(b->user, count, photons);
@@ -196,11 +183,11 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
   const vlWays *ways = v->ways;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = p->lane[i], path = b->first + lane, medium = v->rows->medium[i];
-    if (path >= way->inner.paths)
+    uint32_t lane = p->lane[i], medium = v->rows->medium[i];
+    if (b->first + lane >= way->inner.paths)
       continue;
     vlLightVertex *x = &vertices[count];
-    float sum = 0.0f;
+    vl_leave_path(t, depth, v, i, x, &passed[count]);
     x->p[0] = p->ox[i];
     x->p[1] = p->oy[i];
     x->p[2] = p->oz[i];
@@ -211,16 +198,11 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
     x->n[1] = p->dy[i];
     x->n[2] = p->dz[i];
     for (int c = 0; c < 4; c++)
-      sum += x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane];
+      x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane];
     x->back = ways->b[i] + way->merged_volume;
     x->offset = 0.0f;
-    x->path = path & 0x3ffffu;
-    x->bounce = (depth + 1) & 255u;
-    x->alone = vl_hero_only(p, i);
     x->inside = 1;
-    x->air = vl_air(t->world, medium) & 15u;
-    passed[count] = vl_pack_passed(t, lane);
-    count += sum > 0.0f && sum < VL_INFINITY;
+    count += vl_carries_power(x->power);
   }
   if (count)
     b->leave(b->user, count, vertices, passed);

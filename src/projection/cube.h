@@ -63,7 +63,11 @@ static inline vlPlanePoint vl_cube_project(double cross, double x, double y, dou
                         major > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(CUBE, cube, vl_cube_unproject(a[0], c->over_y, face, x, y),
-                        vl_cube_project(a[0], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
+  return vl_cube_unproject(c->shape[0], c->over_y, face, x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
+  return vl_cube_project(c->shape[0], x, y, z);
+}
 
 #endif

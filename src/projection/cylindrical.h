@@ -20,7 +20,13 @@ static inline vlPlanePoint vl_cylindrical_project(double x, double y, double z) 
                         across > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(CYLINDRICAL, cylindrical, vl_cylindrical_unproject(c->over_x, x, y),
-                        vl_cylindrical_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_cylindrical(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_cylindrical_unproject(c->over_x, x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_cylindrical(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_cylindrical_project(x, y, z);
+}
 
 #endif

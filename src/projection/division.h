@@ -22,7 +22,12 @@ static inline vlPlanePoint vl_division_project(double lambda, double x, double y
   return (vlPlanePoint){x * k, y * k, valid ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(DIVISION, division, vl_division_unproject(a[0], x, y),
-                        vl_division_project(a[0], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_division(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_division_unproject(c->shape[0], x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_division(VL_PROJECT_INPUT) {
+  return vl_division_project(c->shape[0], x, y, z);
+}
 
 #endif

@@ -22,8 +22,12 @@ static inline vlPlanePoint vl_double_sphere_project(double xi, double a, double 
   return (vlPlanePoint){x * k, y * k, z > -w2 * d1 && under > VL_HORIZON * d1 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(DOUBLE_SPHERE, double_sphere,
-                        vl_double_sphere_unproject(a[0], a[1], x, y),
-                        vl_double_sphere_project(a[0], a[1], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_double_sphere(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_double_sphere_unproject(c->shape[0], c->shape[1], x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_double_sphere(VL_PROJECT_INPUT) {
+  return vl_double_sphere_project(c->shape[0], c->shape[1], x, y, z);
+}
 
 #endif

@@ -38,7 +38,13 @@ static inline vlPlanePoint vl_equal_area_project(double x, double y, double z) {
                         length > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(EQUAL_AREA, equal_area, vl_equal_area_unproject(c->over_x, x, y),
-                        vl_equal_area_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_equal_area(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_equal_area_unproject(c->over_x, x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_equal_area_project(x, y, z);
+}
 
 #endif

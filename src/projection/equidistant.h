@@ -20,7 +20,14 @@ static inline vlPlanePoint vl_equidistant_project(double x, double y, double z) 
   return (vlPlanePoint){x * k, y * k, across > 0.0 || z > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(EQUIDISTANT, equidistant, vl_equidistant_unproject(x, y),
-                        vl_equidistant_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_equidistant(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return vl_equidistant_unproject(x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_equidistant(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_equidistant_project(x, y, z);
+}
 
 #endif

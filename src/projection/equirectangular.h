@@ -25,8 +25,13 @@ static inline vlPlanePoint vl_equirectangular_project(double x, double y, double
                         across + __builtin_fabs(y) > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(EQUIRECTANGULAR, equirectangular,
-                        vl_equirectangular_unproject(c->over_x, c->over_y, x, y),
-                        vl_equirectangular_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_equirectangular(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_equirectangular_unproject(c->over_x, c->over_y, x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_equirectangular(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_equirectangular_project(x, y, z);
+}
 
 #endif

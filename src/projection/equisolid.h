@@ -18,7 +18,14 @@ static inline vlPlanePoint vl_equisolid_project(double x, double y, double z) {
   return (vlPlanePoint){x * k, y * k, q > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(EQUISOLID, equisolid, vl_equisolid_unproject(x, y),
-                        vl_equisolid_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return vl_equisolid_unproject(x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_equisolid_project(x, y, z);
+}
 
 #endif

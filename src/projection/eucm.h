@@ -19,7 +19,12 @@ static inline vlPlanePoint vl_eucm_project(double a, double b, double x, double 
   return (vlPlanePoint){x * k, y * k, z >= -edge * d && under > VL_HORIZON * d ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(EUCM, eucm, vl_eucm_unproject(a[0], a[1], x, y),
-                        vl_eucm_project(a[0], a[1], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_eucm(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_eucm_unproject(c->shape[0], c->shape[1], x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
+  return vl_eucm_project(c->shape[0], c->shape[1], x, y, z);
+}
 
 #endif

@@ -18,7 +18,12 @@ static inline vlPlanePoint vl_fov_project(double w, double t, double x, double y
   return (vlPlanePoint){x * k, y * k, z > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(FOV, fov, vl_fov_unproject(a[0], a[1], x, y),
-                        vl_fov_project(a[0], a[1], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_fov(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_fov_unproject(c->shape[0], c->shape[1], x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_fov(VL_PROJECT_INPUT) {
+  return vl_fov_project(c->shape[0], c->shape[1], x, y, z);
+}
 
 #endif

@@ -6,25 +6,11 @@
 #include "camera/rays.h"
 #include "velo/projection.h"
 
-/* Defines the functions vl_unproject_name and vl_project_name of the kind VL_PROJECTION_NAME.
- * Both expressions can use the compiled camera c and its shape numbers a. `unproject` also uses
- * a point of the plane (x, y) and, for VL_PROJECTION_CUBE, the cell `face`; `project` uses a
- * point (x, y, z) in camera space.
- */
 #define VL_CAMERA_INLINE static inline __attribute__((always_inline))
-#define VL_PROJECTION_FUNCTIONS(NAME, name, unproject, project)                            \
-  _Static_assert(VL_PROJECTION_##NAME >= 0, "a kind of VL_PROJECTION_KINDS");              \
-  VL_CAMERA_INLINE vlDirection vl_unproject_##name(const vlCameraCompiled *c, double face, \
-                                                   double x, double y) {                   \
-    const double *a = c->shape;                                                            \
-    (void)a, (void)face;                                                                   \
-    return unproject;                                                                      \
-  }                                                                                        \
-  VL_CAMERA_INLINE vlPlanePoint vl_project_##name(const vlCameraCompiled *c, double x,     \
-                                                  double y, double z) {                    \
-    const double *a = c->shape;                                                            \
-    (void)a, (void)z;                                                                      \
-    return project;                                                                        \
-  }
+/* The arguments of vl_unproject_NAME: the compiled camera, whose member `shape` holds the
+ * numbers of the projection; for VL_PROJECTION_CUBE the cell `face`; a point of the plane. */
+#define VL_UNPROJECT_INPUT const vlCameraCompiled *c, double face, double x, double y
+/* The arguments of vl_project_NAME: the compiled camera, a point in camera space. */
+#define VL_PROJECT_INPUT const vlCameraCompiled *c, double x, double y, double z
 
 #endif

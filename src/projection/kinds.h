@@ -23,15 +23,44 @@
 #include "projection/unified.h"
 #include "velo/projection.h"
 
+/* X(kind, unproject, project): the functions of each projection, by their full names. */
+#define VL_PROJECTION_FUNCTIONS(X)                                                           \
+  X(VL_PROJECTION_PERSPECTIVE, vl_unproject_perspective, vl_project_perspective)             \
+  X(VL_PROJECTION_ORTHOGRAPHIC, vl_unproject_orthographic, vl_project_orthographic)          \
+  X(VL_PROJECTION_EQUIRECTANGULAR, vl_unproject_equirectangular, vl_project_equirectangular) \
+  X(VL_PROJECTION_EQUIDISTANT, vl_unproject_equidistant, vl_project_equidistant)             \
+  X(VL_PROJECTION_EQUISOLID, vl_unproject_equisolid, vl_project_equisolid)                   \
+  X(VL_PROJECTION_STEREOGRAPHIC, vl_unproject_stereographic, vl_project_stereographic)       \
+  X(VL_PROJECTION_SINE, vl_unproject_sine, vl_project_sine)                                  \
+  X(VL_PROJECTION_EQUAL_AREA, vl_unproject_equal_area, vl_project_equal_area)                \
+  X(VL_PROJECTION_CYLINDRICAL, vl_unproject_cylindrical, vl_project_cylindrical)             \
+  X(VL_PROJECTION_CUBE, vl_unproject_cube, vl_project_cube)                                  \
+  X(VL_PROJECTION_PANINI, vl_unproject_panini, vl_project_panini)                            \
+  X(VL_PROJECTION_FOV, vl_unproject_fov, vl_project_fov)                                     \
+  X(VL_PROJECTION_DIVISION, vl_unproject_division, vl_project_division)                      \
+  X(VL_PROJECTION_UNIFIED, vl_unproject_unified, vl_project_unified)                         \
+  X(VL_PROJECTION_EUCM, vl_unproject_eucm, vl_project_eucm)                                  \
+  X(VL_PROJECTION_DOUBLE_SPHERE, vl_unproject_double_sphere, vl_project_double_sphere)       \
+  X(VL_PROJECTION_OPTICS, vl_unproject_optics, vl_project_optics)
+
+/* A kind that is not in this list is a compile error. */
+#define VL_HAS_FUNCTIONS(kind, unproject, project) vl_functions_of_##kind = 1,
+enum { VL_PROJECTION_FUNCTIONS(VL_HAS_FUNCTIONS) };
+#define VL_NEEDS_FUNCTIONS(NAME, name) \
+  _Static_assert(vl_functions_of_VL_PROJECTION_##NAME, "a kind has functions");
+VL_PROJECTION_KINDS(VL_NEEDS_FUNCTIONS)
+#undef VL_NEEDS_FUNCTIONS
+#undef VL_HAS_FUNCTIONS
+
 VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCameraCompiled *c,
                                                 double face, double x, double y) {
   vlDirection d = {x, y, 1.0, 1.0};
   switch (kind) {
-#define VL_UNPROJECT_CASE(NAME, name)       \
-  case VL_PROJECTION_##NAME:                \
-    d = vl_unproject_##name(c, face, x, y); \
+#define VL_UNPROJECT_CASE(kind, unproject, project) \
+  case kind:                                        \
+    d = unproject(c, face, x, y);                   \
     break;
-    VL_PROJECTION_KINDS(VL_UNPROJECT_CASE)
+    VL_PROJECTION_FUNCTIONS(VL_UNPROJECT_CASE)
 #undef VL_UNPROJECT_CASE
     case VL_PROJECTION_OWN:
       d.valid = 0.0;
@@ -46,11 +75,11 @@ VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCamera
                                                double x, double y, double z) {
   vlPlanePoint p = {x, y, 0.0};
   switch (kind) {
-#define VL_PROJECT_CASE(NAME, name)    \
-  case VL_PROJECTION_##NAME:           \
-    p = vl_project_##name(c, x, y, z); \
+#define VL_PROJECT_CASE(kind, unproject, project) \
+  case kind:                                      \
+    p = project(c, x, y, z);                      \
     break;
-    VL_PROJECTION_KINDS(VL_PROJECT_CASE)
+    VL_PROJECTION_FUNCTIONS(VL_PROJECT_CASE)
 #undef VL_PROJECT_CASE
     case VL_PROJECTION_OWN:
       break;

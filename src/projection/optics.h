@@ -5,7 +5,15 @@
 
 #include "projection/functions.h"
 
-VL_PROJECTION_FUNCTIONS(OPTICS, optics, ((vlDirection){x, y, 1.0, 0.0}),
-                        ((vlPlanePoint){x, y, 0.0}))
+VL_CAMERA_INLINE vlDirection vl_unproject_optics(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return (vlDirection){x, y, 1.0, 0.0};
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_optics(VL_PROJECT_INPUT) {
+  (void)c;
+  (void)z;
+  return (vlPlanePoint){x, y, 0.0};
+}
 
 #endif

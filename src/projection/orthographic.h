@@ -19,7 +19,14 @@ static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c,
   return r;
 }
 
-VL_PROJECTION_FUNCTIONS(ORTHOGRAPHIC, orthographic, ((vlDirection){x, y, 1.0, 1.0}),
-                        ((vlPlanePoint){x, y, z >= 0.0 ? 1.0 : 0.0}))
+VL_CAMERA_INLINE vlDirection vl_unproject_orthographic(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return (vlDirection){x, y, 1.0, 1.0};
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_orthographic(VL_PROJECT_INPUT) {
+  (void)c;
+  return (vlPlanePoint){x, y, z >= 0.0 ? 1.0 : 0.0};
+}
 
 #endif

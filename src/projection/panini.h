@@ -30,7 +30,12 @@ static inline vlPlanePoint vl_panini_project(double d, double x, double y, doubl
       across > 0.0 && over > VL_HORIZON && cosine >= vl_panini_edge(d) ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(PANINI, panini, vl_panini_unproject(a[0], x, y),
-                        vl_panini_project(a[0], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_panini_unproject(c->shape[0], x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
+  return vl_panini_project(c->shape[0], x, y, z);
+}
 
 #endif

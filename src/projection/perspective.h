@@ -22,7 +22,14 @@ static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, 
   return r;
 }
 
-VL_PROJECTION_FUNCTIONS(PERSPECTIVE, perspective, ((vlDirection){x, y, 1.0, 1.0}),
-                        ((vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0}))
+VL_CAMERA_INLINE vlDirection vl_unproject_perspective(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return (vlDirection){x, y, 1.0, 1.0};
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_perspective(VL_PROJECT_INPUT) {
+  (void)c;
+  return (vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0};
+}
 
 #endif

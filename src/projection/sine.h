@@ -16,6 +16,14 @@ static inline vlPlanePoint vl_sine_project(double x, double y, double z) {
   return (vlPlanePoint){x * k, y * k, z >= 0.0 && length > 0.0 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(SINE, sine, vl_sine_unproject(x, y), vl_sine_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_sine(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return vl_sine_unproject(x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_sine(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_sine_project(x, y, z);
+}
 
 #endif

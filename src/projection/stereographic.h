@@ -20,7 +20,14 @@ static inline vlPlanePoint vl_stereographic_project(double x, double y, double z
   return (vlPlanePoint){x * k, y * k, q > 1e-29 ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(STEREOGRAPHIC, stereographic, vl_stereographic_unproject(x, y),
-                        vl_stereographic_project(x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_stereographic(VL_UNPROJECT_INPUT) {
+  (void)c;
+  (void)face;
+  return vl_stereographic_unproject(x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
+  (void)c;
+  return vl_stereographic_project(x, y, z);
+}
 
 #endif

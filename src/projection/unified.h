@@ -18,7 +18,12 @@ static inline vlPlanePoint vl_unified_project(double xi, double x, double y, dou
                         z >= -edge * length && under > VL_HORIZON * length ? 1.0 : 0.0};
 }
 
-VL_PROJECTION_FUNCTIONS(UNIFIED, unified, vl_unified_unproject(a[0], x, y),
-                        vl_unified_project(a[0], x, y, z))
+VL_CAMERA_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {
+  (void)face;
+  return vl_unified_unproject(c->shape[0], x, y);
+}
+VL_CAMERA_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
+  return vl_unified_project(c->shape[0], x, y, z);
+}
 
 #endif

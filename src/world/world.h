@@ -14,10 +14,10 @@
 #include "light/environment_lookup.h"
 #include "material/coat.h"
 #include "material/measured_tables.h"
+#include "medium/medium.h"
 #include "texture/node.h"
 #include "velo/world.h"
 #include "world/accel/accel.h"
-#include "world/medium/medium.h"
 #include "world/part.h"
 
 /* ---- shapes ------------------------------------------------------------------------------ */

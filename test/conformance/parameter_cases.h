@@ -1,12 +1,13 @@
 /* conformance/parameter_cases.h: what the laws of parameters must know beyond the rows.
  * Families with a folder have the cases of a kind there: src/texture/NAME.case.c,
- * src/light/NAME.case.c. */
+ * src/light/NAME.case.c, src/medium/NAME.case.c. */
 #ifndef TEST_CONFORMANCE_PARAMETER_CASES_H
 #define TEST_CONFORMANCE_PARAMETER_CASES_H
 
 #include <stddef.h>
 
 #include "light/light.case.h"
+#include "medium/medium.case.h"
 #include "schema/parameter.case.h"
 #include "texture/texture.case.h"
 
@@ -14,15 +15,9 @@
 static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE)};
 #define LIGHT_CASE(NAME, name) &name##_light,
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
+#define MEDIUM_CASE(NAME, name) &name##_medium,
+static const MediumCase *const medium_cases[] = {VL_MEDIUM_KINDS(MEDIUM_CASE)};
 
-#define CELLS                                                                                  \
-  "\"integer nx\" 2;\"integer ny\" 2;\"integer nz\" 2;\"point3 p0\" [-1 -1 -1];\"point3 p1\" " \
-  "[1 "                                                                                        \
-  "1 1]"
-#define EIGHT "[1 .5 .2 1 .7 .1 .4 .9]"
-#define OTHER_EIGHT "[.1 .5 .9 .3 1 .6 .8 .2]"
-#define EIGHT_COLORS "[1 .5 .2 1 .7 .1 .4 .9 .6 .1 .8 .3 1 .5 .2 1 .7 .1 .4 .9 .6 .1 .8 .3]"
-#define OTHER_COLORS "[.2 .5 1 .1 .7 1 .4 .3 .6 .9 .8 .3 .1 .5 .6 1 .2 .1 .4 .9 .1 .1 .8 .3]"
 #define SQUARE "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .2]"
 
 static const ParameterCase parameter_cases[] = {
@@ -147,123 +142,9 @@ static const ParameterCase parameter_cases[] = {
     /* media */
     {.family = "media", .parameter = "preset", .value = "\"string preset\" \"Skin1\""},
     {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "Lescale",
-     .base = CELLS ";\"rgb sigma_s\" " EIGHT_COLORS ";\"rgb sigma_a\" " EIGHT_COLORS
-                   ";\"rgb Le\" " EIGHT_COLORS},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "Lescale",
-     .base = CELLS ";\"rgb Le\" [.3 .2 .1];\"float density\" " EIGHT},
-    {.family = "media",
-     .kind = "homogeneous",
-     .parameter = "Lescale",
-     .base = "\"rgb Le\" [.3 .2 .1]"},
-    {.family = "media", .kind = "uniformgrid", .base = CELLS ";\"float density\" " EIGHT},
-    {.family = "media", .kind = "rgbgrid", .base = CELLS ";\"rgb sigma_s\" " EIGHT_COLORS},
-    {.family = "media",
-     .kind = "cloud",
-     .base = "\"point3 p0\" [-1 -1 -1];\"point3 p1\" [1 1 1];\"float density\" 4"},
-    {.family = "media",
-     .kind = "nanovdb",
-     .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003"},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "nx",
-     .base = "\"integer nx\" 8;\"float density\" " EIGHT,
-     .value = "\"integer nx\" 4 \"integer ny\" 2"},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "ny",
-     .base = "\"integer ny\" 8;\"float density\" " EIGHT,
-     .value = "\"integer ny\" 4 \"integer nz\" 2"},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "nz",
-     .base = "\"integer nz\" 8;\"float density\" " EIGHT,
-     .value = "\"integer nz\" 4 \"integer nx\" 2"},
-    {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "nx",
-     .base = "\"integer nx\" 8;\"rgb sigma_s\" " EIGHT_COLORS,
-     .value = "\"integer nx\" 4 \"integer ny\" 2"},
-    {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "ny",
-     .base = "\"integer ny\" 8;\"rgb sigma_s\" " EIGHT_COLORS,
-     .value = "\"integer ny\" 4 \"integer nz\" 2"},
-    {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "nz",
-     .base = "\"integer nz\" 8;\"rgb sigma_s\" " EIGHT_COLORS,
-     .value = "\"integer nz\" 4 \"integer nx\" 2"},
-    {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "Le",
-     .value = "\"rgb Le\" " OTHER_COLORS,
-     .base = CELLS ";\"rgb sigma_s\" " EIGHT_COLORS ";\"rgb sigma_a\" " EIGHT_COLORS},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "temperature",
-     .value = "\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]"},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "temperatureoffset",
-     .base = CELLS ";\"float density\" " EIGHT
-                   ";\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]",
-     .value = "\"float temperatureoffset\" 300"},
-    {.family = "media",
-     .kind = "uniformgrid",
-     .parameter = "temperaturescale",
-     .base = CELLS ";\"float density\" " EIGHT
-                   ";\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]",
-     .value = "\"float temperaturescale\" 1.4"},
-    {.family = "media",
-     .kind = "nanovdb",
-     .parameter = "filename",
-     .value = "\"string filename\" \"b.nvdb\""},
-    {.family = "media",
-     .kind = "nanovdb",
-     .parameter = "gridname",
-     .value = "\"string gridname\" \"density\"",
-     .no_effect = "the file has one grid"},
-    {.family = "media",
-     .kind = "nanovdb",
-     .parameter = "temperaturename",
-     .value = "\"string temperaturename\" \"density\""},
-    {.family = "media",
-     .kind = "nanovdb",
-     .parameter = "Lescale",
-     .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003;\"string temperaturename\" "
-             "\"density\";\"float "
-             "temperaturescale\" 9"},
-    {.family = "media",
-     .kind = "nanovdb",
-     .parameter = "temperatureoffset",
-     .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003;\"string temperaturename\" "
-             "\"density\";\"float "
-             "temperaturescale\" 9",
-     .value = "\"float temperatureoffset\" 50"},
-    {.family = "media",
-     .kind = "nanovdb",
-     .parameter = "temperaturescale",
-     .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003;\"string temperaturename\" "
-             "\"density\";\"float "
-             "temperaturescale\" 9",
-     .value = "\"float temperaturescale\" 12"},
-    {.family = "media", .parameter = "density", .value = "\"float density\" " OTHER_EIGHT},
-    {.family = "media",
-     .kind = "cloud",
      .parameter = "density",
-     .value = "\"float density\" 3"},
-    {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "sigma_s",
-     .value = "\"rgb sigma_s\" " OTHER_COLORS},
-    {.family = "media",
-     .kind = "rgbgrid",
-     .parameter = "sigma_a",
-     .value = "\"rgb sigma_a\" " OTHER_COLORS},
+     .value = "\"float density\" "
+              "[.1 .5 .9 .3 1 .6 .8 .2]"},
     /* shapes */
     {.family = "shapes", .parameter = "alpha", .value = "\"float alpha\" .4"},
     {.family = "shapes",

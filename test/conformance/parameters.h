@@ -29,6 +29,8 @@ static const ParameterCase *cases_of_kind(const char *family, uint32_t kind) {
     return texture_cases[kind]->parameters;
   if (strcmp(family, "lights") == 0)
     return light_cases[kind]->parameters;
+  if (strcmp(family, "media") == 0)
+    return medium_cases[kind]->parameters;
   return NULL;
 }
 

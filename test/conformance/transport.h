@@ -5,9 +5,9 @@
 #define TEST_CONFORMANCE_TRANSPORT_H
 
 #include "conformance.h"
+#include "medium/medium.case.h"
 #include "tracer/tracer.case.h"
 #include "velo/filter_kinds.h"
-#include "velo/medium.h"
 #include "velo/tracer.h"
 
 /* The image of the scene by a tracer (null: the scene's own) and with a pixel filter. */
@@ -63,86 +63,6 @@ static const char *const medium_form =
 
 enum { MEDIUM_SPP = 384 };
 
-typedef struct MediumCase {
-  const char *shape;    /* parameters of all variants */
-  const char *scatters; /* nothing absorbs: what enters leaves */
-  const char *glows;    /* absorbs, and emits what it absorbs of a sky of 1; null: cannot */
-  const char *absorbs;  /* absorbs alone */
-  double transmittance; /* of that; 0: not known, but below 1 */
-  double glow;          /* where the emission fades at the box's sides; 0: 1 */
-  const char *layers;   /* absorbs alone, most of it in one of eight layers; null: cannot */
-  double passes;        /* the transmittance of that */
-} MediumCase;
-
-#define BOX "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] "
-#define BLOCKS BOX "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 "
-#define ONES "[1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1]"
-#define NONE "[0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]"
-#define HALF_OF "[.5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5]"
-static const MediumCase homogeneous_medium = {
-    .shape = "",
-    .scatters = "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" .6",
-    .glows =
-        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] \"float "
-        "Lescale\" 2",
-    .absorbs = "\"rgb sigma_a\" [.2 .2 .2] \"rgb sigma_s\" [0 0 0] \"float scale\" 2",
-    .transmittance = 0.44932896};
-/* Eight layers of thickness .25, sigma_a .5 times .1, but 3 in the third from the back. The
- * last half of a layer at the box's side fades to half, so the layers at the sides count 7/8:
- * exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)). */
-#define LAYERS BOX "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 8 "
-#define FOUR_THIN ".1 .1 .1 .1 "
-#define FOUR_COLORS ".05 .05 .05 .05 .05 .05 .05 .05 .05 .05 .05 .05 "
-#define THICK_COLORS "1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 "
-/* As of the next: exp(-.5 * 1.75). */
-static const MediumCase grid_medium = {
-    .shape = BLOCKS,
-    .scatters =
-        "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" -.5 \"float density\" [1 "
-        ".5 "
-        ".2 1 .7 .1 .4 .9]",
-    .glows =
-        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] \"float "
-        "Lescale\" 2 \"float "
-        "density\" [1 .5 .2 1 .7 .1 .4 .9]",
-    .absorbs =
-        "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [1 1 1 1 1 1 1 "
-        "1]",
-    .transmittance = 0.416862,
-    .layers = LAYERS
-    "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
-    "3 3 3 3 " FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN "]",
-    .passes = 0.631678};
-/* Le of these grids, as in pbrt, is in units of a constant spectrum's luminance, 106.857. It is
- * interpolated, too: both fade to half at the box's sides, w(z) = 1.5 - |z| from |z| = .5 on.
- * The integrals of that: */
-static const MediumCase rgb_grid_medium = {
-    .shape = BLOCKS,
-    .scatters = "\"rgb sigma_a\" " NONE " \"rgb sigma_s\" " EIGHT_COLORS " \"float g\" .4",
-    .glows = "\"rgb sigma_a\" " HALF_OF " \"rgb sigma_s\" " NONE " \"rgb Le\" " ONES
-             " \"float Lescale\" .00935831",
-    .absorbs = "\"rgb sigma_a\" " HALF_OF " \"rgb sigma_s\" " NONE,
-    .transmittance = 0.416862,
-    .glow = 0.942249,
-    .layers = LAYERS
-    "\"rgb sigma_a\" [" FOUR_COLORS FOUR_COLORS THICK_COLORS FOUR_COLORS FOUR_COLORS FOUR_COLORS
-        FOUR_COLORS FOUR_COLORS
-    "] \"rgb sigma_s\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
-    "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
-    "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]",
-    .passes = 0.631678};
-static const MediumCase cloud_medium = {
-    .shape = BOX "\"float density\" 3 ",
-    .scatters = "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" .5",
-    .absorbs = "\"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [0 0 0]"};
-static const MediumCase nanovdb_medium = {
-    .shape = "\"string filename\" \"a.nvdb\" \"float scale\" .003 ",
-    .scatters = "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" .5",
-    .absorbs = "\"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [0 0 0]"};
-
-#define MEDIUM_CASE(NAME, name) &name##_medium,
-static const MediumCase *const medium_cases[] = {VL_MEDIUM_KINDS(MEDIUM_CASE)};
-
 static vlImage *image_of_medium(const char *kind, const MediumCase *c, const char *parameters) {
   static char text[TEXT];
   char all[2000];
@@ -176,10 +96,10 @@ static void check_medium(const char *name, const MediumCase *c) {
   const Sight sight = {.slack = 2e-3, .least = 0.02};
   Mean kept = mean_medium(name, c, c->scatters);
   check_mean("media", name, "light that is kept", &kept, 1, sight);
-  if (c->glows) {
-    Mean balance = mean_medium(name, c, c->glows);
-    check_mean("media", name, "glow and surroundings", &balance, c->glow > 0 ? c->glow : 1,
-               sight);
+  if (c->emits) {
+    Mean balance = mean_medium(name, c, c->emits);
+    check_mean("media", name, "glow and surroundings", &balance,
+               c->emission > 0 ? c->emission : 1, sight);
   }
   vlImage *absorbing = image_of_medium(name, c, c->absorbs);
   vlImage *scattering = image_unscattered(name, c);

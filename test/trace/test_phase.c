@@ -11,6 +11,7 @@
 #include "statistics.h"
 #include "trace/medium/medium.h"
 #include "trace/medium/phase.h"
+#include "velo/medium.h"
 
 static const float gs[] = {-0.99f, -0.8f, -0.3f, -0.0005f, 0.0f, 0.0005f,
                            0.002f, 0.3f,  0.7f,  0.95f,    0.99f};

@@ -11,8 +11,9 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
+#include "medium/lookup.h"
+#include "velo/medium.h"
 #include "velo/render.h"
-#include "world/medium/medium_lookup.h"
 #include "world/nanovdb_file.h"
 
 static const char *file_name(void) {

@@ -6,8 +6,8 @@
 
 #include "base/isa.h"
 #include "math/hash.h"
+#include "medium/lookup.h"
 #include "trace/stages.h"
-#include "world/medium/medium_lookup.h"
 
 /* The state of one ray. Channel `hero` sampled its path, with some density. beta: throughput
  * over this density. u: densities with which each channel would have sampled the path, over

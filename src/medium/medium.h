@@ -1,9 +1,9 @@
-/* world/medium/medium.h: compiled participating media (pbrt book 11): coefficients as spectra,
+/* medium/medium.h: compiled participating media (pbrt book 11): coefficients as spectra,
  * densities on grids, and for each medium a coarse grid of majorants, by which free flights are
- * sampled (trace/medium/medium.hot.c). media.c and a file per kind (kinds.h) compile them,
- * nanovdb.c reads NanoVDB grids, medium_lookup.h evaluates them. */
-#ifndef WORLD_MEDIUM_MEDIUM_H
-#define WORLD_MEDIUM_MEDIUM_H
+ * sampled (trace/medium/medium.hot.c). compile.c and a file per kind (kinds.row.h) compile
+ * them, nanovdb_grid.c reads NanoVDB grids, lookup.h evaluates them. */
+#ifndef MEDIUM_MEDIUM_H
+#define MEDIUM_MEDIUM_H
 
 #include "texture/node.h"
 

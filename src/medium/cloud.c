@@ -1,10 +1,12 @@
-/* world/medium/cloud.c: clouds of noise in a box. */
+/* medium/cloud.c: clouds of noise in a box. */
 #include <string.h>
 
 #include "base/error.h"
 #include "math/vec.h"
+#include "medium/compile.h"
 #include "velo/medium.h"
-#include "world/medium/kinds.h"
+
+vlCompileMedium vl_compile_medium_cloud;
 
 /* Cloud density changes with height: one majorant per slab. The absolute value of noise is at
  * most 1.04, that of the sum of its five octaves at most 1.01. Above y = 1 the factor of the

@@ -1,12 +1,12 @@
-/* world/medium/grid.c: media on dense grids: converts the values to the layout for lookups, and
+/* medium/cells.c: media on dense grids: converts the values to the layout for lookups, and
  * computes majorants (pbrt book 11.4). */
 #include <math.h>
 #include <string.h>
 
 #include "base/error.h"
 #include "color/rgb_table.h"
+#include "medium/compile.h"
 #include "velo/medium.h"
-#include "world/medium/kinds.h"
 
 static bool copy_grid(vlWorld *world, const vlMediumDef *def, const float *from,
                       vlDenseGrid *to) {
@@ -110,8 +110,8 @@ static void bound_slice(void *user, uint32_t z, uint32_t worker) {
     }
 }
 
-static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
-                              vlError *error) {
+vlResult vl_medium_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
+                         vlError *error) {
   bool rgb = m->own_sigma;
   memcpy(m->low, def->low, sizeof m->low);
   memcpy(m->high, def->high, sizeof m->high);
@@ -122,26 +122,6 @@ static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMed
       !copy_rgb_grid(world, def, def->rgb_s, &m->rgb_s) ||
       !copy_rgb_grid(world, def, def->rgb_emission, &m->rgb_emission))
     return vl_fail_memory(error);
-  if (rgb) {
-    /* pbrt-v4 multiplies by the illuminant of the colour space, scaled to the luminance of a
-     * constant spectrum of 1. */
-    double sum = 0, whole = 0;
-    const float *y = vl_cie_y(), *illuminant = vl_space_illuminant(def->space);
-    for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-      sum += (double)y[i] * (double)illuminant[i];
-      whole += (double)y[i];
-    }
-    m->grey = m->scatters = true;
-    m->emits = def->rgb_emission && def->emission_scale > 0;
-    m->rgb_scale = def->scale;
-    m->rgb_emission_scale = def->emission_scale;
-    if (world->def.color == VL_COLOR_RGB)
-      m->illuminant =
-          (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = (float)whole, .rgb = {1, 1, 1}};
-    else
-      m->illuminant = (vlSpectral){
-          .kind = VL_SPECTRAL_DENSE, .scale = (float)(whole / sum), .dense = illuminant};
-  }
   uint32_t cells[3] = {def->nx, def->ny, def->nz};
   for (int i = 0; i < 3; i++)
     cells[i] = cells[i] > 8 ? 16 : 2 * cells[i];
@@ -150,16 +130,4 @@ static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMed
     return vl_fail_memory(error);
   vl_parallel_for(world->context, m->cells[2], bound_slice, &bounding);
   return VL_OK;
-}
-
-vlResult vl_compile_medium_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
-                                vlError *error) {
-  vlResult r = compile_cells(world, def, m, error);
-  return r == VL_OK && def->temperature ? vl_medium_temperature(world, def, m, error) : r;
-}
-
-vlResult vl_compile_medium_rgb_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
-                                    vlError *error) {
-  m->own_sigma = true;
-  return compile_cells(world, def, m, error);
 }

@@ -1,7 +1,7 @@
-/* world/medium/nanovdb.h: interface between nanovdb_file.c, which finds a grid in a file, and
- * nanovdb.c, which converts the grid. */
-#ifndef WORLD_MEDIUM_NANOVDB_H
-#define WORLD_MEDIUM_NANOVDB_H
+/* medium/nanovdb_file.h: interface between nanovdb_file.c, which finds a grid in a file, and
+ * nanovdb_grid.c, which converts the grid. */
+#ifndef MEDIUM_NANOVDB_FILE_H
+#define MEDIUM_NANOVDB_FILE_H
 
 #include "base/context.h"
 

@@ -1,10 +1,10 @@
-/* world/medium/grid_lookup.h: interpolated lookups in dense and sparse grids. The functions are
+/* medium/grid_lookup.h: interpolated lookups in dense and sparse grids. The functions are
  * inline and take values, for the hot files of trace. */
-#ifndef WORLD_MEDIUM_GRID_LOOKUP_H
-#define WORLD_MEDIUM_GRID_LOOKUP_H
+#ifndef MEDIUM_GRID_LOOKUP_H
+#define MEDIUM_GRID_LOOKUP_H
 
 #include "math/vec.h"
-#include "world/medium/medium.h"
+#include "medium/medium.h"
 
 /* The eight cells around a point, and the weights of trilinear interpolation. */
 typedef struct vlTrilinear {
@@ -71,15 +71,6 @@ static inline float vl_sparse_lookup(const vlSparseGrid *g, vlVec3 p) {
     sum += vl_trilinear_weight(at, k) *
            vl_sparse_value(g, at.x + (k & 1), at.y + (k >> 1 & 1), at.z + (k >> 2));
   return sum;
-}
-
-static inline float vl_medium_density_grid(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)p;
-  return vl_dense_lookup(&m->density, q);
-}
-static inline float vl_medium_density_nanovdb(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)q;
-  return vl_sparse_lookup(m->sparse, p);
 }
 
 #endif

@@ -1,5 +1,5 @@
-/* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read
- * (world/medium/medium.h). This is the only file that uses PNanoVDB.h. Its readers check every
+/* medium/nanovdb_grid.c: converts a NanoVDB grid into the bricks that lookups read
+ * (medium/medium.h). This is the only file that uses PNanoVDB.h. Its readers check every
  * address; addresses outside of the grid read as zero. The number of nodes is bounded by the
  * grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot exhaust
  * memory. */
@@ -13,8 +13,8 @@
 
 #include "base/array.h"
 #include "base/error.h"
-#include "world/medium/medium.h"
-#include "world/medium/nanovdb.h"
+#include "medium/medium.h"
+#include "medium/nanovdb_file.h"
 #include "world/world.h"
 
 enum { MAX_TABLE = 1 << 24, MAX_BLOCKS = 1 << 20 };

@@ -1,12 +1,10 @@
-/* world/medium/medium_lookup.h: coefficients of a medium at a point, and traversal of its
+/* medium/lookup.h: coefficients of a medium at a point, and traversal of its
  * majorants by a ray. The functions are inline and take values, for the hot files of trace.
  * pbrt book 11.4. */
-#ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
-#define WORLD_MEDIUM_MEDIUM_LOOKUP_H
+#ifndef MEDIUM_LOOKUP_H
+#define MEDIUM_LOOKUP_H
 
-#include "velo/medium.h"
-#include "world/medium/cloud.h"
-#include "world/medium/grid_lookup.h"
+#include "medium/grid_lookup.h"
 #include "world/world.h"
 
 /* ---- emission ---------------------------------------------------------------------------- */
@@ -97,30 +95,10 @@ static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float
   return r;
 }
 
-static inline float vl_medium_density_homogeneous(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)m;
-  (void)p;
-  (void)q;
-  return 1.0f;
-}
-static inline float vl_medium_density_rgb_grid(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)m;
-  (void)p;
-  (void)q;
-  return 1.0f;
-}
-
-/* Density at a point, which multiplies the coefficients; 1 for kinds without a density. p: the
- * point in medium space; q: the point relative to the box, 0 to 1. Each kind has its own
- * function. */
-static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-#define VL_DENSITY(K, k) \
-  case VL_MEDIUM_##K:    \
-    return vl_medium_density_##k(m, p, q);
-  switch ((vlMediumKind)m->kind) { VL_MEDIUM_KINDS(VL_DENSITY) }
-#undef VL_DENSITY
-  return 1.0f;
-}
+/* Density at a point, which multiplies the coefficients. p: the point in medium space; q: the
+ * point relative to the box, 0 to 1. Each kind has its own function (medium/kinds.row.h). */
+typedef float vlMediumDensity(const vlWorldMedium *m, vlVec3 p, vlVec3 q);
+vlMediumDensity vl_medium_density;
 
 /* Coefficients at a point (world space) of a medium that is not uniform. whole: result of
  * vl_medium_coefficients. */

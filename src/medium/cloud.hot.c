@@ -1,14 +1,13 @@
-/* world/medium/cloud.h: the density of a cloud. vlWorldMedium.own holds its parameters: a
- * factor of the noise, wispiness, frequency. */
-#ifndef WORLD_MEDIUM_CLOUD_H
-#define WORLD_MEDIUM_CLOUD_H
-
+/* medium/cloud.hot.c: the density of a cloud. vlWorldMedium.own holds its parameters: a factor
+ * of the noise, wispiness, frequency. */
 #include "math/noise.h"
-#include "world/medium/medium.h"
+#include "medium/lookup.h"
+
+vlMediumDensity vl_medium_density_cloud;
 
 /* pbrt-v4's procedural cloud (the last medium of book 11.4.2): fractal noise, distorted by
  * wisps, thinner with height. */
-static inline float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vlVec3 unit) {
+float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vlVec3 unit) {
   (void)unit;
   const float density = m->own[0], wispiness = m->own[1];
   vlVec3 q = vl_mul(p, m->own[2]);
@@ -35,5 +34,3 @@ static inline float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vl
   float d = vl_clamp((1.0f - p.y) * 4.5f * density * sum, 0.0f, 1.0f);
   return vl_clamp(d + 2.0f * vl_max(0.0f, 0.5f - p.y), 0.0f, 1.0f);
 }
-
-#endif

@@ -1,4 +1,4 @@
-/* world/medium/nanovdb_file.c: reads NanoVDB files. A file consists of segments; a segment has
+/* medium/nanovdb_file.c: reads NanoVDB files. A file consists of segments; a segment has
  * a header, grid descriptions, and the grids, plain or compressed by zlib. The layout is that
  * of format version 32: header 16 bytes; description 176 bytes and a name; then the grids in
  * the same order. All sizes are checked against the file's size. */
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "world/medium/nanovdb.h"
+#include "medium/nanovdb_file.h"
 
 enum { HEADER = 16, DESCRIPTION = 176, MAJOR = 32 };
 enum { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 };

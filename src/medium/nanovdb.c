@@ -1,12 +1,14 @@
-/* world/medium/sparse.c: media from NanoVDB files: computes the box and the majorants of their
+/* medium/nanovdb.c: media from NanoVDB files: computes the box and the majorants of their
  * grids. */
 #include <math.h>
 
 #include "base/error.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "medium/compile.h"
 #include "velo/medium.h"
-#include "world/medium/kinds.h"
+
+vlCompileMedium vl_compile_medium_nanovdb;
 
 static void grow_box(const vlSparseGrid *g, vlWorldMedium *m) {
   for (int i = 0; i < 3; i++) {

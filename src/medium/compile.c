@@ -1,15 +1,15 @@
-/* world/medium/media.c: compiles the media of a scene: spectra, and what each kind adds
- * (kinds.h). Only media that are in use are compiled. */
+/* medium/compile.c: compiles the media of a scene: spectra, and what each kind adds
+ * (kinds.row.h). Only media that are in use are compiled. */
 #include <string.h>
 
 #include "base/error.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "medium/compile.h"
+#include "medium/kinds.row.h"
 #include "scene/scene.h"
 #include "velo/medium.h"
 #include "velo/shape.h"
-#include "world/medium/kinds.h"
-#include "world/medium/medium_lookup.h"
 #include "world/world.h"
 
 /* ---- spectra ----------------------------------------------------------------------------- */
@@ -114,21 +114,19 @@ float *vl_medium_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32_
 
 /* ---- all --------------------------------------------------------------------------------- */
 
-vlResult vl_compile_medium_homogeneous(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
-                                       vlError *error) {
-  (void)world;
-  (void)def;
-  (void)error;
-  m->uniform = true;
-  m->extinction = vl_medium_mean_extinction(m);
-  return VL_OK;
-}
+#define DECLARE(kind, row, compile, density) vlCompileMedium compile;
+VL_MEDIUM_FUNCTIONS(DECLARE)
 
-typedef vlResult CompileMedium(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
-                               vlError *error);
-#define COMPILE(K, k) [VL_MEDIUM_##K] = vl_compile_medium_##k,
-static CompileMedium *const compile_kind[] = {VL_MEDIUM_KINDS(COMPILE)};
-#undef COMPILE
+static vlResult compile_kind(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
+                             vlError *error) {
+  switch (def->kind) {
+#define COMPILE(kind, row, compile, density) \
+  case kind:                                 \
+    return compile(world, def, m, error);
+    VL_MEDIUM_FUNCTIONS(COMPILE)
+  }
+  return vl_fail(error, VL_ERROR_ARGUMENT, "no such kind of medium");
+}
 
 static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
                         vlError *error) {
@@ -150,7 +148,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   m->scatters = !is_zero(&m->sigma_s);
   m->grey = is_grey(&m->sigma_a) && is_grey(&m->sigma_s);
   m->temperature_emission = 1;
-  return compile_kind[def->kind](world, def, m, error);
+  return compile_kind(world, def, m, error);
 }
 
 /* Compiles a medium, or shares that of the previous world if neither it nor its file has

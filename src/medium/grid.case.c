@@ -1,0 +1,50 @@
+/* medium/grid.case.c: what tests know of media on grids. */
+#include "medium/medium.case.h"
+
+/* Eight layers of thickness .25, sigma_a .5 times .1, but 3 in the third from the back. The
+ * last half of a layer at the box's side fades to half, so the layers at the sides count 7/8:
+ * exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)). Of an even density: exp(-.5 * 1.75). */
+const MediumCase grid_medium = {
+    .shape = BLOCKS,
+    .scatters =
+        "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" -.5 \"float density\" [1 "
+        ".5 "
+        ".2 1 .7 .1 .4 .9]",
+    .emits =
+        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] \"float "
+        "Lescale\" 2 \"float "
+        "density\" [1 .5 .2 1 .7 .1 .4 .9]",
+    .absorbs =
+        "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [1 1 1 1 1 1 1 "
+        "1]",
+    .transmittance = 0.416862,
+    .layers = LAYERS
+    "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
+    "3 3 3 3 " FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN "]",
+    .passes = 0.631678,
+    .parameters =
+        {
+            {.parameter = "Lescale",
+             .base = CELLS ";\"rgb Le\" [.3 .2 .1];\"float density\" " EIGHT},
+            {.base = CELLS ";\"float density\" " EIGHT},
+            {.parameter = "nx",
+             .base = "\"integer nx\" 8;\"float density\" " EIGHT,
+             .value = "\"integer nx\" 4 \"integer ny\" 2"},
+            {.parameter = "ny",
+             .base = "\"integer ny\" 8;\"float density\" " EIGHT,
+             .value = "\"integer ny\" 4 \"integer nz\" 2"},
+            {.parameter = "nz",
+             .base = "\"integer nz\" 8;\"float density\" " EIGHT,
+             .value = "\"integer nz\" 4 \"integer nx\" 2"},
+            {.parameter = "temperature",
+             .value = "\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]"},
+            {.parameter = "temperatureoffset",
+             .base = CELLS ";\"float density\" " EIGHT
+                           ";\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]",
+             .value = "\"float temperatureoffset\" 300"},
+            {.parameter = "temperaturescale",
+             .base = CELLS ";\"float density\" " EIGHT
+                           ";\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]",
+             .value = "\"float temperaturescale\" 1.4"},
+        },
+};

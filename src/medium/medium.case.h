@@ -1,0 +1,45 @@
+/* medium/medium.case.h: what the tests of media must know of a kind beyond its row: parameters
+ * for the laws of test/conformance/transport.h, and cases of its parameters. */
+#ifndef MEDIUM_MEDIUM_CASE_H
+#define MEDIUM_MEDIUM_CASE_H
+
+#include "schema/parameter.case.h"
+#include "velo/medium.h"
+
+/* The medium fills a box from -1 to 1. */
+typedef struct MediumCase {
+  const char *shape;    /* parameters of all variants */
+  const char *scatters; /* nothing absorbs: what enters leaves */
+  const char *emits;    /* absorbs, and emits what it absorbs of a sky of 1; null: cannot */
+  const char *absorbs;  /* absorbs alone */
+  double transmittance; /* of that; 0: not known, but below 1 */
+  double emission;      /* where the emission fades at the box's sides; 0: 1 */
+  const char *layers;   /* absorbs alone, most of it in one of eight layers; null: cannot */
+  double passes;        /* the transmittance of that */
+  ParameterCase parameters[PARAMETER_CASES];
+} MediumCase;
+
+/* Values that several kinds use: the box, grids in it, numbers and colours of their cells. */
+#define BOX "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] "
+#define BLOCKS BOX "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 "
+#define ONES "[1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1]"
+#define NONE "[0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]"
+#define HALF_OF "[.5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5 .5]"
+#define LAYERS BOX "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 8 "
+#define FOUR_THIN ".1 .1 .1 .1 "
+#define FOUR_COLORS ".05 .05 .05 .05 .05 .05 .05 .05 .05 .05 .05 .05 "
+#define THICK_COLORS "1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 1.5 "
+#define CELLS                                                                                  \
+  "\"integer nx\" 2;\"integer ny\" 2;\"integer nz\" 2;\"point3 p0\" [-1 -1 -1];\"point3 p1\" " \
+  "[1 "                                                                                        \
+  "1 1]"
+#define EIGHT "[1 .5 .2 1 .7 .1 .4 .9]"
+#define EIGHT_COLORS "[1 .5 .2 1 .7 .1 .4 .9 .6 .1 .8 .3 1 .5 .2 1 .7 .1 .4 .9 .6 .1 .8 .3]"
+#define OTHER_COLORS "[.2 .5 1 .1 .7 1 .4 .3 .6 .9 .8 .3 .1 .5 .6 1 .2 .1 .4 .9 .1 .1 .8 .3]"
+
+/* Declares the case of each kind, which is in the file of the kind: medium/NAME.case.c. */
+#define MEDIUM_CASE(NAME, name) extern const MediumCase name##_medium;
+VL_MEDIUM_KINDS(MEDIUM_CASE)
+#undef MEDIUM_CASE
+
+#endif

@@ -163,6 +163,7 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_SETTINGS:
     case MESSAGE_STEER:
     case MESSAGE_SCENE:
+    case MESSAGE_TIME: /* engine_watch loads for it */
       break;
   }
 }

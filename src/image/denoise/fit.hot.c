@@ -189,11 +189,11 @@ static void set_neighbour(const vlDenoisePlanes *p, const Used *used, Group *q, 
 /* N values that are kept in registers while many sums are made of them. */
 typedef float Lanes __attribute__((vector_size(N * sizeof(float))));
 
-static inline Lanes load(const float from[N]) {
-  Lanes v;
-  memcpy(&v, from, sizeof v);
-  return v;
-}
+/* The same in memory, aligned as floats are. A function that returned Lanes would have another
+ * ABI for each instruction set. */
+typedef float LanesInMemory
+    __attribute__((vector_size(N * sizeof(float)), aligned(4), may_alias));
+#define LOAD(from) (*(const LanesInMemory *)(from))
 static inline void store(float to[N], const Lanes *v) {
   memcpy(to, v, sizeof *v);
 }
@@ -206,35 +206,35 @@ static void add(const vlDenoisePlanes *p, Equations *restrict e, const Group *re
   for (int k = 0; k < used + 3; k++) {
     Lanes w[G], sum;
     for (int g = 0; g < G; g++)
-      w[g] = load(q->weighted[g][k]);
+      w[g] = LOAD(q->weighted[g][k]);
     for (int l = 0; l <= k && l < used; l++, term++) {
-      sum = load(e->a[term]);
+      sum = LOAD(e->a[term]);
       for (int g = 0; g < G; g++)
-        sum += w[g] * load(q->value[g][l]);
+        sum += w[g] * LOAD(q->value[g][l]);
       store(e->a[term], &sum);
     }
     for (int c = 0; c < 3; c++) {
-      sum = load(e->b[c][k]);
+      sum = LOAD(e->b[c][k]);
       for (int g = 0; g < G; g++)
-        sum += w[g] * load(p->color[c] + q->at[g]);
+        sum += w[g] * LOAD(p->color[c] + q->at[g]);
       store(e->b[c][k], &sum);
     }
     if (k < used)
       continue;
-    sum = load(e->a[term]);
+    sum = LOAD(e->a[term]);
     for (int g = 0; g < G; g++)
       sum += w[g] * q->x[g];
     store(e->a[term++], &sum);
     if (k == used)
       continue;
-    sum = load(e->a[term]);
+    sum = LOAD(e->a[term]);
     for (int g = 0; g < G; g++)
       sum += w[g] * q->y[g];
     store(e->a[term++], &sum);
     if (k == used + 1)
       continue;
-    sum = load(e->a[term]);
-    Lanes squares = load(e->squares);
+    sum = LOAD(e->a[term]);
+    Lanes squares = LOAD(e->squares);
     for (int g = 0; g < G; g++) {
       sum += w[g];
       squares += w[g] * w[g];
@@ -242,9 +242,9 @@ static void add(const vlDenoisePlanes *p, Equations *restrict e, const Group *re
     store(e->a[term], &sum);
     store(e->squares, &squares);
     for (int c = 0; c < 3; c++) {
-      sum = load(e->variance[c]);
+      sum = LOAD(e->variance[c]);
       for (int g = 0; g < G; g++)
-        sum += w[g] * load(p->variance[c] + q->at[g]);
+        sum += w[g] * LOAD(p->variance[c] + q->at[g]);
       store(e->variance[c], &sum);
     }
   }

@@ -1,8 +1,9 @@
 /* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias becomes a
  * copy of the value that its anchor names. The number of values in a file with aliases is
  * limited, since a small file could otherwise expand without bound. "<<" merges maps. OpenCV's
- * first line "%YAML:1.0" is not a valid YAML directive and is ignored, and its tabs count as
- * blanks. */
+ * first line "%YAML:1.0" is not a valid YAML directive and is ignored, its tabs count as
+ * blanks, and a key's colon needs no blank after it. */
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <yaml.h>
@@ -204,13 +205,22 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
   return VL_OK;
 }
 
-/* OpenCV's own parser takes tabs for blanks. */
-static char *without_tabs(const vlCameraFile *file, const char *text, size_t size) {
-  char *copy = vl_alloc(file->context, size + 1);
-  for (size_t i = 0; copy && i < size; i++)
-    copy[i] = text[i] == '\t' ? ' ' : text[i];
+/* OpenCV's own parser takes tabs for blanks, and "Viewer.PointSize:2" (in ORB-SLAM 2's files)
+ * for a key and its value. *size becomes that of the copy. */
+static char *as_yaml(const vlCameraFile *file, const char *text, size_t *size) {
+  char *copy = vl_alloc_array(file->context, *size + 1, 2);
+  size_t n = 0;
+  bool in_key = true; /* all of the line so far are letters of a key */
+  for (size_t i = 0; copy && i < *size; i++) {
+    bool letter = isalnum((unsigned char)text[i]) || text[i] == '.' || text[i] == '_';
+    copy[n++] = text[i] == '\t' ? ' ' : text[i];
+    if (in_key && text[i] == ':' && i + 1 < *size && !isspace((unsigned char)text[i + 1]))
+      copy[n++] = ' ';
+    in_key = text[i] == '\n' || (in_key && letter);
+  }
   if (copy)
-    copy[size] = 0;
+    copy[n] = 0;
+  *size = n;
   return copy;
 }
 
@@ -221,7 +231,7 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
   *tree = NULL;
   /* the line end is kept, for line numbers */
   size_t skip = size >= 6 && memcmp(text, "%YAML:", 6) == 0 ? strcspn(text, "\n") : 0;
-  char *copy = skip ? without_tabs(file, text, size) : NULL;
+  char *copy = skip ? as_yaml(file, text, &size) : NULL;
   if (skip && !copy)
     return vl_fail_memory(file->error);
   if (!yaml_parser_initialize(&parser)) {

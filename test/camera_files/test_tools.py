@@ -310,6 +310,7 @@ projection
 ORB = "%%YAML:1.0\n\n#------\n# Camera Parameters\n#------\n%sCamera.fps: 30.0\nCamera.RGB: 1\nORBextractor.nFeatures: 1000\n"
 ORB_OLD = ORB % ("Camera.fx: 500.0\nCamera.fy: 510.0\nCamera.cx: 315.25\nCamera.cy: 245.5\n\nCamera.k1: -0.2\n"
                  "Camera.k2: 0.05\nCamera.p1: 0.001\nCamera.p2: -0.002\nCamera.k3: 0.01\n")
+ORB_OLD += "Viewer.PointSize:2\n"  # as in ORB-SLAM 2's own files: no blank after the colon
 P_VALUES = [500.0, 0, 315.25, 500.0 * T[0] + 315.25 * T[2], 0, 510.0, 245.5, 510.0 * T[1] + 245.5 * T[2], 0, 0, 1, T[2]]
 KITTI_RAW = ("calib_time: 09-Jan-2012 13:57:47\ncorner_dist: 9.950000e-02\nS_00: 640 480\nK_00: %s\nD_00: 0 0 0 0 0\n"
              "R_00: 1 0 0 0 1 0 0 0 1\nT_00: 0 0 0\nS_rect_00: 600 400\nP_rect_00: %s\nS_01: 640 480\nK_01: %s\nD_01: %s\n"

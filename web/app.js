@@ -203,7 +203,7 @@ function showStatus(s) {
 function showSeen(frame) {
   clearTimeout(app.seenTimer);
   const many = frame.spp > 0 ? `, ${frame.spp} spp` : "";
-  const text = frame.channel ? "" : `seen: ${frame.denoised ? "denoised preview" : "samples"}${many}`;
+  const text = frame.channel ? "" : `seen: ${["samples", "denoised preview", "earlier image, moved"][frame.denoised]}${many}`;
   app.seenTimer = setTimeout(() => { byId("seen").textContent = text; }, 200);
 }
 

@@ -2,6 +2,7 @@
 """velo view while the camera moves and just after: a page that sends changes without waiting for images still gets images
 of them, and the image gets finer step by step once it stands still."""
 import os
+import struct
 import sys
 import threading
 import time
@@ -92,6 +93,51 @@ def test_growth():
     check("growth_from_the_top", rows == sorted(rows) and rows[-1] > 0, rows)
 
 
+def values(page, frame):
+    """The frame's colours as a list of rows, each pixel as often as it covers pixels of the image."""
+    numbers = struct.unpack(f"<{frame.rows * frame.columns * frame.channels}{'e' if frame.format == 0 else 'f'}", bytes(page.pixels))
+    n, s = frame.channels, frame.scale
+    rows = [[numbers[n * (y * frame.columns + x):n * (y * frame.columns + x) + 3] for x in range(frame.columns)] for y in range(frame.rows)]
+    return [[rows[y // s][x // s] for x in range(frame.width)] for y in range(frame.height)]
+
+
+def difference(a, b):
+    """Mean absolute difference, after a curve that is near the display's."""
+    curve = lambda v: max(0.0, min(1.0, v)) ** 0.45
+    return sum(abs(curve(p) - curve(q)) for r, s in zip(a, b) for u, v in zip(r, s) for p, q in zip(u, v)) / (3 * len(a) * len(a[0]))
+
+
+def test_moved():
+    """After a change the last clean image comes first, moved to the new camera: nearer to the finished image than one of few samples.
+    Where the cameras see different things, and where pages see ground truth, it does not."""
+    view = View(VELO, SCENE, "--resolution", "320x240", "--threads", "1", "--spp", "32")
+    try:
+        page = Page(view)
+        camera = page.wait_text("state")["camera"]
+
+        def after(change, **message):
+            """The first image of a change, its colours, and those of the finished one."""
+            page.send(change=change, **message)
+            first = page.wait_frame(lambda f: f.change == change)
+            colours = values(page, first)
+            last = page.wait_frame(lambda f: f.change == change and f.spp == 32 and f.denoised == 1)
+            return first, colours, values(page, last)
+        page.wait_frame(lambda f: f.spp == 32 and f.denoised == 1)
+        time.sleep(0.5)  # what is needed to move it is rendered
+        eye = camera["eye"]
+        first, moved, finished = after(900, type="camera", set={"eye": [eye[0] + 0.02 * abs(eye[2] - camera["lookat"][2]), *eye[1:]]})
+        error = difference(moved, finished)
+        check("moved_comes_first", first.denoised == 2 and first.spp == 0, first.denoised, first.spp, first.scale)
+        check("moved_is_near", error < 0.02, error)
+        first, _, _ = after(901, type="camera", set={"eye": camera["lookat"], "lookat": eye})
+        check("other_view_is_not_moved", first.denoised != 2, first.denoised)
+        page.send(type="settings", channel="Z", change=902)
+        check("ground_truth_is_not_moved", page.wait_frame(lambda f: f.channel > 0).denoised == 0)
+        page.close()
+    finally:
+        check("moved_ends", view.end()[0] == 0)
+
+
 def main():
     reason = cannot_view(VELO, browser=False)
     if reason:
@@ -99,6 +145,7 @@ def main():
         return
     test_flood()
     test_growth()
+    test_moved()
 
 
 main()

@@ -45,6 +45,16 @@ static uint32_t first_scale(const Engine *e, double pixel_seconds) {
 
 /* ---- colours ----------------------------------------------------------------------------- */
 
+/* Sends the last clean image, moved to this camera, in place of a coarse one, which fills its
+ * gaps. */
+static void publish_moved(Engine *e, const vlFilm *film, uint32_t scale) {
+  vlImage *image = NULL;
+  if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK)
+    engine_keep_coarser(e, &image, scale, false);
+  if (!engine_warp_publish(e))
+    engine_publish_film(e, film, scale, UINT32_MAX);
+}
+
 /* False: interrupted. */
 static bool render_colours(Engine *e, uint32_t scale) {
   vlCamera camera;
@@ -66,14 +76,19 @@ static bool render_colours(Engine *e, uint32_t scale) {
     result = vl_film_create(e->def.context, &def, &film);
   PartOfFilm part = {.engine = e, .film = film, .camera = &camera, .scale = scale};
   memcpy(part.crop, def.crop, sizeof part.crop);
-  part.denoise = !e->first_runs && engine_can_denoise(e, engine_pixels(e) / (scale * scale));
-  engine_render_in_parts(&part, &render, e->coarse_seconds);
+  const bool warps = engine_warp_suits(e, scale);
+  part.denoise =
+      !warps && !e->first_runs && engine_can_denoise(e, engine_pixels(e) / (scale * scale));
+  if (!warps)
+    engine_render_in_parts(&part, &render, e->coarse_seconds);
   double start = engine_clock();
   if (result == VL_OK)
     result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
     engine_note_speed(&e->coarse_seconds, stats.camera_rays, engine_clock() - start);
-    if (!part.denoise || !engine_denoise(&part, def.crop[3] - def.crop[1]))
+    if (warps)
+      publish_moved(e, film, scale);
+    else if (!part.denoise || !engine_denoise(&part, def.crop[3] - def.crop[1]))
       engine_publish_film(e, film, scale, UINT32_MAX);
   }
   engine_free_part(&part);

@@ -26,10 +26,12 @@ void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   frame->channel = e->now.channel;
   frame->spp = kind->spp;
   frame->denoised = kind->denoised;
+  frame->moved = kind->moved;
   server_show(e->server, frame);
   frame_drop(frame);
   e->published = engine_clock();
   e->publish_seconds = e->published - start;
+  engine_warp_keep(e, image, kind);
 }
 
 /* ---- the rows that are not there yet ----------------------------------------------------- */
@@ -121,7 +123,7 @@ static bool publish_rows(void *user, const vlProgress *progress) {
 void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds) {
   const uint32_t height = part->crop[3] - part->crop[1];
   const double whole = pixel_seconds * (part->crop[2] - part->crop[0]) * height;
-  if (!part->engine->coarser || whole < 2 * PART_SECONDS)
+  if (!part->engine->coarser || whole < 2 * PART_SECONDS || engine_warp_stays(part->engine))
     return;
   render->pass_rows = (uint32_t)ceil(height * PART_SECONDS / whole);
   render->progress = publish_rows;

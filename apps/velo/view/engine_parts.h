@@ -51,6 +51,16 @@ typedef struct DenoisedPreview {
   double before;        /* processor time of the program when this image began */
 } DenoisedPreview;
 
+/* The last clean image, which moves with the camera (engine_warp.c). */
+typedef struct WarpSource {
+  vlImage *image;      /* R G B A; null: none */
+  vlImage *distances;  /* of what its pixels' centres see; null: not rendered yet */
+  vlCamera camera;     /* of both images */
+  uint32_t scale;      /* a pixel of theirs covers scale x scale pixels of the whole image */
+  uint32_t generation; /* Wanted.generation of the image */
+  uint32_t shown;      /* and of the image that it was moved to last */
+} WarpSource;
+
 /* A message that needs the world. */
 typedef struct Task {
   uint32_t client;
@@ -115,6 +125,7 @@ struct Engine {
   uint32_t coarser_scale;
   bool coarser_denoised;
   DenoisedPreview preview;
+  WarpSource warp;
   uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
@@ -176,6 +187,7 @@ typedef struct FrameKind {
   uint32_t scale; /* pixels of the image per pixel of the frame */
   uint32_t spp;
   bool denoised;
+  bool moved; /* an earlier image that was moved with the camera */
 } FrameKind;
 void engine_publish(Engine *engine, const vlImage *image, const FrameKind *kind);
 /* Sends the film, or a coarse one, whose rows from the top have samples. The others are those
@@ -208,6 +220,19 @@ bool engine_denoise_due(const Engine *engine, uint32_t spp);
 bool engine_denoise(PartOfFilm *part, uint32_t rows);
 /* The image begins anew. */
 void engine_forget_denoised(Engine *engine);
+/* Keeps an image that is sent, if it is a clean one of the whole film. */
+void engine_warp_keep(Engine *engine, const vlImage *image, const FrameKind *kind);
+/* Renders what is needed to move the image that is kept. */
+void engine_warp_prepare(Engine *engine);
+/* Whether a coarse image of this scale is worse than the moved one may be. */
+bool engine_warp_suits(const Engine *engine, uint32_t scale);
+/* Sends the moved image, filled from the coarser one. False: the cameras see different things,
+ * or there is no memory. */
+bool engine_warp_publish(Engine *engine);
+/* Whether the moved image is shown and better than the film's few samples. */
+bool engine_warp_stays(const Engine *engine);
+/* The scene is another one. */
+void engine_warp_forget(Engine *engine);
 /* Where that takes long, has its parts sent while it grows. part: valid until the render ends.
  */
 void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds);

@@ -156,6 +156,7 @@ bool engine_swap_model(Engine *e) {
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
+  engine_warp_forget(e);
   if (!timed)
     e->pixel_seconds = e->coarse_seconds = e->channel_seconds = 0;
   model_free(&old);

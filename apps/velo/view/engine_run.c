@@ -92,6 +92,8 @@ static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most)
 }
 
 static void publish_if_due(Engine *e) {
+  if (engine_warp_stays(e) && e->now.channel == 0)
+    return;
   double now = engine_clock(), share = 0.25 / (1 + 2 * e->rendered);
   bool last = vl_film_spp(e->film) >= e->now.spp;
   if (share < publish_share)
@@ -326,6 +328,8 @@ static bool work(Engine *e) {
   bool samples = e->now.channel == 0 || e->now.channel == CHANNEL_ERROR,
        done = e->coarse ? engine_coarse_next(e) : samples && !e->failed && render_film(e);
   bool changed = e->first_runs && end_first(e);
+  if (done && !changed && !e->coarse)
+    engine_warp_prepare(e);
   return done && !changed;
 }
 
@@ -430,6 +434,7 @@ void engine_destroy(Engine *engine) {
   vl_film_destroy(engine->film);
   vl_film_destroy(engine->successor);
   vl_image_destroy(engine->coarser);
+  engine_warp_forget(engine);
   vl_image_destroy(engine->preview.features);
   model_free(&engine->model);
   if (engine->next)

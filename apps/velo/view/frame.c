@@ -205,7 +205,7 @@ uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t bef
                                                now->channel,
                                                now->spp,
                                                count,
-                                               now->denoised};
+                                               now->moved ? 2u : now->denoised};
     memcpy(message + before_room, header, sizeof header);
     uint8_t *to = message + before_room + FRAME_HEADER;
     for (uint32_t i = 0; i < count; i++)

@@ -27,6 +27,7 @@ typedef struct ViewFrame {
   uint32_t channels, channel; /* numbers per pixel; index of the ground truth, 0: the image */
   uint32_t spp;               /* samples per pixel */
   bool denoised;              /* not the mean of the samples, but its denoised copy */
+  bool moved;                 /* an earlier image, moved with the camera */
   uint8_t *pixels;            /* rows from the top, no padding */
 } ViewFrame;
 

@@ -303,7 +303,7 @@ illum 7
 Ke 1 0.5 0.2
 END
 printf 'mtllib t.mtl\nv 0 0 0 1 0.5 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nusemtl a\nf 1 2 3 4\nusemtl b\nf 4 3 2 1\nusemtl c\ns 1\nf 1 3 4\n' >t.obj
-check obj "$VELO" render t.obj --no-ground --resolution 32x32 --spp 4 -o f.exr --quiet
+check obj "$VELO" render t.obj --up y --no-ground --resolution 32x32 --spp 4 -o f.exr --quiet
 check obj_glb "$VELO" scene convert t.obj t.glb
 check obj_g "$VELO" render t.glb --no-ground --resolution 32x32 --spp 4 -o g.exr --quiet
 check obj_near "$VELO" image diff f.exr g.exr --threshold maxabs=1e-3

@@ -33,6 +33,10 @@ vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
     for (uint32_t step = 0; step < m->steps; step++)
       p = vl_distortion_step(m, p.x, p.y, flat.x, flat.y);
     valid = flat.valid * vl_distortion_check(m, p.x, p.y, flat.x, flat.y);
+    if (flat.valid > 0.0 && !(valid > 0.0)) {
+      p = vl_distortion_invert(m, flat.x, flat.y);
+      valid = p.valid;
+    }
   }
   vlDirection d = vl_plane_unproject(c->projection, c, face, p.x, p.y);
   return vl_direction_finish(c->inclined, d, valid);

@@ -12,11 +12,12 @@
 #include "projection/perspective.h"
 #include "velo/projection.h"
 
-/* Removes the distortion of plane points in place, with a fixed number of Newton steps. */
+/* Removes the distortion of plane points in place, with a fixed number of Newton steps; the few
+ * points that these do not reach follow one by one. */
 static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y,
                       double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
-  double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK];
+  double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK], flat_valid[VL_CAMERA_CHUNK];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlPlanePoint flat = vl_tilt(m->untilt, x[i], y[i]);
@@ -25,7 +26,7 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
     v[i] = flat.y;
     x[i] = start.x;
     y[i] = start.y;
-    valid[i] = flat.valid;
+    flat_valid[i] = flat.valid;
   }
   for (uint32_t step = 0; step < m->steps; step++) {
     /* must vectorise */
@@ -36,8 +37,16 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
     }
   }
   /* must vectorise */
-  VL_SIMD for (uint32_t i = 0; i < count; i++) valid[i] *=
-      vl_distortion_check(m, x[i], y[i], u[i], v[i]);
+  VL_SIMD for (uint32_t i = 0; i < count; i++) valid[i] =
+      flat_valid[i] * vl_distortion_check(m, x[i], y[i], u[i], v[i]);
+  for (uint32_t i = 0; i < count; i++) {
+    if (valid[i] > 0.0 || !(flat_valid[i] > 0.0))
+      continue;
+    vlPlanePoint p = vl_distortion_invert(m, u[i], v[i]);
+    x[i] = p.x;
+    y[i] = p.y;
+    valid[i] = p.valid;
+  }
 }
 
 static inline __attribute__((always_inline)) void plane_loop(vlProjection kind,

@@ -90,4 +90,8 @@ static inline double vl_distortion_check(const vlDistortionMap *m, double x, dou
   return inside && error <= 1e-12 * size ? 1.0 : 0.0;
 }
 
+/* Maps the distorted point (u, v), without its tilt, to its ideal point wherever there is one
+ * in the disc; slower than the steps above. valid is 0 if there is none. */
+vlPlanePoint vl_distortion_invert(const vlDistortionMap *m, double u, double v);
+
 #endif

@@ -305,6 +305,61 @@ static void back_and_there(void **state) {
   }
 }
 
+/* What project calls valid has a ray, however far outside the image it is, one by one and in
+ * batches, and the ray comes back to the same pixel. Strong lenses as calibrations have them,
+ * with tangential terms, beside the models. */
+static void valid_points_have_rays(void **state) {
+  (void)state;
+  static const double lenses[4][8] = {{0.1}, /* OpenCV's k1 k2 p1 p2 k3 k4 k5 k6 */
+                                      {0.262383, -0.953104, -0.005358, 0.002628, 1.163314},
+                                      {0.3, -0.05, 0.001, 0.001, 0.01, 0.1, 0.01, 0.001},
+                                      {-0.28, 0.07, 1e-3, -2e-3, 0.01, 0.02, -0.01, 0.003}};
+  enum { POINTS = 4000 };
+  static double points[POINTS][3], pixels[POINTS][2], depth[POINTS], directions[POINTS][3];
+  static uint8_t valid[POINTS], answered[POINTS];
+  for (int k = 0; k < MODELS + 4; k++) {
+    vlCameraDef def = model_def(k < MODELS ? k : 0);
+    if (k >= MODELS) {
+      def.fx = 500;
+      def.distortion = VL_DISTORTION_OPENCV;
+      def.distortion_count = 8;
+      memcpy(def.distortion_coefficients, lenses[k - MODELS], sizeof lenses[0]);
+    }
+    vlCamera camera;
+    assert_int_equal(vl_camera_make(&def, &camera, NULL, NULL), VL_OK);
+    uint64_t random = 21;
+    int outside = 0;
+    for (int i = 0; i < POINTS; i++) {
+      double p[3] = {next_between(&random, -3, 3), next_between(&random, -3, 3), 1};
+      if (i == 0)
+        set3(p, 1.9, 0, 1);
+      const double *m = camera.world_from_camera;
+      for (int a = 0; a < 3; a++, m += 4)
+        points[i][a] = m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3];
+    }
+    vl_camera_project_batch(&camera, POINTS, points[0], pixels[0], depth, valid);
+    vl_camera_unproject_batch(&camera, POINTS, pixels[0], NULL, directions[0], answered);
+    for (int i = 0; i < POINTS; i++) {
+      double x = pixels[i][0], y = pixels[i][1], o[3], d[3], p[3], again[2], z;
+      if (!valid[i])
+        continue;
+      bool inside = x >= 0 && y >= 0 && x <= camera.width && y <= camera.height;
+      outside += !inside;
+      if (!answered[i] || !vl_camera_unproject(&camera, x, y, o, d))
+        fail_msg("model %d: %.17g %.17g is valid and has no ray", k, x, y);
+      assert_memory_equal(d, directions[i], sizeof d);
+      for (int a = 0; a < 3; a++)
+        p[a] = o[a] + 2 * d[a];
+      assert_true(vl_camera_project(&camera, p, again, &z));
+      double error = fmax(fabs(again[0] - x), fabs(again[1] - y));
+      if (error > 1e-9 * (1000 + fabs(x) + fabs(y)))
+        fail_msg("model %d: %g %g comes back %g pixels off", k, x, y, error);
+    }
+    if (k >= MODELS)
+      assert_true(outside > POINTS / 20);
+  }
+}
+
 static void batches_are_single_calls(void **state) {
   (void)state;
   enum { N = 1000 };
@@ -742,6 +797,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(there_and_back),
       cmocka_unit_test(back_and_there),
+      cmocka_unit_test(valid_points_have_rays),
       cmocka_unit_test(batches_are_single_calls),
       cmocka_unit_test(rays_of_all_sets),
       cmocka_unit_test(lens_focuses),

@@ -187,6 +187,31 @@ static const char *const *stereo_of(const json_t *tree) {
   return NULL;
 }
 
+static bool among(const char *name, const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (vl_text_is(name, names[i]))
+      return true;
+  return false;
+}
+#define AMONG(name, names) among(name, names, VL_LENGTH(names))
+
+bool vl_opencv_is_lens(const char *name) {
+  bool lens = AMONG(name, lens_names);
+  for (int i = 0; i < STEREO_NAMES; i++)
+    lens = lens || vl_text_is(name, stereo_names[i][1]) || vl_text_is(name, stereo_names[i][3]);
+  return lens;
+}
+
+bool vl_opencv_is_field(const char *name) {
+  static const char *const others[] = {"R", "T", "rvec", "tvec", "xi"};
+  bool matrix = AMONG(name, matrix_names);
+  for (int i = 0; i < STEREO_NAMES; i++)
+    matrix =
+        matrix || vl_text_is(name, stereo_names[i][0]) || vl_text_is(name, stereo_names[i][2]);
+  return matrix || vl_opencv_is_lens(name) || AMONG(name, width_names) ||
+         AMONG(name, height_names) || AMONG(name, size_names) || AMONG(name, others);
+}
+
 static vlResult read_size(const vlCameraFile *file, const json_t *tree,
                           vlCameraRecord *record) {
   const char *pair = NAME_IN(tree, size_names);
@@ -372,5 +397,7 @@ static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *rec
 
 const vlCameraFormat vl_format_opencv = {.name = "opencv",
                                          .is_tree = is_opencv,
+                                         .is_text = vl_npz_is,
+                                         .read_text = vl_npz_read,
                                          .read = vl_camera_read_opencv,
                                          .write = write_opencv};

@@ -23,4 +23,11 @@ vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *def, dou
 void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns,
                           const double *data, bool tagged);
 
+/* Whether the name is that of a field of these files; whether it is that of a lens. */
+bool vl_opencv_is_field(const char *name);
+bool vl_opencv_is_lens(const char *name);
+/* NumPy's archives of a calibration's matrix and coefficients (npz.c). */
+bool vl_npz_is(const char *text, size_t size);
+vlCameraReadText vl_npz_read;
+
 #endif

@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """As test_tools.py, for the dialects of scanners, datasets, devices and content tools: the numbers of each file are
 written by hand from the tool's published equations."""
+import io
 import json
 import math
 import os
 import struct
 import sys
 import tempfile
+import zipfile
 
 from test_tools import (AT_ORIGIN, C, CENTRED, CX, CY, FISH, FISHEYE, FIVE, FULL, FX, FY, GL, IDENTITY, K9, PLAIN,
                         QUATERNION, R, RAD, RAD5, RADTAN, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
@@ -135,6 +137,26 @@ def npy(values, count):
     return b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode() + struct.pack("<%dd" % len(values), *values)
 
 
+def npz(compression=zipfile.ZIP_STORED, **arrays):
+    """As np.savez: an array for each name, of (dtype, shape, numbers)."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", compression) as archive:
+        for name, (kind, shape, values) in arrays.items():
+            header = "{'descr': '<%s', 'fortran_order': %s, 'shape': %r, }" % (kind.strip("F"), "F" in kind, shape)
+            header += " " * (117 - len(header)) + "\n"
+            letter = {"f8": "d", "f4": "f", "i8": "q"}[kind.strip("F")]
+            with archive.open(name + ".npy", "w", force_zip64=True) as member:  # as NumPy does
+                member.write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode() +
+                             struct.pack("<%d%s" % (len(values), letter), *values))
+    return out.getvalue()
+
+
+MTX = ("f8", (3, 3), K9)
+DIST = ("f8", (1, 5), FIVE)
+BY_COLUMNS = ("f8F", (3, 3), by_columns(K9, 3))
+BOARDS = ("f8", (100, 3, 1), [0.5] * 300)
+
+
 def llff(r, c):
     """down, right, back, centre, (height, width, focal length); near and far depth"""
     hwf = [480.0, 640.0, FX]
@@ -235,6 +257,10 @@ CASES = [
     Case("fisheye.txt", "KannalaBrandt 500 510 315.25 245.5 %s\n640 480\nfull\n640 480\n" % join(FISHEYE, " "), "dso",
          pose=AT_ORIGIN, **FISH, **own("dso", "realsense")),
     Case("poses_bounds.npy", npy(llff(IDENTITY, [0.0] * 3) + llff(RT, C), 2), "llff", frame="1", k=CENTRED, **PLAIN, **own("x")),
+    Case("calibration.npz", npz(ret=("f8", (), [0.3]), mtx=MTX, dist=DIST, rvecs=BOARDS, tvecs=BOARDS), "opencv", options=SIZE,
+         pose=AT_ORIGIN, **RAD5, **own("opencv")),
+    Case("sized.npz", npz(K=BY_COLUMNS, D=("f8", (5, 1), FIVE), image_size=("i8", (2,), [640, 480])), "opencv", pose=AT_ORIGIN,
+         **RAD5, **own("x")),
     Case("metadata", json.dumps({"w": 640, "h": 480, "fps": 60, "K": by_columns(K_CORNER, 3), "poses": [
         [0, 0, 0, 1, 0, 0, 0], [0.8, 0.4, -0.4, 0.2, *C]]}, indent=1), "record3d", frame="1", **PLAIN, **own("x")),
     Case("keyframe.json", json.dumps(POLYCAM, indent=1), "polycam", **PLAIN, **own("polycam")),
@@ -273,6 +299,13 @@ BROKEN = [
      "</library_cameras></COLLADA>\n", "bad.dae:2:1: collada: <translate> must hold 3 finite numbers", "JSON"),
     ("bad.csv", "#name,x,y,alt,heading,pitch,roll,f\na.jpg,1,2,3,0,0,no,50\n", 'bad.csv:2:17: realitycapture: "roll" is "no"',
      "YAML"),
+    ("four.npz", npz(mtx=MTX, dist=("f8", (4, 1), [0.1, 0, 0, 0])), 'npz: "dist" holds 4 numbers, which may be those of a fisheye',
+     "JSON"),
+    ("arrays.npz", npz(arr_0=MTX, arr_1=DIST), "npz: the arrays have no names", "JSON"),
+    ("packed.npz", npz(zipfile.ZIP_DEFLATED, mtx=MTX, dist=DIST), 'npz: "mtx" is compressed', "JSON"),
+    ("other.npz", npz(mtx=MTX, dist=DIST, warp=DIST), 'npz: "warp" is no field of OpenCV\'s cameras', "JSON"),
+    ("cut.npz", npz(mtx=MTX, dist=DIST)[:-40], "npz: the archive is cut off", "JSON"),
+    ("nan.npz", npz(mtx=MTX, dist=("f8", (1, 5), [math.nan] * 5)), 'npz: "dist" must be an array of finite', "JSON"),
 ]
 
 

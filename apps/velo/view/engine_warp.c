@@ -27,7 +27,8 @@ void engine_warp_forget(Engine *e) {
 /* The whole image, of a camera at rest: it is projected as at one time. */
 static bool is_whole(const Wanted *w) {
   const vlCamera *c = &w->camera.made;
-  return !c->moves && !w->crop[0] && !w->crop[1] && w->crop[2] == c->width && w->crop[3] == c->height;
+  return !c->moves && !w->crop[0] && !w->crop[1] && w->crop[2] == c->width &&
+         w->crop[3] == c->height;
 }
 
 /* Means of scale x scale pixels, R G B A. Null: no memory. */
@@ -60,8 +61,9 @@ static vlImage *shrink(vlContext *context, const vlImage *from, uint32_t scale) 
 
 void engine_warp_keep(Engine *e, const vlImage *image, const FrameKind *kind) {
   const bool clean = kind->denoised || kind->spp >= CLEAN_SPP;
-  if (e->def.lecture || e->def.stepwise || e->model.info.moves || e->now.channel || kind->scale != 1 || !kind->spp ||
-      !clean || vl_image_channels(image) < 3 || !is_whole(&e->now))
+  if (e->def.lecture || e->def.stepwise || e->model.info.moves || e->now.channel ||
+      kind->scale != 1 || !kind->spp || !clean || vl_image_channels(image) < 3 ||
+      !is_whole(&e->now))
     return;
   uint32_t scale = 1;
   while (engine_pixels(e) > (double)MOST_PIXELS * scale * scale)

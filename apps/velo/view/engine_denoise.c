@@ -8,6 +8,7 @@
 
 #include "velo/channels.h"
 #include "velo/denoise.h"
+#include "velo/tracer.h"
 #include "view/engine_parts.h"
 
 /* Processor time for the preview: this share of the program's, which may run ahead by so many

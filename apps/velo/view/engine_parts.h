@@ -4,7 +4,6 @@
 
 #include <pthread.h>
 
-#include "velo/tracer.h"
 #include "view/camera_edit.h"
 #include "view/engine.h"
 #include "view/state.h"
@@ -16,7 +15,7 @@ enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16 };
 
 /* What makes the samples of a film, as in vlRenderDef. */
 typedef struct ViewTracer {
-  vlTracer tracer;
+  uint32_t tracer; /* a vlTracer */
   uint32_t light_paths;
 } ViewTracer;
 

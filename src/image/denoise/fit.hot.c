@@ -334,8 +334,10 @@ static void fit(const vlDenoisePlanes *p, const Used *used, const vlDenoiseScrat
   if (g > 0) {
     memset(q.value[g], 0, (size_t)(G - g) * sizeof q.value[g]);
     memset(q.weighted[g], 0, (size_t)(G - g) * sizeof q.weighted[g]);
-    for (int k = g; k < G; k++)
-      q.x[k] = q.y[k] = 0.0f, q.at[k] = at;
+    for (int k = g; k < G; k++) {
+      q.x[k] = q.y[k] = 0.0f;
+      q.at[k] = at;
+    }
     add(p, &e, &q, used->count);
   }
   solve(p, used, &e, at);

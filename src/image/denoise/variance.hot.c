@@ -42,7 +42,7 @@ void vl_denoise_raise(const vlDenoisePlanes *p, uint32_t y) {
       float *restrict to = p->result[c] + at;
       float around[N];
       surrounding(own, p->stride, around);
-      /* must vectorise */
+      /* must vectorise (gcc) */
       VL_SIMD for (int i = 0; i < N; i++) {
         float least = 0.8f * around[i], most = 0.4f * value[i] * value[i];
         least = least < most ? least : most;

@@ -69,7 +69,7 @@ def test_preview(folder):
     eye = state["camera"]["eye"]
     page.send(type="camera", change=50, set={"eye": [eye[0] + 0.01, eye[1], eye[2]]})
     frames = follow(page, 50)
-    check("first_is_quick", not frames[0].denoised, [f.denoised for f in frames])
+    check("first_is_quick", frames[0].denoised != 1, [f.denoised for f in frames])
     check_steps(frames, "moved")
     clean = halves(page)
     saved = ask(page, "saved", type="save", what="image", name="saved.pfm")

@@ -35,8 +35,9 @@ def move(page, camera):
     return answer["type"] == "state"
 
 
-def settled(page):
-    page.wait(lambda m: isinstance(m, dict) and m["type"] == "status" and m["spp"] >= m["target"], 300)
+def settled(page, change=0):
+    """The image after the page's change of this number has all its samples."""
+    page.wait(lambda m: isinstance(m, dict) and m["type"] == "status" and m["change"] == change and m["spp"] >= m["target"], 300)
 
 
 def bytes_of(folder, name):
@@ -44,9 +45,9 @@ def bytes_of(folder, name):
         return file.read()
 
 
-def look(velo, page, folder, name):
+def look(velo, page, folder, name, change=0):
     """Saves the page's image as .exr and .png, runs the command for both. What differs, or None; and the command."""
-    settled(page)
+    settled(page, change)
     shown = {}
     for suffix in ("exr", "png"):
         saved = ask(page, "saved", type="save", what="image", name=f"{name}.{suffix}", exposure=0.37, view="agx")
@@ -83,7 +84,7 @@ def copied(velo, scene, *options):
             found, command = look(velo, page, folder, "first")
             commands.append(command)
             if not found and move(page, state["camera"]):
-                found, command = look(velo, page, folder, "moved")
+                found, command = look(velo, page, folder, "moved", 77)
                 commands.append(command)
             page.close()
         finally:

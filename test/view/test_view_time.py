@@ -24,9 +24,18 @@ def state_of(page, change):
 
 
 def finished(page, change):
-    """The image with the number of this change has all its samples."""
-    page.wait(lambda m: isinstance(m, Frame) and m.change == change, 60)
-    page.wait(lambda m: isinstance(m, dict) and m["type"] == "status" and m["spp"] >= m["target"], 60)
+    """The image with the number of this change has all its samples. An image waits until the page has seen the one before; a
+    status does not, so that either may come first."""
+    missing = {"image", "samples"}
+
+    def complete(m):
+        if isinstance(m, Frame) and m.change == change:
+            missing.discard("image")
+        elif isinstance(m, dict) and m["type"] == "status" and m["change"] == change and m["spp"] >= m["target"]:
+            missing.discard("samples")
+        return not missing
+
+    page.wait(complete, 60)
 
 
 def test_engine(folder):

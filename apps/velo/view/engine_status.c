@@ -67,6 +67,7 @@ void status_tell(Engine *e, bool estimate) {
   double stop = e->stop_seconds;
   e->stop_seconds = 0;
   pthread_mutex_unlock(&e->lock);
+  json_integer(&json.json, "change", e->now.change);
   json_integer(&json.json, "spp", spp);
   json_integer(&json.json, "target", e->now.spp);
   json_number(&json.json, "paths_per_second",

@@ -106,6 +106,20 @@ VL_API vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlErro
 VL_API vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16],
                                    vlError *error);
 
+/** What a scene holds at a moment. */
+typedef struct vlSceneCheckpoint vlSceneCheckpoint;
+/** Takes a checkpoint of a scene, so that a failed vl_scene_add_*, vl_scene_load,
+ * vl_scene_load_group or vl_scene_complete can be taken back. ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_checkpoint(const vlScene *scene, vlSceneCheckpoint **checkpoint,
+                                    vlError *error);
+/** Removes what was added since the checkpoint, with its memory, sets defs and the scene's
+ * error as they were then, and destroys the checkpoint. Between the two, things may be added
+ * (or fail to be), not changed, and no world may be built with vl_world_build_last. Ids that
+ * were given since are given again. Allocates nothing. */
+VL_API void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint);
+/** Frees a checkpoint that is not needed; the scene keeps what it has. Null is allowed. */
+VL_API void vl_scene_checkpoint_destroy(vlSceneCheckpoint *checkpoint);
+
 #ifdef __cplusplus
 }
 #endif

@@ -30,7 +30,8 @@ typedef struct vlLoadDef {
       *animation; /**< glTF: name of the animation, or its number from 0; null: the first */
   const char *variant; /**< glTF: name of a material variant; null: the file's default */
   const char *camera;  /**< glTF: name of the camera, or its number from 0; null: the first */
-  const vlCancel *cancel; /**< stops the load; the scene must then be destroyed; default null */
+  const vlCancel *cancel; /**< stops the load; the scene must then be destroyed or rolled
+                              back (velo/edit.h); default null */
   vlStepFn *progress;     /**< default null */
   void *progress_user;    /**< passed to progress */
 } vlLoadDef;

@@ -2,7 +2,8 @@
  * velo/scene.h: the editable description of a world. A scene file or a program adds textures,
  * materials, media, lights and shapes to it; everything is copied. A scene keeps its first
  * error: from then on every vl_scene_add_* returns an id of index 0, and vl_scene_result
- * returns the error. A scene is not thread-safe. */
+ * returns the error; vl_scene_roll_back (velo/edit.h) takes what failed back. A scene is not
+ * thread-safe. */
 #ifndef VELO_SCENE_H
 #define VELO_SCENE_H
 

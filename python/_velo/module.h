@@ -9,6 +9,7 @@
 #endif
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+#include <velo/edit.h>
 #include <velo/setting.h>
 #include <velo/velo.h>
 
@@ -272,6 +273,10 @@ bool own_check(const Own *own);
 PyObject *image_object(Context *context,
                        vlImage *image); /* takes the image, also when it fails */
 bool scene_open(const Scene *self);     /* false: an exception is set */
+/* Begins a call that adds to the scene; null with an exception. scene_settle ends it: if it is
+ * not done, the scene is as it was. */
+vlSceneCheckpoint *scene_attempt(const Scene *self);
+void scene_settle(Scene *self, vlSceneCheckpoint *checkpoint, bool done);
 /* A file that is read. */
 typedef struct Loading {
   vlScene *scene;

@@ -15,6 +15,24 @@ bool scene_open(const Scene *self) {
   return context_check(self->context);
 }
 
+vlSceneCheckpoint *scene_attempt(const Scene *self) {
+  vlSceneCheckpoint *checkpoint = NULL;
+  vlError error = {0};
+  if (!scene_open(self)) /* conversions of arguments may have run code that closed it */
+    return NULL;
+  vlResult done = vl_scene_checkpoint(self->scene, &checkpoint, &error);
+  if (done != VL_OK)
+    raise_result(done, &error);
+  return checkpoint;
+}
+
+void scene_settle(Scene *self, vlSceneCheckpoint *checkpoint, bool done) {
+  if (done)
+    vl_scene_checkpoint_destroy(checkpoint);
+  else
+    vl_scene_roll_back(self->scene, checkpoint);
+}
+
 /* scene_new(context) */
 static PyObject *scene_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   static char *names[] = {"context", NULL};
@@ -73,8 +91,13 @@ static vlResult run_load(void *user) {
 
 bool load_file(Scene *self, Loading *l, PyObject *callback) {
   LongCall call;
-  if (!long_call_begin(&call, self->context, callback))
+  vlSceneCheckpoint *checkpoint = scene_attempt(self);
+  if (!checkpoint)
     return false;
+  if (!long_call_begin(&call, self->context, callback)) {
+    scene_settle(self, checkpoint, true);
+    return false;
+  }
   l->scene = self->scene;
   l->def.cancel = call.cancel;
   l->def.progress = call.callback ? long_call_step : NULL;
@@ -82,6 +105,7 @@ bool load_file(Scene *self, Loading *l, PyObject *callback) {
   vlResult done;
   bool fine = long_call_run(&call, &self->busy, run_load, l, &done);
   long_call_end(&call);
+  scene_settle(self, checkpoint, fine && done == VL_OK);
   if (fine && done != VL_OK)
     fine = raise_result(done, &l->error) != NULL;
   return fine;
@@ -109,16 +133,19 @@ static PyObject *scene_complete(Scene *self, PyObject *keywords) {
   PyObject *keep = PyList_New(0);
   vlCompleteDef def = vl_default_complete_def();
   const Target target = {(char *)&def, keep, self, false};
+  vlSceneCheckpoint *checkpoint = NULL;
   Call call;
   if (!keep || !PyDict_Check(keywords) || !scene_open(self) ||
       !set_parameters(&target, VL_SETTING_COMPLETE, "keyword of load", keywords) ||
-      !call_begin(&call, self->context, &self->busy)) {
+      !(checkpoint = scene_attempt(self)) || !call_begin(&call, self->context, &self->busy)) {
+    vl_scene_checkpoint_destroy(checkpoint);
     Py_XDECREF(keep);
     return NULL;
   }
   vlError error = {0};
   vlResult done = vl_scene_complete(self->scene, &def, &error);
   call_end(&call);
+  scene_settle(self, checkpoint, done == VL_OK);
   Py_DECREF(keep);
   if (done != VL_OK)
     return raise_result(done, &error);

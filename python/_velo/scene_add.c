@@ -421,20 +421,25 @@ PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
   return (PyObject *)h;
 }
 
-static PyObject *scene_error(Scene *self) {
+/* Ends a call that has added an object: its handle, or the scene's error after that was taken
+ * back. */
+static PyObject *settle(Scene *self, vlSceneCheckpoint *checkpoint, Family family,
+                        uint32_t index) {
   vlError error = {0};
   vlResult result = vl_scene_result(self->scene, &error);
-  return raise_result(result == VL_OK ? VL_ERROR_ARGUMENT : result, &error);
+  scene_settle(self, checkpoint, index != 0);
+  return index ? new_handle(self, family, index)
+               : raise_result(result == VL_OK ? VL_ERROR_ARGUMENT : result, &error);
 }
 
 static PyObject *add_group(Scene *self, PyObject *name) {
   PyObject *keep = PyList_New(0);
   const char *text = !keep || name == Py_None ? NULL : keep_text(keep, name, "name");
   PyObject *result = NULL;
-  if (keep && (text || name == Py_None)) {
-    vlGroupId id = vl_scene_add_group(self->scene, text);
-    result = id.index ? new_handle(self, GROUPS, id.index) : scene_error(self);
-  }
+  vlSceneCheckpoint *checkpoint =
+      keep && (text || name == Py_None) ? scene_attempt(self) : NULL;
+  if (checkpoint)
+    result = settle(self, checkpoint, GROUPS, vl_scene_add_group(self->scene, text).index);
   Py_XDECREF(keep);
   return result;
 }
@@ -466,11 +471,14 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
   PyObject *result = NULL;
   if (a.keep &&
       set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
+    vlSceneCheckpoint *checkpoint = scene_attempt(self);
     Call call;
-    if (call_begin(&call, self->context, &self->busy)) {
+    if (checkpoint && call_begin(&call, self->context, &self->busy)) {
       uint32_t index = add(self->scene, (Family)family, &def);
       call_end(&call);
-      result = index ? new_handle(self, (Family)family, index) : scene_error(self);
+      result = settle(self, checkpoint, (Family)family, index);
+    } else {
+      vl_scene_checkpoint_destroy(checkpoint);
     }
   }
   for (int i = 0; i < a.array_count; i++)
@@ -496,17 +504,16 @@ PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
     fine =
         raise_value("transform", matrices,
                     "a matrix of 16 numbers, with times (at most 65536) one for each") != NULL;
+  vlSceneCheckpoint *checkpoint = fine ? scene_attempt(self) : NULL;
   vlInstanceId instance = {0};
-  if (fine && times == Py_None)
+  if (checkpoint && times == Py_None)
     instance = vl_scene_add_instance(self->scene, id, poses.data, (vlSource){0});
-  else if (fine)
+  else if (checkpoint)
     instance = vl_scene_add_moving_instance(self->scene, id, (uint32_t)keys, seconds.data,
                                             poses.data, (vlSource){0});
   numbers_release(&poses);
   numbers_release(&seconds);
-  if (!fine)
-    return NULL;
-  return instance.index ? new_handle(self, INSTANCES, instance.index) : scene_error(self);
+  return checkpoint ? settle(self, checkpoint, INSTANCES, instance.index) : NULL;
 }
 
 /* _load_group(path, name or None, keywords, callback or None): handle, {what: number}. */

@@ -74,18 +74,20 @@ def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
 
 def _channels(value: Any) -> list[str]:
     names = _check.names(value, "channels")
+    known = _velo.channel_names()
     for name in names:
         other = OTHER_NAMES.get(name.lower())
-        if other and name not in _velo.channel_names():
+        if other and name not in known:
             raise UsageError(f"channels: {shown(name)} is called {other}")
+        if name not in known:
+            raise unknown("channel", name, known)
     return names
 
 
 class Scene(_velo.Scene):
     """The description of a world and of how its image is taken. A new scene is empty; `velo.load` reads a file.
 
-    After an error of an add_ method the scene keeps this error and cannot be used further. After one of set, show, hide or
-    remove it is as it was before."""
+    After an error of any method the scene is as it was before the call."""
 
     _world: Optional[tuple[Any, World]]
     _changed: bool
@@ -105,7 +107,7 @@ class Scene(_velo.Scene):
     def load(self, path: Path, *, progress: Optional[StepCallback] = None, **keywords: Any) -> None:
         """Adds the contents of a file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. Keywords: vlLoadDef's. progress: called
         about ten times a second with a velo.Step; False ends the load with a CancelledError. After this, and after a
-        KeyboardInterrupt, the scene cannot be used further."""
+        KeyboardInterrupt, the scene is as it was before."""
         self._changed = True
         self._load(path, keywords, progress)
         self._file = self._file or os.fsdecode(path)
@@ -328,9 +330,9 @@ class Scene(_velo.Scene):
         denoise = _check.flag(denoise, "denoise")
         settings, view = self._prepare(camera, resolution, crop, channels, film, denoise, keywords)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
-        self._film = target
         world = self._build(settings)
         self._choose(world, view, target, settings, keywords)
+        self._film = target
         _velo.render(world, view, target, settings, progress)
         return self._develop(world, view, target, settings, channels, denoise)
 
@@ -345,9 +347,9 @@ class Scene(_velo.Scene):
         factors = [_check.whole(factor, "an item of coarse", 1, 64) for factor in _check.items(coarse, "coarse", "numbers")]
         settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
-        self._film = target
         world = self._build(settings)
         self._choose(world, view, target, settings, keywords)
+        self._film = target
         for factor in factors:
             yield self._coarse(world, view, settings, factor, channels)
         total = settings.get("spp")

@@ -12,6 +12,7 @@
 
 #include "failing_allocator.h"
 #include "scene/scene.h"
+#include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"
@@ -370,11 +371,51 @@ static void out_of_memory(void **state) {
   fail_everywhere(fill, NULL, 20);
 }
 
+/* Everything that was added is taken back with its memory, whether an error ended it or not;
+ * then the same ids are given again. */
+static void checkpoints(void **state) {
+  (void)state;
+  const double one[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  vlShapeDef d = triangle();
+  d.group = vl_scene_add_group(scene, "first");
+  vl_scene_add_shape(scene, &d);
+  vl_scene_defs(scene)->film.width = 77;
+  vlSceneInfo before, after;
+  vl_scene_info(scene, &before);
+  size_t held = 0;
+  for (int round = 0; round < 8; round++) {
+    vlSceneCheckpoint *checkpoint;
+    assert_int_equal(vl_scene_checkpoint(scene, &checkpoint, NULL), VL_OK);
+    assert_int_equal(vl_scene_add_shape(scene, &d).index, 2);
+    vl_scene_add_instance(scene, d.group, one, (vlSource){"c.pbrt", 1, 1});
+    assert_int_equal(scene->groups.items[0].shape_count, 2);
+    vlMaterialDef m = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+    m.name = "lost";
+    vl_scene_add_material(scene, &m);
+    vl_scene_defs(scene)->film.width = 5;
+    m.reflectance = vl_spectrum_input(vl_spectrum_named(round % 2 ? "none" : "metal-Au-eta"));
+    assert_int_equal(vl_scene_add_material(scene, &m).index, round % 2 ? 0 : 2);
+    assert_int_equal(vl_scene_result(scene, NULL), round % 2 ? VL_ERROR_SCENE : VL_OK);
+    vl_scene_roll_back(scene, checkpoint);
+    assert_int_equal(vl_scene_result(scene, NULL), VL_OK);
+    vl_scene_info(scene, &after);
+    assert_memory_equal(&before, &after, sizeof before);
+    assert_int_equal(scene->groups.items[0].shape_count, 1);
+    assert_int_equal(scene->groups.items[0].instance_count, 0);
+    assert_int_equal(vl_scene_defs(scene)->film.width, 77);
+    const size_t now = vl_context_memory(context, NULL);
+    assert_true(round == 0 || now == held);
+    held = now;
+  }
+  assert_int_equal(vl_scene_checkpoint(NULL, NULL, NULL), VL_ERROR_ARGUMENT);
+  vl_scene_checkpoint_destroy(NULL);
+}
+
 int main(void) {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
   const struct CMUnitTest tests[] = {TEST(everything_is_copied), TEST(counts),
                                      TEST(bad_shapes),           TEST(bad_materials_and_lights),
                                      TEST(names_of_spectra),     TEST(large_mesh),
-                                     TEST(out_of_memory)};
+                                     TEST(out_of_memory),        TEST(checkpoints)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

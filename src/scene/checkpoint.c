@@ -1,0 +1,101 @@
+/* scene/checkpoint.c: checkpoints of a scene, and the way back to them (velo/edit.h). A
+ * checkpoint is a copy of the scene's struct without its arrays: what was added later lies at
+ * the end of the arrays, so the way back is to shorten them. */
+#include "scene/scene.h"
+#include "velo/edit.h"
+#include "velo/shape.h"
+
+struct vlSceneCheckpoint {
+  vlScene scene;     /* of its arrays only the counts are used */
+  uint64_t unread[]; /* the numbers in scene.unread, which a load counts on */
+};
+
+vlResult vl_scene_checkpoint(const vlScene *scene, vlSceneCheckpoint **checkpoint,
+                             vlError *error) {
+  vl_error_clear(error);
+  if (!scene || !checkpoint)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene checkpoint: a pointer is null");
+  const size_t unread = scene->unread.count * sizeof *(*checkpoint)->unread;
+  *checkpoint = vl_alloc_zero(scene->context, 1, sizeof **checkpoint + unread);
+  if (!*checkpoint)
+    return vl_fail_memory(error);
+  (*checkpoint)->scene = *scene;
+  for (size_t i = 0; i < scene->unread.count; i++)
+    (*checkpoint)->unread[i] = scene->unread.items[i].count;
+  return VL_OK;
+}
+
+void vl_scene_checkpoint_destroy(vlSceneCheckpoint *checkpoint) {
+  if (checkpoint)
+    vl_free(checkpoint->scene.context, checkpoint);
+}
+
+/* Frees the objects that the scene owns since the checkpoint. */
+static void free_added(const vlScene *scene, const vlScene *before) {
+  for (size_t i = before->blocks.count; i < scene->blocks.count; i++)
+    vl_free(scene->context, scene->blocks.items[i]);
+  for (size_t i = before->images.count; i < scene->images.count; i++)
+    vl_image_destroy(scene->images.items[i]);
+  for (size_t i = before->apertures.count; i < scene->apertures.count; i++)
+    vl_aperture_destroy(scene->apertures.items[i]);
+  for (size_t i = before->optics.count; i < scene->optics.count; i++)
+    vl_optics_destroy(scene->optics.items[i]);
+}
+
+/* What the remaining shapes and instances add up to in their groups. */
+static void count_groups(vlScene *scene) {
+  for (size_t i = 0; i < scene->groups.count; i++) {
+    scene->groups.items[i].shape_count = 0;
+    scene->groups.items[i].instance_count = 0;
+  }
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const uint32_t group = scene->shapes.items[i].group.index;
+    if (group)
+      scene->groups.items[group - 1].shape_count++;
+  }
+  for (size_t i = 0; i < scene->instances.count; i++) {
+    const vlSceneInstance *instance = &scene->instances.items[i];
+    if (!instance->removed)
+      scene->groups.items[instance->group.index - 1].instance_count++;
+  }
+}
+
+/* The array may have moved since. */
+#define KEEP_ARRAY(array)                         \
+  do {                                            \
+    scene->array.items = after.array.items;       \
+    scene->array.capacity = after.array.capacity; \
+  } while (0)
+
+void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint) {
+  if (!scene || !checkpoint || checkpoint->scene.number != scene->number)
+    return;
+  const vlScene after = *scene;
+  free_added(scene, &checkpoint->scene);
+  *scene = checkpoint->scene;
+  KEEP_ARRAY(textures);
+  KEEP_ARRAY(materials);
+  KEEP_ARRAY(emissions);
+  KEEP_ARRAY(lights);
+  KEEP_ARRAY(media);
+  KEEP_ARRAY(shapes);
+  KEEP_ARRAY(groups);
+  KEEP_ARRAY(instances);
+  KEEP_ARRAY(texture_marks);
+  KEEP_ARRAY(light_marks);
+  KEEP_ARRAY(medium_marks);
+  KEEP_ARRAY(shape_marks);
+  KEEP_ARRAY(apertures);
+  KEEP_ARRAY(optics);
+  KEEP_ARRAY(blocks);
+  KEEP_ARRAY(images);
+  KEEP_ARRAY(files);
+  KEEP_ARRAY(choices);
+  KEEP_ARRAY(frame_points);
+  KEEP_ARRAY(unread);
+  KEEP_ARRAY(edits);
+  for (size_t i = 0; i < scene->unread.count; i++)
+    scene->unread.items[i].count = checkpoint->unread[i];
+  count_groups(scene);
+  vl_scene_checkpoint_destroy(checkpoint);
+}

@@ -8,8 +8,8 @@
  * error. Worlds that were built before do not change. Errors: ARGUMENT (no such id, the scene
  * has an error, a def without cookie), SCENE, MEMORY.
  *
- * The numbers of a shape (its mesh, its transform, its media) cannot be changed, since worlds
- * share them: hide it, and add another one, also to a group that has instances. */
+ * What an earlier change of an object has allocated is freed, so a scene does not grow however
+ * often its objects are set. */
 #ifndef VELO_EDIT_H
 #define VELO_EDIT_H
 
@@ -33,7 +33,8 @@ VL_API const vlEmissionDef *vl_scene_emission(const vlScene *scene, vlEmissionId
 VL_API const vlLightDef *vl_scene_light(const vlScene *scene, vlLightId id);
 /** As vl_scene_texture. */
 VL_API const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id);
-/** As vl_scene_texture. The arrays are null after vl_world_build_last. */
+/** As vl_scene_texture. The arrays are null after vl_world_build_last. Null if the shape was
+ * removed. */
 VL_API const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id);
 
 /** An instance of a scene. */
@@ -73,6 +74,22 @@ VL_API vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediu
                                     vlError *error);
 /** Shows or hides a light; lights are shown at first. */
 VL_API vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error);
+
+/** Replaces a shape: its arrays, its kind, its transform, its group. A def that keeps arrays of
+ * the shape's own (vl_scene_shape) may point at them. The next world compiles the shape again,
+ * and the accelerator of its group. A removed shape is there again, as a new one in its place.
+ * Errors: as above; the arrays are copied before the old ones are freed. */
+VL_API vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
+                                   vlError *error);
+/** Removes a shape and frees its arrays. Ids of other objects do not change; its own stays free
+ * until vl_scene_set_shape gives it to another shape. */
+VL_API vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error);
+/** The lowest id of a removed shape; index 0: there is none. A program that removes and adds
+ * shapes in a loop sets it, so that the scene does not grow. */
+VL_API vlShapeId vl_scene_removed_shape(const vlScene *scene);
+/** A number by which a shape is told from others that had its id before: 0 for the first one,
+ * and if there is no such shape. */
+VL_API uint64_t vl_scene_shape_serial(const vlScene *scene, vlShapeId id);
 
 /** Gives a shape another material; index 0: the default material. */
 VL_API vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,

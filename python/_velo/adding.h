@@ -26,13 +26,28 @@ typedef union Def {
   vlShapeDef shape;
 } Def;
 
-enum { MOST_ARRAYS = 24 };
+enum { MOST_ARRAYS = 24, SHAPE_ARRAYS = 11 };
+
+/* An array of a shape that is given by a keyword. */
+typedef struct ShapeArray {
+  const char *name;
+  char type;
+  size_t offset; /* of its pointer in vlShapeDef */
+  size_t per;    /* numbers per element */
+} ShapeArray;
+extern const ShapeArray shape_arrays[SHAPE_ARRAYS];
+/* The number of elements that an array of shape_arrays must have. */
+size_t shape_elements(const vlShapeDef *def, int array);
+/* The array itself; null: the shape has none. */
+const void *shape_array(const vlShapeDef *def, int array);
 
 typedef struct Adding {
   Scene *scene;
   PyObject *keep;
   Numbers arrays[MOST_ARRAYS];
   int array_count;
+  size_t given[SHAPE_ARRAYS]; /* elements of the arrays that a shape is given; 0: none */
+  const vlShapeDef *old;      /* a shape that is changed: its other arrays stay; else null */
 } Adding;
 
 /* The default def of a kind. spectrum: of a texture. */
@@ -43,6 +58,8 @@ bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
 /* The index of a handle of this family; false with an exception. None is index 0. */
 bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what,
                  uint32_t *index);
+/* False, with an exception: its shape was removed. */
+bool handle_is_valid(const Handle *handle);
 PyObject *new_handle(Scene *scene, Family family, uint32_t index);
 
 #endif

@@ -5,7 +5,7 @@
 #include "adding.h"
 
 /* The numbers of an array, which live until the call ends; null with an exception. */
-static const Numbers *array(Adding *a, PyObject *value, char type, const char *what) {
+static const Numbers *read_array(Adding *a, PyObject *value, char type, const char *what) {
   if (a->array_count == MOST_ARRAYS) {
     raise_usage("too many arrays");
     return NULL;
@@ -15,6 +15,17 @@ static const Numbers *array(Adding *a, PyObject *value, char type, const char *w
     return NULL;
   a->array_count++;
   return n;
+}
+
+bool handle_is_valid(const Handle *h) {
+  const vlShapeId shape = {h->index};
+  if (strcmp(h->family, family_names[SHAPES]) != 0)
+    return true;
+  if (vl_scene_shape(h->scene->scene, shape) &&
+      vl_scene_shape_serial(h->scene->scene, shape) == h->serial)
+    return true;
+  raise_usage("the shape was removed");
+  return false;
 }
 
 bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what,
@@ -32,7 +43,7 @@ bool read_handle(const Scene *scene, PyObject *value, const char *family, const 
     return false;
   }
   *index = h->index;
-  return true;
+  return handle_is_valid(h);
 }
 static bool handle(const Adding *a, PyObject *value, const char *family, const char *what,
                    uint32_t *index) {
@@ -161,7 +172,7 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
   for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
     if (!IS(grids[i].name) || (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID))
       continue;
-    const Numbers *n = array(a, value, 'f', name);
+    const Numbers *n = read_array(a, value, 'f', name);
     if (!n)
       return -1;
     if (n->dimensions != (grids[i].per == 3 ? 4 : 3) ||
@@ -203,23 +214,63 @@ static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value
   return 0;
 }
 
+enum { POSITIONS, NORMALS, RADII = 9, WIDTHS };
+const ShapeArray shape_arrays[SHAPE_ARRAYS] = {
+    {"positions", 'f', offsetof(vlShapeDef, positions), 3},
+    {"normals", 'f', offsetof(vlShapeDef, normals), 3},
+    {"tangents", 'f', offsetof(vlShapeDef, tangents), 3},
+    {"uvs", 'f', offsetof(vlShapeDef, uvs), 2},
+    {"tangent_signs", 'f', offsetof(vlShapeDef, tangent_signs), 1},
+    {"colors", 'f', offsetof(vlShapeDef, colors), 4},
+    {"positions_close", 'f', offsetof(vlShapeDef, positions_close), 3},
+    {"normals_close", 'f', offsetof(vlShapeDef, normals_close), 3},
+    {"centers", 'd', offsetof(vlShapeDef, centers), 3},
+    {"radii", 'f', offsetof(vlShapeDef, radii), 1},
+    {"widths", 'f', offsetof(vlShapeDef, widths), 2}};
+
+const void *shape_array(const vlShapeDef *d, int array) {
+  const void *at;
+  memcpy(&at, (const char *)d + shape_arrays[array].offset, sizeof at);
+  return at;
+}
+
+static void put_shape_array(vlShapeDef *d, int array, const void *at) {
+  memcpy((char *)d + shape_arrays[array].offset, &at, sizeof at);
+}
+
+size_t shape_elements(const vlShapeDef *d, int array) {
+  if (array >= RADII - 1) /* centers, radii, widths */
+    return d->faces;
+  return array == NORMALS && d->kind == VL_SHAPE_CURVES ? 2 * (size_t)d->faces : d->vertices;
+}
+
+/* An array of a shape; None takes one away that a shape which is changed can do without. */
+static int set_shape_array(Adding *a, vlShapeDef *d, int array, PyObject *value) {
+  const ShapeArray *row = &shape_arrays[array];
+  if (value == Py_None && a->old && array != POSITIONS) {
+    put_shape_array(d, array, NULL);
+    return 1;
+  }
+  const Numbers *n = read_array(a, value, row->type, row->name);
+  if (!n)
+    return -1;
+  if (n->count == 0 || n->count % row->per || n->count / row->per > 0x7fffffff) {
+    raise_usage("%s: %zu numbers per element, it has %zu", row->name, row->per, n->count);
+    return -1;
+  }
+  put_shape_array(d, array, n->data);
+  const uint32_t count = (uint32_t)(n->count / row->per);
+  a->given[array] = count;
+  if (array == POSITIONS)
+    d->vertices = count;
+  if (array == POSITIONS && d->kind == VL_SHAPE_CURVES)
+    d->faces = count / 4;
+  if (array == RADII - 1)
+    d->faces = count;
+  return 1;
+}
+
 static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value) {
-  static const struct {
-    const char *name;
-    char type;
-    size_t offset;
-    size_t per;
-  } arrays[] = {{"positions", 'f', offsetof(vlShapeDef, positions), 3},
-                {"normals", 'f', offsetof(vlShapeDef, normals), 3},
-                {"tangents", 'f', offsetof(vlShapeDef, tangents), 3},
-                {"uvs", 'f', offsetof(vlShapeDef, uvs), 2},
-                {"tangent_signs", 'f', offsetof(vlShapeDef, tangent_signs), 1},
-                {"colors", 'f', offsetof(vlShapeDef, colors), 4},
-                {"positions_close", 'f', offsetof(vlShapeDef, positions_close), 3},
-                {"normals_close", 'f', offsetof(vlShapeDef, normals_close), 3},
-                {"centers", 'd', offsetof(vlShapeDef, centers), 3},
-                {"radii", 'f', offsetof(vlShapeDef, radii), 1},
-                {"widths", 'f', offsetof(vlShapeDef, widths), 2}};
   if (IS("name"))
     return (d->label.name = keep_text(a->keep, value, name)) ? 1 : -1;
   if (IS("transform") || IS("group_from_shape"))
@@ -241,7 +292,7 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
   if (IS("backdrop"))
     return read_flag(value, name, &d->backdrop) ? 1 : -1;
   if (IS("indices")) {
-    const Numbers *n = array(a, value, 'I', name);
+    const Numbers *n = read_array(a, value, 'I', name);
     size_t per = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
     if (!n)
       return -1;
@@ -253,56 +304,34 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
     d->indices = n->data;
     return 1;
   }
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    if (!IS(arrays[i].name))
-      continue;
-    const Numbers *n = array(a, value, arrays[i].type, name);
-    if (!n)
-      return -1;
-    if (n->count % arrays[i].per || n->count / arrays[i].per > 0x7fffffff) {
-      raise_usage("%s: %zu numbers per element", name, arrays[i].per);
-      return -1;
-    }
-    memcpy((char *)d + arrays[i].offset, &n->data, sizeof n->data);
-    uint32_t count = (uint32_t)(n->count / arrays[i].per);
-    if (IS("positions"))
-      d->vertices = count;
-    if (IS("positions") && d->kind == VL_SHAPE_CURVES)
-      d->faces = count / 4;
-    if (IS("centers"))
-      d->faces = count;
-    return 1;
-  }
+  for (int i = 0; i < SHAPE_ARRAYS; i++)
+    if (IS(shape_arrays[i].name))
+      return set_shape_array(a, d, i, value);
   return 0;
 }
 
 /* Arrays must be as long as the others: the library reads as many numbers as there are
  * vertices. */
-static bool check_lengths(const vlShapeDef *d, PyObject *keywords) {
-  static const char *const names[] = {
-      "normals",         "tangents",      "uvs",   "tangent_signs", "colors",
-      "positions_close", "normals_close", "radii", "widths",        NULL};
-  static const size_t pers[] = {3, 3, 2, 1, 4, 3, 3, 1, 2};
-  for (int i = 0; names[i]; i++) {
-    PyObject *value = PyDict_GetItemString(keywords, names[i]);
-    if (!value)
+static bool check_lengths(const Adding *a, const vlShapeDef *d) {
+  for (int i = 0; i < SHAPE_ARRAYS; i++) {
+    const size_t wanted = shape_elements(d, i);
+    const bool kept = a->old && !a->given[i];
+    const size_t got = kept ? shape_elements(a->old, i) : a->given[i];
+    if (!shape_array(d, i) || got == wanted)
       continue;
-    Numbers n;
-    if (!numbers_read(value, 'd', names[i], &n))
-      return false;
-    size_t wanted = d->vertices;
-    if (i == 7 || i == 8)
-      wanted = d->faces;
-    if (i == 0 && d->kind == VL_SHAPE_CURVES)
-      wanted = 2 * (size_t)d->faces;
-    size_t got = n.count / pers[i];
-    numbers_release(&n);
-    if (got != wanted) {
-      raise_usage("%s: %zu elements are needed, it has %zu", names[i], wanted, got);
-      return false;
-    }
+    if (kept)
+      raise_usage("%s: it has %zu elements, %zu are needed now: give it, too, or None",
+                  shape_arrays[i].name, got, wanted);
+    else
+      raise_usage("%s: %zu elements are needed, it has %zu", shape_arrays[i].name, wanted, got);
+    return false;
   }
-  return true;
+  const bool more = d->more_uvs[0] || d->more_uvs[1] || d->more_uvs[2];
+  if (!more || d->vertices == a->old->vertices)
+    return true;
+  raise_usage("positions: a mesh with several sets of uvs keeps its number of %u vertices",
+              (unsigned)a->old->vertices);
+  return false;
 }
 
 /* ---- adding ------------------------------------------------------------------------------ */
@@ -356,7 +385,16 @@ static int set_extra(Adding *a, Family family, Def *def, const char *name, PyObj
   return 0;
 }
 
-static uint32_t add(vlScene *scene, Family family, const Def *def) {
+/* A shape takes the place of one that was removed. */
+static uint32_t add_shape(vlScene *scene, const vlShapeDef *def, vlError *error) {
+  const vlShapeId removed = vl_scene_removed_shape(scene);
+  if (!removed.index)
+    return vl_scene_add_shape(scene, def).index;
+  return vl_scene_set_shape(scene, removed, def, error) == VL_OK ? removed.index : 0;
+}
+
+/* Index 0: it failed; the error is in the scene, or in *error. */
+static uint32_t add(vlScene *scene, Family family, const Def *def, vlError *error) {
   switch (family) {
     case TEXTURES:
       return vl_scene_add_texture(scene, &def->texture).index;
@@ -369,7 +407,7 @@ static uint32_t add(vlScene *scene, Family family, const Def *def) {
     case LIGHTS:
       return vl_scene_add_light(scene, &def->light).index;
     case SHAPES:
-      return vl_scene_add_shape(scene, &def->shape).index;
+      return add_shape(scene, &def->shape, error);
     case GROUPS:
     case INSTANCES:
       break;
@@ -407,7 +445,7 @@ bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
     if (!set_parameter(&target, p, value))
       return false;
   }
-  return family != SHAPES || check_lengths(&def->shape, keywords);
+  return family != SHAPES || check_lengths(a, &def->shape);
 }
 
 PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
@@ -418,28 +456,31 @@ PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
   h->scene = scene;
   h->family = family_names[family];
   h->index = index;
+  h->serial = family == SHAPES ? vl_scene_shape_serial(scene->scene, (vlShapeId){index}) : 0;
   return (PyObject *)h;
 }
 
-/* Ends a call that has added an object: its handle, or the scene's error after that was taken
- * back. */
+/* Ends a call that has added an object: its handle, or an exception, that of the scene's error
+ * if *error has none, after the call was taken back. */
 static PyObject *settle(Scene *self, vlSceneCheckpoint *checkpoint, Family family,
-                        uint32_t index) {
-  vlError error = {0};
-  vlResult result = vl_scene_result(self->scene, &error);
+                        uint32_t index, vlError *error) {
+  if (error->code == VL_OK)
+    vl_scene_result(self->scene, error);
   scene_settle(self, checkpoint, index != 0);
   return index ? new_handle(self, family, index)
-               : raise_result(result == VL_OK ? VL_ERROR_ARGUMENT : result, &error);
+               : raise_result(error->code == VL_OK ? VL_ERROR_ARGUMENT : error->code, error);
 }
 
 static PyObject *add_group(Scene *self, PyObject *name) {
   PyObject *keep = PyList_New(0);
   const char *text = !keep || name == Py_None ? NULL : keep_text(keep, name, "name");
   PyObject *result = NULL;
+  vlError error = {0};
   vlSceneCheckpoint *checkpoint =
       keep && (text || name == Py_None) ? scene_attempt(self) : NULL;
   if (checkpoint)
-    result = settle(self, checkpoint, GROUPS, vl_scene_add_group(self->scene, text).index);
+    result =
+        settle(self, checkpoint, GROUPS, vl_scene_add_group(self->scene, text).index, &error);
   Py_XDECREF(keep);
   return result;
 }
@@ -474,9 +515,10 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
     vlSceneCheckpoint *checkpoint = scene_attempt(self);
     Call call;
     if (checkpoint && call_begin(&call, self->context, &self->busy)) {
-      uint32_t index = add(self->scene, (Family)family, &def);
+      vlError error = {0};
+      uint32_t index = add(self->scene, (Family)family, &def, &error);
       call_end(&call);
-      result = settle(self, checkpoint, (Family)family, index);
+      result = settle(self, checkpoint, (Family)family, index, &error);
     } else {
       vl_scene_checkpoint_destroy(checkpoint);
     }
@@ -513,7 +555,8 @@ PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
                                             poses.data, (vlSource){0});
   numbers_release(&poses);
   numbers_release(&seconds);
-  return checkpoint ? settle(self, checkpoint, INSTANCES, instance.index) : NULL;
+  vlError error = {0};
+  return checkpoint ? settle(self, checkpoint, INSTANCES, instance.index, &error) : NULL;
 }
 
 /* _load_group(path, name or None, keywords, callback or None): handle, {what: number}. */

@@ -21,7 +21,7 @@ static int family_of(const Scene *self, PyObject *object, uint32_t *index) {
   while (strcmp(family_names[family], h->family) != 0)
     family++;
   *index = h->index;
-  return family;
+  return handle_is_valid(h) ? family : -1;
 }
 
 /* The def of an object and its kind; false: there is none. */
@@ -70,6 +70,7 @@ static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def
     case MEDIA:
       return vl_scene_set_medium(scene, (vlMediumId){index}, &def->medium, error);
     case SHAPES:
+      return vl_scene_set_shape(scene, (vlShapeId){index}, &def->shape, error);
     case GROUPS:
     case INSTANCES:
       break;
@@ -77,12 +78,16 @@ static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def
   return VL_ERROR_ARGUMENT;
 }
 
+/* Whether the keywords name only what a shape can be given without compiling it again. */
+static bool is_look(PyObject *keywords) {
+  return PyDict_Size(keywords) == (PyDict_GetItemString(keywords, "material") != NULL) +
+                                      (PyDict_GetItemString(keywords, "emission") != NULL);
+}
+
 /* A shape's material and emission. */
-static PyObject *set_shape(Scene *self, uint32_t index, PyObject *keywords) {
+static PyObject *set_look(Scene *self, uint32_t index, PyObject *keywords) {
   PyObject *material = PyDict_GetItemString(keywords, "material"),
            *emission = PyDict_GetItemString(keywords, "emission");
-  if (PyDict_Size(keywords) != (material != NULL) + (emission != NULL))
-    return raise_usage("of a shape, material and emission can be changed");
   vlMaterialId m = {0};
   vlEmissionId e = {0};
   if ((material && !read_handle(self, material, "materials", "material", &m.index)) ||
@@ -129,6 +134,18 @@ static void change_kind(Family family, int kind, bool spectrum, Def *def) {
     def->medium.name = old.medium.name;
     def->medium.source = old.medium.source;
   }
+  if (family == SHAPES) {
+    const vlShapeDef *o = &old.shape;
+    vlShapeDef *d = &def->shape;
+    d->label = o->label;
+    d->source = o->source;
+    d->group = o->group;
+    d->material = o->material;
+    d->emission = o->emission;
+    d->inside = o->inside;
+    d->outside = o->outside;
+    memcpy(d->group_from_shape, o->group_from_shape, sizeof d->group_from_shape);
+  }
 }
 
 /* _set(handle, kind or None, keywords) */
@@ -140,10 +157,10 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
   int family = family_of(self, object, &index), kind = 0;
   if (family < 0)
     return NULL;
-  if (kind_name != Py_None && (family == SHAPES || family == INSTANCES))
-    return raise_usage("the kind of a shape cannot be changed");
-  if (family == SHAPES)
-    return set_shape(self, index, keywords);
+  if (kind_name != Py_None && family == INSTANCES)
+    return raise_usage("an instance has no kind");
+  if (family == SHAPES && kind_name == Py_None && is_look(keywords))
+    return set_look(self, index, keywords);
   if (family == INSTANCES)
     return set_instance(self, index, keywords);
   if (family == GROUPS)
@@ -159,10 +176,15 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
       return NULL;
     change_kind((Family)family, kind, spectrum, &def);
   }
-  Adding a = {.scene = self, .keep = PyList_New(0)};
+  const Def old = def;
+  Adding a = {
+      .scene = self, .keep = PyList_New(0), .old = family == SHAPES ? &old.shape : NULL};
   PyObject *result = NULL;
-  if (a.keep &&
-      set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
+  self->busy = true; /* code that the conversions run must not free what the def points at */
+  bool fine = a.keep && set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords,
+                                spectrum, &def);
+  self->busy = false;
+  if (fine) {
     Call call;
     if (call_begin(&call, self->context, &self->busy)) {
       vlError error = {0};
@@ -217,9 +239,11 @@ PyObject *scene_remove(Scene *self, PyObject *object) {
   int family = family_of(self, object, &index);
   if (family < 0)
     return NULL;
-  if (family != INSTANCES)
-    return raise_usage("instances can be removed, not %s; hide it", family_names[family]);
   vlError error = {0};
+  if (family == SHAPES)
+    return outcome(vl_scene_remove_shape(self->scene, (vlShapeId){index}, &error), &error);
+  if (family != INSTANCES)
+    return raise_usage("instances and shapes can be removed, not %s", family_names[family]);
   return outcome(vl_scene_remove_instance(self->scene, (vlInstanceId){index}, &error), &error);
 }
 
@@ -231,6 +255,10 @@ static bool exists(const vlScene *scene, const vlSceneInfo *info, Family family,
   Def def;
   int kind;
   vlInstanceInfo instance;
+  if (family == SHAPES) {
+    *past = index > vl_scene_id_count(scene, VL_ID_OBJECT);
+    return vl_scene_shape(scene, (vlShapeId){index}) != NULL;
+  }
   if (family == INSTANCES) {
     *past = index > info->instances;
     return vl_scene_instance(scene, (vlInstanceId){index}, &instance) == VL_OK;
@@ -276,7 +304,7 @@ static PyObject *handle_compare(Handle *self, PyObject *object, int operation) {
     Py_RETURN_NOTIMPLEMENTED;
   const Handle *other = (const Handle *)object;
   bool same = self->scene == other->scene && self->index == other->index &&
-              strcmp(self->family, other->family) == 0;
+              self->serial == other->serial && strcmp(self->family, other->family) == 0;
   return PyBool_FromLong(same == (operation == Py_EQ));
 }
 static Py_hash_t handle_hash(Handle *self) {

@@ -82,6 +82,8 @@ def fork_error() -> ForkError:
 def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
     """There is no `thing` of that name: the message has the nearest name."""
     from velo import _velo
+    if not names:
+        return UsageError(f"unknown {thing} {shown(name)}; none is known")
     plain = name.encode(errors="backslashreplace").decode().replace("\0", "?")  # as C can hold it
     return UsageError(_velo.unknown_name(thing, plain, sorted(set(names))))
 

@@ -229,8 +229,9 @@ class Scene(_velo.Scene):
 
     def set(self, handle: Handle, kind: Optional[str] = None, **keywords: Any) -> None:
         """Changes what the keywords name; the rest stays. Textures, materials, emission and lights take the keywords of their
-        add_ method; with a kind they become one of this kind, with defaults where nothing is given. Shapes take material and
-        emission (None: none), instances transform (4 x 4, world from group)."""
+        add_ method; with a kind they become one of this kind, with defaults where nothing is given. So do shapes: new positions of
+        the same number keep the mesh's faces, normals and uvs; an array that is None is taken away; material, emission (None: none),
+        group and transform stay with another kind. Instances take transform (4 x 4, world from group)."""
         _check.instance(handle, Handle, "handle")
         if handle.family == "lights" and "from_" in keywords:
             keywords["from"] = keywords.pop("from_")
@@ -249,10 +250,11 @@ class Scene(_velo.Scene):
         1."""
         self.show(handle, False)
 
-    def remove(self, instance: Handle) -> None:
-        """Removes an instance for good."""
+    def remove(self, handle: Handle) -> None:
+        """Removes an instance or a shape for good; its handle is of no further use. The next shape that is added takes the
+        place, and the id.object, of the first one that was removed."""
         self._changed = True
-        self._remove(instance)
+        self._remove(handle)
 
     def mesh(self, shape: Handle) -> Mesh:
         """A copy of a mesh: positions n x 3, scene units; indices m x 3 or m x 4. Other shapes are a UsageError."""

@@ -94,6 +94,7 @@ void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint) {
   KEEP_ARRAY(frame_points);
   KEEP_ARRAY(unread);
   KEEP_ARRAY(edits);
+  KEEP_ARRAY(removed_shapes);
   for (size_t i = 0; i < scene->unread.count; i++)
     scene->unread.items[i].count = checkpoint->unread[i];
   count_groups(scene);

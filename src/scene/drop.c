@@ -6,15 +6,13 @@
 #include "scene/scene.h"
 #include "velo/shape.h"
 
-enum { ARRAYS = 15 };
-
 static int by_address(const void *a, const void *b) {
   uintptr_t x = (uintptr_t) * (void *const *)a, y = (uintptr_t) * (void *const *)b;
   return (x > y) - (x < y);
 }
 
-static void arrays_of(const vlShapeDef *d, const void *arrays[ARRAYS]) {
-  const void *all[ARRAYS] = {
+void vl_shape_arrays(const vlShapeDef *d, const void *arrays[VL_SHAPE_ARRAYS]) {
+  const void *all[VL_SHAPE_ARRAYS] = {
       d->positions,       d->normals,       d->tangents,      d->uvs,     d->indices,
       d->positions_close, d->normals_close, d->tangent_signs, d->colors,  d->more_uvs[0],
       d->more_uvs[1],     d->more_uvs[2],   d->widths,        d->centers, d->radii};
@@ -32,19 +30,19 @@ static void forget(vlShapeDef *d) {
 
 void vl_scene_drop_meshes(vlScene *scene) {
   size_t n = 0, kept = 0;
-  const void *arrays[ARRAYS];
+  const void *arrays[VL_SHAPE_ARRAYS];
   size_t room = 1;
   for (size_t i = 0; i < scene->shapes.count; i++) {
-    arrays_of(&scene->shapes.items[i], arrays);
-    for (int k = 0; k < ARRAYS; k++)
+    vl_shape_arrays(&scene->shapes.items[i], arrays);
+    for (int k = 0; k < VL_SHAPE_ARRAYS; k++)
       room += arrays[k] != NULL;
   }
   const void **all = vl_alloc_array(scene->context, room, sizeof *all);
   if (!all)
     return;
   for (size_t i = 0; i < scene->shapes.count; i++) {
-    arrays_of(&scene->shapes.items[i], arrays);
-    for (int k = 0; k < ARRAYS; k++)
+    vl_shape_arrays(&scene->shapes.items[i], arrays);
+    for (int k = 0; k < VL_SHAPE_ARRAYS; k++)
       if (arrays[k])
         all[n++] = arrays[k];
     forget(&scene->shapes.items[i]);

@@ -36,7 +36,8 @@ const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id) {
   return ITEM(scene, media, id);
 }
 const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id) {
-  return ITEM(scene, shapes, id);
+  const vlShapeDef *def = ITEM(scene, shapes, id);
+  return def && !vl_scene_shape_is_removed(scene, id.index - 1) ? def : NULL;
 }
 
 vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info) {
@@ -90,7 +91,7 @@ static bool is_used(const vlScene *scene, const vlImage *image) {
 
 /* Frees what an earlier change of the object has allocated; entries from `end` on are of this
  * change. */
-static void free_edits(vlScene *scene, const void *array, uint32_t id, size_t end) {
+void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t end) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->edits.count; i++) {
     vlSceneEdit e = scene->edits.items[i];
@@ -125,7 +126,7 @@ static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t bl
   if (done && VL_RESERVE(scene->context, &scene->edits,
                          scene->blocks.count - blocks + scene->images.count - images)) {
     note_edits(scene, array, id, blocks, images);
-    free_edits(scene, array, id, old);
+    vl_scene_free_edits(scene, array, id, old);
     return VL_OK;
   }
   if (done)
@@ -139,7 +140,7 @@ static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t bl
   return take_error(scene, error);
 }
 
-static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
+vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
   while (marks->count < id) {
     vlSceneMark *mark = VL_PUSH(scene->context, marks);
     if (!mark)
@@ -183,17 +184,21 @@ static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def
   SET(scene, media, vl_scene_add_medium, id, def, "medium", error);
 }
 
+static vlResult set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def, vlError *error) {
+  SET(scene, shapes, vl_scene_add_shape, id, def, "shape", error);
+}
+
 /* Calls set (one of the above). After success the object's mark has a new generation. The id
  * must be checked before. */
-#define SET_AND_MARK(scene, marks, set, id, def, error)              \
-  do {                                                               \
-    vlSceneMark *mark = mark_of(scene, &(scene)->marks, (id).index); \
-    if (!mark)                                                       \
-      return vl_fail_memory(error);                                  \
-    vlResult changed = set(scene, id, def, error);                   \
-    if (changed == VL_OK)                                            \
-      mark->generation = vl_context_number((scene)->context);        \
-    return changed;                                                  \
+#define SET_AND_MARK(scene, marks, set, id, def, error)                       \
+  do {                                                                        \
+    vlSceneMark *mark = vl_scene_mark_of(scene, &(scene)->marks, (id).index); \
+    if (!mark)                                                                \
+      return vl_fail_memory(error);                                           \
+    vlResult changed = set(scene, id, def, error);                            \
+    if (changed == VL_OK)                                                     \
+      mark->generation = vl_context_number((scene)->context);                 \
+    return changed;                                                           \
   } while (0)
 
 vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
@@ -237,7 +242,7 @@ vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *d
 
 static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool shown,
                      vlError *error) {
-  vlSceneMark *mark = mark_of(scene, marks, id);
+  vlSceneMark *mark = vl_scene_mark_of(scene, marks, id);
   if (!mark)
     return vl_fail_memory(error);
   mark->hidden = !shown;
@@ -250,13 +255,103 @@ vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *
 }
 
 vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error) {
-  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
   return result == VL_OK ? show(scene, &scene->shape_marks, id.index, shown, error) : result;
+}
+
+/* Frees the arrays and names of a shape as it was added. Later ones are among the edits. */
+static void free_added(vlScene *scene, const vlShapeDef *def) {
+  enum { NAMES = 3 };
+  const void *own[VL_SHAPE_ARRAYS + NAMES];
+  vl_shape_arrays(def, own);
+  own[VL_SHAPE_ARRAYS] = def->label.name;
+  own[VL_SHAPE_ARRAYS + 1] = def->label.path;
+  own[VL_SHAPE_ARRAYS + 2] = def->label.place;
+  size_t kept = 0;
+  for (size_t i = 0; i < scene->blocks.count; i++) {
+    void *block = scene->blocks.items[i];
+    bool found = false;
+    for (int k = 0; k < VL_SHAPE_ARRAYS + NAMES; k++)
+      found = found || own[k] == block;
+    if (found)
+      vl_free(scene->context, block);
+    else
+      scene->blocks.items[kept++] = block;
+  }
+  scene->blocks.count = kept;
+}
+
+/* Ends the change of a shape, old as it was before. */
+static void mark_change(vlScene *scene, vlSceneMark *mark, const vlShapeDef *old) {
+  if (mark->generation == 0)
+    free_added(scene, old);
+  if (old->group.index)
+    scene->groups.items[old->group.index - 1].shape_count--;
+  mark->generation = vl_context_number(scene->context);
+}
+
+static void occupy(vlScene *scene, vlSceneMark *mark, uint32_t id) {
+  size_t kept = 0;
+  for (size_t i = 0; i < scene->removed_shapes.count; i++)
+    if (scene->removed_shapes.items[i] != id)
+      scene->removed_shapes.items[kept++] = scene->removed_shapes.items[i];
+  scene->removed_shapes.count = kept;
+  mark->removed = false;
+  mark->hidden = false;
+  mark->serial = mark->generation;
+}
+
+vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
+                            vlError *error) {
+  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  if (result != VL_OK)
+    return result;
+  vlSceneMark *mark = vl_scene_mark_of(scene, &scene->shape_marks, id.index);
+  if (!mark)
+    return vl_fail_memory(error);
+  const vlShapeDef old = scene->shapes.items[id.index - 1];
+  result = set_shape(scene, id, def, error);
+  if (result != VL_OK)
+    return result;
+  mark_change(scene, mark, &old);
+  if (mark->removed)
+    occupy(scene, mark, id.index);
+  return VL_OK;
+}
+
+vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error) {
+  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
+  if (result != VL_OK)
+    return result;
+  vlSceneMark *mark = vl_scene_mark_of(scene, &scene->shape_marks, id.index);
+  uint32_t *slot = mark ? VL_PUSH(scene->context, &scene->removed_shapes) : NULL;
+  if (!slot)
+    return vl_fail_memory(error);
+  *slot = id.index;
+  vlShapeDef *def = &scene->shapes.items[id.index - 1];
+  mark_change(scene, mark, def);
+  vl_scene_free_edits(scene, &scene->shapes, id.index, scene->edits.count);
+  *def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  mark->removed = mark->hidden = true;
+  return VL_OK;
+}
+
+vlShapeId vl_scene_removed_shape(const vlScene *scene) {
+  vlShapeId first = {0};
+  for (size_t i = 0; scene && i < scene->removed_shapes.count; i++)
+    if (first.index == 0 || scene->removed_shapes.items[i] < first.index)
+      first.index = scene->removed_shapes.items[i];
+  return first;
+}
+
+uint64_t vl_scene_shape_serial(const vlScene *scene, vlShapeId id) {
+  return vl_scene_shape(scene, id) ? vl_scene_mark(&scene->shape_marks, id.index - 1).serial
+                                   : 0;
 }
 
 vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,
                                      vlError *error) {
-  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
   if (result == VL_OK)
     result = check(scene, material.index <= scene->materials.count, "material", error);
   if (result == VL_OK)
@@ -266,7 +361,7 @@ vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId 
 
 vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission,
                                      vlError *error) {
-  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
   if (result == VL_OK)
     result = check(scene, emission.index <= scene->emissions.count, "emission", error);
   if (result != VL_OK)

@@ -67,6 +67,7 @@ void vl_scene_destroy(vlScene *scene) {
     vl_image_destroy(scene->edits.items[i].image);
   }
   VL_ARRAY_FREE(context, &scene->edits);
+  VL_ARRAY_FREE(context, &scene->removed_shapes);
   VL_ARRAY_FREE(context, &scene->texture_marks);
   VL_ARRAY_FREE(context, &scene->light_marks);
   VL_ARRAY_FREE(context, &scene->medium_marks);
@@ -115,13 +116,15 @@ uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t 
   COUNT_KINDS("textures", textures)
   COUNT_KINDS("media", media)
   COUNT_KINDS("lights", lights)
+  if (strcmp(family, "shapes") == 0 && kind == VL_SHAPE_TRIANGLES)
+    count -= scene->removed_shapes.count;
   COUNT_KINDS("shapes", shapes)
   return 0;
 }
 
 void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
   *info = (vlSceneInfo){
-      .shapes = scene->shapes.count,
+      .shapes = scene->shapes.count - scene->removed_shapes.count,
       .textures = scene->textures.count,
       .materials = scene->materials.count,
       .lights = scene->lights.count,

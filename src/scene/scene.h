@@ -41,7 +41,9 @@ typedef struct vlSceneEdit {
 /* The state of an object besides its def. Objects that were never changed have no mark. */
 typedef struct vlSceneMark {
   uint64_t generation; /* 0: as added; each vl_scene_set_* gives a new number */
+  uint64_t serial;     /* of a shape in the place of a removed one: its number; else 0 */
   bool hidden;
+  bool removed; /* of a shape: its def is that of a mesh without vertices */
 } vlSceneMark;
 typedef VL_ARRAY(vlSceneMark)
     vlSceneMarks; /* element i: object of id i + 1; may be shorter than the objects */
@@ -74,6 +76,7 @@ struct vlScene {
   uint64_t number; /* of this scene in its context; from 1 */
   vlSceneMarks texture_marks, light_marks, medium_marks, shape_marks;
   VL_ARRAY(vlSceneEdit) edits;
+  VL_ARRAY(uint32_t) removed_shapes; /* ids */
   vlSceneDefs defs;
   vlCompleteDef completed; /* what vl_scene_complete has added; cookie 0: it was not called */
   bool camera_read;        /* defs.camera is that of the file that was read */
@@ -99,7 +102,11 @@ struct vlScene {
 };
 
 static inline vlSceneMark vl_scene_mark(const vlSceneMarks *marks, size_t index) {
-  return index < marks->count ? marks->items[index] : (vlSceneMark){0, false};
+  return index < marks->count ? marks->items[index] : (vlSceneMark){0};
+}
+/* Whether the shape with this index was removed. */
+static inline bool vl_scene_shape_is_removed(const vlScene *scene, size_t index) {
+  return vl_scene_mark(&scene->shape_marks, index).removed;
 }
 
 /* Whether the coat of this material has a closed form. It has one if the base is diffuse, the
@@ -119,6 +126,15 @@ bool vl_scene_stopped(vlScene *scene, double fraction);
 /* Adds a shape without copying its mesh arrays. The arrays are memory blocks of the scene's
  * context (vl_alloc*), or null. On success the scene owns them; on failure they are freed. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
+
+/* The arrays of a shape: those that are null, too. */
+enum { VL_SHAPE_ARRAYS = 15 };
+void vl_shape_arrays(const vlShapeDef *def, const void *arrays[VL_SHAPE_ARRAYS]);
+/* Frees what the changes of an object have allocated (edit.c): the first `end` entries of
+ * scene->edits, as far as they are those of this id in the array at this address. */
+void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t end);
+/* The mark of the object with this id; null: out of memory. */
+vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id);
 
 /* Whether a shape can be an area light. */
 bool vl_shape_may_emit(const vlShapeDef *def);

@@ -111,6 +111,7 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   world->context = scene->context;
   world->def = d;
   world->scene_number = scene->number;
+  world->number = vl_context_number(scene->context);
   world->previous = usable(d.previous, &d);
   world->def.previous = NULL;
   world->def.cancel = NULL;

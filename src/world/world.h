@@ -273,6 +273,7 @@ struct vlWorld {
   const struct vlWorld
       *previous;         /* during the build: the world whose parts may be shared; null: none */
   uint64_t scene_number; /* vlScene.number */
+  uint64_t number; /* of the world in its context; changes of the scene have higher ones */
   VL_ARRAY(vlPart *) parts; /* all parts of which the world is a user */
   vlPart *part;             /* during the build: owner of new blocks; null: the world */
   vlPart **shape_parts; /* one per shape: the part with its arrays; null: the shape has none */

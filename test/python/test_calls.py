@@ -288,7 +288,7 @@ def materials_textures_lights_and_shapes_change():
     assert differs()
     scene.hide(floor)
     assert differs()
-    for handle, keywords, text in ((paint, dict(roughnes=1), "roughness"), (floor, dict(radius=1), "material and emission"),
+    for handle, keywords, text in ((paint, dict(roughnes=1), "roughness"), (floor, dict(radius=1), "radius"),
                                    (group, dict(name="x"), "groups cannot be changed"), (sky, dict(medium=paint), "media")):
         with raises(velo.UsageError, text):
             scene.set(handle, **keywords)

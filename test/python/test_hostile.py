@@ -202,7 +202,7 @@ CALLS = [
     Call("Scene.set", quad_scene, handle=(handle("materials"), OBJECT), kind=("diffuse", ANY), keywords={"reflectance": ANY, "name": TEXT}),
     Call("Scene.show", quad_scene, handle=(handle("shapes"), OBJECT), shown=(True, FLAG)),
     Call("Scene.hide", quad_scene, handle=(handle("shapes"), OBJECT)),
-    Call("Scene.remove", quad_scene, instance=(handle("instances"), OBJECT)),
+    Call("Scene.remove", quad_scene, handle=(handle("instances"), OBJECT)),
     Call("Scene.mesh", quad_scene, shape=(handle("shapes"), OBJECT)),
     Call("Scene.transform", quad_scene, instance=(handle("instances"), OBJECT)),
     Call("Scene.settings", lambda: FIRST, keywords=SETTINGS, resolution=((4, 4), ANY), crop=((0, 0, 4, 4), ANY)),

@@ -12,6 +12,7 @@
 
 #include "failing_allocator.h"
 #include "scene/scene.h"
+#include "velo/check.h"
 #include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -362,6 +363,8 @@ static vlResult fill(vlContext *from, void *user) {
   const double one[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   vl_scene_add_instance(s, d.group, one, (vlSource){"b.pbrt", 1, 1});
   result = vl_scene_result(s, NULL);
+  if (result == VL_OK)
+    result = vl_scene_remove_shape(s, (vlShapeId){1}, NULL);
   vl_scene_destroy(s);
   return result;
 }
@@ -411,11 +414,56 @@ static void checkpoints(void **state) {
   vl_scene_checkpoint_destroy(NULL);
 }
 
+/* A shape that is set or removed gives its memory back; its place is given again. */
+static void changed_shapes(void **state) {
+  (void)state;
+  vlShapeDef d = triangle();
+  d.label.name = "first";
+  d.group = vl_scene_add_group(scene, "g");
+  const vlShapeId id = vl_scene_add_shape(scene, &d);
+  d.group.index = 0;
+  vl_scene_add_shape(scene, &d);
+  vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
+  vlSceneInfo info;
+  size_t held = 0;
+  for (int round = 0; round < 20; round++) {
+    assert_int_equal(vl_scene_set_shape(scene, id, round % 2 ? &ball : &d, NULL), VL_OK);
+    assert_int_equal(vl_scene_shape(scene, id)->kind, (round % 2 ? ball : d).kind);
+    assert_int_equal(scene->groups.items[0].shape_count, 0);
+    assert_int_equal(vl_scene_remove_shape(scene, id, NULL), VL_OK);
+    assert_null(vl_scene_shape(scene, id));
+    vl_scene_info(scene, &info);
+    assert_int_equal(info.shapes, 1);
+    assert_int_equal(vl_scene_kind_count(scene, "shapes", VL_SHAPE_TRIANGLES), 1);
+    assert_int_equal(vl_scene_removed_shape(scene).index, id.index);
+    assert_int_equal(vl_scene_remove_shape(scene, id, NULL), VL_ERROR_ARGUMENT);
+    assert_int_equal(vl_scene_show_shape(scene, id, true, NULL), VL_ERROR_ARGUMENT);
+    assert_int_equal(vl_scene_shape_serial(scene, id), 0);
+    vlCheck *doctor; /* passes over it */
+    assert_int_equal(vl_scene_check(scene, NULL, &doctor, NULL), VL_OK);
+    vl_check_destroy(doctor);
+    assert_true(round == 0 || vl_context_memory(context, NULL) == held);
+    held = vl_context_memory(context, NULL);
+    assert_int_equal(vl_scene_set_shape(scene, id, &d, NULL), VL_OK);
+    assert_true(vl_scene_shape_serial(scene, id) > 0);
+    assert_int_equal(vl_scene_removed_shape(scene).index, 0);
+  }
+  const vlShapeDef own = *vl_scene_shape(scene, id); /* its arrays are the scene's */
+  assert_int_equal(vl_scene_set_shape(scene, id, &own, NULL), VL_OK);
+  assert_memory_equal(vl_scene_shape(scene, id)->positions, corners, sizeof corners);
+  d.faces = 0;
+  assert_int_equal(vl_scene_set_shape(scene, id, &d, NULL), VL_ERROR_SCENE);
+  assert_memory_equal(vl_scene_shape(scene, id)->positions, corners, sizeof corners);
+  assert_int_equal(vl_scene_result(scene, NULL), VL_OK);
+  assert_int_equal(vl_scene_set_shape(scene, (vlShapeId){3}, &d, NULL), VL_ERROR_ARGUMENT);
+}
+
 int main(void) {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
   const struct CMUnitTest tests[] = {TEST(everything_is_copied), TEST(counts),
                                      TEST(bad_shapes),           TEST(bad_materials_and_lights),
                                      TEST(names_of_spectra),     TEST(large_mesh),
-                                     TEST(out_of_memory),        TEST(checkpoints)};
+                                     TEST(out_of_memory),        TEST(checkpoints),
+                                     TEST(changed_shapes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -297,6 +297,9 @@ static bool put_shapes(vlExport *x, json_t *roots, json_int_t *mesh_of) {
   const vlScene *s = x->scene;
   for (size_t i = 0; i < s->shapes.count; i++) {
     const vlShapeDef *d = &s->shapes.items[i];
+    mesh_of[i] = -1;
+    if (vl_scene_shape_is_removed(s, i))
+      continue;
     if (!put_mesh(x, d, &mesh_of[i]))
       return false;
     if (mesh_of[i] < 0 || d->group.index)

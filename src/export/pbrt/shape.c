@@ -216,6 +216,8 @@ static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
 
 bool vl_pbrt_shape(vlExport *x, size_t index) {
   const vlShapeDef *d = &x->scene->shapes.items[index];
+  if (vl_scene_shape_is_removed(x->scene, index))
+    return true;
   if (!d->centers)
     return put_shape(x, d, index);
   for (uint32_t i = 0; i < d->faces; i++) {

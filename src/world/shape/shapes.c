@@ -140,6 +140,12 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   s->flip = def->reverse_orientation != mirrored;
   s->backdrop = def->backdrop;
   s->alpha = -1; /* opaque */
+  if (vl_scene_shape_is_removed(scene, index)) {
+    s->steps = 1;
+    world->shape_parts[index] = NULL;
+    world->shape_from[index] = VL_NONE;
+    return VL_OK;
+  }
   if (def->alpha.texture.index || def->alpha.value < 1) {
     vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);
     if (r != VL_OK)

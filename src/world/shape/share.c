@@ -1,5 +1,5 @@
-/* world/shape/share.c: see share.h. Shapes of one scene are recognised by their index, since
- * their geometry cannot be changed. Others, and displaced meshes, are compiled and then
+/* world/shape/share.c: see share.h. Shapes of one scene are recognised by their index, if
+ * they were not set since. Others, and displaced meshes, are compiled and then
  * compared number by number. */
 #include "world/shape/share.h"
 
@@ -98,7 +98,8 @@ bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldS
   const vlWorld *previous = world->previous;
   *done = false;
   if (!previous || previous->scene_number != scene->number || index >= previous->shapes.count ||
-      scene->shapes.items[index].displacement.texture.index)
+      scene->shapes.items[index].displacement.texture.index ||
+      vl_scene_mark(&scene->shape_marks, index).generation > previous->number)
     return true;
   const vlWorldShape *old = &previous->shapes.items[index];
   if (old->steps > 1 && !same_times(world, previous))

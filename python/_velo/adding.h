@@ -60,6 +60,10 @@ bool read_handle(const Scene *scene, PyObject *value, const char *family, const 
                  uint32_t *index);
 /* False, with an exception: its shape was removed. */
 bool handle_is_valid(const Handle *handle);
+/* The family of a handle of this scene, and its index; -1 with an exception. */
+int handle_family_of(const Scene *scene, PyObject *object, uint32_t *index);
+/* The def of an object and its kind; false: there is none. */
+bool get_def(const vlScene *scene, Family family, uint32_t index, Def *def, int *kind);
 PyObject *new_handle(Scene *scene, Family family, uint32_t index);
 
 #endif

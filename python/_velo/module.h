@@ -295,6 +295,7 @@ PyObject *scene_set(Scene *self, PyObject *arguments);
 PyObject *scene_show(Scene *self, PyObject *arguments);
 PyObject *scene_remove(Scene *self, PyObject *handle);
 PyObject *scene_handles(Scene *self, PyObject *family);
+PyObject *scene_get(Scene *self, PyObject *handle);
 PyObject *scene_mesh(Scene *self, PyObject *handle);
 PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);

@@ -242,6 +242,7 @@ static PyMethodDef scene_methods[] = {
      "Shows or hides a light, a shape or an instance."},
     {"_remove", (PyCFunction)scene_remove, METH_O, "Removes an instance."},
     {"_handles", (PyCFunction)scene_handles, METH_O, "The handles of a family."},
+    {"_get", (PyCFunction)scene_get, METH_O, "The keywords of an object."},
     {"_mesh", (PyCFunction)scene_mesh, METH_O, "The arrays of a mesh."},
     {"_instance", (PyCFunction)scene_instance, METH_O,
      "An instance's group, pose, whether it moves and is shown."},

@@ -1,5 +1,6 @@
 /* _velo/scene_add.c: adds textures, materials, media, emissions, lights, shapes, groups and
  * instances to a scene. */
+#include <math.h>
 #include <string.h>
 
 #include "adding.h"
@@ -71,11 +72,16 @@ static bool choice(const char *const *choices, const char *what, PyObject *value
 
 /* Each of these sets a keyword that has no row. 1: set; 0: unknown; -1: an exception. */
 
+static int set_name(Adding *a, PyObject *value, const char **name) {
+  *name = value == Py_None ? NULL : keep_text(a->keep, value, "name");
+  return *name || value == Py_None ? 1 : -1;
+}
+
 static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *value) {
   int code;
   bool fine;
   if (IS("name")) {
-    fine = (d->name = keep_text(a->keep, value, name)) != NULL;
+    fine = set_name(a, value, &d->name) > 0;
   } else if (IS("image")) {
     fine = image_of(value, name, &d->image);
   } else if (IS("data")) {
@@ -94,8 +100,10 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
   } else if (IS("tint")) {
     fine = floats_copy(value, name, 4, d->tint);
   } else if (IS("channel")) {
-    int64_t channel;
-    fine = read_whole(value, name, -1, 1023, &channel);
+    double channel; /* -1: the mean of the colours */
+    fine = read_finite(value, name, &channel);
+    if (fine && (channel != floor(channel) || channel < -1 || channel > 3))
+      fine = raise_value(name, value, "a whole number from -1 to 3") != NULL;
     if (fine)
       d->channel = (int)channel;
   } else if (IS("texture_from_world")) {
@@ -127,7 +135,7 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
 
 static int set_material(Adding *a, vlMaterialDef *d, const char *name, PyObject *value) {
   if (IS("name"))
-    return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
+    return set_name(a, value, &d->name);
   if (IS("reflectance") &&
       (d->kind == VL_MATERIAL_CONDUCTOR || d->kind == VL_MATERIAL_COATED_CONDUCTOR)) {
     d->use_reflectance = true;
@@ -165,12 +173,17 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
                {"rgb_a", offsetof(vlMediumDef, rgb_a), 3},
                {"rgb_s", offsetof(vlMediumDef, rgb_s), 3},
                {"rgb_emission", offsetof(vlMediumDef, rgb_emission), 3}};
+  const bool grid = d->kind == VL_MEDIUM_GRID || d->kind == VL_MEDIUM_RGB_GRID;
+  if (grid && (IS("nx") || IS("ny") || IS("nz"))) {
+    raise_usage("%s: the size of a grid is that of its arrays", name);
+    return -1;
+  }
   if (IS("name"))
-    return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
+    return set_name(a, value, &d->name);
   if (IS("transform") || IS("world_from_medium"))
     return numbers_copy(value, name, 16, d->world_from_medium) ? 1 : -1;
   for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
-    if (!IS(grids[i].name) || (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID))
+    if (!IS(grids[i].name) || !grid)
       continue;
     const Numbers *n = read_array(a, value, 'f', name);
     if (!n)
@@ -180,7 +193,10 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
       raise_usage("%s: an array of nz x ny x nx%s", name, grids[i].per == 3 ? " x 3" : "");
       return -1;
     }
-    if (d->nx > 1 && (d->nx != n->shape[2] || d->ny != n->shape[1] || d->nz != n->shape[0])) {
+    bool others = false;
+    for (size_t k = 0; k < sizeof grids / sizeof *grids; k++)
+      others = others || (k != i && *(void *const *)(void *)((char *)d + grids[k].offset));
+    if (others && (d->nx != n->shape[2] || d->ny != n->shape[1] || d->nz != n->shape[0])) {
       raise_usage("%s: the grids differ in size", name);
       return -1;
     }
@@ -272,7 +288,7 @@ static int set_shape_array(Adding *a, vlShapeDef *d, int array, PyObject *value)
 
 static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value) {
   if (IS("name"))
-    return (d->label.name = keep_text(a->keep, value, name)) ? 1 : -1;
+    return set_name(a, value, &d->label.name);
   if (IS("transform") || IS("group_from_shape"))
     return numbers_copy(value, name, 16, d->group_from_shape) ? 1 : -1;
   if (IS("material"))

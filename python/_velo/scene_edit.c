@@ -4,8 +4,7 @@
 
 #include "adding.h"
 
-/* The family of a handle of this scene; -1 with an exception. */
-static int family_of(const Scene *self, PyObject *object, uint32_t *index) {
+int handle_family_of(const Scene *self, PyObject *object, uint32_t *index) {
   if (!scene_open(self))
     return -1;
   if (!is_object(object, TYPE_HANDLE)) {
@@ -24,8 +23,7 @@ static int family_of(const Scene *self, PyObject *object, uint32_t *index) {
   return handle_is_valid(h) ? family : -1;
 }
 
-/* The def of an object and its kind; false: there is none. */
-static bool get_def(const vlScene *scene, Family family, uint32_t index, Def *def, int *kind) {
+bool get_def(const vlScene *scene, Family family, uint32_t index, Def *def, int *kind) {
 #define GET(FAMILY, member, Id, function, number)                    \
   case FAMILY: {                                                     \
     const __typeof__(def->member) *d = function(scene, (Id){index}); \
@@ -154,7 +152,7 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
   uint32_t index;
   if (!PyArg_ParseTuple(arguments, "OOO!:_set", &object, &kind_name, &PyDict_Type, &keywords))
     return NULL;
-  int family = family_of(self, object, &index), kind = 0;
+  int family = handle_family_of(self, object, &index), kind = 0;
   if (family < 0)
     return NULL;
   if (kind_name != Py_None && family == INSTANCES)
@@ -208,7 +206,7 @@ PyObject *scene_show(Scene *self, PyObject *arguments) {
   if (!PyArg_ParseTuple(arguments, "OO:_show", &object, &flag) ||
       !read_flag(flag, "shown", &shown))
     return NULL;
-  int family = family_of(self, object, &index);
+  int family = handle_family_of(self, object, &index);
   if (family < 0)
     return NULL;
   vlError error = {0};
@@ -236,7 +234,7 @@ PyObject *scene_show(Scene *self, PyObject *arguments) {
 /* _remove(handle) */
 PyObject *scene_remove(Scene *self, PyObject *object) {
   uint32_t index;
-  int family = family_of(self, object, &index);
+  int family = handle_family_of(self, object, &index);
   if (family < 0)
     return NULL;
   vlError error = {0};
@@ -325,7 +323,7 @@ static PyObject *handle_family(Handle *self, void *unused) {
 static PyObject *handle_kind(Handle *self, void *unused) {
   (void)unused;
   uint32_t index;
-  int family = family_of(self->scene, (PyObject *)self, &index), kind;
+  int family = handle_family_of(self->scene, (PyObject *)self, &index), kind;
   Def def;
   if (family < 0)
     return NULL;
@@ -343,7 +341,7 @@ static PyObject *handle_kind(Handle *self, void *unused) {
 static PyObject *handle_name(Handle *self, void *unused) {
   (void)unused;
   uint32_t index;
-  int family = family_of(self->scene, (PyObject *)self, &index), kind;
+  int family = handle_family_of(self->scene, (PyObject *)self, &index), kind;
   if (family < 0)
     return NULL;
   Def def;
@@ -374,7 +372,7 @@ static PyObject *copy_array(const void *data, size_t size) {
 /* _mesh(handle): (positions, indices, number of corners of a face, 16 numbers) */
 PyObject *scene_mesh(Scene *self, PyObject *object) {
   uint32_t index;
-  int family = family_of(self, object, &index);
+  int family = handle_family_of(self, object, &index);
   if (family < 0)
     return NULL;
   const vlShapeDef *d =
@@ -398,7 +396,7 @@ PyObject *scene_mesh(Scene *self, PyObject *object) {
 /* _instance(handle): (group, 16 numbers, moves, shown) */
 PyObject *scene_instance(Scene *self, PyObject *object) {
   uint32_t index;
-  int family = family_of(self, object, &index);
+  int family = handle_family_of(self, object, &index);
   vlInstanceInfo info;
   if (family < 0)
     return NULL;

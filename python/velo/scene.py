@@ -7,10 +7,12 @@ from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Unio
 from velo import _arrays, _check, _velo
 from velo._context import context_or_default
 from velo._errors import Progress, Step, UsageError, shown, unknown, wrong_value
+from velo._texels import texels
 from velo.camera import Camera
 from velo.film import Film
 from velo.image import OTHER_NAMES, Image, Path, join
 from velo.own import OwnCamera, bare
+from velo.spectrum import Spectrum
 
 Handle = _velo.Handle
 Callback = Callable[[Progress], Optional[bool]]
@@ -68,8 +70,29 @@ class Mesh(NamedTuple):
     group_from_shape: Any  #: 4 x 4
 
 
+def _read(value: Any) -> Any:
+    """A value that _velo reads back: spectra and arrays are tuples with a tag."""
+    if not isinstance(value, tuple) or not value or not isinstance(value[0], str):
+        return value
+    if value[0] == "array":
+        return _arrays.from_bytes(*value[1:])
+    kind, what, scale, space = value[1:]
+    if kind == "sampled":
+        what = tuple(tuple(_arrays.from_bytes(*part[1:]).tolist()) for part in what)
+    return Spectrum(kind, what, scale, space)
+
+
 def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
     return value if isinstance(value, Image) else Image(value, encoding=encoding)
+
+
+def _take_texels(keywords: dict[str, Any], color: bool) -> None:
+    """The keywords image and range of a texture as one image."""
+    limits = keywords.pop("range", None)
+    if "image" in keywords:
+        keywords["image"] = texels(keywords["image"], limits, color, keywords.get("scale"))
+    elif limits is not None:
+        raise UsageError("range: there is no image that it is of")
 
 
 def _channels(value: Any) -> list[str]:
@@ -144,9 +167,10 @@ class Scene(_velo.Scene):
     def add_texture(self, kind: str, **keywords: Any) -> Handle:
         """Adds a texture: constant, image, checkerboard, fbm, ... Keywords: members of vlTextureDef (velo.kinds("textures")).
         spectrum: True (default) for a colour texture, False for a float texture. image: a velo.Image or an array of
-        height x width x channels (uint8: sRGB; floats: linear)."""
-        if "image" in keywords:
-            keywords["image"] = _as_image(keywords["image"])
+        height x width x channels: uint8 (sRGB) and uint16 (linear) are scaled by 255 and 65535, floats are linear and taken as they
+        are. range: (low, high), the array's numbers that are 0 and 1 of linear values; it is needed for other integers, and for
+        floats beyond 0 to 1 of a colour texture."""
+        _take_texels(keywords, keywords.get("spectrum", True) is not False)
         return self._new("textures", kind, keywords)
 
     def add_material(self, kind: str, **keywords: Any) -> Handle:
@@ -235,8 +259,10 @@ class Scene(_velo.Scene):
         _check.instance(handle, Handle, "handle")
         if handle.family == "lights" and "from_" in keywords:
             keywords["from"] = keywords.pop("from_")
-        if handle.family in ("lights", "textures") and "image" in keywords:
-            keywords["image"] = _as_image(keywords["image"], "linear" if handle.family == "lights" else None)
+        if handle.family == "lights" and "image" in keywords:
+            keywords["image"] = _as_image(keywords["image"], "linear")
+        if handle.family == "textures" and ("image" in keywords or "range" in keywords):
+            _take_texels(keywords, self._get(handle)["spectrum"])
         self._changed = True
         self._set(handle, kind, keywords)
 
@@ -255,6 +281,17 @@ class Scene(_velo.Scene):
         place, and the id.object, of the first one that was removed."""
         self._changed = True
         self._remove(handle)
+
+    def get(self, handle: Handle, name: Optional[str] = None) -> Any:
+        """What an object is, as the keywords that make it: a dict, or the value of one name. Spectra are velo.Spectrum, textures and
+        other objects handles, images copies. `scene.add_material(handle.kind, **scene.get(handle))` makes another one."""
+        values = {key: _read(value) for key, value in self._get(handle).items()}
+        if name is None:
+            return values
+        _check.text(name, "name")
+        if name not in values:
+            raise unknown(f"keyword of this object of the scene's {handle.family}", name, list(values))
+        return values[name]
 
     def mesh(self, shape: Handle) -> Mesh:
         """A copy of a mesh: positions n x 3, scene units; indices m x 3 or m x 4. Other shapes are a UsageError."""

@@ -27,8 +27,6 @@ typedef struct vlHeaderDef {
 VL_API vlHeaderDef vl_default_header_def(void);
 /** Sets the attributes. Errors: ARGUMENT, MEMORY. */
 VL_API vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *def);
-/** Sets the attributes that another image has. Errors: ARGUMENT, MEMORY. */
-VL_API vlResult vl_image_add_attributes(vlImage *image, const vlImage *from);
 /** Makes an image, owned by the caller, of integers (type U32, at most 16 channels) in a form
  * that other programs show: channel names end in one letter ("id.object.Y"), and values are
  * floats, which are exact below 2^24. If a value is not, the new image keeps integers. It has

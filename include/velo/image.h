@@ -99,6 +99,8 @@ typedef struct vlAttribute {
 } vlAttribute;
 /** Sets an attribute, replacing one of the same name. Copied. ARGUMENT, MEMORY. */
 VL_API vlResult vl_image_set_attribute(vlImage *image, const vlAttribute *attribute);
+/** Sets the attributes that another image has. Errors: ARGUMENT, MEMORY. */
+VL_API vlResult vl_image_add_attributes(vlImage *image, const vlImage *from);
 /** Number of attributes. */
 VL_API uint32_t vl_image_attribute_count(const vlImage *image);
 /** Attribute `index`, from 0. Its strings live until the attribute is set again or the image

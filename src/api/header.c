@@ -333,14 +333,3 @@ vlResult vl_image_show_ids(const vlImage *ids, vlImage **shown) {
   }
   return result;
 }
-
-vlResult vl_image_add_attributes(vlImage *image, const vlImage *from) {
-  vlResult result = image && from ? VL_OK : VL_ERROR_ARGUMENT;
-  for (uint32_t i = 0; from && i < vl_image_attribute_count(from) && result == VL_OK; i++) {
-    vlAttribute attribute;
-    result = vl_image_attribute(from, i, &attribute);
-    if (result == VL_OK)
-      result = vl_image_set_attribute(image, &attribute);
-  }
-  return result;
-}

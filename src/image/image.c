@@ -384,6 +384,17 @@ vlResult vl_image_attribute(const vlImage *image, uint32_t index, vlAttribute *a
   return VL_OK;
 }
 
+vlResult vl_image_add_attributes(vlImage *image, const vlImage *from) {
+  vlResult result = image && from ? VL_OK : VL_ERROR_ARGUMENT;
+  for (uint32_t i = 0; from && i < vl_image_attribute_count(from) && result == VL_OK; i++) {
+    vlAttribute attribute;
+    result = vl_image_attribute(from, i, &attribute);
+    if (result == VL_OK)
+      result = vl_image_set_attribute(image, &attribute);
+  }
+  return result;
+}
+
 vlResult vl_image_find_attribute(const vlImage *image, const char *name,
                                  vlAttribute *attribute) {
   if (!image || !name || !attribute)

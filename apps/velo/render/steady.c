@@ -216,17 +216,6 @@ static vlResult add_frame(const SteadyFrame *now, const SteadyFrame *before,
 
 /* ---- the result -------------------------------------------------------------------------- */
 
-static vlResult copy_attributes(const vlImage *from, vlImage *to) {
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
-    vlAttribute attribute;
-    result = vl_image_attribute(from, i, &attribute);
-    if (result == VL_OK)
-      result = vl_image_set_attribute(to, &attribute);
-  }
-  return result;
-}
-
 vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
                       vlStopFn *stop, void *stop_user, vlImage **result, vlError *error) {
   const SteadyFrame *now = steady_find(s, s->number);
@@ -245,7 +234,7 @@ vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world,
     code = add_frame(now, steady_find(s, s->before[k]), world, job, stop, stop_user,
                      vl_image_pixels(sums), error);
   if (code == VL_OK)
-    code = copy_attributes(now->clean, *result);
+    code = vl_image_add_attributes(*result, now->clean);
   const float *sum = code == VL_OK ? vl_image_const_pixels(sums) : NULL;
   float *to = code == VL_OK ? vl_image_pixels(*result) : NULL;
   for (size_t i = 0; i < pixels && to; i++) {

@@ -110,10 +110,9 @@ bool camera_follow(const ViewCamera *before, const ViewCamera *now, const ViewCa
     *kept = *now;
     return true;
   }
-  ViewCamera next = *shown;
-  next.def.shutter_open = now->def.shutter_open;
-  next.def.shutter_close = now->def.shutter_close;
-  if (vl_camera_make(&next.def, &next.made, NULL, &error) != VL_OK)
+  ViewCamera next;
+  if (camera_set_shutter(shown, now->def.shutter_open, now->def.shutter_close, &next, &error) !=
+      VL_OK)
     return false;
   *kept = next;
   return true;

@@ -536,13 +536,7 @@ static vlResult make_clean(const vlImage *image, int alpha, bool errors, vlImage
   for (uint32_t y = 0; y < def.height && to && alpha >= 0; y++)
     for (uint32_t x = 0; x < def.width; x++, to += def.channels)
       to[3] = vl_image_get(image, x, y, (uint32_t)alpha);
-  for (uint32_t i = 0; i < vl_image_attribute_count(image) && result == VL_OK; i++) {
-    vlAttribute a;
-    result = vl_image_attribute(image, i, &a);
-    if (result == VL_OK)
-      result = vl_image_set_attribute(*clean, &a);
-  }
-  return result;
+  return result == VL_OK ? vl_image_add_attributes(*clean, image) : result;
 }
 
 vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **clean,

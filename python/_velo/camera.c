@@ -6,12 +6,27 @@
 
 /* ---- making ------------------------------------------------------------------------------ */
 
+/* Where a pose is a matrix, eye, lookat and up become its own: they are what get() returns, and
+ * what replace(eye=...) starts from. */
+static void match_pose(vlCameraDef *def) {
+  const double *m = def->world_from_camera;
+  if (!def->has_matrix)
+    return;
+  for (int i = 0; i < 3; i++) {
+    def->eye[i] = m[4 * i + 3];
+    def->lookat[i] = m[4 * i + 3] + m[4 * i + 2];
+    def->up[i] = -m[4 * i + 1];
+  }
+  def->roll = 0;
+}
+
 static PyObject *camera_wrap(const vlCameraDef *def, const vlCamera *compiled,
                              const char *warning, PyObject *keep) {
   Camera *self = make_object(TYPE_CAMERA);
   if (!self)
     return NULL;
   self->def = *def;
+  match_pose(&self->def);
   self->camera = *compiled;
   Py_XINCREF(keep);
   self->keep = keep;
@@ -192,11 +207,38 @@ static const char *const special_names[] = {"K",
                                             "own",
                                             NULL};
 
+/* The row of a camera's parameter: of all cameras, or of the def's projection; with `any` also
+ * of other projections, as scene files name them, but for the numbers of their shapes: one name
+ * is not the same number of each. Null: there is none. */
+static const vlParameter *camera_row(const vlCameraDef *def, const char *name, bool any) {
+  const vlParameter *row = vl_setting(VL_SETTING_CAMERA, name);
+  const vlKindFamily *family = vl_kind_family_find("cameras");
+  const vlParameter *projections = vl_setting(VL_SETTING_CAMERA, "projection");
+  if (row || !family || !projections)
+    return row;
+  const char *projection = projections->choices[def->projection];
+  for (int own = 1; own >= (any ? 0 : 1); own--)
+    for (uint32_t k = 0; k < family->kind_count; k++) {
+      if (own && !same_word(family->constants[k], projection))
+        continue;
+      const vlKindRow *kind = family->rows[k];
+      row = find_parameter(kind->parameters, kind->parameter_count, name);
+      if (row && row->type != VL_PARAMETER_BLOCK &&
+          (own || strncmp(row->member, "shape[", 6) != 0))
+        return row;
+    }
+  return NULL;
+}
+
 static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
   PyObject *name, *value;
   Py_ssize_t position = 0;
   bool focal = false;
   const Target target = {(char *)def, keep, NULL, false};
+  PyObject *projection = PyDict_GetItemString(keywords, "projection");
+  if (projection &&
+      !set_parameter(&target, vl_setting(VL_SETTING_CAMERA, "projection"), projection))
+    return false;
   while (PyDict_Next(keywords, &position, &name, &value)) {
     const char *text = keep_text(keep, name, "a keyword");
     if (!text)
@@ -214,13 +256,7 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
       return false;
     if (special)
       continue;
-    const vlParameter *row = vl_setting(VL_SETTING_CAMERA, text);
-    const vlKindFamily *family = row ? NULL : vl_kind_family_find("cameras");
-    for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
-      row = find_parameter(family->rows[k]->parameters, family->rows[k]->parameter_count, text);
-      if (row && row->type == VL_PARAMETER_BLOCK)
-        row = NULL;
-    }
+    const vlParameter *row = camera_row(def, text, true);
     if (!row) {
       PyObject *names = PyList_New(0);
       for (int i = 0; names && special_names[i]; i++) {
@@ -233,7 +269,9 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
         Py_CLEAR(names);
       return raise_unknown("keyword of a camera", text, names);
     }
-    if (!set_parameter(&target, row, value))
+    vlParameter named = *row; /* messages have the name that was given */
+    named.keyword = strncmp(row->member, "shape[", 6) == 0 ? text : row->keyword;
+    if (!set_parameter(&target, &named, value))
       return false;
   }
   return true;
@@ -293,13 +331,15 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
 #define UNSET(field) def->field = VL_UNSET;
     FOCAL(UNSET)
 #undef UNSET
-    {
-      def->fx = made->fx;
-      def->fy = made->fy;
-      def->cx = made->cx;
-      def->cy = made->cy;
-      def->skew = made->skew;
-    }
+    def->fx = made->fx;
+    def->fy = made->fy;
+    def->cx = made->cx;
+    def->cy = made->cy;
+    def->skew = made->skew;
+    memcpy(def->eye, self->def.eye, sizeof def->eye); /* the pose stays as it was given */
+    memcpy(def->lookat, self->def.lookat, sizeof def->lookat);
+    memcpy(def->up, self->def.up, sizeof def->up);
+    def->roll = self->def.roll;
   }
   return result;
 }
@@ -466,7 +506,7 @@ static PyObject *camera_warning(Camera *self, void *unused) {
 static PyObject *camera_get(Camera *self, PyObject *name) {
   PyObject *keep = PyList_New(0), *result = NULL;
   const char *text = keep ? keep_text(keep, name, "name") : NULL;
-  const vlParameter *row = text ? vl_setting(VL_SETTING_CAMERA, text) : NULL;
+  const vlParameter *row = text ? camera_row(&self->def, text, false) : NULL;
   if (row) {
     result = get_parameter((const char *)&self->def, row);
   } else if (text) {

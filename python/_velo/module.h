@@ -245,6 +245,11 @@ PyObject *get_parameter(const char *def, const vlParameter *row);
 bool raise_unknown(const char *thing, const char *name, PyObject *names);
 /* Appends the names of rows to a list. */
 bool append_names(PyObject *list, const vlParameter *rows, size_t count);
+/* Compares letters and digits only, whatever their case: "blackman-harris" is
+ * "BLACKMAN_HARRIS". */
+bool same_word(const char *a, const char *b);
+/* Appends a text in lower case where it is a constant's name (AMBIENT_OCCLUSION). */
+bool append_text(PyObject *list, const char *text);
 bool append_settings(PyObject *list, vlSettingGroup group);
 /* Index of a word in a list that ends with null, comparing letters and digits only; -1 with an
  * exception. */

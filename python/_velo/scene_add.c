@@ -180,7 +180,7 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
   }
   if (IS("name"))
     return set_name(a, value, &d->name);
-  if (IS("transform") || IS("world_from_medium"))
+  if (IS("transform") || IS("pose") || IS("world_from_medium"))
     return numbers_copy(value, name, 16, d->world_from_medium) ? 1 : -1;
   for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
     if (!IS(grids[i].name) || !grid)
@@ -213,7 +213,7 @@ static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value
   int code;
   if (IS("image"))
     return image_of(value, name, &d->image) ? 1 : -1;
-  if (IS("transform") || IS("world_from_light"))
+  if (IS("transform") || IS("pose") || IS("world_from_light"))
     return numbers_copy(value, name, 16, d->world_from_light) ? 1 : -1;
   if (IS("medium"))
     return handle(a, value, "media", name, &d->medium.index) ? 1 : -1;
@@ -289,7 +289,7 @@ static int set_shape_array(Adding *a, vlShapeDef *d, int array, PyObject *value)
 static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value) {
   if (IS("name"))
     return set_name(a, value, &d->label.name);
-  if (IS("transform") || IS("group_from_shape"))
+  if (IS("transform") || IS("pose") || IS("group_from_shape"))
     return numbers_copy(value, name, 16, d->group_from_shape) ? 1 : -1;
   if (IS("material"))
     return handle(a, value, "materials", name, &d->material.index) ? 1 : -1;
@@ -431,11 +431,58 @@ static uint32_t add(vlScene *scene, Family family, const Def *def, vlError *erro
   return 0;
 }
 
+/* Names for "from", which Python reserves. */
+static bool is_from(const char *name) {
+  return strcmp(name, "from_") == 0 || strcmp(name, "position") == 0;
+}
+
+/* The keywords of a family besides its rows, for messages. */
+static bool append_extra(PyObject *names, Family family, const vlKindRow *row) {
+  static const char *const texture[] = {"name",  "image",    "range",      "data",
+                                        "tint",  "channel",  "encoding",   "wrap_t",
+                                        "space", "spectrum", "st_from_uv", NULL};
+  static const char *const material[] = {"name", "materials", NULL};
+  static const char *const medium[] = {"name", "pose", "transform", "density", NULL};
+  static const char *const light[] = {"pose", "transform", "medium", "image", "portal", NULL};
+  static const char *const position[] = {"position", "from_", NULL};
+  static const char *const shape[] = {
+      "name",      "pose",    "transform", "material", "emission",
+      "group",     "inside",  "outside",   "times",    "indices",
+      "positions", "normals", "uvs",       "tangents", "colors",
+      "radii",     "centers", "widths",    "backdrop", "reverse_orientation",
+      NULL};
+  const char *const *const lists[] = {
+      [TEXTURES] = texture, [MATERIALS] = material, [MEDIA] = medium,
+      [LIGHTS] = light,     [SHAPES] = shape,       [INSTANCES] = NULL};
+  for (const char *const *list = lists[family]; list && *list; list++)
+    if (!append_text(names, *list))
+      return false;
+  const bool from =
+      family == LIGHTS && find_parameter(row->parameters, row->parameter_count, "from") != NULL;
+  return !from || (append_text(names, position[0]) && append_text(names, position[1]));
+}
+
+/* False, with an exception: two keywords name the same member. */
+static bool check_doubles(PyObject *keywords) {
+  static const char *const pairs[][2] = {
+      {"pose", "transform"}, {"position", "from_"}, {"position", "from"}, {"from_", "from"}};
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    if (!PyDict_GetItemString(keywords, pairs[i][0]) ||
+        !PyDict_GetItemString(keywords, pairs[i][1]))
+      continue;
+    raise_usage("%s and %s are the same: give one of them", pairs[i][0], pairs[i][1]);
+    return false;
+  }
+  return true;
+}
+
 bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
              PyObject *keywords, bool spectrum, Def *def) {
   const Target target = {(char *)def, a->keep, a->scene, spectrum};
   PyObject *name, *value;
   Py_ssize_t position = 0;
+  if (!check_doubles(keywords))
+    return false;
   while (PyDict_Next(keywords, &position, &name, &value)) {
     const char *text = keep_text(a->keep, name, "a keyword");
     int extra = text ? set_extra(a, family, def, text, value) : -1;
@@ -444,6 +491,16 @@ bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
     if (extra)
       continue;
     const vlParameter *p = find_parameter(row->parameters, row->parameter_count, text);
+    vlParameter named; /* messages have the name that was given */
+    const vlParameter *from =
+        family == LIGHTS && is_from(text)
+            ? find_parameter(row->parameters, row->parameter_count, "from")
+            : NULL;
+    if (from) {
+      named = *from;
+      named.keyword = text;
+      p = &named;
+    }
     if (!p && family == TEXTURES && spectrum && strncmp(text, "spectrum_", 9) == 0) {
       char other[32] = "float_";
       if (strlen(text) < 20)
@@ -452,7 +509,8 @@ bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
     }
     if (!p) {
       PyObject *names = PyList_New(0);
-      if (names && !append_names(names, row->parameters, row->parameter_count))
+      if (names && (!append_names(names, row->parameters, row->parameter_count) ||
+                    !append_extra(names, family, row)))
         Py_CLEAR(names);
       char what[96];
       PyOS_snprintf(what, sizeof what, "keyword of this %s", thing);
@@ -545,22 +603,23 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
   return result;
 }
 
-/* _add_instance(group, matrices, times or None): handle */
+/* _add_instance(group, matrices, times or None, name of the matrices): handle */
 PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
   PyObject *group, *matrices, *times;
-  if (!PyArg_ParseTuple(arguments, "OOO:_add_instance", &group, &matrices, &times) ||
+  const char *what;
+  if (!PyArg_ParseTuple(arguments, "OOOs:_add_instance", &group, &matrices, &times, &what) ||
       !scene_open(self))
     return NULL;
   vlGroupId id;
   if (!read_handle(self, group, "groups", "group", &id.index))
     return NULL;
   Numbers poses = {0}, seconds = {0};
-  bool fine = numbers_read(matrices, 'd', "transform", &poses) &&
+  bool fine = numbers_read(matrices, 'd', what, &poses) &&
               (times == Py_None || numbers_read(times, 'd', "times", &seconds));
   size_t keys = times == Py_None ? 1 : seconds.count;
   if (fine && (keys == 0 || keys > 65536 || poses.count != 16 * keys))
     fine =
-        raise_value("transform", matrices,
+        raise_value(what, matrices,
                     "a matrix of 16 numbers, with times (at most 65536) one for each") != NULL;
   vlSceneCheckpoint *checkpoint = fine ? scene_attempt(self) : NULL;
   vlInstanceId instance = {0};

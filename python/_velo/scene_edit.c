@@ -102,11 +102,12 @@ static PyObject *set_look(Scene *self, uint32_t index, PyObject *keywords) {
 }
 
 static PyObject *set_instance(Scene *self, uint32_t index, PyObject *keywords) {
-  PyObject *transform = PyDict_GetItemString(keywords, "transform");
+  PyObject *transform = PyDict_GetItemString(keywords, "transform"),
+           *pose = PyDict_GetItemString(keywords, "pose");
   double m[16];
-  if (!transform || PyDict_Size(keywords) != 1)
-    return raise_usage("of an instance, transform can be changed");
-  if (!numbers_copy(transform, "transform", 16, m))
+  if (!transform == !pose || PyDict_Size(keywords) != 1)
+    return raise_usage("of an instance, its pose (or transform) can be changed");
+  if (!numbers_copy(pose ? pose : transform, pose ? "pose" : "transform", 16, m))
     return NULL;
   vlError error = {0};
   return outcome(vl_scene_set_instance(self->scene, (vlInstanceId){index}, m, &error), &error);

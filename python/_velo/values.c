@@ -12,9 +12,7 @@ bool keep_object(PyObject *keep, PyObject *object) {
 
 /* ---- names ------------------------------------------------------------------------------- */
 
-/* Compares letters and digits only, whatever their case: "blackman-harris" is
- * "BLACKMAN_HARRIS". */
-static bool same_word(const char *a, const char *b) {
+bool same_word(const char *a, const char *b) {
   for (;; a++, b++) {
     while (*a == '_' || *a == '-' || *a == ' ' || *a == '.')
       a++;
@@ -38,8 +36,7 @@ bool raise_unknown(const char *thing, const char *name, PyObject *names) {
   return false;
 }
 
-/* Appends a text in lower case where it is a constant's name (AMBIENT_OCCLUSION). */
-static bool append_text(PyObject *list, const char *text) {
+bool append_text(PyObject *list, const char *text) {
   char lower[64] = "";
   bool constant = strlen(text) < sizeof lower &&
                   strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == strlen(text);

@@ -79,9 +79,19 @@ def fork_error() -> ForkError:
     return ForkError("this object was made before fork(), which does not copy its threads: make it again in this process")
 
 
+#: What other programs call keywords.
+_OTHER_NAMES = {"base_color": "reflectance", "basecolor": "reflectance", "albedo": "reflectance", "diffuse": "reflectance", "ior": "eta",
+                "vertices": "positions", "points": "positions", "faces": "indices", "triangles": "indices", "uv": "uvs", "texcoords": "uvs",
+                "location": "position", "energy": "power", "intensity": "scale", "direction": "to", "matrix": "pose",
+                "world_from_object": "pose", "samples": "spp", "width": "resolution", "height": "resolution"}
+
+
 def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
     """There is no `thing` of that name: the message has the nearest name."""
     from velo import _velo
+    other = _OTHER_NAMES.get(name.lower()) if isinstance(name, str) else None
+    if other is not None and other in names and name not in names:
+        return UsageError(f"unknown {thing} {shown(name)}; it is called {other}")
     if not names:
         return UsageError(f"unknown {thing} {shown(name)}; none is known")
     plain = name.encode(errors="backslashreplace").decode().replace("\0", "?")  # as C can hold it

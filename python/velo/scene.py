@@ -1,10 +1,11 @@
 """Scenes: load them from files or build them from arrays, and render them."""
 from __future__ import annotations
 
+import math
 import os
 from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
 
-from velo import _arrays, _check, _velo
+from velo import _arrays, _check, _solids, _velo
 from velo._context import context_or_default
 from velo._errors import Progress, Step, UsageError, shown, unknown, wrong_value
 from velo._texels import texels
@@ -180,7 +181,7 @@ class Scene(_velo.Scene):
 
     def add_medium(self, kind: str, **keywords: Any) -> Handle:
         """Adds a participating medium: homogeneous, grid, rgb_grid, cloud, nanovdb. Keywords: members of vlMediumDef.
-        density and other grids: arrays of nz x ny x nx (rgb: x 3). transform: 4 x 4, world from medium."""
+        density and other grids: arrays of nz x ny x nx (rgb: x 3). pose: 4 x 4, world from medium."""
         return self._new("media", kind, keywords)
 
     def add_emission(self, **keywords: Any) -> Handle:
@@ -189,10 +190,8 @@ class Scene(_velo.Scene):
 
     def add_light(self, kind: str, **keywords: Any) -> Handle:
         """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
-        scale, power (W), illuminance (lx), from, to, image; transform: 4 x 4, world from light. A Python keyword cannot be
-        "from": write from_."""
-        if "from_" in keywords:
-            keywords["from"] = keywords.pop("from_")
+        scale, power (W), illuminance (lx), position, to, image; pose: 4 x 4, world from light. The member from, a word that
+        Python reserves, is position or from_."""
         if "image" in keywords:
             keywords["image"] = _as_image(keywords["image"], "linear")
         return self._new("lights", kind, keywords)
@@ -200,7 +199,7 @@ class Scene(_velo.Scene):
     def add_shape(self, kind: str, **keywords: Any) -> Handle:
         """Adds a shape: triangles, bilinear, sphere, disk, cylinder, curves. Keywords: members of vlShapeDef: positions
         (n x 3), normals (n x 3), uvs (n x 2), indices (m x 3), radius, ...; material, emission, group, inside, outside:
-        handles; transform: 4 x 4, group from shape; name: its name."""
+        handles; pose (or transform): 4 x 4, group from shape; name: its name."""
         return self._new("shapes", kind, keywords)
 
     def add_mesh(self, positions: Any, indices: Any, **keywords: Any) -> Handle:
@@ -208,11 +207,36 @@ class Scene(_velo.Scene):
         return self.add_shape("triangles", positions=positions, indices=indices, **keywords)
 
     def add_sphere(self, center: Sequence[float], radius: float, **keywords: Any) -> Handle:
-        """Adds a whole sphere: center (x, y, z) and radius in scene units. Keywords: as add_shape."""
-        x, y, z = (_check.number(value, "center") for value in _check.tuple_of(center, 3, "center", "three numbers"))
+        """Adds a whole sphere: center (x, y, z) and radius in scene units. Keywords: as add_shape; a pose moves it on."""
         radius = _check.number(radius, "radius")
-        place = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
-        return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, transform=place, **keywords)
+        _solids.place(keywords, _solids.shift(_solids.vector(center, "center")))
+        return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, **keywords)
+
+    def add_box(self, low: Sequence[float], high: Sequence[float], **keywords: Any) -> Handle:
+        """Adds a box from corner low to corner high (x, y, z), scene units: 12 triangles whose normals point outwards, uvs from 0
+        to 1 on each side. Keywords: as add_shape."""
+        return self.add_shape("triangles", **_solids.box(_solids.vector(low, "low"), _solids.vector(high, "high")), **keywords)
+
+    def add_plane(self, center: Sequence[float], normal: Sequence[float], width: float, height: float, **keywords: Any) -> Handle:
+        """Adds a rectangle about a center (x, y, z), scene units. Its width is along the horizontal axis across the normal (z being
+        up; x where the normal is along z); uvs from 0 to 1. Keywords: as add_shape."""
+        size = _check.number(width, "width", 0), _check.number(height, "height", 0)
+        return self.add_shape("triangles", **_solids.plane(_solids.vector(center, "center"), _solids.vector(normal, "normal"), *size),
+                              **keywords)
+
+    def add_disk(self, center: Sequence[float], radius: float, normal: Sequence[float], **keywords: Any) -> Handle:
+        """Adds a disk about a center (x, y, z), scene units; it emits along its normal. Keywords: as add_shape."""
+        place = _solids.frame(_solids.vector(center, "center"), _solids.vector(normal, "normal"), "normal")
+        _solids.place(keywords, place)
+        return self.add_shape("disk", radius=_check.number(radius, "radius"), **keywords)
+
+    def add_cylinder(self, start: Sequence[float], end: Sequence[float], radius: float, **keywords: Any) -> Handle:
+        """Adds a cylinder about the line from start to end (x, y, z), scene units; it is open, add_disk closes it. Keywords: as
+        add_shape."""
+        first, last = _solids.vector(start, "start"), _solids.vector(end, "end")
+        axis = (last[0] - first[0], last[1] - first[1], last[2] - first[2])
+        _solids.place(keywords, _solids.frame(first, axis, "end minus start"))
+        return self.add_shape("cylinder", radius=_check.number(radius, "radius"), z_min=0.0, z_max=math.hypot(*axis), **keywords)
 
     def add_group(self, name: Optional[str] = None) -> Handle:
         """Adds an empty group. Shapes join it (keyword group); add_instance places it."""
@@ -228,11 +252,13 @@ class Scene(_velo.Scene):
         group, info = self._load_group(path, name, keywords, progress)
         return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
 
-    def add_instance(self, group: Handle, transform: Any, times: Optional[Sequence[float]] = None) -> Handle:
-        """Places a group: transform is 4 x 4, world from group. With times (seconds, ascending) it moves: a matrix for each
-        time."""
+    def add_instance(self, group: Handle, transform: Any = None, times: Optional[Sequence[float]] = None, *, pose: Any = None) -> Handle:
+        """Places a group: pose (or transform) is 4 x 4, world from group. With times (seconds, ascending) it moves: a matrix for
+        each time."""
+        if (transform is None) == (pose is None):
+            raise UsageError("pose: give either it or transform, 4 x 4 numbers")
         self._changed = True
-        return self._add_instance(group, transform, times)
+        return self._add_instance(group, transform if pose is None else pose, times, "transform" if pose is None else "pose")
 
     # ---- changes
 
@@ -255,10 +281,8 @@ class Scene(_velo.Scene):
         """Changes what the keywords name; the rest stays. Textures, materials, emission and lights take the keywords of their
         add_ method; with a kind they become one of this kind, with defaults where nothing is given. So do shapes: new positions of
         the same number keep the mesh's faces, normals and uvs; an array that is None is taken away; material, emission (None: none),
-        group and transform stay with another kind. Instances take transform (4 x 4, world from group)."""
+        group and transform stay with another kind. Instances take pose (4 x 4, world from group)."""
         _check.instance(handle, Handle, "handle")
-        if handle.family == "lights" and "from_" in keywords:
-            keywords["from"] = keywords.pop("from_")
         if handle.family == "lights" and "image" in keywords:
             keywords["image"] = _as_image(keywords["image"], "linear")
         if handle.family == "textures" and ("image" in keywords or "range" in keywords):

@@ -389,5 +389,52 @@ def nothing_leaks():
     tracemalloc.stop()
 
 
+@case
+def a_moved_camera_says_where_it_is():
+    camera = velo.Camera(64, 48, eye=(0, 1, 3), lookat=(0, 0, 0), fov=0.8)
+    pose = numpy.eye(4)
+    pose[:3, :3] = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]  # x right, y down, z forward
+    pose[:3, 3] = 1, 2, 3
+    for moved in (camera.move(pose), camera.replace(world_from_camera=pose), camera.replace(camera_from_world=numpy.linalg.inv(pose)),
+                  velo.Camera(64, 48, world_from_camera=pose), camera.move(pose).at(0.5), camera.move(pose).resize(32, 24)):
+        assert numpy.allclose(moved.get("eye"), (1, 2, 3)) and numpy.allclose(moved.get("up"), (0, 1, 0)), moved.get("eye")
+        assert numpy.allclose(moved.get("lookat"), (2, 2, 3)) and moved.get("roll") == 0
+        again = moved.replace(eye=moved.get("eye"), lookat=moved.get("lookat"), up=moved.get("up"))
+        assert numpy.allclose(again.world_from_camera, moved.world_from_camera)
+    assert camera.resize(32, 24).get("lookat") == (0, 0, 0) and camera.get("eye") == (0, 1, 3)
+
+
+@case
+def models_take_the_names_that_they_document():
+    pixels = [[10, 20], [40, 30]]
+    for projection, names, values in (("double_sphere", ("xi", "alpha"), (-0.2, 0.6)), ("eucm", ("alpha", "beta"), (0.6, 1.1)),
+                                      ("unified", ("xi",), (0.8,))):
+        plain = velo.Camera(64, 48, projection=projection, shape=values, fx=30, fy=30)
+        for keywords in (dict(zip(names, values)), dict(reversed(list(zip(names, values))))):
+            camera = velo.Camera(64, 48, fx=30, fy=30, **keywords, projection=projection)
+            assert [camera.get(name) for name in names] == list(values), projection
+            assert numpy.array_equal(camera.unproject(pixels).directions, plain.unproject(pixels).directions), projection
+    camera = velo.Camera(64, 48, projection="double_sphere", xi=-0.2, alpha=0.6)
+    assert camera.replace(alpha=0.5).get("xi") == -0.2 and camera.replace(alpha=0.5).get("alpha") == 0.5
+    for call, text in ((lambda: camera.replace(beta=1), "beta"), (lambda: velo.Camera(8, 8, alpha=0.5), "alpha"),
+                       (lambda: velo.Camera(8, 8, projection="unified", xi=-1), "xi must be"), (lambda: camera.get("beta"), "beta"),
+                       (lambda: velo.Camera(8, 8, projection="unified", xi=1, alpha=0.5), "alpha")):
+        with raises(velo.UsageError, text):
+            call()
+
+
+@case
+def pbrt_files_of_cameras_are_read():
+    pixels = [[10, 20], [40, 30]]
+    for keywords in (dict(fov=0.8), dict(fx=50, fy=50, cx=30, cy=20), dict(fov=0.7, lens_radius=0.1, focus_distance=3),
+                     dict(projection="orthographic")):
+        camera = velo.Camera(64, 48, eye=(0, 1, 3), lookat=(0, 0, 0), **keywords)
+        camera.write(work("camera.pbrt"))
+        again = velo.read_camera(work("camera.pbrt"))
+        assert again.resolution == (64, 48) and numpy.allclose(again.world_from_camera, camera.world_from_camera, atol=1e-12)
+        for name in ("origins", "directions"):
+            assert numpy.allclose(getattr(again.unproject(pixels), name), getattr(camera.unproject(pixels), name), atol=1e-9), keywords
+
+
 if __name__ == "__main__":
     cases.main()

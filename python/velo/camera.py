@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, NamedTuple, Optional, Sequence, Union, Unpack
 
-from velo import _arrays, _check, _velo
+from velo import _arrays, _check, _keywords, _velo
 from velo._context import context_or_default
 from velo.image import Path
 from velo.own import bare
@@ -51,7 +51,7 @@ class Camera(_velo.Camera):
 
     Without keywords it is a pinhole camera at the origin that looks along -z, with 90 degrees across the smaller side."""
 
-    def __new__(cls, width: int, height: int, **keywords: Any) -> "Camera":
+    def __new__(cls, width: int, height: int, **keywords: Unpack[_keywords.Cameras]) -> "Camera":
         return _velo.camera_new(width, height, {name: bare(value) for name, value in keywords.items()})
 
     @property
@@ -84,7 +84,7 @@ class Camera(_velo.Camera):
         """A parameter as it was given; None: it was not."""
         return self._get(name)
 
-    def replace(self, **keywords: Any) -> "Camera":
+    def replace(self, **keywords: Unpack[_keywords.Cameras]) -> "Camera":
         """This camera with other parameters. A given focal length replaces all that were given before."""
         return self._replace({name: bare(value) for name, value in keywords.items()})
 
@@ -147,6 +147,8 @@ class Camera(_velo.Camera):
 
 
 _velo.set_type("Camera", Camera)
+_keywords.show(Camera.__new__, _keywords.Cameras)
+_keywords.show(Camera.replace, _keywords.Cameras)
 
 
 def _from_text(text: str) -> Camera:

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union, Unpack
 
-from velo import _arrays, _check, _solids, _velo
+from velo import _arrays, _check, _keywords, _solids, _velo
 from velo._context import context_or_default
 from velo._errors import Progress, Step, UsageError, shown, unknown, wrong_value
 from velo._texels import texels
@@ -128,22 +128,24 @@ class Scene(_velo.Scene):
 
     # ---- files and camera
 
-    def load(self, path: Path, *, progress: Optional[StepCallback] = None, **keywords: Any) -> None:
+    def load(self, path: Path, *, progress: Optional[StepCallback] = None, **keywords: Unpack[_keywords.Load]) -> None:
         """Adds the contents of a file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. Keywords: vlLoadDef's. progress: called
         about ten times a second with a velo.Step; False ends the load with a CancelledError. After this, and after a
         KeyboardInterrupt, the scene is as it was before."""
+        words: dict[str, Any] = {**keywords}
         self._changed = True
-        self._load(path, keywords, progress)
+        self._load(path, words, progress)
         self._file = self._file or os.fsdecode(path)
 
-    def complete(self, **keywords: Any) -> None:
+    def complete(self, **keywords: Unpack[_keywords.Complete]) -> None:
         """Adds a camera and lights if there are none, and what is asked for. Keywords: vlCompleteDef's; environment may also
         be the path of an image."""
+        words: dict[str, Any] = {**keywords}
         self._changed = True
-        environment = keywords.get("environment", "auto")
+        environment = words.get("environment", "auto")
         if not (isinstance(environment, str) and environment in _ENVIRONMENTS):
-            keywords.update(environment="file", path=environment)
-        self._complete(keywords)
+            words.update(environment="file", path=environment)
+        self._complete(words)
 
     def save(self, path: Path, *, strict: bool = False) -> dict[str, int]:
         """Writes the scene as .gltf, .glb or .pbrt. Returns what the format cannot hold and how often the scene has it;
@@ -165,91 +167,101 @@ class Scene(_velo.Scene):
         self._changed = True
         return self._add(family, kind, keywords)
 
-    def add_texture(self, kind: str, **keywords: Any) -> Handle:
+    def add_texture(self, kind: str, **keywords: Unpack[_keywords.Textures]) -> Handle:
         """Adds a texture: constant, image, checkerboard, fbm, ... Keywords: members of vlTextureDef (velo.kinds("textures")).
         spectrum: True (default) for a colour texture, False for a float texture. image: a velo.Image or an array of
         height x width x channels: uint8 (sRGB) and uint16 (linear) are scaled by 255 and 65535, floats are linear and taken as they
         are. range: (low, high), the array's numbers that are 0 and 1 of linear values; it is needed for other integers, and for
         floats beyond 0 to 1 of a colour texture."""
-        _take_texels(keywords, keywords.get("spectrum", True) is not False)
-        return self._new("textures", kind, keywords)
+        words: dict[str, Any] = {**keywords}
+        _take_texels(words, words.get("spectrum", True) is not False)
+        return self._new("textures", kind, words)
 
-    def add_material(self, kind: str, **keywords: Any) -> Handle:
+    def add_material(self, kind: str, **keywords: Unpack[_keywords.Materials]) -> Handle:
         """Adds a material: diffuse, conductor, dielectric, principled, ... Keywords: members of vlMaterialDef
         (velo.kinds("materials")); numbers and spectra may be textures. name: its name."""
-        return self._new("materials", kind, keywords)
+        words: dict[str, Any] = {**keywords}
+        return self._new("materials", kind, words)
 
-    def add_medium(self, kind: str, **keywords: Any) -> Handle:
+    def add_medium(self, kind: str, **keywords: Unpack[_keywords.Media]) -> Handle:
         """Adds a participating medium: homogeneous, grid, rgb_grid, cloud, nanovdb. Keywords: members of vlMediumDef.
         density and other grids: arrays of nz x ny x nx (rgb: x 3). pose: 4 x 4, world from medium."""
-        return self._new("media", kind, keywords)
+        words: dict[str, Any] = {**keywords}
+        return self._new("media", kind, words)
 
-    def add_emission(self, **keywords: Any) -> Handle:
+    def add_emission(self, **keywords: Unpack[_keywords.Emission]) -> Handle:
         """Adds an emission of surfaces (keyword emission of add_shape). Keywords: radiance, scale, power, two_sided, image."""
-        return self._new("emission", "diffuse", keywords)
+        words: dict[str, Any] = {**keywords}
+        return self._new("emission", "diffuse", words)
 
-    def add_light(self, kind: str, **keywords: Any) -> Handle:
+    def add_light(self, kind: str, **keywords: Unpack[_keywords.Lights]) -> Handle:
         """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
         scale, power (W), illuminance (lx), position, to, image; pose: 4 x 4, world from light. The member from, a word that
         Python reserves, is position or from_."""
-        if "image" in keywords:
-            keywords["image"] = _as_image(keywords["image"], "linear")
-        return self._new("lights", kind, keywords)
+        words: dict[str, Any] = {**keywords}
+        if "image" in words:
+            words["image"] = _as_image(words["image"], "linear")
+        return self._new("lights", kind, words)
 
-    def add_shape(self, kind: str, **keywords: Any) -> Handle:
+    def add_shape(self, kind: str, **keywords: Unpack[_keywords.Shapes]) -> Handle:
         """Adds a shape: triangles, bilinear, sphere, disk, cylinder, curves. Keywords: members of vlShapeDef: positions
         (n x 3), normals (n x 3), uvs (n x 2), indices (m x 3), radius, ...; material, emission, group, inside, outside:
         handles; pose (or transform): 4 x 4, group from shape; name: its name."""
-        return self._new("shapes", kind, keywords)
+        words: dict[str, Any] = {**keywords}
+        return self._new("shapes", kind, words)
 
-    def add_mesh(self, positions: Any, indices: Any, **keywords: Any) -> Handle:
+    def add_mesh(self, positions: Any, indices: Any, **keywords: Unpack[_keywords.Meshes]) -> Handle:
         """Adds triangles: positions n x 3, scene units; indices m x 3, from 0. Keywords: as add_shape."""
         return self.add_shape("triangles", positions=positions, indices=indices, **keywords)
 
-    def add_sphere(self, center: Sequence[float], radius: float, **keywords: Any) -> Handle:
+    def add_sphere(self, center: Sequence[float], radius: float, **keywords: Unpack[_keywords.Quadrics]) -> Handle:
         """Adds a whole sphere: center (x, y, z) and radius in scene units. Keywords: as add_shape; a pose moves it on."""
+        words: dict[str, Any] = {**keywords}
         radius = _check.number(radius, "radius")
-        _solids.place(keywords, _solids.shift(_solids.vector(center, "center")))
-        return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, **keywords)
+        _solids.place(words, _solids.shift(_solids.vector(center, "center")))
+        return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, **words)
 
-    def add_box(self, low: Sequence[float], high: Sequence[float], **keywords: Any) -> Handle:
+    def add_box(self, low: Sequence[float], high: Sequence[float], **keywords: Unpack[_keywords.AllShapes]) -> Handle:
         """Adds a box from corner low to corner high (x, y, z), scene units: 12 triangles whose normals point outwards, uvs from 0
         to 1 on each side. Keywords: as add_shape."""
         return self.add_shape("triangles", **_solids.box(_solids.vector(low, "low"), _solids.vector(high, "high")), **keywords)
 
-    def add_plane(self, center: Sequence[float], normal: Sequence[float], width: float, height: float, **keywords: Any) -> Handle:
+    def add_plane(self, center: Sequence[float], normal: Sequence[float], width: float, height: float, **keywords: Unpack[_keywords.AllShapes]) -> Handle:
         """Adds a rectangle about a center (x, y, z), scene units. Its width is along the horizontal axis across the normal (z being
         up; x where the normal is along z); uvs from 0 to 1. Keywords: as add_shape."""
         size = _check.number(width, "width", 0), _check.number(height, "height", 0)
         return self.add_shape("triangles", **_solids.plane(_solids.vector(center, "center"), _solids.vector(normal, "normal"), *size),
                               **keywords)
 
-    def add_disk(self, center: Sequence[float], radius: float, normal: Sequence[float], **keywords: Any) -> Handle:
+    def add_disk(self, center: Sequence[float], radius: float, normal: Sequence[float], **keywords: Unpack[_keywords.Quadrics]) -> Handle:
         """Adds a disk about a center (x, y, z), scene units; it emits along its normal. Keywords: as add_shape."""
+        words: dict[str, Any] = {**keywords}
         place = _solids.frame(_solids.vector(center, "center"), _solids.vector(normal, "normal"), "normal")
-        _solids.place(keywords, place)
-        return self.add_shape("disk", radius=_check.number(radius, "radius"), **keywords)
+        _solids.place(words, place)
+        return self.add_shape("disk", radius=_check.number(radius, "radius"), **words)
 
-    def add_cylinder(self, start: Sequence[float], end: Sequence[float], radius: float, **keywords: Any) -> Handle:
+    def add_cylinder(self, start: Sequence[float], end: Sequence[float], radius: float, **keywords: Unpack[_keywords.Quadrics]) -> Handle:
         """Adds a cylinder about the line from start to end (x, y, z), scene units; it is open, add_disk closes it. Keywords: as
         add_shape."""
+        words: dict[str, Any] = {**keywords}
         first, last = _solids.vector(start, "start"), _solids.vector(end, "end")
         axis = (last[0] - first[0], last[1] - first[1], last[2] - first[2])
-        _solids.place(keywords, _solids.frame(first, axis, "end minus start"))
-        return self.add_shape("cylinder", radius=_check.number(radius, "radius"), z_min=0.0, z_max=math.hypot(*axis), **keywords)
+        _solids.place(words, _solids.frame(first, axis, "end minus start"))
+        return self.add_shape("cylinder", radius=_check.number(radius, "radius"), z_min=0.0, z_max=math.hypot(*axis), **words)
 
     def add_group(self, name: Optional[str] = None) -> Handle:
         """Adds an empty group. Shapes join it (keyword group); add_instance places it."""
         return self._new("groups", name, {})
 
     def load_group(self, path: Path, name: Optional[str] = None, *, progress: Optional[StepCallback] = None,
-                   **keywords: Any) -> "Model":
+                   **keywords: Unpack[_keywords.Load]) -> "Model":
         """Loads a model's file as one group, which add_instance places; the file's camera, lights and emission are ignored.
         name: the name of its instances; default the file's name without suffix. progress, keywords: as load."""
+        words: dict[str, Any] = {**keywords}
         self._changed = True
         if name is None and isinstance(path, (str, os.PathLike)):
             name = os.path.basename(os.fspath(path)).split(".")[0]
-        group, info = self._load_group(path, name, keywords, progress)
+        group, info = self._load_group(path, name, words, progress)
         return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
 
     def add_instance(self, group: Handle, transform: Any = None, times: Optional[Sequence[float]] = None, *, pose: Any = None) -> Handle:
@@ -330,7 +342,7 @@ class Scene(_velo.Scene):
     # ---- rendering
 
     def settings(self, *, resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
-                 **keywords: Any) -> Any:
+                 **keywords: Unpack[_keywords.Settings]) -> Any:
         """The settings of the scene's file, changed by keywords (render lists them)."""
         settings = _velo.scene_settings(self)
         if resolution is not None:
@@ -343,7 +355,7 @@ class Scene(_velo.Scene):
             settings.set(name, bare(value))
         return settings
 
-    def world(self, *, previous: Optional[World] = None, progress: Optional[StepCallback] = None, **keywords: Any) -> World:
+    def world(self, *, previous: Optional[World] = None, progress: Optional[StepCallback] = None, **keywords: Unpack[_keywords.Settings]) -> World:
         """The compiled scene. It is kept until the scene changes. The next one shares with it what has not changed: meshes,
         their part of the accelerator, images; the bits are those of a world that shares nothing.
 
@@ -376,7 +388,7 @@ class Scene(_velo.Scene):
 
     def render(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), progress: Optional[Callback] = None,
-               film: Optional[Film] = None, denoise: bool = False, **keywords: Any) -> Image:
+               film: Optional[Film] = None, denoise: bool = False, **keywords: Unpack[_keywords.Settings]) -> Image:
         """Renders an image: linear R G B A, float32.
 
         camera: default the scene's; a velo.OwnCamera takes its place and its size. resolution: (width, height), pixels. crop: x0, y0, x1, y1, pixels, exclusive.
@@ -390,28 +402,30 @@ class Scene(_velo.Scene):
         tracer that choose_tracer names. sampler may be a velo.OwnSampler, tracer a velo.OwnTracer.
 
         KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
+        words: dict[str, Any] = {**keywords}
         denoise = _check.flag(denoise, "denoise")
-        settings, view = self._prepare(camera, resolution, crop, channels, film, denoise, keywords)
+        settings, view = self._prepare(camera, resolution, crop, channels, film, denoise, words)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         world = self._build(settings)
-        self._choose(world, view, target, settings, keywords)
+        self._choose(world, view, target, settings, words)
         self._film = target
         _velo.render(world, view, target, settings, progress)
         return self._develop(world, view, target, settings, channels, denoise)
 
     def passes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), film: Optional[Film] = None,
-               coarse: Sequence[int] = (), **keywords: Any) -> Iterator[Image]:
+               coarse: Sequence[int] = (), **keywords: Unpack[_keywords.Settings]) -> Iterator[Image]:
         """Renders and yields the images so far: at 1, 2, 4, ... and finally spp samples per pixel. The last one has the bits
         of render's image. Keywords: as render.
 
         coarse: factors from 1 to 64, (8, 4, 2) for example: yields images of 1 / factor of the width and height first, with 1
         sample per pixel (Camera.coarse)."""
+        words: dict[str, Any] = {**keywords}
         factors = [_check.whole(factor, "an item of coarse", 1, 64) for factor in _check.items(coarse, "coarse", "numbers")]
-        settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
+        settings, view = self._prepare(camera, resolution, crop, channels, film, False, words)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         world = self._build(settings)
-        self._choose(world, view, target, settings, keywords)
+        self._choose(world, view, target, settings, words)
         self._film = target
         for factor in factors:
             yield self._coarse(world, view, settings, factor, channels)
@@ -477,11 +491,12 @@ class Scene(_velo.Scene):
             settings.set(name, value)
 
     def choose_tracer(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
-                      **keywords: Any) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+                      **keywords: Unpack[_keywords.Settings]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         """A short race of tracers (docs/tracers.md): (the keywords of render with which it has the least error for the same
         time, the trials). A trial has tracer, light_paths, error, tail, missing, cost, and work: error times cost over that of the
         first. Without trials the image is too small for a race. camera, resolution, further keywords: as render."""
-        settings, view = self._prepare(camera, resolution, None, (), None, False, keywords)
+        words: dict[str, Any] = {**keywords}
+        settings, view = self._prepare(camera, resolution, None, (), None, False, words)
         return _velo.choose_tracer(self._build(settings), view, settings, min(settings.get("spp"), _MOST_RACED))
 
     def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
@@ -500,13 +515,14 @@ class Scene(_velo.Scene):
     def ground_truth(self, channels: Sequence[str], *, camera: AnyCamera = None,
                      resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
                      film: Optional[Film] = None, forward: Optional[Camera] = None, backward: Optional[Camera] = None,
-                     mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Any) -> Image:
+                     mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Unpack[_keywords.Settings]) -> Image:
         """Ground truth without rendering colours (docs/ground-truth.md). forward, backward: the other cameras of the flow
         channels. mode: centre, nearest or coverage. ranks: of Cryptomatte. time: seconds."""
+        words: dict[str, Any] = {**keywords}
         channels = _channels(channels)
         if not channels:
             raise wrong_value("channels", "a list of at least one name", channels)
-        settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
+        settings, view = self._prepare(camera, resolution, crop, channels, film, False, words)
         options: dict[str, Any] = {"mode": mode, "ranks": ranks}
         if time is not None:
             options["time"] = time
@@ -516,14 +532,15 @@ class Scene(_velo.Scene):
         return join(parts[0], parts[1:])
 
     def boxes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
-              crop: Optional[Sequence[int]] = None, **keywords: Any) -> dict[str, list[dict[str, Any]]]:
+              crop: Optional[Sequence[int]] = None, **keywords: Unpack[_keywords.Settings]) -> dict[str, list[dict[str, Any]]]:
         """Bounding boxes of "object" and "instance" ids, that of id 1 first: seen and all (pixels: visible, and with what
         occludes it away), seen_box and all_box (x0, y0, x1, y1; exclusive), outline, space (velo/boxes.h)."""
-        settings, view = self._prepare(camera, resolution, crop, (), None, False, keywords)
+        words: dict[str, Any] = {**keywords}
+        settings, view = self._prepare(camera, resolution, crop, (), None, False, words)
         objects, instances = _velo.boxes(self._build(settings), view, settings)
         return {"object": objects, "instance": instances}
 
-    def focus(self, x: float, y: float, **keywords: Any) -> float:
+    def focus(self, x: float, y: float, **keywords: Unpack[_keywords.Settings]) -> float:
         """The focus distance, scene units, for the surface that film point (x, y) sees."""
         return _velo.autofocus(self.world(**keywords), self.camera, x, y)
 
@@ -541,9 +558,19 @@ class Scene(_velo.Scene):
 
 
 _velo.set_type("Scene", Scene)
+_SHOWN: dict[type, Sequence[Callable[..., Any]]] = {
+    _keywords.Load: (Scene.load, Scene.load_group), _keywords.Complete: (Scene.complete,), _keywords.Textures: (Scene.add_texture,),
+    _keywords.Materials: (Scene.add_material,), _keywords.Media: (Scene.add_medium,), _keywords.Emission: (Scene.add_emission,),
+    _keywords.Lights: (Scene.add_light,), _keywords.Shapes: (Scene.add_shape,), _keywords.Meshes: (Scene.add_mesh,),
+    _keywords.AllShapes: (Scene.add_box, Scene.add_plane), _keywords.Quadrics: (Scene.add_sphere, Scene.add_disk, Scene.add_cylinder),
+    _keywords.Settings: (Scene.settings, Scene.world, Scene.render, Scene.passes, Scene.choose_tracer, Scene.ground_truth, Scene.boxes,
+                         Scene.focus)}
+for _group, _functions in _SHOWN.items():
+    for _function in _functions:
+        _keywords.show(_function, _group)
 
 
-def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = None, **keywords: Any) -> Scene:
+def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = None, **keywords: Unpack[_keywords.Opening]) -> Scene:
     """Reads a scene file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. A file without a camera or lights gets a camera that
     frames it and a studio. progress: called about ten times a second with a velo.Step; False ends the load with a
     CancelledError.
@@ -552,10 +579,14 @@ def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = 
     vlCompleteDef (environment: auto, none, studio, window, evening, sky, white, lamps or the path of an image; rotation in radians, strength, up,
     front, ground, reframe, framing, azimuth, elevation, backdrop, ground_middle, ground_radius, open_walls, walls_from)."""
     scene = Scene(context=context)
-    loading = {name: keywords.pop(name) for name in _LOAD if name in keywords}
+    words: dict[str, Any] = {**keywords}
+    loading = {name: words.pop(name) for name in _LOAD if name in words}
     scene.load(path, progress=progress, **loading)
-    scene.complete(**keywords)
+    scene.complete(**words)
     return scene
+
+
+_keywords.show(load, _keywords.Opening)
 
 
 def settings_names() -> list[str]:

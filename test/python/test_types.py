@@ -22,7 +22,7 @@ def mypy_accepts_the_package():
     mypy = shutil.which("mypy", path="/usr/bin:/usr/local/bin")
     if not mypy:
         raise cases.Skip("needs mypy")
-    run = subprocess.run([mypy, "--strict", "--ignore-missing-imports", "--cache-dir", work("mypy"), PACKAGE],
+    run = subprocess.run([mypy, "--strict", "--ignore-missing-imports", "--enable-incomplete-feature=Unpack", "--cache-dir", work("mypy"), PACKAGE],
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=cases.WORK)
     assert run.returncode == 0, run.stdout
 
@@ -38,6 +38,50 @@ def the_stub_names_what_the_extension_has():
     for name, members in classes.items():
         own = {member for member in vars(getattr(_velo, name)) if not member.startswith("__")}
         assert members == own, (name, members ^ own)
+
+
+@case
+def keywords_are_those_of_the_rows():
+    """Each keyword of the library's tables is in python/velo/_keywords.py, for completion, and each of it is accepted."""
+    from velo import _keywords
+
+    def names(group):
+        return {name for base in group.__mro__ for name in getattr(base, "__annotations__", {})}
+
+    apart = {"data_size", "wrap_t_given", "encoding_given", "st_from_uv_given", "use_reflectance", "nx", "ny", "nz", "from", "more_uvs"}
+    for family, group in (("textures", _keywords.Textures), ("materials", _keywords.Materials), ("media", _keywords.Media),
+                          ("emission", _keywords.Emission), ("lights", _keywords.Lights), ("shapes", _keywords.Shapes)):
+        rows = {word for row in velo.kinds(family).values() for word in row} - apart
+        assert rows <= names(group), (family, rows - names(group))
+        for name in sorted(names(group) - rows):  # known, whatever is said of the value
+            said = []
+            for kind in velo.kinds(family):
+                try:
+                    scene = velo.Scene()
+                    scene._new(family, kind, {name: object()}) if name != "range" else scene.add_texture("image", range=object())
+                except velo.UsageError as error:
+                    said.append(str(error))
+            assert not all("unknown keyword" in text for text in said), (family, name)
+    assert names(_keywords.Settings) == set(velo.settings_names())
+    for group, rows in (("load", _keywords.Load), ("complete", _keywords.Complete), ("camera", _keywords.Cameras)):
+        known = {row.name for row in cases.setting_rows() if row.group == group and "[" not in row.name}
+        assert known - {"path", "width", "height"} <= names(rows), (group, known - names(rows))
+    for name in names(_keywords.Cameras):
+        try:
+            velo.Camera(8, 8, projection="double_sphere" if name in ("xi", "alpha") else "eucm" if name == "beta" else "perspective",
+                        **({} if name == "projection" else {name: object()}))
+        except velo.UsageError as error:
+            assert "unknown keyword" not in str(error), error
+
+
+@case
+def completion_knows_the_keywords():
+    for function, wanted in ((velo.Scene.render, "max_depth"), (velo.Scene.add_material, "roughness"), (velo.Scene.add_mesh, "uvs"),
+                             (velo.Scene().add_light, "position"), (velo.Scene.add_box, "pose"), (velo.Camera, "fov"),
+                             (velo.Camera.replace, "K"), (velo.load, "environment"), (velo.Scene.load, "search_path")):
+        parameter = inspect.signature(function).parameters[wanted]
+        assert parameter.kind is parameter.KEYWORD_ONLY, wanted
+    assert "samples_per_pixel" not in inspect.signature(velo.Scene.render).parameters
 
 
 ARRAYS = {"points", "pixels", "positions", "indices", "transform", "world_from_camera", "array"}
@@ -57,6 +101,8 @@ def complaints(module):
         if not inspect.isfunction(function):
             return
         signature = inspect.signature(function)
+        plain = [parameter for parameter in signature.parameters.values() if parameter.default is not ...]  # without those of _keywords
+        signature = signature.replace(parameters=plain)
         for parameter in signature.parameters.values():
             if parameter.annotation is inspect.Parameter.empty and parameter.name not in ("self", "cls"):
                 found.append(f"{name}: {parameter.name} has no type")

@@ -88,7 +88,8 @@ static int check(const Arguments *arguments) {
       return report_usage("%s does not go with %s", own, others[i].name);
   const OptionValue *denoise = &v[RENDER_DENOISE];
   if (v[RENDER_ANIMATE].given && denoise->given)
-    return report_usage("--animate does not go with --denoise; --turntable does");
+    return report_usage(
+        "--animate does not go with --denoise; --turntable and --trajectory do");
   if (denoise->given && v[RENDER_DENOISER].given &&
       v[RENDER_DENOISER].integer != VL_DENOISER_VELO)
     return report_usage("--turntable goes with velo's own denoiser: leave out --denoiser");

@@ -9,7 +9,7 @@
 #include "cli/signals.h"
 #include "image/denoise.h"
 #include "render/attributes.h"
-#include "render/frames.h"
+#include "render/pattern.h"
 
 enum { MAX_CHANNELS = 24 };
 
@@ -28,8 +28,10 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
   }
   if (v[RENDER_SPP].given && v[RENDER_SPP].integer < 2)
     return report_usage("--denoise needs at least 2 samples per pixel (--spp)");
-  if (frames_wanted(arguments, NULL))
-    return report_usage("--denoise goes with one image; velo image denoise does more");
+  if (v[RENDER_RIG].given)
+    return report_usage("--denoise does not go with --rig; velo image denoise does");
+  if (v[RENDER_TRAJECTORY].given && d->def.denoiser != VL_DENOISER_VELO)
+    return report_usage("--trajectory goes with velo's own denoiser: leave out --denoiser");
   for (int i = 0; i < image->count; i++)
     if (strcmp(path, image->paths[i]) == 0)
       return report_usage(
@@ -38,6 +40,8 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
   d->outputs.paths[0] = path;
   d->outputs.count = 1;
   int status = outputs_check_names(&d->outputs);
+  if (status < 0 && v[RENDER_TRAJECTORY].given)
+    status = pattern_check(path);
   return status < 0 ? outputs_check_folders(&d->outputs) : status;
 }
 
@@ -163,28 +167,38 @@ void denoised_share_exposure(Denoised *d, Outputs *image) {
   d->outputs.shared = image->shared;
 }
 
+int denoised_make(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
+                  const vlFilm *film, vlImage **clean) {
+  vlImage *image = NULL;
+  vlError error = {0};
+  vlDenoiseStats stats;
+  *clean = NULL;
+  vlResult result = gather(context, world, job, film, &image, &error);
+  if (result == VL_OK)
+    result = clean_frame(d, context, world, job, image, clean, &stats, &error);
+  vl_image_destroy(image);
+  if (result == VL_OK && *clean)
+    result = denoise_name(*clean, d->def.denoiser);
+  if (result == VL_OK) {
+    if (*clean)
+      denoise_report(&stats);
+    return STATUS_OK;
+  }
+  vl_image_destroy(*clean);
+  *clean = NULL;
+  if (result != VL_CANCELLED)
+    return report_error(&error, result, d->outputs.paths[0]);
+  report_note("interrupted before %s was done", d->outputs.paths[0]);
+  return 128 + signals_pending();
+}
+
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
                    const vlFilm *film, OutputStage stage) {
   if (!d->outputs.count)
     return STATUS_OK;
-  vlImage *image = NULL, *clean = NULL;
-  vlError error = {0};
-  vlDenoiseStats stats;
-  vlResult result = gather(context, world, job, film, &image, &error);
-  if (result == VL_OK)
-    result = clean_frame(d, context, world, job, image, &clean, &stats, &error);
-  vl_image_destroy(image);
-  if (result == VL_OK && clean)
-    result = denoise_name(clean, d->def.denoiser);
-  int status = STATUS_OK;
-  if (result == VL_CANCELLED) {
-    status = 128 + signals_pending();
-    report_note("interrupted before %s was done", d->outputs.paths[0]);
-  }
-  if (result != VL_OK && result != VL_CANCELLED)
-    status = report_error(&error, result, d->outputs.paths[0]);
-  if (result == VL_OK && clean) {
-    denoise_report(&stats);
+  vlImage *clean = NULL;
+  int status = denoised_make(d, context, world, job, film, &clean);
+  if (clean) {
     status = outputs_write(context, &d->outputs, clean, vl_film_spp(film), stage);
     d->written = status == STATUS_OK;
   }

@@ -15,7 +15,7 @@ typedef struct Denoised {
   char comment[128]; /* of these files */
   float exposure;    /* that of the image, where each of both would be metered */
   bool written;
-  Steady *steady; /* of the frames of a turntable; null: this is one image */
+  Steady *steady; /* of several frames; null: this is one image */
   vlDenoiseDef def;
 } Denoised;
 
@@ -38,7 +38,12 @@ double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double wri
 /* Makes the copy share the exposure of the image, which is known after its options are read:
  * call before the image is written. */
 void denoised_share_exposure(Denoised *d, Outputs *image);
-/* Renders the features, denoises the film's image and writes the result; d->written tells
+/* Renders the features and denoises the film's image. *clean, owned by the caller: the result,
+ * with the image's header; null for a frame that is only kept for those after it, and after an
+ * error. Returns STATUS_OK, or the exit code after reporting the error. */
+int denoised_make(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
+                  const vlFilm *film, vlImage **clean);
+/* denoised_make, and writes the result; d->written tells
  * whether it is there. Returns STATUS_OK, or the exit code after reporting the error. */
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
                    const vlFilm *film, OutputStage stage);

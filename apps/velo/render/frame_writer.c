@@ -22,7 +22,7 @@ struct FrameWriter {
   vlContext *context;
   const vlWorld *world;
   const Frames *frames;
-  const Outputs *outputs;
+  const Outputs *outputs, *denoised;
   pthread_t thread;
   pthread_mutex_t mutex;
   pthread_cond_t changed;
@@ -40,6 +40,7 @@ void frame_image_free(FrameImage *image) {
     vl_image_destroy(image->images[v]);
     channels_free(&image->channels[v]);
   }
+  vl_image_destroy(image->clean);
 }
 
 /* ---- one image --------------------------------------------------------------------------- */
@@ -202,6 +203,31 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
   return status;
 }
 
+/* Writes the denoised copy, with the exposure of the image itself. */
+static int write_clean(FrameWriter *w, FrameImage *p) {
+  const vlTrajectoryFrame *pose = &p->frame.pose;
+  const Outputs *outputs = w->denoised;
+  const char *pattern = outputs->paths[0];
+  char path[4096];
+  bool eight_bit = false;
+  vlWriteDef def = vl_default_write_def();
+  def.half = outputs->half;
+  def.alone = true;
+  vlError error = {0};
+  vlImage *display = NULL;
+  vlResult result = attributes_set_frame(p->clean, p->frame.number, pose->name, pose->time);
+  frames_path(w->frames, &p->frame, pattern, 0, path, sizeof path);
+  output_suffix(path, &eight_bit);
+  if (result == VL_OK && eight_bit)
+    result = display_image(w->context, p->clean, outputs->view, exposure_of(w, p->images[0]),
+                           outputs->transparent && output_holds_alpha(path), &display);
+  const vlImage *one = eight_bit ? display : p->clean;
+  if (result == VL_OK)
+    result = output_write_layers(&one, 1, path, def, &error);
+  vl_image_destroy(display);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+}
+
 static int write_image(FrameWriter *w, FrameImage *p) {
   int status = STATUS_OK;
   for (int v = 0; v < w->frames->views && status == STATUS_OK; v++) {
@@ -229,6 +255,8 @@ static int write_image(FrameWriter *w, FrameImage *p) {
       if (status == STATUS_OK)
         status = code;
     }
+  if (status == STATUS_OK && p->clean)
+    status = write_clean(w, p);
   return status;
 }
 
@@ -262,7 +290,7 @@ static void *work(void *user) {
 }
 
 FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
-                                const Outputs *outputs) {
+                                const Outputs *outputs, const Outputs *denoised) {
   FrameWriter *w = calloc(1, sizeof *w);
   if (!w)
     return NULL;
@@ -270,6 +298,7 @@ FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const 
   w->world = world;
   w->frames = frames;
   w->outputs = outputs;
+  w->denoised = denoised;
   pthread_mutex_init(&w->mutex, NULL);
   pthread_cond_init(&w->changed, NULL);
   if (pthread_create(&w->thread, NULL, work, w) == 0)

@@ -10,6 +10,7 @@ typedef struct FrameImage {
   Job jobs[2]; /* one job per view; each has the view's camera */
   Channels channels[2];
   vlImage *images[2];
+  vlImage *clean; /* the denoised copy of the first; null: none */
   uint32_t spp;
   bool stopped; /* interrupted: written to NAME.part.EXT */
   bool renamed; /* the layers' names contain their view */
@@ -17,9 +18,9 @@ typedef struct FrameImage {
 
 typedef struct FrameWriter FrameWriter;
 
-/* Null: out of memory or of threads. */
+/* denoised: of the denoised copies. Null: out of memory or of threads. */
 FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
-                                const Outputs *outputs);
+                                const Outputs *outputs, const Outputs *denoised);
 /* Queues an image and takes ownership of its data. Waits while the queue is full. */
 void frame_writer_put(FrameWriter *writer, const FrameImage *image);
 /* Waits until all images are written. Returns the exit code of the first failure, or STATUS_OK.

@@ -228,6 +228,7 @@ void frames_free(Frames *frames) {
     if (frames->cameras[i].owns_film)
       vl_film_destroy(frames->cameras[i].film);
   free(frames->cameras);
+  steady_free(&frames->steady);
   vl_trajectory_destroy(frames->trajectory);
   vl_trajectory_destroy(frames->rig);
 }
@@ -258,6 +259,16 @@ Frame frames_at(const Frames *frames, uint32_t index) {
 
 Frame frames_first(const Frames *frames) {
   return make_frame(frames, 0, 0);
+}
+
+uint32_t frames_before(const Frames *frames, const Frame *frame, Frame before[STEADY_BEFORE]) {
+  uint32_t count = 0;
+  for (uint32_t back = 1; back <= STEADY_BEFORE && back <= frame->number; back++) {
+    const Frame earlier = make_frame(frames, frame->number - back, 0);
+    if (earlier.camera->film == frame->camera->film)
+      before[count++] = earlier;
+  }
+  return count;
 }
 
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view,

@@ -5,6 +5,7 @@
 #define APP_RENDER_FRAMES_H
 
 #include "render/channels.h"
+#include "render/denoised.h"
 #include "render/film_keeper.h"
 #include "render/job.h"
 #include "render/outputs.h"
@@ -32,6 +33,7 @@ typedef struct Frames {
   vlEye eyes[2];
   const char *view_names[2];
   const FilmPlan *films; /* film settings for two eyes; null: no film files */
+  Steady steady;         /* frames that later ones are denoised with */
 } Frames;
 
 /* One image to be rendered. */
@@ -58,10 +60,14 @@ uint32_t frames_count(const Frames *frames);
 Frame frames_at(const Frames *frames, uint32_t index);
 /* The first image of all poses and cameras, whatever part of them is rendered. */
 Frame frames_first(const Frames *frames);
+/* The frames before this one, at most STEADY_BEFORE, which it is denoised with: the nearest
+ * poses of the trajectory whose images have the same film, whatever part of them is rendered.
+ * Returns their number. */
+uint32_t frames_before(const Frames *frames, const Frame *frame, Frame before[STEADY_BEFORE]);
 /* The path of an image. view: 0 or 1, for %v. False: too long. */
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view,
                  char *path, size_t size);
-/* Returns whether all image files of the frame exist. Files are written atomically, so their
+/* Returns whether all these files of the frame exist. Files are written atomically, so their
  * content is not checked. */
 bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs);
 /* The camera of one view in the frame's pose. */
@@ -72,8 +78,9 @@ vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camer
                        vlError *error);
 void frames_free(Frames *frames);
 
-/* Renders and writes all frames. Returns the exit code. */
+/* Renders and writes all frames, and their denoised copies if denoised->outputs are not empty.
+ * Returns the exit code. */
 int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
-                  const Outputs *outputs, const Channels *channels);
+                  const Outputs *outputs, const Channels *channels, Denoised *denoised);
 
 #endif

@@ -18,6 +18,7 @@ typedef struct Run {
   const Outputs *outputs;
   const Channels *channels; /* what is wanted; layers are empty */
   bool layers;              /* whether some file holds layers */
+  Denoised *denoised;       /* its outputs may be empty */
   Progress progress;        /* of one image */
   FrameProgress shown;      /* of all */
   uint32_t number;          /* of the frame that is rendered */
@@ -105,10 +106,13 @@ static int render_film(Run *run, const char *name, int view, Job *job, FrameImag
     return status;
   if (result == VL_CANCELLED)
     return 128 + signals_pending();
+  if (run->denoised->outputs.count)
+    status =
+        denoised_make(run->denoised, run->context, run->world, job, run->film, &image->clean);
   image->channels[view] = *run->channels;
-  return run->layers
+  return status == STATUS_OK && run->layers && !run->frames->steady.only_kept
              ? channels_render(&image->channels[view], run->context, run->world, job, run->film)
-             : STATUS_OK;
+             : status;
 }
 
 /* Makes the job of a view, with its camera. */
@@ -175,6 +179,45 @@ static bool keep_stopped(Run *run, FrameImage *image) {
   return image->stopped = true;
 }
 
+/* Renders those frames that the denoised frame uses and that are not kept. */
+static int render_before(Run *run, const Frame *frame) {
+  Steady *s = &run->frames->steady;
+  Frame before[STEADY_BEFORE];
+  int status = STATUS_OK;
+  s->count = frames_before(run->frames, frame, before);
+  for (uint32_t k = 0; k < s->count; k++)
+    s->before[k] = before[k].number;
+  s->only_kept = true;
+  for (uint32_t k = 0; k < s->count && status == STATUS_OK; k++) {
+    if (steady_find(s, before[k].number))
+      continue;
+    FrameImage image;
+    memset(&image, 0, sizeof image);
+    s->number = before[k].number;
+    status = render_view(run, &before[k], 0, &image);
+    frame_image_free(&image);
+  }
+  s->only_kept = false;
+  s->number = frame->number;
+  return status;
+}
+
+/* Renders all views of a frame. */
+static int render_frame(Run *run, FrameImage *image) {
+  int code = run->denoised->outputs.count ? render_before(run, &image->frame) : STATUS_OK;
+  for (int v = 0; v < run->frames->views && code == STATUS_OK; v++) {
+    progress_start(&run->progress, image->frame.camera->job.defs->render.time_limit);
+    code = render_view(run, &image->frame, v, image);
+  }
+  return code;
+}
+
+/* Whether the frame's files are there already, with --skip-existing. */
+static bool is_left_out(const Run *run, const Frame *frame) {
+  return run->frames->skip_existing && frames_exist(run->frames, frame, run->outputs) &&
+         frames_exist(run->frames, frame, &run->denoised->outputs);
+}
+
 static void report_end(const Run *run, uint32_t written, int status) {
   double seconds = monotonic_seconds() - run->shown.start;
   const vlRenderStats *t = &run->total;
@@ -216,19 +259,20 @@ static void report_end(const Run *run, uint32_t written, int status) {
 }
 
 int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
-                  const Outputs *outputs, const Channels *channels) {
+                  const Outputs *outputs, const Channels *channels, Denoised *denoised) {
   Run run = {.frames = frames,
              .context = context,
              .world = world,
              .outputs = outputs,
              .channels = channels,
+             .denoised = denoised,
              .shown = progress_frames(frames_count(frames))};
   for (int i = 0; i < outputs->count; i++)
     run.layers = run.layers || output_holds_layers(outputs->paths[i]);
   int checked = check_films(&run);
   if (checked >= 0)
     return checked;
-  FrameWriter *writer = frame_writer_start(context, world, frames, outputs);
+  FrameWriter *writer = frame_writer_start(context, world, frames, outputs, &denoised->outputs);
   if (!writer)
     return report_error(NULL, VL_ERROR_MEMORY, NULL);
   signals_remember();
@@ -242,18 +286,14 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
     FrameImage image;
     memset(&image, 0, sizeof image);
     image.frame = frames_at(frames, i);
-    if (frames->skip_existing && frames_exist(frames, &image.frame, outputs)) {
+    if (is_left_out(&run, &image.frame)) {
       run.shown.count--;
       continue;
     }
     run.number = image.frame.number;
     if (run.shown.count > 1)
       progress_show_frames(&run.shown, run.number, 0);
-    int code = STATUS_OK;
-    for (int v = 0; v < frames->views && code == STATUS_OK; v++) {
-      progress_start(&run.progress, image.frame.camera->job.defs->render.time_limit);
-      code = render_view(&run, &image.frame, v, &image);
-    }
+    int code = render_frame(&run, &image);
     if (code == STATUS_OK || (code >= 128 && keep_stopped(&run, &image)))
       frame_writer_put(writer, &image);
     else

@@ -254,6 +254,10 @@ static void add_frames(const Render *render, OutputNames *names) {
         if (frames_path(frames, &frame, pattern, view, path, sizeof path))
           output_names_add_image(names, path, true, render->channels.bits);
     }
+    const Outputs *denoised = &render->denoised.outputs;
+    if (denoised->count &&
+        frames_path(frames, &frame, denoised->paths[0], 0, path, sizeof path))
+      output_names_add_image(names, path, true, false);
     for (int view = 0; view < frames->views && frames->films; view++)
       if (frames_path(frames, &frame, frames->films->path, view, path, sizeof path))
         output_names_add(names, path, VL_OUTPUT_FILM);
@@ -270,7 +274,7 @@ static int check_outputs(const Render *render) {
     output_names_add_image(&names, render->outputs.paths[i], true, render->channels.bits);
   if (render->film_plan.path && !render->many)
     output_names_add(&names, render->film_plan.path, VL_OUTPUT_FILM);
-  if (denoised_is_copy(&render->denoised))
+  if (denoised_is_copy(&render->denoised) && !render->many)
     output_names_add_image(&names, render->denoised.outputs.paths[0], true, false);
   return output_names_check(&names, render->context);
 }
@@ -431,7 +435,11 @@ static int load_frames(Render *render, const Arguments *arguments) {
   if (status < 0)
     status = frames_check_names(&render->frames, &render->outputs);
   if (status < 0)
+    status = frames_check_names(&render->frames, &render->denoised.outputs);
+  if (status < 0)
     status = check_metering(&render->outputs, arguments);
+  if (status < 0 && render->denoised.outputs.count)
+    status = check_metering(&render->denoised.outputs, arguments);
   return status;
 }
 
@@ -484,12 +492,14 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   render->outputs.video = render->videos ? render->videos->paths[0] : NULL;
   if (render->many && arguments->values[RENDER_SERVE].given)
     return report_usage("--serve goes with one image");
-  if (render->many && render->denoised.outputs.count)
-    return report_usage("--denoise goes with one image");
+  if (render->many && render->denoised.outputs.count &&
+      render->job.defs->camera.stereo.mode != VL_STEREO_NONE)
+    return report_usage("--denoise does not go with two eyes; velo image denoise does");
   if (render->many) {
     status = load_frames(render, arguments);
     if (status >= 0)
       return status;
+    render->denoised.steady = &render->frames.steady;
   }
   status = needs_check_render_scene(render, arguments);
   if (status < 0)
@@ -519,7 +529,7 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
               &render->channels, render->many ? &render->frames : NULL);
   if (render->denoised.outputs.count)
     memory_add(&render->memory, "denoising", denoised_memory(run_pixels(render)));
-  if (render->denoised.steady)
+  if (render->denoised.steady && render->denoised.outputs.count)
     memory_add(&render->memory, "frames before", steady_memory(run_pixels(render)));
   if (report_is_json())
     memory_report_json(&render->memory, most);
@@ -625,7 +635,7 @@ static int render_once(const Command *command, const Arguments *arguments,
   }
   if (status < 0 && render.many)
     status = frames_render(&render.frames, render.context, render.world, &render.outputs,
-                           &render.channels);
+                           &render.channels, &render.denoised);
   if (status < 0)
     status = run_image(&render);
   free_render(&render);

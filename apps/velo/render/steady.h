@@ -1,7 +1,7 @@
-/* render/steady.h: the frames of a turntable are denoised with the help of the frames before
- * them, along the exact flow of their surfaces, so that what is left of the noise does not
- * flicker. The result of a frame depends on a fixed number of frames before it, each denoised
- * by itself: so it is the same for any division of the frames among processes. */
+/* render/steady.h: the frames of a turntable or a trajectory are denoised with the help of the
+ * frames before them, along the exact flow of their surfaces, so that what is left of the noise
+ * does not flicker. The result of a frame depends on a fixed number of frames before it, each
+ * denoised by itself: so it is the same for any division of the frames among processes. */
 #ifndef APP_RENDER_STEADY_H
 #define APP_RENDER_STEADY_H
 

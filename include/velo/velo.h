@@ -25,6 +25,7 @@
 #include "velo/group.h"
 #include "velo/header.h"
 #include "velo/image.h"
+#include "velo/jacobian.h"
 #include "velo/light.h"
 #include "velo/load.h"
 #include "velo/lookup.h"

@@ -450,6 +450,43 @@ static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
   return NULL;
 }
 
+typedef vlResult JacobianFn(const vlCamera *camera, size_t count, const double *in, double *out,
+                            uint8_t *valid, vlError *error);
+
+/* Rows of `inputs` numbers to Jacobians of `outputs` rows: numbers, valid as bytearrays. */
+static PyObject *camera_jacobian(Camera *self, PyObject *rows, const char *what, size_t inputs,
+                                 size_t outputs, JacobianFn *jacobian) {
+  Numbers n;
+  if (!read_rows(rows, what, inputs, &n))
+    return NULL;
+  size_t count = n.count / inputs;
+  void *data[2] = {NULL, NULL};
+  PyObject *numbers =
+      make_bytes(count * outputs * VL_JACOBIAN_COLUMNS * sizeof(double), &data[0]);
+  PyObject *valid = make_bytes(count, &data[1]);
+  vlError error;
+  vlResult result = VL_OK;
+  if (numbers && valid) {
+    PyThreadState *thread = PyEval_SaveThread();
+    result = jacobian(&self->camera, count, n.data, data[0], data[1], &error);
+    PyEval_RestoreThread(thread);
+  }
+  numbers_release(&n);
+  if (result == VL_OK)
+    return Py_BuildValue("(NN)", numbers, valid);
+  Py_XDECREF(numbers);
+  Py_XDECREF(valid);
+  return raise_result(result, &error);
+}
+
+static PyObject *camera_project_jacobian(Camera *self, PyObject *points) {
+  return camera_jacobian(self, points, "points", 3, 2, vl_camera_project_jacobian);
+}
+
+static PyObject *camera_unproject_jacobian(Camera *self, PyObject *pixels) {
+  return camera_jacobian(self, pixels, "pixels", 2, 6, vl_camera_unproject_jacobian);
+}
+
 static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
   PyObject *point[2];
   double x, y;
@@ -696,6 +733,10 @@ static PyMethodDef camera_methods[] = {
     {"_stereo", (PyCFunction)camera_stereo, METH_NOARGS, "Both eyes."},
     {"_project", (PyCFunction)camera_project, METH_O, "Points to pixels."},
     {"_unproject", (PyCFunction)camera_unproject, METH_O, "Pixels to rays."},
+    {"_project_jacobian", (PyCFunction)camera_project_jacobian, METH_O,
+     "Derivatives of pixels."},
+    {"_unproject_jacobian", (PyCFunction)camera_unproject_jacobian, METH_O,
+     "Derivatives of rays."},
     {"solid_angle", (PyCFunction)camera_solid_angle, METH_VARARGS,
      "solid_angle(x, y)\n--\n\nSolid angle of the pixel around the film point (x, y), "
      "steradians."},

@@ -25,6 +25,25 @@ class Rays(NamedTuple):
     valid: Any  #: n: False for pixels outside the camera's domain, whose numbers are 0
 
 
+class Jacobian(NamedTuple):
+    """Derivatives at points or pixels. n: as of Projection."""
+    values: Any  #: n x rows x len(JACOBIAN_COLUMNS); pixels, scene units, radians
+    valid: Any  #: n: False where there is no derivative; the numbers are 0
+
+
+#: The columns of a Jacobian (velo/jacobian.h): the point; translation and rotation of camera_from_world' = exp(.)
+#: camera_from_world; intrinsics; the projection's numbers; the common form of all distortions (docs/cameras.md).
+JACOBIAN_COLUMNS = ("point_x", "point_y", "point_z", "t_x", "t_y", "t_z", "r_x", "r_y", "r_z", "fx", "fy", "skew", "cx", "cy",
+                    "shape_0", "shape_1", "n0", "n1", "n2", "n3", "d0", "d1", "d2", "p0", "p1", "t0", "t1", "t2", "t3",
+                    "tau_x", "tau_y")
+
+
+def _jacobian(data: tuple[bytearray, bytearray], points: Any, rows: int) -> Jacobian:
+    n = _shape_of(points, len(data[1]))
+    values = _arrays.from_bytes(data[0], "d", (*n, rows, len(JACOBIAN_COLUMNS)))
+    return Jacobian(values, _flags(data[1], n))
+
+
 def _flags(data: bytearray, shape: Sequence[int]) -> Any:
     flags = _arrays.from_bytes(data, "B", shape)
     return flags.astype(bool) if _arrays.numpy_or_none() is not None else [bool(flag) for flag in flags]
@@ -109,14 +128,23 @@ class Camera(_velo.Camera):
         """The left and the right camera of a stereo pair (keywords stereo_mode, interocular, convergence)."""
         return self._stereo()
 
-    def project(self, points: Any) -> Projection:
-        """Where points (n x 3 or rows x columns x 3, world space) are seen."""
+    def project(self, points: Any, *, jacobian: bool = False) -> Any:
+        """Where points (n x 3 or rows x columns x 3, world space) are seen: a Projection.
+
+        jacobian=True: a pair of it and its Jacobian, of the pixels (2) by JACOBIAN_COLUMNS."""
+        if jacobian:
+            return self.project(points), _jacobian(self._project_jacobian(points), points, 2)
         pixels, z, valid = self._project(points)
         n = _shape_of(points, len(valid))
         return Projection(_arrays.from_bytes(pixels, "d", (*n, 2)), _arrays.from_bytes(z, "d", n), _flags(valid, n))
 
-    def unproject(self, pixels: Any) -> Rays:
-        """The rays through film points (n x 2 or rows x columns x 2; the first pixel's centre is (0.5, 0.5))."""
+    def unproject(self, pixels: Any, *, jacobian: bool = False) -> Any:
+        """The rays through film points (n x 2 or rows x columns x 2; the first pixel's centre is (0.5, 0.5)): Rays.
+
+        jacobian=True: a pair of them and their Jacobian, of origin and direction (6) by JACOBIAN_COLUMNS; its columns
+        point_x and point_y are the film point's x and y."""
+        if jacobian:
+            return self.unproject(pixels), _jacobian(self._unproject_jacobian(pixels), pixels, 6)
         origins, directions, valid = self._unproject(pixels)
         n = _shape_of(pixels, len(valid))
         return Rays(_arrays.from_bytes(origins, "d", (*n, 3)), _arrays.from_bytes(directions, "d", (*n, 3)), _flags(valid, n))

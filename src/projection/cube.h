@@ -70,4 +70,23 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
   return vl_cube_project(c->shape[0], x, y, z);
 }
 
+/* On its face a point is (a, b) / (2 major), each a coordinate but for its sign. */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_cube(VL_PROJECT_INPUT) {
+  (void)c;
+  double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
+  int side = ax >= ay && ax > az, pole = !side && ay > az;
+  double sx = x > 0.0 ? 1.0 : -1.0, sy = y < 0.0 ? -1.0 : 1.0, sz = z > 0.0 ? 1.0 : -1.0;
+  const double major[3] = {side ? sx : 0.0, pole ? sy : 0.0, side || pole ? 0.0 : sz};
+  const double a[3] = {side ? 0.0 : pole ? 1.0 : sz, 0.0, side ? -sx : 0.0};
+  const double b[3] = {0.0, pole ? 0.0 : 1.0, pole ? -sy : 0.0};
+  double k = 1.0 / (major[0] * x + major[1] * y + major[2] * z);
+  double u = (a[0] * x + a[2] * z) * k, v = (b[1] * y + b[2] * z) * k;
+  vlPlaneDerivatives d = {{0.0}, {0.0}};
+  for (int i = 0; i < 3; i++) {
+    d.x[i] = 0.5 * k * (a[i] - u * major[i]);
+    d.y[i] = 0.5 * k * (b[i] - v * major[i]);
+  }
+  return d;
+}
+
 #endif

@@ -29,4 +29,11 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_cylindrical(VL_PROJECT_INPUT) {
   return vl_cylindrical_project(x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_cylindrical(VL_PROJECT_INPUT) {
+  (void)c;
+  double across2 = x * x + z * z, across = vl_length2(x, z), g = -y / (across2 * across);
+  return (vlPlaneDerivatives){{z / across2, 0.0, -x / across2, 0.0, 0.0},
+                              {g * x, 1.0 / across, g * z, 0.0, 0.0}};
+}
+
 #endif

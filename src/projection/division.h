@@ -30,4 +30,14 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_division(VL_PROJECT_INPUT) {
   return vl_division_project(c->shape[0], x, y, z);
 }
 
+/* The divisor is (z + s) / 2, s = sqrt(z^2 - 4 lambda R^2). */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_division(VL_PROJECT_INPUT) {
+  double lambda = c->shape[0], across2 = x * x + y * y;
+  double s = vl_root(z * z - 4.0 * lambda * across2);
+  double divisor = z < 0.0 ? -2.0 * lambda * across2 / (s - z) : 0.5 * (z + s);
+  double side = -2.0 * lambda / s;
+  const double by[5] = {side * x, side * y, divisor / s, -across2 / s, 0.0};
+  return vl_derive_quotient(x, y, divisor, by);
+}
+
 #endif

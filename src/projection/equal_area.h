@@ -47,4 +47,27 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
   return vl_equal_area_project(x, y, z);
 }
 
+/* For the octant x, y, z >= 0, and the signs of the others: r^2 = 1 - z/L, v = phi r, u = r -
+ * v. */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equal_area(VL_PROJECT_INPUT) {
+  (void)c;
+  const double two_over_pi = 0.63661977236758134308;
+  double length = vl_length3(x, y, z), cube = length * length * length;
+  double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
+  double across2 = x * x + y * y, r = vl_root(across2 / (length * (length + az)));
+  double phi = two_over_pi * vl_atan2_double(ay, ax);
+  const double sign[3] = {__builtin_copysign(1.0, x), __builtin_copysign(1.0, y),
+                          __builtin_copysign(1.0, z)};
+  const double of_r[3] = {0.5 * az * ax / (cube * r), 0.5 * az * ay / (cube * r),
+                          -0.5 * across2 / (cube * r)};
+  const double of_phi[3] = {-two_over_pi * ay / across2, two_over_pi * ax / across2, 0.0};
+  vlPlaneDerivatives d = {{0.0}, {0.0}};
+  for (int i = 0; i < 3; i++) {
+    double v = of_phi[i] * r + phi * of_r[i], u = of_r[i] - v;
+    d.x[i] = sign[0] * sign[i] * (z < 0.0 ? -v : u);
+    d.y[i] = sign[1] * sign[i] * (z < 0.0 ? -u : v);
+  }
+  return d;
+}
+
 #endif

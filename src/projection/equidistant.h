@@ -30,4 +30,14 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equidistant(VL_PROJECT_INPUT) {
   return vl_equidistant_project(x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equidistant(VL_PROJECT_INPUT) {
+  (void)c;
+  double across2 = x * x + y * y, all2 = across2 + z * z;
+  double r = vl_not_tiny(vl_length2(x, y));
+  double k = vl_atan2_double(r, z) / r;
+  double g = (z / all2 - k) / (r * r);
+  const double by[5] = {x * g, y * g, -1.0 / all2, 0.0, 0.0};
+  return vl_derive_factor(x, y, k, by);
+}
+
 #endif

@@ -34,4 +34,12 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equirectangular(VL_PROJECT_INPUT) {
   return vl_equirectangular_project(x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equirectangular(VL_PROJECT_INPUT) {
+  (void)c;
+  double across2 = x * x + z * z, across = vl_length2(x, z);
+  double all2 = across2 + y * y, g = -y / (all2 * across);
+  return (vlPlaneDerivatives){{z / across2, 0.0, -x / across2, 0.0, 0.0},
+                              {g * x, across / all2, g * z, 0.0, 0.0}};
+}
+
 #endif

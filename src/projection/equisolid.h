@@ -28,4 +28,15 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
   return vl_equisolid_project(x, y, z);
 }
 
+/* k = sqrt(2 / D), D = L (L + z), L the length. */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equisolid(VL_PROJECT_INPUT) {
+  (void)c;
+  double length = vl_length3(x, y, z), scale = 1.0 / length;
+  double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
+  double k = scale * __builtin_sqrt(2.0 / q), g = -0.5 * k / (length * length * q);
+  double side = g * (2.0 + z * scale);
+  const double by[5] = {x * side, y * side, g * (2.0 * z + length + z * z * scale), 0.0, 0.0};
+  return vl_derive_factor(x, y, k, by);
+}
+
 #endif

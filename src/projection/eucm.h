@@ -27,4 +27,13 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
   return vl_eucm_project(c->shape[0], c->shape[1], x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_eucm(VL_PROJECT_INPUT) {
+  double a = c->shape[0], b = c->shape[1], across2 = x * x + y * y;
+  double d = __builtin_sqrt(b * across2 + z * z), divisor = a * d + (1.0 - a) * z;
+  double side = a * b / d;
+  const double by[5] = {side * x, side * y, a * z / d + (1.0 - a), d - z,
+                        0.5 * a * across2 / d};
+  return vl_derive_quotient(x, y, divisor, by);
+}
+
 #endif

@@ -26,4 +26,14 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_fov(VL_PROJECT_INPUT) {
   return vl_fov_project(c->shape[0], c->shape[1], x, y, z);
 }
 
+/* t = 2 tan(w/2) depends on w: its derivative is 1 + t^2/4. */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_fov(VL_PROJECT_INPUT) {
+  double w = c->shape[0], t = c->shape[1];
+  double r = vl_not_tiny(vl_length2(x, y)), k = vl_atan2_double(t * r, z) / (w * r);
+  double all2 = t * t * r * r + z * z, g = (t * z / (w * all2) - k) / (r * r);
+  double by_w = (1.0 + 0.25 * t * t) * z / (w * all2) - k / w;
+  const double by[5] = {x * g, y * g, -t / (w * all2), by_w, 0.0};
+  return vl_derive_factor(x, y, k, by);
+}
+
 #endif

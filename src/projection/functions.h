@@ -13,4 +13,31 @@
 /* The arguments of vl_project_NAME: the compiled camera, a point in camera space. */
 #define VL_PROJECT_INPUT const vlCameraCompiled *c, double x, double y, double z
 
+/* Derivatives of a plane point: by x, y, z of the point in camera space, then by the two
+ * numbers of vlCamera.shape. */
+typedef struct vlPlaneDerivatives {
+  double x[5], y[5];
+} vlPlaneDerivatives;
+
+/* The derivatives of (x k, y k); by: those of k. */
+static inline vlPlaneDerivatives vl_derive_factor(double x, double y, double k,
+                                                  const double by[5]) {
+  vlPlaneDerivatives d;
+  for (int i = 0; i < 5; i++) {
+    d.x[i] = x * by[i];
+    d.y[i] = y * by[i];
+  }
+  d.x[0] += k;
+  d.y[1] += k;
+  return d;
+}
+/* The derivatives of (x, y) / divisor; by: those of the divisor. */
+static inline vlPlaneDerivatives vl_derive_quotient(double x, double y, double divisor,
+                                                    const double by[5]) {
+  double k = 1.0 / divisor, of_k[5];
+  for (int i = 0; i < 5; i++)
+    of_k[i] = -by[i] * k * k;
+  return vl_derive_factor(x, y, k, of_k);
+}
+
 #endif

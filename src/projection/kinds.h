@@ -23,28 +23,38 @@
 #include "projection/unified.h"
 #include "velo/projection.h"
 
-/* X(kind, unproject, project): the functions of each projection, by their full names. */
+/* X(kind, unproject, project, derive): the functions of each projection, by their full names.
+ */
 #define VL_PROJECTION_FUNCTIONS(X)                                                           \
-  X(VL_PROJECTION_PERSPECTIVE, vl_unproject_perspective, vl_project_perspective)             \
-  X(VL_PROJECTION_ORTHOGRAPHIC, vl_unproject_orthographic, vl_project_orthographic)          \
-  X(VL_PROJECTION_EQUIRECTANGULAR, vl_unproject_equirectangular, vl_project_equirectangular) \
-  X(VL_PROJECTION_EQUIDISTANT, vl_unproject_equidistant, vl_project_equidistant)             \
-  X(VL_PROJECTION_EQUISOLID, vl_unproject_equisolid, vl_project_equisolid)                   \
-  X(VL_PROJECTION_STEREOGRAPHIC, vl_unproject_stereographic, vl_project_stereographic)       \
-  X(VL_PROJECTION_SINE, vl_unproject_sine, vl_project_sine)                                  \
-  X(VL_PROJECTION_EQUAL_AREA, vl_unproject_equal_area, vl_project_equal_area)                \
-  X(VL_PROJECTION_CYLINDRICAL, vl_unproject_cylindrical, vl_project_cylindrical)             \
-  X(VL_PROJECTION_CUBE, vl_unproject_cube, vl_project_cube)                                  \
-  X(VL_PROJECTION_PANINI, vl_unproject_panini, vl_project_panini)                            \
-  X(VL_PROJECTION_FOV, vl_unproject_fov, vl_project_fov)                                     \
-  X(VL_PROJECTION_DIVISION, vl_unproject_division, vl_project_division)                      \
-  X(VL_PROJECTION_UNIFIED, vl_unproject_unified, vl_project_unified)                         \
-  X(VL_PROJECTION_EUCM, vl_unproject_eucm, vl_project_eucm)                                  \
-  X(VL_PROJECTION_DOUBLE_SPHERE, vl_unproject_double_sphere, vl_project_double_sphere)       \
-  X(VL_PROJECTION_OPTICS, vl_unproject_optics, vl_project_optics)
+  X(VL_PROJECTION_PERSPECTIVE, vl_unproject_perspective, vl_project_perspective,             \
+    vl_derive_perspective)                                                                   \
+  X(VL_PROJECTION_ORTHOGRAPHIC, vl_unproject_orthographic, vl_project_orthographic,          \
+    vl_derive_orthographic)                                                                  \
+  X(VL_PROJECTION_EQUIRECTANGULAR, vl_unproject_equirectangular, vl_project_equirectangular, \
+    vl_derive_equirectangular)                                                               \
+  X(VL_PROJECTION_EQUIDISTANT, vl_unproject_equidistant, vl_project_equidistant,             \
+    vl_derive_equidistant)                                                                   \
+  X(VL_PROJECTION_EQUISOLID, vl_unproject_equisolid, vl_project_equisolid,                   \
+    vl_derive_equisolid)                                                                     \
+  X(VL_PROJECTION_STEREOGRAPHIC, vl_unproject_stereographic, vl_project_stereographic,       \
+    vl_derive_stereographic)                                                                 \
+  X(VL_PROJECTION_SINE, vl_unproject_sine, vl_project_sine, vl_derive_sine)                  \
+  X(VL_PROJECTION_EQUAL_AREA, vl_unproject_equal_area, vl_project_equal_area,                \
+    vl_derive_equal_area)                                                                    \
+  X(VL_PROJECTION_CYLINDRICAL, vl_unproject_cylindrical, vl_project_cylindrical,             \
+    vl_derive_cylindrical)                                                                   \
+  X(VL_PROJECTION_CUBE, vl_unproject_cube, vl_project_cube, vl_derive_cube)                  \
+  X(VL_PROJECTION_PANINI, vl_unproject_panini, vl_project_panini, vl_derive_panini)          \
+  X(VL_PROJECTION_FOV, vl_unproject_fov, vl_project_fov, vl_derive_fov)                      \
+  X(VL_PROJECTION_DIVISION, vl_unproject_division, vl_project_division, vl_derive_division)  \
+  X(VL_PROJECTION_UNIFIED, vl_unproject_unified, vl_project_unified, vl_derive_unified)      \
+  X(VL_PROJECTION_EUCM, vl_unproject_eucm, vl_project_eucm, vl_derive_eucm)                  \
+  X(VL_PROJECTION_DOUBLE_SPHERE, vl_unproject_double_sphere, vl_project_double_sphere,       \
+    vl_derive_double_sphere)                                                                 \
+  X(VL_PROJECTION_OPTICS, vl_unproject_optics, vl_project_optics, vl_derive_optics)
 
 /* A kind that is not in this list is a compile error. */
-#define VL_HAS_FUNCTIONS(kind, unproject, project) vl_functions_of_##kind = 1,
+#define VL_HAS_FUNCTIONS(kind, unproject, project, derive) vl_functions_of_##kind = 1,
 enum { VL_PROJECTION_FUNCTIONS(VL_HAS_FUNCTIONS) };
 #define VL_NEEDS_FUNCTIONS(NAME, name) \
   _Static_assert(vl_functions_of_VL_PROJECTION_##NAME, "a kind has functions");
@@ -56,9 +66,9 @@ VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCamer
                                                 double face, double x, double y) {
   vlDirection d = {x, y, 1.0, 1.0};
   switch (kind) {
-#define VL_UNPROJECT_CASE(kind, unproject, project) \
-  case kind:                                        \
-    d = unproject(c, face, x, y);                   \
+#define VL_UNPROJECT_CASE(kind, unproject, project, derive) \
+  case kind:                                                \
+    d = unproject(c, face, x, y);                           \
     break;
     VL_PROJECTION_FUNCTIONS(VL_UNPROJECT_CASE)
 #undef VL_UNPROJECT_CASE
@@ -75,9 +85,9 @@ VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCamera
                                                double x, double y, double z) {
   vlPlanePoint p = {x, y, 0.0};
   switch (kind) {
-#define VL_PROJECT_CASE(kind, unproject, project) \
-  case kind:                                      \
-    p = project(c, x, y, z);                      \
+#define VL_PROJECT_CASE(kind, unproject, project, derive) \
+  case kind:                                              \
+    p = project(c, x, y, z);                              \
     break;
     VL_PROJECTION_FUNCTIONS(VL_PROJECT_CASE)
 #undef VL_PROJECT_CASE
@@ -86,6 +96,24 @@ VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCamera
   }
   p.valid = p.x * p.x + p.y * p.y <= c->limit2 ? p.valid : 0.0;
   return p;
+}
+
+/* The derivatives of vl_plane_project, inside its domain. */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_plane_derive(vlProjection kind,
+                                                    const vlCameraCompiled *c, double x,
+                                                    double y, double z) {
+  vlPlaneDerivatives d = {{0.0}, {0.0}};
+  switch (kind) {
+#define VL_DERIVE_CASE(kind, unproject, project, derive) \
+  case kind:                                             \
+    d = derive(c, x, y, z);                              \
+    break;
+    VL_PROJECTION_FUNCTIONS(VL_DERIVE_CASE)
+#undef VL_DERIVE_CASE
+    case VL_PROJECTION_OWN:
+      break;
+  }
+  return d;
 }
 
 /* The projections that cover all longitudes. They support omnidirectional stereo (eyes.h). */

@@ -16,4 +16,12 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_optics(VL_PROJECT_INPUT) {
   return (vlPlanePoint){x, y, 0.0};
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_optics(VL_PROJECT_INPUT) {
+  (void)c;
+  (void)x;
+  (void)y;
+  (void)z;
+  return (vlPlaneDerivatives){{0.0}, {0.0}};
+}
+
 #endif

@@ -38,4 +38,13 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
   return vl_panini_project(c->shape[0], x, y, z);
 }
 
+/* The divisor is (d |xz| + z) / (d + 1). */
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_panini(VL_PROJECT_INPUT) {
+  double d = c->shape[0], across = vl_length2(x, z), k = 1.0 / (d + 1.0);
+  double divisor = (d * across + z) * k;
+  const double by[5] = {d * k * x / across, 0.0, (d * z / across + 1.0) * k,
+                        (across - z) * k * k, 0.0};
+  return vl_derive_quotient(x, y, divisor, by);
+}
+
 #endif

@@ -32,4 +32,10 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_perspective(VL_PROJECT_INPUT) {
   return (vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0};
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_perspective(VL_PROJECT_INPUT) {
+  (void)c;
+  const double by[5] = {0.0, 0.0, 1.0, 0.0, 0.0};
+  return vl_derive_quotient(x, y, z, by);
+}
+
 #endif

@@ -26,4 +26,11 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_sine(VL_PROJECT_INPUT) {
   return vl_sine_project(x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_sine(VL_PROJECT_INPUT) {
+  (void)c;
+  double divisor = vl_length3(x, y, z);
+  const double by[5] = {x / divisor, y / divisor, z / divisor, 0.0, 0.0};
+  return vl_derive_quotient(x, y, divisor, by);
+}
+
 #endif

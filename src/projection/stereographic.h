@@ -30,4 +30,13 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
   return vl_stereographic_project(x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_stereographic(VL_PROJECT_INPUT) {
+  (void)c;
+  double length = vl_length3(x, y, z), scale = 1.0 / length;
+  double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
+  double divisor = 0.5 * length * q, half = 0.5 * scale;
+  const double by[5] = {half * x, half * y, 0.5 * q, 0.0, 0.0};
+  return vl_derive_quotient(x, y, divisor, by);
+}
+
 #endif

@@ -26,4 +26,11 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
   return vl_unified_project(c->shape[0], x, y, z);
 }
 
+VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_unified(VL_PROJECT_INPUT) {
+  double xi = c->shape[0], length = vl_length3(x, y, z), divisor = z + xi * length;
+  double side = xi / length;
+  const double by[5] = {side * x, side * y, 1.0 + side * z, length, 0.0};
+  return vl_derive_quotient(x, y, divisor, by);
+}
+
 #endif

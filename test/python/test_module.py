@@ -18,6 +18,26 @@ scene = velo.load(cases.PINHOLE)
 
 
 @case
+def jacobians() -> None:
+    camera = velo.Camera(64, 48, eye=(0.3, 1, 3), lookat=(0, 0, 0), distortion="radial", distortion_coefficients=[-0.1])
+    points = numpy.array([[0.1, 0.2, 0.3], [0.0, 0.0, 9.0]])
+    seen, jacobian = camera.project(points, jacobian=True)
+    assert numpy.array_equal(seen.pixels, camera.project(points).pixels)
+    assert jacobian.values.shape == (2, 2, len(velo.camera.JACOBIAN_COLUMNS)) and list(jacobian.valid) == [True, False]
+    assert not jacobian.values[1].any()
+    for column in range(3):
+        step = numpy.eye(3)[column] * 1e-5
+        difference = (camera.project(points[:1] + step).pixels - camera.project(points[:1] - step).pixels) / 2e-5
+        assert numpy.allclose(jacobian.values[0, :, column], difference[0], rtol=1e-6, atol=1e-6)
+    rays, jacobian = camera.unproject([[20.0, 30.0]], jacobian=True)
+    assert jacobian.values.shape == (1, 6, len(velo.camera.JACOBIAN_COLUMNS)) and rays.valid.all()
+    assert numpy.allclose(rays.directions @ jacobian.values[0, 3:], 0, atol=1e-12)  # a unit vector stays one
+    own = velo.Camera(64, 48, stereo_mode="omnidirectional", projection="equirectangular").eyes()[0]
+    with raises(velo.UnsupportedError, "omnidirectional stereo"):
+        own.project(points, jacobian=True)
+
+
+@case
 def a_render_is_a_numpy_array():
     image = scene.render(spp=2, resolution=(64, 48), channels=["Z", "N", "id.object"])
     pixels = numpy.asarray(image)

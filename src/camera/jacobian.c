@@ -1,0 +1,287 @@
+/* camera/jacobian.c: derivatives of projection and unprojection (velo/jacobian.h), by the chain
+ * rule: pose, projection, distortion, intrinsics. Each projection has its own derivatives
+ * (projection/NAME.h). */
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "camera/points.h"
+#include "velo/jacobian.h"
+
+/* The derivatives of a film point: by its point in camera space, and by the camera's numbers
+ * (columns from VL_JACOBIAN_INTRINSICS on). */
+enum { NUMBERS = VL_JACOBIAN_COLUMNS - VL_JACOBIAN_INTRINSICS };
+enum { SHAPE = VL_JACOBIAN_SHAPE - VL_JACOBIAN_INTRINSICS };
+enum { DISTORTION = VL_JACOBIAN_DISTORTION - VL_JACOBIAN_INTRINSICS };
+typedef struct {
+  double point[2][3], numbers[2][NUMBERS];
+} FilmDerivatives;
+
+/* The derivatives of the point before the tilt by the coefficients of the common form
+ * (distortion/distortion.h). */
+static void by_coefficients(const vlDistortionMap *m, double x, double y, double by[2][13]) {
+  const double *n = m->numerator, *d = m->denominator;
+  double s = x * x + y * y, below = 1.0 + s * (d[0] + s * (d[1] + s * d[2]));
+  double q = (1.0 + s * (n[0] + s * (n[1] + s * (n[2] + s * n[3])))) / below, power = 1.0;
+  memset(by, 0, 2 * sizeof *by);
+  for (int i = 0; i < 4; i++) {
+    power *= s;
+    by[0][i] = x * power / below;
+    by[1][i] = y * power / below;
+    if (i == 3)
+      break;
+    by[0][4 + i] = -x * q * power / below;
+    by[1][4 + i] = -y * q * power / below;
+  }
+  by[0][7] = by[1][8] = 2.0 * x * y;
+  by[1][7] = s + 2.0 * y * y;
+  by[0][8] = s + 2.0 * x * x;
+  by[0][9] = by[1][11] = s;
+  by[0][10] = by[1][12] = s * s;
+}
+
+/* The derivatives of the tilted point, by one angle of the tilt. r: the rotation; dr: its
+ * derivative. The point is (r8 q0 - r2 q2, r8 q1 - r5 q2) / q2, q = r (u, v, 1). */
+static void by_angle(const double r[9], const double dr[9], double u, double v, double by[2]) {
+  double q[3], dq[3];
+  for (int i = 0; i < 3; i++) {
+    q[i] = r[3 * i] * u + r[3 * i + 1] * v + r[3 * i + 2];
+    dq[i] = dr[3 * i] * u + dr[3 * i + 1] * v + dr[3 * i + 2];
+  }
+  for (int i = 0; i < 2; i++) {
+    double ratio = q[i] / q[2];
+    by[i] = dr[8] * ratio + r[8] * (dq[i] - ratio * dq[2]) / q[2] - dr[3 * i + 2];
+  }
+}
+
+/* The angles are found in the homography, whose last row is that of the rotation. */
+static void by_tilt(const vlDistortionMap *m, double u, double v, double by_x[2],
+                    double by_y[2]) {
+  const double *h = m->tilt;
+  double sy = h[6], cy = sqrt(1.0 - sy * sy), cx = h[8] / cy, sx = -h[7] / cy;
+  const double r[9] = {cy, sy * sx, -sy * cx, 0.0, cx, sx, sy, -cy * sx, cy * cx};
+  const double about_x[9] = {0.0, sy * cx, sy * sx, 0.0, -sx, cx, 0.0, -cy * cx, -cy * sx};
+  const double about_y[9] = {-sy, cy * sx, -cy * cx, 0.0, 0.0, 0.0, cy, sy * sx, -sy * cx};
+  by_angle(r, about_x, u, v, by_x);
+  by_angle(r, about_y, u, v, by_y);
+}
+
+/* by: the 2 x 2 derivatives of the distorted point by the ideal one, and those by the 15
+ * numbers of the distortion. at: the distorted point. */
+static void distortion(const vlDistortionMap *m, double x, double y, double at[2],
+                       double by_ideal[2][2], double by[2][15]) {
+  vlDistorted d = vl_distort(m, x, y);
+  vlPlanePoint p = vl_tilt(m->tilt, d.u, d.v);
+  const double *h = m->tilt;
+  double before[2][13], angle_x[2], angle_y[2], flat[2][2];
+  double w = h[6] * d.u + h[7] * d.v + h[8];
+  at[0] = p.x;
+  at[1] = p.y;
+  by_coefficients(m, x, y, before);
+  by_tilt(m, d.u, d.v, angle_x, angle_y);
+  for (int i = 0; i < 2; i++) {
+    for (int j = 0; j < 2; j++)
+      flat[i][j] = (h[3 * i + j] - at[i] * h[6 + j]) / w;
+    by_ideal[i][0] = flat[i][0] * d.ux + flat[i][1] * d.vx;
+    by_ideal[i][1] = flat[i][0] * d.uy + flat[i][1] * d.vy;
+    for (int j = 0; j < 13; j++)
+      by[i][j] = flat[i][0] * before[0][j] + flat[i][1] * before[1][j];
+    by[i][13] = angle_x[i];
+    by[i][14] = angle_y[i];
+  }
+}
+
+static FilmDerivatives film_derivatives(const vlCameraCompiled *c, double x, double y,
+                                        double z) {
+  vlPlanePoint ideal = vl_plane_project(c->projection, c, x, y, z);
+  vlPlaneDerivatives p = vl_plane_derive(c->projection, c, x, y, z);
+  double at[2], by_ideal[2][2], by[2][15];
+  distortion(&c->distortion, ideal.x, ideal.y, at, by_ideal, by);
+  const double k[2][2] = {{c->fx, c->skew}, {0.0, c->fy}};
+  FilmDerivatives d = {.numbers = {{at[0], 0.0, at[1], 1.0, 0.0}, {0.0, at[1], 0.0, 0.0, 1.0}}};
+  for (int i = 0; i < 2; i++) {
+    double to_x = k[i][0] * by_ideal[0][0] + k[i][1] * by_ideal[1][0];
+    double to_y = k[i][0] * by_ideal[0][1] + k[i][1] * by_ideal[1][1];
+    for (int j = 0; j < 3; j++)
+      d.point[i][j] = to_x * p.x[j] + to_y * p.y[j];
+    for (int j = 0; j < 2; j++)
+      d.numbers[i][SHAPE + j] = to_x * p.x[3 + j] + to_y * p.y[3 + j];
+    for (int j = 0; j < 15; j++)
+      d.numbers[i][DISTORTION + j] = k[i][0] * by[0][j] + k[i][1] * by[1][j];
+  }
+  return d;
+}
+
+static void cross(const double a[3], const double b[3], double result[3]) {
+  result[0] = a[1] * b[2] - a[2] * b[1];
+  result[1] = a[2] * b[0] - a[0] * b[2];
+  result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static bool all_finite(const double *numbers, int count) {
+  bool finite = true;
+  for (int i = 0; i < count; i++)
+    finite = finite && isfinite(numbers[i]);
+  return finite;
+}
+
+/* The point moves in camera space by t + r x point. */
+static bool project_one(const vlCameraCompiled *c, const double point[3], double *rows) {
+  const double *m = c->camera_from_world;
+  double at[3];
+  for (int i = 0; i < 3; i++)
+    at[i] =
+        m[4 * i] * point[0] + m[4 * i + 1] * point[1] + m[4 * i + 2] * point[2] + m[4 * i + 3];
+  if (!(vl_camera_film_point(c, at[0], at[1], at[2]).valid > 0.0))
+    return false;
+  FilmDerivatives d = film_derivatives(c, at[0], at[1], at[2]);
+  for (int i = 0; i < 2; i++) {
+    double *row = rows + (size_t)i * VL_JACOBIAN_COLUMNS;
+    const double *g = d.point[i];
+    for (int j = 0; j < 3; j++) {
+      row[VL_JACOBIAN_POINT + j] = g[0] * m[j] + g[1] * m[4 + j] + g[2] * m[8 + j];
+      row[VL_JACOBIAN_POSE + j] = g[j];
+    }
+    cross(at, g, row + VL_JACOBIAN_POSE + 3);
+    memcpy(row + VL_JACOBIAN_INTRINSICS, d.numbers[i], sizeof d.numbers[i]);
+  }
+  return all_finite(rows, 2 * VL_JACOBIAN_COLUMNS);
+}
+
+/* Writes the world's derivatives of one column: `origin` and `direction` are those of the ray
+ * in camera space, ray its direction in the world, not normalised. */
+static void store_ray(const vlCameraCompiled *c, const double ray[3], const double origin[3],
+                      const double direction[3], double *rows, int column) {
+  const double *m = c->rotation;
+  double inv = 1.0 / vl_length3(ray[0], ray[1], ray[2]), d[3], along = 0.0;
+  for (int i = 0; i < 3; i++) {
+    const double *r = m + 3 * (size_t)i;
+    double *row = rows + (size_t)i * VL_JACOBIAN_COLUMNS + column;
+    row[0] = r[0] * origin[0] + r[1] * origin[1] + r[2] * origin[2];
+    d[i] = (r[0] * direction[0] + r[1] * direction[1] + r[2] * direction[2]) * inv;
+    along += d[i] * ray[i] * inv;
+  }
+  for (int i = 0; i < 3; i++)
+    rows[(size_t)(3 + i) * VL_JACOBIAN_COLUMNS + column] = d[i] - along * ray[i] * inv;
+}
+
+/* What a change of the film point, (dx, dy) pixels, does to a ray in camera space: across its
+ * direction; of an orthographic camera, to its origin. solve: 3 x 2. */
+static bool solve_ray(const vlCameraCompiled *c, const double d[3], const FilmDerivatives *f,
+                      double solve[3][2]) {
+  bool orthographic = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  double tangent[2][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, p[2][2];
+  if (!orthographic) {
+    int least = fabs(d[0]) < fabs(d[1]) ? 0 : 1;
+    double axis[3] = {0.0, 0.0, 0.0};
+    axis[least] = 1.0;
+    cross(d, axis, tangent[0]);
+    cross(d, tangent[0], tangent[1]);
+  }
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++)
+      p[i][j] = f->point[i][0] * tangent[j][0] + f->point[i][1] * tangent[j][1] +
+                f->point[i][2] * tangent[j][2];
+  double inv = 1.0 / (p[0][0] * p[1][1] - p[0][1] * p[1][0]);
+  for (int i = 0; i < 3; i++) {
+    solve[i][0] = (tangent[0][i] * p[1][1] - tangent[1][i] * p[1][0]) * inv;
+    solve[i][1] = (tangent[1][i] * p[0][0] - tangent[0][i] * p[0][1]) * inv;
+  }
+  return isfinite(inv);
+}
+
+static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], double *rows) {
+  bool orthographic = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  double x = pixel[0] - c->cx, y = pixel[1] - c->cy;
+  vlDirection ray = {0.0, 0.0, 1.0, 1.0};
+  vlPlanePoint plane = vl_pixel_to_plane(c, x, y);
+  if (!orthographic)
+    ray = vl_camera_direction(c, x, y);
+  double length = vl_length3(ray.x, ray.y, ray.z), solve[3][2];
+  const double d[3] = {ray.x / length, ray.y / length, ray.z / length};
+  const double o[3] = {orthographic ? plane.x : 0.0, orthographic ? plane.y : 0.0, 0.0};
+  const double at[3] = {o[0] + d[0], o[1] + d[1], d[2]};
+  vlPlanePoint film = vl_camera_film_point(c, at[0], at[1], at[2]);
+  double size = 1.0 + fabs(pixel[0]) + fabs(pixel[1]);
+  if (!(ray.valid > 0.0 && film.valid > 0.0) ||
+      !(fabs(film.x - pixel[0]) + fabs(film.y - pixel[1]) < 1e-6 * size))
+    return false;
+  FilmDerivatives f = film_derivatives(c, at[0], at[1], at[2]);
+  if (!solve_ray(c, d, &f, solve))
+    return false;
+  const double *m = c->rotation, none[3] = {0.0, 0.0, 0.0};
+  const double world[3] = {m[0] * d[0] + m[1] * d[1] + m[2] * d[2],
+                           m[3] * d[0] + m[4] * d[1] + m[5] * d[2],
+                           m[6] * d[0] + m[7] * d[1] + m[8] * d[2]};
+  for (int j = 0; j < 2 + NUMBERS; j++) {
+    double change[3];
+    for (int i = 0; i < 3; i++)
+      change[i] = j < 2
+                      ? solve[i][j]
+                      : -solve[i][0] * f.numbers[0][j - 2] - solve[i][1] * f.numbers[1][j - 2];
+    int column = j < 2 ? VL_JACOBIAN_POINT + j : VL_JACOBIAN_INTRINSICS + j - 2;
+    store_ray(c, world, orthographic ? change : none, orthographic ? none : change, rows,
+              column);
+  }
+  /* world_from_camera' = world_from_camera exp(-(t, r)^) */
+  for (int j = 0; j < 3; j++) {
+    double axis[3] = {0.0, 0.0, 0.0}, back[3] = {0.0, 0.0, 0.0}, of_origin[3], of_direction[3];
+    axis[j] = 1.0;
+    back[j] = -1.0;
+    cross(o, axis, of_origin);
+    cross(d, axis, of_direction);
+    store_ray(c, world, back, none, rows, VL_JACOBIAN_POSE + j);
+    store_ray(c, world, of_origin, of_direction, rows, VL_JACOBIAN_POSE + 3 + j);
+  }
+  return all_finite(rows, 6 * VL_JACOBIAN_COLUMNS);
+}
+
+static vlResult check(const vlCamera *camera, bool missing, vlError *error) {
+  vl_error_clear(error);
+  if (!camera || missing)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a null pointer");
+  const char *what = NULL;
+  if (camera->own)
+    what = "a camera of one's own";
+  else if (camera->lens.optics)
+    what = "a lens of many elements";
+  else if (camera->eye_circle != 0.0)
+    what = "an eye of omnidirectional stereo";
+  if (what)
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera: %s has no Jacobian", what);
+  return VL_OK;
+}
+
+typedef bool JacobianFn(const vlCameraCompiled *c, const double *in, double *rows);
+
+static vlResult each(const vlCamera *camera, size_t count, const double *in, size_t inputs,
+                     double *out, size_t outputs, uint8_t *valid, JacobianFn *one,
+                     vlError *error) {
+  vlResult result = check(camera, count > 0 && (!in || !out), error);
+  if (result != VL_OK)
+    return result;
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  for (size_t i = 0; i < count; i++) {
+    const double *from = in + inputs * i;
+    double *rows = out + outputs * VL_JACOBIAN_COLUMNS * i;
+    memset(rows, 0, outputs * VL_JACOBIAN_COLUMNS * sizeof *rows);
+    bool good = all_finite(from, (int)inputs) && one(&c, from, rows);
+    if (!good)
+      memset(rows, 0, outputs * VL_JACOBIAN_COLUMNS * sizeof *rows);
+    if (valid)
+      valid[i] = good;
+  }
+  return VL_OK;
+}
+
+vlResult vl_camera_project_jacobian(const vlCamera *camera, size_t count, const double *points,
+                                    double *jacobians, uint8_t *valid, vlError *error) {
+  return each(camera, count, points, 3, jacobians, 2, valid, project_one, error);
+}
+
+vlResult vl_camera_unproject_jacobian(const vlCamera *camera, size_t count,
+                                      const double *pixels, double *jacobians, uint8_t *valid,
+                                      vlError *error) {
+  return each(camera, count, pixels, 2, jacobians, 6, valid, unproject_one, error);
+}

@@ -1,0 +1,288 @@
+/* test/camera/test_jacobian.c: derivatives of projection and unprojection against central
+ * differences of eighth order of the public functions, for random cameras of every projection
+ * and distortion. */
+#include "camera/cameras.h"
+
+#include "distortion/compile.h"
+#include "distortion/distortion.case.h"
+#include "projection/projection.case.h"
+#include "velo/jacobian.h"
+
+vlDistortionCompile vl_distortion_compile_opencv;
+
+enum { CAMERAS = 200, COLUMNS = VL_JACOBIAN_COLUMNS };
+
+#define PROJECTION(NAME, name) &name##_projection,
+static const ProjectionCase *const projections[] = {VL_PROJECTION_KINDS(PROJECTION)};
+#define DISTORTION(NAME, name) &name##_distortion,
+static const DistortionCase *const distortions[] = {VL_DISTORTION_KINDS(DISTORTION)};
+
+static bool has_distortion(vlProjection kind) {
+  return kind == VL_PROJECTION_PERSPECTIVE || kind == VL_PROJECTION_EQUIDISTANT;
+}
+
+/* A random camera; false: the kind has no Jacobian. */
+static bool random_camera(vlProjection kind, vlDistortion bent, uint64_t *state,
+                          vlCamera *camera) {
+  const ProjectionCase *c = projections[kind];
+  if (c->optics)
+    return false;
+  vlCameraDef d = vl_default_camera_def(640, 480);
+  d.projection = kind;
+  memcpy(d.shape, c->shape, sizeof d.shape);
+  for (int i = 0; i < 2; i++)
+    if (kind != VL_PROJECTION_CUBE)
+      d.shape[i] *= next_between(state, 0.95, 1.0);
+  d.fx = kind == VL_PROJECTION_CUBE ? VL_UNSET : next_between(state, 200, 300);
+  d.fy = kind == VL_PROJECTION_CUBE ? VL_UNSET : next_between(state, 200, 300);
+  if (kind == VL_PROJECTION_CUBE) {
+    d.width = 600;
+    d.height = 100;
+  } else {
+    d.cx = next_between(state, 300, 340);
+    d.cy = next_between(state, 220, 260);
+    d.skew = next_between(state, -2, 2);
+  }
+  for (int i = 0; i < 3; i++) {
+    d.eye[i] = next_between(state, -2, 2);
+    d.lookat[i] = d.eye[i] + next_between(state, 0.2, 2);
+  }
+  d.roll = next_between(state, -3, 3);
+  d.distortion = bent;
+  if (bent != VL_DISTORTION_NONE) {
+    const DistortionVariant *v = &distortions[bent]->variants[0];
+    d.distortion_count = v->count;
+    for (uint32_t i = 0; i < v->count; i++)
+      d.distortion_coefficients[i] = 0.2 * v->k[i] * next_unit(state);
+    if (bent == VL_DISTORTION_OPENCV) {
+      d.distortion_count = 14;
+      d.distortion_coefficients[12] = next_between(state, -0.1, 0.1);
+      d.distortion_coefficients[13] = next_between(state, -0.1, 0.1);
+    }
+  }
+  vlError error;
+  if (vl_camera_make(&d, camera, NULL, &error) != VL_OK)
+    fail_msg("%s", error.message);
+  return true;
+}
+
+static void set_tilt(vlCamera *camera, double tau_x, double tau_y) {
+  double k[14] = {0};
+  vlDistortionMap tilted = camera->distortion;
+  k[12] = tau_x;
+  k[13] = tau_y;
+  assert_int_equal(vl_distortion_compile_opencv(k, 14, &tilted, NULL), VL_OK);
+  memcpy(camera->distortion.tilt, tilted.tilt, sizeof tilted.tilt);
+  memcpy(camera->distortion.untilt, tilted.untilt, sizeof tilted.untilt);
+}
+
+/* Moves the pose: camera_from_world' = exp((t, r)^) camera_from_world for one number of (t, r):
+ * a translation, or a rotation about an axis. */
+static void move_pose(vlCamera *camera, int which, double h) {
+  double e[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, back[16];
+  int a = (which + 1) % 3, b = (which + 2) % 3;
+  if (which < 3) {
+    e[4 * which + 3] = h;
+  } else {
+    e[5 * a] = e[5 * b] = cos(h);
+    e[4 * a + b] = -sin(h);
+    e[4 * b + a] = sin(h);
+  }
+  memcpy(back, e, sizeof e);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++)
+      back[4 * i + j] = j < 3 ? e[4 * j + i] : -e[4 * i + 3];
+  double from[16], to[16];
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      from[4 * i + j] = to[4 * i + j] = 0;
+      for (int k = 0; k < 4; k++) {
+        from[4 * i + j] += e[4 * i + k] * camera->camera_from_world[4 * k + j];
+        to[4 * i + j] += camera->world_from_camera[4 * i + k] * back[4 * k + j];
+      }
+    }
+  memcpy(camera->camera_from_world, from, sizeof from);
+  memcpy(camera->world_from_camera, to, sizeof to);
+}
+
+typedef struct {
+  vlCamera camera;
+  double at[3];
+  double tau[2];
+} Place;
+
+/* A place with one number moved by h units of the number's step. */
+static Place moved(const Place *place, int column, double h) {
+  Place p = *place;
+  vlCamera *c = &p.camera;
+  double *intrinsics[5] = {&c->fx, &c->fy, &c->skew, &c->cx, &c->cy};
+  if (column < VL_JACOBIAN_POSE)
+    p.at[column] += h;
+  else if (column < VL_JACOBIAN_INTRINSICS)
+    move_pose(c, column - VL_JACOBIAN_POSE, h);
+  else if (column < VL_JACOBIAN_SHAPE)
+    *intrinsics[column - VL_JACOBIAN_INTRINSICS] += h;
+  else if (column < VL_JACOBIAN_DISTORTION)
+    c->shape[column - VL_JACOBIAN_SHAPE] += h;
+  else if (column < VL_JACOBIAN_DISTORTION + 4)
+    c->distortion.numerator[column - VL_JACOBIAN_DISTORTION] += h;
+  else if (column < VL_JACOBIAN_DISTORTION + 7)
+    c->distortion.denominator[column - VL_JACOBIAN_DISTORTION - 4] += h;
+  else if (column < VL_JACOBIAN_DISTORTION + 9)
+    c->distortion.tangential[column - VL_JACOBIAN_DISTORTION - 7] += h;
+  else if (column < VL_JACOBIAN_DISTORTION + 13)
+    c->distortion.prism[column - VL_JACOBIAN_DISTORTION - 9] += h;
+  else
+    set_tilt(c, p.tau[0] + (column == COLUMNS - 2 ? h : 0),
+             p.tau[1] + (column == COLUMNS - 1 ? h : 0));
+  return p;
+}
+
+static bool value(const Place *p, bool forward, double out[6]) {
+  if (forward)
+    return vl_camera_project(&p->camera, p->at, out, NULL);
+  return vl_camera_unproject(&p->camera, p->at[0], p->at[1], out, out + 3);
+}
+
+/* Eighth order: an error of h^8 and 1e-16 / h. */
+static bool difference(const Place *place, bool forward, int column, double h, double out[6]) {
+  static const double weight[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+  memset(out, 0, 6 * sizeof *out);
+  for (int i = 0; i < 4; i++)
+    for (int side = -1; side <= 1; side += 2) {
+      double v[6] = {0};
+      Place p = moved(place, column, side * (i + 1) * h);
+      if (!value(&p, forward, v))
+        return false;
+      for (int k = 0; k < 6; k++)
+        out[k] += side * weight[i] * v[k] / h;
+    }
+  return true;
+}
+
+/* The largest difference of a column, relative to the column's length or 1. */
+static double column_error(const Place *place, bool forward, int column, const double *rows) {
+  double best = INFINITY;
+  bool film = column >= VL_JACOBIAN_INTRINSICS && column < VL_JACOBIAN_SHAPE;
+  double unit = film || (!forward && column < 2) ? 10.0 : 1.0;
+  for (double h = 4e-3; h > 3e-4 && best > 1e-8; h *= 0.5) {
+    double d[6], error = 0, size = forward ? 1.0 : 1e-2;
+    if (!difference(place, forward, column, unit * h, d))
+      continue;
+    for (int k = 0; k < (forward ? 2 : 6); k++) {
+      double mine = rows[k * COLUMNS + column];
+      size = fmax(size, fabs(mine));
+      error = fmax(error, fabs(mine - d[k]));
+    }
+    best = fmin(best, error / size);
+  }
+  return best;
+}
+
+static bool has_column(vlProjection kind, vlDistortion bent, int column, bool forward) {
+  int numbers = kind == VL_PROJECTION_EUCM || kind == VL_PROJECTION_DOUBLE_SPHERE ? 2 : 1;
+  const ProjectionCase *c = projections[kind];
+  if (!forward && column == 2)
+    return false;
+  if (column >= VL_JACOBIAN_SHAPE && column < VL_JACOBIAN_DISTORTION)
+    return kind != VL_PROJECTION_CUBE && !isnan(c->shape[0]) &&
+           column - VL_JACOBIAN_SHAPE < numbers;
+  if (column >= VL_JACOBIAN_DISTORTION)
+    return bent != VL_DISTORTION_NONE && (column < COLUMNS - 2 || bent == VL_DISTORTION_OPENCV);
+  return true;
+}
+
+static int check_place(vlProjection kind, vlDistortion bent, const Place *place, bool forward) {
+  double rows[6 * COLUMNS];
+  uint8_t valid;
+  vlError error;
+  vlResult result =
+      forward
+          ? vl_camera_project_jacobian(&place->camera, 1, place->at, rows, &valid, &error)
+          : vl_camera_unproject_jacobian(&place->camera, 1, place->at, rows, &valid, &error);
+  assert_int_equal(result, VL_OK);
+  if (!valid)
+    return 0;
+  for (int column = 0; column < COLUMNS; column++) {
+    if (!has_column(kind, bent, column, forward))
+      continue;
+    double e = column_error(place, forward, column, rows);
+    if (!isfinite(e)) /* the domain ends within all steps */
+      return 0;
+    if (e > 1e-8)
+      fail_msg("%s, distortion %u, %s, column %d: off by %g", vl_projection_name(kind), bent,
+               forward ? "project" : "unproject", column, e);
+  }
+  return 1;
+}
+
+static void check_model(vlProjection kind, vlDistortion bent) {
+  uint64_t state = 7 + kind + 100 * bent;
+  int seen[2] = {0, 0};
+  for (int i = 0; i < CAMERAS; i++) {
+    Place place;
+    if (!random_camera(kind, bent, &state, &place.camera))
+      return;
+    const double *tilt = place.camera.distortion.tilt;
+    place.tau[0] = bent == VL_DISTORTION_OPENCV ? atan2(-tilt[7], tilt[8]) : 0.0;
+    place.tau[1] = bent == VL_DISTORTION_OPENCV ? asin(tilt[6]) : 0.0;
+    double pixel[3] = {next_between(&state, 0.2, 0.8) * place.camera.width,
+                       next_between(&state, 0.2, 0.8) * place.camera.height, 0.0};
+    double o[3], d[3];
+    if (kind == VL_PROJECTION_CUBE) { /* within a face: 100 pixels */
+      pixel[0] = 100 * floor(next_between(&state, 0, 6)) + next_between(&state, 10, 90);
+      pixel[1] = next_between(&state, 10, 90);
+    }
+    if (!vl_camera_unproject(&place.camera, pixel[0], pixel[1], o, d))
+      continue;
+    double far = next_between(&state, 2, 5);
+    for (int k = 0; k < 3; k++)
+      place.at[k] = o[k] + far * d[k];
+    seen[0] += check_place(kind, bent, &place, true);
+    memcpy(place.at, pixel, sizeof pixel);
+    seen[1] += check_place(kind, bent, &place, false);
+  }
+  assert_true(seen[0] > CAMERAS / 2);
+  assert_true(seen[1] > CAMERAS / 2);
+}
+
+static void test_every_model(void **state) {
+  (void)state;
+  for (vlProjection kind = 0; kind < sizeof projections / sizeof *projections; kind++) {
+    check_model(kind, VL_DISTORTION_NONE);
+    for (vlDistortion bent = 1;
+         bent < sizeof distortions / sizeof *distortions && has_distortion(kind); bent++)
+      check_model(kind, bent);
+  }
+}
+
+static void test_outside(void **state) {
+  (void)state;
+  vlCamera c = camera_of(0);
+  const double points[9] = {NAN, 0, 0, 1e9, 1e9, 1e9, 0, 0, -50};
+  double rows[3 * 2 * COLUMNS];
+  uint8_t valid[3];
+  vlError error;
+  assert_int_equal(vl_camera_project_jacobian(&c, 3, points, rows, valid, &error), VL_OK);
+  assert_false(valid[0]);
+  assert_false(valid[1]);
+  assert_true(valid[2]);
+  assert_true(rows[0] == 0.0 && rows[2 * COLUMNS] == 0.0);
+  assert_int_equal(vl_camera_project_jacobian(NULL, 3, points, rows, valid, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_camera_project_jacobian(&c, 3, NULL, rows, valid, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_camera_project_jacobian(&c, 0, NULL, NULL, NULL, &error), VL_OK);
+  c.eye_circle = 0.03;
+  assert_int_equal(vl_camera_project_jacobian(&c, 3, points, rows, valid, &error),
+                   VL_ERROR_UNSUPPORTED);
+  assert_non_null(strstr(error.message, "omnidirectional stereo"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_model),
+      cmocka_unit_test(test_outside),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -108,8 +108,15 @@ VL_API vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id,
  * id.instance: the ids of those after them are lower by 1. */
 VL_API vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown,
                                        vlError *error);
-/** Removes an instance for good; its id is not given again. */
+/** Removes an instance for good; its id is given again by vl_scene_fill_instance only. */
 VL_API vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error);
+/** Moves the instance that was added last into the place of the first one that was removed, so
+ * that a program that removes and adds instances in a loop does not make the scene grow.
+ * Returns its id, which is its old one if none was removed; index 0: there is no instance, or
+ * the last one is removed. */
+VL_API vlInstanceId vl_scene_fill_instance(vlScene *scene);
+/** As vl_scene_shape_serial. */
+VL_API uint64_t vl_scene_instance_serial(const vlScene *scene, vlInstanceId id);
 
 /** Moves, turns and scales everything that the scene describes, so that a camera that is moved
  * in the same way (vl_camera_move with world_from_scene times its pose, which also scales its

@@ -86,7 +86,7 @@ typedef struct Handle {
   PyObject_HEAD Scene *scene;
   const char *family; /* of velo/schema.h, or "groups" */
   uint32_t index;
-  uint64_t serial; /* of a shape: vl_scene_shape_serial; else 0 */
+  uint64_t serial; /* of a shape or instance: vl_scene_shape_serial and so on; else 0 */
 } Handle;
 
 /* The classes that the module makes objects of. The Python package replaces them by its

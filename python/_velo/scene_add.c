@@ -20,6 +20,15 @@ static const Numbers *read_array(Adding *a, PyObject *value, char type, const ch
 
 bool handle_is_valid(const Handle *h) {
   const vlShapeId shape = {h->index};
+  const vlInstanceId instance = {h->index};
+  vlInstanceInfo info;
+  if (strcmp(h->family, family_names[INSTANCES]) == 0) {
+    if (vl_scene_instance(h->scene->scene, instance, &info) == VL_OK &&
+        vl_scene_instance_serial(h->scene->scene, instance) == h->serial)
+      return true;
+    raise_usage("the instance was removed");
+    return false;
+  }
   if (strcmp(h->family, family_names[SHAPES]) != 0)
     return true;
   if (vl_scene_shape(h->scene->scene, shape) &&
@@ -530,7 +539,10 @@ PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
   h->scene = scene;
   h->family = family_names[family];
   h->index = index;
-  h->serial = family == SHAPES ? vl_scene_shape_serial(scene->scene, (vlShapeId){index}) : 0;
+  if (family == SHAPES)
+    h->serial = vl_scene_shape_serial(scene->scene, (vlShapeId){index});
+  if (family == INSTANCES)
+    h->serial = vl_scene_instance_serial(scene->scene, (vlInstanceId){index});
   return (PyObject *)h;
 }
 
@@ -541,6 +553,8 @@ static PyObject *settle(Scene *self, vlSceneCheckpoint *checkpoint, Family famil
   if (error->code == VL_OK)
     vl_scene_result(self->scene, error);
   scene_settle(self, checkpoint, index != 0);
+  if (index && family == INSTANCES)
+    index = vl_scene_fill_instance(self->scene).index;
   return index ? new_handle(self, family, index)
                : raise_result(error->code == VL_OK ? VL_ERROR_ARGUMENT : error->code, error);
 }

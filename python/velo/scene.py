@@ -313,8 +313,8 @@ class Scene(_velo.Scene):
         self.show(handle, False)
 
     def remove(self, handle: Handle) -> None:
-        """Removes an instance or a shape for good; its handle is of no further use. The next shape that is added takes the
-        place, and the id.object, of the first one that was removed."""
+        """Removes an instance or a shape for good; its handle is of no further use. The next one that is
+        added takes its place, and the id.object of a shape."""
         self._changed = True
         self._remove(handle)
 

@@ -95,6 +95,7 @@ void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint) {
   KEEP_ARRAY(unread);
   KEEP_ARRAY(edits);
   KEEP_ARRAY(removed_shapes);
+  KEEP_ARRAY(removed_instances);
   for (size_t i = 0; i < scene->unread.count; i++)
     scene->unread.items[i].count = checkpoint->unread[i];
   count_groups(scene);

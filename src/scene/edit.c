@@ -259,6 +259,22 @@ vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *
   return result == VL_OK ? show(scene, &scene->shape_marks, id.index, shown, error) : result;
 }
 
+/* Frees those of the scene's blocks that are in a list. */
+static void free_blocks(vlScene *scene, const void *const *own, int count) {
+  size_t kept = 0;
+  for (size_t i = 0; i < scene->blocks.count; i++) {
+    void *block = scene->blocks.items[i];
+    bool found = false;
+    for (int k = 0; k < count; k++)
+      found = found || own[k] == block;
+    if (found)
+      vl_free(scene->context, block);
+    else
+      scene->blocks.items[kept++] = block;
+  }
+  scene->blocks.count = kept;
+}
+
 /* Frees the arrays and names of a shape as it was added. Later ones are among the edits. */
 static void free_added(vlScene *scene, const vlShapeDef *def) {
   enum { NAMES = 3 };
@@ -267,18 +283,7 @@ static void free_added(vlScene *scene, const vlShapeDef *def) {
   own[VL_SHAPE_ARRAYS] = def->label.name;
   own[VL_SHAPE_ARRAYS + 1] = def->label.path;
   own[VL_SHAPE_ARRAYS + 2] = def->label.place;
-  size_t kept = 0;
-  for (size_t i = 0; i < scene->blocks.count; i++) {
-    void *block = scene->blocks.items[i];
-    bool found = false;
-    for (int k = 0; k < VL_SHAPE_ARRAYS + NAMES; k++)
-      found = found || own[k] == block;
-    if (found)
-      vl_free(scene->context, block);
-    else
-      scene->blocks.items[kept++] = block;
-  }
-  scene->blocks.count = kept;
+  free_blocks(scene, own, VL_SHAPE_ARRAYS + NAMES);
 }
 
 /* Ends the change of a shape, old as it was before. */
@@ -408,7 +413,40 @@ vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *erro
   vlResult result = find_instance(scene, id, &instance, error);
   if (result != VL_OK)
     return result;
+  uint32_t *slot = VL_PUSH(scene->context, &scene->removed_instances);
+  if (!slot)
+    return vl_fail_memory(error);
+  *slot = id.index;
+  const void *const own[] = {instance->times, instance->poses, instance->label.name,
+                             instance->label.path, instance->label.place};
+  free_blocks(scene, own, sizeof own / sizeof *own);
+  instance->times = instance->poses = NULL;
+  instance->keys = 0;
+  instance->label = (vlLabel){0};
   instance->removed = instance->hidden = true;
   scene->groups.items[instance->group.index - 1].instance_count--;
   return VL_OK;
+}
+
+vlInstanceId vl_scene_fill_instance(vlScene *scene) {
+  if (!scene || scene->instances.count == 0 || scene->removed_instances.count == 0)
+    return (vlInstanceId){scene ? (uint32_t)scene->instances.count : 0};
+  uint32_t *ids = scene->removed_instances.items;
+  size_t lowest = 0;
+  for (size_t i = 1; i < scene->removed_instances.count; i++)
+    lowest = ids[i] < ids[lowest] ? i : lowest;
+  const vlInstanceId place = {ids[lowest]};
+  vlSceneInstance *last = &scene->instances.items[scene->instances.count - 1];
+  if (last->removed)
+    return (vlInstanceId){0};
+  ids[lowest] = ids[--scene->removed_instances.count];
+  scene->instances.items[place.index - 1] = *last;
+  scene->instances.items[place.index - 1].serial = vl_context_number(scene->context);
+  scene->instances.count--;
+  return place;
+}
+
+uint64_t vl_scene_instance_serial(const vlScene *scene, vlInstanceId id) {
+  const vlSceneInstance *instance = ITEM(scene, instances, id);
+  return instance && !instance->removed ? instance->serial : 0;
 }

@@ -68,6 +68,7 @@ void vl_scene_destroy(vlScene *scene) {
   }
   VL_ARRAY_FREE(context, &scene->edits);
   VL_ARRAY_FREE(context, &scene->removed_shapes);
+  VL_ARRAY_FREE(context, &scene->removed_instances);
   VL_ARRAY_FREE(context, &scene->texture_marks);
   VL_ARRAY_FREE(context, &scene->light_marks);
   VL_ARRAY_FREE(context, &scene->medium_marks);

@@ -28,6 +28,7 @@ typedef struct vlSceneInstance {
   uint32_t keys; /* number of keys of the motion; 0: no motion */
   const double *times, *poses;
   bool hidden, removed;
+  uint64_t serial; /* of one in the place of a removed one: its number; else 0 */
 } vlSceneInstance;
 
 /* What vl_scene_set_* has allocated for an object; freed when the object is set again. */
@@ -77,6 +78,7 @@ struct vlScene {
   vlSceneMarks texture_marks, light_marks, medium_marks, shape_marks;
   VL_ARRAY(vlSceneEdit) edits;
   VL_ARRAY(uint32_t) removed_shapes; /* ids */
+  VL_ARRAY(uint32_t) removed_instances;
   vlSceneDefs defs;
   vlCompleteDef completed; /* what vl_scene_complete has added; cookie 0: it was not called */
   bool camera_read;        /* defs.camera is that of the file that was read */

@@ -131,6 +131,21 @@ def removed_shapes_are_gone():
 
 
 @case
+def removed_instances_are_gone():
+    scene = build(0)
+    first = scene.handles("instances")[0]
+    pose = scene.transform(first)
+    whole = bits(scene)
+    scene.remove(first)
+    again = scene.add_instance(scene.handles("groups")[0], pose=pose)
+    assert again.index == first.index and again != first and bits(scene) == whole and scene.handles("instances") == [again]
+    for use in (lambda: scene.set(first, pose=pose), lambda: scene.hide(first), lambda: scene.remove(first), lambda: scene.transform(first),
+                lambda: scene.get(first)):
+        with raises(velo.UsageError, "the instance was removed"):
+            use()
+
+
+@case
 def saved_scenes_have_no_removed_shapes():
     for suffix in ("gltf", "pbrt"):
         scene = build(0)
@@ -218,6 +233,16 @@ def remove_and_add(scene, number):
     scene.add_mesh(0.3 * points, faces, normals=normals, group=scene.handles("groups")[0], name="flag")
 
 
+def fly(scene, number):
+    for handle in scene.handles("instances"):
+        scene.remove(handle)
+    group = scene.handles("groups")[0]
+    at = numpy.eye(4)
+    at[:3, 3] = -0.5, 0.6 + 0.01 * (number % 5), 0
+    scene.add_instance(group, pose=at)
+    scene.add_instance(group, pose=[at, at + 0], times=[0, 1])
+
+
 def repaint(scene, number):
     scene.set(scene.handles("textures")[0], spectrum_a=(0.1 * (number % 9), 0.2, 0.3))
     scene.set(scene.find("materials", "metal"), roughness=0.1 + 0.05 * (number % 9))
@@ -227,7 +252,7 @@ def repaint(scene, number):
 
 @case
 def a_thousand_edits_take_no_memory():
-    for edit in (reshape, replace, remove_and_add, repaint):
+    for edit in (reshape, replace, remove_and_add, fly, repaint):
         check_flat(edit, 100 if SANITIZED else 1000)
 
 

@@ -103,6 +103,10 @@ typedef struct vlCameraRecord {
   uint32_t frames;         /**< number of cameras or poses in the file */
   bool size_assumed;       /**< the file holds no image size, and the def gave none */
   char name[256];          /**< name of the camera or its image; may be empty */
+  uint32_t unread; /**< number of fields that velo does not understand; they have no effect.
+                      Counted in NeRF's and ROS's files */
+  uint32_t unread_line;   /**< the line of the first one; 0: unknown */
+  char unread_names[128]; /**< the first three, as messages show them: "a", "b", "c" */
 } vlCameraRecord;
 
 /** Reads one camera. def may be null: the default. The result is a description; vl_camera_make

@@ -594,6 +594,17 @@ static bool file_size(PyObject *width, PyObject *height, vlCameraFileDef *def) {
          read_count(height, "height", 0, MOST_PIXELS, &def->height);
 }
 
+/* Warns of the fields that velo does not understand. Returns false if the warning is an error
+ * of Python's. */
+static bool warn_unread(const char *file, const vlCameraRecord *record) {
+  if (record->unread == 0)
+    return true;
+  return PyErr_WarnFormat(PyExc_UserWarning, 1,
+                          "%s: line %u: %u fields are not understood and without effect: %s%s",
+                          file, record->unread_line, record->unread, record->unread_names,
+                          record->unread > 3 ? ", ..." : "") == 0;
+}
+
 /* camera_read(context, path, dialect, frame, width, height): camera, dialect, frames, name,
  * size_assumed */
 static PyObject *camera_read(PyObject *module, PyObject *arguments) {
@@ -620,7 +631,7 @@ static PyObject *camera_read(PyObject *module, PyObject *arguments) {
     raise_result(done, &error);
     goto end;
   }
-  PyObject *camera = camera_object(&record.camera, NULL);
+  PyObject *camera = warn_unread(file, &record) ? camera_object(&record.camera, NULL) : NULL;
   if (camera)
     result =
         Py_BuildValue("(NsINN)", camera, vl_camera_dialect_name(record.dialect), record.frames,

@@ -41,6 +41,8 @@ vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t co
 /* Reports an error at object[key], or at the object itself if key is null or missing. */
 vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key,
                             const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* The line of object[key]; 0 if it is unknown. */
+uint32_t vl_camera_line(const vlCameraFile *file, const json_t *object, const char *key);
 /* Parses JSON, YAML or XML, which the first character tells apart. FileStorage's XML becomes a
  * tree of the same form as its YAML; other XML becomes the elements of vl_camera_xml. A list at
  * the top level is wrapped: {"[]": list}. If file->locations is set, the positions of the

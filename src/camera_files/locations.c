@@ -59,14 +59,22 @@ static size_t index_of(const vlCameraLocations *locations, const json_t *object,
   return index;
 }
 
+/* As line << 32 | column; 0 if it is unknown. */
+static uint64_t location_of(const vlCameraFile *file, const json_t *object, const char *key) {
+  size_t index = file->locations && object ? index_of(file->locations, object, key) : SIZE_MAX;
+  return file->locations && index < file->locations->at.count ? file->locations->at.items[index]
+                                                              : 0;
+}
+
+uint32_t vl_camera_line(const vlCameraFile *file, const json_t *object, const char *key) {
+  return (uint32_t)(location_of(file, object, key) >> 32);
+}
+
 vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key,
                             const char *format, ...) {
   char message[400];
   VL_FORMAT(message, format);
-  size_t index = file->locations && object ? index_of(file->locations, object, key) : SIZE_MAX;
-  uint64_t location = file->locations && index < file->locations->at.count
-                          ? file->locations->at.items[index]
-                          : 0;
+  uint64_t location = location_of(file, object, key);
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)(location >> 32),
                     (uint32_t)location, "%s", message);
 }

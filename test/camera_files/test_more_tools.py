@@ -317,6 +317,18 @@ def check_broken():
             result(code == 3 and wanted in err and blamed not in err, "says where " + name + " is wrong", err)
 
 
+def check_note():
+    """A field that the dialect does not know is named by a note with its line."""
+    frame = {"file_path": "a.png", "transform_matrix": rows(GL, C)}
+    camera = dict(w=640, h=480, fl_x=500, frames=[frame], scale=3, gain=1, hue=2, tone=3, grain=4)
+    with tempfile.TemporaryDirectory() as work:
+        write(work, {"a.json": json.dumps(camera)})
+        code, _, err = run("info", os.path.join(work, "a.json"))
+        wanted = 'a.json:1: not understood and without effect: "scale", "gain", "hue" and 2 more'
+        result(code == 0 and wanted in err, "names the fields that are not understood", err)
+
+
 if __name__ == "__main__":
     check_broken()
+    check_note()
     sys.exit(main(CASES, SUFFIXES, ()))

@@ -124,6 +124,10 @@ static const Row rows[] = {
     {"nerf.json", "\"transform_matrix\"",
      "\"transform_matrix_start\": [0], \"transform_matrix\"", 11, 32,
      "\"transform_matrix_start\": the pose of a rolling shutter"},
+    {"nerf.json", "\"camera_model\"", "\"crop_x\": 4, \"camera_model\"", 2, 13,
+     "\"crop_x\" is not understood, and by its name it changes the image"},
+    {"nerf.json", "\"transform_matrix\"", "\"K5\": [0, 0.1], \"transform_matrix\"", 11, 12,
+     "\"K5\" is not understood, and by its name"},
     {"nerf.json", "\"fl_x\": 50,\n  \"fl_y\": 50,", "", 1, 1,
      "the field \"fl_x\" is missing, and \"camera_angle_x\" too"},
     {"nerfstudio.json", "\"perspective\"", "\"omnidirectional\"", 3, 17,
@@ -155,6 +159,8 @@ static const Row rows[] = {
     {"ros.yaml", "camera_name: \"c\"",
      "roi: {x_offset: 8, y_offset: 4, height: 20, width: 30, do_rectify: false}", 3, 6,
      "a region of interest, 30 x 20 pixels at 8,4, is not taken"},
+    {"ros.yaml", "camera_name: \"c\"", "image_flip: {vertical: true}", 3, 13,
+     "\"image_flip\" is not understood, and by its name"},
     {"opencv.yaml", "camera_matrix:", "binning_x: 2\ncamera_matrix:", 5, 12,
      "binning of 2 x 0 pixels is not taken"},
     {"ros.ini", "640\n", "640.5\n", 9, 1, "[image] needs width and height in whole pixels"},
@@ -279,6 +285,32 @@ static void test_changed_places(void **state) {
   assert_int_equal(wrong, 0);
 }
 
+/* Fields that a dialect does not know and that do not speak of the image are counted, with the
+ * line of the first. */
+static void test_unread(void **state) {
+  (void)state;
+  vlCameraRecord record;
+  vlError error;
+  assert_int_equal(read_changed("nerf.json", NULL, NULL, NULL, &record, &error), VL_OK);
+  assert_int_equal(record.unread, 0);
+  assert_int_equal(read_changed("ros.yaml", NULL, NULL, NULL, &record, &error), VL_OK);
+  assert_int_equal(record.unread, 0);
+  assert_int_equal(read_changed("nerf.json", "\"cy\": 20,",
+                                "\"cy\": 20,\n\"offset\": [1, 2, 3], \"crop\": false, "
+                                "\"gain\": 2, \"k6\": [0, [0]],",
+                                NULL, &record, &error),
+                   VL_OK);
+  assert_int_equal(record.unread, 4);
+  assert_int_equal(record.unread_line, 9);
+  assert_string_equal(record.unread_names, "\"offset\", \"crop\", \"gain\"");
+  assert_int_equal(
+      read_changed("ros.yaml", "camera_name", "gain: 2\ncamera_name", NULL, &record, &error),
+      VL_OK);
+  assert_int_equal(record.unread, 1);
+  assert_int_equal(record.unread_line, 3);
+  assert_string_equal(record.unread_names, "\"gain\"");
+}
+
 /* Calls a function with each file of the corpus. */
 static void each_sample(void (*use)(const char *name)) {
   DIR *files = opendir(CORPUS);
@@ -335,9 +367,8 @@ static void test_cut_off(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_changed_places),
-      cmocka_unit_test(test_other_cameras),
-      cmocka_unit_test(test_no_such_camera),
+      cmocka_unit_test(test_changed_places), cmocka_unit_test(test_unread),
+      cmocka_unit_test(test_other_cameras),  cmocka_unit_test(test_no_such_camera),
       cmocka_unit_test(test_cut_off),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 
 import cases
 from cases import case, raises, work
@@ -98,6 +99,17 @@ def other_names_are_told():
                         (lambda: scene.render(width=8), "resolution=")):
         with raises(velo.UsageError, words):
             call()
+
+
+@case
+def unknown_fields_of_a_camera_file_are_warnings():
+    frame = '"frames": [{"transform_matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]}'
+    with open(work("unread.json"), "w", encoding="utf-8") as file:
+        file.write('{"w": 64, "h": 48, "fl_x": 50,\n"gain": 2, ' + frame)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        assert velo.read_camera(work("unread.json")).resolution == (64, 48)
+    assert len(found) == 1 and 'line 2: 1 fields are not understood and without effect: "gain"' in str(found[0].message)
 
 
 @case

@@ -1,6 +1,7 @@
 /* camera/camera.c: see camera.h. Also `velo camera convert`. */
 #include "camera/camera.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
@@ -112,6 +113,17 @@ static int has_size(const char *path) {
                       path);
 }
 
+/* The fields that velo does not understand: the first names, and how many more there are. */
+static void note_unread(const char *path, const vlCameraRecord *record) {
+  char line[16] = "", more[32] = "";
+  if (record->unread_line)
+    snprintf(line, sizeof line, ":%u", record->unread_line);
+  if (record->unread > 3)
+    snprintf(more, sizeof more, " and %u more", record->unread - 3);
+  report_note("%s%s: not understood and without effect: %s%s", path, line, record->unread_names,
+              more);
+}
+
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame,
                 const OptionValue *size, const OptionValue *fallback, vlCameraRecord *record) {
   bool sized = size && size->given;
@@ -138,6 +150,8 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
   if (record->size_assumed)
     report_note("%s: names no image size; %u x %u is taken", path, record->camera.width,
                 record->camera.height);
+  if (record->unread > 0)
+    note_unread(path, record);
   if (record->frames > 1 && !frame)
     report_note("%s: the first of %u cameras is taken (%s)", path, record->frames,
                 record->name[0] ? record->name : "no name");

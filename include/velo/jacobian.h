@@ -11,7 +11,8 @@ extern "C" {
 #endif
 
 /** The columns of a Jacobian. Columns of what a camera does not have are the derivatives at 0
- * (distortion), or 0 (shape). */
+ * (distortion), or 0 (shape; for a lens of many elements, whose film has its own size, also fx,
+ * fy, skew and distortion). */
 enum {
   VL_JACOBIAN_POINT = 0, /**< 3 columns. Project: the point in world space, scene units.
                             Unproject: the film point's x and y, pixels; the third is 0 */
@@ -30,8 +31,8 @@ enum {
  * point 2 rows (x, y, pixels) of VL_JACOBIAN_COLUMNS numbers in `jacobians`. valid[i] (may be
  * null) is 1; where a point has no projection, or no finite derivative, it is 0 and the numbers
  * are 0. The pose is that at pose_times[0]; the derivatives of the closed form, by the chain
- * rule. Any number of threads may call it. ARGUMENT: a null pointer. UNSUPPORTED: a lens of
- * many elements, a camera of one's own, an eye of omnidirectional stereo. */
+ * rule. Any number of threads may call it. ARGUMENT: a null pointer. UNSUPPORTED: a camera of
+ * one's own, an eye of omnidirectional stereo. */
 VL_API vlResult vl_camera_project_jacobian(const vlCamera *camera, size_t count,
                                            const double *points, double *jacobians,
                                            uint8_t *valid, vlError *error);

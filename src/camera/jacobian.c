@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "camera/optics.h"
 #include "camera/points.h"
 #include "velo/jacobian.h"
 
@@ -91,8 +92,34 @@ static void distortion(const vlDistortionMap *m, double x, double y, double at[2
   }
 }
 
+/* The film point (x, y) r / rho, rho = |(x, y)|, where the chief ray of the film radius r
+ * passes through the point: -(x0(r) + slope(r) z) = rho (implicit function theorem). */
+static FilmDerivatives optics_derivatives(const vlCameraCompiled *c, double x, double y,
+                                          double z) {
+  FilmDerivatives d = {.numbers = {{0.0, 0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 0.0, 0.0, 1.0}}};
+  double film[2], x0, slope, rho = vl_length2(x, y), inv = 1.0 / vl_not_tiny(rho);
+  vlChief chief = {0};
+  bool good = vl_optics_project(c->optics, x, y, z, film);
+  double radius = good ? vl_length2(film[0], film[1]) : 0.0;
+  if (!good || !vl_optics_chief_derivatives(c->optics, radius, &chief, &x0, &slope)) {
+    d.point[0][0] = NAN;
+    return d;
+  }
+  double by_rho = -1.0 / (x0 + slope * z), by_z = chief.slope * by_rho;
+  double k = rho > 0.0 ? radius * inv : by_rho, across = (by_rho - k) * inv * inv;
+  const double by[5] = {x * across, y * across, by_z * inv, 0.0, 0.0};
+  vlPlaneDerivatives p = vl_derive_factor(x, y, k, by);
+  for (int j = 0; j < 3; j++) {
+    d.point[0][j] = p.x[j] / c->pitch;
+    d.point[1][j] = p.y[j] / c->pitch;
+  }
+  return d;
+}
+
 static FilmDerivatives film_derivatives(const vlCameraCompiled *c, double x, double y,
                                         double z) {
+  if (c->optics)
+    return optics_derivatives(c, x, y, z);
   vlPlanePoint ideal = vl_plane_project(c->projection, c, x, y, z);
   vlPlaneDerivatives p = vl_plane_derive(c->projection, c, x, y, z);
   double at[2], by_ideal[2][2], by[2][15];
@@ -190,38 +217,82 @@ static bool solve_ray(const vlCameraCompiled *c, const double d[3], const FilmDe
   return isfinite(inv);
 }
 
-static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], double *rows) {
+/* A ray in camera space, and its derivatives by the film point, pixels; the direction's length
+ * is of no matter. numbers: those of the film point. */
+typedef struct {
+  double o[3], d[3], origin[3][2], direction[3][2];
+  double numbers[2][NUMBERS];
+} RayDerivatives;
+
+/* The chief ray of the film point (x, y), scene units, of radius r: origin (x, y, 0) times
+ * -x0 / r, direction (x, y) times -slope / r, and 1. */
+static bool optics_ray(const vlCameraCompiled *c, double x, double y, RayDerivatives *ray) {
+  double of_x0, of_slope, r = vl_length2(x, y), inv = 1.0 / vl_not_tiny(r);
+  vlChief chief = {0};
+  if (!vl_optics_chief_derivatives(c->optics, r, &chief, &of_x0, &of_slope))
+    return false;
+  double at = r > 0.0 ? -chief.x0 * inv : -of_x0,
+         towards = r > 0.0 ? -chief.slope * inv : -of_slope;
+  double by_at = (-of_x0 - at) * inv * inv, by_towards = (-of_slope - towards) * inv * inv;
+  const double by_o[5] = {x * by_at, y * by_at, 0.0, 0.0, 0.0};
+  const double by_d[5] = {x * by_towards, y * by_towards, 0.0, 0.0, 0.0};
+  vlPlaneDerivatives o = vl_derive_factor(x, y, at, by_o);
+  vlPlaneDerivatives d = vl_derive_factor(x, y, towards, by_d);
+  *ray = (RayDerivatives){.o = {x * at, y * at, 0.0}, .d = {x * towards, y * towards, 1.0}};
+  for (int j = 0; j < 2; j++) {
+    ray->origin[0][j] = o.x[j] * c->pitch;
+    ray->origin[1][j] = o.y[j] * c->pitch;
+    ray->direction[0][j] = d.x[j] * c->pitch;
+    ray->direction[1][j] = d.y[j] * c->pitch;
+  }
+  ray->numbers[0][3] = 1.0;
+  ray->numbers[1][4] = 1.0;
+  return true;
+}
+
+static bool central_ray(const vlCameraCompiled *c, const double pixel[2], RayDerivatives *ray) {
   bool orthographic = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double x = pixel[0] - c->cx, y = pixel[1] - c->cy;
-  vlDirection ray = {0.0, 0.0, 1.0, 1.0};
+  vlDirection d = {0.0, 0.0, 1.0, 1.0};
   vlPlanePoint plane = vl_pixel_to_plane(c, x, y);
   if (!orthographic)
-    ray = vl_camera_direction(c, x, y);
-  double length = vl_length3(ray.x, ray.y, ray.z), solve[3][2];
-  const double d[3] = {ray.x / length, ray.y / length, ray.z / length};
-  const double o[3] = {orthographic ? plane.x : 0.0, orthographic ? plane.y : 0.0, 0.0};
-  const double at[3] = {o[0] + d[0], o[1] + d[1], d[2]};
+    d = vl_camera_direction(c, x, y);
+  double length = vl_length3(d.x, d.y, d.z);
+  *ray =
+      (RayDerivatives){.o = {orthographic ? plane.x : 0.0, orthographic ? plane.y : 0.0, 0.0},
+                       .d = {d.x / length, d.y / length, d.z / length}};
+  const double at[3] = {ray->o[0] + ray->d[0], ray->o[1] + ray->d[1], ray->d[2]};
   vlPlanePoint film = vl_camera_film_point(c, at[0], at[1], at[2]);
   double size = 1.0 + fabs(pixel[0]) + fabs(pixel[1]);
-  if (!(ray.valid > 0.0 && film.valid > 0.0) ||
+  if (!(d.valid > 0.0 && film.valid > 0.0) ||
       !(fabs(film.x - pixel[0]) + fabs(film.y - pixel[1]) < 1e-6 * size))
     return false;
   FilmDerivatives f = film_derivatives(c, at[0], at[1], at[2]);
-  if (!solve_ray(c, d, &f, solve))
+  memcpy(ray->numbers, f.numbers, sizeof f.numbers);
+  return solve_ray(c, ray->d, &f, orthographic ? ray->origin : ray->direction);
+}
+
+static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], double *rows) {
+  RayDerivatives ray;
+  bool good = c->optics ? optics_ray(c, c->pitch * (pixel[0] - c->cx),
+                                     c->pitch * (pixel[1] - c->cy), &ray)
+                        : central_ray(c, pixel, &ray);
+  if (!good)
     return false;
-  const double *m = c->rotation, none[3] = {0.0, 0.0, 0.0};
+  const double *m = c->rotation, *o = ray.o, *d = ray.d, none[3] = {0.0, 0.0, 0.0};
   const double world[3] = {m[0] * d[0] + m[1] * d[1] + m[2] * d[2],
                            m[3] * d[0] + m[4] * d[1] + m[5] * d[2],
                            m[6] * d[0] + m[7] * d[1] + m[8] * d[2]};
   for (int j = 0; j < 2 + NUMBERS; j++) {
-    double change[3];
-    for (int i = 0; i < 3; i++)
-      change[i] = j < 2
-                      ? solve[i][j]
-                      : -solve[i][0] * f.numbers[0][j - 2] - solve[i][1] * f.numbers[1][j - 2];
+    double origin[3], direction[3];
+    double x = j < 2 ? (j == 0) : -ray.numbers[0][j - 2];
+    double y = j < 2 ? (j == 1) : -ray.numbers[1][j - 2];
+    for (int i = 0; i < 3; i++) {
+      origin[i] = ray.origin[i][0] * x + ray.origin[i][1] * y;
+      direction[i] = ray.direction[i][0] * x + ray.direction[i][1] * y;
+    }
     int column = j < 2 ? VL_JACOBIAN_POINT + j : VL_JACOBIAN_INTRINSICS + j - 2;
-    store_ray(c, world, orthographic ? change : none, orthographic ? none : change, rows,
-              column);
+    store_ray(c, world, origin, direction, rows, column);
   }
   /* world_from_camera' = world_from_camera exp(-(t, r)^) */
   for (int j = 0; j < 3; j++) {
@@ -243,8 +314,6 @@ static vlResult check(const vlCamera *camera, bool missing, vlError *error) {
   const char *what = NULL;
   if (camera->own)
     what = "a camera of one's own";
-  else if (camera->lens.optics)
-    what = "a lens of many elements";
   else if (camera->eye_circle != 0.0)
     what = "an eye of omnidirectional stereo";
   if (what)

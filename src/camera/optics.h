@@ -120,5 +120,11 @@ bool vl_optics_project(const vlOptics *optics, double x, double y, double z, dou
 /* Finds the chief ray of a film radius. guess: start value of x in the pupil's plane. Returns
  * false if the ray misses a surface. */
 bool vl_optics_chief(const vlOptics *optics, double radius, double guess, vlChief *chief);
+/* The same with a start value from the table of chief rays. Defined in optics_points.c. */
+bool vl_optics_chief_at(const vlOptics *optics, double radius, vlChief *chief);
+/* The same, and the derivatives of the chief ray's x0 and slope by the film radius. Defined in
+ * optics_derive.c. */
+bool vl_optics_chief_derivatives(const vlOptics *optics, double radius, vlChief *chief,
+                                 double *x0_by_radius, double *slope_by_radius);
 
 #endif

@@ -8,7 +8,7 @@
 #include "camera/points.h"
 #include "camera/pose.h"
 
-static bool chief_at(const vlOptics *o, double radius, vlChief *chief) {
+bool vl_optics_chief_at(const vlOptics *o, double radius, vlChief *chief) {
   double position = radius / o->chief_step;
   if (!(position <= VL_CHIEFS))
     return false;
@@ -22,7 +22,7 @@ bool vl_optics_unproject(const vlOptics *o, double x, double y, vlCameraLocal *r
   double radius = sqrt(x * x + y * y), cosine = radius > 0.0 ? x / radius : 1.0,
          sine = radius > 0.0 ? y / radius : 0.0;
   vlChief c;
-  if (!chief_at(o, radius, &c))
+  if (!vl_optics_chief_at(o, radius, &c))
     return false;
   /* the film point lies opposite, at -(x, y), and so do the ray's origin and direction */
   double inv = 1.0 / sqrt(1.0 + c.slope * c.slope);
@@ -35,7 +35,7 @@ bool vl_optics_unproject(const vlOptics *o, double x, double y, vlCameraLocal *r
  * z). It increases with the radius. */
 static bool miss(const vlOptics *o, double radius, double rho, double z, double *value) {
   vlChief c = {0};
-  bool valid = chief_at(o, radius, &c);
+  bool valid = vl_optics_chief_at(o, radius, &c);
   *value = -(c.x0 + c.slope * z) - rho;
   return valid;
 }

@@ -2,6 +2,7 @@
  * differences of eighth order of the public functions, for random cameras of every projection
  * and distortion. */
 #include "camera/cameras.h"
+#include "camera/context.h"
 
 #include "distortion/compile.h"
 #include "distortion/distortion.case.h"
@@ -180,6 +181,8 @@ static double column_error(const Place *place, bool forward, int column, const d
 }
 
 static bool has_column(vlProjection kind, vlDistortion bent, int column, bool forward) {
+  if (kind == VL_PROJECTION_OPTICS && column >= VL_JACOBIAN_INTRINSICS)
+    return column == VL_JACOBIAN_SHAPE - 2 || column == VL_JACOBIAN_SHAPE - 1;
   int numbers = kind == VL_PROJECTION_EUCM || kind == VL_PROJECTION_DOUBLE_SPHERE ? 2 : 1;
   const ProjectionCase *c = projections[kind];
   if (!forward && column == 2)
@@ -256,6 +259,40 @@ static void test_every_model(void **state) {
   }
 }
 
+static void check_lens(const char *path) {
+  vlOpticsDef optics_def = vl_default_optics_def();
+  vlOptics *optics = NULL;
+  optics_def.focus_distance = 3;
+  assert_int_equal(vl_optics_load(context, path, &optics_def, &optics, NULL), VL_OK);
+  uint64_t state = 11;
+  int seen = 0;
+  for (int i = 0; i < CAMERAS; i++) {
+    vlCameraDef d = vl_default_camera_def(640, 480);
+    d.projection = VL_PROJECTION_OPTICS;
+    d.lens.optics = optics;
+    d.roll = next_between(&state, -3, 3);
+    for (int k = 0; k < 3; k++)
+      d.eye[k] = next_between(&state, -2, 2);
+    Place place = {.camera = make_or_fail(&d)};
+    double pixel[3] = {next_between(&state, 130, 500), next_between(&state, 100, 380), 0};
+    double o[3], ray[3], far = next_between(&state, 2, 5);
+    assert_true(vl_camera_unproject(&place.camera, pixel[0], pixel[1], o, ray));
+    for (int k = 0; k < 3; k++)
+      place.at[k] = o[k] + far * ray[k];
+    seen += check_place(VL_PROJECTION_OPTICS, VL_DISTORTION_NONE, &place, true);
+    memcpy(place.at, pixel, sizeof pixel);
+    seen += check_place(VL_PROJECTION_OPTICS, VL_DISTORTION_NONE, &place, false);
+  }
+  assert_int_equal(seen, 2 * CAMERAS);
+  vl_optics_destroy(optics);
+}
+
+static void test_lenses(void **state) {
+  (void)state;
+  check_lens(VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat");
+  check_lens(VELO_SOURCE_DIR "/scenes/cameras/lenses/single_50mm.dat");
+}
+
 static void test_outside(void **state) {
   (void)state;
   vlCamera c = camera_of(0);
@@ -282,7 +319,8 @@ static void test_outside(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_model),
+      cmocka_unit_test(test_lenses),
       cmocka_unit_test(test_outside),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, begin, end);
 }

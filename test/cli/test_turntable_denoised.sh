@@ -68,5 +68,4 @@ expect_text no_number_says "--denoise \"c.pfm\": put %04d, the frame's number, i
 expect_code 2 same_name "$VELO" render round.pbrt $turn -o f%02d.pfm --denoise f%02d.pfm
 expect_code 2 oidn "$VELO" render round.pbrt $turn -o f%02d.pfm --denoise c%02d.pfm --denoiser oidn
 expect_text oidn_says "velo's own denoiser"
-expect_code 2 animated "$VELO" render round.pbrt --animate 0:1 -o f%02d.pfm --denoise c%02d.pfm
 finish

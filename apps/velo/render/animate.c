@@ -87,12 +87,9 @@ static int check(const Arguments *arguments) {
     if (v[others[i].id].given)
       return report_usage("%s does not go with %s", own, others[i].name);
   const OptionValue *denoise = &v[RENDER_DENOISE];
-  if (v[RENDER_ANIMATE].given && denoise->given)
-    return report_usage(
-        "--animate does not go with --denoise; --turntable and --trajectory do");
   if (denoise->given && v[RENDER_DENOISER].given &&
       v[RENDER_DENOISER].integer != VL_DENOISER_VELO)
-    return report_usage("--turntable goes with velo's own denoiser: leave out --denoiser");
+    return report_usage("%s goes with velo's own denoiser: leave out --denoiser", own);
   if (!arguments->text_count)
     return report_usage("%s: give the files' name with -o, such as -o f%%04d.png", own);
   for (int i = 0; i < arguments->text_count; i++) {
@@ -160,13 +157,55 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   return status;
 }
 
+/* What `between` needs. */
+typedef struct Between {
+  const Animation *animation;
+  const Arguments *arguments; /* the command line */
+} Between;
+
+/* A SteadyBetween: loads the model for the moments of both frames, in the middle of their
+ * exposures. */
+static vlResult between(void *user, vlContext *context, uint32_t before, uint32_t now,
+                        const Job *job, const vlWorld *world, vlWorld **result, double *span,
+                        vlError *error) {
+  const Between *b = user;
+  const Animation *a = b->animation;
+  Arguments both = *b->arguments;
+  OptionValue *v = both.values;
+  char text[80];
+  const double middle = v[RENDER_SHUTTER].given ? 0.5 * v[RENDER_SHUTTER].number : 0;
+  const double from = a->from + before / a->fps + middle, to = a->from + now / a->fps + middle;
+  snprintf(text, sizeof text, "%.17g:%.17g", from, to);
+  v[RENDER_AT] = (OptionValue){.given = true, .text = text, .number = from};
+  v[RENDER_SHUTTER].given = false;
+  v[RENDER_ANIMATE].given = false;
+  v[RENDER_ENVIRONMENT] = (OptionValue){.given = true, .text = "none"}; /* light has no flow */
+  SceneOpening opening = {.silent = true};
+  vlScene *scene = NULL;
+  *result = NULL;
+  *span = to - from;
+  vlResult code = VL_ERROR_SCENE;
+  if (scene_open(context, both.operands[0], &both, &scene, &opening) < 0) {
+    vlBuildDef build = job->defs->build;
+    build.previous = world;
+    code = vl_world_build_last(scene, &build, result, error);
+  } else {
+    snprintf(error->message, sizeof error->message,
+             "no flow from frame %u to frame %u: the model cannot be loaded for both", now,
+             before);
+  }
+  vl_scene_destroy(scene);
+  return code;
+}
+
 /* Renders those frames that the denoised frame uses and that are not kept: the ones before it,
- * around the turn. */
+ * of a turntable around the turn. */
 static int render_before(const Command *command, const Arguments *arguments, const Animation *a,
                          uint32_t frame, Videos *videos, AnimateRender *render,
                          AnimateShared *shared) {
   Steady *s = &shared->steady;
-  s->count = a->count - 1 < STEADY_BEFORE ? a->count - 1 : STEADY_BEFORE;
+  const uint32_t most = a->turns ? a->count - 1 : frame;
+  s->count = most < STEADY_BEFORE ? most : STEADY_BEFORE;
   for (uint32_t k = 0; k < s->count; k++)
     s->before[k] = (frame + a->count - 1 - k) % a->count;
   int status = STATUS_OK;
@@ -214,6 +253,11 @@ int animate_run(const Command *command, const Arguments *arguments, Videos *vide
   if (status >= 0)
     return status;
   shared.still = a.turns;
+  Between moments = {&a, arguments};
+  if (!a.turns) {
+    shared.steady.between = between;
+    shared.steady.between_user = &moments;
+  }
   if (videos)
     videos_range(videos, a.first, (a.last - a.first) / a.step + 1, a.step);
   status = needs_first(arguments, &a) ? prepare(command, arguments, &a, videos, render, &shared)

@@ -24,8 +24,8 @@ const Option render_options[] = {
      "of its display values is below this percentage of white, such as 1%, or until it has "
      "--spp samples (docs/adaptive.md)"},
     {RENDER_DENOISE, 0, "denoise", OPTION_TEXT, "FILE",
-     "also write a denoised copy of the image, or of each frame of --turntable or "
-     "--trajectory, to this file (docs/denoising.md)"},
+     "also write a denoised copy of the image, or of each frame of --turntable, --trajectory "
+     "or --animate, to this file (docs/denoising.md)"},
     {RENDER_PLAIN, 0, "plain", OPTION_FLAG, NULL,
      "the first image of a model, too, has 64 samples and is not denoised. Default: a .png, "
      ".jpg or .tga of a model to which velo adds camera or light has 8 samples, denoised, "

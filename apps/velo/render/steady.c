@@ -176,14 +176,42 @@ static void add_pixel(const View *now, size_t i, const View *before, float u, fl
   sum[3] += t * t;
 }
 
-/* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
-static vlResult add_frame(const SteadyFrame *now, const SteadyFrame *before,
+/* A camera as it is in the middle of its exposure, at another time. */
+static vlCamera camera_at(const vlCamera *camera, double time) {
+  const double middle = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 0.5);
+  vlCamera still = *camera;
+  vl_camera_at(camera, middle, &still);
+  still.shutter_open = still.shutter_close = time;
+  return still;
+}
+
+/* Computes the flow to an earlier frame, with the points of this one. */
+static vlResult find_flow(const Steady *s, vlContext *context, const SteadyFrame *before,
                           const vlWorld *world, const Job *job, vlStopFn *stop, void *stop_user,
-                          float *sums, vlError *error) {
+                          vlImage **floats, vlImage **ids, vlError *error) {
   vlChannelsDef def = channels_def(job, VL_CHANNEL_BACKWARD | VL_CHANNEL_P, stop, stop_user);
   def.backward = &before->camera;
+  if (!s->between)
+    return vl_render_channels(world, &job->camera, &def, floats, ids, error);
+  vlWorld *between = NULL;
+  vlResult result = s->between(s->between_user, context, before->number, s->number, job, world,
+                               &between, &def.time, error);
+  if (result != VL_OK)
+    return result;
+  const vlCamera now = camera_at(&job->camera, def.time), then = camera_at(&before->camera, 0);
+  def.backward = &then;
+  result = vl_render_channels(between, &now, &def, floats, ids, error);
+  vl_world_destroy(between);
+  return result;
+}
+
+/* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
+static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame *now,
+                          const SteadyFrame *before, const vlWorld *world, const Job *job,
+                          vlStopFn *stop, void *stop_user, float *sums, vlError *error) {
   vlImage *floats = NULL, *ids = NULL;
-  vlResult result = vl_render_channels(world, &job->camera, &def, &floats, &ids, error);
+  vlResult result =
+      find_flow(s, context, before, world, job, stop, stop_user, &floats, &ids, error);
   if (result != VL_OK)
     return result;
   const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
@@ -231,7 +259,7 @@ vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world,
   if (code == VL_OK)
     code = vl_image_create(context, &def, result);
   for (uint32_t k = 0; k < s->count && code == VL_OK; k++)
-    code = add_frame(now, steady_find(s, s->before[k]), world, job, stop, stop_user,
+    code = add_frame(s, context, now, steady_find(s, s->before[k]), world, job, stop, stop_user,
                      vl_image_pixels(sums), error);
   if (code == VL_OK)
     code = vl_image_add_attributes(*result, now->clean);

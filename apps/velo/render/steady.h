@@ -1,7 +1,8 @@
-/* render/steady.h: the frames of a turntable or a trajectory are denoised with the help of the
- * frames before them, along the exact flow of their surfaces, so that what is left of the noise
- * does not flicker. The result of a frame depends on a fixed number of frames before it, each
- * denoised by itself: so it is the same for any division of the frames among processes. */
+/* render/steady.h: the frames of turntables, trajectories and animations are denoised with the
+ * help of the frames before them, along the exact flow of their surfaces, so that what is left
+ * of the noise does not flicker. The result of a frame depends on a fixed number of frames
+ * before it, each denoised by itself: so it is the same for any division of the frames among
+ * processes. */
 #ifndef APP_RENDER_STEADY_H
 #define APP_RENDER_STEADY_H
 
@@ -21,11 +22,20 @@ typedef struct SteadyFrame {
   vlImage *ids;      /* id.object, id.instance */
 } SteadyFrame;
 
+/* Makes a world that shows the moments of an earlier frame and of the job's. *between is the
+ * caller's; in it the earlier frame's moment is at time 0, the job's at *span, in seconds.
+ * world: the job's own. */
+typedef vlResult SteadyBetween(void *user, vlContext *context, uint32_t before, uint32_t now,
+                               const Job *job, const vlWorld *world, vlWorld **between,
+                               double *span, vlError *error);
+
 typedef struct Steady {
   SteadyFrame frames[STEADY_BEFORE + 1]; /* in any order */
   uint32_t number;                       /* of the frame that is rendered */
   uint32_t before[STEADY_BEFORE], count; /* numbers of those that it uses */
   bool only_kept;                        /* it is kept for later frames; nothing is written */
+  SteadyBetween *between;                /* null: all frames have the same world */
+  void *between_user;
 } Steady;
 
 /* Memory in bytes for frames of so many pixels. */

@@ -12,6 +12,7 @@
 
 Each frame depends on the recipe and its own number only: frame 4711 made alone has the same bits. docs/datasets.md is the
 guide."""
+from velo.dataset.flow import write_flow
 from velo.dataset.generate import generate, make_writers
 from velo.dataset.random import Random
 from velo.dataset.recipe import (Around, Distractors, Environment, Fixed, Ground, InVolume, Lights, Materials, Model,
@@ -21,4 +22,4 @@ from velo.dataset.stage import Frame, Instance, Plan, Stage
 
 __all__ = ["Around", "Distractors", "Environment", "Fixed", "Frame", "Ground", "InVolume", "Instance", "Lights",
            "Materials", "Model", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Stage", "Trajectory", "View",
-           "generate", "make_writers", "read_recipe", "recipe_from"]
+           "generate", "make_writers", "read_recipe", "recipe_from", "write_flow"]

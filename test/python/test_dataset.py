@@ -246,8 +246,9 @@ def coco_masks_are_those_of_bop():
     assert [category["name"] for category in table["categories"]] == ["ring", "block"]
     assert len({annotation["id"] for annotation in table["annotations"]}) == len(table["annotations"]) >= 6
     images = {image["id"]: image for image in table["images"]}
-    visible = {}
+    visible, whole = {}, {}
     for folder, number, _, _, truths, _ in bop_frames():
+        whole[number] = [read_png(os.path.join(folder, "mask/%06d_%06d.png" % (number, i))) > 0 for i in range(len(truths))]
         visible[number] = [(truth["obj_id"], read_png(os.path.join(folder, "mask_visib/%06d_%06d.png" % (number, i))) > 0)
                            for i, truth in enumerate(truths)]
     points = 0
@@ -256,9 +257,14 @@ def coco_masks_are_those_of_bop():
         assert os.path.exists(os.path.join(OUT, "coco", image["file_name"]))
         mask = decode(annotation["segmentation"], image["height"], image["width"])
         frame = int(os.path.basename(image["file_name"])[:6])
-        matching = [seen for category, seen in visible[frame] if category == annotation["category_id"] and
+        matching = [i for i, (category, seen) in enumerate(visible[frame]) if category == annotation["category_id"] and
                     numpy.array_equal(seen, mask)]
         assert len(matching) == 1 and annotation["area"] == mask.sum()
+        amodal = whole[frame][matching[0]]
+        assert numpy.array_equal(decode(annotation["a_segm"], image["height"], image["width"]), amodal)
+        assert annotation["a_area"] == amodal.sum() and annotation["visible_fraction"] == mask.sum() / amodal.sum()
+        x, y, w, h = annotation["a_bbox"]
+        assert amodal[y:y + h, x:x + w].sum() == amodal.sum()
         x, y, w, h = annotation["bbox"]
         assert mask[y:y + h, x:x + w].sum() == mask.sum()
         if annotation["category_id"] == 1:
@@ -349,6 +355,29 @@ def a_writer_reads_back_as_the_same_camera_or_refuses_it():
             found = velo.read_camera(os.path.join(folder, path), width=64, height=48).project(points * unit)
             assert wanted.valid.sum() > 100 and numpy.array_equal(wanted.valid, found.valid), (writer, lens)
             assert numpy.abs((wanted.pixels - found.pixels)[wanted.valid]).max() < 1e-9, (writer, lens)
+
+
+@case
+def coco_holds_whole_masks_and_visible_fractions():
+    def written(places, **changes):
+        frame = small("plain", **changes)
+        frame.placing = dataset.Poses([[("block", [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, z], [0, 0, 0, 1]]) for x, z in places]])
+        folder = work("whole%d%d" % (len(places), len(changes)))
+        dataset.generate(frame, folder, writers=["coco"])
+        return json.load(open(os.path.join(folder, "coco/annotations.json")))["annotations"]
+
+    def mask(annotation, name):
+        return decode(annotation[name], 48, 64)
+
+    behind, before = written([(0, 2), (0.1, 1.5)])
+    alone = written([(0, 2)])[0]
+    assert alone["visible_fraction"] == before["visible_fraction"] == 1 and alone["a_segm"] == alone["segmentation"]
+    assert numpy.array_equal(mask(behind, "a_segm"), mask(alone, "segmentation"))
+    assert numpy.array_equal(mask(behind, "segmentation"), mask(alone, "segmentation") & ~mask(before, "segmentation"))
+    assert behind["a_bbox"] == alone["bbox"] and behind["a_area"] == alone["area"]
+    assert 0.2 < behind["visible_fraction"] == behind["area"] / alone["area"] < 0.8
+    for annotation in written([(0, 2), (0.1, 1.5)], occluded=False):
+        assert not {"a_segm", "a_bbox", "a_area", "visible_fraction"} & set(annotation)
 
 
 @case

@@ -1,7 +1,8 @@
 """Writes COCO's annotations of instances and keypoints (https://cocodataset.org/#format-data).
 
 Masks are polygons along the pixels' edges, or run lengths (columns first) where a mask has holes or `rle` is set. Keypoints
-are in pixels whose first has its centre at (0.5, 0.5); v is 2: visible, 1: hidden, 0: outside the image."""
+are in pixels whose first has its centre at (0.5, 0.5); v is 2: visible, 1: hidden, 0: outside the image. Masks of whole objects
+(amodal) have KINS's names a_segm, a_bbox and a_area (Qi et al., "Amodal instance segmentation with KINS dataset", CVPR 2019)."""
 from __future__ import annotations
 
 import os
@@ -92,15 +93,23 @@ class CocoWriter(Writer):
         self.part(frame, {"image": {"file_name": f"images/{name}", "width": width, "height": height}, "annotations": annotations})
 
     def _annotation(self, frame: Frame, item: Instance) -> dict[str, Any]:
-        polygons, holes = ([], True) if self.rle else outlines(item.mask)
         result: dict[str, Any] = {"category_id": item.model + 1, "iscrowd": 0, "area": int(item.mask.sum()),
                                   "bbox": box_of(item.mask, (0, 0, 0, 0)),
-                                  "segmentation": run_lengths(item.mask) if holes else polygons}
+                                  "segmentation": self._segmentation(item.mask)}
+        if self.stage.recipe.occluded:
+            whole = int(item.whole.sum())
+            result.update(a_area=whole, a_bbox=box_of(item.whole, (0, 0, 0, 0)), a_segm=self._segmentation(item.whole),
+                          visible_fraction=result["area"] / whole)
         points = list(self.stage.recipe.models[item.model].keypoints.values())
         if points:
             keypoints, count = self._keypoints(frame, item, points)
             result.update(keypoints=keypoints, num_keypoints=count)
         return result
+
+    def _segmentation(self, mask: Any) -> Any:
+        """A mask as polygons or, where they cannot hold it, as run lengths."""
+        polygons, holes = ([], True) if self.rle else outlines(mask)
+        return run_lengths(mask) if holes else polygons
 
     @staticmethod
     def _keypoints(frame: Frame, item: Instance, points: Any) -> tuple[list[float], int]:

@@ -67,8 +67,29 @@ static bool is_meant_as_tree(const char *path, const char *text) {
          vl_ends_with(path, ".json");
 }
 
+/* Files of other programs that velo does not read, by their first bytes, and what to give
+ * instead. */
+static const struct {
+  const char *begin, *advice;
+} foreign[] = {
+    {"BLENDER", "Blender's own file; export glTF, USD (.usda) or COLLADA"},
+    {"Kaydara FBX Binary", "an FBX file; export glTF, USD (.usda) or COLLADA"},
+    {"Ogawa", "an Alembic file; export glTF, USD (.usda) or COLLADA"},
+    {"MATLAB 5.0 MAT-file", "MATLAB's binary file; give OpenCV's YAML with camera_matrix"},
+    {"\x89HDF", "an HDF5 file; give OpenCV's YAML with camera_matrix"},
+    {"SQLite format 3", "a database, as COLMAP's; give the model's cameras and images"},
+    {"#ROSBAG", "a recording of ROS; give the YAML of its camera_info message"},
+    {"\x89MCAP", "a recording of ROS 2; give the YAML of its camera_info message"},
+    {"\x89PNG", "an image; give the camera's file"},
+    {"\xff\xd8\xff", "an image; give the camera's file"},
+};
+
 /* Reports that the file is of no known kind, without naming a format. */
 static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size) {
+  for (size_t i = 0; i < VL_LENGTH(foreign); i++)
+    if (size >= strlen(foreign[i].begin) &&
+        memcmp(text, foreign[i].begin, strlen(foreign[i].begin)) == 0)
+      return vl_camera_wrong(file, "no camera that velo reads: %s", foreign[i].advice);
   if (size >= 8 && memcmp(text, "PXR-USDC", 8) == 0)
     return vl_camera_wrong(
         file, "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda");

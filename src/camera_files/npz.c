@@ -3,6 +3,7 @@
  * numpy.savez and numpy.lib.format; PKWARE's APPNOTE, 4.3). The arrays become the tree that
  * OpenCV's files have. Arrays of other meaning are refused by name. */
 #include <stdio.h>
+#include <zlib.h>
 
 #include "base/text.h"
 #include "camera_files/opencv.h"
@@ -117,6 +118,8 @@ static vlResult read_member(const vlCameraFile *file, const char *text, size_t s
   at += LOCAL + little_endian(text + at + 26, 2) + little_endian(text + at + 28, 2);
   if (at > size || size - at < bytes)
     return vl_camera_wrong(file, "npz: \"%s\" is cut off", name);
+  if (crc32_z(0, (const unsigned char *)text + at, bytes) != little_endian(entry + 16, 4))
+    return vl_camera_wrong(file, "npz: \"%s\" is damaged: its CRC is another", name);
   json_t *value = read_array(text + at, bytes);
   if (!value)
     return vl_camera_wrong(

@@ -151,6 +151,12 @@ def npz(compression=zipfile.ZIP_STORED, **arrays):
     return out.getvalue()
 
 
+def damaged(archive):
+    """With another digit in the first number of the first array."""
+    at = archive.index(struct.pack("<d", K9[0]))
+    return archive[:at + 6] + bytes([archive[at + 6] ^ 1]) + archive[at + 7:]
+
+
 MTX = ("f8", (3, 3), K9)
 DIST = ("f8", (1, 5), FIVE)
 BY_COLUMNS = ("f8F", (3, 3), by_columns(K9, 3))
@@ -305,6 +311,7 @@ BROKEN = [
     ("packed.npz", npz(zipfile.ZIP_DEFLATED, mtx=MTX, dist=DIST), 'npz: "mtx" is compressed', "JSON"),
     ("other.npz", npz(mtx=MTX, dist=DIST, warp=DIST), 'npz: "warp" is no field of OpenCV\'s cameras', "JSON"),
     ("cut.npz", npz(mtx=MTX, dist=DIST)[:-40], "npz: the archive is cut off", "JSON"),
+    ("damaged.npz", damaged(npz(mtx=MTX, dist=DIST)), 'npz: "mtx" is damaged: its CRC is another', "JSON"),
     ("nan.npz", npz(mtx=MTX, dist=("f8", (1, 5), [math.nan] * 5)), 'npz: "dist" must be an array of finite', "JSON"),
 ]
 

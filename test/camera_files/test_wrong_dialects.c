@@ -187,6 +187,21 @@ static void test_matrices(void **state) {
           "no pose");
 }
 
+/* Files of other programs are named by their first bytes, with what to give instead. */
+static void test_foreign(void **state) {
+  (void)state;
+  REFUSED("a.blend", 0, "BLENDER-v300\1", "Blender's own file; export glTF");
+  REFUSED("a.fbx", 0, "Kaydara FBX Binary  \1", "an FBX file; export glTF");
+  REFUSED("a.abc", 0, "Ogawa\xff\1", "an Alembic file; export glTF");
+  REFUSED("a.mat", 0, "MATLAB 5.0 MAT-file, Platform: GLNXA64\1", "MATLAB's binary file; give");
+  REFUSED("a.h5", 0, "\x89HDF\r\n\x1a\n", "an HDF5 file; give OpenCV's YAML");
+  REFUSED("a.db", 0, "SQLite format 3\1", "a database, as COLMAP's; give the model's");
+  REFUSED("a.bag", 0, "#ROSBAG V2.0\nE\1", "a recording of ROS; give the YAML");
+  REFUSED("a.mcap", 0, "\x89MCAP0\r\n", "a recording of ROS 2; give the YAML");
+  REFUSED("a.png", 0, "\x89PNG\r\n\x1a\n", "an image; give the camera's file");
+  REFUSED("a.jpg", 0, "\xff\xd8\xff\xe0", "an image; give the camera's file");
+}
+
 /* A word of a stranger's file is cut between characters, not between bytes; "…" follows. */
 static void test_long_words(void **state) {
   (void)state;
@@ -211,6 +226,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_gltf),       cmocka_unit_test(test_mitsuba),
       cmocka_unit_test(test_usd),        cmocka_unit_test(test_matrices),
-      cmocka_unit_test(test_long_words), cmocka_unit_test(test_memory)};
+      cmocka_unit_test(test_long_words), cmocka_unit_test(test_foreign),
+      cmocka_unit_test(test_memory)};
   return cmocka_run_group_tests(tests, files_setup, files_teardown);
 }

@@ -104,7 +104,7 @@ typedef struct vlCameraRecord {
   bool size_assumed;       /**< the file holds no image size, and the def gave none */
   char name[256];          /**< name of the camera or its image; may be empty */
   uint32_t unread; /**< number of fields that velo does not understand; they have no effect.
-                      Counted in NeRF's and ROS's files */
+                      docs/camera-files.md names the dialects in which they are counted */
   uint32_t unread_line;   /**< the line of the first one; 0: unknown */
   char unread_names[128]; /**< the first three, as messages show them: "a", "b", "c" */
 } vlCameraRecord;

@@ -158,8 +158,16 @@ static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *rec
                             "}}\n    ],\n    \"resolution\": [[$width, $height]]\n  }\n}\n");
 }
 
-const vlCameraFormat vl_format_basalt = {.name = "basalt",
-                                         .marks = {"intrinsics"},
-                                         .marks_in = "value0",
-                                         .read = read_basalt,
-                                         .write = write_basalt};
+const vlCameraFormat vl_format_basalt = {
+    .name = "basalt",
+    .marks = {"intrinsics"},
+    .marks_in = "value0",
+    .known =
+        "value0 T_imu_cam px py pz qx qy qz qw w x y z intrinsics camera_type fx fy cx cy k1 k2 k3 "
+        "k4 k5 k6 p1 p2 xi alpha beta rpmax resolution "
+        /* of the IMU, of brightness and of clocks */
+        "calib_accel_bias calib_gyro_bias imu_update_rate accel_noise_std gyro_noise_std "
+        "accel_bias_std gyro_bias_std cam_time_offset_ns T_mocap_world T_imu_marker "
+        "mocap_time_offset_ns mocap_to_imu_offset_ns vignette view_offset",
+    .read = read_basalt,
+    .write = write_basalt};

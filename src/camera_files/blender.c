@@ -91,8 +91,13 @@ static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *re
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_blender = {.name = "blender",
-                                          .marks = {"matrix_world", "sensor_fit", "lens"},
-                                          .one_mark = true,
-                                          .read = read_blender,
-                                          .write = write_blender};
+const vlCameraFormat vl_format_blender = {
+    .name = "blender",
+    .marks = {"matrix_world", "sensor_fit", "lens"},
+    .one_mark = true,
+    .known =
+        "name type lens lens_unit sensor_fit sensor_width sensor_height shift_x shift_y ortho_scale "
+        "clip_start clip_end matrix_world resolution_x resolution_y resolution_percentage "
+        "pixel_aspect_x pixel_aspect_y",
+    .read = read_blender,
+    .write = write_blender};

@@ -134,6 +134,12 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t
 static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
                                vlCameraRecord *record) {
   char key[32];
+  double rolling = 0;
+  if (vl_camera_optional(file, tree, "rolling_shutter", &rolling) != VL_OK)
+    return VL_ERROR_SCENE;
+  if (rolling != 0.0)
+    return vl_camera_wrong_in(file, tree, "rolling_shutter",
+                              "camodocal: rows of an image at different times are not taken");
   if (vl_camera_has(tree, "model_type")) {
     vlResult result = read_camera(file, tree, record);
     return result == VL_OK ? read_pose(file, tree, 0, &record->camera) : result;
@@ -201,5 +207,16 @@ const vlCameraFormat vl_format_camodocal = {
     .name = "camodocal",
     .marks = {"model_type", "cam0_calib", "projection_parameters"},
     .one_mark = true,
+    .known =
+        "model_type camera_name image_width image_height distortion_parameters "
+        "projection_parameters mirror_parameters fx fy cx cy k1 k2 k3 k4 k5 k6 p1 p2 xi mu mv "
+        "u0 v0 gamma1 gamma2 cam0_calib cam1_calib body_T_cam0 body_T_cam1 "
+        "extrinsicRotation extrinsicTranslation data rows cols dt "
+        /* of the estimator */
+        "imu imu_topic image_topic image0_topic image1_topic num_of_cam output_path "
+        "multiple_thread max_cnt min_dist freq F_threshold show_track flow_back equalize "
+        "fisheye max_solver_time max_num_iterations keyframe_parallax acc_n gyr_n acc_w "
+        "gyr_w g_norm td estimate_* rolling_shutter rolling_shutter_tr load_previous_pose_graph "
+        "pose_graph_save_path save_image loop_closure visualize_* fast_relocalization",
     .read = read_camodocal,
     .write = write_camodocal};

@@ -60,6 +60,9 @@ const vlCameraFormat vl_format_euroc = {
     .name = "euroc",
     .marks = {"T_BS", "sensor_type"},
     .one_mark = true,
+    .known =
+        "sensor_type comment T_BS cols rows data resolution camera_model intrinsics "
+        "distortion_model distortion_coefficients rate_hz",
     .read = read_euroc,
     .holds = VL_HOLDS_POSE,
     .lenses = VL_LENSES_COMMON,

@@ -40,11 +40,6 @@ vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element
 vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
                               const char *const *names, uint32_t count, bool optional,
                               double *values);
-/* Goes through the fields of an object that are not among `known` (null ends the list). Those
- * that by their name change the image (crop, flip, skew, k5, ...) and are not off (null, false,
- * 0, "none") are errors; the record counts the others. */
-vlResult vl_camera_check_rest(const vlCameraFile *file, const json_t *object,
-                              const char *const *known, vlCameraRecord *record);
 /* The names that most tools give to fx, fy, cx, cy. */
 extern const char *const vl_camera_matrix_names[4];
 /* The item of a list that the caller asked for by its number or by the text at name_key, which

@@ -279,6 +279,11 @@ typedef struct vlCameraFormat {
   vlCameraWriteFolder *write_folder; /* in place of write: the path is that of a folder of
                                         files, or of one of them */
   const char *not_written;           /* why there is no writer */
+  /* The names of all fields that the reader takes or that have no effect on the camera, with
+   * blanks between; a name that ends in * stands for all that begin so. Others are counted in
+   * vlCameraRecord.unread. Null, and no `knows`: they are not looked for. */
+  const char *known;
+  bool (*knows)(const char *name); /* further names; may be null */
   /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
    * the lens, and $lens, its word. holds: of vl_camera_fit. lenses, most: of
    * vl_camera_fit_lens. */

@@ -8,7 +8,13 @@
 extern const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT];
 /* Returns AUTO if the tree is in none of the dialects. */
 vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree);
-/* The same for files that are neither JSON nor YAML. The text ends with a zero byte. */
+/* Goes through the fields of all objects of the tree whose names the dialect's row does not
+ * know. Those that by their name change the image (crop, flip, skew, k5, ...) and are not off
+ * (null, false, 0, "none") are errors; the record counts the others. */
+vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *format,
+                                const json_t *tree, vlCameraRecord *record);
+/* The same as vl_camera_dialect_of_tree for files that are neither JSON nor YAML. The text ends
+ * with a zero byte. */
 vlCameraDialect vl_camera_dialect_of_text(const char *text, size_t size);
 
 #endif

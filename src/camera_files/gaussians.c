@@ -26,6 +26,7 @@ const vlCameraFormat vl_format_gaussians = {
     .name = "gaussians",
     .marks = {"position", "rotation", "fx"},
     .marks_in = "[]",
+    .known = "id img_name width height position rotation fx fy",
     .read = read_gaussians,
     .holds = VL_HOLDS_POSE,
     .centred = true,

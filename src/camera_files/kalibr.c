@@ -220,4 +220,12 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
 }
 
 const vlCameraFormat vl_format_kalibr = {
-    .name = "kalibr", .marks = {"cam0"}, .read = vl_camera_read_kalibr, .write = write_kalibr};
+    .name = "kalibr",
+    .marks = {"cam0"},
+    .known =
+        "cam* T_cam_imu T_cn_cnm1 T_imu_cam camera_model distortion_coeffs distortion_model "
+        "intrinsics resolution "
+        /* of topics and clocks */
+        "rostopic timeshift_cam_imu",
+    .read = vl_camera_read_kalibr,
+    .write = write_kalibr};

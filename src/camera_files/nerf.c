@@ -82,49 +82,6 @@ static vlResult refuse_others(const vlCameraFile *file, const json_t *frame,
   return VL_OK;
 }
 
-/* Fields of the file and of a frame that are read, or that say nothing about the camera: those
- * of NeRF's synthetic scenes, instant-ngp and nerfstudio. Not those that move the world
- * ("scale", "offset", "applied_transform"): the poses are taken as they are. */
-static const char *const known[] = {"camera_model",
-                                    "w",
-                                    "h",
-                                    "fl_x",
-                                    "fl_y",
-                                    "cx",
-                                    "cy",
-                                    "k1",
-                                    "k2",
-                                    "k3",
-                                    "k4",
-                                    "p1",
-                                    "p2",
-                                    "camera_angle_x",
-                                    "camera_angle_y",
-                                    "is_fisheye",
-                                    "latlong",
-                                    "equirectangular",
-                                    "frames",
-                                    "file_path",
-                                    "time",
-                                    "transform_matrix",
-                                    "transform_matrix_start",
-                                    "transform_matrix_end",
-                                    "rolling_shutter",
-                                    "rotation",
-                                    "aabb_scale",
-                                    "sharpness",
-                                    "depth_file_path",
-                                    "mask_path",
-                                    "colmap_im_id",
-                                    "ply_file_path",
-                                    "train_filenames",
-                                    "val_filenames",
-                                    "test_filenames",
-                                    "integer_depth_scale",
-                                    "enable_depth_loading",
-                                    "depth_unit_scale_factor",
-                                    NULL};
-
 /* w and h; the synthetic scenes have none: the size is that of the frame's image. */
 static vlResult read_size(const vlCameraFile *file, const json_t *frame, const json_t *tree,
                           vlCameraRecord *record) {
@@ -157,10 +114,6 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
                                 fields[i].value);
   if (result == VL_OK)
     result = refuse_others(file, frame, tree);
-  if (result == VL_OK)
-    result = vl_camera_check_rest(file, tree, known, record);
-  if (result == VL_OK)
-    result = vl_camera_check_rest(file, frame, known, record);
   if (result == VL_OK)
     result = read_lens(file, frame, tree, d);
   if (result == VL_OK)
@@ -239,8 +192,18 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
                             ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
 }
 
-const vlCameraFormat vl_format_nerf = {.name = "nerf",
-                                       .marks = {"frames", "fl_x", "camera_angle_x"},
-                                       .one_mark = true,
-                                       .read = read_nerf,
-                                       .write = write_nerf};
+const vlCameraFormat vl_format_nerf = {
+    .name = "nerf",
+    .marks = {"frames", "fl_x", "camera_angle_x"},
+    .one_mark = true,
+    .known =
+        "w h fl_x fl_y cx cy k1 k2 k3 k4 p1 p2 camera_angle_x camera_angle_y camera_model is_fisheye "
+        "latlong equirectangular frames file_path transform_matrix transform_matrix_start "
+        "transform_matrix_end "
+        /* of the synthetic scenes, instant-ngp and nerfstudio; not those that move the world
+         * (scale, offset, applied_transform): the poses are taken as they are */
+        "rolling_shutter rotation time aabb_scale sharpness depth_file_path mask_path colmap_im_id ply_file_path "
+        "train_filenames val_filenames test_filenames integer_depth_scale enable_depth_loading "
+        "depth_unit_scale_factor",
+    .read = read_nerf,
+    .write = write_nerf};

@@ -81,8 +81,16 @@ static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *reco
       VL_WORD("lens", fit.family == VL_LENS_FISHEYE ? "equidistant" : brown));
 }
 
-const vlCameraFormat vl_format_okvis = {.name = "okvis",
-                                        .marks = {"T_SC"},
-                                        .marks_in = "cameras",
-                                        .read = read_okvis,
-                                        .write = write_okvis};
+const vlCameraFormat vl_format_okvis = {
+    .name = "okvis",
+    .marks = {"T_SC"},
+    .marks_in = "cameras",
+    .known =
+        "cameras T_SC image_dimension distortion_coefficients distortion_type focal_length "
+        "principal_point "
+        /* of the estimator */
+        "camera_params camera_rate imu_params estimator* detection_options imageDelay numKeyframes "
+        "numImuFrames ceres_options displayImages useDriver publishing_options "
+        "frontend* output_parameters",
+    .read = read_okvis,
+    .write = write_okvis};

@@ -395,9 +395,20 @@ static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *rec
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_opencv = {.name = "opencv",
-                                         .is_tree = is_opencv,
-                                         .is_text = vl_npz_is,
-                                         .read_text = vl_npz_read,
-                                         .read = vl_camera_read_opencv,
-                                         .write = write_opencv};
+const vlCameraFormat vl_format_opencv = {
+    .name = "opencv",
+    .is_tree = is_opencv,
+    .is_text = vl_npz_is,
+    .read_text = vl_npz_read,
+    .known =
+        "camera_name distortion_model fisheye_model binning_x binning_y roi x_offset y_offset width "
+        "height rows cols data dt type_id layout opencv_storage R1 R2 P1 P2 Q E F roi1 roi2 "
+        /* of the calibration */
+        "calibration_time calibration_Time nframes nr_of_frames nrOfFrames board_* square_size "
+        "square_Size marker_size flags flagValue fix_aspect_ratio aspectRatio avg_reprojection_error "
+        "Avg_Reprojection_Error per_view_reprojection_errors Per_View_Reprojection_Errors "
+        "Per_Image_Reprojection_Errors extrinsic_parameters Extrinsic_Parameters image_points "
+        "Image_points grid_points calibrate_* reprojection_error rms rms_error",
+    .knows = vl_opencv_is_field,
+    .read = vl_camera_read_opencv,
+    .write = write_opencv};

@@ -104,8 +104,14 @@ static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *re
                             "\nCamera.width: $width\nCamera.height: $height\n");
 }
 
-const vlCameraFormat vl_format_orbslam = {.name = "orbslam",
-                                          .marks = {"Camera.fx", "Camera1.fx", "Camera.type"},
-                                          .one_mark = true,
-                                          .read = read_orbslam,
-                                          .write = write_orbslam};
+const vlCameraFormat vl_format_orbslam = {
+    .name = "orbslam",
+    .marks = {"Camera.fx", "Camera1.fx", "Camera.type"},
+    .one_mark = true,
+    .known =
+        "Camera.* Camera1.* Camera2.* Tlr data rows cols dt Stereo.* LEFT.* RIGHT.* File.version "
+        /* of the estimator */
+        "IMU.* ORBextractor.* Viewer.* System.* ThDepth DepthMapFactor RGBD.* Tbc loopClosing "
+        "IMU loopClosing",
+    .read = read_orbslam,
+    .write = write_orbslam};

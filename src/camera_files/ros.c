@@ -9,32 +9,6 @@
 #include "camera_files/lines.h"
 #include "camera_files/opencv.h"
 
-/* Fields that are read, or that belong to the rectified camera, in the names of the message
- * (either version) and of the calibrator's file. */
-static const char *const known[] = {"header",
-                                    "width",
-                                    "height",
-                                    "K",
-                                    "k",
-                                    "D",
-                                    "d",
-                                    "R",
-                                    "r",
-                                    "P",
-                                    "p",
-                                    "binning_x",
-                                    "binning_y",
-                                    "roi",
-                                    "image_width",
-                                    "image_height",
-                                    "camera_name",
-                                    "camera_matrix",
-                                    "distortion_model",
-                                    "distortion_coefficients",
-                                    "rectification_matrix",
-                                    "projection_matrix",
-                                    NULL};
-
 static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   /* field names of the ROS message (either version), or of the file */
@@ -54,8 +28,6 @@ static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraR
     result = vl_opencv_read_lens(file, tree, c, d);
   if (result == VL_OK)
     result = vl_opencv_refuse_part(file, tree, d);
-  if (result == VL_OK)
-    result = vl_camera_check_rest(file, tree, known, record);
   vl_camera_set_origin(d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
   return result;
@@ -232,9 +204,17 @@ static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_ros = {.name = "ros",
-                                      .is_tree = is_ros,
-                                      .is_text = is_ini,
-                                      .read = read_ros,
-                                      .read_text = read_ini,
-                                      .write = write_ros};
+const vlCameraFormat vl_format_ros = {
+    .name = "ros",
+    .is_tree = is_ros,
+    .is_text = is_ini,
+    .known =
+        "image_width image_height width height camera_name camera_matrix K k distortion_model "
+        "distortion_coefficients D d rows cols data dt binning_x binning_y roi x_offset "
+        "y_offset "
+        /* of rectified images, and of the message */
+        "rectification_matrix projection_matrix R r P p do_rectify header seq stamp secs "
+        "nsecs sec nanosec frame_id",
+    .read = read_ros,
+    .read_text = read_ini,
+    .write = write_ros};

@@ -95,9 +95,15 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = k[0];
   }
+  double delay = 0;
+  result = vl_camera_optional(file, camera, "line-delay-nanoseconds", &delay);
+  if (result == VL_OK && delay != 0.0)
+    return vl_camera_wrong_in(file, camera, "line-delay-nanoseconds",
+                              "svo: rows of an image at different times are not taken");
   const double *f = k + unified;
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-  result = read_lens(file, camera, d);
+  if (result == VL_OK)
+    result = read_lens(file, camera, d);
   vl_camera_set_origin(d);
   if (result == VL_OK && vl_camera_has(item, "T_B_C")) {
     result = vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL);
@@ -164,4 +170,12 @@ static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record
 }
 
 const vlCameraFormat vl_format_svo = {
-    .name = "svo", .is_tree = is_svo, .read = read_svo, .write = write_svo};
+    .name = "svo",
+    .is_tree = is_svo,
+    .known =
+        "cam_model cam_width cam_height cam_cx cam_cy cam_fx cam_fy cam_d0 cam_d1 cam_d2 cam_d3 "
+        "cameras camera label type intrinsics parameters distortion image_height "
+        "image_width T_B_C cols rows data line-delay-nanoseconds id time-delay "
+        "serialno imu_params imu_initialization mask",
+    .read = read_svo,
+    .write = write_svo};

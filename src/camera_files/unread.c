@@ -5,7 +5,9 @@
 #include <stdio.h>
 
 #include "base/text.h"
-#include "camera_files/fields.h"
+#include "camera_files/formats.h"
+
+enum { MAX_DEPTH = 32 };
 
 /* Parts of names that speak of another image than that of the camera as read. */
 static const char *const parts[] = {
@@ -76,23 +78,61 @@ static void count_field(const vlCameraFile *file, const json_t *object, const ch
   record->unread++;
 }
 
-vlResult vl_camera_check_rest(const vlCameraFile *file, const json_t *object,
-                              const char *const *known, vlCameraRecord *record) {
-  size_t count = 0;
-  while (known[count])
-    count++;
+/* Whether one of the words, with blanks between, is this name or its beginning and a *. */
+static bool is_listed(const char *words, const char *name) {
+  const size_t length = strlen(name);
+  for (const char *at = words; at && *at;) {
+    at += strspn(at, " ");
+    const size_t n = strcspn(at, " ");
+    const bool begins = n > 0 && at[n - 1] == '*';
+    if (begins ? strncmp(at, name, n - 1) == 0 : n == length && memcmp(at, name, n) == 0)
+      return true;
+    at += n;
+  }
+  return false;
+}
+
+static bool is_known(const vlCameraFormat *format, const char *name) {
+  /* names that begin so are those of parsers: "<" is an element's name, "[]" a list */
+  bool known = strchr("<[_!", name[0]) != NULL;
+  known = known || is_listed(format->known, name) || (format->knows && format->knows(name));
+  for (size_t i = 0; i < VL_LENGTH(format->marks) && format->marks[i]; i++)
+    known = known || vl_text_is(name, format->marks[i]);
+  return known || (format->marks_in && vl_text_is(name, format->marks_in));
+}
+
+static vlResult check(const vlCameraFile *file, const vlCameraFormat *format,
+                      const json_t *item, int depth, vlCameraRecord *record) {
+  vlResult result = VL_OK;
+  if (depth == MAX_DEPTH)
+    return VL_OK;
+  /* a list of numbers is passed at its first one */
+  for (size_t i = 0; i < json_array_size(item) && result == VL_OK; i++) {
+    if (json_is_number(json_array_get(item, i)))
+      break;
+    result = check(file, format, json_array_get(item, i), depth + 1, record);
+  }
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)object, key, value) {
-    if (is_among(key, known, count))
+  json_object_foreach((json_t *)item, key, value) {
+    if (result != VL_OK)
+      return result;
+    if (is_known(format, key)) {
+      result = check(file, format, value, depth + 1, record);
       continue;
+    }
     if (names_geometry(key) && !is_off(value, 4))
       return vl_camera_wrong_in(
-          file, object, key,
+          file, item, key,
           "%s: \"%s\" is not understood, and by its name it changes the image; take it out if "
           "it does not",
           file->dialect, vl_short_text(key).text);
-    count_field(file, object, key, record);
+    count_field(file, item, key, record);
   }
-  return VL_OK;
+  return result;
+}
+
+vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *format,
+                                const json_t *tree, vlCameraRecord *record) {
+  return format->known || format->knows ? check(file, format, tree, 0, record) : VL_OK;
 }

@@ -22,7 +22,12 @@ vlCameraFileDef vl_default_camera_file_def(void) {
   return (vlCameraFileDef){.cookie = VL_COOKIE_CAMERA_FILE};
 }
 
-static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
+/* Reports a file of another program, by name, or that its fields are not known. */
+static vlResult unknown(const vlCameraFile *file, const json_t *tree, const char *text,
+                        size_t size) {
+  const char *advice = vl_camera_other_tool(text, size);
+  if (advice)
+    return vl_camera_wrong(file, "no camera that velo reads: %s", advice);
   char names[160] = "";
   const char *key;
   json_t *unused;
@@ -67,34 +72,8 @@ static bool is_meant_as_tree(const char *path, const char *text) {
          vl_ends_with(path, ".json");
 }
 
-/* Files of other programs that velo does not read, by their first bytes, and what to give
- * instead. */
-static const struct {
-  const char *begin, *advice;
-} foreign[] = {
-    {"BLENDER", "Blender's own file; export glTF, USD (.usda) or COLLADA"},
-    {"Kaydara FBX Binary", "an FBX file; export glTF, USD (.usda) or COLLADA"},
-    {"Ogawa", "an Alembic file; export glTF, USD (.usda) or COLLADA"},
-    {"MATLAB 5.0 MAT-file", "MATLAB's binary file; give OpenCV's YAML with camera_matrix"},
-    {"\x89HDF", "an HDF5 file; give OpenCV's YAML with camera_matrix"},
-    {"SQLite format 3", "a database, as COLMAP's; give the model's cameras and images"},
-    {"#ROSBAG", "a recording of ROS; give the YAML of its camera_info message"},
-    {"\x89MCAP", "a recording of ROS 2; give the YAML of its camera_info message"},
-    {"\x89PNG", "an image; give the camera's file"},
-    {"\xff\xd8\xff", "an image; give the camera's file"},
-};
-
 /* Reports that the file is of no known kind, without naming a format. */
 static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size) {
-  for (size_t i = 0; i < VL_LENGTH(foreign); i++)
-    if (size >= strlen(foreign[i].begin) &&
-        memcmp(text, foreign[i].begin, strlen(foreign[i].begin)) == 0)
-      return vl_camera_wrong(file, "no camera that velo reads: %s", foreign[i].advice);
-  if (size >= 8 && memcmp(text, "PXR-USDC", 8) == 0)
-    return vl_camera_wrong(
-        file, "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda");
-  if (size >= 6 && memcmp(text, "\x93NUMPY", 6) == 0)
-    return vl_camera_wrong(file, "a NumPy array, which does not say what its numbers mean");
   if (memchr(text, 0, size))
     return vl_camera_wrong(file, "no camera: a binary file of no known kind");
   return vl_camera_wrong_at(
@@ -146,6 +125,9 @@ static vlResult read_tree(vlCameraFile *file, const char *text, size_t size,
   vlResult result = vl_camera_tree(file, text, size, &tree);
   if (result != VL_OK) {
     vl_camera_locations_free(file);
+    const char *advice = result == VL_ERROR_SCENE ? vl_camera_other_tool(text, size) : NULL;
+    if (advice)
+      return vl_camera_wrong(file, "no camera that velo reads: %s", advice);
     if (result == VL_ERROR_SCENE && size > 0 && !is_meant_as_tree(file->path, text))
       return no_kind(file, text, size);
     return result;
@@ -161,7 +143,7 @@ static vlResult read_tree(vlCameraFile *file, const char *text, size_t size,
     result = vl_camera_wrong(file, "this is no camera in the dialect of %s",
                              vl_camera_formats[wish]->name);
   } else if (!wish && !found) {
-    result = unknown(file, tree);
+    result = unknown(file, tree, text, size);
   } else {
     result = read_source(file, wish ? wish : found, &(Source){.tree = tree}, sink, record);
   }

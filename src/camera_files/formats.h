@@ -8,6 +8,9 @@
 extern const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT];
 /* Returns AUTO if the tree is in none of the dialects. */
 vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree);
+/* Which other program a file that is in none of the dialects seems to be from, and what to give
+ * instead: a constant text, or null. */
+const char *vl_camera_other_tool(const char *text, size_t size);
 /* Goes through the fields of all objects of the tree whose names the dialect's row does not
  * know. Those that by their name change the image (crop, flip, skew, k5, ...) and are not off
  * (null, false, 0, "none") are errors; the record counts the others. */

@@ -200,6 +200,27 @@ static void test_foreign(void **state) {
   REFUSED("a.mcap", 0, "\x89MCAP0\r\n", "a recording of ROS 2; give the YAML");
   REFUSED("a.png", 0, "\x89PNG\r\n\x1a\n", "an image; give the camera's file");
   REFUSED("a.jpg", 0, "\xff\xd8\xff\xe0", "an image; give the camera's file");
+  const char *const texts[][3] = {
+      {"a.unity", "%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n--- !u!29 &1\nA:\n b: 1\n",
+       "a scene of Unity; export glTF"},
+      {"a.t3d", "Begin Map\n Begin Level\n", "a scene of Unreal Engine; export glTF"},
+      {"a.txt", "fileName imageWidth imageHeight \ncamera matrix K [3x3]\n",
+       "parameters of Pix4D; export the cameras for COLMAP"},
+      {"opk.txt", "# Cameras (2)\n# PhotoID, X, Y, Z, Omega, Phi, Kappa\n",
+       "Metashape's angles; export the cameras as XML"},
+      {"a.dat", "# INTERNAL CAMERA PARAMETERS\n\nParGroup: Cam\n", "HALCON"},
+      {"b.xml", "<BlocksExchange version=\"2.1\"><Block/></BlocksExchange>", "ContextCapture"},
+      {"a.sdf", "<sdf version=\"1.6\"><model/></sdf>", "a model of Gazebo; give the YAML"},
+      {"city.json", "{\"extrinsic\": {\"pitch\": 1}, \"intrinsic\": {\"u0\": 2}}",
+       "Cityscapes' camera"},
+      {"settings.json", "{\"SettingsVersion\": 1.2, \"SimMode\": \"Car\"}",
+       "AirSim's settings; give camera_angle_x"},
+      {"carla.json", "{\"type\": \"sensor.camera.rgb\", \"fov\": 90}", "CARLA"},
+      {"a.nk", "Camera2 {\n translate {0 0 1}\n}\n", "a script of Nuke; export glTF"},
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+    if (!strstr(refused(texts[i][0], texts[i][1]).message, texts[i][2]))
+      fail_msg("%s", texts[i][0]);
 }
 
 /* A word of a stranger's file is cut between characters, not between bytes; "…" follows. */

@@ -4,6 +4,8 @@
  * camera from world. Lengths in the image are fractions of its larger side, measured from its
  * middle: velo's cx is width / 2 + c_x max(width, height). */
 
+#include <math.h>
+
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "velo/projection.h"
@@ -149,6 +151,17 @@ static bool is_opensfm(const json_t *tree) {
   return shots || (first && vl_camera_has(json_object_iter_value(first), "projection_type"));
 }
 
+/* Whether the image is the whole sphere, as "spherical" means. */
+static bool is_sphere(const vlCamera *c) {
+  const double pi = 3.14159265358979323846;
+  const double wrong[] = {c->fx - c->width / (2.0 * pi), c->fy - c->height / pi,
+                          c->cx - 0.5 * c->width, c->cy - 0.5 * c->height, c->skew};
+  bool sphere = true;
+  for (size_t i = 0; i < VL_LENGTH(wrong); i++)
+    sphere = sphere && fabs(wrong[i]) < 1e-9 * c->width;
+  return sphere;
+}
+
 static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *record,
                               vlCameraText *text) {
   static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {
@@ -163,6 +176,9 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
   bool bent = family == VL_LENS_FISHEYE,
        whole = record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
+  if (whole && !is_sphere(&c))
+    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                      "opensfm holds the equirectangular image of the whole sphere only");
   if (whole) {
     family = VL_LENS_PINHOLE;
     n = 0;

@@ -211,13 +211,15 @@ static vlResult read_stream(const vlCameraFile *file, const json_t *stream,
     return result;
   vl_camera_set_centred(d, fx, fy, cx, cy);
   vl_camera_set_origin(d);
-  if (all_zero(k, 5))
-    return VL_OK;
   char lower[64] = "";
   for (size_t i = 0; model && model[i] && i < sizeof lower - 1; i++)
     lower[i] = model[i] == ' '
                    ? '_'
                    : (char)(model[i] >= 'A' && model[i] <= 'Z' ? model[i] + 32 : model[i]);
+  /* without coefficients the models of fisheyes are fisheyes */
+  const bool fisheye = strstr(lower, "kannala") || strstr(lower, "theta");
+  if (all_zero(k, 5) && !fisheye)
+    return VL_OK;
   if (strstr(lower, "kannala")) {
     vl_camera_set_fisheye(d, k);
   } else if (strstr(lower, "brown") && !strstr(lower, "inverse") &&

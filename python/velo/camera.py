@@ -132,7 +132,7 @@ class Camera(_velo.Camera):
         """Where points (n x 3 or rows x columns x 3, world space) are seen: a Projection.
 
         jacobian=True: a pair of it and its Jacobian, of the pixels (2) by JACOBIAN_COLUMNS."""
-        if jacobian:
+        if _check.flag(jacobian, "jacobian"):
             return self.project(points), _jacobian(self._project_jacobian(points), points, 2)
         pixels, z, valid = self._project(points)
         n = _shape_of(points, len(valid))
@@ -143,7 +143,7 @@ class Camera(_velo.Camera):
 
         jacobian=True: a pair of them and their Jacobian, of origin and direction (6) by JACOBIAN_COLUMNS; its columns
         point_x and point_y are the film point's x and y."""
-        if jacobian:
+        if _check.flag(jacobian, "jacobian"):
             return self.unproject(pixels), _jacobian(self._unproject_jacobian(pixels), pixels, 6)
         origins, directions, valid = self._unproject(pixels)
         n = _shape_of(pixels, len(valid))

@@ -284,7 +284,7 @@ VL_API vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_
                                  vlCamera *result);
 
 /** The largest factor of vl_camera_coarse. */
-enum { VL_MOST_COARSE = 64 };
+enum { VL_MAX_COARSE = 64 };
 /** Makes the same camera with pixels that are `factor` times as wide and as high, for a first
  * coarse image. Pixel (x, y) covers the pixels from (factor x, factor y) on; the last column
  * and row may reach beyond the image. ARGUMENT: factor is not 1 to 64. */

@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /** Largest number of trials of a race. */
-#define VL_MOST_TRIALS 4
+#define VL_MAX_TRIALS 4
 
 /** One competitor of a race: a tracer with a number of light paths. */
 typedef struct vlTracerTrial {
@@ -36,7 +36,7 @@ typedef struct vlTracerChoice {
   uint32_t count; /**< number of trials; 0: there was no race. The tracer is then VL_TRACER_PATH
                      where the def's tracer looks past something of the world, else
                      VL_TRACER_VOLPATH */
-  vlTracerTrial trials[VL_MOST_TRIALS]; /**< VL_TRACER_VOLPATH first */
+  vlTracerTrial trials[VL_MAX_TRIALS]; /**< VL_TRACER_VOLPATH first */
 } vlTracerChoice;
 
 /** Chooses the tracer with the least error for the same time. The competitors are

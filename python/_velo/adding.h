@@ -26,7 +26,7 @@ typedef union Def {
   vlShapeDef shape;
 } Def;
 
-enum { MOST_ARRAYS = 24, SHAPE_ARRAYS = 11 };
+enum { MAX_ARRAYS = 24, SHAPE_ARRAYS = 11 };
 
 /* An array of a shape that is given by a keyword. */
 typedef struct ShapeArray {
@@ -44,7 +44,7 @@ const void *shape_array(const vlShapeDef *def, int array);
 typedef struct Adding {
   Scene *scene;
   PyObject *keep;
-  Numbers arrays[MOST_ARRAYS];
+  Numbers arrays[MAX_ARRAYS];
   int array_count;
   size_t given[SHAPE_ARRAYS]; /* elements of the arrays that a shape is given; 0: none */
   const vlShapeDef *old;      /* a shape that is changed: its other arrays stay; else null */

@@ -284,7 +284,7 @@ static PyObject *camera_new(PyObject *module, PyObject *arguments) {
   uint32_t size[2];
   if (!PyArg_ParseTuple(arguments, "OOO!:camera_new", &width, &height, &PyDict_Type,
                         &keywords) ||
-      !read_size(width, height, MOST_PIXELS, size))
+      !read_size(width, height, MAX_PIXELS, size))
     return NULL;
   vlCameraDef def = vl_default_camera_def(size[0], size[1]);
   PyObject *keep = PyList_New(0);
@@ -348,7 +348,7 @@ static PyObject *camera_resize(Camera *self, PyObject *arguments) {
   PyObject *width, *height;
   uint32_t size[2];
   if (!PyArg_ParseTuple(arguments, "OO:_resize", &width, &height) ||
-      !read_size(width, height, MOST_PIXELS, size))
+      !read_size(width, height, MAX_PIXELS, size))
     return NULL;
   if (size[0] == self->camera.width && size[1] == self->camera.height) {
     Py_INCREF((PyObject *)self);
@@ -360,7 +360,7 @@ static PyObject *camera_resize(Camera *self, PyObject *arguments) {
 }
 static PyObject *camera_coarse(Camera *self, PyObject *number) {
   uint32_t factor;
-  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor))
+  if (!read_count(number, "coarse's factor", 1, VL_MAX_COARSE, &factor))
     return NULL;
   vlCamera made;
   vlResult done = vl_camera_coarse(&self->camera, factor, &made);
@@ -590,8 +590,8 @@ static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, Py
 
 /* The image size for files without one; 0: not given. */
 static bool file_size(PyObject *width, PyObject *height, vlCameraFileDef *def) {
-  return read_count(width, "width", 0, MOST_PIXELS, &def->width) &&
-         read_count(height, "height", 0, MOST_PIXELS, &def->height);
+  return read_count(width, "width", 0, MAX_PIXELS, &def->width) &&
+         read_count(height, "height", 0, MAX_PIXELS, &def->height);
 }
 
 /* Warns of the fields that velo does not understand. Returns false if the warning is an error

@@ -184,13 +184,13 @@ PyObject *check_value(PyObject *module, PyObject *arguments) {
 
 /* check_choice(value, what, [words]): the index of the word. */
 PyObject *check_choice(PyObject *module, PyObject *arguments) {
-  enum { MOST_WORDS = 64 };
+  enum { MAX_WORDS = 64 };
   (void)module;
   PyObject *value, *list;
-  const char *what, *words[MOST_WORDS + 1] = {NULL};
+  const char *what, *words[MAX_WORDS + 1] = {NULL};
   if (!PyArg_ParseTuple(arguments, "OsO!:check_choice", &value, &what, &PyList_Type, &list))
     return NULL;
-  Py_ssize_t count = sequence_size(list, "the list of words", 1, MOST_WORDS);
+  Py_ssize_t count = sequence_size(list, "the list of words", 1, MAX_WORDS);
   PyObject *keep = count > 0 ? PyList_New(0) : NULL, *result = NULL;
   if (keep && keep_texts(keep, list, count, "a word", words)) {
     int found = find_choice(words, what, value);

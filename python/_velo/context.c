@@ -119,14 +119,14 @@ static void log_message(void *user, vlLogLevel level, const vlError *where,
 
 /* More threads than a few for each processor wait for each other: a thousand on two processors
  * take seconds. */
-enum { MOST_PER_PROCESSOR = 4 };
+enum { MAX_PER_PROCESSOR = 4 };
 
-static const int64_t MOST_MEMORY = (int64_t)1 << 53; /* bytes; larger numbers are not exact */
+static const int64_t MAX_MEMORY = (int64_t)1 << 53; /* bytes; larger numbers are not exact */
 
 static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   static char *names[] = {"threads", "max_memory", "keep_inputs", NULL};
   vlContextDef def = vl_default_context_def();
-  const uint32_t most_threads = MOST_PER_PROCESSOR * def.threads;
+  const uint32_t most_threads = MAX_PER_PROCESSOR * def.threads;
   PyObject *threads = NULL, *most = NULL, *keep_inputs = NULL;
   int64_t memory = 0;
   if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|OOO:Context", names, &threads, &most,
@@ -139,7 +139,7 @@ static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *
   def.threads = (uint32_t)count;
   if (def.threads > most_threads)
     def.threads = most_threads;
-  if (most && !read_whole(most, "max_memory", 0, MOST_MEMORY, &memory))
+  if (most && !read_whole(most, "max_memory", 0, MAX_MEMORY, &memory))
     return NULL;
   if (keep_inputs && !read_flag(keep_inputs, "keep_inputs", &def.keep_inputs))
     return NULL;

@@ -173,7 +173,7 @@ PyObject *raise_value(const char *what, PyObject *value, const char *format, ...
 
 /* ---- the caller's numbers and texts ------------------------------------------------------ */
 
-enum { MOST_PIXELS = 1 << 24 }; /* of a side of a camera's image */
+enum { MAX_PIXELS = 1 << 24 }; /* of a side of a camera's image */
 
 /* A str of a text that need not be UTF-8. */
 PyObject *text_object(const char *text);

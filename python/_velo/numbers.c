@@ -111,7 +111,7 @@ static bool from_buffer(PyObject *object, char type, const char *what, Numbers *
   return fine;
 }
 
-enum { MOST_LISTED = 1 << 28 }; /* numbers of nested sequences; more are given as an array */
+enum { MAX_LISTED = 1 << 28 }; /* numbers of nested sequences; more are given as an array */
 
 typedef struct Growing {
   char *data;
@@ -135,8 +135,8 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
       return false;
     }
     n->dimensions = depth;
-    if (g->count == MOST_LISTED) {
-      raise_usage("%s: more than %d numbers: give an array", what, MOST_LISTED);
+    if (g->count == MAX_LISTED) {
+      raise_usage("%s: more than %d numbers: give an array", what, MAX_LISTED);
       return false;
     }
     if (g->count == g->room) {
@@ -155,7 +155,7 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
     raise_value(what, object, "numbers: an array or nested lists");
     return false;
   }
-  Py_ssize_t length = sequence_size(object, what, 0, MOST_LISTED);
+  Py_ssize_t length = sequence_size(object, what, 0, MAX_LISTED);
   if (length < 0)
     return false;
   if (n->shape[depth] == 0)

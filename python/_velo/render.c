@@ -48,7 +48,7 @@ static PyObject *scene_settings(PyObject *module, PyObject *object) {
   return (PyObject *)self;
 }
 
-enum { MOST_SENSORS = 63 };
+enum { MAX_SENSORS = 63 };
 
 static PyObject *settings_set(Settings *self, PyObject *arguments) {
   const char *name;
@@ -93,8 +93,8 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
       return NULL;
     self->defs.film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
   } else if (strcmp(row->member, "film.sensor") == 0 && value != Py_None) {
-    const char *names[MOST_SENSORS + 1] = {0};
-    for (uint32_t i = 0; i < MOST_SENSORS && vl_sensor_name(i); i++)
+    const char *names[MAX_SENSORS + 1] = {0};
+    for (uint32_t i = 0; i < MAX_SENSORS && vl_sensor_name(i); i++)
       names[i] = vl_sensor_name(i);
     int sensor = find_choice(names, "sensor", value);
     if (sensor < 0)
@@ -156,7 +156,7 @@ static PyObject *settings_crop(Settings *self, PyObject *arguments) {
 /* set_coarse(factor): the film of 1/factor of the size. */
 static PyObject *settings_coarse(Settings *self, PyObject *number) {
   uint32_t factor;
-  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor))
+  if (!read_count(number, "coarse's factor", 1, VL_MAX_COARSE, &factor))
     return NULL;
   self->defs.film = vl_coarse_film_def(&self->defs.film, factor);
   Py_RETURN_NONE;

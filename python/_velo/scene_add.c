@@ -7,7 +7,7 @@
 
 /* The numbers of an array, which live until the call ends; null with an exception. */
 static const Numbers *read_array(Adding *a, PyObject *value, char type, const char *what) {
-  if (a->array_count == MOST_ARRAYS) {
+  if (a->array_count == MAX_ARRAYS) {
     raise_usage("too many arrays");
     return NULL;
   }

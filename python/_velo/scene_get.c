@@ -86,10 +86,10 @@ static PyObject *spectrum_of(const vlSpectrum *s) {
 
 /* A copy, as an object of Python. */
 static PyObject *image_copy(const Getting *g, const vlImage *from) {
-  enum { MOST_CHANNELS = 64 };
-  const char *names[MOST_CHANNELS];
+  enum { MAX_CHANNELS = 64 };
+  const char *names[MAX_CHANNELS];
   const uint32_t channels = vl_image_channels(from);
-  if (channels > MOST_CHANNELS)
+  if (channels > MAX_CHANNELS)
     return raise_usage("an image of %u channels cannot be read back", (unsigned)channels);
   for (uint32_t i = 0; i < channels; i++)
     names[i] = vl_image_channel_name(from, i);

@@ -83,9 +83,9 @@ int find_choice(const char *const *choices, const char *what, PyObject *value) {
 }
 
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
-  enum { MOST_KINDS = 64, MOST_LETTERS = 32 };
-  char lower[MOST_KINDS][MOST_LETTERS];
-  const char *choices[MOST_KINDS + 1] = {NULL};
+  enum { MAX_KINDS = 64, MAX_LETTERS = 32 };
+  char lower[MAX_KINDS][MAX_LETTERS];
+  const char *choices[MAX_KINDS + 1] = {NULL};
   PyObject *bytes = NULL;
   const char *text = name_text(name, &bytes);
   int found = -1;
@@ -98,8 +98,8 @@ int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
   Py_XDECREF(bytes);
   if (found >= 0)
     return found;
-  for (uint32_t k = 0; k < family->kind_count && k < MOST_KINDS; k++) {
-    put_lower(family->constants[k], lower[k], MOST_LETTERS);
+  for (uint32_t k = 0; k < family->kind_count && k < MAX_KINDS; k++) {
+    put_lower(family->constants[k], lower[k], MAX_LETTERS);
     choices[k] = lower[k];
   }
   return find_choice(choices, thing, name);

@@ -11,7 +11,7 @@ from velo._errors import wrong_value
 
 
 _NO_LISTS = (str, bytes, dict, set, frozenset)
-MOST_ITEMS = 65536  # of a list that is no array
+MAX_ITEMS = 65536  # of a list that is no array
 
 
 def instance(value: Any, kind: type, what: str, optional: bool = False) -> Any:
@@ -33,11 +33,11 @@ def items(value: Any, what: str, kind: str = "values") -> list[Any]:
     if isinstance(value, _NO_LISTS):
         raise wrong_value(what, f"a list of {kind}", value)
     try:
-        found = list(itertools.islice(value, MOST_ITEMS + 1))
+        found = list(itertools.islice(value, MAX_ITEMS + 1))
     except TypeError:
         raise wrong_value(what, f"a list of {kind}", value) from None
-    if len(found) > MOST_ITEMS:
-        raise wrong_value(what, f"a list of at most {MOST_ITEMS} {kind}", value)
+    if len(found) > MAX_ITEMS:
+        raise wrong_value(what, f"a list of at most {MAX_ITEMS} {kind}", value)
     return found
 
 

@@ -14,7 +14,7 @@
 #include "velo/film.h"
 
 enum {
-  MOST_FILES = 200
+  MAX_FILES = 200
 }; /* files that are open at the same time; more files are merged in several rounds */
 
 typedef struct Part {
@@ -386,19 +386,19 @@ static vlResult merge_many(vlContext *context, const char *const *paths, uint32_
                            bool overwrite, const char *output, const vlFilmLock *lock,
                            vlError *error) {
   char between[sizeof lock->file.path];
-  const char *some[MOST_FILES];
+  const char *some[MAX_FILES];
   if (!lock->file.path[0])
     return vl_fail(
         error, VL_ERROR_IO,
         "cannot write %s: more than %d films need a temporary file beside the result", output,
-        MOST_FILES);
+        MAX_FILES);
   vl_lock_sibling(&lock->file, between, sizeof between);
   vlResult result = VL_OK;
   for (uint32_t done = 0; done < count && result == VL_OK;) {
     uint32_t n = 0;
     if (done)
       some[n++] = between;
-    while (n < MOST_FILES && done < count)
+    while (n < MAX_FILES && done < count)
       some[n++] = paths[done++];
     bool last = done == count;
     result =
@@ -423,7 +423,7 @@ vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t co
   vlResult result = vl_film_lock_write(context, output, &lock, error);
   if (result != VL_OK)
     return result;
-  if (count <= MOST_FILES)
+  if (count <= MAX_FILES)
     result = merge_some(context, paths, count, def->overwrite, output, error);
   else
     result = merge_many(context, paths, count, def->overwrite, output, lock, error);

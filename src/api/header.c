@@ -294,12 +294,12 @@ vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *given) {
 }
 
 vlResult vl_image_show_ids(const vlImage *ids, vlImage **shown) {
-  enum { MOST_CHANNELS = 16, MOST_EXACT = 1 << 24 };
+  enum { MAX_CHANNELS = 16, MAX_EXACT = 1 << 24 };
   if (!ids || !shown || vl_image_type(ids) != VL_PIXEL_U32 ||
-      vl_image_channels(ids) > MOST_CHANNELS)
+      vl_image_channels(ids) > MAX_CHANNELS)
     return VL_ERROR_ARGUMENT;
-  char texts[MOST_CHANNELS][64];
-  const char *names[MOST_CHANNELS];
+  char texts[MAX_CHANNELS][64];
+  const char *names[MAX_CHANNELS];
   uint32_t count = vl_image_channels(ids);
   for (uint32_t i = 0; i < count; i++) {
     const char *name = vl_image_channel_name(ids, i);
@@ -313,7 +313,7 @@ vlResult vl_image_show_ids(const vlImage *ids, vlImage **shown) {
   const uint32_t *from = vl_image_const_pixels(ids);
   bool exact = true;
   for (size_t i = 0; i < values; i++)
-    exact = exact && from[i] < MOST_EXACT;
+    exact = exact && from[i] < MAX_EXACT;
   def.names = names;
   def.type = exact ? VL_PIXEL_F32 : VL_PIXEL_U32;
   vlResult result = vl_image_create(ids->context, &def, shown);

@@ -17,7 +17,7 @@
 #define PREFIX ".velo-"
 #define SUFFIX ".lock"
 #define SIBLING ".merge"
-enum { DIGITS = 16, TRIES = 10, MILLISECONDS = 50, MOST_CHANGES = 1000 };
+enum { DIGITS = 16, TRIES = 10, MILLISECONDS = 50, MAX_CHANGES = 1000 };
 
 bool vl_is_lock_name(const char *name) {
   const size_t prefix = sizeof PREFIX - 1;
@@ -147,7 +147,7 @@ vlResult vl_file_lock(vlFileLock *lock, vlContext *context, const char *path,
   lock->unfinished = NULL;
   *state = VL_LOCK_BUSY;
   int code = name_lock(path, lock->path, sizeof lock->path) ? try_lock(lock, context) : errno;
-  for (int busy = 0, changed = 0; busy < TRIES && changed < MOST_CHANGES;
+  for (int busy = 0, changed = 0; busy < TRIES && changed < MAX_CHANGES;
        code = try_lock(lock, context)) {
     if (code == EAGAIN) { /* whoever sweeps the folder holds it for a moment */
       const struct timespec wait = {0, MILLISECONDS * 1000000L};

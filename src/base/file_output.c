@@ -10,7 +10,7 @@
 #include "base/file_stream.h"
 #include "base/text.h"
 
-enum { MOST_LINKS = 40, LONGEST_NAME = 255 };
+enum { MAX_LINKS = 40, MAX_NAME = 255 };
 
 size_t vl_folder_length(const char *path) {
   const char *slash = strrchr(path, '/');
@@ -24,7 +24,7 @@ bool vl_follow_links(const char *path, char *target, size_t size) {
     return false;
   }
   memcpy(target, path, strlen(path) + 1);
-  for (int i = 0; i < MOST_LINKS; i++) {
+  for (int i = 0; i < MAX_LINKS; i++) {
     ssize_t n = readlink(target, link, sizeof link);
     if (n < 0)
       return true; /* not a link; other errors are reported when it is opened */
@@ -61,7 +61,7 @@ static vlResult check_folder(const char *path, vlError *error) {
   size_t name = strlen(target + vl_folder_length(target));
   if (name == 0)
     return fail(path, *target ? EISDIR : ENOENT, error);
-  if (name > LONGEST_NAME)
+  if (name > MAX_NAME)
     return fail(path, ENAMETOOLONG, error);
   folder_of(target, folder);
   int code = stat(folder, &info) != 0 ? errno : 0;

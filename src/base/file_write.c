@@ -19,7 +19,7 @@
  * process that has ended. */
 #define PREFIX ".velo-"
 #define SUFFIX ".tmp"
-enum { MOST_TRIES = 1000 };
+enum { MAX_TRIES = 1000 };
 
 /* Removes a temporary file (vlUnfinishedFn), unless another writer has it. */
 static void remove_temporary(int descriptor, const char *path) {
@@ -70,7 +70,7 @@ static bool open_nameless(vlFileWriter *writer) {
 static bool give_name(vlFileWriter *writer) {
   char self[64];
   snprintf(self, sizeof self, "/proc/self/fd/%d", writer->descriptor);
-  for (unsigned i = 0; i < MOST_TRIES; i++) {
+  for (unsigned i = 0; i < MAX_TRIES; i++) {
     if (!name_temporary(writer, i))
       break;
     if (linkat(AT_FDCWD, self, AT_FDCWD, writer->temporary, AT_SYMLINK_FOLLOW) == 0)
@@ -89,7 +89,7 @@ static bool open_temporary(vlFileWriter *writer, bool named) {
     flock(writer->descriptor, LOCK_EX | LOCK_NB);
     return true;
   }
-  for (unsigned i = 0; i < MOST_TRIES; i++) {
+  for (unsigned i = 0; i < MAX_TRIES; i++) {
     if (!name_temporary(writer, i))
       return false;
     writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -9,7 +9,7 @@
 #include <stdlib.h> /* realpath */
 #include <unistd.h>
 
-enum { MOST_LINKS = 40 };
+enum { MAX_LINKS = 40 };
 
 static void *take(const vlSandbox *sandbox, size_t size) {
   return sandbox->allocator.allocate(sandbox->allocator.user, size);
@@ -121,7 +121,7 @@ static bool go_down(char *at, const char *name, size_t length) {
 static bool follow(Walk *walk, const char *link) {
   char rest[PATH_MAX];
   int n = snprintf(rest, sizeof rest, "%s/%s", link, walk->rest);
-  if (n < 0 || (size_t)n >= sizeof rest || ++walk->links > MOST_LINKS)
+  if (n < 0 || (size_t)n >= sizeof rest || ++walk->links > MAX_LINKS)
     return false;
   memcpy(walk->rest, rest, (size_t)n + 1);
   if (*link == '/')

@@ -19,7 +19,7 @@ enum { LARGEST = 4096, NAMED = 256 };
 
 void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   memset(blades, 0, sizeof *blades);
-  blades->count = count < VL_MOST_BLADES ? count : VL_MOST_BLADES;
+  blades->count = count < VL_MAX_BLADES ? count : VL_MAX_BLADES;
   for (uint32_t i = 0; i < blades->count; i++) {
     double angle = rotation - 0.5 * pi + 2.0 * pi * i / blades->count;
     blades->x[i] = (float)vl_precise_cos(angle);

@@ -7,12 +7,12 @@
 
 #include "velo/lens.h"
 
-enum { VL_MOST_BLADES = 32 };
+enum { VL_MAX_BLADES = 32 };
 
 /* Corners of a rotated blade polygon; the first is repeated at the end. */
 typedef struct vlBlades {
   uint32_t count;
-  float x[VL_MOST_BLADES + 1], y[VL_MOST_BLADES + 1];
+  float x[VL_MAX_BLADES + 1], y[VL_MAX_BLADES + 1];
 } vlBlades;
 /* Makes a regular polygon that is inscribed in the unit circle. One corner points up; then the
  * polygon is rotated clockwise by `rotation` (radians). */

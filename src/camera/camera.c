@@ -184,7 +184,7 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
 }
 
 vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCamera *result) {
-  if (!camera || !result || factor == 0 || factor > VL_MOST_COARSE)
+  if (!camera || !result || factor == 0 || factor > VL_MAX_COARSE)
     return VL_ERROR_ARGUMENT;
   vlCamera coarse = *camera;
   double scale = 1.0 / factor;

@@ -22,9 +22,9 @@ static bool positive(double value) {
 }
 
 static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *error) {
-  if (d->count == 0 || d->count > VL_MOST_SURFACES)
+  if (d->count == 0 || d->count > VL_MAX_SURFACES)
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: %u surfaces; there are 1 to %d", d->count,
-                   VL_MOST_SURFACES);
+                   VL_MAX_SURFACES);
   if (!positive(d->film_diagonal) || !positive(d->unit_mm))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "lens: film_diagonal %g and unit_mm %g must be above zero", d->film_diagonal,

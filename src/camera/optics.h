@@ -7,7 +7,7 @@
 #include "camera/aperture.h"
 #include "camera/local.h"
 
-enum { VL_MOST_SURFACES = 64, VL_PUPILS = 64, VL_CHIEFS = 68 };
+enum { VL_MAX_SURFACES = 64, VL_PUPILS = 64, VL_CHIEFS = 68 };
 
 typedef struct vlOpticsSurface {
   double z;         /* z of the surface's vertex */
@@ -35,10 +35,10 @@ typedef struct vlChief {
 
 struct vlOptics {
   vlContext *context;
-  vlLensSurface given[VL_MOST_SURFACES];
+  vlLensSurface given[VL_MAX_SURFACES];
   vlOpticsDef def; /* the lens's def; its pointer to surfaces is null */
   uint32_t count;
-  vlOpticsSurface surfaces[VL_MOST_SURFACES]; /* ordered from the film's side */
+  vlOpticsSurface surfaces[VL_MAX_SURFACES]; /* ordered from the film's side */
   uint32_t stop; /* the surface through whose centre chief rays pass */
   bool has_stop;
   double rear, front; /* z of the outermost surfaces */

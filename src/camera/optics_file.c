@@ -52,9 +52,9 @@ static vlResult read(Reader *r, vlLensSurface *surfaces, uint32_t *count, vlErro
       return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column,
                         "lens file: \"%s\" is not a number",
                         vl_short_text_of(r->at, length).text);
-    if (n == 4 * VL_MOST_SURFACES)
+    if (n == 4 * VL_MAX_SURFACES)
       return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column,
-                        "lens file: more than %d surfaces", VL_MOST_SURFACES);
+                        "lens file: more than %d surfaces", VL_MAX_SURFACES);
     vlLensSurface *s = &surfaces[n / 4];
     *(n % 4 == 0   ? &s->radius
       : n % 4 == 1 ? &s->thickness
@@ -83,7 +83,7 @@ vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef 
   vlResult result = vl_file_read(context, path, false, &data, &size, error);
   if (result != VL_OK)
     return result;
-  vlLensSurface surfaces[VL_MOST_SURFACES];
+  vlLensSurface surfaces[VL_MAX_SURFACES];
   vlOpticsDef filled = *def;
   Reader r = {path, data, data, 1};
   result = read(&r, surfaces, &filled.count, error);

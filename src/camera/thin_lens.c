@@ -24,7 +24,7 @@ static vlResult check(const vlCameraDef *def, vlError *error) {
   if (d->blades != 0 && d->blades < 3)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: %u blades; there are 0 (a round opening) or 3 to %d", d->blades,
-                   VL_MOST_BLADES);
+                   VL_MAX_BLADES);
   if (d->blades != 0 && d->aperture)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: %u blades and an aperture image are given; give one of them",

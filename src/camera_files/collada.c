@@ -11,7 +11,7 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 
-enum { MOST_DEPTH = 30 };
+enum { MAX_DEPTH = 30 };
 static const double degree = 3.14159265358979323846 / 180.0;
 
 static bool has_tag(const json_t *element, const char *tag) {
@@ -81,8 +81,8 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
 }
 
 typedef struct {
-  const json_t *camera;            /* <instance_camera> of the chosen node */
-  const json_t *stops[MOST_DEPTH]; /* the nodes down to it */
+  const json_t *camera;           /* <instance_camera> of the chosen node */
+  const json_t *stops[MAX_DEPTH]; /* the nodes down to it */
   int depth;
   const char *name;
   uint32_t count;
@@ -92,7 +92,7 @@ static vlResult search(const vlCameraFile *file, const json_t *node, const json_
                        int depth, Search *s) {
   const json_t *child;
   size_t i;
-  if (depth == MOST_DEPTH)
+  if (depth == MAX_DEPTH)
     return vl_camera_wrong_element(file, node, "nested too deeply for a camera");
   stops[depth] = node;
   const char *name = vl_camera_text(node, "name");
@@ -168,7 +168,7 @@ static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool fl
 static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node,
-               *stops[MOST_DEPTH] = {NULL};
+               *stops[MAX_DEPTH] = {NULL};
   vlCameraDef *d = &record->camera;
   Search s = {.camera = NULL};
   vlMat4 world = vl_mat4_identity();

@@ -184,7 +184,7 @@ enum {
   K1,
   T2 = K1 + 5,
   COLUMNS,
-  MOST_FIELDS = 64
+  MAX_FIELDS = 64
 };
 static const char *const columns[COLUMNS] = {"#name", "x",  "y",  "alt", "heading", "pitch",
                                              "roll",  "f",  "px", "py",  "k1",      "k2",
@@ -195,7 +195,7 @@ typedef struct {
   const char *at, *end;
   uint32_t number;
   char text[4096];
-  const char *fields[MOST_FIELDS];
+  const char *fields[MAX_FIELDS];
   int count;
 } Row;
 
@@ -214,7 +214,7 @@ static bool next_row(Row *row) {
     if (!row->text[0] || strncmp(row->text, "#cameras", 8) == 0)
       continue;
     row->count = 0;
-    for (char *field = row->text; field && row->count < MOST_FIELDS;) {
+    for (char *field = row->text; field && row->count < MAX_FIELDS;) {
       char *comma = strchr(field, ',');
       if (comma)
         *comma = 0;

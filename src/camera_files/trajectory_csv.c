@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "camera_files/trajectory.h"
 
-enum { MOST_COLUMNS = 64 };
+enum { MAX_COLUMNS = 64 };
 
 enum Column {
   NAME,
@@ -59,7 +59,7 @@ typedef struct Csv {
   const vlCameraFile *file;
   char separator; /* 0: columns are separated by blanks */
   uint32_t line;
-  int columns, of[MOST_COLUMNS]; /* the Column of each field */
+  int columns, of[MAX_COLUMNS]; /* the Column of each field */
   bool has[COLUMNS], header;
   bool opengl, from_world;
   bool euroc;       /* the header is EuRoC's: its other columns are ignored */
@@ -72,8 +72,8 @@ static vlResult wrong(const Csv *csv, uint32_t column, const char *format, const
 }
 
 /* Splits a line in place; removes surrounding blanks and quotes. Returns the number of fields;
- * MOST_COLUMNS + 1: too many. */
-static int split(char *line, char separator, char *fields[MOST_COLUMNS]) {
+ * MAX_COLUMNS + 1: too many. */
+static int split(char *line, char separator, char *fields[MAX_COLUMNS]) {
   int count = 0;
   for (char *at = line; at;) {
     if (!separator)
@@ -96,8 +96,8 @@ static int split(char *line, char separator, char *fields[MOST_COLUMNS]) {
     at = more ? at + 1 : NULL;
     for (size_t n = strlen(field); n && (field[n - 1] == ' ' || field[n - 1] == '\t'); n--)
       field[n - 1] = 0;
-    if (count == MOST_COLUMNS)
-      return MOST_COLUMNS + 1;
+    if (count == MAX_COLUMNS)
+      return MAX_COLUMNS + 1;
     fields[count++] = field;
   }
   return count;
@@ -213,12 +213,12 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
 /* EuRoC's header: "timestamp [ns], p_RS_R_x [m], ..., q_RS_w [], ...": the body's (IMU's) pose
  * in the reference frame, times in nanoseconds. */
 static vlResult read_euroc_header(Csv *csv, char *line) {
-  char *fields[MOST_COLUMNS];
+  char *fields[MAX_COLUMNS];
   csv->euroc = true;
   csv->separator = ',';
   csv->time_unit = 1e-9;
   int count = split(line, csv->separator, fields);
-  if (count > MOST_COLUMNS)
+  if (count > MAX_COLUMNS)
     return wrong(csv, 0, "more than 64 columns%s", "");
   for (int i = 0; i < count; i++)
     fields[i][strcspn(fields[i], " [")] = 0; /* the unit */
@@ -298,14 +298,14 @@ static vlResult pose_of(const Csv *csv, const vlFrameLocation *location,
 }
 
 static vlResult read_line(Csv *csv, char *line) {
-  char *fields[MOST_COLUMNS];
+  char *fields[MAX_COLUMNS];
   if (!csv->header)
     csv->separator = strchr(line, ',')    ? ','
                      : strchr(line, ';')  ? ';'
                      : strchr(line, '\t') ? '\t'
                                           : 0;
   int count = split(line, csv->separator, fields);
-  if (count > MOST_COLUMNS)
+  if (count > MAX_COLUMNS)
     return wrong(csv, 0, "more than 64 columns%s", "");
   double v[COLUMNS] = {0}, m[16], unused;
   if (!csv->header) {

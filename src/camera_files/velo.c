@@ -90,9 +90,9 @@ static const Field known_fields[] = {
     RULE("world_from_camera", put_pose, read_pose),
     RULE("world_from_camera_close", put_pose_close, read_pose_close)};
 
-enum { MOST_FIELDS = 128 };
+enum { MAX_FIELDS = 128 };
 typedef struct {
-  Field items[MOST_FIELDS];
+  Field items[MAX_FIELDS];
   size_t count;
 } Fields;
 
@@ -136,7 +136,7 @@ static void add_parameter(Fields *fields, const vlParameter *p) {
       field->row = p;
     return;
   }
-  if (fields->count < MOST_FIELDS)
+  if (fields->count < MAX_FIELDS)
     fields->items[fields->count++] = (Field){.member = p->member, .row = p};
 }
 
@@ -174,7 +174,7 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree,
   static const char *const others[] = {"velo_camera", "name",  "pixel_origin", "axes",
                                        "projection",  "width", "height"};
   enum { OTHERS = VL_LENGTH(others) };
-  const char *known[MOST_FIELDS + OTHERS], *key;
+  const char *known[MAX_FIELDS + OTHERS], *key;
   size_t count = 0;
   json_t *unused;
   for (size_t i = 0; i < fields->count; i++)

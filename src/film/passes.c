@@ -7,7 +7,7 @@
 #include "film/white.h"
 #include "velo/film.h"
 
-enum { SIZE_MAX_PIXELS = 65536, MOST_BUCKETS = 1000 };
+enum { SIZE_MAX_PIXELS = 65536, MAX_BUCKETS = 1000 };
 
 vlFilmDef vl_coarse_film_def(const vlFilmDef *def, uint32_t factor) {
   vlFilmDef coarse = *def;
@@ -57,7 +57,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
     return VL_ERROR_ARGUMENT;
   if (!(def->max_component >= 0.0f))
     return VL_ERROR_ARGUMENT;
-  if (def->buckets && (def->buckets > MOST_BUCKETS || !(def->lambda_min < def->lambda_max) ||
+  if (def->buckets && (def->buckets > MAX_BUCKETS || !(def->lambda_min < def->lambda_max) ||
                        !(def->lambda_min >= VL_LAMBDA_MIN &&
                          def->lambda_max <= VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1)))
     return VL_ERROR_ARGUMENT;

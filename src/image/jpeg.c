@@ -29,7 +29,7 @@ typedef struct Jpeg {
   uint8_t buffer[16384];
 } Jpeg;
 
-enum { MOST_COMMENT = 65533 }; /* bytes of a marker's text */
+enum { MAX_COMMENT = 65533 }; /* bytes of a marker's text */
 enum {
   MAX_SCANS = 200
 }; /* limit of scans: each scan of a progressive file is a pass over the whole image */
@@ -230,7 +230,7 @@ static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *i
   size_t length = comment ? strlen(comment) : 0;
   if (length)
     jpeg_write_marker(c, JPEG_COM, (const JOCTET *)comment,
-                      (unsigned)(length < MOST_COMMENT ? length : MOST_COMMENT));
+                      (unsigned)(length < MAX_COMMENT ? length : MAX_COMMENT));
   while (c->next_scanline < c->image_height) {
     vl_codec_row_8bit(image, c->next_scanline, channel, count, j->scratch, j->line);
     JSAMPROW row = j->line;

@@ -7,7 +7,7 @@
 
 enum {
   HEAD = 18,
-  MOST_COMMENT = 255, /* bytes */
+  MAX_COMMENT = 255, /* bytes */
   PALETTE = 1,
   COLOR = 2,
   GREY = 3,
@@ -187,7 +187,7 @@ vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   if (row && scratch) {
     const char *comment = vl_codec_comment(image); /* the format's image ID */
     size_t length = comment ? strlen(comment) : 0;
-    length = length < MOST_COMMENT ? length : MOST_COMMENT;
+    length = length < MAX_COMMENT ? length : MAX_COMMENT;
     const uint8_t head[HEAD] = {
         [0] = (uint8_t)length,         [2] = count == 1 ? GREY : COLOR,
         [12] = (uint8_t)image->width,  [13] = (uint8_t)(image->width >> 8),

@@ -9,8 +9,8 @@
 
 enum {
   NEIGHBOURS = 4,
-  PROBES = 128,         /* points whose neighbours are looked for */
-  MOST_POINTS = 8000000 /* of which a neighbour is one */
+  PROBES = 128,        /* points whose neighbours are looked for */
+  MAX_POINTS = 8000000 /* of which a neighbour is one */
 };
 
 /* A disc is a hexagon; a ball an octahedron with the normals of a sphere. */
@@ -43,7 +43,7 @@ static double diagonal(const vlPlainMesh *m) {
  * is that of points side by side; equal points are no neighbours. */
 static double spacing(const vlPlainMesh *m) {
   double nearest[PROBES];
-  size_t n = 0, step = m->vertices / PROBES + 1, others = m->vertices / MOST_POINTS + 1;
+  size_t n = 0, step = m->vertices / PROBES + 1, others = m->vertices / MAX_POINTS + 1;
   for (size_t i = 0; i < m->vertices && n < PROBES; i += step) {
     double best[NEIGHBOURS] = {INFINITY, INFINITY, INFINITY, INFINITY};
     for (size_t k = 0; k < m->vertices; k += others) {

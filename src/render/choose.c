@@ -23,18 +23,18 @@
 
 enum {
   LEAST_SAMPLES = 8,
-  MOST_SAMPLES = 32,
+  MAX_SAMPLES = 32,
   LEAST_PIXELS = 192,
   MANY_PIXELS = 700,
   BLOCK = 4,
   AROUND = 2, /* pixels on each side */
   QUARTER = 4,
-  MOST_LIGHT_PATHS = 1 << 20,
+  MAX_LIGHT_PATHS = 1 << 20,
   FEW_FACES = 4096,
   TAIL_PATHS = 4 /* light paths per pixel and sample for the tail: few of those from the sun
                     enter a room */
 };
-static const double SHARE = 0.03, MOST_PATHS = 1 << 19;
+static const double SHARE = 0.03, MAX_PATHS = 1 << 19;
 /* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a
  * biased one below that of the best unbiased one times BIASED. */
 static const double SURE = 0.85, BIASED = 2.0 / 3.0;
@@ -65,7 +65,7 @@ typedef struct Row {
   double path; /* expected cost of a sample, relative to a sample of VL_TRACER_VOLPATH; for the
                   length of the race */
 } Row;
-static const Row rows[VL_MOST_TRIALS] = {
+static const Row rows[VL_MAX_TRIALS] = {
     {VL_TRACER_VOLPATH, 0, {1.0, 1.0, 1.0}, 1.0},
     {VL_TRACER_BIDIRECTIONAL, 1, {1.2, 1.4, 1.7}, 3.0},
     {VL_TRACER_BIDIRECTIONAL, QUARTER, {1.2, 1.4, 1.7}, 2.0},
@@ -82,7 +82,7 @@ typedef struct Race {
   uint32_t factor; /* of the coarse images */
   uint32_t count;
   WorldSize size;
-  vlImage *images[VL_MOST_TRIALS][2];
+  vlImage *images[VL_MAX_TRIALS][2];
   size_t pixels;
   double *base; /* by pixel and channel: what a relative error is relative to */
   double *sorted;
@@ -115,15 +115,15 @@ static bool choose_size(Race *race, const vlFilmDef *film) {
   double each = 0, pixels = (double)film->width * film->height;
   for (uint32_t i = 0; i < race->count; i++)
     each += 2 * rows[i].path;
-  double samples = fmin(SHARE * pixels * race->def.spp, MOST_PATHS) / each,
+  double samples = fmin(SHARE * pixels * race->def.spp, MAX_PATHS) / each,
          wanted = samples / LEAST_SAMPLES;
   race->def.spp = LEAST_SAMPLES;
-  for (; wanted > MANY_PIXELS && race->def.spp < MOST_SAMPLES; wanted /= 2)
+  for (; wanted > MANY_PIXELS && race->def.spp < MAX_SAMPLES; wanted /= 2)
     race->def.spp *= 2;
   if (wanted < LEAST_PIXELS)
     return false;
   race->factor = 1;
-  while (race->factor < VL_MOST_COARSE &&
+  while (race->factor < VL_MAX_COARSE &&
          pixels / ((double)race->factor * race->factor) > wanted)
     race->factor++;
   return true;
@@ -135,7 +135,7 @@ static vlResult can_race(const vlWorld *world, const vlCamera *camera, const vlF
                          bool *can) {
   uint32_t tracers = 0;
   const char *lack;
-  for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
+  for (uint32_t i = 0; i < VL_MAX_TRIALS; i++)
     tracers |= VL_TRACER_BIT(rows[i].tracer);
   vlResult result = vl_tracers_lack(world, camera, film, tracers, &lack);
   *can = result == VL_OK && world->lights.count > 0 && !lack;
@@ -220,7 +220,7 @@ static double mean_around(const Race *race, uint32_t t, uint32_t x, uint32_t y, 
 
 /* The median of mean_around over the tracers. */
 static double median_around(const Race *race, uint32_t count, size_t i, uint32_t around) {
-  double means[VL_MOST_TRIALS];
+  double means[VL_MAX_TRIALS];
   uint32_t x = (uint32_t)(i / 3 % race->film.width), y = (uint32_t)(i / 3 / race->film.width);
   for (uint32_t t = 0; t < count; t++)
     means[t] = mean_around(race, t, x, y, (uint32_t)(i % 3), around);
@@ -378,7 +378,7 @@ static uint32_t light_paths_of(const Row *row, const vlFilmDef *film) {
   uint64_t pixels = (uint64_t)film->width * film->height;
   if (row->divisor < 2)
     return VL_AS_MANY_AS_PIXELS;
-  return (uint32_t)((pixels < MOST_LIGHT_PATHS ? pixels : MOST_LIGHT_PATHS) / row->divisor);
+  return (uint32_t)((pixels < MAX_LIGHT_PATHS ? pixels : MAX_LIGHT_PATHS) / row->divisor);
 }
 
 static vlResult run_all(Race *race, const vlFilmDef *film, vlTracerChoice *choice,
@@ -406,7 +406,7 @@ static vlResult run_race(Race *race, const vlFilmDef *film, vlTracerChoice *choi
       race->base && race->sorted ? run_all(race, film, choice, error) : vl_fail_memory(error);
   if (result == VL_OK)
     result = measure(race, choice, error);
-  for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
+  for (uint32_t i = 0; i < VL_MAX_TRIALS; i++)
     for (int half = 0; half < 2; half++)
       vl_image_destroy(race->images[i][half]);
   vl_free(context, race->base);
@@ -428,7 +428,7 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   Race race = {.world = world,
                .def = *def,
                .size = size_of(world),
-               .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
+               .count = merging && has_smooth(world) ? VL_MAX_TRIALS : VL_MAX_TRIALS - 1};
   uint32_t spp = def->spp;
   if (looks_past(world, def->tracer)) {
     choice->tracer = VL_TRACER_PATH;

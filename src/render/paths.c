@@ -16,7 +16,7 @@
 #include "velo/trace.h"
 #include "velo/tracer.h"
 
-enum { MOST_PATHS = 1 << 20 };
+enum { MAX_PATHS = 1 << 20 };
 
 /* The state of one call. */
 typedef struct Call {
@@ -329,9 +329,9 @@ static vlResult check(const vlFilmDef *film, const vlRenderDef *def, uint32_t x,
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "paths: pixel (%u, %u) is outside the image's %u,%u to %u,%u", x, y,
                    film->crop[0], film->crop[1], film->crop[2] - 1, film->crop[3] - 1);
-  if (count == 0 || count > MOST_PATHS)
+  if (count == 0 || count > MAX_PATHS)
     return vl_fail(error, VL_ERROR_ARGUMENT, "paths: %u paths; 1 to %u are possible", count,
-                   (unsigned)MOST_PATHS);
+                   (unsigned)MAX_PATHS);
   return VL_OK;
 }
 

@@ -119,9 +119,9 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
   if (!vl_is_unset(def->merge_radius) && !(def->merge_radius > 0 && def->merge_radius <= 3e38))
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: merge_radius %g is not a radius",
                    def->merge_radius);
-  if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MOST_LIGHT_PATHS)
+  if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MAX_LIGHT_PATHS)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: light_paths %u is above %u",
-                   def->light_paths, VL_MOST_LIGHT_PATHS);
+                   def->light_paths, VL_MAX_LIGHT_PATHS);
   return VL_OK;
 }
 

@@ -15,13 +15,13 @@
 #include "velo/tracer.h"
 
 enum {
-  MOST_PATHS = 1 << 20,   /* light paths in a pass, where the scene gives no number */
-  MOST_PHOTONS = 1 << 23, /* 512 MB, and the same again sorted; a pass that would store more
+  MAX_PATHS = 1 << 20,   /* light paths in a pass, where the scene gives no number */
+  MAX_PHOTONS = 1 << 23, /* 512 MB, and the same again sorted; a pass that would store more
                              gets fewer paths */
   FIRST_PHOTONS = 1 << 16,
-  MOST_INNER = 1 << 18,    /* light paths in a pass whose vertices camera paths connect to */
-  MOST_VERTICES = 1 << 23, /* of them in worlds with media, as MOST_PHOTONS */
-  GROUP_PATHS = 8 /* least number of light paths of a group with the same wavelengths */
+  MAX_INNER = 1 << 18,    /* light paths in a pass whose vertices camera paths connect to */
+  MAX_VERTICES = 1 << 23, /* of them in worlds with media, as MAX_PHOTONS */
+  GROUP_PATHS = 8         /* least number of light paths of a group with the same wavelengths */
 };
 /* vlTwoWay.connect. One connection of a few candidates finds more than one light path would;
  * measured on rooms lit by lamps in shades and on the Cornell box, 3 to 10 have the same error,
@@ -205,7 +205,7 @@ static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
 
 /* Keeps fewer paths' vertices in this pass. Returns false if that is not possible. */
 static bool fewer_inner(vlLightVertices *inner, uint64_t left) {
-  uint32_t paths = (uint32_t)(inner->paths * (uint64_t)(MOST_VERTICES / 8 * 7) / left) /
+  uint32_t paths = (uint32_t)(inner->paths * (uint64_t)(MAX_VERTICES / 8 * 7) / left) /
                    inner->groups * inner->groups;
   if (paths == 0)
     paths = inner->groups;
@@ -338,8 +338,8 @@ static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   if (wanted <= run->capacity)
     return VL_OK;
   uint64_t capacity = wanted + wanted / 4;
-  if (capacity > MOST_PHOTONS)
-    capacity = MOST_PHOTONS;
+  if (capacity > MAX_PHOTONS)
+    capacity = MAX_PHOTONS;
   uint32_t buckets = FIRST_PHOTONS;
   while (buckets < capacity)
     buckets *= 2;
@@ -386,7 +386,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
       return vl_fail(error, VL_CANCELLED, "stopped");
     uint64_t stored = atomic_load(&run->stored);
     uint64_t left = atomic_load(&run->left);
-    if (run->world->media.count && left > MOST_VERTICES && fewer_inner(&way->inner, left)) {
+    if (run->world->media.count && left > MAX_VERTICES && fewer_inner(&way->inner, left)) {
       vl_splats_clear(&run->splats);
       continue;
     }
@@ -407,9 +407,9 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
       return VL_OK;
     }
     vl_splats_clear(&run->splats); /* the pass is repeated with more memory or fewer paths */
-    if (stored > MOST_PHOTONS)
+    if (stored > MAX_PHOTONS)
       run->paths = run->paths / 2 > 1 ? run->paths / 2 : 1;
-    vlResult result = grow(run, stored < MOST_PHOTONS ? stored : MOST_PHOTONS, error);
+    vlResult result = grow(run, stored < MAX_PHOTONS ? stored : MAX_PHOTONS, error);
     if (result != VL_OK)
       return result;
   }
@@ -450,10 +450,10 @@ static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   vlLightVertices *inner = &run->way.inner;
   if ((world->moves && run->trace.same_wavelengths) || run->trace.max_depth < 2)
     return VL_OK;
-  uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER,
+  uint32_t paths = run->most_paths < MAX_INNER ? run->most_paths : MAX_INNER,
            groups = paths / GROUP_PATHS;
   bool alike = world->def.color == VL_COLOR_RGB && !world->moves;
-  groups = groups < 1 || alike ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
+  groups = groups < 1 || alike ? 1 : groups < VL_MAX_GROUPS ? groups : VL_MAX_GROUPS;
   inner->groups = groups;
   inner->paths = run->inner_paths = paths / groups * groups;
   run->way.connect = CONNECTIONS;
@@ -522,7 +522,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
   run->most_paths = def->light_paths;
   if (def->light_paths == VL_AS_MANY_AS_PIXELS)
-    run->most_paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;
+    run->most_paths = pixels < MAX_PATHS ? (uint32_t)pixels : MAX_PATHS;
   run->paths = run->most_paths;
   run->rounds =
       run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
@@ -571,14 +571,14 @@ uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film,
   enum { VERTICES = 4 }; /* photons per light path, an estimate */
   uint64_t pixels = (uint64_t)film->width * film->height;
   uint64_t paths = def->light_paths == VL_AS_MANY_AS_PIXELS
-                       ? (pixels < MOST_PATHS ? pixels : MOST_PATHS)
+                       ? (pixels < MAX_PATHS ? pixels : MAX_PATHS)
                        : def->light_paths;
-  uint64_t photons = paths * VERTICES < MOST_PHOTONS ? paths * VERTICES : MOST_PHOTONS;
+  uint64_t photons = paths * VERTICES < MAX_PHOTONS ? paths * VERTICES : MAX_PHOTONS;
   uint64_t window = (uint64_t)(film->crop[2] - film->crop[0]) * (film->crop[3] - film->crop[1]);
   uint64_t bytes = window * sizeof(*((vlSplats *)0)->pixels);
   if (def->tracer == VL_TRACER_BIDIRECTIONAL)
     bytes +=
-        (paths < MOST_INNER ? paths : MOST_INNER) *
+        (paths < MAX_INNER ? paths : MAX_INNER) *
         (VERTICES * (sizeof(vlLightVertex) + (world->by_channel ? 3 : 1) * sizeof(uint32_t)) +
          sizeof(uint32_t));
   if (def->tracer == VL_TRACER_MERGING || def->tracer == VL_TRACER_SPPM)

@@ -14,7 +14,7 @@
 
 typedef struct vlTwoWayRun vlTwoWayRun;
 
-enum { VL_MOST_LIGHT_PATHS = 1 << 24 };
+enum { VL_MAX_LIGHT_PATHS = 1 << 24 };
 
 /* Whether the tracer traces light paths, too. */
 bool vl_two_way_tracer(uint32_t tracer); /* vlTracer */

@@ -15,10 +15,10 @@ enum {
   POINTS = 7,    /* points near the middle */
   AROUND = 48,   /* rays from each of them */
   RAYS = OUTSIDE + POINTS * AROUND,
-  MOST_FACES = 8000000, /* larger models are taken as open */
-  MOST_PLACED = 20000,  /* instances of shapes that are looked at */
-  CONVEX = 400,         /* faces and vertices that are compared */
-  BLOCK = 32            /* faces in a row that have a box */
+  MAX_FACES = 8000000, /* larger models are taken as open */
+  MAX_PLACED = 20000,  /* instances of shapes that are looked at */
+  CONVEX = 400,        /* faces and vertices that are compared */
+  BLOCK = 32           /* faces in a row that have a box */
 };
 
 /* A mesh with its transform to the world. */
@@ -220,7 +220,7 @@ static bool survey_mesh(vlContext *context, Survey *s, const vlShapeDef *d, size
   }
   memcpy(p->low, box.low, sizeof p->low);
   memcpy(p->high, box.high, sizeof p->high);
-  return ++s->count < MOST_PLACED;
+  return ++s->count < MAX_PLACED;
 }
 
 /* False: memory is exhausted, or the scene is too large. */
@@ -228,9 +228,9 @@ static bool survey_meshes(const vlScene *scene, Survey *s) {
   uint64_t faces = 0, count = scene->shapes.count + scene->instances.count;
   for (size_t i = 0; i < scene->shapes.count; i++)
     faces += scene->shapes.items[i].faces;
-  if (faces > MOST_FACES || count == 0)
+  if (faces > MAX_FACES || count == 0)
     return false;
-  s->placed = vl_alloc_array(scene->context, MOST_PLACED, sizeof *s->placed);
+  s->placed = vl_alloc_array(scene->context, MAX_PLACED, sizeof *s->placed);
   s->blocks = vl_alloc_zero(scene->context, scene->shapes.count, sizeof *s->blocks);
   if (!s->placed || !s->blocks)
     return false;

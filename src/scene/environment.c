@@ -14,7 +14,7 @@
 #include "scene/studio.h"
 #include "velo/light.h"
 
-enum { BUILT_IN_SIDE = 512, MOST_SIDE = 2048 };
+enum { BUILT_IN_SIDE = 512, MAX_SIDE = 2048 };
 
 bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]) {
   double l = 0, d = 0, f = 0;
@@ -163,7 +163,7 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
        (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
   uint32_t side =
       from->height + from->height / 4; /* pixels at the horizon keep about their solid angle */
-  ok = ok && new_image(scene, side > MOST_SIDE ? MOST_SIDE : side < 16 ? 16 : side, 3, image);
+  ok = ok && new_image(scene, side > MAX_SIDE ? MAX_SIDE : side < 16 ? 16 : side, 3, image);
   if (ok)
     from_latitudes(from, pixels, channels, *image);
   vl_free(scene->context, pixels);

@@ -116,7 +116,7 @@ static const ShapeCase *const shape_cases[] = {VL_SHAPE_KINDS(SHAPE_CASE)};
 
 /* ---- asking ------------------------------------------------------------------------------ */
 
-enum { MOST_CROSSINGS = 8, LINE_BATCHES = 192, NORMAL_BATCHES = 24 };
+enum { MAX_CROSSINGS = 8, LINE_BATCHES = 192, NORMAL_BATCHES = 24 };
 
 typedef struct ShapeLaws {
   const char *kind;
@@ -166,7 +166,7 @@ static void count_crossings(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
     set_ray(s->rays, i, origin, d);
   }
   bool more = true;
-  for (int k = 0; k < MOST_CROSSINGS && more; k++) {
+  for (int k = 0; k < MAX_CROSSINGS && more; k++) {
     vl_world_trace(trace, s->rays, s->hits);
     more = false;
     for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {

@@ -11,7 +11,7 @@ enum { SIZE = 48 };
 /* ---- given numbers ----------------------------------------------------------------------- */
 
 typedef struct Given {
-  double error[VL_MOST_TRIALS], cost[VL_MOST_TRIALS], missing[VL_MOST_TRIALS];
+  double error[VL_MAX_TRIALS], cost[VL_MAX_TRIALS], missing[VL_MAX_TRIALS];
   double samples;
   int best; /* index of the trial */
 } Given;
@@ -49,11 +49,11 @@ static void by_numbers(void **state) {
       {{NAN, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 0}, 1, 0},
       {{INFINITY, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 0}, 1, 1},
   };
-  static const vlTracer tracers[VL_MOST_TRIALS] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL,
-                                                   VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
+  static const vlTracer tracers[VL_MAX_TRIALS] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL,
+                                                  VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-    vlTracerChoice choice = {.count = VL_MOST_TRIALS};
-    for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
+    vlTracerChoice choice = {.count = VL_MAX_TRIALS};
+    for (uint32_t i = 0; i < VL_MAX_TRIALS; i++)
       choice.trials[i] = (vlTracerTrial){.tracer = tracers[i],
                                          .light_paths = 100 + i,
                                          .error = all[k].error[i],

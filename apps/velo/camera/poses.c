@@ -14,7 +14,7 @@ vlResult poses_load(vlContext *context, const char *path, const vlCamera *base,
   if (result != VL_OK)
     return result;
   uint32_t frames = vl_trajectory_frames(trajectory),
-           every = (frames + MOST_CAMERAS - 1) / MOST_CAMERAS;
+           every = (frames + MAX_CAMERAS - 1) / MAX_CAMERAS;
   *cameras = calloc((frames + every - 1) / every, sizeof **cameras);
   if (!*cameras)
     result = VL_ERROR_MEMORY;

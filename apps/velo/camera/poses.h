@@ -6,7 +6,7 @@
 #include "velo/camera.h"
 
 /* The largest number of cameras that are drawn; of longer trajectories every n-th pose is. */
-enum { MOST_CAMERAS = 200 };
+enum { MAX_CAMERAS = 200 };
 
 /* Reads the file. Poses without a camera have `base`. *cameras is for the caller to free; on
  * errors, too. */

@@ -4,7 +4,7 @@
 #include "cli/signals.h"
 
 enum {
-  MOST_PER_PROCESSOR = 4
+  MAX_PER_PROCESSOR = 4
 }; /* more threads wait for each other: 1000 on two processors take seconds */
 
 static bool interrupted(void *user) {
@@ -13,14 +13,14 @@ static bool interrupted(void *user) {
 }
 
 int context_open(const vlContextDef *def, vlContext **context) {
-  const uint32_t most = MOST_PER_PROCESSOR * vl_default_context_def().threads;
+  const uint32_t most = MAX_PER_PROCESSOR * vl_default_context_def().threads;
   vlContextDef ours = *def;
   ours.keep_inputs = true;
   ours.interrupted = interrupted;
   if (ours.threads > most) {
     ours.threads = most;
     report_note("--threads %u: %u are used, %d for each processor (the image is the same)",
-                def->threads, most, MOST_PER_PROCESSOR);
+                def->threads, most, MAX_PER_PROCESSOR);
   }
   switch (vl_context_create(&ours, context)) {
     case VL_OK:

@@ -14,7 +14,7 @@
 
 /* ---- the nearest name -------------------------------------------------------------------- */
 
-enum { LONGEST_NAME = 40 };
+enum { MAX_NAME = 40 };
 
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names,
                          int count) {
@@ -426,7 +426,7 @@ static int parse_option(const Command *command, char ***rest, char **end,
   size_t length = is_long ? strcspn(name, "=") : 1;
   const Option *option = find_option(command, name, length, is_long ? 0 : *name);
   if (!option) {
-    char plain[LONGEST_NAME + 1];
+    char plain[MAX_NAME + 1];
     snprintf(plain, sizeof plain, "%.*s", (int)(is_long ? length : strlen(name)), name);
     return unknown_option(command, plain, is_long ? "--" : "-");
   }

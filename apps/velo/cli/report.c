@@ -11,7 +11,7 @@
 
 #include "cli/signals.h"
 
-enum { MOST_LOGGED = 100 }; /* limit of warnings: an untrusted file may cause one per line */
+enum { MAX_LOGGED = 100 }; /* limit of warnings: an untrusted file may cause one per line */
 
 static struct {
   bool json, terminal, line_shown;
@@ -68,8 +68,8 @@ int report_terminal_columns(void) {
 /* Writes to stderr. A signal cannot end a call that blocks, so this waits with poll(): what
  * nobody reads is dropped once the program is asked to stop. */
 static void put_bytes(const char *data, size_t size) {
-  enum { PIECE = 4096, WAIT_MS = 100, MOST_WAITS = 10 };
-  for (int waits = 0; size && waits < MOST_WAITS;) {
+  enum { PIECE = 4096, WAIT_MS = 100, MAX_WAITS = 10 };
+  for (int waits = 0; size && waits < MAX_WAITS;) {
     struct pollfd one = {.fd = STDERR_FILENO, .events = POLLOUT};
     int ready = poll(&one, 1, WAIT_MS);
     if (ready <= 0)
@@ -290,9 +290,9 @@ void report_log(void *user, vlLogLevel level, const vlError *where, const char *
   if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE)
     return;
   if (level > VL_LOG_ERROR && state.verbosity != REPORT_VERBOSE &&
-      state.logged++ >= MOST_LOGGED) {
-    if (state.logged == MOST_LOGGED + 1)
-      report_warning("%d warnings and notes are enough: more are not shown", MOST_LOGGED);
+      state.logged++ >= MAX_LOGGED) {
+    if (state.logged == MAX_LOGGED + 1)
+      report_warning("%d warnings and notes are enough: more are not shown", MAX_LOGGED);
     return;
   }
   static const char *const kinds[] = {"error", "warning", "note", "debug"};

@@ -10,13 +10,13 @@
 
 #include "velo/film.h"
 
-enum { MOST_SIGNALS = 2 }; /* after this number of signals, the next one ends the program */
-enum { MOST_CONTEXTS = 8 };
+enum { MAX_SIGNALS = 2 }; /* after this number of signals, the next one ends the program */
+enum { MAX_CONTEXTS = 8 };
 
 static atomic_int pending, count;
 static atomic_bool remember, on_terminal, ending;
 static _Atomic time_t last; /* time of the last signal that counted, seconds */
-static _Atomic(vlContext *) watched[MOST_CONTEXTS];
+static _Atomic(vlContext *) watched[MAX_CONTEXTS];
 
 /* Nobody may read the messages: what a pipe does not take at once is dropped, so that the
  * signal still ends velo. Calls only async-signal-safe functions. */
@@ -32,7 +32,7 @@ static void say(const char *text) {
 static void end(int code) {
   if (atomic_exchange(&ending, true))
     return;
-  for (int i = 0; i < MOST_CONTEXTS; i++)
+  for (int i = 0; i < MAX_CONTEXTS; i++)
     vl_remove_unfinished(atomic_exchange(&watched[i], NULL));
   _exit(code);
 }
@@ -53,7 +53,7 @@ static void handle(int number) {
     count = 1;
   } else if (now.tv_sec > last + 1) {
     last = now.tv_sec;
-    if (++count > MOST_SIGNALS)
+    if (++count > MAX_SIGNALS)
       end(128 + pending);
   }
 }
@@ -74,7 +74,7 @@ void signals_install(void) {
 }
 
 void signals_watch(vlContext *context) {
-  for (int i = 0; i < MOST_CONTEXTS; i++) {
+  for (int i = 0; i < MAX_CONTEXTS; i++) {
     vlContext *none = NULL;
     if (atomic_compare_exchange_strong(&watched[i], &none, context))
       return;
@@ -82,7 +82,7 @@ void signals_watch(vlContext *context) {
 }
 
 void signals_forget(vlContext *context) {
-  for (int i = 0; i < MOST_CONTEXTS && context; i++) {
+  for (int i = 0; i < MAX_CONTEXTS && context; i++) {
     vlContext *same = context;
     if (atomic_compare_exchange_strong(&watched[i], &same, NULL))
       return;

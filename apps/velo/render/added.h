@@ -6,16 +6,16 @@
 #include "render/scene_options.h"
 
 /* As many as added_replaces knows. */
-enum { MOST_ADDED = 10, ADDED_TEXT = 96 };
+enum { MAX_ADDED = 10, ADDED_TEXT = 96 };
 
 /* Each number of a text reads back as the same bits. */
 typedef struct AddedOptions {
   struct {
     int id;
     const char *text; /* of a flag: null */
-  } items[MOST_ADDED];
+  } items[MAX_ADDED];
   int count;
-  char texts[MOST_ADDED][ADDED_TEXT];
+  char texts[MAX_ADDED][ADDED_TEXT];
 } AddedOptions;
 
 /* camera: for a command that adds a camera; false: for one that gets it from a file. */

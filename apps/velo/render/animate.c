@@ -13,7 +13,7 @@
 #include "render/job.h"
 #include "render/pattern.h"
 
-enum { PATH_SIZE = 4096, MOST_FRAMES = 1000000 };
+enum { PATH_SIZE = 4096, MAX_FRAMES = 1000000 };
 
 typedef struct Animation {
   double from, fps;                  /* seconds, frames per second */
@@ -41,7 +41,7 @@ static int read_animation(const Arguments *arguments, Animation *a) {
       !(to > a->from) || !(to <= 1e6))
     return report_usage("--animate \"%s\": must be T0:T1 in seconds, such as 0:4", span->text);
   const double count = ceil((to - a->from) * a->fps - 1e-6);
-  if (count > MOST_FRAMES)
+  if (count > MAX_FRAMES)
     return report_usage("--animate \"%s\": %.0f frames are too many", span->text, count);
   a->count = count >= 1 ? (uint32_t)count : 1;
   return -1;

@@ -6,7 +6,7 @@
 
 #include "cli/report.h"
 
-enum { MOST_SAMPLES = 65536 };
+enum { MAX_SAMPLES = 65536 };
 
 /* Parses 1%, 0.5% or 0.01. The result is a fraction of white; 0: the text is wrong. */
 static double threshold_of(const char *text) {
@@ -48,7 +48,7 @@ void noise_apply(const Arguments *arguments, const Outputs *outputs, vlSceneDefs
   defs->render.noise_exposure = outputs->exposure;
   defs->render.noise_scale = defs->develop.exposure;
   if (!v[RENDER_SPP].given)
-    defs->render.spp = defs->render.sequence ? defs->render.sequence : MOST_SAMPLES;
+    defs->render.spp = defs->render.sequence ? defs->render.sequence : MAX_SAMPLES;
 }
 
 int noise_expose(const Outputs *outputs, bool many, vlRenderDef *render, vlRenderDef *whole) {

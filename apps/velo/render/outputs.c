@@ -16,7 +16,7 @@
 #include "render/exposure.h"
 
 static const char stdout_path[] = "/dev/stdout";
-enum { LONGEST_NAME = 255 }; /* bytes; of a file name without its directory */
+enum { MAX_NAME = 255 }; /* bytes; of a file name without its directory */
 
 static const struct Suffix {
   const char *name;
@@ -129,8 +129,8 @@ static bool name_beside(const char *path, size_t keep, const char *tail, char *r
                         size_t size) {
   const char *slash = strrchr(path, '/');
   size_t folder = slash ? (size_t)(slash + 1 - path) : 0;
-  if (keep > folder + LONGEST_NAME - strlen(tail)) {
-    keep = folder + LONGEST_NAME - strlen(tail);
+  if (keep > folder + MAX_NAME - strlen(tail)) {
+    keep = folder + MAX_NAME - strlen(tail);
     while (keep > folder && ((unsigned char)path[keep] & 0xc0) == 0x80)
       keep--; /* does not split a UTF-8 sequence */
   }

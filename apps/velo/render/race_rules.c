@@ -8,10 +8,10 @@
 #include "cli/report.h"
 #include "velo/tracer.h"
 
-/* The race is planned for at most MOST_SAMPLES, so that all longer renders of an image have the
+/* The race is planned for at most MAX_SAMPLES, so that all longer renders of an image have the
  * same race: a film of 64 samples that is continued to 256 is that of 256. With --time,
  * PATHS_PER_SECOND count as one second. */
-enum { MOST_SAMPLES = 64, PATHS_PER_SECOND = 200000 };
+enum { MAX_SAMPLES = 64, PATHS_PER_SECOND = 200000 };
 
 bool race_is_asked(const Arguments *arguments) {
   const OptionValue *tracer = &arguments->values[RENDER_TRACER];
@@ -28,7 +28,7 @@ int race_check_options(const Arguments *arguments) {
 uint32_t race_samples(const vlSceneDefs *defs) {
   const vlRenderDef *render = &defs->render;
   double pixels = (double)defs->film.width * defs->film.height,
-         most = fmin(render->spp, MOST_SAMPLES);
+         most = fmin(render->spp, MAX_SAMPLES);
   if (render->time_limit > 0)
     most = fmin(most, render->time_limit * PATHS_PER_SECOND / pixels);
   return (uint32_t)most;

@@ -8,7 +8,7 @@
 enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
 
 /* Differences of features from which on two pixels show different things. */
-static const float MOST_ALBEDO = 0.1f, MOST_NORMAL2 = 0.1f, MOST_DISPARITY = 0.05f;
+static const float MAX_ALBEDO = 0.1f, MAX_NORMAL2 = 0.1f, MAX_DISPARITY = 0.05f;
 /* Squared difference of two frames, over the variance of their noise, from which on an earlier
  * frame has no weight. */
 static const float FARTHEST = 9.0f;
@@ -126,12 +126,11 @@ static bool same_surface(const View *a, size_t i, const View *b, size_t k, float
   float normal2 = 0;
   for (int c = 0; c < 3; c++) {
     const float d = f[c] - g[c], e = f[NORMAL + c] - g[NORMAL + c];
-    if (!(fabsf(d) < MOST_ALBEDO))
+    if (!(fabsf(d) < MAX_ALBEDO))
       return false;
     normal2 += e * e;
   }
-  return normal2 < MOST_NORMAL2 &&
-         fabsf(g[DISPARITY] - disparity) <= MOST_DISPARITY * disparity;
+  return normal2 < MAX_NORMAL2 && fabsf(g[DISPARITY] - disparity) <= MAX_DISPARITY * disparity;
 }
 
 /* Adds an earlier frame's colour to sum[0..2] and its weight to sum[3]. u, v: where it is in

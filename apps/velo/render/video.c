@@ -15,7 +15,7 @@
 #include "render/pattern.h"
 #include "velo/pending.h"
 
-enum { PATH_SIZE = 4096, LONGEST_NAME = 255 };
+enum { PATH_SIZE = 4096, MAX_NAME = 255 };
 
 static bool has_suffix(const char *path, const char *suffix) {
   const char *dot = output_dot(path);
@@ -64,7 +64,7 @@ static int check_options(const Videos *videos, const Arguments *arguments) {
 }
 
 static int check_video(const Videos *videos, int i) {
-  enum { MOST_GIF = 50 }; /* viewers show shorter times than .02 s as .1 s */
+  enum { MAX_GIF = 50 }; /* viewers show shorter times than .02 s as .1 s */
   const char *path = videos->paths[i];
   vlFileId own, other;
   if (strchr(path, '%'))
@@ -74,9 +74,9 @@ static int check_video(const Videos *videos, int i) {
         "output \"%s\": a video is not written to the standard output; a file of that name is "
         "./%s",
         path, path);
-  if (!is_mp4(path) && videos->fps > MOST_GIF)
+  if (!is_mp4(path) && videos->fps > MAX_GIF)
     return report_usage("output \"%s\": a .gif has at most %d frames per second (--fps)", path,
-                        MOST_GIF);
+                        MAX_GIF);
   const int status = output_check(NULL, path, VL_OUTPUT_PLAIN);
   if (status >= 0)
     return status;
@@ -99,7 +99,7 @@ static bool name_frames(Videos *videos, const char *part) {
   const char *path = videos->paths[0];
   const int stem = (int)(output_dot(path) - path);
   const char *slash = strrchr(path, '/');
-  const size_t longest = LONGEST_NAME - strlen(".part_1000000.part.png");
+  const size_t longest = MAX_NAME - strlen(".part_1000000.part.png");
   return snprintf(videos->frames, sizeof videos->frames, "%.*s%s_%%04d.png", stem, path, part) <
              (int)sizeof videos->frames &&
          (size_t)(path + stem - (slash ? slash + 1 : path)) <= longest;

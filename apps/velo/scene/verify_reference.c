@@ -18,7 +18,7 @@
 #include "render/job.h"
 #include "scene/verify.h"
 
-enum { MOST_CHILDREN = 64 };
+enum { MAX_CHILDREN = 64 };
 /* The time of a ray of the reference renderer, relative to a ray of velo's. */
 #define RAY_COST 4
 /* Seconds of a look after which the reference renderer is stopped. */
@@ -86,7 +86,7 @@ typedef struct Look {
   uint32_t spp, count, next; /* replicates, and the next one to start */
   double *rows;              /* means of the replicates; null: nothing is kept */
   char folder[32];           /* of the images: N.exr, and of what the program says: N.txt */
-  Child children[MOST_CHILDREN];
+  Child children[MAX_CHILDREN];
   uint32_t running;
   bool refused;
   vlError *error;
@@ -249,7 +249,7 @@ static void remove_files(const Look *l) {
 /* Renders all replicates, as many at once as the context has threads, until `end`. */
 static vlResult render_all(Look *l, double limit) {
   const uint32_t threads = vl_context_threads(l->v->context);
-  const uint32_t most = threads < MOST_CHILDREN ? threads : MOST_CHILDREN;
+  const uint32_t most = threads < MAX_CHILDREN ? threads : MAX_CHILDREN;
   const double end = now() + limit;
   vlResult result = VL_OK;
   while (result == VL_OK && !l->refused && (l->running || l->next < l->count)) {

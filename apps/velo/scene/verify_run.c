@@ -12,7 +12,7 @@
 #include "velo/filter_kinds.h"
 #include "velo/tracer.h"
 
-enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096, LEAST_MET = 100 };
+enum { BLOCK = 8, LEAST_PIXELS = 8, MAX_SPP = 4096, LEAST_MET = 100 };
 
 /* ---- poses ------------------------------------------------------------------------------- */
 
@@ -424,7 +424,7 @@ static void share_budget(Verify *v) {
         most = fmax(most, v->runs[k].rays);
     const double own = run->reference ? VERIFY_REFERENCE_SHARES : 1;
     const double share = own * v->budget / (shares * VERIFY_REPLICATES * most);
-    while (2 * spp <= share && spp < MOST_SPP)
+    while (2 * spp <= share && spp < MAX_SPP)
       spp *= 2;
     run->spp[0] = (uint32_t)spp;
     run->spp[1] = (uint32_t)spp * VERIFY_SECOND;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { MOST_TERMS = 400 };
+enum { MAX_TERMS = 400 };
 
 /* Lentz's continued fraction of the incomplete beta function (Numerical Recipes 6.4; DLMF
  * 8.17.22). */
@@ -12,7 +12,7 @@ static double beta_fraction(double x, double a, double b) {
   double c = 1, d = 1 - (a + b) * x / (a + 1);
   d = 1 / (fabs(d) < tiny ? tiny : d);
   double h = d;
-  for (int m = 1; m < MOST_TERMS; m++) {
+  for (int m = 1; m < MAX_TERMS; m++) {
     const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
     const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
     double step = 1;

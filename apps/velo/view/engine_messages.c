@@ -226,7 +226,7 @@ static void set_time(Engine *e, uint32_t client, const ViewMessage *m) {
 /* Adds a message to a list of tasks. */
 static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks,
                      uint32_t *count) {
-  if (*count == MOST_TASKS) {
+  if (*count == MAX_TASKS) {
     post_refusal(e, client, m, "too much at once");
     return;
   }

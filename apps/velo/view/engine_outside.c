@@ -9,7 +9,7 @@
 #include "velo/drawing.h"
 #include "view/engine_status.h"
 
-enum { LARGEST_SIDE = 800, OUTSIDE_SPP = 2 };
+enum { MAX_SIDE = 800, OUTSIDE_SPP = 2 };
 
 static const double outside_fov =
     40 * 3.14159265358979323846 / 180; /* vertical; web/outside.js has the same */
@@ -146,8 +146,8 @@ static char *to_base64(const uint8_t *data, size_t size) {
 static vlResult make_camera(const ViewMessage *m, vlCamera *camera, vlError *error) {
   static const char *const names[] = {"eye", "lookat", "up"};
   uint32_t width = m->size[0] ? m->size[0] : 320, height = m->size[1] ? m->size[1] : 200;
-  vlCameraDef def = vl_default_camera_def(width < LARGEST_SIDE ? width : LARGEST_SIDE,
-                                          height < LARGEST_SIDE ? height : LARGEST_SIDE);
+  vlCameraDef def = vl_default_camera_def(width < MAX_SIDE ? width : MAX_SIDE,
+                                          height < MAX_SIDE ? height : MAX_SIDE);
   double *const values[] = {def.eye, def.lookat, def.up};
   for (int i = 0; i < 3; i++) {
     const MessageField *field = find_field(m, names[i], 3);

@@ -6,7 +6,7 @@
 #include "velo/vanishing.h"
 #include "view/engine_status.h"
 
-enum { MOST_BOXES = 500 };
+enum { MAX_BOXES = 500 };
 
 static void put_vanishing(Json *json, const vlCamera *camera, const double up[3]) {
   static const char *const kinds[] = {"none", "finite", "infinite"};
@@ -41,7 +41,7 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
     return;
   }
   json_begin(json, "boxes", '[');
-  for (uint32_t i = 0; i < count && put < MOST_BOXES; i++) {
+  for (uint32_t i = 0; i < count && put < MAX_BOXES; i++) {
     vlIdInfo info;
     if (!boxes[i].seen || vl_world_id_info(e->model.world, VL_ID_OBJECT, i + 1, &info) != VL_OK)
       continue;

@@ -8,7 +8,7 @@
 #include "view/engine.h"
 #include "view/state.h"
 
-enum { MOST_TASKS = 32, HISTORY = 256 };
+enum { MAX_TASKS = 32, HISTORY = 256 };
 /* Values of Wanted.channel that are not plain ground truth: the standard error needs the film,
  * flow needs a camera. */
 enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16 };
@@ -102,9 +102,9 @@ struct Engine {
   double at, shutter;
   bool has_time, time_due;
   uint32_t time_change;
-  Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
+  Task tasks[MAX_TASKS], questions[MAX_TASKS]; /* for the render thread, for the answerer */
   uint32_t task_count, question_count;
-  Task traces[MOST_TASKS]; /* pixels whose paths are to be traced: at most one of each page */
+  Task traces[MAX_TASKS]; /* pixels whose paths are to be traced: at most one of each page */
   uint32_t trace_count,
       trace_client; /* trace_client: the page whose paths are being traced; 0: none */
   ViewTracer shown; /* of `film`; without one, of the next film */

@@ -26,7 +26,7 @@ void engine_drop_traces(Engine *e, uint32_t client, const char *why) {
 void engine_add_trace(Engine *e, uint32_t client, const ViewMessage *m) {
   const Task task = {.client = client, .message = *m};
   engine_drop_traces(e, client, "another pixel was chosen");
-  if (e->trace_count == MOST_TASKS)
+  if (e->trace_count == MAX_TASKS)
     engine_refuse(e, &task, "too much at once");
   else
     e->traces[e->trace_count++] = task;

@@ -11,7 +11,7 @@
 #include "view/engine_status.h"
 
 /* The samples per pixel of the race's images are not more. */
-enum { MOST_RACE_SAMPLES = 32, MOST_LIGHT_PATHS = 1 << 20 };
+enum { MAX_RACE_SAMPLES = 32, MAX_LIGHT_PATHS = 1 << 20 };
 
 void engine_set_tracer(vlRenderDef *render, ViewTracer tracer) {
   render->tracer = tracer.tracer;
@@ -31,7 +31,7 @@ static ViewTracer tracer_of(const Engine *e, vlTracer tracer, uint32_t light_pat
   const vlFilmDef *film = &e->model.job.defs->film;
   uint64_t pixels = (uint64_t)film->width * film->height;
   if (tracer == VL_TRACER_BIDIRECTIONAL && light_paths == VL_AS_MANY_AS_PIXELS)
-    light_paths = pixels < MOST_LIGHT_PATHS ? (uint32_t)pixels : MOST_LIGHT_PATHS;
+    light_paths = pixels < MAX_LIGHT_PATHS ? (uint32_t)pixels : MAX_LIGHT_PATHS;
   return (ViewTracer){tracer, light_paths};
 }
 
@@ -86,8 +86,8 @@ static uint32_t enough_samples(const Engine *e, const vlTracerChoice *choice) {
   uint32_t done = vl_film_spp(e->film);
   if (!now || !next)
     return done;
-  double error = MOST_RACE_SAMPLES * now->error / done + now->missing,
-         n = MOST_RACE_SAMPLES * next->error / error;
+  double error = MAX_RACE_SAMPLES * now->error / done + now->missing,
+         n = MAX_RACE_SAMPLES * next->error / error;
   return n >= 1 && n < done ? (uint32_t)ceil(n) : n < 1 ? 1 : done;
 }
 

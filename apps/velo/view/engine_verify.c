@@ -21,7 +21,7 @@
 #include "view/engine_status.h"
 #include "view/view.h"
 
-enum { KINDS = 2, MOST_WORDS = 2 * MAX_OPTIONS + 40 };
+enum { KINDS = 2, MAX_WORDS = 2 * MAX_OPTIONS + 40 };
 /* The command yields to the page, which goes on. */
 static const int niceness = 5;
 static const char *const kinds[KINDS] = {"png", "exr"};
@@ -85,13 +85,13 @@ static bool write_shown(Verification *v) {
 
 /* The words of the copied command but for its -o IMAGE, and what makes no difference to the
  * image. */
-static int find_words(Verification *v, char *words[MOST_WORDS]) {
+static int find_words(Verification *v, char *words[MAX_WORDS]) {
   static char quiet[] = "--quiet", output[] = "-o", threads[] = "--threads";
   const OptionValue *given = &v->engine->def.arguments->values[RENDER_THREADS];
   int count = 0;
   for (char *word = v->copied->words; word < v->copied->words + v->copied->size;
        word += strlen(word) + 1)
-    if (count < MOST_WORDS - 10)
+    if (count < MAX_WORDS - 10)
       words[count++] = word;
   count -= 2;
   words[count++] = quiet;
@@ -108,7 +108,7 @@ static int find_words(Verification *v, char *words[MOST_WORDS]) {
 }
 
 static bool start(Verification *v, pid_t *child) {
-  char *words[MOST_WORDS];
+  char *words[MAX_WORDS];
   find_words(v, words);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

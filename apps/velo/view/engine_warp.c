@@ -14,7 +14,7 @@
 /* The moved image has at most so many pixels, whatever the size of the image is. Samples per
  * pixel from which an image is clean without the denoiser, and from which it is better than a
  * moved one. */
-enum { MOST_PIXELS = 320000, CLEAN_SPP = 16, GRAINY_SPP = 4 };
+enum { MAX_PIXELS = 320000, CLEAN_SPP = 16, GRAINY_SPP = 4 };
 /* Of the pixels, so many must be covered by points: else the cameras see different things. */
 static const double least_cover = 0.6;
 
@@ -66,7 +66,7 @@ void engine_warp_keep(Engine *e, const vlImage *image, const FrameKind *kind) {
       !is_whole(&e->now))
     return;
   uint32_t scale = 1;
-  while (engine_pixels(e) > (double)MOST_PIXELS * scale * scale)
+  while (engine_pixels(e) > (double)MAX_PIXELS * scale * scale)
     scale++;
   vlImage *small = shrink(e->def.context, image, scale);
   if (!small)

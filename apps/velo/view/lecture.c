@@ -9,7 +9,7 @@
 #include "view/view.h"
 #include "view/web_files.h"
 
-enum { DEEPEST_INCLUDE = 4, LONGEST_PATH = 200 };
+enum { DEEPEST_INCLUDE = 4, MAX_PATH = 200 };
 
 const char lecture_first_scene[] = "scenes/lecture/pinhole.pbrt";
 static const char folder[] = "scenes/lecture/";
@@ -34,7 +34,7 @@ static const char *find_include(const char *text, const char *end, const WebFile
                                 const char **rest) {
   static const char word[] = "Include \"";
   for (const char *s = text; s < end; s++) {
-    char path[LONGEST_PATH];
+    char path[MAX_PATH];
     int size = 0;
     if (*s == '#')
       s = memchr(s, '\n', (size_t)(end - s));

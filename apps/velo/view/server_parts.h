@@ -9,8 +9,8 @@
 #include "view/server.h"
 
 enum {
-  MOST_CLIENTS = 64,
-  MOST_TEXTS = 64,      /* texts that wait for one page */
+  MAX_CLIENTS = 64,
+  MAX_TEXTS = 64,       /* texts that wait for one page */
   FRAGMENT = 64 * 1024, /* bytes of a message that one write hands to the system */
   PORTION = 16 * 1024,  /* bytes of a file that one write hands to the system */
   SEEN_TIMEOUT_SECONDS =
@@ -56,7 +56,7 @@ struct Server {
   /* Under the lock: the clients, their texts, the frame. The server's thread alone changes the
    * list of clients. */
   pthread_mutex_t lock;
-  Client *clients[MOST_CLIENTS];
+  Client *clients[MAX_CLIENTS];
   unsigned client_count;
   uint32_t next_id;
   ViewFrame *frame;

@@ -36,7 +36,7 @@ static bool is_ours(struct lws *wsi) {
   if (lws_hdr_copy(wsi, path, sizeof path, WSI_TOKEN_GET_URI) <= 0)
     return false;
   const char *name = access_path(path, server->token);
-  return name && strcmp(name, "socket") == 0 && server->client_count < MOST_CLIENTS;
+  return name && strcmp(name, "socket") == 0 && server->client_count < MAX_CLIENTS;
 }
 
 /* Tells each page whether it steers, and how many there are. */
@@ -60,7 +60,7 @@ static int begin(struct lws *wsi, Connection *connection) {
   client->wsi = wsi;
   client->last = &client->first;
   pthread_mutex_lock(&server->lock);
-  bool room = server->client_count < MOST_CLIENTS;
+  bool room = server->client_count < MAX_CLIENTS;
   if (room) {
     client->id = ++server->next_id;
     client->steers = server->def.steering;

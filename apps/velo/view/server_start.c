@@ -132,7 +132,7 @@ double server_seconds(const Server *server) {
 
 static void add_text(Client *client, const char *text) {
   size_t size = strlen(text);
-  if (client->texts >= MOST_TEXTS)
+  if (client->texts >= MAX_TEXTS)
     return;
   Text *made = malloc(sizeof *made + LWS_PRE + size);
   if (!made)

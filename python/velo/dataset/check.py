@@ -12,7 +12,7 @@ from velo import _check
 from velo._errors import UsageError, wrong_value
 from velo.dataset import recipe as kinds
 
-MOST_FRAMES = 1000000  # numbers of six digits
+MAX_FRAMES = 1000000  # numbers of six digits
 Check = Callable[[Any, str], Any]
 
 
@@ -276,7 +276,7 @@ _KEYWORDS = names(anything)
 _RULES: dict[type, dict[str, Check]] = {
     kinds.Model: {"path": text, "name": text, "count": count(10000), "scale": number(1e-12, 1e12), "positions": anything, "indices": anything,
                   "material": _KEYWORDS, "keypoints": names(vector(3)), "skeleton": items(_pair, 0, 10000)},
-    kinds.Poses: {"frames": items(items(_posed, 0, 10000), 1, MOST_FRAMES)},
+    kinds.Poses: {"frames": items(items(_posed, 0, 10000), 1, MAX_FRAMES)},
     kinds.OnSurface: {"center": vector(3), "size": vector(2, 0, 1e12), "up": direction, "gap": number(0, 1e12), "tumble": flag,
                       "tries": whole(1, 100000)},
     kinds.InVolume: {"low": vector(3), "high": vector(3), "gap": number(0, 1e12), "tries": whole(1, 100000)},
@@ -292,7 +292,7 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Ground: {"size": number(1e-12, 1e12), "height": number(), "up": direction, "materials": lambda v, w: member(kinds.Materials)(v, w)},
     kinds.Distractors: {"count": count(10000), "size": range_(1e-12, 1e12), "materials": lambda v, w: member(kinds.Materials)(v, w)},
     kinds.Recipe: {
-        "seed": whole(0, 2**53), "frames": whole(1, MOST_FRAMES), "spp": setting("render", "spp"), "scene": text,
+        "seed": whole(0, 2**53), "frames": whole(1, MAX_FRAMES), "spp": setting("render", "spp"), "scene": text,
         "resolution": lambda v, w: tuple(_check.setting(side, f"{w}[{i}]", "program", ("width", "height")[i]) for i, side in
                                          enumerate(_check.tuple_of(v, 2, w, "width and height"))),
         "models": lambda v, w: items(member(kinds.Model), 1, 10000)(v, w),

@@ -13,7 +13,7 @@ import velo
 from velo import _check
 from velo._errors import UsageError, at_place, unknown
 from velo.dataset.cameras import Cameras, View
-from velo.dataset.check import MOST_FRAMES, checked
+from velo.dataset.check import MAX_FRAMES, checked
 from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse
 from velo.dataset.placing import Thing, place_things
 from velo.dataset.random import Random
@@ -155,7 +155,7 @@ class Stage:
 
     def plan(self, frame: int) -> Plan:
         """What a frame shows."""
-        _check.whole(frame, "frame", 0, MOST_FRAMES - 1)
+        _check.whole(frame, "frame", 0, MAX_FRAMES - 1)
         recipe = self.recipe
 
         def random(purpose: str) -> Random:

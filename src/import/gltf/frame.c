@@ -6,7 +6,7 @@
 
 enum {
   TIMES = 33,
-  MOST_VERTICES = 4000000
+  MAX_VERTICES = 4000000
 }; /* vertices of deforming meshes that are posed at all times together */
 
 typedef struct Box {
@@ -53,7 +53,7 @@ static int choose_times(const vlGltf *g) {
       continue;
     sum += vertices_of(g, (size_t)mesh);
   }
-  const size_t most = sum ? MOST_VERTICES / sum : TIMES;
+  const size_t most = sum ? MAX_VERTICES / sum : TIMES;
   return most >= TIMES ? TIMES : most < 3 ? 3 : (int)most;
 }
 

@@ -8,7 +8,7 @@
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
 
-enum { MOST_PARENTS = 8, CHAIN = 64 };
+enum { MAX_PARENTS = 8, CHAIN = 64 };
 
 static const char *name_of(const json_t *json) {
   const char *name = json_string_value(json_object_get(json, "name"));
@@ -72,8 +72,7 @@ static bool deepen(const vlGltf *g, const uint32_t *list, size_t count, uint8_t 
   for (size_t i = 0; i < count; i++) {
     uint32_t times = 0, parents[CHAIN];
     vl_names_find(table, paths[i], &times);
-    if (times < 2 || depths[i] >= MOST_PARENTS ||
-        depths[i] >= find_parents(g, list[i], parents))
+    if (times < 2 || depths[i] >= MAX_PARENTS || depths[i] >= find_parents(g, list[i], parents))
       continue;
     depths[i]++;
     changed = true;
@@ -84,7 +83,7 @@ static bool deepen(const vlGltf *g, const uint32_t *list, size_t count, uint8_t 
 static bool label_list(vlGltf *g, const uint32_t *list, size_t count, uint8_t *depths,
                        char **paths) {
   bool ok = true, changed = true;
-  for (int round = 0; ok && changed && round <= MOST_PARENTS; round++) {
+  for (int round = 0; ok && changed && round <= MAX_PARENTS; round++) {
     vlNameTable table = {0};
     ok = count_paths(g, list, count, depths, paths, &table);
     changed = ok && deepen(g, list, count, depths, paths, &table);

@@ -6,7 +6,7 @@
 #include "import/gltf/gltf.h"
 
 enum {
-  MOST_TIMES = 256
+  MAX_TIMES = 256
 }; /* largest ratio of decoded to encoded bytes; the formats reach about 64 */
 
 typedef enum { ATTRIBUTES, TRIANGLES, INDICES } Mode;
@@ -61,7 +61,7 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, const json_t *json
   if (!sizes_fit((Mode)mode, (Filter)filter, count, stride))
     return vl_gltf_fail(g, at, "%zu elements of %zu bytes: mode %s with filter %s has no such",
                         count, stride, modes[mode], filters[filter]);
-  if (count > MOST_TIMES * length / stride)
+  if (count > MAX_TIMES * length / stride)
     return vl_gltf_fail(g, at, "%zu bytes cannot hold %zu elements of %zu bytes", length, count,
                         stride);
   uint8_t *out = vl_alloc_zero(g->context, count + 1, stride);

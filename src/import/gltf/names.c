@@ -168,7 +168,7 @@ static const char *const known[] = {"COLOR_0",
                                     "ymag",
                                     "zfar",
                                     "znear"};
-enum { KNOWN = VL_LENGTH(known), MOST_REPORTED = 4 };
+enum { KNOWN = VL_LENGTH(known), MAX_REPORTED = 4 };
 
 static int compare(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
@@ -189,7 +189,7 @@ static void look(vlGltf *g, const vlGltfLocation *at, const char *key, uint32_t 
   if (strlen(key) < 4 || is_known(key))
     return;
   const char *near = vl_nearest_name(key, known, KNOWN);
-  if (near && ++*reported <= MOST_REPORTED)
+  if (near && ++*reported <= MAX_REPORTED)
     vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%s\" is ignored (did you mean \"%s\"?)",
                  vl_short_text(key).text, near);
 }
@@ -200,7 +200,7 @@ static void walk(vlGltf *g, const vlGltfLocation *at, json_t *value, uint32_t *r
   const char *name;
   json_t *part;
   size_t i;
-  if (*reported >= MOST_REPORTED)
+  if (*reported >= MAX_REPORTED)
     return;
   if (json_is_object(value)) {
     bool extensions = at && vl_text_is(at->key, "extensions");
@@ -218,7 +218,7 @@ static void walk(vlGltf *g, const vlGltfLocation *at, json_t *value, uint32_t *r
         walk(g, VL_GLTF_KEY(at, key), part, reported);
       if (!json_is_array(part))
         continue;
-      for (i = 0; i < json_array_size(part) && *reported < MOST_REPORTED; i++)
+      for (i = 0; i < json_array_size(part) && *reported < MAX_REPORTED; i++)
         if (json_is_object(json_array_get(part, i)))
           walk(g, VL_GLTF_ITEM(at, key, i), json_array_get(part, i), reported);
     }

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-enum { MOST_KINDS = 40 };
+enum { MAX_KINDS = 40 };
 
 /* False: out of memory. */
 static bool add(vlGltf *g, const char *format, const char *name) {
@@ -17,7 +17,7 @@ static bool add(vlGltf *g, const char *format, const char *name) {
       g->scene->unread.items[i].count++;
       return true;
     }
-  if (g->scene->unread.count == MOST_KINDS)
+  if (g->scene->unread.count == MAX_KINDS)
     return true;
   const char *what = text;
   vlSceneUnread *slot =

@@ -5,7 +5,7 @@
 
 #include "import/obj/obj.h"
 
-enum { MOST_EARS = 512 };
+enum { MAX_EARS = 512 };
 
 typedef struct Plane {
   const vlObj *obj;
@@ -87,8 +87,8 @@ bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
     }
     return true;
   }
-  uint32_t left[MOST_EARS];
-  size_t count = n <= MOST_EARS ? n : 0, stuck = 0, i = 0;
+  uint32_t left[MAX_EARS];
+  size_t count = n <= MAX_EARS ? n : 0, stuck = 0, i = 0;
   if (!count) {
     for (uint32_t k = 2; k < n; k++)
       put(obj, 0, k - 1, k);

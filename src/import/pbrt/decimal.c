@@ -53,8 +53,8 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
 /* ---- whole numbers ----------------------------------------------------------------------- */
 
 /* 767 digits decide on which side of the midpoint between two doubles a number lies. Of the
- * digits beyond MOST_DIGITS only one fact matters: whether any of them is not 0. */
-enum { MOST_DIGITS = 800, LIMBS = 176 };
+ * digits beyond MAX_DIGITS only one fact matters: whether any of them is not 0. */
+enum { MAX_DIGITS = 800, LIMBS = 176 };
 
 /* A non-negative integer in limbs of 32 bits, the lowest limb first; the highest limb is not 0.
  * 800 digits take 84 limbs, 5^1200 takes 88. */
@@ -173,7 +173,7 @@ double vl_decimal_digits(const char *text, const char *end, int exponent) {
       fraction = true;
       continue;
     }
-    if (count < MOST_DIGITS) {
+    if (count < MAX_DIGITS) {
       multiply_add(&digits, 10, (uint32_t)(*text - '0'));
       count += digits.count > 0;
       exponent -= fraction && exponent > -1000000;

@@ -80,10 +80,10 @@ static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   return true;
 }
 
-enum { MOST_PARAMETERS = 32 };
+enum { MAX_PARAMETERS = 32 };
 
 bool vl_import_light(vlImport *import, const vlStatement *s) {
-  bool given[MOST_PARAMETERS];
+  bool given[MAX_PARAMETERS];
   vlDict dict = vl_import_kind_dict(import, "LightSource", &vl_light_family, s->names[0],
                                     s->source, import->state.space, s->params,
                                     vl_import_attributes(import, VL_ATTR_LIGHT));
@@ -117,7 +117,7 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
-  bool given[MOST_PARAMETERS];
+  bool given[MAX_PARAMETERS];
   vlDict dict = vl_import_kind_dict(import, "AreaLightSource", &vl_emission_family, s->names[0],
                                     s->source, import->state.space, s->params,
                                     vl_import_attributes(import, VL_ATTR_LIGHT));

@@ -8,7 +8,7 @@
 #include "import/pbrt/builder.h"
 #include "velo/shape.h"
 
-enum { MOST_FACES = 256, MOST_OF_A_RUN = 1 << 20 };
+enum { MAX_FACES = 256, MAX_OF_A_RUN = 1 << 20 };
 
 bool vl_import_same_text(const char *a, const char *b) {
   return a == b || vl_text_is(a ? a : "", b ? b : "");
@@ -29,7 +29,7 @@ static bool fits(const vlMeshRun *run, const vlShapeDef *def, const vlShapeLink 
          !d->uvs == !def->uvs && vl_import_same_link(&run->link, link) &&
          vl_import_same_text(run->inside, state->inside) &&
          vl_import_same_text(run->outside, state->outside) &&
-         run->indices.count / 3 + def->faces < MOST_OF_A_RUN;
+         run->indices.count / 3 + def->faces < MAX_OF_A_RUN;
 }
 
 static bool all_finite(const float *v, size_t count) {
@@ -121,10 +121,10 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
   size_t n = def.vertices;
   vlMat4 m = vl_mat4_load(def.group_from_shape), inverse;
   if (import->scene->shapes.count < VL_MESH_RUN_FROM || import->scene->problem ||
-      def.faces == 0 || n == 0 || def.faces > MOST_FACES || n > 3 * MOST_FACES ||
-      def.tangents || def.emission.index || link->displacement ||
-      !all_finite(def.positions, 3 * n) || !all_finite(def.normals, 3 * n) ||
-      !all_finite(def.uvs, 2 * n) || !vl_mat4_is_finite(m) || !vl_mat4_inverse(m, &inverse))
+      def.faces == 0 || n == 0 || def.faces > MAX_FACES || n > 3 * MAX_FACES || def.tangents ||
+      def.emission.index || link->displacement || !all_finite(def.positions, 3 * n) ||
+      !all_finite(def.normals, 3 * n) || !all_finite(def.uvs, 2 * n) || !vl_mat4_is_finite(m) ||
+      !vl_mat4_inverse(m, &inverse))
     return true;
   bool mirrored = vl_mat4_determinant3(m) < 0;
   def.reverse_orientation = def.reverse_orientation != mirrored;

@@ -9,7 +9,7 @@
 #include "import/pbrt/builder.h"
 #include "velo/shape.h"
 
-enum { MOST_OF_A_RUN = 1 << 20 };
+enum { MAX_OF_A_RUN = 1 << 20 };
 
 static bool fits(const vlSphereRun *run, const vlShapeDef *def, const vlShapeLink *link,
                  const vlGraphicsState *state) {
@@ -20,7 +20,7 @@ static bool fits(const vlSphereRun *run, const vlShapeDef *def, const vlShapeLin
          memcmp(d->group_from_shape, def->group_from_shape, sizeof d->group_from_shape) == 0 &&
          vl_import_same_link(&run->link, link) &&
          vl_import_same_text(run->inside, state->inside) &&
-         vl_import_same_text(run->outside, state->outside) && run->radii.count < MOST_OF_A_RUN;
+         vl_import_same_text(run->outside, state->outside) && run->radii.count < MAX_OF_A_RUN;
 }
 
 static void free_rows(vlImport *import, vlSphereRun *run) {

@@ -7,7 +7,7 @@
 
 /* The largest number of collisions of a flight; a bound for media whose majorants are far too
  * large. */
-enum { MOST_COLLISIONS = 1 << 16 };
+enum { MAX_COLLISIONS = 1 << 16 };
 
 static inline float exponential(float u) {
   return -vl_ln(1.0f - u);
@@ -95,7 +95,7 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
   if (!start_tracking(m, &whole, o, d, t0, t1, f, &k))
     return VL_FLIGHT_PASSED;
   while (next_collision(m, f, &k)) {
-    if (k.collisions > MOST_COLLISIONS)
+    if (k.collisions > MAX_COLLISIONS)
       return VL_FLIGHT_ENDED;
     bool gives = emission && m->emits;
     vlMediumLight at = vl_medium_at(m, &whole, f->lambda, vl_add(o, vl_mul(d, k.t)), gives);
@@ -173,7 +173,7 @@ void vl_track_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, floa
     float carried = largest(f->beta) / vl_flight_mean(both, f->channels);
     if (carried < 0.05f) {
       bool ends =
-          !(carried > 0.0f) || k.collisions > MOST_COLLISIONS || vl_flight_random(f) < 0.75f;
+          !(carried > 0.0f) || k.collisions > MAX_COLLISIONS || vl_flight_random(f) < 0.75f;
       for (int c = 0; c < 4; c++)
         f->beta[c] *= ends ? 0.0f : 4.0f;
       if (ends)

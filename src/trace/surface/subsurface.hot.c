@@ -20,7 +20,7 @@
 #include "tracer/record.h"
 
 /* Largest number of crossings of one probe. */
-enum { MOST_CROSSINGS = 1024 };
+enum { MAX_CROSSINGS = 1024 };
 
 /* One entry. */
 typedef struct Entry {
@@ -184,7 +184,7 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntr
     if (to->length[j] > 0.0f)
       under_way[active++] = j;
   }
-  for (int step = 0; active > 0 && step < MOST_CROSSINGS; step++) {
+  for (int step = 0; active > 0 && step < MAX_CROSSINGS; step++) {
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
       q->ox[k] = p->ox[j];

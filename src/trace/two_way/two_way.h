@@ -120,11 +120,11 @@ _Static_assert(sizeof(vlLightVertex) == 64, "a vertex is one cache line");
 /* The vertices of the light paths numbered below `paths`. The paths are dealt to groups in
  * turn; all paths of a group have the same wavelengths and, if the world moves, the same time.
  * The vertices are sorted by group, path and bounce. */
-enum { VL_MOST_GROUPS = 16 };
+enum { VL_MAX_GROUPS = 16 };
 typedef struct vlLightVertices {
   const vlLightVertex *vertices;
   const uint32_t *passed; /* by vertex: vlPhoton.passed; null without vlWorld.by_channel */
-  uint32_t start[VL_MOST_GROUPS + 1]; /* by group: its vertices */
+  uint32_t start[VL_MAX_GROUPS + 1]; /* by group: its vertices */
   uint32_t groups, paths;
 } vlLightVertices;
 

@@ -35,11 +35,11 @@ typedef struct Cubic {
 static bool copy_curves(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
   size_t n = def->faces;
   enum {
-    MOST_PIECES = 1 << 23
+    MAX_PIECES = 1 << 23
   }; /* pieces per shape, since Embree's box of a piece takes more memory than the curve */
   s->curve = def->curve;
   s->split = def->split_depth < 6 ? def->split_depth : 6;
-  while (s->split && (n << s->split) > MOST_PIECES)
+  while (s->split && (n << s->split) > MAX_PIECES)
     s->split--;
   s->vertices = (uint32_t)(4 * n);
   s->faces = (uint32_t)(n << s->split);

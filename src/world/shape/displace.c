@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "velo/shape.h"
 
-enum { MOST_TRIANGLES = 1 << 22 }; /* take about 600 MB with their BVH */
+enum { MAX_TRIANGLES = 1 << 22 }; /* take about 600 MB with their BVH */
 
 typedef struct Edge {
   uint64_t key; /* an edge: its lower vertex index << 32 | its higher one; 0: the entry is free
@@ -151,8 +151,7 @@ static vlResult cut(Cutter *c, Corners first) {
     } else if (!middle_of(c, a, b, &m) || !push(c, m, b, d) || !push(c, a, m, d)) {
       return VL_ERROR_MEMORY;
     }
-    if (c->indices.count / 3 + c->stack.count > MOST_TRIANGLES ||
-        c->p.count / 3 > MOST_TRIANGLES)
+    if (c->indices.count / 3 + c->stack.count > MAX_TRIANGLES || c->p.count / 3 > MAX_TRIANGLES)
       return VL_ERROR_SCENE;
   }
   return VL_OK;
@@ -253,7 +252,7 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
   if (r != VL_OK)
     return r;
   r = start(&c, def) ? VL_OK : VL_ERROR_MEMORY;
-  if (r == VL_OK && !(least_triangles(&c, def) <= MOST_TRIANGLES))
+  if (r == VL_OK && !(least_triangles(&c, def) <= MAX_TRIANGLES))
     r = VL_ERROR_SCENE;
   for (uint32_t f = 0; r == VL_OK && f < def->faces; f++) {
     Corners t;
@@ -266,7 +265,7 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
       return vl_fail_memory(error);
     return vl_fail_at(error, r, def->source.file, def->source.line, def->source.column,
                       "displacement: edges of length %g need more than %d triangles",
-                      (double)def->edge_length, MOST_TRIANGLES);
+                      (double)def->edge_length, MAX_TRIANGLES);
   }
   move(&c, world, node);
   find_normals(&c, c.indices.items, c.indices.count / 3);

@@ -47,11 +47,11 @@ void vl_world_find_times(vlWorld *world, const vlScene *scene) {
   }
 }
 
-enum { MOST_STEPS = 128 }; /* Embree supports 129 keys */
+enum { MAX_STEPS = 128 }; /* Embree supports 129 keys */
 
 uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   double span = world->time_close - world->time_open;
-  for (uint32_t steps = 1; steps <= MOST_STEPS; steps++) {
+  for (uint32_t steps = 1; steps <= MAX_STEPS; steps++) {
     double a = (from - world->time_open) / span * steps,
            b = (to - world->time_open) / span * steps;
     const double same =
@@ -147,7 +147,7 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
    * skipped. */
   double least = 1;
   for (size_t i = 0; i < sizeof tries; i++) {
-    if (tries[i] < least && tries[i] < MOST_STEPS)
+    if (tries[i] < least && tries[i] < MAX_STEPS)
       continue;
     double far = strayed(motion, tries[i], low, high);
     if (far <= tolerance * size)
@@ -155,7 +155,7 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
     if (i == 0 && motion->source->keys == 2 && size > 0)
       least = 0.7 * sqrt(far / (tolerance * size));
   }
-  return MOST_STEPS;
+  return MAX_STEPS;
 }
 
 /* The bound for an instance at rest, at the worst of the keys, and that of the interpolated

@@ -13,7 +13,7 @@
 #include "math/approx_double.h"
 #include "math/octahedral.h"
 
-enum { MOST_SIDE = 8192, LEAST_SIDE = 16, LOOKS = 3 };
+enum { MAX_SIDE = 8192, LEAST_SIDE = 16, LOOKS = 3 };
 
 typedef struct Work {
   const float *pixels; /* 3 per pixel */
@@ -77,9 +77,9 @@ static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from,
 static bool convert(vlUpgrade *u, vlOldMap *map, const vlImage *from) {
   double side = sqrt((double)from->width * from->height);
   uint32_t even = 2 * (uint32_t)(side / 2 + 0.5);
-  vlImageDef def = vl_default_image_def(even < LEAST_SIDE  ? LEAST_SIDE
-                                        : even > MOST_SIDE ? MOST_SIDE
-                                                           : even,
+  vlImageDef def = vl_default_image_def(even < LEAST_SIDE ? LEAST_SIDE
+                                        : even > MAX_SIDE ? MAX_SIDE
+                                                          : even,
                                         0, 3);
   def.height = def.width;
   def.type = VL_PIXEL_F32;

@@ -8,7 +8,7 @@
 #include "import/pbrt/upgrade/upgrade.h"
 #include "math/elementary.h"
 
-enum { AROUND = 96, ALONG = 24, MOST_HEIGHTS = 4000000 };
+enum { AROUND = 96, ALONG = 24, MAX_HEIGHTS = 4000000 };
 
 typedef VL_ARRAY(char) Text;
 
@@ -83,7 +83,7 @@ static bool write_grid(vlContext *context, const Grid *g, Text *text) {
 static bool read_heights(vlOldFile *file, vlOldStatement *s, Grid *g) {
   const vlOldParam *p = vl_old_find(s, "Pz");
   double nu = vl_old_number(s, "nu", 0), nv = vl_old_number(s, "nv", 0);
-  if (!p || !(nu >= 2) || !(nv >= 2) || nu * nv != (double)p->count || p->count > MOST_HEIGHTS)
+  if (!p || !(nu >= 2) || !(nv >= 2) || nu * nv != (double)p->count || p->count > MAX_HEIGHTS)
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
                        "heightfield: \"Pz\" must hold nu * nv numbers");
   g->nu = (uint32_t)nu;

@@ -42,9 +42,10 @@ typedef struct vlLightTree {
   uint32_t light_count;
   uint32_t *unbounded; /* lights outside the tree */
   uint32_t unbounded_count;
-  float (*towards)[3]; /* per light outside the tree: the one direction from which it shines;
-                          zero: from all */
-  uint32_t *slot;      /* per light: index in unbounded, or VL_INNER */
+  uint32_t distant_count; /* of them: those that shine from one direction */
+  float (*towards)[3];    /* per light outside the tree: the one direction from which it shines;
+                             zero: from all */
+  uint32_t *slot;         /* per light: index in unbounded, or VL_INNER */
   float *
       cdf; /* for selection by power and uniform selection: cumulative distribution, light_count
               + 1 values */
@@ -171,7 +172,9 @@ typedef struct vlLightSlots {
 } vlLightSlots;
 static inline vlLightSlots vl_light_slots(const vlLightTree *tree, vlReceiver at) {
   vlLightSlots r = {0, tree->node_count > 0};
-  for (uint32_t k = 0; k < tree->unbounded_count; k++)
+  if (!tree->distant_count)
+    r.outside = tree->unbounded_count;
+  for (uint32_t k = 0; tree->distant_count && k < tree->unbounded_count; k++)
     r.outside += vl_light_reaches(tree, k, at);
   if (tree->unbounded_count && r.tree)
     r.tree = vl_light_node_importance(tree->nodes, at) > 0.0f;
@@ -189,6 +192,10 @@ static inline vlLightChoice vl_light_choose_slot(const vlLightTree *tree, vlRece
   wanted = wanted < last ? wanted : last;
   vlLightChoice r = {VL_INNER, 1.0f / (float)count,
                      vl_min(u * (float)count - (float)wanted, VL_ONE_MINUS_EPSILON)};
+  if (!tree->distant_count && wanted < slots.outside) {
+    r.light = tree->unbounded[wanted];
+    return r;
+  }
   for (uint32_t k = 0, seen = 0; wanted < slots.outside && k < tree->unbounded_count; k++)
     if (vl_light_reaches(tree, k, at) && seen++ == wanted)
       r.light = tree->unbounded[k];
@@ -205,7 +212,9 @@ static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlReceiver 
   if (slot.light != VL_INNER || !(slot.pmf > 0.0f))
     return slot;
   const vlLightNode *root = tree->nodes;
-  if (root->light != VL_INNER && !(vl_light_node_importance(root, at) > 0.0f))
+  /* beside lights outside the tree, the root's importance is one of the slots */
+  if (!tree->unbounded_count && root->light != VL_INNER &&
+      !(vl_light_node_importance(root, at) > 0.0f))
     return none;
   return vl_light_walk(tree, root, at, slot.rest, slot.pmf);
 }
@@ -224,7 +233,7 @@ static inline float vl_light_pmf(const vlLightTree *tree, vlReceiver at, uint32_
   uint64_t trail = tree->trails[light];
   const vlLightNode *node = tree->nodes;
   if (node->light != VL_INNER)
-    return vl_light_node_importance(node, at) > 0.0f ? pmf : 0.0f;
+    return tree->unbounded_count || vl_light_node_importance(node, at) > 0.0f ? pmf : 0.0f;
   while (node->light == VL_INNER) {
     const vlLightNode *a = tree->nodes + node->left, *b = a + 1;
     float ia = vl_light_node_importance(a, at), ib = vl_light_node_importance(b, at);

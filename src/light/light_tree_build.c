@@ -301,6 +301,7 @@ vlResult vl_light_tree_build(vlWorld *world, vlError *error) {
     if (light->far) {
       tree->slot[i] = tree->unbounded_count;
       bool one_way = light->kind == VL_LIGHT_DISTANT;
+      tree->distant_count += one_way;
       for (int k = 0; k < 3; k++)
         tree->towards[tree->unbounded_count][k] = one_way ? light->direction[k] : 0;
       tree->unbounded[tree->unbounded_count++] = i;

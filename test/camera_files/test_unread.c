@@ -58,7 +58,7 @@ static void insert(char *to, size_t size, const char *text, const char *json,
 
 static void what_velo_writes_is_known(void **state) {
   (void)state;
-  static char text[8192];
+  static char text[4096];
   for (int i = 0; i < CHECKED; i++) {
     written(i, text, sizeof text);
     const vlCameraRecord back = read_with(path_of(checked[i].name), NULL);
@@ -71,7 +71,7 @@ static void what_velo_writes_is_known(void **state) {
 
 static void a_new_field_is_named(void **state) {
   (void)state;
-  static char text[8192], more[8192];
+  static char text[4096], more[8192];
   for (int i = 0; i < CHECKED; i++) {
     written(i, text, sizeof text);
     insert(more, sizeof more, text, "\"made_up\":{\"fx\":3}", "made_up:\n  fx: 3");
@@ -85,7 +85,7 @@ static void a_new_field_is_named(void **state) {
 /* The first three names are kept; all fields are counted. */
 static void names_are_counted(void **state) {
   (void)state;
-  static char text[8192];
+  static char text[4096];
   size_t used = 0;
   for (int i = 0; i < 40; i++)
     used += (size_t)snprintf(text + used, sizeof text - used, "\"field %d\":%d,", i, i);
@@ -104,7 +104,7 @@ static void names_are_counted(void **state) {
 /* Fields that make another camera of a file. */
 static void rows_at_different_times_are_refused(void **state) {
   (void)state;
-  static char text[8192], more[8192];
+  static char text[4096], more[8192];
   for (int i = 0; i < CHECKED; i++)
     if (checked[i].dialect == VL_CAMERA_DIALECT_CAMODOCAL) {
       written(i, text, sizeof text);

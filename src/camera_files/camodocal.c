@@ -135,8 +135,9 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
                                vlCameraRecord *record) {
   char key[32];
   double rolling = 0;
-  if (vl_camera_optional(file, tree, "rolling_shutter", &rolling) != VL_OK)
-    return VL_ERROR_SCENE;
+  const vlResult read = vl_camera_optional(file, tree, "rolling_shutter", &rolling);
+  if (read != VL_OK)
+    return read;
   if (rolling != 0.0)
     return vl_camera_wrong_in(file, tree, "rolling_shutter",
                               "camodocal: rows of an image at different times are not taken");

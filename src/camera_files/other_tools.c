@@ -45,11 +45,9 @@ static const Tool by_beginning[] = {
     {"# boujou export", "boujou's tracks; " EXPORT_SCENE},
     {"#! /", "a script, which holds no camera"},
     {"# ptGui project file",
-     "a project of PTGui, whose lenses are those of panoramas; "
-     "" GIVE_OPENCV},
+     "a project of PTGui, whose lenses are those of panoramas; " GIVE_OPENCV},
     {"# hugin project file",
-     "a project of Hugin, whose lenses are those of panoramas; "
-     "" GIVE_OPENCV},
+     "a project of Hugin, whose lenses are those of panoramas; " GIVE_OPENCV},
     {"#MVE view meta data", "a view of MVE; " GIVE_MATCHED},
     {"fileName imageWidth imageHeight", "parameters of Pix4D; " GIVE_MATCHED},
     {"PXR-USDC", "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda"},

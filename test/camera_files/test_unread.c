@@ -1,8 +1,6 @@
 /* test/camera_files/test_unread.c: fields that a dialect's reader does not know are named. */
 #include "camera_files/files.h"
 
-#include <stdlib.h>
-
 /* Dialects whose readers have a list of names, and the names of files by which they are
  * recognised. */
 static const struct {

@@ -3,7 +3,6 @@
  * what is read back projects to the same pixels. */
 #include "camera_files/files.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "velo/distortion.h"

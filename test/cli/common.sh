@@ -76,3 +76,40 @@ wait_for() {
   done
   return 1
 }
+
+# A ball on a disk under a lamp, the same from all sides: what differs between views is noise. $1: file.
+write_round_scene() {
+  cat >"$1" <<'SCENE'
+LookAt 0 2.2 5  0 0.4 0  0 1 0
+Camera "perspective" "float fov" 45
+Film "rgb" "integer xresolution" 96 "integer yresolution" 72
+Sampler "zsobol" "integer pixelsamples" 4
+Integrator "path" "integer maxdepth" 4
+WorldBegin
+AttributeBegin
+  Translate 0 3 0
+  AreaLightSource "diffuse" "rgb L" [14 12 10]
+  Shape "sphere" "float radius" 0.5
+AttributeEnd
+AttributeBegin
+  Rotate -90 1 0 0
+  Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
+  Shape "disk" "float radius" 6
+AttributeEnd
+AttributeBegin
+  Material "diffuse" "rgb reflectance" [0.2 0.4 0.6]
+  Translate 0 0.7 0
+  Shape "sphere" "float radius" 0.7
+AttributeEnd
+SCENE
+}
+
+# The mean squared difference of two images.
+mse() {
+  "$VELO" image diff "$1" "$2" | sed -n 's/^mse *//p'
+}
+
+# Whether $1 is below $3 times $2; prints $1 / $2.
+below() {
+  python3 -c "import sys; a, b, k = map(float, sys.argv[1:]); print(a / b); sys.exit(not a < k * b)" "$@"
+}

@@ -55,12 +55,6 @@ rm c6.pfm
 check skip "$VELO" render walk.gltf $walk -o f%d.pfm --denoise c%d.pfm --skip-existing
 same skip_same c6.pfm kept.pfm
 
-mse() {
-  "$VELO" image diff "$1" "$2" | sed -n 's/^mse *//p'
-}
-below() {
-  python3 -c "import sys; a, b, k = map(float, sys.argv[1:]); print(a / b); sys.exit(not a < k * b)" "$@"
-}
 check features "$VELO" render walk.gltf --at 0.76 $size 2 -o e6.exr --channels error,features
 check one "$VELO" image denoise e6.exr -o n6.pfm
 check truth "$VELO" render walk.gltf --at 0.76 $size 1024 -o t6.pfm

@@ -5,29 +5,7 @@
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
 cd "$work" || exit 1
 # The still parts look the same from all sides: what differs there is noise. A ball moves in one second.
-cat >round.pbrt <<'END'
-LookAt 0 2.2 5  0 0.4 0  0 1 0
-Camera "perspective" "float fov" 45
-Film "rgb" "integer xresolution" 96 "integer yresolution" 72
-Sampler "zsobol" "integer pixelsamples" 4
-Integrator "path" "integer maxdepth" 4
-WorldBegin
-AttributeBegin
-  Translate 0 3 0
-  AreaLightSource "diffuse" "rgb L" [14 12 10]
-  Shape "sphere" "float radius" 0.5
-AttributeEnd
-AttributeBegin
-  Rotate -90 1 0 0
-  Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
-  Shape "disk" "float radius" 6
-AttributeEnd
-AttributeBegin
-  Material "diffuse" "rgb reflectance" [0.2 0.4 0.6]
-  Translate 0 0.7 0
-  Shape "sphere" "float radius" 0.7
-AttributeEnd
-END
+write_round_scene round.pbrt
 {
   cat round.pbrt
   cat <<'END'
@@ -71,12 +49,6 @@ rm c7.pfm
 check skip "$VELO" render round.pbrt $turn -o f%d.pfm --denoise c%d.pfm --skip-existing
 same skip_same c7.pfm kept.pfm
 
-mse() {
-  "$VELO" image diff "$1" "$2" | sed -n 's/^mse *//p'
-}
-below() {
-  python3 -c "import sys; a, b, k = map(float, sys.argv[1:]); sys.exit(not a < k * b)" "$@"
-}
 check errors "$VELO" render round.pbrt $turn --frames 6-8 -o e%d.exr --channels error,features
 for n in 6 7 8; do
   check "one_$n" "$VELO" image denoise e$n.exr -o n$n.pfm

@@ -5,29 +5,7 @@
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
 cd "$work" || exit 1
 # All views are the same from all sides: what differs is noise.
-cat >round.pbrt <<'END'
-LookAt 0 2.2 5  0 0.4 0  0 1 0
-Camera "perspective" "float fov" 45
-Film "rgb" "integer xresolution" 96 "integer yresolution" 72
-Sampler "zsobol" "integer pixelsamples" 4
-Integrator "path" "integer maxdepth" 4
-WorldBegin
-AttributeBegin
-  Translate 0 3 0
-  AreaLightSource "diffuse" "rgb L" [14 12 10]
-  Shape "sphere" "float radius" 0.5
-AttributeEnd
-AttributeBegin
-  Rotate -90 1 0 0
-  Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
-  Shape "disk" "float radius" 6
-AttributeEnd
-AttributeBegin
-  Material "diffuse" "rgb reflectance" [0.2 0.4 0.6]
-  Translate 0 0.7 0
-  Shape "sphere" "float radius" 0.7
-AttributeEnd
-END
+write_round_scene round.pbrt
 turn="--turntable 12 --quiet"
 check all "$VELO" render round.pbrt $turn -t 2 -o f%02d.pfm --denoise c%02d.pfm
 check all_frames test "$(ls f*.pfm c*.pfm | wc -l)" = 24
@@ -47,12 +25,9 @@ for n in 06 07; do
   check one_$n "$VELO" render round.pbrt --turn $((5 * 10#$n)) --quiet --channels error,features -o e$n.exr
   check one_clean_$n "$VELO" image denoise e$n.exr -o n$n.pfm
 done
-mse() {
-  "$VELO" image diff "$1" "$2" | sed -n 's/^mse *//p'
-}
-check flickers_less python3 -c "import sys; a, b = map(float, sys.argv[1:]); sys.exit(not a < 0.25 * b)" "$(mse s06-clean.pfm s07-clean.pfm)" "$(mse n06.pfm n07.pfm)"
+check flickers_less below "$(mse s06-clean.pfm s07-clean.pfm)" "$(mse n06.pfm n07.pfm)" 0.25
 check reference "$VELO" render round.pbrt --spp 1024 --quiet -o reference.pfm
-check nearer python3 -c "import sys; a, b = map(float, sys.argv[1:]); sys.exit(not a < b)" "$(mse s07-clean.pfm reference.pfm)" "$(mse n07.pfm reference.pfm)"
+check nearer below "$(mse s07-clean.pfm reference.pfm)" "$(mse n07.pfm reference.pfm)" 1
 # Nothing leaks into the black around.
 check black python3 - <<'END'
 import struct

@@ -303,6 +303,8 @@ PyObject *scene_handles(Scene *self, PyObject *family);
 PyObject *scene_get(Scene *self, PyObject *handle);
 PyObject *scene_mesh(Scene *self, PyObject *handle);
 PyObject *scene_instance(Scene *self, PyObject *handle);
+PyObject *world_trace(World *self, PyObject *arguments);
+PyObject *world_occluded(World *self, PyObject *arguments);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
 extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[],
     world_functions[], own_functions[], own_trace_functions[];

@@ -132,6 +132,10 @@ static PyObject *world_ids(World *self, PyObject *name) {
 static PyMethodDef world_methods[] = {
     {"_close", (PyCFunction)world_close, METH_NOARGS, "Frees the world."},
     {"_ids", (PyCFunction)world_ids, METH_O, "What the ids of a kind stand for."},
+    {"_trace", (PyCFunction)world_trace, METH_VARARGS,
+     "Hits of rays: origins, directions, t_min, t_max, times, hits, bits of the fields."},
+    {"_occluded", (PyCFunction)world_occluded, METH_VARARGS,
+     "Whether rays are blocked: origins, directions, t_min, t_max, times."},
     {NULL, NULL, 0, NULL},
 };
 static PyGetSetDef world_members[] = {

@@ -21,6 +21,7 @@ from velo.film import Film, merge_films, read_film
 from velo.image import Image, read_image
 from velo.own import (FilmPoints, OwnCamera, OwnSampler, OwnTracer, Paths, Samples, Trace, TraceBounce, TraceHits, TraceLights,
                       TraceRays)
+from velo.rays import RayHits
 from velo.scene import Handle, Mesh, Model, Scene, World, load, settings_names
 from velo.spectrum import Spectrum, blackbody, named, rgb, sampled, spectrum_names
 
@@ -46,7 +47,7 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 __all__ = [
     "Camera", "CancelledError", "Context", "Error", "Film", "FilmPoints", "ForkError", "Handle", "Image", "Mesh",
     "MissingFileError", "Model", "OutOfMemoryError", "OutputError", "OwnCamera", "OwnSampler", "OwnTracer", "Paths",
-    "Progress", "Projection", "Rays", "Samples", "Scene", "SceneError", "Spectrum", "Step", "Trace", "TraceBounce",
+    "Progress", "Projection", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Spectrum", "Step", "Trace", "TraceBounce",
     "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody",
     "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera", "read_film", "read_image",
     "read_trajectory", "rgb", "sampled", "sensor_names", "set_threads", "settings_names", "spectrum_names",

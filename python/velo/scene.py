@@ -5,7 +5,7 @@ import math
 import os
 from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union, Unpack
 
-from velo import _arrays, _check, _keywords, _solids, _velo
+from velo import _arrays, _check, _keywords, _solids, _velo, rays
 from velo._context import context_or_default
 from velo._errors import Progress, Step, UsageError, shown, unknown, wrong_value
 from velo._texels import texels
@@ -39,6 +39,24 @@ class World(_velo.World):
         """What the ids of a kind (object, material, instance) stand for: dicts with id, name, path, type, file, line and
         material; id 1 first."""
         return self._ids(kind)
+
+    def trace(self, origins: Any, directions: Any, t_max: Any = None, times: Any = None, *, t_min: Any = None, hits: int = 1,
+              fields: Optional[Sequence[str]] = None) -> rays.RayHits:
+        """What rays hit (docs/rays.md): the nearest surface, or up to `hits` (1 to 256) along each ray.
+
+        origins, directions: n x 3, or of any shape with a last axis of 3; one of them may have a single row for all rays.
+        Directions have any length but 0. t_min, t_max: n numbers, or one for all: the part of the ray that counts, in lengths
+        of its direction. times: seconds, n or one; default 0. float32 and float64 arrays are read without a copy.
+        fields: the names of velo.RayHits to compute; default all. shading_normal takes the longest.
+
+        Rays whose numbers are not finite or whose direction is 0 hit nothing; they are counted in the result, and a
+        RuntimeWarning says how many there are."""
+        return rays.trace(self, origins, directions, t_max, times, t_min, hits, fields)
+
+    def occluded(self, origins: Any, directions: Any, t_max: Any = None, times: Any = None, *, t_min: Any = None) -> Any:
+        """Whether anything lies on each ray between t_min and t_max: n bools. Arguments as of trace (n x 3, scene units; seconds);
+        with directions that lead from the origins to targets, t_max=1 asks whether the targets are hidden."""
+        return rays.occluded(self, origins, directions, t_max, times, t_min)
 
     def close(self) -> None:
         """Frees the world."""

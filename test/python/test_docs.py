@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python examples of README.md, docs/python.md, docs/own-code.md and docs/datasets.md, and the notebooks of examples/, run as written: the
+"""The Python examples of README.md, docs/python.md, docs/own-code.md, docs/rays.md and docs/datasets.md, and the notebooks of examples/, run as written: the
 blocks of a page one after the other in a folder of their own. Renders get at most 2 samples per pixel."""
 import contextlib
 import glob
@@ -75,6 +75,13 @@ def docs_own_code():
     parts = blocks(os.path.join(cases.SOURCE, "docs/own-code.md"))
     assert len(parts) >= 1
     run("own", parts, False)
+
+
+@case
+def docs_rays():
+    parts = blocks(os.path.join(cases.SOURCE, "docs/rays.md"))
+    assert len(parts) >= 1
+    run("rays", parts, False)
 
 
 @case

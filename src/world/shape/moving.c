@@ -306,11 +306,10 @@ static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3
   }
 }
 
-/* Moves a point with a triangle: its barycentric coordinates stay the same. */
-static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to,
-                            double p[3]) {
-  double c[3][3], a[3], b[3], r[3], n[3], x[3];
-  corners(s, prim, from, c);
+/* The barycentric coordinates of a point of a triangle, or of the point of its plane below it.
+ * False: the triangle has no area. */
+static bool weights_in(const double c[3][3], const double p[3], double w[3]) {
+  double a[3], b[3], r[3], n[3], x[3];
   for (int i = 0; i < 3; i++) {
     a[i] = c[1][i] - c[0][i];
     b[i] = c[2][i] - c[0][i];
@@ -319,14 +318,25 @@ static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, fl
   vl_cross3(a, b, n);
   double area = vl_dot3(n, n);
   if (!(area > 0))
-    return;
+    return false;
   vl_cross3(r, b, x);
-  double u = vl_dot3(x, n) / area;
+  w[1] = vl_dot3(x, n) / area;
   vl_cross3(a, r, x);
-  double v = vl_dot3(x, n) / area;
+  w[2] = vl_dot3(x, n) / area;
+  w[0] = 1 - w[1] - w[2];
+  return true;
+}
+
+/* Moves a point with a triangle: its barycentric coordinates stay the same. */
+static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to,
+                            double p[3]) {
+  double c[3][3], w[3];
+  corners(s, prim, from, c);
+  if (!weights_in(c, p, w))
+    return;
   corners(s, prim, to, c);
   for (int i = 0; i < 3; i++)
-    p[i] = (1 - u - v) * c[0][i] + u * c[1][i] + v * c[2][i];
+    p[i] = w[0] * c[0][i] + w[1] * c[1][i] + w[2] * c[2][i];
 }
 
 void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance,
@@ -349,4 +359,98 @@ void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32
   memcpy(moved, g, sizeof g);
   if (q)
     map(vl_instance_at(q, to, &room)->from_group, g, moved);
+}
+
+/* ---- velocities -------------------------------------------------------------------------- */
+
+/* The velocity of a point of a triangle whose corners move, per unit of the world's time. */
+static void triangle_velocity(const vlWorldShape *s, uint32_t prim, float time,
+                              const double p[3], double v[3]) {
+  double now[3][3], w[3];
+  v[0] = v[1] = v[2] = 0;
+  corners(s, prim, time, now);
+  if (!weights_in(now, p, w))
+    return;
+  vlTimeStep step = vl_time_step(time, s->steps);
+  for (int k = 0; k < 3; k++) {
+    uint32_t vertex = s->indices[3 * (size_t)prim + (uint32_t)k];
+    const float *a = s->positions + 3 * ((size_t)step.first * s->vertices + vertex),
+                *b = a + 3 * (size_t)s->vertices;
+    for (int i = 0; i < 3; i++)
+      v[i] += w[k] * ((double)b[i] - (double)a[i]) * (s->steps - 1);
+  }
+}
+
+/* The velocity of point g of the group in step k of an instance's path, per unit of the world's
+ * time. */
+static void step_velocity(const vlWorldInstance *q, int64_t k, const double g[3], double v[3]) {
+  const float *a = q->path + 12 * k, *b = a + 12;
+  double from[3], to[3];
+  map(a, g, from);
+  map(b, g, to);
+  for (int i = 0; i < 3; i++)
+    v[i] = (to[i] - from[i]) * (q->keys - 1);
+}
+
+/* The velocity at the key between two steps, as step `own` sees it: the mean of both, unless
+ * the motion bends there: keys of a smooth motion are so dense that it turns by far less
+ * (choose_steps). */
+static void key_velocity(const double own[3], const double other[3], double v[3]) {
+  const double smooth = 0.15;
+  double change[3] = {own[0] - other[0], own[1] - other[1], own[2] - other[2]};
+  double most = fmax(vl_dot3(own, own), vl_dot3(other, other));
+  bool bends = vl_dot3(change, change) > smooth * smooth * most;
+  for (int i = 0; i < 3; i++)
+    v[i] = bends ? own[i] : 0.5 * (own[i] + other[i]);
+}
+
+static void instance_velocity(const vlWorldInstance *q, float time, const double g[3],
+                              double v[3]) {
+  vlTimeStep step = vl_time_step(time, q->keys);
+  int64_t k = step.first, last = (int64_t)q->keys - 2;
+  double own[3], other[3], begin[3], end[3];
+  step_velocity(q, k, g, own);
+  memcpy(begin, own, sizeof own);
+  memcpy(end, own, sizeof own);
+  if (k > 0) {
+    step_velocity(q, k - 1, g, other);
+    key_velocity(own, other, begin);
+  }
+  if (k < last) {
+    step_velocity(q, k + 1, g, other);
+    key_velocity(own, other, end);
+  }
+  /* At the ends of the path: as the middle of the step and the other key have it. */
+  for (int i = 0; i < 3; i++) {
+    if (k == 0 && k < last)
+      begin[i] = 2 * own[i] - end[i];
+    if (k == last && k > 0)
+      end[i] = 2 * own[i] - begin[i];
+    v[i] = (1 - (double)step.part) * begin[i] + (double)step.part * end[i];
+  }
+}
+
+void vl_world_velocity(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance,
+                       float time, const double point[3], double velocity[3]) {
+  const vlWorldShape *s = &world->shapes.items[shape];
+  const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+  double g[3] = {point[0], point[1], point[2]}, flow[3] = {0, 0, 0}, v[3] = {0, 0, 0};
+  velocity[0] = velocity[1] = velocity[2] = 0;
+  bool flows = s->steps > 1, goes = q && q->keys;
+  if (!world->moves || (!flows && !goes))
+    return;
+  vlWorldInstance room;
+  const vlWorldInstance *now = q ? vl_instance_at(q, time, &room) : NULL;
+  if (now)
+    unmap(now->from_group, point, g);
+  if (flows)
+    triangle_velocity(s, prim, time, g, flow);
+  if (goes)
+    instance_velocity(q, time, g, v);
+  for (int i = 0; i < 3; i++) {
+    const float *m = now ? now->from_group + 4 * i : NULL;
+    v[i] +=
+        m ? (double)m[0] * flow[0] + (double)m[1] * flow[1] + (double)m[2] * flow[2] : flow[i];
+    velocity[i] = v[i] / (world->time_close - world->time_open);
+  }
 }

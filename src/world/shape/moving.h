@@ -85,5 +85,11 @@ static inline const float *vl_normal_at(const vlWorldShape *s, uint32_t vertex, 
 void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance,
                      double from_seconds, double to_seconds, const double point[3],
                      double moved[3]);
+/* The velocity of the surface point that is at `point` at the world's time `time`: world space,
+ * scene units per second. Between the keys of an instance it is interpolated, so that the error
+ * falls with the square of their step, as that of the positions does; where the motion bends
+ * sharply at a key, it is that of the step. At a key it is that of the step that follows. */
+void vl_world_velocity(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance,
+                       float time, const double point[3], double velocity[3]);
 
 #endif

@@ -1,0 +1,332 @@
+/* render/cast.c: rays of the caller (velo/rays.h): reads them from the caller's arrays batch by
+ * batch, has them traced on the workers, and writes what is wanted to the caller's arrays. */
+#include "velo/rays.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/cancel.h"
+#include "base/cookie.h"
+#include "base/error.h"
+#include "base/free.h"
+#include "trace/cast/cast.h"
+#include "world/shape/moving.h"
+
+/* A worker's memory. */
+typedef struct CastWorker {
+  vlTraceScratch *scratch;
+  vlCastBatch *batch;
+} CastWorker;
+
+typedef struct Cast {
+  const vlWorld *world;
+  const vlCastRays *rays;
+  const vlCastDef *def;
+  const vlCastHits *hits; /* null: occlusion */
+  uint8_t *occluded;
+  uint32_t wanted; /* bits VL_CAST_* */
+  const vlCastKernels *kernels;
+  CastWorker *workers;
+  atomic_uint_fast64_t met, not_finite, zero_directions, too_far;
+} Cast;
+
+vlCastDef vl_default_cast_def(void) {
+  return (vlCastDef){.cookie = VL_COOKIE_CAST, .hits = 1};
+}
+
+/* ---- reading ----------------------------------------------------------------------------- */
+
+/* Number `k` of ray i. */
+static inline double number_at(const vlRayArray *a, uint64_t i, int k) {
+  const char *from = (const char *)a->data + (int64_t)i * a->step;
+  if (a->doubles) {
+    double x;
+    memcpy(&x, from + k * (int)sizeof x, sizeof x);
+    return x;
+  }
+  float x;
+  memcpy(&x, from + k * (int)sizeof x, sizeof x);
+  return (double)x;
+}
+
+typedef enum Fate { TRACED, EMPTY, NOT_FINITE, ZERO_DIRECTION, TOO_FAR } Fate;
+
+static const double FAR = 1.8e18, LONGEST = 1e300;
+
+/* Reads ray i into element k of the batch, and says what becomes of it. */
+static Fate read_ray(const Cast *c, uint64_t i, vlCastBatch *b, uint32_t k) {
+  const vlCastRays *r = c->rays;
+  double sum = 0, reach = 0, length = 0;
+  for (int j = 0; j < 3; j++) {
+    double o = number_at(&r->origins, i, j), d = number_at(&r->directions, i, j);
+    b->o[j][k] = o;
+    b->d[j][k] = d;
+    sum += o - o + (d - d); /* NaN unless all are finite */
+    reach = fmax(reach, fabs(o));
+    length = fmax(length, fabs(d));
+  }
+  double start = r->t_min.data ? number_at(&r->t_min, i, 0) : 0;
+  double end = r->t_max.data ? number_at(&r->t_max, i, 0) : (double)INFINITY;
+  double time = r->times.data ? number_at(&r->times, i, 0) : 0;
+  sum += start - start + (time - time);
+  if (sum != 0 || end != end || length > LONGEST)
+    return NOT_FINITE;
+  if (length == 0)
+    return ZERO_DIRECTION;
+  if (reach >= FAR)
+    return TOO_FAR;
+  start = start > 0 ? start : 0;
+  if (end <= start)
+    return EMPTY;
+  b->start[k] = start;
+  b->end[k] = end;
+  b->time[k] = vl_world_time(c->world, time);
+  return TRACED;
+}
+
+/* Reads the rays [first, first + count) that are traced; lane[k]: the number of ray k in the
+ * call. */
+static void read_rays(Cast *c, uint64_t first, uint32_t count, vlCastBatch *b,
+                      uint64_t lane[VL_BATCH]) {
+  uint64_t fates[TOO_FAR + 1] = {0};
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < count; i++) {
+    Fate fate = read_ray(c, first + i, b, n);
+    fates[fate]++;
+    lane[n] = first + i;
+    n += fate == TRACED;
+  }
+  b->n = n;
+  if (n == count)
+    return;
+  atomic_fetch_add(&c->not_finite, fates[NOT_FINITE]);
+  atomic_fetch_add(&c->zero_directions, fates[ZERO_DIRECTION]);
+  atomic_fetch_add(&c->too_far, fates[TOO_FAR]);
+}
+
+/* ---- writing ----------------------------------------------------------------------------- */
+
+/* What rows without a hit have. */
+static void clear_rows(const vlCastHits *h, uint64_t first, uint64_t count) {
+  const struct {
+    void *rows;
+    size_t size;
+  } all[] = {{h->valid, 1},
+             {h->position, 3 * sizeof(double)},
+             {h->object, sizeof(uint32_t)},
+             {h->instance, sizeof(uint32_t)},
+             {h->primitive, sizeof(uint32_t)},
+             {h->material, sizeof(uint32_t)},
+             {h->normal, 3 * sizeof(float)},
+             {h->shading_normal, 3 * sizeof(float)},
+             {h->uv, 2 * sizeof(float)},
+             {h->velocity, 3 * sizeof(double)}};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    if (all[k].rows)
+      memset((char *)all[k].rows + first * all[k].size, 0, count * all[k].size);
+  for (uint64_t i = first; h->t && i < first + count; i++)
+    h->t[i] = (double)INFINITY;
+  for (uint64_t i = first; h->distance && i < first + count; i++)
+    h->distance[i] = (double)INFINITY;
+}
+
+static void put_ids(const Cast *c, const vlCastBatch *b, uint32_t k, uint64_t row) {
+  const vlCastHits *h = c->hits;
+  if (h->valid)
+    h->valid[row] = 1;
+  if (h->object)
+    h->object[row] = b->shape[k] + 1;
+  if (h->instance)
+    h->instance[row] = b->instance[k] == VL_NONE ? 0 : b->instance[k] + 1;
+  if (h->primitive)
+    h->primitive[row] = b->prim[k] + 1;
+  if (h->material)
+    h->material[row] = c->world->shapes.items[b->shape[k]].material + 1;
+}
+
+static void put3(float *rows, uint64_t row, const float from[3][VL_ROW_SIZE], uint32_t k) {
+  if (!rows)
+    return;
+  for (int j = 0; j < 3; j++)
+    rows[3 * row + (uint64_t)j] = from[j][k];
+}
+
+static void put_hit(const Cast *c, const vlCastBatch *b, uint32_t k, uint64_t row) {
+  const vlCastHits *h = c->hits;
+  put_ids(c, b, k, row);
+  if (h->t)
+    h->t[row] = b->distance[k] / b->length[k];
+  if (h->distance)
+    h->distance[row] = b->distance[k];
+  for (uint64_t j = 0; h->position && j < 3; j++)
+    h->position[3 * row + j] = b->o[j][k] + b->distance[k] * b->d[j][k];
+  put3(h->normal, row, b->normal, k);
+  put3(h->shading_normal, row, b->shading, k);
+  for (uint64_t j = 0; h->uv && j < 2; j++)
+    h->uv[2 * row + j] = b->uv[j][k];
+  for (uint64_t j = 0; h->velocity && j < 3; j++)
+    h->velocity[3 * row + j] = b->velocity[j][k];
+}
+
+/* ---- a batch ----------------------------------------------------------------------------- */
+
+static void find_hits(Cast *c, CastWorker *w, uint64_t lane[VL_BATCH]) {
+  vlCastBatch *b = w->batch;
+  uint32_t hits = c->def->hits, from[VL_ROW_SIZE];
+  for (uint32_t step = 0; step < hits && b->n; step++) {
+    uint32_t last = step + 1 == hits ? 0 : VL_CAST_ON;
+    uint64_t met = 0;
+    c->kernels->next(c->world, w->scratch, c->wanted | last, b);
+    for (uint32_t k = 0; k < b->n; k++) {
+      if (b->shape[k] == VL_NONE)
+        continue;
+      put_hit(c, b, k, lane[k] * hits + step);
+      met++;
+    }
+    if (step == 0)
+      atomic_fetch_add(&c->met, met);
+    if (!last)
+      return;
+    c->kernels->keep(w->scratch, b, from);
+    for (uint32_t k = 0; k < b->n; k++)
+      lane[k] = lane[from[k]];
+  }
+}
+
+static void find_occluded(Cast *c, CastWorker *w, const uint64_t lane[VL_BATCH]) {
+  vlCastBatch *b = w->batch;
+  uint64_t met = 0;
+  c->kernels->occluded(c->world, w->scratch, b);
+  for (uint32_t k = 0; k < b->n; k++) {
+    c->occluded[lane[k]] = b->occluded[k];
+    met += b->occluded[k];
+  }
+  atomic_fetch_add(&c->met, met);
+}
+
+static void run_batch(void *user, uint32_t index, uint32_t worker) {
+  Cast *c = user;
+  CastWorker *w = &c->workers[worker];
+  uint64_t first = (uint64_t)index * VL_BATCH, left = c->rays->count - first;
+  uint32_t count = left < VL_BATCH ? (uint32_t)left : VL_BATCH;
+  if (vl_is_cancelled(c->def->cancel))
+    return;
+  uint64_t lane[VL_ROW_SIZE];
+  unsigned state = vl_accel_enter();
+  if (c->hits)
+    clear_rows(c->hits, first * c->def->hits, (uint64_t)count * c->def->hits);
+  else
+    memset(c->occluded + first, 0, count);
+  read_rays(c, first, count, w->batch, lane);
+  if (w->batch->n) {
+    c->kernels->prepare(c->world, w->scratch, w->batch);
+    if (c->hits)
+      find_hits(c, w, lane);
+    else
+      find_occluded(c, w, lane);
+  }
+  vl_accel_leave(state);
+}
+
+/* ---- the call ---------------------------------------------------------------------------- */
+
+static vlResult check(const vlWorld *world, const vlCastRays *rays, const vlCastDef *def,
+                      bool output, vlError *error) {
+  if (!world || !rays || !def || !output)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: a pointer is null");
+  if (def->cookie != VL_COOKIE_CAST)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: " VL_BAD_COOKIE);
+  if (def->hits < 1 || def->hits > VL_MAX_CAST_HITS)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: hits is %u; it must be 1 to %d", def->hits,
+                   VL_MAX_CAST_HITS);
+  if (rays->count && (!rays->origins.data || !rays->directions.data))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: they need origins and directions");
+  if (rays->count > (uint64_t)UINT32_MAX * VL_BATCH)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: %llu are too many",
+                   (unsigned long long)rays->count);
+  return VL_OK;
+}
+
+/* What the kernel must compute. */
+static uint32_t wanted_by(const vlCastHits *h) {
+  uint32_t wanted = 0;
+  if (h->t || h->distance || h->position)
+    wanted |= VL_CAST_DISTANCE;
+  if (h->normal || h->uv)
+    wanted |= VL_CAST_SURFACE;
+  if (h->shading_normal)
+    wanted |= VL_CAST_SHADING;
+  if (h->velocity)
+    wanted |= VL_CAST_VELOCITY;
+  return wanted;
+}
+
+/* Memory is cleared only where it must be: most calls have few rays. */
+static bool open_workers(Cast *c, uint32_t count) {
+  vlContext *context = c->world->context;
+  size_t size = vl_trace_scratch_size(c->world);
+  c->workers = vl_alloc_zero(context, count, sizeof *c->workers);
+  for (uint32_t i = 0; c->workers && i < count; i++) {
+    CastWorker *w = &c->workers[i];
+    w->scratch = c->wanted & VL_CAST_SHADING ? vl_alloc_zero(context, 1, size)
+                                             : vl_alloc_array(context, 1, size);
+    w->batch = vl_alloc_array(context, 1, sizeof *w->batch);
+    if (!w->scratch || !w->batch)
+      return false;
+    vl_trace_scratch_begin(w->scratch, c->world);
+  }
+  return c->workers != NULL;
+}
+
+static void close_workers(Cast *c, uint32_t count) {
+  vlContext *context = c->world->context;
+  for (uint32_t i = 0; c->workers && i < count; i++)
+    VL_FREE(context, c->workers[i].scratch, c->workers[i].batch);
+  vl_free(context, c->workers);
+}
+
+static vlResult run(Cast *c, vlCastStats *stats, vlError *error) {
+  vlContext *context = c->world->context;
+  uint32_t batches = (uint32_t)((c->rays->count + VL_BATCH - 1) / VL_BATCH);
+  uint32_t workers = batches > 1 ? vl_context_threads(context) : 1;
+  c->kernels = vl_cast_kernels(vl_context_isa(context));
+  bool opened = open_workers(c, workers);
+  vlLoopDef loop = vl_loop_def(c->def->priority, c->def->cancel);
+  if (opened && batches > 1)
+    vl_parallel_for_at(context, &loop, batches, run_batch, c);
+  else if (opened && batches)
+    run_batch(c, 0, 0);
+  close_workers(c, workers);
+  if (!opened)
+    return vl_fail_memory(error);
+  if (vl_is_cancelled(c->def->cancel))
+    return vl_fail(error, VL_CANCELLED, "rays: cancelled");
+  if (stats)
+    *stats = (vlCastStats){.rays = c->rays->count,
+                           .met = atomic_load(&c->met),
+                           .not_finite = atomic_load(&c->not_finite),
+                           .zero_directions = atomic_load(&c->zero_directions),
+                           .too_far = atomic_load(&c->too_far)};
+  return VL_OK;
+}
+
+vlResult vl_world_cast(const vlWorld *world, const vlCastRays *rays, const vlCastDef *def,
+                       const vlCastHits *hits, vlCastStats *stats, vlError *error) {
+  vlResult r = check(world, rays, def, hits != NULL, error);
+  if (r != VL_OK)
+    return r;
+  Cast c = {.world = world, .rays = rays, .def = def, .hits = hits, .wanted = wanted_by(hits)};
+  return run(&c, stats, error);
+}
+
+vlResult vl_world_cast_occluded(const vlWorld *world, const vlCastRays *rays,
+                                const vlCastDef *def, uint8_t *occluded, vlCastStats *stats,
+                                vlError *error) {
+  bool output = occluded || (rays && rays->count == 0);
+  vlResult r = check(world, rays, def, output, error);
+  if (r != VL_OK)
+    return r;
+  Cast c = {.world = world, .rays = rays, .def = def, .occluded = occluded};
+  return run(&c, stats, error);
+}

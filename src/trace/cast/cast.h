@@ -1,0 +1,54 @@
+/* trace/cast/cast.h: hits of the caller's own rays (velo/rays.h), batch by batch: ids by the
+ * accelerator from the rays in float, distances in double from the exact rays. */
+#ifndef TRACE_CAST_CAST_H
+#define TRACE_CAST_CAST_H
+
+#include "trace/trace.h"
+
+/* What to compute besides the ids, as bits. */
+enum {
+  VL_CAST_DISTANCE = 1,
+  VL_CAST_SURFACE = 2, /* geometric normal, uv */
+  VL_CAST_SHADING = 4, /* shading normal */
+  VL_CAST_VELOCITY = 8,
+  VL_CAST_ON = 16 /* the rays may go on behind their hits */
+};
+
+/* Rays and their hits; n <= VL_BATCH. */
+typedef struct vlCastBatch {
+  uint32_t n;
+  /* The rays: as the caller gives them; `prepare` makes the directions unit. */
+  double o[3][VL_ROW_SIZE], d[3][VL_ROW_SIZE];
+  double length[VL_ROW_SIZE]; /* of the caller's directions; by `prepare` */
+  double end[VL_ROW_SIZE];   /* the largest t, in lengths of the direction; `prepare`: distance;
+                                inclusive */
+  double start[VL_ROW_SIZE]; /* the smallest t; `prepare`: distance */
+  float time[VL_ROW_SIZE];   /* the world's time */
+  bool finite_ends;          /* some end is finite; by `prepare` */
+  bool coherent; /* neighbouring rays are similar, and are traced as packets; by `prepare` */
+  /* Rows for the accelerator, by `prepare`. t_min: `next` moves it past the hit. */
+  float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
+  /* The hits, by `next`: indices; shape VL_NONE: none. */
+  uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE];
+  double distance[VL_ROW_SIZE];
+  float normal[3][VL_ROW_SIZE], shading[3][VL_ROW_SIZE], uv[2][VL_ROW_SIZE];
+  double velocity[3][VL_ROW_SIZE];
+  uint8_t occluded[VL_ROW_SIZE];
+} vlCastBatch;
+
+/* The scratch is that of tracers (vl_trace_scratch_begin); for VL_CAST_SHADING it must have
+ * been zeroed. Of it a cast uses rays, hits, at, corners, textures and occluders. */
+typedef struct vlCastKernels {
+  /* Fills what the members of the batch say. Rays are finite, their directions are not 0. */
+  void (*prepare)(const vlWorld *world, vlTraceScratch *s, vlCastBatch *batch);
+  /* Finds each ray's nearest hit between t_min and t_max. wanted: bits. */
+  void (*next)(const vlWorld *world, vlTraceScratch *s, uint32_t wanted, vlCastBatch *batch);
+  /* Fills batch->occluded. */
+  void (*occluded)(const vlWorld *world, vlTraceScratch *s, vlCastBatch *batch);
+  /* Moves the rays that have a hit to the front, without gaps, and sets n. from[k]: where ray k
+   * was. */
+  void (*keep)(vlTraceScratch *s, vlCastBatch *batch, uint32_t from[VL_ROW_SIZE]);
+} vlCastKernels;
+VL_KERNEL_TABLE(vlCastKernels, vl_cast)
+
+#endif

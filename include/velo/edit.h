@@ -21,9 +21,9 @@ extern "C" {
 #endif
 
 /** The def of an object, with defaults in the members that its kind does not use; null if there
- * is no such id. It and what it points at belong to the scene and are valid until the scene is
- * changed. To change an object: copy its def, change the copy, pass it to the vl_scene_set_*
- * call. */
+ * is no such id or the object was removed. It and what it points at belong to the scene and are
+ * valid until the scene is changed. To change an object: copy its def, change the copy, pass it
+ * to the vl_scene_set_* call. */
 VL_API const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id);
 /** As vl_scene_texture. */
 VL_API const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id);
@@ -33,8 +33,7 @@ VL_API const vlEmissionDef *vl_scene_emission(const vlScene *scene, vlEmissionId
 VL_API const vlLightDef *vl_scene_light(const vlScene *scene, vlLightId id);
 /** As vl_scene_texture. */
 VL_API const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id);
-/** As vl_scene_texture. The arrays are null after vl_world_build_last. Null if the shape was
- * removed. */
+/** As vl_scene_texture. The arrays are null after vl_world_build_last. */
 VL_API const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id);
 
 /** An instance of a scene. */
@@ -90,6 +89,40 @@ VL_API vlShapeId vl_scene_removed_shape(const vlScene *scene);
 /** A number by which a shape is told from others that had its id before: 0 for the first one,
  * and if there is no such shape. */
 VL_API uint64_t vl_scene_shape_serial(const vlScene *scene, vlShapeId id);
+
+/** The kinds of objects that have ids. */
+typedef enum vlSceneFamily {
+  VL_SCENE_TEXTURES,  /**< vlTextureId, vlTextureDef */
+  VL_SCENE_MATERIALS, /**< vlMaterialId, vlMaterialDef */
+  VL_SCENE_MEDIA,     /**< vlMediumId, vlMediumDef */
+  VL_SCENE_EMISSIONS, /**< vlEmissionId, vlEmissionDef */
+  VL_SCENE_LIGHTS,    /**< vlLightId, vlLightDef */
+  VL_SCENE_SHAPES,    /**< vlShapeId, vlShapeDef */
+  VL_SCENE_GROUPS,    /**< vlGroupId; no def */
+  VL_SCENE_INSTANCES  /**< vlInstanceId; no def */
+} vlSceneFamily;
+/** Removes an object of any family and frees what it points at. Ids of other objects do not
+ * change. The shapes of a group are removed with it. Errors: SCENE: another object, which the
+ * message names, still uses it (a material its textures, an instance its group, ...); ARGUMENT,
+ * MEMORY. */
+VL_API vlResult vl_scene_remove(vlScene *scene, vlSceneFamily family, uint32_t index,
+                                vlError *error);
+/** Whether the scene has this object: it was added and not removed. */
+VL_API bool vl_scene_has(const vlScene *scene, vlSceneFamily family, uint32_t index);
+/** The highest index that an object of this family has or had; 0: there was none. */
+VL_API uint32_t vl_scene_highest(const vlScene *scene, vlSceneFamily family);
+/** The lowest index of a removed object whose place a new one can take by vl_scene_set_*; 0:
+ * there is none. def: of the new object, of the family's type, or null; what it refers to in
+ * its own family has lower ids. For instances see vl_scene_fill_instance. A program that
+ * removes and adds objects in a loop sets them, so that the scene does not grow. */
+VL_API uint32_t vl_scene_removed(const vlScene *scene, vlSceneFamily family, const void *def);
+/** A number by which an object is told from others that had its id before: 0 for the first one,
+ * and if there is no such object. */
+VL_API uint64_t vl_scene_serial(const vlScene *scene, vlSceneFamily family, uint32_t index);
+/** Gives a group another name, which is copied (null: none). A removed group is there again, as
+ * a new and empty one in its place. ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_set_group(vlScene *scene, vlGroupId id, const char *name,
+                                   vlError *error);
 
 /** Gives a shape another material; index 0: the default material. */
 VL_API vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,

@@ -58,12 +58,14 @@ bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing,
 /* The index of a handle of this family; false with an exception. None is index 0. */
 bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what,
                  uint32_t *index);
-/* False, with an exception: its shape was removed. */
-bool handle_is_valid(const Handle *handle);
 /* The family of a handle of this scene, and its index; -1 with an exception. */
 int handle_family_of(const Scene *scene, PyObject *object, uint32_t *index);
 /* The def of an object and its kind; false: there is none. */
 bool get_def(const vlScene *scene, Family family, uint32_t index, Def *def, int *kind);
 PyObject *new_handle(Scene *scene, Family family, uint32_t index);
+/* The library's word for a family. */
+vlSceneFamily scene_family(Family family);
+/* Sets a def in the place of an object, or of a removed one. */
+vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def *def, vlError *error);
 
 #endif

@@ -86,7 +86,7 @@ typedef struct Handle {
   PyObject_HEAD Scene *scene;
   const char *family; /* of velo/schema.h, or "groups" */
   uint32_t index;
-  uint64_t serial; /* of a shape or instance: vl_scene_shape_serial and so on; else 0 */
+  uint64_t serial; /* vl_scene_serial */
 } Handle;
 
 /* The classes that the module makes objects of. The Python package replaces them by its
@@ -276,6 +276,8 @@ bool own_check(const Own *own);
 
 /* ---- functions of the files -------------------------------------------------------------- */
 
+/* False, with an exception: its object was removed. */
+bool handle_is_valid(const Handle *handle);
 PyObject *image_object(Context *context,
                        vlImage *image); /* takes the image, also when it fails */
 bool scene_open(const Scene *self);     /* false: an exception is set */

@@ -18,23 +18,26 @@ static const Numbers *read_array(Adding *a, PyObject *value, char type, const ch
   return n;
 }
 
+vlSceneFamily scene_family(Family family) {
+  static const vlSceneFamily families[] = {
+      [TEXTURES] = VL_SCENE_TEXTURES, [MATERIALS] = VL_SCENE_MATERIALS,
+      [MEDIA] = VL_SCENE_MEDIA,       [EMISSION] = VL_SCENE_EMISSIONS,
+      [LIGHTS] = VL_SCENE_LIGHTS,     [SHAPES] = VL_SCENE_SHAPES,
+      [GROUPS] = VL_SCENE_GROUPS,     [INSTANCES] = VL_SCENE_INSTANCES};
+  return families[family];
+}
+
 bool handle_is_valid(const Handle *h) {
-  const vlShapeId shape = {h->index};
-  const vlInstanceId instance = {h->index};
-  vlInstanceInfo info;
-  if (strcmp(h->family, family_names[INSTANCES]) == 0) {
-    if (vl_scene_instance(h->scene->scene, instance, &info) == VL_OK &&
-        vl_scene_instance_serial(h->scene->scene, instance) == h->serial)
-      return true;
-    raise_usage("the instance was removed");
-    return false;
-  }
-  if (strcmp(h->family, family_names[SHAPES]) != 0)
+  static const char *const things[] = {"texture", "material", "medium", "emission",
+                                       "light",   "shape",    "group",  "instance"};
+  int family = 0;
+  while (strcmp(family_names[family], h->family) != 0)
+    family++;
+  const vlSceneFamily f = scene_family((Family)family);
+  if (vl_scene_has(h->scene->scene, f, h->index) &&
+      vl_scene_serial(h->scene->scene, f, h->index) == h->serial)
     return true;
-  if (vl_scene_shape(h->scene->scene, shape) &&
-      vl_scene_shape_serial(h->scene->scene, shape) == h->serial)
-    return true;
-  raise_usage("the shape was removed");
+  raise_usage("the %s was removed", things[family]);
   return false;
 }
 
@@ -410,16 +413,12 @@ static int set_extra(Adding *a, Family family, Def *def, const char *name, PyObj
   return 0;
 }
 
-/* A shape takes the place of one that was removed. */
-static uint32_t add_shape(vlScene *scene, const vlShapeDef *def, vlError *error) {
-  const vlShapeId removed = vl_scene_removed_shape(scene);
-  if (!removed.index)
-    return vl_scene_add_shape(scene, def).index;
-  return vl_scene_set_shape(scene, removed, def, error) == VL_OK ? removed.index : 0;
-}
-
-/* Index 0: it failed; the error is in the scene, or in *error. */
+/* An object takes the place of one that was removed. Index 0: it failed; the error is in the
+ * scene, or in *error. */
 static uint32_t add(vlScene *scene, Family family, const Def *def, vlError *error) {
+  const uint32_t removed = vl_scene_removed(scene, scene_family(family), def);
+  if (removed)
+    return put_def(scene, family, removed, def, error) == VL_OK ? removed : 0;
   switch (family) {
     case TEXTURES:
       return vl_scene_add_texture(scene, &def->texture).index;
@@ -432,12 +431,20 @@ static uint32_t add(vlScene *scene, Family family, const Def *def, vlError *erro
     case LIGHTS:
       return vl_scene_add_light(scene, &def->light).index;
     case SHAPES:
-      return add_shape(scene, &def->shape, error);
+      return vl_scene_add_shape(scene, &def->shape).index;
     case GROUPS:
     case INSTANCES:
       break;
   }
   return 0;
+}
+
+/* As add, of a group. */
+static uint32_t add_named_group(vlScene *scene, const char *name, vlError *error) {
+  const vlGroupId removed = {vl_scene_removed(scene, VL_SCENE_GROUPS, NULL)};
+  if (!removed.index)
+    return vl_scene_add_group(scene, name).index;
+  return vl_scene_set_group(scene, removed, name, error) == VL_OK ? removed.index : 0;
 }
 
 /* Names for "from", which Python reserves. */
@@ -539,10 +546,7 @@ PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
   h->scene = scene;
   h->family = family_names[family];
   h->index = index;
-  if (family == SHAPES)
-    h->serial = vl_scene_shape_serial(scene->scene, (vlShapeId){index});
-  if (family == INSTANCES)
-    h->serial = vl_scene_instance_serial(scene->scene, (vlInstanceId){index});
+  h->serial = vl_scene_serial(scene->scene, scene_family(family), index);
   return (PyObject *)h;
 }
 
@@ -568,7 +572,7 @@ static PyObject *add_group(Scene *self, PyObject *name) {
       keep && (text || name == Py_None) ? scene_attempt(self) : NULL;
   if (checkpoint)
     result =
-        settle(self, checkpoint, GROUPS, vl_scene_add_group(self->scene, text).index, &error);
+        settle(self, checkpoint, GROUPS, add_named_group(self->scene, text, &error), &error);
   Py_XDECREF(keep);
   return result;
 }

@@ -54,8 +54,8 @@ static PyObject *outcome(vlResult result, const vlError *error) {
 
 /* ---- changes ----------------------------------------------------------------------------- */
 
-static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def *def,
-                        vlError *error) {
+vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def *def,
+                 vlError *error) {
   switch (family) {
     case TEXTURES:
       return vl_scene_set_texture(scene, (vlTextureId){index}, &def->texture, error);
@@ -239,34 +239,11 @@ PyObject *scene_remove(Scene *self, PyObject *object) {
   if (family < 0)
     return NULL;
   vlError error = {0};
-  if (family == SHAPES)
-    return outcome(vl_scene_remove_shape(self->scene, (vlShapeId){index}, &error), &error);
-  if (family != INSTANCES)
-    return raise_usage("instances and shapes can be removed, not %s", family_names[family]);
-  return outcome(vl_scene_remove_instance(self->scene, (vlInstanceId){index}, &error), &error);
+  return outcome(vl_scene_remove(self->scene, scene_family((Family)family), index, &error),
+                 &error);
 }
 
 /* ---- handles ----------------------------------------------------------------------------- */
-
-/* Whether the scene has an object of this index; *past: it has none from this one on. */
-static bool exists(const vlScene *scene, const vlSceneInfo *info, Family family, uint32_t index,
-                   bool *past) {
-  Def def;
-  int kind;
-  vlInstanceInfo instance;
-  if (family == SHAPES) {
-    *past = index > vl_scene_id_count(scene, VL_ID_OBJECT);
-    return vl_scene_shape(scene, (vlShapeId){index}) != NULL;
-  }
-  if (family == INSTANCES) {
-    *past = index > info->instances;
-    return vl_scene_instance(scene, (vlInstanceId){index}, &instance) == VL_OK;
-  }
-  bool there =
-      family == GROUPS ? index <= info->groups : get_def(scene, family, index, &def, &kind);
-  *past = !there;
-  return there;
-}
 
 /* _handles(family): a list. */
 PyObject *scene_handles(Scene *self, PyObject *name) {
@@ -275,12 +252,11 @@ PyObject *scene_handles(Scene *self, PyObject *name) {
   int family = find_choice(family_names, "family", name);
   if (family < 0)
     return NULL;
-  vlSceneInfo info;
-  vl_scene_info(self->scene, &info);
+  const vlSceneFamily f = scene_family((Family)family);
+  const uint32_t highest = vl_scene_highest(self->scene, f);
   PyObject *list = PyList_New(0);
-  bool past = false;
-  for (uint32_t index = 1; list && !past; index++) {
-    if (!exists(self->scene, &info, (Family)family, index, &past))
+  for (uint32_t index = 1; list && index <= highest; index++) {
+    if (!vl_scene_has(self->scene, f, index))
       continue;
     PyObject *h = new_handle(self, (Family)family, index);
     if (!h || PyList_Append(list, h) < 0)

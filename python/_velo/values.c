@@ -255,7 +255,7 @@ static uint32_t handle_index(const Scene *scene, PyObject *value, const char *fa
     raise_usage("%s is part of another scene", what);
     return UINT32_MAX;
   }
-  return handle->index;
+  return handle_is_valid(handle) ? handle->index : UINT32_MAX;
 }
 
 /* ---- members ----------------------------------------------------------------------------- */

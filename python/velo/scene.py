@@ -331,8 +331,9 @@ class Scene(_velo.Scene):
         self.show(handle, False)
 
     def remove(self, handle: Handle) -> None:
-        """Removes an instance or a shape for good; its handle is of no further use. The next one that is
-        added takes its place, and the id.object of a shape."""
+        """Removes an object of any family for good; its handle is of no further use. What another object still uses is a
+        SceneError that names the user; the shapes of a group are removed with it. The next object of the family that is added takes
+        its place, and the id.object of a shape."""
         self._changed = True
         self._remove(handle)
 

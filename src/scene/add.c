@@ -9,6 +9,7 @@
 #include "color/color.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/texture.h"
@@ -122,7 +123,7 @@ static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
     uint32_t index = d->materials[i].index;
     if (index == 0)
       return bad(scene, d->source, "mix material", "needs two materials");
-    if (index > scene->materials.count)
+    if (!vl_scene_has(scene, VL_SCENE_MATERIALS, index))
       return bad(scene, d->source, "mix material",
                  "there is no such material (add its parts first)");
   }
@@ -248,7 +249,7 @@ static bool check_portal(vlScene *scene, const vlLightDef *d) {
 }
 
 static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *row) {
-  if (d->medium.index > scene->media.count)
+  if (d->medium.index && !vl_scene_has(scene, VL_SCENE_MEDIA, d->medium.index))
     return bad(scene, d->source, "light", "there is no such medium");
   if (d->power < 0.0)
     return bad(scene, d->source, "light", "power must not be negative");

@@ -49,7 +49,8 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid,
   double p[3], q[3];
   for (size_t i = 0; i < s->lights.count; i++) {
     const vlLightDef *l = &s->lights.items[i];
-    if (vl_kind_row(&vl_light_family, (int)l->kind)->traits & VL_LIGHT_TRAIT_FAR)
+    if (vl_scene_light_is_removed(s, i) ||
+        (vl_kind_row(&vl_light_family, (int)l->kind)->traits & VL_LIGHT_TRAIT_FAR))
       continue;
     vlMat4 m = vl_mat4_load(l->world_from_light);
     for (int k = 0; k < 3; k++)

@@ -141,11 +141,11 @@ static void tell_unused(vlCheck *c) {
                    "no shape takes this material");
   }
   for (size_t i = 0; i < s->media.count; i++)
-    if (!c->medium_used[i])
+    if (!c->medium_used[i] && !vl_scene_mark(&s->medium_marks, i).removed)
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source,
                    "nothing lies in medium \"%s\"", vl_short_text(s->media.items[i].name).text);
   for (size_t i = 0; i < s->emissions.count; i++)
-    if (!c->emission_used[i])
+    if (!c->emission_used[i] && !vl_scene_mark(&s->emission_marks, i).removed)
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
                    "no shape emits light by this area light");
   vl_free(c->context, read);

@@ -82,6 +82,9 @@ void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint) {
   KEEP_ARRAY(groups);
   KEEP_ARRAY(instances);
   KEEP_ARRAY(texture_marks);
+  KEEP_ARRAY(material_marks);
+  KEEP_ARRAY(emission_marks);
+  KEEP_ARRAY(group_marks);
   KEEP_ARRAY(light_marks);
   KEEP_ARRAY(medium_marks);
   KEEP_ARRAY(shape_marks);

@@ -21,19 +21,19 @@
        : NULL)
 
 const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id) {
-  return ITEM(scene, textures, id);
+  return vl_scene_has(scene, VL_SCENE_TEXTURES, id.index) ? ITEM(scene, textures, id) : NULL;
 }
 const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id) {
-  return ITEM(scene, materials, id);
+  return vl_scene_has(scene, VL_SCENE_MATERIALS, id.index) ? ITEM(scene, materials, id) : NULL;
 }
 const vlEmissionDef *vl_scene_emission(const vlScene *scene, vlEmissionId id) {
-  return ITEM(scene, emissions, id);
+  return vl_scene_has(scene, VL_SCENE_EMISSIONS, id.index) ? ITEM(scene, emissions, id) : NULL;
 }
 const vlLightDef *vl_scene_light(const vlScene *scene, vlLightId id) {
-  return ITEM(scene, lights, id);
+  return vl_scene_has(scene, VL_SCENE_LIGHTS, id.index) ? ITEM(scene, lights, id) : NULL;
 }
 const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id) {
-  return ITEM(scene, media, id);
+  return vl_scene_has(scene, VL_SCENE_MEDIA, id.index) ? ITEM(scene, media, id) : NULL;
 }
 const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id) {
   const vlShapeDef *def = ITEM(scene, shapes, id);
@@ -80,7 +80,7 @@ static vlResult take_error(vlScene *scene, vlError *error) {
 /* ---- replacing a def --------------------------------------------------------------------- */
 
 /* A def that is set again keeps its image, which another object may then have, too. */
-static bool is_used(const vlScene *scene, const vlImage *image) {
+bool vl_scene_image_is_used(const vlScene *scene, const vlImage *image) {
   bool used = false;
   for (size_t i = 0; i < scene->textures.count; i++)
     used = used || scene->textures.items[i].image == image;
@@ -95,7 +95,8 @@ void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t 
   size_t kept = 0;
   for (size_t i = 0; i < scene->edits.count; i++) {
     vlSceneEdit e = scene->edits.items[i];
-    if (i < end && e.array == array && e.id == id && !(e.image && is_used(scene, e.image))) {
+    if (i < end && e.array == array && e.id == id &&
+        !(e.image && vl_scene_image_is_used(scene, e.image))) {
       vl_free(scene->context, e.block);
       vl_image_destroy(e.image);
     } else {
@@ -188,6 +189,25 @@ static vlResult set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def, v
   SET(scene, shapes, vl_scene_add_shape, id, def, "shape", error);
 }
 
+static vlResult set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
+                             vlError *error) {
+  SET(scene, materials, vl_scene_add_material, id, def, "material", error);
+}
+static vlResult set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
+                             vlError *error) {
+  SET(scene, emissions, vl_scene_add_emission, id, def, "emission", error);
+}
+
+/* A removed object is there again. */
+static void note_change(vlScene *scene, vlSceneMark *mark) {
+  mark->generation = vl_context_number(scene->context);
+  if (!mark->removed)
+    return;
+  mark->removed = false;
+  mark->hidden = false;
+  mark->serial = mark->generation;
+}
+
 /* Calls set (one of the above). After success the object's mark has a new generation. The id
  * must be checked before. */
 #define SET_AND_MARK(scene, marks, set, id, def, error)                       \
@@ -197,7 +217,7 @@ static vlResult set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def, v
       return vl_fail_memory(error);                                           \
     vlResult changed = set(scene, id, def, error);                            \
     if (changed == VL_OK)                                                     \
-      mark->generation = vl_context_number((scene)->context);                 \
+      note_change(scene, mark);                                               \
     return changed;                                                           \
   } while (0)
 
@@ -206,7 +226,8 @@ vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef
   vlResult result = check(scene, ITEM(scene, textures, id) != NULL, "texture", error);
   if (result != VL_OK)
     return result;
-  if (def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
+  const bool there = vl_scene_has(scene, VL_SCENE_TEXTURES, id.index);
+  if (there && def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
     return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
                    def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
   SET_AND_MARK(scene, texture_marks, set_texture, id, def, error);
@@ -214,12 +235,18 @@ vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef
 
 vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
                                vlError *error) {
-  SET(scene, materials, vl_scene_add_material, id, def, "material", error);
+  vlResult result = check(scene, ITEM(scene, materials, id) != NULL, "material", error);
+  if (result != VL_OK)
+    return result;
+  SET_AND_MARK(scene, material_marks, set_material, id, def, error);
 }
 
 vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
                                vlError *error) {
-  SET(scene, emissions, vl_scene_add_emission, id, def, "emission", error);
+  vlResult result = check(scene, ITEM(scene, emissions, id) != NULL, "emission", error);
+  if (result != VL_OK)
+    return result;
+  SET_AND_MARK(scene, emission_marks, set_emission, id, def, error);
 }
 
 vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def,
@@ -250,7 +277,7 @@ static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool show
 }
 
 vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error) {
-  vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
+  vlResult result = check(scene, vl_scene_light(scene, id) != NULL, "light", error);
   return result == VL_OK ? show(scene, &scene->light_marks, id.index, shown, error) : result;
 }
 
@@ -259,8 +286,7 @@ vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *
   return result == VL_OK ? show(scene, &scene->shape_marks, id.index, shown, error) : result;
 }
 
-/* Frees those of the scene's blocks that are in a list. */
-static void free_blocks(vlScene *scene, const void *const *own, int count) {
+void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->blocks.count; i++) {
     void *block = scene->blocks.items[i];
@@ -283,7 +309,7 @@ static void free_added(vlScene *scene, const vlShapeDef *def) {
   own[VL_SHAPE_ARRAYS] = def->label.name;
   own[VL_SHAPE_ARRAYS + 1] = def->label.path;
   own[VL_SHAPE_ARRAYS + 2] = def->label.place;
-  free_blocks(scene, own, VL_SHAPE_ARRAYS + NAMES);
+  vl_scene_free_blocks(scene, own, VL_SHAPE_ARRAYS + NAMES);
 }
 
 /* Ends the change of a shape, old as it was before. */
@@ -292,18 +318,15 @@ static void mark_change(vlScene *scene, vlSceneMark *mark, const vlShapeDef *old
     free_added(scene, old);
   if (old->group.index)
     scene->groups.items[old->group.index - 1].shape_count--;
-  mark->generation = vl_context_number(scene->context);
 }
 
-static void occupy(vlScene *scene, vlSceneMark *mark, uint32_t id) {
+/* Takes an id out of the list of removed shapes. */
+static void occupy(vlScene *scene, uint32_t id) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->removed_shapes.count; i++)
     if (scene->removed_shapes.items[i] != id)
       scene->removed_shapes.items[kept++] = scene->removed_shapes.items[i];
   scene->removed_shapes.count = kept;
-  mark->removed = false;
-  mark->hidden = false;
-  mark->serial = mark->generation;
 }
 
 vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
@@ -320,7 +343,8 @@ vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
     return result;
   mark_change(scene, mark, &old);
   if (mark->removed)
-    occupy(scene, mark, id.index);
+    occupy(scene, id.index);
+  note_change(scene, mark);
   return VL_OK;
 }
 
@@ -335,6 +359,7 @@ vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error) {
   *slot = id.index;
   vlShapeDef *def = &scene->shapes.items[id.index - 1];
   mark_change(scene, mark, def);
+  mark->generation = vl_context_number(scene->context);
   vl_scene_free_edits(scene, &scene->shapes, id.index, scene->edits.count);
   *def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   mark->removed = mark->hidden = true;
@@ -358,7 +383,9 @@ vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId 
                                      vlError *error) {
   vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
   if (result == VL_OK)
-    result = check(scene, material.index <= scene->materials.count, "material", error);
+    result =
+        check(scene, !material.index || vl_scene_has(scene, VL_SCENE_MATERIALS, material.index),
+              "material", error);
   if (result == VL_OK)
     scene->shapes.items[id.index - 1].material = material;
   return result;
@@ -368,7 +395,9 @@ vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId 
                                      vlError *error) {
   vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
   if (result == VL_OK)
-    result = check(scene, emission.index <= scene->emissions.count, "emission", error);
+    result =
+        check(scene, !emission.index || vl_scene_has(scene, VL_SCENE_EMISSIONS, emission.index),
+              "emission", error);
   if (result != VL_OK)
     return result;
   const vlShapeDef *shape = &scene->shapes.items[id.index - 1];
@@ -419,7 +448,7 @@ vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *erro
   *slot = id.index;
   const void *const own[] = {instance->times, instance->poses, instance->label.name,
                              instance->label.path, instance->label.place};
-  free_blocks(scene, own, sizeof own / sizeof *own);
+  vl_scene_free_blocks(scene, own, sizeof own / sizeof *own);
   instance->times = instance->poses = NULL;
   instance->keys = 0;
   instance->label = (vlLabel){0};

@@ -135,7 +135,7 @@ static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
 }
 
 uint32_t vl_scene_light_count(const vlScene *s) {
-  size_t n = s->lights.count;
+  size_t n = s->lights.count - vl_scene_removed_count(&s->light_marks);
   for (size_t i = 0; i < s->shapes.count; i++)
     n += s->shapes.items[i].emission.index != 0;
   return (uint32_t)n;
@@ -144,11 +144,12 @@ uint32_t vl_scene_light_count(const vlScene *s) {
 vlResult vl_scene_light_info(const vlScene *s, uint32_t index, vlLightInfo *info) {
   if (!s || !info)
     return VL_ERROR_ARGUMENT;
-  if (index < s->lights.count) {
-    *info = light(s, &s->lights.items[index]);
-    return VL_OK;
-  }
-  size_t left = index - s->lights.count;
+  size_t left = index;
+  for (size_t i = 0; i < s->lights.count; i++)
+    if (!vl_scene_light_is_removed(s, i) && left-- == 0) {
+      *info = light(s, &s->lights.items[i]);
+      return VL_OK;
+    }
   for (size_t i = 0; i < s->shapes.count; i++)
     if (s->shapes.items[i].emission.index && left-- == 0) {
       *info = shape_light(s, &s->shapes.items[i]);

@@ -76,12 +76,13 @@ double vl_lamp_illuminance(const vlScene *scene, const vlExtent *boxes) {
   Meter m = {.scene = scene};
   if (scene->lights.count == 0)
     return 0;
-  m.strength = vl_alloc_array(scene->context, scene->lights.count, sizeof *m.strength);
+  m.strength = vl_alloc_zero(scene->context, scene->lights.count, sizeof *m.strength);
   if (!m.strength)
     return 0;
   for (size_t i = 0; i < scene->lights.count; i++) {
     const vlLightDef *l = &scene->lights.items[i];
-    m.strength[i] = vl_light_def_luminance(&l->color) * (double)l->scale;
+    if (!vl_scene_light_is_removed(scene, i))
+      m.strength[i] = vl_light_def_luminance(&l->color) * (double)l->scale;
   }
   vl_extent_visit(scene, boxes, NULL, meter, &m);
   vl_free(scene->context, m.strength);

@@ -70,6 +70,9 @@ void vl_scene_destroy(vlScene *scene) {
   VL_ARRAY_FREE(context, &scene->removed_shapes);
   VL_ARRAY_FREE(context, &scene->removed_instances);
   VL_ARRAY_FREE(context, &scene->texture_marks);
+  VL_ARRAY_FREE(context, &scene->material_marks);
+  VL_ARRAY_FREE(context, &scene->emission_marks);
+  VL_ARRAY_FREE(context, &scene->group_marks);
   VL_ARRAY_FREE(context, &scene->light_marks);
   VL_ARRAY_FREE(context, &scene->medium_marks);
   VL_ARRAY_FREE(context, &scene->shape_marks);
@@ -104,34 +107,33 @@ vlSceneDefs *vl_scene_defs(vlScene *scene) {
   return &scene->defs;
 }
 
-#define COUNT_KINDS(name, array)                             \
-  if (strcmp(family, name) == 0) {                           \
-    for (size_t i = 0; i < scene->array.count; i++)          \
-      count += (uint32_t)scene->array.items[i].kind == kind; \
-    return count;                                            \
+#define COUNT_KINDS(name, array, marks)                        \
+  if (strcmp(family, name) == 0) {                             \
+    for (size_t i = 0; i < scene->array.count; i++)            \
+      count += (uint32_t)scene->array.items[i].kind == kind && \
+               !vl_scene_mark(&scene->marks, i).removed;       \
+    return count;                                              \
   }
 
 uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {
   uint64_t count = 0;
-  COUNT_KINDS("materials", materials)
-  COUNT_KINDS("textures", textures)
-  COUNT_KINDS("media", media)
-  COUNT_KINDS("lights", lights)
-  if (strcmp(family, "shapes") == 0 && kind == VL_SHAPE_TRIANGLES)
-    count -= scene->removed_shapes.count;
-  COUNT_KINDS("shapes", shapes)
+  COUNT_KINDS("materials", materials, material_marks)
+  COUNT_KINDS("textures", textures, texture_marks)
+  COUNT_KINDS("media", media, medium_marks)
+  COUNT_KINDS("lights", lights, light_marks)
+  COUNT_KINDS("shapes", shapes, shape_marks)
   return 0;
 }
 
 void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
   *info = (vlSceneInfo){
       .shapes = scene->shapes.count - scene->removed_shapes.count,
-      .textures = scene->textures.count,
-      .materials = scene->materials.count,
-      .lights = scene->lights.count,
-      .media = scene->media.count,
-      .groups = scene->groups.count,
-      .instances = scene->instances.count,
+      .textures = scene->textures.count - vl_scene_removed_count(&scene->texture_marks),
+      .materials = scene->materials.count - vl_scene_removed_count(&scene->material_marks),
+      .lights = scene->lights.count - vl_scene_removed_count(&scene->light_marks),
+      .media = scene->media.count - vl_scene_removed_count(&scene->medium_marks),
+      .groups = scene->groups.count - vl_scene_removed_count(&scene->group_marks),
+      .instances = scene->instances.count - scene->removed_instances.count,
   };
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *shape = &scene->shapes.items[i];

@@ -42,9 +42,9 @@ typedef struct vlSceneEdit {
 /* The state of an object besides its def. Objects that were never changed have no mark. */
 typedef struct vlSceneMark {
   uint64_t generation; /* 0: as added; each vl_scene_set_* gives a new number */
-  uint64_t serial;     /* of a shape in the place of a removed one: its number; else 0 */
+  uint64_t serial;     /* of an object in the place of a removed one: its number; else 0 */
   bool hidden;
-  bool removed; /* of a shape: its def is that of a mesh without vertices */
+  bool removed; /* its def is the default: of a shape, that of a mesh without vertices */
 } vlSceneMark;
 typedef VL_ARRAY(vlSceneMark)
     vlSceneMarks; /* element i: object of id i + 1; may be shorter than the objects */
@@ -75,7 +75,8 @@ struct vlScene {
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;
   uint64_t number; /* of this scene in its context; from 1 */
-  vlSceneMarks texture_marks, light_marks, medium_marks, shape_marks;
+  vlSceneMarks texture_marks, material_marks, medium_marks, emission_marks, light_marks,
+      shape_marks, group_marks;
   VL_ARRAY(vlSceneEdit) edits;
   VL_ARRAY(uint32_t) removed_shapes; /* ids */
   VL_ARRAY(uint32_t) removed_instances;
@@ -105,6 +106,17 @@ struct vlScene {
 
 static inline vlSceneMark vl_scene_mark(const vlSceneMarks *marks, size_t index) {
   return index < marks->count ? marks->items[index] : (vlSceneMark){0};
+}
+/* Whether the light with this index was removed. */
+static inline bool vl_scene_light_is_removed(const vlScene *scene, size_t index) {
+  return vl_scene_mark(&scene->light_marks, index).removed;
+}
+/* The number of removed objects among those that have these marks. */
+static inline uint32_t vl_scene_removed_count(const vlSceneMarks *marks) {
+  uint32_t count = 0;
+  for (size_t i = 0; i < marks->count; i++)
+    count += marks->items[i].removed;
+  return count;
 }
 /* Whether the shape with this index was removed. */
 static inline bool vl_scene_shape_is_removed(const vlScene *scene, size_t index) {
@@ -137,6 +149,10 @@ void vl_shape_arrays(const vlShapeDef *def, const void *arrays[VL_SHAPE_ARRAYS])
 void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t end);
 /* The mark of the object with this id; null: out of memory. */
 vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id);
+/* Frees those of the scene's blocks that are in a list. */
+void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count);
+/* Whether a texture or a light has this image. */
+bool vl_scene_image_is_used(const vlScene *scene, const vlImage *image);
 
 /* Whether a shape can be an area light. */
 bool vl_shape_may_emit(const vlShapeDef *def);

@@ -8,6 +8,7 @@
 #include "math/motion.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/edit.h"
 #include "velo/shape.h"
 
 static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
@@ -204,6 +205,11 @@ bool vl_shape_may_emit(const vlShapeDef *d) {
   return (row->traits & VL_SHAPE_TRAIT_EMITS) && !d->centers && !d->radii;
 }
 
+/* Whether an id is none, or that of an object of the scene. */
+static bool is_there(const vlScene *scene, vlSceneFamily family, uint32_t index) {
+  return index == 0 || vl_scene_has(scene, family, index);
+}
+
 static bool check_shape(vlScene *scene, vlShapeDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
   if (!row) {
@@ -216,19 +222,20 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
     bad(scene, d, "shapes of this kind cannot be area lights");
     return false;
   }
-  if (d->group.index > scene->groups.count) {
+  if (!is_there(scene, VL_SCENE_GROUPS, d->group.index)) {
     bad(scene, d, "there is no such group");
     return false;
   }
-  if (d->material.index > scene->materials.count) {
+  if (!is_there(scene, VL_SCENE_MATERIALS, d->material.index)) {
     bad(scene, d, "there is no such material");
     return false;
   }
-  if (d->emission.index > scene->emissions.count) {
+  if (!is_there(scene, VL_SCENE_EMISSIONS, d->emission.index)) {
     bad(scene, d, "there is no such emission");
     return false;
   }
-  if (d->inside.index > scene->media.count || d->outside.index > scene->media.count) {
+  if (!is_there(scene, VL_SCENE_MEDIA, d->inside.index) ||
+      !is_there(scene, VL_SCENE_MEDIA, d->outside.index)) {
     bad(scene, d, "there is no such medium");
     return false;
   }
@@ -384,7 +391,7 @@ static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const dou
                                       vlSource source) {
   if (scene->error.code != VL_OK)
     return NULL;
-  if (group.index == 0 || group.index > scene->groups.count) {
+  if (!vl_scene_has(scene, VL_SCENE_GROUPS, group.index)) {
     vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: there is no such group");
     return NULL;
   }

@@ -3,6 +3,7 @@
 
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/edit.h"
 #include "velo/texture.h"
 
 typedef struct Take {
@@ -22,7 +23,7 @@ static bool take_texture(const Take *t, const vlParameter *p, vlTextureId id, bo
     return true;
   if (p->flags & VL_PARAMETER_NO_TEXTURE)
     return bad(t, p, "cannot be textured");
-  if (id.index > t->scene->textures.count)
+  if (!vl_scene_has(t->scene, VL_SCENE_TEXTURES, id.index))
     return bad(t, p, "names a texture that does not exist (add it first)");
   if (t->scene->textures.items[id.index - 1].spectrum == spectrum)
     return true;

@@ -175,7 +175,7 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
   for (size_t i = 0; i < x->scene->lights.count; i++) {
     const vlLightDef *d = &x->scene->lights.items[i];
     float rgb[3];
-    if (d->kind == VL_LIGHT_INFINITE)
+    if (d->kind == VL_LIGHT_INFINITE || vl_scene_light_is_removed(x->scene, i))
       continue; /* vl_gltf_put_environment */
     if (d->kind >= VL_LENGTH(types) || !types[d->kind]) {
       vl_export_lose(x, "lights of kinds that glTF has not: left out");

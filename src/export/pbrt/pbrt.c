@@ -233,6 +233,8 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
 static bool put_groups(vlExport *x) {
   const vlScene *s = x->scene;
   for (size_t g = 0; g < s->groups.count; g++) {
+    if (vl_scene_mark(&s->group_marks, g).removed)
+      continue;
     PUT("ObjectBegin \"object%zu\"\n", g + 1);
     for (size_t i = 0; i < s->shapes.count; i++)
       if (s->shapes.items[i].group.index == g + 1 && !vl_pbrt_shape(x, i))
@@ -265,7 +267,7 @@ bool vl_export_pbrt(vlExport *x) {
   if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
     PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);
   for (size_t i = 0; i < s->media.count; i++)
-    if (!vl_pbrt_medium(x, i))
+    if (!vl_scene_mark(&s->medium_marks, i).removed && !vl_pbrt_medium(x, i))
       return false;
   if (s->defs.camera_medium.index)
     PUT("MediumInterface \"\" \"medium%u\"\n", s->defs.camera_medium.index);
@@ -276,10 +278,10 @@ bool vl_export_pbrt(vlExport *x) {
   put_tracer(x);
   PUT("WorldBegin\n");
   for (size_t i = 0; i < s->lights.count; i++)
-    if (!put_light(x, &s->lights.items[i]))
+    if (!vl_scene_light_is_removed(s, i) && !put_light(x, &s->lights.items[i]))
       return false;
   for (size_t i = 0; i < s->materials.count; i++)
-    if (!vl_pbrt_material(x, (uint32_t)i + 1))
+    if (!vl_scene_mark(&s->material_marks, i).removed && !vl_pbrt_material(x, (uint32_t)i + 1))
       return false;
   for (size_t i = 0; i < s->shapes.count; i++)
     if (!s->shapes.items[i].group.index && !vl_pbrt_shape(x, i))

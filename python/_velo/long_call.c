@@ -1,6 +1,7 @@
 /* _velo/long_call.c: calls of the library that take long. Such a call runs on a thread of its
  * own; the thread of Python waits for it, looks for signals and runs the callbacks. So Ctrl-C
- * stops a call at once (vlCancel), whatever it does. */
+ * stops a call at once (vlCancel), whatever it does. A thread serves one call after another:
+ * Embree keeps some 300 bytes for each thread that has ever built a tree. */
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -15,13 +16,22 @@ _Thread_local const Film *open_film;
 
 enum { NOTHING, PROGRESS, STEP };
 
+/* A thread that runs calls. It is never freed, so that it may still post when its call is
+ * done. */
+typedef struct Runner {
+  sem_t begin;    /* there is a call */
+  sem_t wake;     /* the call asks, or is done */
+  sem_t answered; /* the callback has answered */
+  Waiting *call;
+  struct Runner *next; /* of those that have no call */
+} Runner;
+
 struct Waiting {
   LongCall *call;
   LongBody *body;
   void *user;
   vlResult result;
-  sem_t wake;     /* the call asks, or is done */
-  sem_t answered; /* the callback has answered */
+  Runner *runner;
   atomic_int question;
   const void *state; /* vlProgress or vlStep of the question */
   bool answer;
@@ -31,17 +41,23 @@ struct Waiting {
 
 /* The calls of this process, guarded by the GIL. */
 static Waiting *running;
+static Runner *idle;
 static long running_pid;
 static bool shutting_down;
 static pthread_t shutter; /* the thread that ends the interpreter; only if shutting_down */
 
 /* ---- the thread of the call -------------------------------------------------------------- */
 
-static void *run_body(void *argument) {
-  Waiting *w = argument;
-  w->result = w->body(w->user);
-  atomic_store(&w->done, true);
-  sem_post(&w->wake);
+static void *run_calls(void *argument) {
+  Runner *runner = argument;
+  for (;;) {
+    while (sem_wait(&runner->begin) != 0) {
+    }
+    Waiting *w = runner->call;
+    w->result = w->body(w->user);
+    atomic_store(&w->done, true); /* from now on the call may be gone */
+    sem_post(&runner->wake);
+  }
   return NULL;
 }
 
@@ -49,8 +65,8 @@ static bool ask(LongCall *call, int question, const void *state) {
   Waiting *w = call->waiting;
   w->state = state;
   atomic_store(&w->question, question);
-  sem_post(&w->wake);
-  while (sem_wait(&w->answered) != 0) {
+  sem_post(&w->runner->wake);
+  while (sem_wait(&w->runner->answered) != 0) {
   }
   return w->answer;
 }
@@ -64,19 +80,49 @@ bool long_call_step(void *user, const vlStep *step) {
 }
 
 /* A thread that gets no signals: they wake the one that waits. */
-static bool start(pthread_t *thread, Waiting *w) {
+static bool start(Runner *runner) {
   enum { STACK = 8 << 20 };
   sigset_t all, old;
+  pthread_t thread;
   pthread_attr_t attributes;
   if (pthread_attr_init(&attributes) != 0)
     return false;
   pthread_attr_setstacksize(&attributes, STACK);
+  pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &old);
-  bool started = pthread_create(thread, &attributes, run_body, w) == 0;
+  bool started = pthread_create(&thread, &attributes, run_calls, runner) == 0;
   pthread_sigmask(SIG_SETMASK, &old, NULL);
   pthread_attr_destroy(&attributes);
   return started;
+}
+
+/* A thread without a call, taken from the list or new; null: there is no memory for one. Needs
+ * the GIL. */
+static Runner *take_runner(void) {
+  Runner *runner = idle;
+  if (runner) {
+    idle = runner->next;
+    while (sem_trywait(&runner->wake) == 0) {
+    }
+    return runner;
+  }
+  runner = PyMem_Calloc(1, sizeof *runner);
+  if (!runner)
+    return NULL;
+  sem_init(&runner->begin, 0, 0);
+  sem_init(&runner->wake, 0, 0);
+  sem_init(&runner->answered, 0, 0);
+  if (start(runner))
+    return runner;
+  PyMem_Free(runner);
+  return NULL;
+}
+
+static void put_runner(Runner *runner) {
+  runner->call = NULL;
+  runner->next = idle;
+  idle = runner;
 }
 
 /* ---- the thread of Python ---------------------------------------------------------------- */
@@ -116,7 +162,7 @@ static void wait(Waiting *w) {
     until.tv_nsec -= 1000000000L;
     until.tv_sec++;
   }
-  sem_clockwait(&w->wake, CLOCK_MONOTONIC, &until);
+  sem_clockwait(&w->runner->wake, CLOCK_MONOTONIC, &until);
 }
 
 /* Until the call is done. False: this is now another process, a child of a callback, where the
@@ -142,7 +188,7 @@ static bool attend(Waiting *w, Call *call) {
     if (running_pid != (long)getpid())
       return false;
     if (question)
-      sem_post(&w->answered);
+      sem_post(&w->runner->answered);
   }
   return true;
 }
@@ -203,12 +249,12 @@ static void wait_for_the_end(void) {
 
 bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult *result) {
   Waiting w = {.call = c, .body = body, .user = user};
-  pthread_t thread;
   Call call;
   *result = VL_ERROR_MEMORY;
   c->waiting = &w;
   if (running_pid != (long)getpid()) {
     running = NULL;
+    idle = NULL; /* threads of the parent */
     running_pid = (long)getpid();
   }
   if (shutting_down)
@@ -219,24 +265,25 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   }
   w.next = running;
   running = &w;
-  if (!call_begin(&call, c->context, busy)) {
+  w.runner = take_runner();
+  if (!w.runner || !call_begin(&call, c->context, busy)) {
     forget(&w);
+    if (!w.runner)
+      raise_result(VL_ERROR_MEMORY, NULL);
+    else
+      put_runner(w.runner);
     return false;
   }
-  sem_init(&w.wake, 0, 0);
-  sem_init(&w.answered, 0, 0);
-  bool started = start(&thread, &w);
-  bool here = !started || attend(&w, &call);
-  if (started && here)
-    pthread_join(thread, NULL);
+  w.runner->call = &w;
+  sem_post(&w.runner->begin);
+  bool here = attend(&w, &call);
   call_end(&call);
   forget(&w);
   if (!here) {
     context_check(c->context); /* raises ForkError */
     return false;
   }
-  sem_destroy(&w.wake);
-  sem_destroy(&w.answered);
+  put_runner(w.runner);
   if (shutting_down)
     wait_for_the_end();
   *result = w.result;
@@ -245,8 +292,6 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
       PyErr_SetObject((PyObject *)Py_TYPE(c->error), c->error);
     Py_CLEAR(c->error);
   }
-  if (!started)
-    raise_result(VL_ERROR_MEMORY, NULL);
   return !PyErr_Occurred();
 }
 

@@ -193,8 +193,8 @@ def held_by(scene, edit):
 
 
 def check_flat(edit, rounds):
-    """Edits, each rendered; the first tenth fills caches. Without memory for each edit the process grows by less than 12 MB
-    (pages of the C library's); a mesh that is kept for each takes 20 MB or more."""
+    """Edits, each rendered; the first tenth fills caches. Then the process grows by less than 1 MB: pages that the C library has
+    touched for the first time. 300 bytes for each thread that builds were .3 MB for 1000 edits, and a second heap 6.5 MB."""
     scene = build(0)
     for number in range(rounds):
         if number == rounds // 10:
@@ -207,7 +207,7 @@ def check_flat(edit, rounds):
     other = build(0)
     edit(other, 0)
     assert bits(scene) == bits(other), edit.__name__
-    assert after[0] <= before[0] and (after[1] - before[1] < 12e6 or SANITIZED), edit.__name__
+    assert after[0] <= before[0] and (after[1] - before[1] < 1e6 or SANITIZED), edit.__name__
 
 
 def reshape(scene, number):

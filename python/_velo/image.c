@@ -382,6 +382,62 @@ static PyObject *image_attributes(Image *self, void *unused) {
   return result;
 }
 
+enum { MAX_NUMBERS = 16 }; /* of an attribute */
+
+/* _attributes(): a list of (name, type, text or None, 16 numbers), for pickle. */
+static PyObject *image_pickled_attributes(Image *self, PyObject *unused) {
+  (void)unused;
+  if (!open_image(self))
+    return NULL;
+  PyObject *list = PyList_New(0);
+  for (uint32_t i = 0; list && i < vl_image_attribute_count(self->image); i++) {
+    vlAttribute a;
+    vl_image_attribute(self->image, i, &a);
+    PyObject *numbers = PyTuple_New(MAX_NUMBERS);
+    for (int k = 0; numbers && k < MAX_NUMBERS; k++)
+      PyTuple_SetItem(numbers, k, PyFloat_FromDouble(a.numbers[k]));
+    const bool text = a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS;
+    PyObject *item =
+        numbers ? Py_BuildValue("(yizN)", a.name, (int)a.type, text ? a.string : NULL, numbers)
+                : NULL;
+    if (!item || PyList_Append(list, item) < 0)
+      Py_CLEAR(list);
+    Py_XDECREF(item);
+  }
+  return list;
+}
+
+/* _set_attributes(list): those of _attributes(). */
+static PyObject *image_set_attributes(Image *self, PyObject *list) {
+  if (!open_image(self))
+    return NULL;
+  const Py_ssize_t count = sequence_size(list, "attributes", 0, 1 << 20);
+  for (Py_ssize_t i = 0; i < count; i++) {
+    PyObject *item = PySequence_GetItem(list, i), *numbers = NULL;
+    vlAttribute a = {0};
+    int type = -1;
+    bool fine = item &&
+                PyArg_ParseTuple(item, "yizO:attribute", &a.name, &type, &a.string, &numbers) &&
+                numbers_copy(numbers, "an attribute", MAX_NUMBERS, a.numbers);
+    if (fine && (type < 0 || type > VL_ATTRIBUTE_STRINGS)) {
+      raise_usage("an attribute has an unknown type");
+      fine = false;
+    }
+    a.type = (vlAttributeType)type;
+    if (fine && !a.string)
+      a.string = "";
+    vlResult done = fine ? vl_image_set_attribute(self->image, &a) : VL_OK;
+    if (done != VL_OK)
+      raise_result(done, NULL);
+    Py_XDECREF(item);
+    if (!fine || done != VL_OK)
+      return NULL;
+  }
+  if (count < 0)
+    return NULL;
+  Py_RETURN_NONE;
+}
+
 static PyObject *image_names(Image *self, void *unused) {
   (void)unused;
   if (!open_image(self))
@@ -429,6 +485,10 @@ static PyMethodDef image_methods[] = {
     {"_compare", (PyCFunction)image_compare, METH_VARARGS, "Differences from a reference."},
     {"_denoise", (PyCFunction)image_denoise, METH_O, "A denoised copy."},
     {"_close", (PyCFunction)image_close, METH_NOARGS, "Frees the pixels."},
+    {"_attributes", (PyCFunction)image_pickled_attributes, METH_NOARGS,
+     "The attributes, for pickle."},
+    {"_set_attributes", (PyCFunction)image_set_attributes, METH_O,
+     "Sets those of _attributes()."},
     {NULL, NULL, 0, NULL},
 };
 static PyGetSetDef image_members[] = {

@@ -77,6 +77,17 @@ static PyObject *channel_names(PyObject *module, PyObject *unused) {
   return texts(vl_channel_name);
 }
 
+/* The description of a parameter with the unit of its value here: an angle that files have in
+ * degrees is in radians. */
+static PyObject *described(const vlParameter *p) {
+  const char *unit = p->unit, *text = p->description ? p->description : "";
+  if (unit && p->factor != 0 && strcmp(unit, "degrees") == 0)
+    unit = "radians";
+  else if (p->factor != 0)
+    unit = NULL;
+  return unit ? PyUnicode_FromFormat("%s (%s)", text, unit) : PyUnicode_FromString(text);
+}
+
 /* kinds(family): {kind: {keyword: description}} of a family of velo/schema.h. */
 static PyObject *kinds(PyObject *module, PyObject *arguments) {
   (void)module;
@@ -99,7 +110,7 @@ static PyObject *kinds(PyObject *module, PyObject *arguments) {
       if (p->flags & VL_PARAMETER_SHORTHAND || !p->member || !p->member[0])
         continue;
       const char *dot = strrchr(p->member, '.');
-      PyObject *text = PyUnicode_FromString(p->description ? p->description : "");
+      PyObject *text = described(p);
       if (!text || PyDict_SetItemString(words, dot ? dot + 1 : p->member, text) < 0)
         Py_CLEAR(words);
       Py_XDECREF(text);

@@ -166,6 +166,17 @@ static PyObject *settings_get_size(Settings *self, void *unused) {
   return Py_BuildValue("(II)", self->defs.film.width, self->defs.film.height);
 }
 
+static PyObject *settings_get_own(Settings *self, void *unused) {
+  (void)unused;
+  return PyBool_FromLong(self->defs.render.own_tracer || self->defs.render.own_sampler);
+}
+
+static PyObject *settings_get_crop(Settings *self, void *unused) {
+  (void)unused;
+  const uint32_t *c = self->defs.film.crop;
+  return Py_BuildValue("(IIII)", c[0], c[1], c[2], c[3]);
+}
+
 static PyObject *settings_copy(Settings *self, PyObject *unused) {
   (void)unused;
   Settings *copy = make_object(TYPE_SETTINGS);
@@ -205,6 +216,8 @@ static PyMethodDef settings_methods[] = {
 };
 static PyGetSetDef settings_members[] = {
     {"size", (getter)settings_get_size, NULL, "Width and height, pixels.", NULL},
+    {"_own", (getter)settings_get_own, NULL, "A sampler or a tracer is one's own.", NULL},
+    {"crop", (getter)settings_get_crop, NULL, "x0, y0, x1, y1, pixels.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot settings_slots[] = {
@@ -214,9 +227,10 @@ static PyType_Slot settings_slots[] = {
     {Py_tp_getset, settings_members},
     {0, NULL},
 };
-PyType_Spec settings_spec = {"velo._velo.Settings", sizeof(Settings), 0,
-                             Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
-                             settings_slots};
+PyType_Spec settings_spec = {
+    "velo._velo.Settings", sizeof(Settings), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION,
+    settings_slots};
 
 /* ---- renders ----------------------------------------------------------------------------- */
 

@@ -23,6 +23,7 @@ from velo.own import (FilmPoints, OwnCamera, OwnSampler, OwnTracer, Paths, Sampl
                       TraceRays)
 from velo.rays import RayHits
 from velo.scene import Handle, Mesh, Model, Scene, World, load, settings_names
+from velo.settings import Settings
 from velo.spectrum import Spectrum, blackbody, named, rgb, sampled, spectrum_names
 
 __version__: str = _velo.version()
@@ -47,8 +48,8 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 __all__ = [
     "Camera", "CancelledError", "Context", "Error", "Film", "FilmPoints", "ForkError", "Handle", "Image", "Mesh",
     "MissingFileError", "Model", "OutOfMemoryError", "OutputError", "OwnCamera", "OwnSampler", "OwnTracer", "Paths",
-    "Progress", "Projection", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Spectrum", "Step", "Trace", "TraceBounce",
-    "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody",
+    "Progress", "Projection", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Settings", "Spectrum", "Step", "Trace",
+    "TraceBounce", "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody",
     "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera", "read_film", "read_image",
     "read_trajectory", "rgb", "sampled", "sensor_names", "set_threads", "settings_names", "spectrum_names",
 ]

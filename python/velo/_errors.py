@@ -83,7 +83,8 @@ def fork_error() -> ForkError:
 _OTHER_NAMES = {"base_color": "reflectance", "basecolor": "reflectance", "albedo": "reflectance", "diffuse": "reflectance", "ior": "eta",
                 "vertices": "positions", "points": "positions", "faces": "indices", "triangles": "indices", "uv": "uvs", "texcoords": "uvs",
                 "location": "position", "energy": "power", "intensity": "scale", "direction": "to", "matrix": "pose",
-                "world_from_object": "pose", "samples": "spp", "width": "resolution", "height": "resolution"}
+                "world_from_object": "pose", "samples": "spp", "width": "resolution", "height": "resolution",
+                "focal_length": "focal_mm", "aperture": "lens_radius", "transparency": "transmission", "opacity": "alpha", "emissive": "emission"}
 
 
 def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:

@@ -55,6 +55,13 @@ class Settings(TypedDict, total=False):
     white_balance: Any
 
 
+class Write(TypedDict, total=False):
+    """Of image files: the members of vlWriteDef."""
+    compression: Any
+    half: Any
+    quality: Any
+
+
 class Load(TypedDict, total=False):
     """Of files that are read: the members of vlLoadDef."""
     animation: Any
@@ -383,6 +390,10 @@ class Shapes(Meshes, total=False):
 
 class Opening(Load, Complete):
     """Of velo.load."""
+
+
+class Anything(Textures, Materials, Media, Emission, Lights, Shapes):  # type: ignore[misc]
+    """Of objects of any family that are changed. Families share words, all of which are Any."""
 
 
 def show(function: Callable[..., Any], *groups: type) -> None:

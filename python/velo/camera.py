@@ -51,8 +51,9 @@ def _flags(data: bytearray, shape: Sequence[int]) -> Any:
 
 def _shape_of(points: Any, count: int) -> tuple[int, ...]:
     """The shape of an array of points without its last axis; (count,) of what has no shape."""
-    shape = getattr(points, "shape", ())
-    return tuple(shape[:-1]) if len(shape) > 2 and _arrays.numpy_or_none() is not None else (count,)
+    numpy = _arrays.numpy_or_none()
+    shape = () if numpy is None else numpy.shape(points)
+    return tuple(shape[:-1]) if len(shape) > 2 else (count,)
 
 
 class Camera(_velo.Camera):
@@ -201,7 +202,8 @@ def read_camera(path: Path, *, dialect: Optional[str] = None, frame: Union[str, 
 
     frame: name or number (from 0) of one of several cameras. width, height: for files without an image size. Of a .pbrt file it is
     the scene's camera."""
-    if dialect is None and isinstance(path, (str, os.PathLike)) and os.fspath(path).endswith((".pbrt", ".pbrt.gz")):
+    by_name = dialect is None and isinstance(path, (str, os.PathLike)) and os.fspath(path).endswith((".pbrt", ".pbrt.gz"))
+    if by_name or (isinstance(dialect, str) and dialect == "pbrt"):
         from velo.scene import load
         camera = load(path, context=context).camera
         return camera.resize(width, height) if width and height else camera

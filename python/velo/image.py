@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Optional, Sequence, Union, Unpack
 
-from velo import _arrays, _check, _velo
+from velo import _arrays, _check, _keywords, _velo
 from velo._context import context_or_default
 from velo._errors import UsageError, shown, wrong_value
 
@@ -38,6 +38,10 @@ class Image(_velo.Image):
             raise wrong_value("image", "an array of rows x columns x channels", array) from None
         if encoding is None:
             encoding = "srgb" if size == 1 else "linear"
+        if names is not None:
+            names = _check.names(names, "names")
+            if len(set(names)) < len(names):
+                raise wrong_value("names", "a different name for each channel", names)
         return _velo.image_new(context_or_default(context), array, names, encoding)
 
     @property
@@ -83,12 +87,13 @@ class Image(_velo.Image):
     def __iter__(self) -> Any:
         raise TypeError("an Image is not iterable; its channels are image.channels")
 
-    def write(self, path: Path, **options: Any) -> None:
+    def write(self, path: Path, **options: Unpack[_keywords.Write]) -> None:
         """Writes a file; the suffix selects the format: .exr (all channels), .png .jpg .hdr .pfm .tga (the colours).
 
         half: EXR, 16-bit floats for colours. compression: EXR, 0 none, 1 ZIP. quality: JPEG, 1 to 100."""
         whole = isinstance(path, (str, os.PathLike)) and os.fspath(path).endswith(".exr")
-        _velo.image_write(list(self.parts) if whole else [self], path, options)
+        words: dict[str, Any] = {**options}
+        _velo.image_write(list(self.parts) if whole else [self], path, words)
 
     def view(self, view: str = "standard", *, exposure: float = 0.0) -> "Image":
         """An 8-bit sRGB image for displays. view: standard, khronos_neutral, agx or raw. exposure: in stops."""
@@ -122,7 +127,7 @@ class Image(_velo.Image):
         return self.__copy__()
 
     def __reduce__(self) -> Any:
-        """For pickle: the pixels and the names of the channels; not the attributes of a file."""
+        """For pickle: pixels, names of the channels, encodings and attributes."""
         return _of_parts, tuple(_part(part) for part in self.parts)
 
     def _repr_png_(self) -> bytes:
@@ -154,17 +159,25 @@ class Image(_velo.Image):
 
 
 _velo.set_type("Image", Image)
+_keywords.show(Image.write, _keywords.Write)
 
 
-def _part(image: Image) -> tuple[bytes, str, tuple[int, ...], tuple[str, ...]]:
+#: Of a part of an image: pixels, their type, shape, names of channels, encoding, attributes.
+_Part = tuple[bytes, str, tuple[int, ...], tuple[str, ...], str, list[Any]]
+
+
+def _part(image: Image) -> _Part:
     buffer: Any = image
     view = memoryview(buffer)
-    return view.tobytes(), view.format, tuple(view.shape or ()), tuple(image._names)
+    return view.tobytes(), view.format, tuple(view.shape or ()), tuple(image._names), image.encoding, image._attributes()
 
 
-def _of_parts(*parts: tuple[bytes, str, tuple[int, ...], tuple[str, ...]]) -> Image:
-    made = [Image(memoryview(data).cast("B").cast(code, shape), names, encoding="linear")
-            for data, code, shape, names in parts]
+def _of_parts(*parts: _Part) -> Image:
+    made = []
+    for data, code, shape, names, encoding, attributes in parts:
+        image = Image(memoryview(data).cast("B").cast(code, shape), names, encoding=encoding)
+        image._set_attributes(attributes)
+        made.append(image)
     return join(made[0], made[1:])
 
 

@@ -13,6 +13,7 @@ from velo.camera import Camera
 from velo.film import Film
 from velo.image import OTHER_NAMES, Image, Path, join
 from velo.own import OwnCamera, bare
+from velo.settings import Settings
 from velo.spectrum import Spectrum
 
 Handle = _velo.Handle
@@ -307,18 +308,19 @@ class Scene(_velo.Scene):
             names.append(handle.name)
         raise unknown(f"name of the scene's {family}", name, [known for known in names if known])
 
-    def set(self, handle: Handle, kind: Optional[str] = None, **keywords: Any) -> None:
+    def set(self, handle: Handle, kind: Optional[str] = None, **keywords: Unpack[_keywords.Anything]) -> None:
         """Changes what the keywords name; the rest stays. Textures, materials, emission and lights take the keywords of their
         add_ method; with a kind they become one of this kind, with defaults where nothing is given. So do shapes: new positions of
         the same number keep the mesh's faces, normals and uvs; an array that is None is taken away; material, emission (None: none),
         group and transform stay with another kind. Instances take pose (4 x 4, world from group)."""
         _check.instance(handle, Handle, "handle")
-        if handle.family == "lights" and "image" in keywords:
-            keywords["image"] = _as_image(keywords["image"], "linear")
-        if handle.family == "textures" and ("image" in keywords or "range" in keywords):
-            _take_texels(keywords, self._get(handle)["spectrum"])
+        words: dict[str, Any] = {**keywords}
+        if handle.family == "lights" and "image" in words:
+            words["image"] = _as_image(words["image"], "linear")
+        if handle.family == "textures" and ("image" in words or "range" in words):
+            _take_texels(words, self._get(handle)["spectrum"])
         self._changed = True
-        self._set(handle, kind, keywords)
+        self._set(handle, kind, words)
 
     def show(self, handle: Handle, shown: bool = True) -> None:
         """Shows or hides a light, a shape (in all instances of its group) or an instance."""
@@ -361,7 +363,7 @@ class Scene(_velo.Scene):
     # ---- rendering
 
     def settings(self, *, resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
-                 **keywords: Unpack[_keywords.Settings]) -> Any:
+                 **keywords: Unpack[_keywords.Settings]) -> Settings:
         """The settings of the scene's file, changed by keywords (render lists them)."""
         settings = _velo.scene_settings(self)
         if resolution is not None:
@@ -581,7 +583,7 @@ _SHOWN: dict[type, Sequence[Callable[..., Any]]] = {
     _keywords.Load: (Scene.load, Scene.load_group), _keywords.Complete: (Scene.complete,), _keywords.Textures: (Scene.add_texture,),
     _keywords.Materials: (Scene.add_material,), _keywords.Media: (Scene.add_medium,), _keywords.Emission: (Scene.add_emission,),
     _keywords.Lights: (Scene.add_light,), _keywords.Shapes: (Scene.add_shape,), _keywords.Meshes: (Scene.add_mesh,),
-    _keywords.AllShapes: (Scene.add_box, Scene.add_plane), _keywords.Quadrics: (Scene.add_sphere, Scene.add_disk, Scene.add_cylinder),
+    _keywords.Anything: (Scene.set,), _keywords.AllShapes: (Scene.add_box, Scene.add_plane), _keywords.Quadrics: (Scene.add_sphere, Scene.add_disk, Scene.add_cylinder),
     _keywords.Settings: (Scene.settings, Scene.world, Scene.render, Scene.passes, Scene.choose_tracer, Scene.ground_truth, Scene.boxes,
                          Scene.focus)}
 for _group, _functions in _SHOWN.items():

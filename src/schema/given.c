@@ -74,10 +74,18 @@ static void put_number_rule(const vlParameter *row, double factor, char *rule, s
     snprintf(rule + used, size - used, ", or infinity");
 }
 
+/* As many whole names as fit; "..." stands for the others. */
 static void put_choices(const char *const *choices, char *rule, size_t size) {
+  const char *const more = ", ...";
   size_t used = (size_t)snprintf(rule, size, "one of ");
-  for (int i = 0; choices[i] && used < size; i++)
+  for (int i = 0; choices[i]; i++) {
+    const size_t rest = choices[i + 1] ? strlen(more) : 0;
+    if (used + 2 + strlen(choices[i]) + rest >= size) {
+      snprintf(rule + used, size - used, "%s", more);
+      return;
+    }
     used += (size_t)snprintf(rule + used, size - used, "%s%s", i ? ", " : "", choices[i]);
+  }
 }
 
 static void put_rule(const vlParameter *row, double factor, char *rule, size_t size) {

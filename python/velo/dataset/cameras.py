@@ -18,6 +18,11 @@ class View(NamedTuple):
     camera: Any  #: velo.Camera
 
 
+def _keywords(rule: Any) -> dict[str, Any]:
+    """Those of a rule's camera. The rule's fov is in degrees, velo.Camera's in radians."""
+    return {**rule.keywords, **({} if rule.fov is None else {"fov": math.radians(rule.fov), "fov_axis": "smaller"})}
+
+
 class Cameras:
     """Makes the cameras of frames. Files are read once."""
 
@@ -37,7 +42,7 @@ class Cameras:
     def _fixed(self, rule: Fixed) -> Any:
         width, height = self._recipe.resolution
         if not rule.file:
-            return velo.Camera(width, height, **rule.keywords)
+            return velo.Camera(width, height, **_keywords(rule))
         if rule.file not in self._files:
             self._files[rule.file] = velo.read_camera(self._path(rule.file), width=width, height=height)
         return self._files[rule.file].resize(width, height)
@@ -53,10 +58,7 @@ class Cameras:
         distance = random.within(rule.distance)
         target = [t + rule.jitter * j for t, j in zip(rule.target, random.in_ball())]
         eye = [rule.target[i] + distance * (cosine * (a * x[i] + b * y[i]) + sine * z[i]) for i in range(3)]
-        keywords = dict(rule.keywords)
-        if rule.fov is not None:
-            keywords.update(fov=math.radians(rule.fov), fov_axis="smaller")
-        return velo.Camera(width, height, world_from_camera=look_at(eye, target, rule.up), **keywords)
+        return velo.Camera(width, height, world_from_camera=look_at(eye, target, rule.up), **_keywords(rule))
 
     def _one(self, rule: Any, frame: int, random: Random) -> Any:
         if isinstance(rule, Fixed):
@@ -69,9 +71,10 @@ class Cameras:
                 raise UsageError(f"{rule.file}: the file has no poses")
             pose = poses[frame % len(poses)]
             width, height = self._recipe.resolution
-            if pose.camera is not None and not rule.keywords:
+            keywords = _keywords(rule)
+            if pose.camera is not None and not keywords:
                 return pose.camera.resize(width, height)
-            return velo.Camera(width, height, world_from_camera=pose.world_from_camera, **rule.keywords)
+            return velo.Camera(width, height, world_from_camera=pose.world_from_camera, **keywords)
         raise UsageError(f"unknown kind of camera: {type(rule).__name__}")
 
     def _views(self, rule: Any, frame: int, random: Random) -> list[View]:

@@ -206,17 +206,24 @@ def _no_keywords(value: Any, where: str, taken: Sequence[str], by: str) -> None:
             raise UsageError(f"{where}.keywords.{name}: {by} says it already")
 
 
+def _check_fov(value: Any, where: str) -> None:
+    if value.fov is not None:
+        _no_keywords(value, where, ("fov", "fov_axis", "K", "fx", "fy", "focal_mm", "view_distance", "colmap"), "fov")
+
+
 def _fixed(value: Any, where: str) -> None:
     _no_keywords(value, where, _SIZE, "the recipe's resolution")
     if value.file and value.keywords:
         raise UsageError(f"{where}: file and keywords exclude each other")
+    if value.file and value.fov is not None:
+        raise UsageError(f"{where}: file and fov exclude each other")
+    _check_fov(value, where)
 
 
 def _around(value: Any, where: str) -> None:
     _no_keywords(value, where, _SIZE, "the recipe's resolution")
     _no_keywords(value, where, _POSE, "the kind around")
-    if value.fov is not None:
-        _no_keywords(value, where, ("fov", "fov_axis", "K", "fx", "fy", "focal_mm", "view_distance", "colmap"), "fov")
+    _check_fov(value, where)
 
 
 def _trajectory(value: Any, where: str) -> None:
@@ -224,6 +231,7 @@ def _trajectory(value: Any, where: str) -> None:
     _no_keywords(value, where, _POSE, "the file")
     if not value.file:
         raise UsageError(f"{where}: needs a file of poses")
+    _check_fov(value, where)
 
 
 def _volume(value: Any, where: str) -> None:
@@ -272,6 +280,7 @@ def _pair(value: Any, where: str) -> Any:
 
 _MOVED = (kinds.Fixed, kinds.Around, kinds.Trajectory)
 _KEYWORDS = names(anything)
+_FOV = optional(number(1e-3, 360))  # degrees
 # The rule of each member. A test compares the names with those of the classes.
 _RULES: dict[type, dict[str, Check]] = {
     kinds.Model: {"path": text, "name": text, "count": count(10000), "scale": number(1e-12, 1e12), "positions": anything, "indices": anything,
@@ -280,10 +289,10 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.OnSurface: {"center": vector(3), "size": vector(2, 0, 1e12), "up": direction, "gap": number(0, 1e12), "tumble": flag,
                       "tries": whole(1, 100000)},
     kinds.InVolume: {"low": vector(3), "high": vector(3), "gap": number(0, 1e12), "tries": whole(1, 100000)},
-    kinds.Fixed: {"keywords": _KEYWORDS, "file": text, "name": file_name},
+    kinds.Fixed: {"keywords": _KEYWORDS, "file": text, "fov": _FOV, "name": file_name},
     kinds.Around: {"target": vector(3), "distance": range_(1e-12, 1e12), "elevation": bounds(number(-90, 90)), "up": direction,
-                   "jitter": number(0, 1e12), "fov": optional(number(1e-3, 360)), "keywords": _KEYWORDS, "name": file_name},
-    kinds.Trajectory: {"file": text, "keywords": _KEYWORDS, "name": file_name},
+                   "jitter": number(0, 1e12), "fov": _FOV, "keywords": _KEYWORDS, "name": file_name},
+    kinds.Trajectory: {"file": text, "fov": _FOV, "keywords": _KEYWORDS, "name": file_name},
     kinds.Rig: {"base": lambda value, where: member(*_MOVED)(value, where), "parts": items(_part, 1, 1000)},
     kinds.Lights: {"count": count(10000), "low": vector(3), "high": vector(3), "power": range_(0, 1e12), "kelvin": range_(1, 1e6)},
     kinds.Environment: {"kind": choice("studio", "window", "evening", "sky", "white", "auto", "none"), "files": items(text, 0, 100000), "strength": either(setting("complete", "strength"), "a number"),

@@ -1,4 +1,5 @@
-"""The description of a dataset: dataclasses, and the same from YAML. Lengths are in metres (scene units), angles in degrees.
+"""The description of a dataset: dataclasses, and the same from YAML. Lengths are in metres (scene units), angles in degrees; what is
+passed on to calls of velo (keywords, render, material) is as these calls have it, angles in radians.
 A pair of numbers where one is expected means: at random between them, anew in each frame."""
 from __future__ import annotations
 
@@ -56,9 +57,10 @@ class InVolume:
 
 @dataclass
 class Fixed:
-    """A camera at rest. keywords: velo.Camera's (fov in radians); or `file`: a camera file of any dialect."""
+    """A camera at rest. keywords: velo.Camera's (angles in radians); or `file`: a camera file of any dialect."""
     keywords: dict[str, Any] = field(default_factory=dict)
     file: str = ""
+    fov: Optional[float] = None  #: degrees, across the smaller side
     name: str = "camera"
 
 
@@ -79,7 +81,8 @@ class Around:
 class Trajectory:
     """A camera along a file of poses (docs/rigs.md): frame i has pose i; frames beyond the last repeat."""
     file: str = ""
-    keywords: dict[str, Any] = field(default_factory=dict)  #: intrinsics of files with poses only
+    fov: Optional[float] = None  #: degrees, across the smaller side; of files with poses only
+    keywords: dict[str, Any] = field(default_factory=dict)  #: velo.Camera's (angles in radians), of files with poses only
     name: str = "camera"
 
 

@@ -1,0 +1,43 @@
+"""The settings of a render as an object, which can be copied and pickled."""
+from __future__ import annotations
+
+from typing import Any, Callable
+
+from velo import _velo
+from velo._errors import UsageError
+
+
+class Settings(_velo.Settings):
+    """What a render is set to: Scene.settings makes it from the scene's file and from keywords. `get` and `set` read and change one
+    keyword, `size` and `crop` are in pixels."""
+
+    def keywords(self) -> dict[str, Any]:
+        """All of it as keywords: `scene.render(**settings.keywords())`. UsageError: a sampler or tracer of one's own."""
+        if self._own:
+            raise UsageError("settings with a sampler or a tracer of one's own cannot be given as keywords")
+        plain = _from_keywords({"filter": self.get("filter")})
+        # A filter's name sets its numbers, so it comes first; those of other filters are 0, which no call accepts.
+        names = sorted(self.names(), key=lambda name: (name != "filter", name))
+        values = {name: self.get(name) for name in names if not name.startswith("filter_") or self.get(name) != plain.get(name)}
+        return {"resolution": self.size, "crop": self.crop, **values}
+
+    def __copy__(self) -> "Settings":
+        return self.copy()
+
+    def __deepcopy__(self, memo: Any) -> "Settings":
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[dict[str, Any]]]:
+        """For pickle: the keywords."""
+        return _from_keywords, (self.keywords(),)
+
+    def __repr__(self) -> str:
+        return f"<velo.Settings {self.size[0]} x {self.size[1]}, {self.get('spp')} samples per pixel>"
+
+
+_velo.set_type("Settings", Settings)
+
+
+def _from_keywords(keywords: dict[str, Any]) -> Settings:
+    from velo.scene import Scene
+    return Scene().settings(**keywords)

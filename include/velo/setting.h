@@ -21,10 +21,12 @@ extern "C" {
   X(CHANNELS, channels)      \
   X(WRITE, write)            \
   X(CONTEXT, context)        \
-  X(PROGRAM, program)
+  X(PROGRAM, program)        \
+  X(SENSOR, sensor)          \
+  X(EXPOSURE, exposure)
 /** Groups of settings. RENDER: vlSceneDefs; CAMERA: vlCameraDef; LOAD: vlLoadDef; COMPLETE:
  * vlCompleteDef; CHANNELS: vlChannelsDef; WRITE: vlWriteDef; CONTEXT: vlContextDef; PROGRAM: no
- * def, settings that are turned into others. */
+ * def, settings that are turned into others; SENSOR: vlSensorDef; EXPOSURE: vlExposureDef. */
 typedef enum vlSettingGroup {
 #define VL_KIND(NAME, name) VL_SETTING_##NAME,
   VL_SETTING_GROUPS(VL_KIND)

@@ -41,6 +41,7 @@
 #include "velo/sampler.h"
 #include "velo/scene.h"
 #include "velo/scene_base.h"
+#include "velo/sensor.h"
 #include "velo/shape.h"
 #include "velo/spectrum.h"
 #include "velo/texture.h"

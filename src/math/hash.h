@@ -1,5 +1,6 @@
 /* math/hash.h: integer hashing, for random numbers that depend only on (seed, pixel, sample,
- * dimension). All integers have 32 bits, so that loops vectorise on every instruction set. */
+ * dimension). Integers have 32 bits, so that loops vectorise on every instruction set; where
+ * that does not matter, 64. */
 #ifndef MATH_HASH_H
 #define MATH_HASH_H
 
@@ -19,6 +20,12 @@ static inline uint32_t vl_hash2(uint32_t a, uint32_t b) {
 }
 static inline uint32_t vl_hash3(uint32_t a, uint32_t b, uint32_t c) {
   return vl_hash2(vl_hash2(a, b), c);
+}
+/* Mixes 64 bits; a bijection ("Mix13" of Stafford 2011, the end of SplitMix64). */
+static inline uint64_t vl_hash64(uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
 }
 /* Converts the top 24 random bits to a float in [0, 1). */
 static inline float vl_unit_float(uint32_t bits) {

@@ -111,6 +111,8 @@ extern const vlKindFamily vl_camera_family;
 extern const vlKindFamily vl_setting_family;
 /* The settings of cameras: the parameters of all kinds, and what files say by rules. */
 extern const vlKindRow vl_camera_settings_row;
+/* Those of sensors and their exposures. */
+extern const vlKindRow vl_sensor_settings_row, vl_exposure_settings_row;
 
 /* Power of a light, by pbrt's definition. luminance: of the light's colour, with its scale.
  * radius: of a sphere around the scene. NaN: the power depends on an image. */

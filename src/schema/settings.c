@@ -1,6 +1,6 @@
 /* schema/settings.c: rows of the settings that are no parameters of a kind: of renders, loads,
  * completed scenes, ground truth, image files, contexts, and of the program alone. Those of
- * cameras are in cameras.c. */
+ * cameras are in cameras.c, those of sensors in sensors.c. */
 #include <math.h>
 #include <string.h>
 
@@ -254,8 +254,10 @@ VL_KIND_ROW(program, .name = "program", .description = "what is turned into othe
 
 /* ---- finding them ------------------------------------------------------------------------ */
 
-/* The parameters of cameras are in cameras.c. */
+/* The parameters of cameras are in cameras.c, those of sensors in sensors.c. */
 #define camera_row vl_camera_settings_row
+#define sensor_row vl_sensor_settings_row
+#define exposure_row vl_exposure_settings_row
 #define ROW(NAME, name) [VL_SETTING_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_setting_family, VL_SETTING_GROUPS, ROW, "settings", "setting", NULL)
 

@@ -1,0 +1,313 @@
+/* sensor/expose.c: `velo sensor expose`: exposes a sensor to a stored spectral image and writes
+ * the numbers of its frames, or its electrons. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/report.h"
+#include "cli/text.h"
+#include "image/image.h"
+#include "render/output_names.h"
+#include "render/pattern.h"
+#include "sensor/sensor.h"
+
+enum {
+  EXPOSE_OUTPUT,
+  EXPOSE_SENSOR,
+  EXPOSE_TIME,
+  EXPOSE_F_NUMBER,
+  EXPOSE_ISO,
+  EXPOSE_GAIN,
+  EXPOSE_TEMPERATURE,
+  EXPOSE_FOCAL_LENGTH,
+  EXPOSE_RADIANCE,
+  EXPOSE_SEED,
+  EXPOSE_FRAME,
+  EXPOSE_BRACKET,
+  EXPOSE_THREADS
+};
+static const ExposureOption exposure_rows[] = {{EXPOSE_TIME, "exposure_time"},
+                                               {EXPOSE_F_NUMBER, "f_number"},
+                                               {EXPOSE_ISO, "iso"},
+                                               {EXPOSE_GAIN, "gain"},
+                                               {EXPOSE_TEMPERATURE, "temperature"},
+                                               {EXPOSE_FOCAL_LENGTH, "focal_length"},
+                                               {EXPOSE_RADIANCE, "radiance"},
+                                               {EXPOSE_SEED, "seed"},
+                                               {EXPOSE_FRAME, "frame"}};
+
+enum { MAX_FRAMES = 64 };
+
+typedef struct Expose {
+  vlContext *context;
+  vlSensor *sensor;
+  vlImage *image, *numbers, *electrons;
+  double *means;
+  vlExposureDef exposure;
+  double bracket[MAX_FRAMES]; /* stops */
+  uint32_t frames;
+  const char *path; /* of the image */
+  const char *const *paths;
+  int count;
+} Expose;
+
+/* ---- what is asked ---------------------------------------------------------------------- */
+
+static bool holds_electrons(const char *path) {
+  return text_ends_with(path, ".exr");
+}
+
+/* Reads "-2,0,2". */
+static int parse_bracket(Expose *e, const OptionValue *value) {
+  const char *at = value->given ? value->text : "0";
+  for (;;) {
+    char *end;
+    double stops = strtod(at, &end);
+    if (end == at || !(stops >= -30 && stops <= 30) || (*end && *end != ',') ||
+        e->frames == MAX_FRAMES)
+      return report_usage(
+          "--bracket must be at most %d numbers from -30 to 30 stops, with "
+          "commas between; it is \"%s\"",
+          MAX_FRAMES, value->text);
+    e->bracket[e->frames++] = stops;
+    if (!*end)
+      return -1;
+    at = end + 1;
+  }
+}
+
+static int check_outputs(const Expose *e) {
+  if (!e->count)
+    return report_usage("sensor expose: give the name of the raw image with -o");
+  for (int i = 0; i < e->count; i++) {
+    const char *path = e->paths[i];
+    if (!holds_electrons(path) && !text_ends_with(path, ".png"))
+      return report_usage(
+          "output \"%s\": the suffix must be .png (numbers, 16 bits) or .exr "
+          "(electrons)",
+          path);
+    int status = pattern_check(path);
+    if (status >= 0)
+      return status;
+    if (e->frames > 1 && !pattern_has(path, 'd'))
+      return report_usage("output \"%s\": the name of several frames needs %%d", path);
+  }
+  return -1;
+}
+
+static bool path_of(const char *pattern, uint32_t frame, char path[4096]) {
+  PatternValues values = {.number = frame};
+  return pattern_expand(pattern, &values, path, 4096);
+}
+
+/* No file that is written twice, or was read. */
+static int check_names(const Expose *e) {
+  OutputNames names = {0};
+  char path[4096];
+  for (uint32_t f = 0; f < e->frames; f++)
+    for (int i = 0; i < e->count; i++) {
+      if (!path_of(e->paths[i], f, path))
+        return report_usage("output \"%s\": too long", e->paths[i]);
+      output_names_add(&names, path, VL_OUTPUT_PLAIN);
+    }
+  return output_names_check(&names, e->context);
+}
+
+/* ---- frames ----------------------------------------------------------------------------- */
+
+static vlResult add_number(vlImage *image, const char *name, double value) {
+  vlAttribute attribute = {.name = name, .type = VL_ATTRIBUTE_DOUBLE, .numbers = {value}};
+  return vl_image_set_attribute(image, &attribute);
+}
+
+/* What the electrons of an .exr mean. */
+static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
+  const vlSensorDef *def = vl_sensor_def(e->sensor);
+  char text[2 * VL_SENSOR_CELLS + 1];
+  vlAttribute pattern = {.name = "sensorPattern",
+                         .type = VL_ATTRIBUTE_STRING,
+                         .string = vl_sensor_pattern(def, text)};
+  vlResult result = vl_image_set_attribute(e->electrons, &pattern);
+  if (result == VL_OK)
+    result = add_number(e->electrons, "exposureTime", exposure->time);
+  if (result == VL_OK)
+    result = add_number(e->electrons, "fNumber", exposure->f_number);
+  if (result == VL_OK)
+    result = add_number(e->electrons, "sensorFullWell", def->full_well);
+  return result;
+}
+
+static int write_frame(Expose *e, uint32_t frame, const vlExposureDef *exposure) {
+  char path[4096];
+  vlResult result = describe(e, exposure);
+  if (result != VL_OK)
+    return report_reason(result, e->paths[0], "the frame cannot be described");
+  for (int i = 0; i < e->count; i++) {
+    vlError error = {0};
+    path_of(e->paths[i], frame, path);
+    const vlImage *image = holds_electrons(path) ? e->electrons : e->numbers;
+    result = vl_image_write(image, path, NULL, &error);
+    if (result != VL_OK)
+      return report_error(&error, result, path);
+  }
+  return -1;
+}
+
+/* What a reader of the frame should know. */
+static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
+  double pixels = (double)vl_image_width(e->image) * vl_image_height(e->image);
+  if (frame == 0 && out->not_finite)
+    report_warning("%llu pixels of the image are not finite; the sensor sees them black",
+                   (unsigned long long)out->not_finite);
+  if (frame == 0 && out->negative)
+    report_warning("%llu pixels of the image are negative; the sensor sees them black",
+                   (unsigned long long)out->negative);
+  if (isnan(out->film_noise)) {
+    if (frame == 0)
+      report_note(
+          "the image has no standard errors (--channels error), so its own noise is "
+          "not compared with photon noise");
+  } else if (out->film_noise > 0.01) {
+    report_warning(
+        "frame %u: in %.0f %% of the pixels the image's own noise is above a tenth "
+        "of the photon noise: render it with more samples",
+        frame, 100.0 * out->film_noise);
+  }
+  report_note(
+      "frame %u: %.2f %% of the pixels have a full well, %.2f %% are above the "
+      "converter's range, %.2f %% below",
+      frame, 100.0 * (double)out->full / pixels, 100.0 * (double)out->white / pixels,
+      100.0 * (double)out->black / pixels);
+}
+
+static int expose(Expose *e) {
+  uint32_t width = vl_image_width(e->image);
+  uint32_t height = vl_image_height(e->image);
+  for (uint32_t f = 0; f < e->frames; f++) {
+    vlError error = {0};
+    vlExposureDef exposure = e->exposure;
+    exposure.time *= exp2(e->bracket[f]);
+    exposure.frame += f;
+    vlSensorOutput out = {.numbers = vl_image_pixels(e->numbers),
+                          .electrons = vl_image_pixels(e->electrons)};
+    vlResult result = vl_sensor_collect(e->sensor, e->image, &exposure, e->means, &out, &error);
+    if (result == VL_OK)
+      result = vl_sensor_read_out(e->sensor, width, height, e->means, &exposure, &out, &error);
+    if (result == VL_ERROR_ARGUMENT)
+      return report_failure(STATUS_SCENE, "%s: %s", e->path, error.message);
+    if (result != VL_OK)
+      return report_error(&error, result, NULL);
+    tell(e, f, &out);
+    int status = write_frame(e, f, &exposure);
+    if (status >= 0)
+      return status;
+  }
+  return STATUS_OK;
+}
+
+static int make_frames(Expose *e) {
+  uint32_t width = vl_image_width(e->image);
+  uint32_t height = vl_image_height(e->image);
+  vlImageDef def = vl_default_image_def(width, height, 1);
+  def.type = VL_PIXEL_U16;
+  def.encoding = VL_ENCODING_LINEAR;
+  vlResult result = vl_image_create(e->context, &def, &e->numbers);
+  static const char *const name[1] = {"electrons"};
+  def = vl_default_image_def(width, height, 1);
+  def.names = name;
+  if (result == VL_OK)
+    result = vl_image_create(e->context, &def, &e->electrons);
+  e->means = malloc(sizeof *e->means * width * height);
+  if (result == VL_OK && !e->means)
+    result = VL_ERROR_MEMORY;
+  return result == VL_OK ? -1 : report_reason(result, e->path, "the frame cannot be made");
+}
+
+static int run(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  Expose e = {.path = arguments->operands[0],
+              .exposure = vl_default_exposure_def(),
+              .paths = arguments->texts,
+              .count = arguments->text_count};
+  int status = exposure_options(arguments, exposure_rows,
+                                sizeof exposure_rows / sizeof *exposure_rows, &e.exposure);
+  if (status < 0)
+    status = parse_bracket(&e, &v[EXPOSE_BRACKET]);
+  if (status < 0)
+    status = check_outputs(&e);
+  if (status >= 0)
+    return status;
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  if (v[EXPOSE_THREADS].given)
+    def.threads = (uint32_t)v[EXPOSE_THREADS].integer;
+  status = context_open(&def, &e.context);
+  if (status < 0)
+    status = sensor_open(e.context, v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal",
+                         &e.sensor);
+  if (status < 0)
+    status = image_load(e.context, e.path, &e.image);
+  if (status < 0)
+    status = check_names(&e);
+  if (status < 0)
+    status = make_frames(&e);
+  if (status < 0)
+    status = expose(&e);
+  free(e.means);
+  vl_image_destroy(e.numbers);
+  vl_image_destroy(e.electrons);
+  vl_image_destroy(e.image);
+  vl_sensor_destroy(e.sensor);
+  context_close(e.context);
+  return status;
+}
+
+static const Option options[] = {
+    {EXPOSE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
+     "file to write; may be given several times: .png has the numbers (16 bits), .exr the "
+     "electrons"},
+    {EXPOSE_SENSOR, 0, "sensor", OPTION_TEXT, "NAME|FILE",
+     "a sensor file (.yaml), or ideal, ideal_rggb, generic_mono, generic_rggb, generic_quad, "
+     "or generic_rggb with the sensitivities of a measured camera (canon_eos_5d, ...). "
+     "Default: ideal"},
+    {EXPOSE_TIME, 0, "exposure-time", OPTION_TEXT, "S", "exposure time in seconds"},
+    {EXPOSE_F_NUMBER, 0, "f-number", OPTION_TEXT, "N",
+     "focal length divided by the pupil's diameter"},
+    {EXPOSE_ISO, 0, "iso", OPTION_TEXT, "N", "ISO speed; default: the sensor's base_iso"},
+    {EXPOSE_GAIN, 0, "gain", OPTION_TEXT, "FACTOR", "a further factor of the amplifier"},
+    {EXPOSE_TEMPERATURE, 0, "temperature", OPTION_TEXT, "C",
+     "temperature of the sensor, degrees Celsius"},
+    {EXPOSE_FOCAL_LENGTH, 0, "focal-length", OPTION_TEXT, "MM",
+     "darken the image with cos^4 of the angle from the axis, as a lens of this focal length; "
+     "not for cameras that have done so"},
+    {EXPOSE_RADIANCE, 0, "radiance", OPTION_TEXT, "L",
+     "radiance of the image's value 1, W/(m^2 sr nm)"},
+    {EXPOSE_SEED, 0, "seed", OPTION_TEXT, "N", "seed of the noise"},
+    {EXPOSE_FRAME, 0, "frame", OPTION_TEXT, "N",
+     "number of the first frame: other noise with the same seed"},
+    {EXPOSE_BRACKET, 0, "bracket", OPTION_TEXT, "EV,EV,...",
+     "a frame for each number: the exposure time times 2^EV. The names need %d: raw_%d.png"},
+    {EXPOSE_THREADS, 't', "threads", OPTION_INTEGER, "N",
+     "number of worker threads; default: all processors. The result is the same"},
+    {0}};
+
+const Command sensor_expose_command = {
+    .name = "sensor expose",
+    .usage = "FILE.exr -o FILE [options]",
+    .summary = "expose a sensor to a stored spectral image",
+    .text =
+        "Reads an image with a spectrum (velo render --spectrum N --filter box) and "
+        "computes what a\nsensor makes of it: photons, electrons and whole numbers, with "
+        "noise. docs/sensor.md has the\nmodel and the form of sensor files.",
+    .examples =
+        "velo sensor expose room.exr --sensor generic_rggb --iso 400 -o raw.png\n"
+        "velo sensor expose room.exr --sensor my.yaml --bracket -4,-2,0 -o raw_%d.png",
+    .options = options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run,
+};

@@ -1,0 +1,47 @@
+/* sensor/sensor.c: see sensor.h. */
+#include "sensor/sensor.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "velo/setting.h"
+
+/* Whether the name is meant as a file's. */
+static bool is_path(const char *name) {
+  const char *dot = strrchr(name, '.');
+  return strchr(name, '/') || (dot && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0));
+}
+
+int sensor_open(vlContext *context, const char *name, vlSensor **sensor) {
+  vlSensorDef def = vl_default_sensor_def();
+  vlError error = {0};
+  bool file = is_path(name);
+  vlResult result =
+      file ? vl_sensor_read(context, name, &def, &error) : vl_sensor_preset(name, &def, &error);
+  if (result == VL_ERROR_ARGUMENT)
+    return report_usage("--sensor: %s (a sensor file has the suffix .yaml)", error.message);
+  if (result == VL_OK)
+    result = vl_sensor_create(context, &def, sensor, &error);
+  return result == VL_OK ? -1 : report_error(&error, result, file ? name : NULL);
+}
+
+int exposure_options(const Arguments *arguments, const ExposureOption *options, size_t count,
+                     vlExposureDef *exposure) {
+  for (size_t i = 0; i < count; i++) {
+    const OptionValue *value = &arguments->values[options[i].id];
+    const vlParameter *row = vl_setting(VL_SETTING_EXPOSURE, options[i].keyword);
+    char name[64] = "--";
+    double number;
+    if (!value->given)
+      continue;
+    snprintf(name + 2, sizeof name - 2, "%s", options[i].keyword);
+    for (char *at = name; *at; at++)
+      *at = *at == '_' ? '-' : *at;
+    int status = option_number(name, value->text, row, &number);
+    if (status >= 0)
+      return status;
+    vl_given_put(row, number, exposure);
+  }
+  return -1;
+}

@@ -1,0 +1,21 @@
+/* sensor/sensor.h: declarations shared by the sensor commands. */
+#ifndef APP_SENSOR_SENSOR_H
+#define APP_SENSOR_SENSOR_H
+
+#include "cli/options.h"
+#include "velo/sensor.h"
+
+/* An option of an exposure, and the keyword of its row (velo/setting.h). */
+typedef struct ExposureOption {
+  int id;
+  const char *keyword;
+} ExposureOption;
+
+/* Makes the sensor of a name: a preset, or else a file. Returns -1, or the exit code after
+ * reporting the error. */
+int sensor_open(vlContext *context, const char *name, vlSensor **sensor);
+/* Sets what the options give. Returns -1, or the exit code. */
+int exposure_options(const Arguments *arguments, const ExposureOption *options, size_t count,
+                     vlExposureDef *exposure);
+
+#endif

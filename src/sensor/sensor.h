@@ -1,0 +1,40 @@
+/* sensor/sensor.h: what the files of the sensor share. */
+#ifndef SENSOR_SENSOR_H
+#define SENSOR_SENSOR_H
+
+#include "base/context.h"
+#include "base/error.h"
+#include "velo/sensor.h"
+#include "velo/setting.h"
+
+struct vlSensor {
+  vlContext *context;
+  vlSensorDef def;
+  uint8_t cell[VL_SENSOR_CELLS]; /* filter of each cell of the pattern */
+};
+
+/* Checks the numbers of a def by their rows. ARGUMENT: `field must be ...; it is ... unit`. */
+vlResult vl_sensor_check_rows(const vlKindRow *rows, const void *def, vlError *error);
+/* Checks a default exposure's cookie and an exposure's numbers. */
+vlResult vl_exposure_check(const vlExposureDef *exposure, vlError *error);
+/* The index of the filter with that letter; filter_count: there is none. */
+uint32_t vl_sensor_filter_index(const vlSensorDef *def, char name);
+/* The amplifier's factor: of the ISO speed and the further gain. */
+double vl_exposure_gain(const vlSensorDef *def, const vlExposureDef *exposure);
+
+/* The buckets of an image's spectrum: `count` channels from `first` on, ascending by
+ * wavelength. */
+typedef struct vlSensorSpectrum {
+  uint32_t count;
+  double start, width; /* nm: of the first bucket, of each bucket */
+  uint32_t *channels;  /* index of each bucket's channel; a block of the context */
+} vlSensorSpectrum;
+/* Finds the spectrum of an image. ARGUMENT: it has none, or not of equal intervals. */
+vlResult vl_sensor_find_spectrum(vlContext *context, const vlImage *image,
+                                 vlSensorSpectrum *spectrum, vlError *error);
+/* Electrons per (W/(m^2 sr nm)) of each bucket for one filter, for a collected energy of one
+ * joule per watt of radiance: the integral over the bucket of efficiency * lambda / (h c). */
+void vl_sensor_weights(const vlSensorFilter *filter, const vlSensorSpectrum *spectrum,
+                       double *weights);
+
+#endif

@@ -26,7 +26,7 @@ static const Command *const commands[] = {
     &camera_info_command,      &camera_convert_command, &camera_verify_command,
     &camera_vanishing_command, &camera_paths_command,   &camera_draw_command,
     &film_info_command,        &film_merge_command,     &film_develop_command,
-    &sensor_expose_command};
+    &sensor_expose_command,    &sensor_verify_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {

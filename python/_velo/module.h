@@ -309,6 +309,6 @@ PyObject *world_trace(World *self, PyObject *arguments);
 PyObject *world_occluded(World *self, PyObject *arguments);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
 extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[],
-    world_functions[], own_functions[], own_trace_functions[];
+    world_functions[], own_functions[], own_trace_functions[], sensor_functions[];
 
 #endif

@@ -23,6 +23,7 @@ from velo.own import (FilmPoints, OwnCamera, OwnSampler, OwnTracer, Paths, Sampl
                       TraceRays)
 from velo.rays import RayHits
 from velo.scene import Handle, Mesh, Model, Scene, World, load, settings_names
+from velo.sensor import Exposure, Sensor, sensor_presets
 from velo.settings import Settings
 from velo.spectrum import Spectrum, blackbody, named, rgb, sampled, spectrum_names
 
@@ -46,10 +47,10 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 
 
 __all__ = [
-    "Camera", "CancelledError", "Context", "Error", "Film", "FilmPoints", "ForkError", "Handle", "Image", "Mesh",
+    "Camera", "CancelledError", "Context", "Error", "Exposure", "Film", "FilmPoints", "ForkError", "Handle", "Image", "Mesh",
     "MissingFileError", "Model", "OutOfMemoryError", "OutputError", "OwnCamera", "OwnSampler", "OwnTracer", "Paths",
-    "Progress", "Projection", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Settings", "Spectrum", "Step", "Trace",
+    "Progress", "Projection", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Sensor", "Settings", "Spectrum", "Step", "Trace",
     "TraceBounce", "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody",
     "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera", "read_film", "read_image",
-    "read_trajectory", "rgb", "sampled", "sensor_names", "set_threads", "settings_names", "spectrum_names",
+    "read_trajectory", "rgb", "sampled", "sensor_names", "sensor_presets", "set_threads", "settings_names", "spectrum_names",
 ]

@@ -1,0 +1,183 @@
+/* sensor/verify.c: `velo sensor verify`: exposes a sensor to flat fields and a slanted edge,
+ * measures its parameters by EMVA 1288 and ISO 12233, and compares them with its own numbers.
+ */
+#include "sensor/verify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/report.h"
+#include "sensor/sensor.h"
+
+enum {
+  VERIFY_ISO,
+  VERIFY_TEMPERATURE,
+  VERIFY_SEED,
+  VERIFY_SIZE,
+  VERIFY_STACK,
+  VERIFY_FRAMES,
+  VERIFY_PLOT,
+  VERIFY_THREADS
+};
+static const ExposureOption exposure_rows[] = {
+    {VERIFY_ISO, "iso"}, {VERIFY_TEMPERATURE, "temperature"}, {VERIFY_SEED, "seed"}};
+
+/* Light and times of the steps: the last one is 8 % above the saturation, and long enough for
+ * five dark electrons. */
+static void plan(Verify *v) {
+  const vlSensorDef *def = vl_sensor_def(v->sensor);
+  double iso = v->exposure.iso > 0.0 ? v->exposure.iso / def->base_iso : 1.0;
+  double warmer = v->exposure.temperature - def->dark_temperature;
+  double dark = def->dark_current * exp2(warmer / def->doubling);
+  v->gain = iso * v->exposure.gain / def->gain;
+  double converter = (exp2(def->bits) - 1.0 - def->black_level) / v->gain;
+  v->saturation = fmin(def->full_well, converter);
+  v->full_electrons = 1.08 * v->saturation;
+  v->full_time = dark > 0.0 ? fmin(fmax(5.0 / dark, 1e-3), 1e4) : 0.05;
+  double largest = 0.0;
+  for (uint32_t f = 0; f < def->filter_count; f++)
+    for (int i = 0; i < VL_SENSOR_WAVELENGTHS; i++)
+      largest = fmax(largest, (double)def->filters[f].efficiency[i]);
+  v->efficiency = fmax(largest * def->fill_factor, 1e-6);
+}
+
+/* Frames of a stack, so many that the noise that is left in the pixels' means adds a tenth to
+ * the error of a pattern's variance: the noise is then about a third of it. */
+static uint32_t frames_for(double noise, double pattern) {
+  double frames = pattern > 0.0 ? 3.0 * noise / pattern : 0.0;
+  return (uint32_t)fmin(fmax(ceil(frames), 16.0), 400.0);
+}
+
+static void plan_stack(Verify *v) {
+  const vlSensorDef *def = vl_sensor_def(v->sensor);
+  double rounding = 1.0 / 12.0 / (v->gain * v->gain);
+  double adc = def->adc_noise / v->gain;
+  double dark = def->read_noise * def->read_noise + def->row_noise * def->row_noise +
+                def->column_noise * def->column_noise + adc * adc + rounding;
+  double half = 0.5 * v->saturation;
+  uint32_t frames = frames_for(dark, def->dsnu * def->dsnu);
+  uint32_t bright = frames_for(dark + half, def->prnu * half * (def->prnu * half));
+  v->stack = frames > bright ? frames : bright;
+}
+
+static void print_rows(const Verify *v) {
+  printf("%-24s %14s %14s %12s\n", "", "expected", "measured", "difference");
+  for (int i = 0; i < v->count; i++) {
+    const VerifyRow *row = &v->rows[i];
+    char name[64];
+    snprintf(name, sizeof name, "%s, %s", row->name, row->unit);
+    if (row->skip)
+      printf("%-24s %s\n", name, row->skip);
+    else if (isnan(row->expected))
+      printf("%-24s %14s %14.6g %12s %s\n", name, "-", row->measured, "",
+             verify_passes(row) ? "ok" : "TOO LARGE");
+    else
+      printf("%-24s %14.6g %14.6g %10.3f %% %s\n", name, row->expected, row->measured,
+             100.0 * (row->measured / row->expected - 1.0),
+             verify_passes(row) ? "ok" : "WRONG");
+  }
+}
+
+static int allocate(Verify *v) {
+  size_t count = (size_t)v->size * v->size;
+  v->means = malloc(count * sizeof *v->means);
+  v->frames[0] = malloc(count * sizeof *v->frames[0]);
+  v->frames[1] = malloc(count * sizeof *v->frames[1]);
+  return v->means && v->frames[0] && v->frames[1]
+             ? -1
+             : report_failure(STATUS_OTHER, "out of memory");
+}
+
+static int verify(Verify *v, const OptionValue *plot) {
+  plan(v);
+  if (!v->stack)
+    plan_stack(v);
+  int status = allocate(v);
+  if (status < 0)
+    status = verify_frames(v);
+  if (status < 0)
+    verify_parameters(v);
+  if (status < 0)
+    status = verify_edge(v);
+  if (status < 0 && plot->given)
+    status = verify_plot(v, plot->text);
+  if (status >= 0)
+    return status;
+  print_rows(v);
+  status = STATUS_OK;
+  for (int i = 0; i < v->count; i++)
+    if (!verify_passes(&v->rows[i]))
+      status = STATUS_OTHER;
+  return report_stdout(status);
+}
+
+static int run(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *values = arguments->values;
+  Verify v = {.exposure = vl_default_exposure_def(), .size = 512};
+  int status = exposure_options(arguments, exposure_rows,
+                                sizeof exposure_rows / sizeof *exposure_rows, &v.exposure);
+  if (status >= 0)
+    return status;
+  if (values[VERIFY_SIZE].given)
+    v.size = (uint32_t)values[VERIFY_SIZE].integer;
+  if (values[VERIFY_STACK].given)
+    v.stack = (uint32_t)values[VERIFY_STACK].integer;
+  if (values[VERIFY_FRAMES].given)
+    v.folder = values[VERIFY_FRAMES].text;
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  if (values[VERIFY_THREADS].given)
+    def.threads = (uint32_t)values[VERIFY_THREADS].integer;
+  status = context_open(&def, &v.context);
+  if (status < 0)
+    status = sensor_open(v.context, arguments->operands[0], &v.sensor);
+  if (status < 0)
+    status = verify(&v, &values[VERIFY_PLOT]);
+  verify_folder_close(&v);
+  free(v.means);
+  free(v.frames[0]);
+  free(v.frames[1]);
+  vl_sensor_destroy(v.sensor);
+  context_close(v.context);
+  return status;
+}
+
+static const Option options[] = {
+    {VERIFY_ISO, 0, "iso", OPTION_TEXT, "N", "ISO speed; default: the sensor's base_iso"},
+    {VERIFY_TEMPERATURE, 0, "temperature", OPTION_TEXT, "C",
+     "temperature of the sensor, degrees Celsius"},
+    {VERIFY_SEED, 0, "seed", OPTION_TEXT, "N", "seed of the noise"},
+    {VERIFY_SIZE, 0, "size", OPTION_INTEGER, "N", "side of the frames in pixels; default 512",
+     16, 4096},
+    {VERIFY_STACK, 0, "stack", OPTION_INTEGER, "N",
+     "frames of the stacks for DSNU and PRNU; default: 16 to 400, by the sensor's noise", 3,
+     1000},
+    {VERIFY_FRAMES, 0, "frames", OPTION_TEXT, "DIR",
+     "write the frames (.png, 16 bits) and the descriptor EMVA1288_Data.txt, which EMVA's own "
+     "program reads, to a new folder"},
+    {VERIFY_PLOT, 0, "plot", OPTION_TEXT, "FILE.svg", "write the photon transfer curve"},
+    {VERIFY_THREADS, 't', "threads", OPTION_INTEGER, "N",
+     "number of worker threads; default: all processors. The result is the same"},
+    {0}};
+
+const Command sensor_verify_command = {
+    .name = "sensor verify",
+    .usage = "NAME|FILE [options]",
+    .summary = "measure a sensor's parameters by EMVA 1288 and compare them with its own",
+    .text =
+        "Exposes the sensor to flat fields, dark frames and a slanted edge, which are "
+        "computed, not\nrendered, and measures gain, noise, dark current, saturation, "
+        "DSNU, PRNU, linearity and MTF.\nExit code 1: a parameter differs by more than "
+        "1 % (linearity: 0.1 %, MTF: 2 %).",
+    .examples =
+        "velo sensor verify generic_mono --plot transfer.svg\n"
+        "velo sensor verify my.yaml --frames emva",
+    .options = options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run,
+};

@@ -62,6 +62,7 @@ with open(OBJ, "w") as file:
     file.write("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nf 1 2 3\n")
 FIRST = quad_scene()
 IMAGE = FIRST.render(spp=1, errors=True, buckets=2, lambda_min=400, lambda_max=700)
+SPECTRAL = velo.Image(numpy.ones((4, 4, 2), dtype=numpy.float32), ["S0.450nm", "S0.550nm"], encoding="linear")
 IMAGE.write(EXR)
 FIRST.film.write(FILM)
 FIRST.camera.write(CAMERA)
@@ -238,6 +239,9 @@ CALLS = [
     Call("OwnCamera", rays=(len, OBJECT), name=("own", TEXT), pixels=(None, ANY), lens=(False, FLAG)),
     Call("OwnSampler", numbers=(len, OBJECT), name=("own", TEXT)),
     Call("OwnTracer", radiance=(len, OBJECT), name=("own", TEXT)),
+    Call("Sensor", keywords=keywords("sensor"), sensor=("ideal", TEXT), context=(None, OBJECT)),
+    Call("Sensor.expose", lambda: velo.Sensor("generic_mono"), keywords=keywords("exposure"), image=(SPECTRAL, OBJECT)),
+    Call("sensor_presets"),
     Call("channel_names"), Call("sensor_names"), Call("settings_names"), Call("spectrum_names"),
 ]
 # Their values are checked where they are used: add_light's color, below.
@@ -319,7 +323,7 @@ def no_public_function_is_left_out():
     for name in velo.__all__:
         thing = getattr(velo, name)
         if inspect.isclass(thing) and issubclass(thing, (Exception, tuple)) or name in SPECTRA or \
-                name in ("Handle", "Projection") or name in TRACE:
+                name in ("Handle", "Projection", "Exposure") or name in TRACE:
             continue
         if inspect.isclass(thing):
             wanted.update("%s.%s" % (name, member) for member, value in inspect.getmembers(thing)

@@ -156,11 +156,13 @@ def by_options_of_the_program():
     aliases = {"rotation": "environment-rotation", "strength": "environment-strength", "ranks": "crypto-ranks"}
     texts = ("noise", "samples")  # have forms of their own; view looks at --exposure after it has loaded the scene
     problems, tried, reached = [], 0, set()
-    pages = {command: run_help(command) for command in ("render", "view", "camera paths", "scene verify", "image denoise")}
+    pages = {command: run_help(command) for command in ("render", "view", "camera paths", "scene verify", "image denoise", "sensor expose")}
     for row in ROWS:
         option = aliases.get(row.name, row.name.replace("_", "-"))
         for command, page in pages.items():
             found = re.search(r"^ +(?:-\w, )?--%s ([A-Z]+)\b" % option, page, re.M)
+            if (row.group in ("sensor", "exposure")) != (command == "sensor expose") or row.group == "sensor":
+                continue
             if not found or row.kind == "string" or option in texts or (command, option) == ("view", "exposure") or (row.group in ("load", "complete") and row.name not in aliases):
                 continue
             reached.add((command, option))

@@ -109,6 +109,7 @@ VL_API const char *vl_sensor_pattern(const vlSensorDef *def,
 typedef struct vlExposureDef {
   uint32_t cookie;
   double time;         /**< exposure time, s */
+  double stops;        /**< of a bracket: the exposure time times 2^stops */
   double f_number;     /**< focal length / diameter of the pupil */
   double iso;          /**< ISO speed; 0: the sensor's base_iso */
   double gain;         /**< a further factor of the amplifier */

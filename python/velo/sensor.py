@@ -53,8 +53,8 @@ class Sensor:
 
     def expose(self, image: Image, **exposure: Any) -> Exposure:
         """Exposes the sensor to an image with a spectrum, as Film.spectrum() and files of `velo render --spectrum` have it.
-        exposure: exposure_time in s, f_number, iso, gain, temperature in deg C, focal_length in mm, radiance of the value
-        1 in W/(m^2 sr nm), seed, frame."""
+        exposure: exposure_time in s, stops (a factor of 2^stops on it), f_number, iso, gain, temperature in deg C,
+        focal_length in mm, radiance of the value 1 in W/(m^2 sr nm), seed, frame."""
         _check.instance(image, Image, "image")
         for part in image.parts:
             if any(name.startswith("S0.") for name in part._names):

@@ -69,6 +69,8 @@ const vlKindRow vl_sensor_settings_row = {.name = "sensor",
 static const vlParameter exposure_parameters[] = {
     EXPOSURE(DOUBLE, time, "exposure time", VL_RANGE(0, 1e6), VL_DEFAULT(0.01), .unit = "s",
              .keyword = "exposure_time"),
+    EXPOSURE(DOUBLE, stops, "of a bracket: the exposure time times 2^stops", VL_RANGE(-30, 30),
+             .unit = "stops"),
     EXPOSURE(DOUBLE, f_number, "focal length divided by the pupil's diameter",
              VL_RANGE(0.5, 1000), VL_DEFAULT(4)),
     EXPOSURE(DOUBLE, iso, "ISO speed; 0: the sensor's base_iso", VL_RANGE(0, 1e7)),

@@ -165,7 +165,7 @@ static void set_scales(Collect *c, const vlExposureDef *exposure) {
   double n = exposure->f_number;
   double irradiance = PI * def->transmittance / (4.0 * n * n);
   double area = metres * metres * def->fill_factor;
-  c->scale = irradiance * area * exposure->time * exposure->radiance;
+  c->scale = irradiance * area * vl_exposure_seconds(exposure) * exposure->radiance;
   double half =
       0.5 * __builtin_sqrt((double)c->width * c->width + (double)c->height * c->height);
   vlSinCosDouble chief = vl_sincos_double(def->chief_ray * RADIANS);

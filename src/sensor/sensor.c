@@ -9,6 +9,7 @@
 #include "base/cookie.h"
 #include "base/text.h"
 #include "color/sensor.h"
+#include "math/elementary.h"
 #include "schema/schema.h"
 #include "velo/render.h"
 
@@ -321,6 +322,10 @@ void vl_sensor_destroy(vlSensor *sensor) {
 
 const vlSensorDef *vl_sensor_def(const vlSensor *sensor) {
   return &sensor->def;
+}
+
+double vl_exposure_seconds(const vlExposureDef *exposure) {
+  return exposure->time * vl_precise_exp2(exposure->stops);
 }
 
 double vl_exposure_gain(const vlSensorDef *def, const vlExposureDef *exposure) {

@@ -19,6 +19,8 @@ vlResult vl_sensor_check_rows(const vlKindRow *rows, const void *def, vlError *e
 vlResult vl_exposure_check(const vlExposureDef *exposure, vlError *error);
 /* The index of the filter with that letter; filter_count: there is none. */
 uint32_t vl_sensor_filter_index(const vlSensorDef *def, char name);
+/* The exposure time with the stops of a bracket, s. */
+double vl_exposure_seconds(const vlExposureDef *exposure);
 /* The amplifier's factor: of the ISO speed and the further gain. */
 double vl_exposure_gain(const vlSensorDef *def, const vlExposureDef *exposure);
 

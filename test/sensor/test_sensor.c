@@ -97,6 +97,9 @@ static void radiometry(void **state) {
   near(means_[0], expected, 2e-6 * expected);
   near(means_[PIXELS - 1], expected, 2e-6 * expected);
   assert_true(isnan(out.film_noise));
+  exposure.stops = -1.5;
+  assert_int_equal(vl_sensor_collect(sensor, image, &exposure, means_, &out, NULL), VL_OK);
+  near(means_[0], expected * pow(2.0, -1.5), 2e-6 * expected);
   vl_image_destroy(image);
   vl_sensor_destroy(sensor);
 }

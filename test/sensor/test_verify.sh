@@ -18,6 +18,8 @@ done
 check plot grep -q '<circle' plot.svg
 check gain_of_iso "$VELO" sensor verify noisy.yaml --iso 400
 case "$out" in *"gain, DN/e-  "*" 1.05263 "*) pass iso_400 ;; *) fail iso_400 ;; esac
+printf 'full_well: 1 e-\nbits: 1 bits\n' >tiny.yaml
+expect_code 1 tiny "$VELO" sensor verify tiny.yaml --size 16 --stack 3
 check ideal "$VELO" sensor verify ideal --size 256
 case "$out" in *"dark noise, e-           the noise of dark frames is below the converter's steps"*) pass ideal_dark ;; *) fail ideal_dark ;; esac
 expect_code 1 few_pixels "$VELO" sensor verify generic_mono --size 16 --stack 3

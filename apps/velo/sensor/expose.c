@@ -134,6 +134,8 @@ static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
   if (result == VL_OK)
     result = add_number(e->electrons, "exposureTime", exposure->time);
   if (result == VL_OK)
+    result = add_number(e->electrons, "exposureStops", exposure->stops);
+  if (result == VL_OK)
     result = add_number(e->electrons, "fNumber", exposure->f_number);
   if (result == VL_OK)
     result = add_number(e->electrons, "sensorFullWell", def->full_well);
@@ -189,7 +191,7 @@ static int expose(Expose *e) {
   for (uint32_t f = 0; f < e->frames; f++) {
     vlError error = {0};
     vlExposureDef exposure = e->exposure;
-    exposure.time *= exp2(e->bracket[f]);
+    exposure.stops = e->bracket[f];
     exposure.frame += f;
     vlSensorOutput out = {.numbers = vl_image_pixels(e->numbers),
                           .electrons = vl_image_pixels(e->electrons)};

@@ -37,6 +37,7 @@ static void plan(Verify *v) {
   v->saturation = fmin(def->full_well, converter);
   v->full_electrons = 1.08 * v->saturation;
   v->full_time = dark > 0.0 ? fmin(fmax(5.0 / dark, 1e-3), 1e4) : 0.05;
+  v->full_time = floor(v->full_time * 1e6 + 0.5) * 1e-6; /* the same on every machine */
   double largest = 0.0;
   for (uint32_t f = 0; f < def->filter_count; f++)
     for (int i = 0; i < VL_SENSOR_WAVELENGTHS; i++)

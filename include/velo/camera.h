@@ -183,9 +183,9 @@ VL_API vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height);
 /** Sets projection, distortion, fx, fy, cx, cy from one of COLMAP's camera models by its name
  * (SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV,
  * SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE, SIMPLE_DIVISION, DIVISION,
- * SIMPLE_FISHEYE, FISHEYE, EUCM, EQUIRECTANGULAR) with its parameters in COLMAP's order.
- * COLMAP's first pixel is centred at (0.5, 0.5), as here. ARGUMENT: an unknown name (the
- * message has the nearest), a wrong count. UNSUPPORTED: RAD_TAN_THIN_PRISM_FISHEYE. */
+ * SIMPLE_FISHEYE, FISHEYE, EUCM, EQUIRECTANGULAR, RAD_TAN_THIN_PRISM_FISHEYE) with its
+ * parameters in COLMAP's order. COLMAP's first pixel is centred at (0.5, 0.5), as here.
+ * ARGUMENT: an unknown name (the message has the nearest), a wrong count. */
 VL_API vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model,
                                      const double *parameters, uint32_t count, vlError *error);
 
@@ -193,7 +193,9 @@ VL_API vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model,
  * vl_camera_make. */
 typedef struct vlDistortionMap {
   /** Rational radial (k1 k2 k3 .. over k4 k5 k6), tangential and thin prism coefficients. */
-  double numerator[4], denominator[3], tangential[2], prism[4];
+  double numerator[6], denominator[3], tangential[2], prism[4];
+  bool radial_first; /**< the tangential and thin prism terms are those of the point after its
+                        radial distortion; false: of the point before it */
   double tilt[9], untilt[9]; /**< row-major homography of a tilted sensor, and its inverse */
   double radius;  /**< radius of the disc around the projection plane's centre in which the map
                      is  one-to-one */

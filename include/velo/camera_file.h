@@ -73,6 +73,7 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_NERFIES,        /**< camera JSON of Nerfies and HyperNeRF */
   VL_CAMERA_DIALECT_THREEJS,        /**< three.js' JSON of a camera */
   VL_CAMERA_DIALECT_MATRIX,         /**< a matrix of numbers alone in a text file */
+  VL_CAMERA_DIALECT_ARIA,           /**< calibration JSON of Project Aria's glasses */
   VL_CAMERA_DIALECT_COUNT           /**< number of dialects */
 } vlCameraDialect;
 

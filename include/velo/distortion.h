@@ -16,7 +16,10 @@ extern "C" {
   X(OPENCV,                                                                                  \
     opencv) /* k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]: 4, 5, 8, 12 or 14 */ \
   X(RADIAL, radial) /* k1 [k2 [k3 [k4]]]; with EQUIDISTANT: OpenCV's and COLMAP's fisheye */ \
-  X(THIN_PRISM, thin_prism) /* COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
+  X(THIN_PRISM, thin_prism) /* COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */                         \
+  X(RAD_TAN_THIN_PRISM,                                                                      \
+    rad_tan_thin_prism) /* Project Aria's k0 to k5, p0 p1, s0 to s3; with EQUIDISTANT:       \
+                           Fisheye624, COLMAP's RAD_TAN_THIN_PRISM_FISHEYE */
 /** The kinds of distortion: VL_DISTORTION_NONE and so on, from VL_DISTORTION_KINDS. */
 typedef enum vlDistortionKind {
 #define VL_KIND(NAME, name) VL_DISTORTION_##NAME,

@@ -21,10 +21,10 @@ enum {
             of camera_from_world' = exp((t, r)^) camera_from_world, at 0 */
   VL_JACOBIAN_INTRINSICS = 9,  /**< 5: fx, fy, skew, cx, cy, pixels */
   VL_JACOBIAN_SHAPE = 14,      /**< 2: vlCamera.shape */
-  VL_JACOBIAN_DISTORTION = 16, /**< 15: members of vlDistortionMap in its order: numerator (4),
+  VL_JACOBIAN_DISTORTION = 16, /**< 17: members of vlDistortionMap in its order: numerator (6),
                                   denominator (3), tangential (2), prism (4); then the sensor's
                                   tilt tau_x, tau_y, radians */
-  VL_JACOBIAN_COLUMNS = 31     /**< their number */
+  VL_JACOBIAN_COLUMNS = 33     /**< their number */
 };
 
 /** The derivatives of vl_camera_project's film point at `count` points (x, y, z): for each

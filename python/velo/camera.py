@@ -34,7 +34,7 @@ class Jacobian(NamedTuple):
 #: The columns of a Jacobian (velo/jacobian.h): the point; translation and rotation of camera_from_world' = exp(.)
 #: camera_from_world; intrinsics; the projection's numbers; the common form of all distortions (docs/cameras.md).
 JACOBIAN_COLUMNS = ("point_x", "point_y", "point_z", "t_x", "t_y", "t_z", "r_x", "r_y", "r_z", "fx", "fy", "skew", "cx", "cy",
-                    "shape_0", "shape_1", "n0", "n1", "n2", "n3", "d0", "d1", "d2", "p0", "p1", "t0", "t1", "t2", "t3",
+                    "shape_0", "shape_1", "n0", "n1", "n2", "n3", "n4", "n5", "d0", "d1", "d2", "p0", "p1", "t0", "t1", "t2", "t3",
                     "tau_x", "tau_y")
 
 

@@ -2,13 +2,16 @@
  * projection turns a point (u, v) of its plane into a direction: x right, y down, z forward. */
 #include "more.h"
 
-/* Brown's and OpenCV's model: from the ideal point to where the lens puts it. */
+/* Brown's and OpenCV's model: from the ideal point to where the lens puts it. Project Aria's has the radial part first.
+ */
 static square_point distorted(const vlDistortionMap *d, square_point p) {
   const double *n = d->numerator, *e = d->denominator, *t = d->tangential, *prism = d->prism;
-  double s = p.x * p.x + p.y * p.y, ab = p.x * p.y;
-  double q = (1 + s * (n[0] + s * (n[1] + s * (n[2] + s * n[3])))) / (1 + s * (e[0] + s * (e[1] + s * e[2])));
-  return (square_point){p.x * q + 2 * t[0] * ab + t[1] * (s + 2 * p.x * p.x) + s * (prism[0] + s * prism[1]),
-                        p.y * q + t[0] * (s + 2 * p.y * p.y) + 2 * t[1] * ab + s * (prism[2] + s * prism[3])};
+  double s = p.x * p.x + p.y * p.y, above = s * (n[3] + s * (n[4] + s * n[5]));
+  double q = (1 + s * (n[0] + s * (n[1] + s * (n[2] + above)))) / (1 + s * (e[0] + s * (e[1] + s * e[2])));
+  square_point radial = {p.x * q, p.y * q}, at = d->radial_first ? radial : p;
+  double x = at.x, y = at.y, r2 = x * x + y * y;
+  return (square_point){radial.x + 2 * t[0] * x * y + t[1] * (r2 + 2 * x * x) + r2 * (prism[0] + r2 * prism[1]),
+                        radial.y + t[0] * (r2 + 2 * y * y) + 2 * t[1] * x * y + r2 * (prism[2] + r2 * prism[3])};
 }
 
 /* The sensor is untilted, and the distortion inverted by Newton's method, with differences for derivatives. */

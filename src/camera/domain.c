@@ -2,6 +2,7 @@
  * does not fold and its projection is defined; the number of Newton steps that invert the
  * distortion there; and the share of the image that lies outside. */
 #include <math.h>
+#include <string.h>
 
 #include "base/error.h"
 #include "camera/optics.h"
@@ -11,7 +12,7 @@
 #include "math/elementary.h"
 #include "projection/properties.row.h"
 
-enum { DEGREE = 8, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
+enum { RADIAL_TERMS = 6, DEGREE = 10, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
 static const double pi = 3.14159265358979323846;
 
 /* ---- where a radial distortion folds: the first root of a polynomial --------------------- */
@@ -56,15 +57,16 @@ static int positive_roots(const double *p, int degree, double top, double roots[
 
 /* With s = r^2 and q = N/D, r q(s) increases while (N + 2 s N') D - 2 s N D' > 0 and D > 0. */
 static double radial_fold(const vlDistortionMap *m) {
-  const double n[5] = {1.0, m->numerator[0], m->numerator[1], m->numerator[2], m->numerator[3]};
+  double n[1 + RADIAL_TERMS] = {1.0};
+  memcpy(n + 1, m->numerator, sizeof m->numerator);
   const double d[4] = {1.0, m->denominator[0], m->denominator[1], m->denominator[2]};
   double growth[DEGREE] = {0}, roots[DEGREE];
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i <= RADIAL_TERMS; i++)
     for (int j = 0; j < 4; j++)
       growth[i + j] += n[i] * d[j] * (1.0 + 2.0 * i - 2.0 * j);
   const double top = 1e12;
   double first = INFINITY;
-  if (positive_roots(growth, 7, top, roots) > 0)
+  if (positive_roots(growth, RADIAL_TERMS + 3, top, roots) > 0)
     first = roots[0];
   if (positive_roots(d, 3, top, roots) > 0 && roots[0] < first)
     first = roots[0];
@@ -113,9 +115,11 @@ static double fold_radius(const vlDistortionMap *m, double most) {
   double radius = fmin(radial_fold(m), most);
   if (radial)
     return radius;
-  /* tangential terms move the fold inwards or outwards, so the search continues beyond the
-   * radial fold */
-  radius = most;
+  /* tangential terms of the undistorted point move the fold inwards or outwards, so the search
+   * continues beyond the radial fold */
+  if (!m->radial_first)
+    radius = most;
+  most = radius;
   for (int i = 0; i < DIRECTIONS; i++) {
     double angle = 2.0 * pi * i / DIRECTIONS;
     radius = fmin(radius, fold_along(m, vl_precise_cos(angle), vl_precise_sin(angle), radius));
@@ -131,8 +135,9 @@ static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
   vlPlanePoint p = vl_distortion_start(m, d.u, d.v);
   uint32_t step = 0;
-  while (step <= MAX_STEPS && vl_distortion_check(m, p.x, p.y, d.u, d.v) == 0.0) {
-    p = vl_distortion_step(m, p.x, p.y, d.u, d.v);
+  while (step <= MAX_STEPS &&
+         vl_distortion_check(m->radial_first, m, p.x, p.y, d.u, d.v) == 0.0) {
+    p = vl_distortion_step(m->radial_first, m, p.x, p.y, d.u, d.v);
     step++;
   }
   return step;

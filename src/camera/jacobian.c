@@ -18,27 +18,41 @@ typedef struct {
   double point[2][3], numbers[2][NUMBERS];
 } FilmDerivatives;
 
+/* The numbers of a distortion: members of vlDistortionMap, and the two angles of its tilt. */
+enum { RADIAL = 6, BELOW = RADIAL, TANGENTIAL = 9, PRISM = 11, TILT = 15, COEFFICIENTS = 17 };
+
 /* The derivatives of the point before the tilt by the coefficients of the common form
  * (distortion/distortion.h). */
-static void by_coefficients(const vlDistortionMap *m, double x, double y, double by[2][13]) {
+static void by_coefficients(const vlDistortionMap *m, double x, double y, double by[2][TILT]) {
   const double *n = m->numerator, *d = m->denominator;
-  double s = x * x + y * y, below = 1.0 + s * (d[0] + s * (d[1] + s * d[2]));
-  double q = (1.0 + s * (n[0] + s * (n[1] + s * (n[2] + s * n[3])))) / below, power = 1.0;
+  double s = x * x + y * y, below = 1.0 + s * (d[0] + s * (d[1] + s * d[2])), above = 0.0;
+  for (int i = RADIAL - 1; i >= 0; i--)
+    above = s * (n[i] + above);
+  double q = (1.0 + above) / below, power = 1.0, by_q[2] = {x, y};
   memset(by, 0, 2 * sizeof *by);
-  for (int i = 0; i < 4; i++) {
-    power *= s;
-    by[0][i] = x * power / below;
-    by[1][i] = y * power / below;
-    if (i == 3)
-      break;
-    by[0][4 + i] = -x * q * power / below;
-    by[1][4 + i] = -y * q * power / below;
+  if (m->radial_first) {
+    vlDistorted after = vl_distort_with(m, x * q, y * q, 1.0, 0.0);
+    by_q[0] = after.ux * x + after.uy * y;
+    by_q[1] = after.vx * x + after.vy * y;
   }
-  by[0][7] = by[1][8] = 2.0 * x * y;
-  by[1][7] = s + 2.0 * y * y;
-  by[0][8] = s + 2.0 * x * x;
-  by[0][9] = by[1][11] = s;
-  by[0][10] = by[1][12] = s * s;
+  for (int i = 0; i < RADIAL; i++) {
+    power *= s;
+    for (int axis = 0; axis < 2; axis++) {
+      by[axis][i] = by_q[axis] * power / below;
+      if (i < 3)
+        by[axis][BELOW + i] = -by_q[axis] * q * power / below;
+    }
+  }
+  if (m->radial_first) {
+    x *= q;
+    y *= q;
+    s = x * x + y * y;
+  }
+  by[0][TANGENTIAL] = by[1][TANGENTIAL + 1] = 2.0 * x * y;
+  by[1][TANGENTIAL] = s + 2.0 * y * y;
+  by[0][TANGENTIAL + 1] = s + 2.0 * x * x;
+  by[0][PRISM] = by[1][PRISM + 2] = s;
+  by[0][PRISM + 1] = by[1][PRISM + 3] = s * s;
 }
 
 /* The derivatives of the tilted point, by one angle of the tilt. r: the rotation; dr: its
@@ -67,14 +81,14 @@ static void by_tilt(const vlDistortionMap *m, double u, double v, double by_x[2]
   by_angle(r, about_y, u, v, by_y);
 }
 
-/* by: the 2 x 2 derivatives of the distorted point by the ideal one, and those by the 15
+/* by: the 2 x 2 derivatives of the distorted point by the ideal one, and those by the
  * numbers of the distortion. at: the distorted point. */
 static void distortion(const vlDistortionMap *m, double x, double y, double at[2],
-                       double by_ideal[2][2], double by[2][15]) {
+                       double by_ideal[2][2], double by[2][COEFFICIENTS]) {
   vlDistorted d = vl_distort(m, x, y);
   vlPlanePoint p = vl_tilt(m->tilt, d.u, d.v);
   const double *h = m->tilt;
-  double before[2][13], angle_x[2], angle_y[2], flat[2][2];
+  double before[2][TILT], angle_x[2], angle_y[2], flat[2][2];
   double w = h[6] * d.u + h[7] * d.v + h[8];
   at[0] = p.x;
   at[1] = p.y;
@@ -85,10 +99,10 @@ static void distortion(const vlDistortionMap *m, double x, double y, double at[2
       flat[i][j] = (h[3 * i + j] - at[i] * h[6 + j]) / w;
     by_ideal[i][0] = flat[i][0] * d.ux + flat[i][1] * d.vx;
     by_ideal[i][1] = flat[i][0] * d.uy + flat[i][1] * d.vy;
-    for (int j = 0; j < 13; j++)
+    for (int j = 0; j < TILT; j++)
       by[i][j] = flat[i][0] * before[0][j] + flat[i][1] * before[1][j];
-    by[i][13] = angle_x[i];
-    by[i][14] = angle_y[i];
+    by[i][TILT] = angle_x[i];
+    by[i][TILT + 1] = angle_y[i];
   }
 }
 
@@ -122,7 +136,7 @@ static FilmDerivatives film_derivatives(const vlCameraCompiled *c, double x, dou
     return optics_derivatives(c, x, y, z);
   vlPlanePoint ideal = vl_plane_project(c->projection, c, x, y, z);
   vlPlaneDerivatives p = vl_plane_derive(c->projection, c, x, y, z);
-  double at[2], by_ideal[2][2], by[2][15];
+  double at[2], by_ideal[2][2], by[2][COEFFICIENTS];
   distortion(&c->distortion, ideal.x, ideal.y, at, by_ideal, by);
   const double k[2][2] = {{c->fx, c->skew}, {0.0, c->fy}};
   FilmDerivatives d = {.numbers = {{at[0], 0.0, at[1], 1.0, 0.0}, {0.0, at[1], 0.0, 0.0, 1.0}}};
@@ -133,7 +147,7 @@ static FilmDerivatives film_derivatives(const vlCameraCompiled *c, double x, dou
       d.point[i][j] = to_x * p.x[j] + to_y * p.y[j];
     for (int j = 0; j < 2; j++)
       d.numbers[i][SHAPE + j] = to_x * p.x[3 + j] + to_y * p.y[3 + j];
-    for (int j = 0; j < 15; j++)
+    for (int j = 0; j < COEFFICIENTS; j++)
       d.numbers[i][DISTORTION + j] = k[i][0] * by[0][j] + k[i][1] * by[1][j];
   }
   return d;

@@ -157,6 +157,8 @@ static const Colmap colmap[] = {
     {"SIMPLE_FISHEYE", 3, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_NONE, true},
     {"FISHEYE", 4, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_NONE, false},
     {"EUCM", 6, VL_PROJECTION_EUCM, VL_DISTORTION_NONE, false},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, VL_PROJECTION_EQUIDISTANT,
+     VL_DISTORTION_RAD_TAN_THIN_PRISM, false},
     {"EQUIRECTANGULAR", 2, VL_PROJECTION_EQUIRECTANGULAR, VL_DISTORTION_NONE, false},
 };
 enum { COLMAP_MODELS = VL_LENGTH(colmap) };
@@ -173,10 +175,6 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
     if (vl_text_is(model, names[i]))
       found = &colmap[i];
   }
-  if (vl_text_is(model, "RAD_TAN_THIN_PRISM_FISHEYE"))
-    return vl_fail(error, VL_ERROR_UNSUPPORTED,
-                   "camera: the COLMAP camera model RAD_TAN_THIN_PRISM_FISHEYE (Aria's "
-                   "Fisheye624) is not taken; `colmap image_undistorter` makes PINHOLE images");
   if (!found) {
     char known[400];
     vl_tell_names(known, sizeof known, model, names, COLMAP_MODELS);

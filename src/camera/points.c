@@ -31,8 +31,8 @@ vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
     vlPlanePoint flat = vl_tilt(m->untilt, p.x, p.y);
     p = vl_distortion_start(m, flat.x, flat.y);
     for (uint32_t step = 0; step < m->steps; step++)
-      p = vl_distortion_step(m, p.x, p.y, flat.x, flat.y);
-    valid = flat.valid * vl_distortion_check(m, p.x, p.y, flat.x, flat.y);
+      p = vl_distortion_step(m->radial_first, m, p.x, p.y, flat.x, flat.y);
+    valid = flat.valid * vl_distortion_check(m->radial_first, m, p.x, p.y, flat.x, flat.y);
     if (flat.valid > 0.0 && !(valid > 0.0)) {
       p = vl_distortion_invert(m, flat.x, flat.y);
       valid = p.valid;
@@ -61,7 +61,8 @@ vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y,
   vlPlanePoint p = vl_plane_project(c->projection, c, d.x, d.y, d.z);
   p.valid *= d.valid;
   if (c->distortion.steps > 0) {
-    vlPlanePoint bent = vl_distortion_apply(&c->distortion, p.x, p.y);
+    vlPlanePoint bent =
+        vl_distortion_apply(c->distortion.radial_first, &c->distortion, p.x, p.y);
     bent.valid *= p.valid;
     p = bent;
   }

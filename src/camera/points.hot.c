@@ -13,9 +13,12 @@
 #include "velo/projection.h"
 
 /* Removes the distortion of plane points in place, with a fixed number of Newton steps; the few
- * points that these do not reach follow one by one. */
-static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y,
-                      double *valid) {
+ * points that these do not reach follow one by one. radial_first: a constant, that of the map.
+ */
+static inline __attribute__((always_inline)) void undistort_loops(const bool radial_first,
+                                                                  const vlDistortionMap *map,
+                                                                  uint32_t count, double *x,
+                                                                  double *y, double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
   double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK], flat_valid[VL_CAMERA_CHUNK];
   /* must vectorise */
@@ -31,14 +34,14 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
   for (uint32_t step = 0; step < m->steps; step++) {
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      vlPlanePoint p = vl_distortion_step(m, x[i], y[i], u[i], v[i]);
+      vlPlanePoint p = vl_distortion_step(radial_first, m, x[i], y[i], u[i], v[i]);
       x[i] = p.x;
       y[i] = p.y;
     }
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) valid[i] =
-      flat_valid[i] * vl_distortion_check(m, x[i], y[i], u[i], v[i]);
+      flat_valid[i] * vl_distortion_check(radial_first, m, x[i], y[i], u[i], v[i]);
   for (uint32_t i = 0; i < count; i++) {
     if (valid[i] > 0.0 || !(flat_valid[i] > 0.0))
       continue;
@@ -47,6 +50,36 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
     y[i] = p.y;
     valid[i] = p.valid;
   }
+}
+
+static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y,
+                      double *valid) {
+  if (map->radial_first)
+    undistort_loops(true, map, count, x, y, valid);
+  else
+    undistort_loops(false, map, count, x, y, valid);
+}
+
+static inline __attribute__((always_inline)) void distort_loop(const bool radial_first,
+                                                               const vlDistortionMap *map,
+                                                               uint32_t count, double *x,
+                                                               double *y, double *valid) {
+  const vlDistortionMap copy = *map, *m = &copy;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlPlanePoint p = vl_distortion_apply(radial_first, m, x[i], y[i]);
+    x[i] = p.x;
+    y[i] = p.y;
+    valid[i] *= p.valid;
+  }
+}
+
+static void distort(const vlDistortionMap *map, uint32_t count, double *x, double *y,
+                    double *valid) {
+  if (map->radial_first)
+    distort_loop(true, map, count, x, y, valid);
+  else
+    distort_loop(false, map, count, x, y, valid);
 }
 
 static inline __attribute__((always_inline)) void plane_loop(vlProjection kind,
@@ -232,15 +265,8 @@ void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n,
   }
 #undef EYES_LOOP
 #undef PROJECT_LOOP
-  if (c->distortion.steps > 0) {
-    /* must vectorise */
-    VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      vlPlanePoint p = vl_distortion_apply(&c->distortion, out->x[i], out->y[i]);
-      out->x[i] = p.x;
-      out->y[i] = p.y;
-      out->valid[i] *= p.valid;
-    }
-  }
+  if (c->distortion.steps > 0)
+    distort(&c->distortion, count, out->x, out->y, out->valid);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlPlanePoint p = vl_plane_to_pixel(c, (vlPlanePoint){out->x[i], out->y[i], out->valid[i]});

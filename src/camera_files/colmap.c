@@ -345,6 +345,11 @@ static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, con
     for (int i = 0; i < 8; i++)
       p[(*count)++] = c[i];
   } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
+             d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM) {
+    *model = "RAD_TAN_THIN_PRISM_FISHEYE";
+    for (int i = 0; i < 12; i++)
+      p[(*count)++] = c[i];
+  } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
              d->distortion != VL_DISTORTION_OPENCV) {
     *model = "OPENCV_FISHEYE";
     for (uint32_t i = 0; i < 4; i++)

@@ -306,7 +306,7 @@ extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_
     vl_format_zed, vl_format_collada, vl_format_dso, vl_format_llff, vl_format_record3d,
     vl_format_polycam, vl_format_scanner3d, vl_format_depthai, vl_format_kinect,
     vl_format_realsense, vl_format_calibio, vl_format_nuscenes, vl_format_panoptic,
-    vl_format_nerfies, vl_format_threejs, vl_format_matrix;
+    vl_format_nerfies, vl_format_threejs, vl_format_matrix, vl_format_aria;
 
 /* The first returns whether an object has the key. The second returns whether the value at the
  * key has the second key; if that value is a list, its first item is tested. */

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "camera_files/files.h"
+#include "distortion/distortion.row.h"
 #include "math/transform.h"
 #include "velo/distortion.h"
 
@@ -106,11 +107,12 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
 }
 
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {
-  static const char *const names[] = {"no distortion", "OpenCV's distortion",
-                                      "a radial distortion", "the thin-prism distortion"};
-  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-                    "%s cannot hold the %s projection with %s and these coefficients",
-                    file->dialect, vl_projection_name(def->projection), names[def->distortion]);
+  bool none = def->distortion == VL_DISTORTION_NONE;
+  return vl_fail_at(
+      file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+      "%s cannot hold the %s projection with %s distortion and these coefficients",
+      file->dialect, vl_projection_name(def->projection),
+      none ? "no" : vl_distortion_row(def->distortion)->title);
 }
 
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) {

@@ -56,12 +56,14 @@ const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_NERFIES] = &vl_format_nerfies,
     [VL_CAMERA_DIALECT_THREEJS] = &vl_format_threejs,
     [VL_CAMERA_DIALECT_MATRIX] = &vl_format_matrix,
+    [VL_CAMERA_DIALECT_ARIA] = &vl_format_aria,
 };
 
 /* The order in which dialects are tried on a parsed file (JSON, YAML or XML): a dialect that is
  * recognised by fields of its own comes before one that is recognised by fields that several
  * tools use. */
 static const vlCameraDialect order[] = {VL_CAMERA_DIALECT_REALITYCAPTURE,
+                                        VL_CAMERA_DIALECT_ARIA,
                                         VL_CAMERA_DIALECT_COLLADA,
                                         VL_CAMERA_DIALECT_NERFSTUDIO,
                                         VL_CAMERA_DIALECT_CALIBIO,

@@ -74,9 +74,6 @@ static const Tool by_text[] = {
     {"sensor.camera.", "CARLA's sensors; give camera_angle_x in a transforms.json"},
     {"\"CamMatrix\"", "A2D2's calibration; " GIVE_OPENCV},
     {"\"u0\"", "Cityscapes' camera, as it seems; " GIVE_OPENCV " of fx, fy, u0, v0"},
-    {"\"CameraCalibrations\"",
-     "Project Aria's online calibration; give the model's numbers in a "
-     "dialect that has it"},
     {"fx_color", "ScanNet's description of a scene; give intrinsic_color.txt"},
     {"IntrinsicMatrix", "MATLAB's camera parameters; " GIVE_OPENCV " (the transposed matrix)"},
     {"Camera2 {", "a script of Nuke; " EXPORT_SCENE},

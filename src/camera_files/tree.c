@@ -65,8 +65,11 @@ static vlResult parse_json(const vlCameraFile *file, const char *text, size_t si
   if (!*tree)
     return vl_fail_at(file->error, VL_ERROR_SCENE, file->path,
                       location.line > 0 ? (uint32_t)location.line : 0,
-                      location.column > 0 ? (uint32_t)location.column : 0, "not JSON: %.*s",
-                      (int)vl_json_problem_length(location.text), location.text);
+                      location.column > 0 ? (uint32_t)location.column : 0, "not JSON: %.*s%s",
+                      (int)vl_json_problem_length(location.text), location.text,
+                      json_error_code(&location) == json_error_end_of_input_expected
+                          ? "; of a recording with a value in each line, give one line"
+                          : "");
   return locate_json(file, text, size) ? VL_OK : vl_fail_memory(file->error);
 }
 

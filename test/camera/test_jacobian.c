@@ -125,14 +125,14 @@ static Place moved(const Place *place, int column, double h) {
     *intrinsics[column - VL_JACOBIAN_INTRINSICS] += h;
   else if (column < VL_JACOBIAN_DISTORTION)
     c->shape[column - VL_JACOBIAN_SHAPE] += h;
-  else if (column < VL_JACOBIAN_DISTORTION + 4)
+  else if (column < VL_JACOBIAN_DISTORTION + 6)
     c->distortion.numerator[column - VL_JACOBIAN_DISTORTION] += h;
-  else if (column < VL_JACOBIAN_DISTORTION + 7)
-    c->distortion.denominator[column - VL_JACOBIAN_DISTORTION - 4] += h;
   else if (column < VL_JACOBIAN_DISTORTION + 9)
-    c->distortion.tangential[column - VL_JACOBIAN_DISTORTION - 7] += h;
-  else if (column < VL_JACOBIAN_DISTORTION + 13)
-    c->distortion.prism[column - VL_JACOBIAN_DISTORTION - 9] += h;
+    c->distortion.denominator[column - VL_JACOBIAN_DISTORTION - 6] += h;
+  else if (column < VL_JACOBIAN_DISTORTION + 11)
+    c->distortion.tangential[column - VL_JACOBIAN_DISTORTION - 9] += h;
+  else if (column < VL_JACOBIAN_DISTORTION + 15)
+    c->distortion.prism[column - VL_JACOBIAN_DISTORTION - 11] += h;
   else
     set_tilt(c, p.tau[0] + (column == COLUMNS - 2 ? h : 0),
              p.tau[1] + (column == COLUMNS - 1 ? h : 0));
@@ -166,6 +166,8 @@ static double column_error(const Place *place, bool forward, int column, const d
   double best = INFINITY;
   bool film = column >= VL_JACOBIAN_INTRINSICS && column < VL_JACOBIAN_SHAPE;
   double unit = film || (!forward && column < 2) ? 10.0 : 1.0;
+  if (column == VL_JACOBIAN_DISTORTION + 4 || column == VL_JACOBIAN_DISTORTION + 5)
+    unit = 0.1; /* the highest powers of the radius */
   for (double h = 4e-3; h > 3e-4 && best > 1e-8; h *= 0.5) {
     double d[6], error = 0, size = forward ? 1.0 : 1e-2;
     if (!difference(place, forward, column, unit * h, d))

@@ -15,7 +15,7 @@ from test_tools import (AT_ORIGIN, C, CENTRED, CX, CY, FISH, FISHEYE, FIVE, FULL
                         result, rotation_vector, rows, run, write)
 
 SUFFIXES = {"velo": ".json", "realitycapture": ".xmp", "nerfstudio": ".json", "visualsfm": ".nvm", "collada": ".dae", "dso": ".txt",
-                 "polycam": ".json", "realsense": ".json", "panoptic": ".json", "nerfies": ".json", "threejs": ".json",
+                 "polycam": ".json", "realsense": ".json", "panoptic": ".json", "nerfies": ".json", "threejs": ".json", "colmap": "",
                  "matrix": ".txt"}
 
 
@@ -221,6 +221,32 @@ SCANNET = {"pose/7.txt": "\n".join(join(rows(RT, C)[i:i + 4], " ") for i in (0, 
            "intrinsic/intrinsic_color.txt": "500 0 315.25 0\n0 510 245.5 0\n0 0 1 0\n0 0 0 1\n", "color/7.jpg": jpeg(640, 480)}
 
 
+# Project Aria, "Camera Intrinsic Models": k0 to k5, p0 p1, s0 to s3
+F624 = [0.4, -0.5, 0.35, -0.15, 0.03, -0.002, 0.003, -0.004, 0.002, 0.001, -0.003, 0.002]
+
+
+def fisheye624(X, Y, Z):
+    k, p, s = F624[:6], F624[6:8], F624[8:]
+    theta, across = math.atan2(math.hypot(X, Y), Z), math.hypot(X, Y)
+    r = theta + sum(k[i] * theta ** (2 * i + 3) for i in range(6))
+    u, v = (X / across * r, Y / across * r) if across else (0.0, 0.0)
+    return (u + p[0] * (2 * u * u + r * r) + 2 * p[1] * u * v + s[0] * r**2 + s[1] * r**4,
+            v + p[1] * (2 * v * v + r * r) + 2 * p[0] * u * v + s[2] * r**2 + s[3] * r**4)
+
+
+def aria(label, name, parameters, quaternion, translation):
+    return {"Label": label, "SerialNumber": "", "Calibrated": True, "Projection": {"Name": name, "Params": parameters},
+            "T_Device_Camera": {"Translation": translation, "UnitQuaternion": [quaternion[0], quaternion[1:]]}}
+
+
+ARIA_CAMERAS = [aria("camera-slam-left", "FisheyeRadTanThinPrism", [240, 320, 240] + [0] * 12, [1, 0, 0, 0], [0, 0, 0]),
+                aria("camera-et-left", "KannalaBrandtK3", [FX, FY, CX, CY] + FISHEYE, [0.8, -0.2, 0.4, 0.4], C),
+                aria("camera-rgb", "FisheyeRadTanThinPrism", [FX, CX, CY] + F624, [0.8, -0.2, 0.4, 0.4], C)]
+ARIA = json.dumps({"CameraCalibrations": ARIA_CAMERAS, "DeviceClassInfo": {"BuildVersion": "DVT-S", "DeviceClass": "Aria"}}, indent=1)
+ARIA_ONLINE = json.dumps({"tracking_timestamp_us": 1357695322, "utc_timestamp_ns": 1669844355099598323,
+                          "ImageSizes": [[640, 480]] * 3, "CameraCalibrations": ARIA_CAMERAS})
+
+
 def own(dialect, *other):
     return dict(targets=[dialect, "velo", *other])
 
@@ -289,11 +315,15 @@ CASES = [
     Case("K.txt", ROWS3, "matrix", options=SIZE, pose=AT_ORIGIN, **PLAIN, **own("matrix")),
     Case("camera_matrix.csv", ROWS3.replace(" ", ","), "matrix", options=SIZE, pose=AT_ORIGIN, **PLAIN, **own("x"), damage=False),
     Case("scannet", SCANNET, "matrix", path="pose/7.txt", **PLAIN, **own("x")),
+    Case("factory.json", ARIA, "aria", options=SIZE, frame="camera-et-left", **FISH, **own("x")),
+    Case("online.json", ARIA_ONLINE, "aria", frame="camera-rgb", plane=fisheye624, k=(FX, FX, CX, CY), **own("x", "colmap"), damage=False),
     Case("projection.txt", P_MATRIX, "matrix", options=SIZE, **PLAIN, **own("matrix"), damage=False),
 ]
 
 # broken files: the place and the format in the message, and what it must not blame
 BROKEN = [
+    ("online_calibration.jsonl", 2 * (ARIA_ONLINE + "\n"), "give one line", "YAML"),
+    ("aria_crop.json", ARIA_ONLINE.replace("640, 480", "300, 300", 1), "aria: the axis 320, 240 lies outside", "YAML"),
     ("other.conf", "[main]\na=3\n", "other.conf:1:1: no camera of a known dialect", "JSON"),
     ("bad.conf", "[LEFT_CAM_HD]\nfx=700\nfy=7x0\n", 'bad.conf:3:5: zed: no finite number: "x0"', "JSON"),
     ("poses.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "poses.txt:1:1: no camera of a known dialect", "matrix"),

@@ -61,6 +61,10 @@ static void set_distortion(vlCameraDef *d, uint64_t *seed) {
   } else if (which < 0.6) {
     d->distortion = VL_DISTORTION_RADIAL;
     d->distortion_count = 1 + (uint32_t)(4 * next_unit(seed));
+  } else if (which < 0.75) {
+    bool aria = next_unit(seed) < 0.5;
+    d->distortion = aria ? VL_DISTORTION_RAD_TAN_THIN_PRISM : VL_DISTORTION_THIN_PRISM;
+    d->distortion_count = aria ? 12 : 8;
   }
   for (uint32_t i = 0; i < d->distortion_count; i++)
     d->distortion_coefficients[i] =

@@ -66,6 +66,7 @@ const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
                                   {"nerfies", VL_CAMERA_DIALECT_NERFIES},
                                   {"threejs", VL_CAMERA_DIALECT_THREEJS},
                                   {"matrix", VL_CAMERA_DIALECT_MATRIX},
+                                  {"aria", VL_CAMERA_DIALECT_ARIA},
                                   {NULL, 0}};
 
 bool camera_is_scene(const char *path) {

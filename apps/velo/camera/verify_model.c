@@ -195,6 +195,19 @@ static bool bend(const vlCameraDef *def, double plane[2]) {
       plane[1] = y + y * q + 2.0 * k[3] * x * y + k[2] * (r2 + 2.0 * y * y) + k[7] * r2;
       return true;
     }
+    case VL_DISTORTION_RAD_TAN_THIN_PRISM: { /* Project Aria: k0 to k5, p0 p1, s0 to s3 */
+      double q = 1.0, power = 1.0;
+      for (int i = 0; i < 6; i++)
+        q += k[i] * (power *= r2);
+      x *= q;
+      y *= q;
+      r2 = x * x + y * y;
+      plane[0] =
+          x + k[6] * (2.0 * x * x + r2) + 2.0 * k[7] * x * y + k[8] * r2 + k[9] * r2 * r2;
+      plane[1] =
+          y + k[7] * (2.0 * y * y + r2) + 2.0 * k[6] * x * y + k[10] * r2 + k[11] * r2 * r2;
+      return true;
+    }
     default:
       return false;
   }
@@ -218,7 +231,7 @@ static void to_camera(const double m[16], const double point[3], double p[3]) {
 bool verify_knows(const VerifyModel *m) {
   return m->camera.eye_circle == 0.0 &&
          (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
-         (unsigned)m->def.distortion <= VL_DISTORTION_THIN_PRISM;
+         (unsigned)m->def.distortion <= VL_DISTORTION_RAD_TAN_THIN_PRISM;
 }
 
 bool verify_project(const VerifyModel *m, const double point[3], double pixel[2]) {

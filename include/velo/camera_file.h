@@ -97,6 +97,9 @@ typedef struct vlCameraFileDef {
 /** The default def. */
 VL_API vlCameraFileDef vl_default_camera_file_def(void);
 
+/** How many names of fields vlCameraRecord.unread_names has at most. */
+enum { VL_UNREAD_NAMES = 3 };
+
 /** A camera as read from a file, or to be written to one. */
 typedef struct vlCameraRecord {
   vlCameraDef camera;      /**< the camera, in velo's conventions */
@@ -106,8 +109,9 @@ typedef struct vlCameraRecord {
   char name[256];          /**< name of the camera or its image; may be empty */
   uint32_t unread; /**< number of fields that velo does not understand; they have no effect.
                       docs/camera-files.md names the dialects in which they are counted */
-  uint32_t unread_line;   /**< the line of the first one; 0: unknown */
-  char unread_names[128]; /**< the first three, as messages show them: "a", "b", "c" */
+  uint32_t unread_line; /**< the line of the first one; 0: unknown */
+  char
+      unread_names[128]; /**< the first VL_UNREAD_NAMES, as messages show them: "a", "b", "c" */
 } vlCameraRecord;
 
 /** Reads one camera. def may be null: the default. The result is a description; vl_camera_make

@@ -602,7 +602,7 @@ static bool warn_unread(const char *file, const vlCameraRecord *record) {
   return PyErr_WarnFormat(PyExc_UserWarning, 1,
                           "%s: line %u: %u fields are not understood and without effect: %s%s",
                           file, record->unread_line, record->unread, record->unread_names,
-                          record->unread > 3 ? ", ..." : "") == 0;
+                          record->unread > VL_UNREAD_NAMES ? ", ..." : "") == 0;
 }
 
 /* camera_read(context, path, dialect, frame, width, height): camera, dialect, frames, name,
@@ -702,7 +702,8 @@ static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
     raise_result(done, &error);
     goto end;
   }
-  result = PyList_New(0);
+  const vlCameraRecord *first = vl_trajectory_camera(trajectory, 0);
+  result = !first || warn_unread(file, first) ? PyList_New(0) : NULL;
   for (uint32_t i = 0; result && i < vl_trajectory_frames(trajectory); i++) {
     vlTrajectoryFrame frame;
     vl_trajectory_frame(trajectory, i, &frame);

@@ -81,6 +81,10 @@ static bool is_bop(const json_t *tree) {
 
 const vlCameraFormat vl_format_bop = {
     .name = "bop",
+    .known =
+        "/ cam_K cam_R_w2c cam_t_w2c depth_scale view_level fx fy cx cy width height elev "
+        "mode azimuth",
+    .geometry = "cam_model",
     .is_tree = is_bop,
     .read = read_bop,
     .holds = VL_HOLDS_POSE,

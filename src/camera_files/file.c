@@ -108,7 +108,7 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
                           : format->read_text(file, source->text, source->size, record);
     if (sink)
       frames = record->frames;
-    if (source->tree && !sink && result == VL_OK)
+    if (source->tree && i == 0 && result == VL_OK)
       result = vl_camera_check_unread(file, format, source->tree, record);
     if (sink && result == VL_OK)
       result = sink->add(sink->data, file, record, i);

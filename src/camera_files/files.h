@@ -280,9 +280,14 @@ typedef struct vlCameraFormat {
                                         files, or of one of them */
   const char *not_written;           /* why there is no writer */
   /* The names of all fields that the reader takes or that have no effect on the camera, with
-   * blanks between; a name that ends in * stands for all that begin so. Others are counted in
+   * blanks between. A name that ends in * stands for all that begin so; in the object of a name
+   * that ends in /, names are those of cameras or images; the value of a name that ends in !
+   * is not looked into; / alone: the file's own fields have such names where they are objects.
+   * In XML they are the names of elements and attributes. Others are counted in
    * vlCameraRecord.unread. Null, and no `knows`: they are not looked for. */
   const char *known;
+  const char *geometry;            /* names, as in `known`, that change the camera though the
+                                      general ones (unread.c) do not say so: errors; may be null */
   bool (*knows)(const char *name); /* further names; may be null */
   /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
    * the lens, and $lens, its word. holds: of vl_camera_fit. lenses, most: of

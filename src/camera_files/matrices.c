@@ -303,9 +303,21 @@ static bool is_d3d(const json_t *tree) {
   return vl_text_is(api, "d3d");
 }
 
-const vlCameraFormat vl_format_opengl = {
-    .name = "opengl", .is_tree = is_opengl, .read = read_matrices, .write = write_matrices};
-const vlCameraFormat vl_format_vulkan = {
-    .name = "vulkan", .is_tree = is_vulkan, .read = read_matrices, .write = write_matrices};
-const vlCameraFormat vl_format_d3d = {
-    .name = "d3d", .is_tree = is_d3d, .read = read_matrices, .write = write_matrices};
+static const char known_names[] =
+    "graphics_api pixel_origin view_axes projection_matrix view_matrix order vectors clip_y clip_z near_plane "
+    "far_plane width height name";
+const vlCameraFormat vl_format_opengl = {.name = "opengl",
+                                         .known = known_names,
+                                         .is_tree = is_opengl,
+                                         .read = read_matrices,
+                                         .write = write_matrices};
+const vlCameraFormat vl_format_vulkan = {.name = "vulkan",
+                                         .known = known_names,
+                                         .is_tree = is_vulkan,
+                                         .read = read_matrices,
+                                         .write = write_matrices};
+const vlCameraFormat vl_format_d3d = {.name = "d3d",
+                                      .known = known_names,
+                                      .is_tree = is_d3d,
+                                      .read = read_matrices,
+                                      .write = write_matrices};

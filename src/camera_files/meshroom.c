@@ -266,4 +266,17 @@ static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *r
 }
 
 const vlCameraFormat vl_format_meshroom = {
-    .name = "meshroom", .is_tree = is_meshroom, .read = read_meshroom, .write = write_meshroom};
+    .name = "meshroom",
+    .known =
+        "version featuresFolders! matchesFolders! views viewId poseId frameId intrinsicId "
+        "resectionId path width height metadata! intrinsics initialFocalLength focalLength "
+        "pxFocalLength pxInitialFocalLength sensorWidth sensorHeight serialNumber type "
+        "initializationMode pixelRatio pixelRatioLocked principalPoint offsetLocked "
+        "scaleLocked distortionLocked locked distortionType distortionParams "
+        "distortionInitializationMode undistortionType! fisheyeCircle* poses pose transform "
+        "rotation center structure! ancestors! landmarks! constraints* preTransform! "
+        "providerId providers!",
+    .geometry = "rigId subPoseId undistortionParams undistortionOffset rigs",
+    .is_tree = is_meshroom,
+    .read = read_meshroom,
+    .write = write_meshroom};

@@ -265,7 +265,20 @@ static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_metashape = {.name = "metashape",
-                                            .is_tree = is_metashape,
-                                            .read = read_metashape,
-                                            .write = write_metashape};
+const vlCameraFormat vl_format_metashape = {
+    .name = "metashape",
+    .known =
+        "document version chunk chunks sensors sensor cameras camera group calibration "
+        "adjusted class type resolution width height f fx fy cx cy b1 b2 skew k1 k2 k3 k4 p1 "
+        "p2 p3 p4 projection transform rotation translation scale id label enabled sensor_id "
+        "component_id master_id layer_index active next_id next_group_id property name value bands band "
+        "data_type black_level! sensitivity! vignetting! covariance! params! coeffs! date "
+        "orientation meta! reference! rotation_covariance! location_covariance! frames! "
+        "markers! scalebars! settings! region! components! component partition! images! fixed "
+        "coordinate_system! pixel_height pixel_width focal_length locked camera_ids "
+        "marker_ids accuracy! color_profile! depth_maps! dense_cloud! point_cloud! model! "
+        "shapes! save_accuracy!",
+    .geometry = "film_camera rolling_shutter",
+    .is_tree = is_metashape,
+    .read = read_metashape,
+    .write = write_metashape};

@@ -78,6 +78,9 @@ static bool is_open3d(const json_t *tree) {
 
 const vlCameraFormat vl_format_open3d = {
     .name = "open3d",
+    .known =
+        "class_name extrinsic intrinsic intrinsic_matrix width height parameters "
+        "version_major version_minor",
     .is_tree = is_open3d,
     .read = read_open3d,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,

@@ -211,7 +211,14 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
       VL_WORD("after", fisheye || bent ? "]" : ""), VL_VALUES("center", centre, 3));
 }
 
-const vlCameraFormat vl_format_openmvg = {.name = "openmvg",
-                                          .marks = {"sfm_data_version"},
-                                          .read = read_openmvg,
-                                          .write = write_openmvg};
+const vlCameraFormat vl_format_openmvg = {
+    .name = "openmvg",
+    .known =
+        "sfm_data_version root_path views key value polymorphic_id polymorphic_name "
+        "ptr_wrapper id data local_path filename width height id_view id_intrinsic id_pose "
+        "intrinsics focal_length principal_point disto_k1 disto_k3 disto_t2 fisheye value0 "
+        "extrinsics rotation center structure! control_points! use_pose_center_prior "
+        "center_weight! center_prior! use_pose_rotation_prior rotation_weight! rotation!",
+    .marks = {"sfm_data_version"},
+    .read = read_openmvg,
+    .write = write_openmvg};

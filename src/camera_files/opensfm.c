@@ -207,4 +207,13 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
 }
 
 const vlCameraFormat vl_format_opensfm = {
-    .name = "opensfm", .is_tree = is_opensfm, .read = read_opensfm, .write = write_opensfm};
+    .name = "opensfm",
+    .known =
+        "/ cameras/ shots/ projection_type width height focal focal_x focal_y c_x c_y k1 k2 "
+        "k3 k4 p1 p2 focal_prior k1_prior k2_prior camera rotation translation orientation "
+        "capture_time gps_dop gps_position compass! vertices! faces! scale covariance! "
+        "merge_cc skey points! rig_cameras! rig_instances! biases! reference_lla! id "
+        "accuracy! exposure! bundle_structure_only is_panorama metadata!",
+    .is_tree = is_opensfm,
+    .read = read_opensfm,
+    .write = write_opensfm};

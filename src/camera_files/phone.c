@@ -65,6 +65,9 @@ static bool is_record3d(const json_t *tree) {
 
 const vlCameraFormat vl_format_record3d = {
     .name = "record3d",
+    .known =
+        "poses K w h fps dw dh initPose! perFrameIntrinsicCoeffs frameTimestamps! cameraType "
+        "rgbFormat",
     .is_tree = is_record3d,
     .read = read_record3d,
     .not_written = "it describes a recording of a phone"};
@@ -90,6 +93,9 @@ static vlResult read_polycam(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_polycam = {
     .name = "polycam",
+    .known =
+        "t_* fx fy cx cy width height blur_score center_depth manual_keyframe neighbors! "
+        "timestamp",
     .marks = {"t_00", "t_23", "fx"},
     .read = read_polycam,
     .holds = VL_HOLDS_POSE,
@@ -128,6 +134,9 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_scanner3d = {
     .name = "scanner3d",
+    .known =
+        "cameraPoseARFrame intrinsics projectionMatrix! frame_index motionQuality "
+        "averageAngularVelocity averageVelocity exposureDuration time cameraGrain",
     .marks = {"cameraPoseARFrame", "intrinsics"},
     .read = read_scanner,
     .not_written = "it describes a recording of a phone"};

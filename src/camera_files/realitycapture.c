@@ -308,9 +308,17 @@ static bool is_csv(const char *text, size_t size) {
          (strncmp(text, "#cameras", 8) == 0 && strstr(text, "\n#name,"));
 }
 
-const vlCameraFormat vl_format_realitycapture = {.name = "realitycapture",
-                                                 .is_tree = is_xmp,
-                                                 .is_text = is_csv,
-                                                 .read = read_xmp,
-                                                 .read_text = read_csv,
-                                                 .write = write_xmp};
+const vlCameraFormat vl_format_realitycapture = {
+    .name = "realitycapture",
+    .known =
+        "x:* xmlns:* rdf:* xcr:Version xcr:PosePrior xcr:Coordinates xcr:DistortionModel "
+        "xcr:DistortionCoeficients xcr:FocalLength35mm xcr:Skew xcr:AspectRatio "
+        "xcr:PrincipalPointU xcr:PrincipalPointV xcr:CalibrationPrior xcr:CalibrationGroup "
+        "xcr:DistortionGroup xcr:InTexturing xcr:InColoring xcr:InMeshing xcr:Rotation "
+        "xcr:Position xcr:LatitudeLongitudeAltitude xcr:ComponentId xcr:Georef* "
+        "xcr:ComponentTransform",
+    .is_tree = is_xmp,
+    .is_text = is_csv,
+    .read = read_xmp,
+    .read_text = read_csv,
+    .write = write_xmp};

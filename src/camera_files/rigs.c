@@ -97,6 +97,12 @@ static bool is_calibio(const json_t *tree) {
 
 const vlCameraFormat vl_format_calibio = {
     .name = "calibio",
+    .known =
+        "Calibration cameras model polymorphic_id polymorphic_name ptr_wrapper id data "
+        "parameters val state f ar cx cy k1 k2 k3 k4 k5 k6 p1 p2 s1 s2 s3 s4 tauX tauY "
+        "CameraModelCRT CameraModelCRTP CameraModelBase valid imageSize width height transform "
+        "rotation translation rx ry rz x y z name targets! poses! detections! stats! "
+        "covariance! statistics! version cereal_class_version",
     .is_tree = is_calibio,
     .read = read_calibio,
     .not_written = "it is the result of a calibration, with its statistics"};
@@ -138,6 +144,8 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_nuscenes = {
     .name = "nuscenes",
+    .known = "token sensor_token translation rotation camera_intrinsic",
+
     .marks = {"camera_intrinsic", "rotation"},
     .marks_in = "[]",
     .read = read_nuscenes,
@@ -169,6 +177,8 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_panoptic = {
     .name = "panoptic",
+    .known = "calibDataSource cameras name type resolution panel node K distCoef R t",
+
     .marks = {"distCoef", "K"},
     .marks_in = "cameras",
     .read = read_panoptic,
@@ -212,6 +222,9 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_nerfies = {
     .name = "nerfies",
+    .known =
+        "orientation position focal_length principal_point skew pixel_aspect_ratio "
+        "radial_distortion tangential_distortion image_size",
     .marks = {"orientation", "focal_length", "principal_point"},
     .read = read_nerfies,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,

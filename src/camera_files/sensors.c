@@ -124,6 +124,13 @@ static bool is_depthai(const json_t *tree) {
 
 const vlCameraFormat vl_format_depthai = {
     .name = "depthai",
+    .known =
+        "cameraData cameraType distortionCoeff extrinsics rotationMatrix translation "
+        "specTranslation x y z toCameraSocket height width intrinsicMatrix lensPosition "
+        "specHfovDeg imuExtrinsics! stereoRectificationData! stereoEnableDistortionCorrection "
+        "stereoUseSpecTranslation housingExtrinsics! miscellaneousData! batchName batchTime "
+        "boardConf boardCustom boardName boardOptions boardRev hardwareConf productName "
+        "deviceName version verticalCameraSocket eepromDataVersion",
     .is_tree = is_depthai,
     .read = read_depthai,
     .not_written = "it is the factory calibration of a device"};
@@ -185,6 +192,11 @@ static bool is_kinect(const json_t *tree) {
 
 const vlCameraFormat vl_format_kinect = {
     .name = "kinect",
+    .known =
+        "CalibrationInformation Cameras Intrinsics ModelParameterCount ModelParameters "
+        "ModelType Location Purpose MetricRadius Rt Rotation Translation SensorHeight "
+        "SensorWidth Shutter SupportedUV ThermalAdjustmentParams! InertialSensors! Metadata! "
+        "CALIBRATION_*",
     .is_tree = is_kinect,
     .read = read_kinect,
     .not_written = "it is the factory calibration of a device"};
@@ -268,6 +280,8 @@ static bool is_realsense(const json_t *tree) {
 
 const vlCameraFormat vl_format_realsense = {
     .name = "realsense",
+    .known = "/ width height fx fy ppx ppy model coeffs",
+
     .is_tree = is_realsense,
     .read = read_realsense,
     .lenses = VL_LENSES_COMMON,

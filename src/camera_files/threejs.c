@@ -19,9 +19,16 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object,
                           vlCameraRecord *record) {
   static const char *const sides[4] = {"left", "right", "top", "bottom"};
   vlCameraDef *d = &record->camera;
-  double fov = 0.0, aspect = 1.0, zoom = 1.0, s[4];
+  double fov = 0.0, aspect = 1.0, zoom = 1.0, shift = 0.0, s[4];
   bool flat = vl_text_is(vl_camera_text(object, "type"), "OrthographicCamera");
-  vlResult result = vl_camera_optional(file, object, "zoom", &zoom);
+  if (json_is_true(json_object_get(json_object_get(object, "view"), "enabled")))
+    return vl_camera_wrong_in(file, object, "view",
+                              "threejs: \"view\", a part of the image, is not taken");
+  vlResult result = VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("zoom", &zoom),
+                                   VL_FIELD_OPTIONAL("filmOffset", &shift));
+  if (result == VL_OK && shift != 0.0)
+    return vl_camera_wrong_in(file, object, "filmOffset",
+                              "threejs: a \"filmOffset\" other than 0 is not taken");
   if (result == VL_OK && !flat)
     result = vl_camera_number(file, object, "fov", &fov);
   if (result == VL_OK && !flat)
@@ -98,4 +105,13 @@ static vlResult write_threejs(const vlCameraFile *file, const vlCameraRecord *re
 }
 
 const vlCameraFormat vl_format_threejs = {
-    .name = "threejs", .is_tree = is_threejs, .read = read_threejs, .write = write_threejs};
+    .name = "threejs",
+    .known =
+        "metadata! object uuid type name layers up userData! matrix matrixAutoUpdate fov zoom "
+        "near far focus aspect filmGauge filmOffset view enabled fullWidth fullHeight offsetX "
+        "offsetY left right top bottom children! castShadow receiveShadow frustumCulled "
+        "renderOrder visible geometries! materials! textures! images! position! rotation! "
+        "quaternion! scale!",
+    .is_tree = is_threejs,
+    .read = read_threejs,
+    .write = write_threejs};

@@ -109,6 +109,15 @@ static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraR
   return result;
 }
 
+/* Fields that the dialect does not know are noted in the first camera. */
+static vlResult note_unread(const vlCameraFile *file, const json_t *tree,
+                            vlCameraRecord *first) {
+  const vlCameraFormat *format = vl_camera_formats[first->dialect];
+  vlCameraFile copy = *file;
+  copy.dialect = format->name;
+  return vl_camera_check_unread(&copy, format, tree, first);
+}
+
 /* Reads a JSON or YAML file. *single: the file has one camera, for vl_camera_read. */
 static vlResult read_tree(vlTrajectory *t, const vlCameraFile *file, const char *text,
                           size_t size, bool *single) {
@@ -125,6 +134,8 @@ static vlResult read_tree(vlTrajectory *t, const vlCameraFile *file, const char 
     result = vl_trajectory_read_opencv(t, file, tree, text);
   else
     *single = true;
+  if (result == VL_OK && !*single && t->cameras.count > 0)
+    result = note_unread(file, tree, &t->cameras.items[0]);
   json_decref(tree);
   return result;
 }

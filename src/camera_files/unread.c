@@ -43,6 +43,13 @@ static bool names_geometry(const char *key) {
   return false;
 }
 
+static bool is_off_word(const char *text) {
+  static const char *const off[] = {"", "none", "None", "NONE", "false", "False"};
+  char *end;
+  const double number = vl_camera_parse(text, &end); /* numbers are texts in XML, and in .sfm */
+  return is_among(text, off, VL_LENGTH(off)) || (end != text && !*end && number == 0.0);
+}
+
 /* Whether a value says that the field has no effect: null, false, 0, "", "none", and lists and
  * objects of these alone. depth: how many levels may still follow. */
 static bool is_off(const json_t *value, int depth) {
@@ -62,77 +69,116 @@ static bool is_off(const json_t *value, int depth) {
   if (json_is_number(value))
     return json_number_value(value) == 0.0;
   if (json_is_string(value))
-    return !*json_string_value(value) || vl_text_is(json_string_value(value), "none");
+    return is_off_word(json_string_value(value));
   return !json_is_true(value);
 }
 
-/* Counts a field; the names of the first three are kept. */
+/* Counts a field; the names of the first are kept. */
 static void count_field(const vlCameraFile *file, const json_t *object, const char *key,
-                        vlCameraRecord *record) {
+                        const char *name, vlCameraRecord *record) {
   const size_t used = strlen(record->unread_names);
-  if (record->unread < 3)
+  if (record->unread < VL_UNREAD_NAMES)
     snprintf(record->unread_names + used, sizeof record->unread_names - used, "%s\"%s\"",
-             used ? ", " : "", vl_short_text(key).text);
-  if (record->unread == 0)
+             used ? ", " : "", vl_short_text(name).text);
+  if (record->unread == 0 && vl_camera_has(object, "<")) /* of XML, and its attributes */
+    record->unread_line = (uint32_t)json_number_value(json_object_get(object, "#"));
+  else if (record->unread == 0)
     record->unread_line = vl_camera_line(file, object, key);
   record->unread++;
 }
 
-/* Whether one of the words, with blanks between, is this name or its beginning and a *. */
-static bool is_listed(const char *words, const char *name) {
+typedef enum { UNKNOWN, KNOWN, OF_NAMES, CLOSED } Knowledge;
+
+/* What a list of words, with blanks between, says of a name (vlCameraFormat.known). */
+static Knowledge knowledge(const char *words, const char *name) {
   const size_t length = strlen(name);
   for (const char *at = words; at && *at;) {
     at += strspn(at, " ");
-    const size_t n = strcspn(at, " ");
-    const bool begins = n > 0 && at[n - 1] == '*';
-    if (begins ? strncmp(at, name, n - 1) == 0 : n == length && memcmp(at, name, n) == 0)
-      return true;
+    size_t n = strcspn(at, " ");
+    const char *word = at;
+    const char last = n > 1 ? at[n - 1] : 0;
     at += n;
+    n -= last == '*' || last == '/' || last == '!';
+    if (last == '*' ? length >= n && memcmp(word, name, n) == 0
+                    : n == length && memcmp(word, name, n) == 0)
+      return last == '/' ? OF_NAMES : last == '!' ? CLOSED : KNOWN;
   }
-  return false;
+  return UNKNOWN;
 }
 
-static bool is_known(const vlCameraFormat *format, const char *name) {
+static Knowledge knowledge_of(const vlCameraFormat *format, const char *name) {
   /* names that begin so are those of parsers: "<" is an element's name, "[]" a list */
-  bool known = strchr("<[_!", name[0]) != NULL;
-  known = known || is_listed(format->known, name) || (format->knows && format->knows(name));
+  bool known = strchr("<[_!/#|$", name[0]) != NULL || (format->knows && format->knows(name));
   for (size_t i = 0; i < VL_LENGTH(format->marks) && format->marks[i]; i++)
     known = known || vl_text_is(name, format->marks[i]);
-  return known || (format->marks_in && vl_text_is(name, format->marks_in));
+  const Knowledge listed = knowledge(format->known, name);
+  return listed == UNKNOWN &&
+                 (known || (format->marks_in && vl_text_is(name, format->marks_in)))
+             ? KNOWN
+             : listed;
 }
 
+/* The object of a field, or an element of XML, that is not known. value: its value. */
+static vlResult take_unknown(const vlCameraFile *file, const vlCameraFormat *format,
+                             const json_t *object, const char *key, const char *name,
+                             const json_t *value, vlCameraRecord *record) {
+  if (is_off(value, 4) ||
+      !(names_geometry(name) || knowledge(format->geometry, name) != UNKNOWN)) {
+    count_field(file, object, key, name, record);
+    return VL_OK;
+  }
+  char message[300];
+  snprintf(message, sizeof message,
+           "%s: \"%s\" is not understood, and by its name it changes the image; take it out if "
+           "it does not",
+           file->dialect, vl_short_text(name).text);
+  return vl_camera_has(object, "<") ? vl_camera_wrong_element(file, object, "%s", message)
+                                    : vl_camera_wrong_in(file, object, key, "%s", message);
+}
+
+typedef struct {
+  int depth;
+  bool names; /* the fields of this object have the names of cameras or images */
+} Place;
+
 static vlResult check(const vlCameraFile *file, const vlCameraFormat *format,
-                      const json_t *item, int depth, vlCameraRecord *record) {
+                      const json_t *item, Place place, vlCameraRecord *record) {
   vlResult result = VL_OK;
-  if (depth == MAX_DEPTH)
+  const Place below = {place.depth + 1, false};
+  if (place.depth == MAX_DEPTH)
     return VL_OK;
   /* a list of numbers is passed at its first one */
   for (size_t i = 0; i < json_array_size(item) && result == VL_OK; i++) {
     if (json_is_number(json_array_get(item, i)))
       break;
-    result = check(file, format, json_array_get(item, i), depth + 1, record);
+    result = check(file, format, json_array_get(item, i), below, record);
+  }
+  const char *element = vl_camera_text(item, "<");
+  const Knowledge tag = element ? knowledge_of(format, element) : KNOWN;
+  if (tag == UNKNOWN) {
+    const json_t *text = json_object_get(item, "$");
+    return take_unknown(file, format, item, NULL, element, text ? text : item, record);
   }
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)item, key, value) {
-    if (result != VL_OK)
-      return result;
-    if (is_known(format, key)) {
-      result = check(file, format, value, depth + 1, record);
-      continue;
+  if (tag != CLOSED)
+    json_object_foreach((json_t *)item, key, value) {
+      if (result != VL_OK)
+        return result;
+      const Knowledge known = knowledge_of(format, key);
+      if (known == UNKNOWN && place.names && json_is_object(value))
+        result = check(file, format, value, below, record);
+      else if (known == UNKNOWN)
+        result = take_unknown(file, format, item, key, key, value, record);
+      else if (known != CLOSED)
+        result =
+            check(file, format, value, (Place){place.depth + 1, known == OF_NAMES}, record);
     }
-    if (names_geometry(key) && !is_off(value, 4))
-      return vl_camera_wrong_in(
-          file, item, key,
-          "%s: \"%s\" is not understood, and by its name it changes the image; take it out if "
-          "it does not",
-          file->dialect, vl_short_text(key).text);
-    count_field(file, item, key, record);
-  }
   return result;
 }
 
 vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *format,
                                 const json_t *tree, vlCameraRecord *record) {
-  return format->known || format->knows ? check(file, format, tree, 0, record) : VL_OK;
+  const Place top = {0, knowledge(format->known, "/") != UNKNOWN};
+  return format->known || format->knows ? check(file, format, tree, top, record) : VL_OK;
 }

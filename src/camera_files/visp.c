@@ -152,4 +152,11 @@ static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *recor
 }
 
 const vlCameraFormat vl_format_visp = {
-    .name = "visp", .is_tree = is_visp, .read = read_visp, .write = write_visp};
+    .name = "visp",
+    .known =
+        "root camera name image_width image_height model type px py u0 v0 kud kdu k1 k2 k3 k4 "
+        "k5 subsampling_width subsampling_height sampling_width sampling_height full_width "
+        "full_height additional_information!",
+    .is_tree = is_visp,
+    .read = read_visp,
+    .write = write_visp};

@@ -1,5 +1,6 @@
 /* test/camera_files/test_unread.c: fields that a dialect's reader does not know are named. */
 #include "camera_files/files.h"
+#include "velo/trajectory.h"
 
 /* Dialects whose readers have a list of names, and the names of files by which they are
  * recognised. */
@@ -18,7 +19,24 @@ static const struct {
                {VL_CAMERA_DIALECT_ORBSLAM, "orbslam.yaml"},
                {VL_CAMERA_DIALECT_OKVIS, "okvis.yaml"},
                {VL_CAMERA_DIALECT_SVO, "svo.yaml"},
-               {VL_CAMERA_DIALECT_GAUSSIANS, "gaussians.json"}};
+               {VL_CAMERA_DIALECT_GAUSSIANS, "gaussians.json"},
+               {VL_CAMERA_DIALECT_OPENGL, "opengl.json"},
+               {VL_CAMERA_DIALECT_VULKAN, "vulkan.json"},
+               {VL_CAMERA_DIALECT_D3D, "d3d.json"},
+               {VL_CAMERA_DIALECT_BOP, "scene_camera.json"},
+               {VL_CAMERA_DIALECT_METASHAPE, "metashape.xml"},
+               {VL_CAMERA_DIALECT_MESHROOM, "cameras.sfm"},
+               {VL_CAMERA_DIALECT_OPENSFM, "reconstruction.json"},
+               {VL_CAMERA_DIALECT_OPEN3D, "open3d.json"},
+               {VL_CAMERA_DIALECT_VISP, "visp.xml"},
+               {VL_CAMERA_DIALECT_OPENMVG, "sfm_data.json"},
+               {VL_CAMERA_DIALECT_REALITYCAPTURE, "image.xmp"},
+               {VL_CAMERA_DIALECT_NERFSTUDIO, "camera_path.json"},
+               {VL_CAMERA_DIALECT_POLYCAM, "polycam.json"},
+               {VL_CAMERA_DIALECT_REALSENSE, "realsense.json"},
+               {VL_CAMERA_DIALECT_PANOPTIC, "panoptic.json"},
+               {VL_CAMERA_DIALECT_NERFIES, "nerfies.json"},
+               {VL_CAMERA_DIALECT_THREEJS, "threejs.json"}};
 enum { CHECKED = sizeof checked / sizeof *checked };
 
 static vlCameraRecord some_camera(void) {
@@ -44,14 +62,27 @@ static void written(int i, char *text, size_t size) {
   fclose(file);
 }
 
-/* The text with a field more: in the first object of JSON, at the end of YAML. */
-static void insert(char *to, size_t size, const char *text, const char *json,
-                   const char *yaml) {
-  const char *brace = strchr(text, '{');
+/* The text with a field more: in the first object of JSON, at the end of YAML, in the root of
+ * XML. */
+static void insert(char *to, size_t size, const char *text, const char *name, int value) {
+  const char *brace = strchr(text, '{'), *end = strrchr(text, '<');
+  if (strstr(text, "cam_K")) /* BOP: the first object holds the images */
+    brace = strchr(brace + 1, '{');
   if (text[0] == '{' || text[0] == '[')
-    snprintf(to, size, "%.*s%s,%s", (int)(brace + 1 - text), text, json, brace + 1);
+    snprintf(to, size, "%.*s\"%s\":%d,%s", (int)(brace + 1 - text), text, name, value,
+             brace + 1);
+  else if (text[0] == '<')
+    snprintf(to, size, "%.*s<%s>%d</%s>%s", (int)(end - text), text, name, value, name, end);
   else
-    snprintf(to, size, "%s%s\n", text, yaml);
+    snprintf(to, size, "%s%s: %d\n", text, name, value);
+}
+
+/* The files of some dialects have no size. */
+static vlCameraFileDef sized(void) {
+  vlCameraFileDef def = vl_default_camera_file_def();
+  def.width = 640;
+  def.height = 480;
+  return def;
 }
 
 static void what_velo_writes_is_known(void **state) {
@@ -59,7 +90,8 @@ static void what_velo_writes_is_known(void **state) {
   static char text[4096];
   for (int i = 0; i < CHECKED; i++) {
     written(i, text, sizeof text);
-    const vlCameraRecord back = read_with(path_of(checked[i].name), NULL);
+    const vlCameraFileDef def = sized();
+    const vlCameraRecord back = read_with(path_of(checked[i].name), &def);
     assert_int_equal(back.dialect, checked[i].dialect);
     if (back.unread)
       fail_msg("%s: %s", checked[i].name, back.unread_names);
@@ -72,12 +104,75 @@ static void a_new_field_is_named(void **state) {
   static char text[4096], more[8192];
   for (int i = 0; i < CHECKED; i++) {
     written(i, text, sizeof text);
-    insert(more, sizeof more, text, "\"made_up\":{\"fx\":3}", "made_up:\n  fx: 3");
-    const vlCameraRecord back = read_with(put(checked[i].name, more), NULL);
+    insert(more, sizeof more, text, "made_up", 3);
+    const vlCameraFileDef def = sized();
+    const vlCameraRecord back = read_with(put(checked[i].name, more), &def);
     if (back.unread != 1)
       fail_msg("%s: %u", checked[i].name, back.unread);
     assert_string_equal(back.unread_names, "\"made_up\"");
   }
+}
+
+/* By its name, unless its value says that it has no effect. */
+static void a_field_that_changes_the_image_is_refused(void **state) {
+  (void)state;
+  static char text[4096], more[8192];
+  for (int i = 0; i < CHECKED; i++) {
+    const vlCameraFileDef def = sized();
+    vlCameraRecord record;
+    vlError error;
+    written(i, text, sizeof text);
+    insert(more, sizeof more, text, "crop_left", 5);
+    const char *path = put(checked[i].name, more);
+    assert_int_equal(vl_camera_read(context, path, &def, &record, &error), VL_ERROR_SCENE);
+    if (!strstr(error.message, "\"crop_left\" is not understood"))
+      fail_msg("%s: %s", checked[i].name, error.message);
+    insert(more, sizeof more, text, "crop_left", 0);
+    const vlCameraRecord back = read_with(put(checked[i].name, more), &def);
+    if (back.unread != 1)
+      fail_msg("%s: %s", checked[i].name, back.unread_names);
+  }
+}
+
+/* Further names, of one dialect alone, and names of cameras, which are no fields. */
+static void names_of_one_dialect(void **state) {
+  (void)state;
+  const vlCameraFileDef def = sized();
+  static const char view[] =
+      "{\"0\":{\"cam_K\":[500,0,320,0,500,240,0,0,1],\"cam_R_w2c\":[1,0,0,0,1,"
+      "0,0,0,1],\"cam_t_w2c\":[0,0,0]%s},\"crop\":{\"depth_scale\":1}}";
+  char text[400];
+  snprintf(text, sizeof text, view, "");
+  assert_int_equal(read_with(put("scene_camera.json", text), &def).unread, 0);
+  snprintf(text, sizeof text, view, ",\"cam_model\":{\"projection_params\":[1]}");
+  vlCameraRecord record;
+  vlError error;
+  assert_int_equal(
+      vl_camera_read(context, put("scene_camera.json", text), &def, &record, &error),
+      VL_ERROR_SCENE);
+  assert_non_null(strstr(error.message, "\"cam_model\""));
+}
+
+/* A trajectory has the note in its first camera. */
+static void trajectories_have_the_note(void **state) {
+  (void)state;
+  static const char frames[] =
+      "{\"w\":64,\"h\":48,\"fl_x\":50,%s\"frames\":[{\"file_path\":\"a\",\"transform_matrix\":"
+      "[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}";
+  char text[300];
+  vlTrajectory *trajectory = NULL;
+  vlError error;
+  snprintf(text, sizeof text, frames, "\"made_up\":3,");
+  const char *path = put("transforms.json", text);
+  assert_int_equal(vl_trajectory_load(context, path, NULL, &trajectory, &error), VL_OK);
+  assert_int_equal(vl_trajectory_camera(trajectory, 0)->unread, 1);
+  assert_string_equal(vl_trajectory_camera(trajectory, 0)->unread_names, "\"made_up\"");
+  vl_trajectory_destroy(trajectory);
+  snprintf(text, sizeof text, frames, "\"crop_left\":3,");
+  path = put("transforms.json", text);
+  assert_int_equal(vl_trajectory_load(context, path, NULL, &trajectory, &error),
+                   VL_ERROR_SCENE);
+  assert_non_null(strstr(error.message, "\"crop_left\""));
 }
 
 /* The first three names are kept; all fields are counted. */
@@ -117,6 +212,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_velo_writes_is_known),
       cmocka_unit_test(a_new_field_is_named),
+      cmocka_unit_test(a_field_that_changes_the_image_is_refused),
+      cmocka_unit_test(names_of_one_dialect),
+      cmocka_unit_test(trajectories_have_the_note),
       cmocka_unit_test(names_are_counted),
       cmocka_unit_test(rows_at_different_times_are_refused),
   };

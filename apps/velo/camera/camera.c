@@ -114,13 +114,14 @@ static int has_size(const char *path) {
                       path);
 }
 
-/* The fields that velo does not understand: the first names, and how many more there are. */
-static void note_unread(const char *path, const vlCameraRecord *record) {
+void camera_note_unread(const char *path, const vlCameraRecord *record) {
   char line[16] = "", more[32] = "";
+  if (!record || record->unread == 0)
+    return;
   if (record->unread_line)
     snprintf(line, sizeof line, ":%u", record->unread_line);
-  if (record->unread > 3)
-    snprintf(more, sizeof more, " and %u more", record->unread - 3);
+  if (record->unread > VL_UNREAD_NAMES)
+    snprintf(more, sizeof more, " and %u more", record->unread - VL_UNREAD_NAMES);
   report_note("%s%s: not understood and without effect: %s%s", path, line, record->unread_names,
               more);
 }
@@ -151,8 +152,7 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
   if (record->size_assumed)
     report_note("%s: names no image size; %u x %u is taken", path, record->camera.width,
                 record->camera.height);
-  if (record->unread > 0)
-    note_unread(path, record);
+  camera_note_unread(path, record);
   if (record->frames > 1 && !frame)
     report_note("%s: the first of %u cameras is taken (%s)", path, record->frames,
                 record->name[0] ? record->name : "no name");

@@ -18,6 +18,9 @@ bool camera_is_scene(const char *path);
  * error. */
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame,
                 const OptionValue *size, const OptionValue *fallback, vlCameraRecord *record);
+/* Reports the fields that velo does not understand, if there are any: the first names, and how
+ * many more there are. record: may be null. */
+void camera_note_unread(const char *path, const vlCameraRecord *record);
 /* Like camera_load, and also makes the camera. Reports warnings. */
 int camera_load_made(vlContext *context, const char *path, const Arguments *arguments,
                      int frame_option, int size_option, vlCameraRecord *record,

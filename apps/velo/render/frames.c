@@ -127,7 +127,10 @@ static int load_file(vlContext *context, const char *path, const Arguments *argu
     def.height = (uint32_t)size->integers[1];
   }
   vlResult result = vl_trajectory_load(context, path, &def, trajectory, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, path);
+  if (result != VL_OK)
+    return report_error(&error, result, path);
+  camera_note_unread(path, vl_trajectory_camera(*trajectory, 0));
+  return -1;
 }
 
 /* Adds the rig's cameras with their poses in the rig. */

@@ -2,12 +2,11 @@
  * projection turns a point (u, v) of its plane into a direction: x right, y down, z forward. */
 #include "more.h"
 
-/* Brown's and OpenCV's model: from the ideal point to where the lens puts it. Project Aria's has the radial part first.
- */
+/* Brown's and OpenCV's model: from the ideal point to where the lens puts it. Aria's has the radial part first. */
 static square_point distorted(const vlDistortionMap *d, square_point p) {
   const double *n = d->numerator, *e = d->denominator, *t = d->tangential, *prism = d->prism;
-  double s = p.x * p.x + p.y * p.y, above = s * (n[3] + s * (n[4] + s * n[5]));
-  double q = (1 + s * (n[0] + s * (n[1] + s * (n[2] + above)))) / (1 + s * (e[0] + s * (e[1] + s * e[2])));
+  double s = p.x * p.x + p.y * p.y, below = 1 + s * (e[0] + s * (e[1] + s * e[2]));
+  double q = (1 + s * (n[0] + s * (n[1] + s * (n[2] + s * (n[3] + s * (n[4] + s * n[5])))))) / below;
   square_point radial = {p.x * q, p.y * q}, at = d->radial_first ? radial : p;
   double x = at.x, y = at.y, r2 = x * x + y * y;
   return (square_point){radial.x + 2 * t[0] * x * y + t[1] * (r2 + 2 * x * x) + r2 * (prism[0] + r2 * prism[1]),

@@ -72,7 +72,7 @@ enum { VL_CHANNEL_COUNT = 21, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES
 
 /** The film point at which a pixel's channels are computed. CENTRE: the pixel's exact centre.
  * The other modes select one of the points of the image's samples (traced through the centre of
- * the lens, at the middle of the exposure). NEAREST: the point with the smallest depth.
+ * the lens, at the middle of the row's exposure). NEAREST: the point with the smallest depth.
  * COVERAGE: first the surface (object and instance, or nothing) whose samples have the greatest
  * total filter weight is selected, then the point on it that is closest to the pixel's
  * centre. */
@@ -115,7 +115,7 @@ typedef struct vlChannelsDef {
                    */
   const vlCamera *forward, *backward; /**< for FORWARD and BACKWARD: the other cameras */
   double time;     /**< the time at which the scene is shown, seconds; unset: the middle of the
-                      exposure */
+                      exposure, of a rolling shutter that of each row (or column) */
   vlStopFn *stop;  /**< returns true to stop with VL_CANCELLED; default null: never */
   void *stop_user; /**< passed to stop */
   const vlCancel *cancel; /**< stops the call within one tile of 32 x 32 pixels; default null */
@@ -131,10 +131,11 @@ VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
  * not depend on the number of threads, the instruction set or the crop. Pixels outside the
  * camera's domain have the values of nothing; their ray is 0 0 0.
  *
- * The scene is frozen at one time; only Cryptomatte uses the times of the image's samples. The
- * camera is vl_camera_at(camera, time): it sees all rows of a rolling shutter at that time. The
- * middle of the exposure is the time at which half of the light has reached the middle of the
- * image (vl_camera_time). Flow points to the position of the surface point at the middle of the
+ * A pixel shows the scene at one time; only Cryptomatte and FEATURES use the times of the
+ * image's samples. The camera is vl_camera_at(camera, time). With def.time all pixels have that
+ * time; without it, pixel (x, y) has the time at which half of its light has arrived,
+ * vl_camera_time(camera, x + 0.5, y + 0.5, 0.5), so that rows of a rolling shutter follow the
+ * image. Flow points to the position of the surface point at the middle of the
  * other camera's exposure.
  *
  * Cryptomatte's metadata (cryptomatte/.../name, hash, conversion, manifest) are attributes of

@@ -20,7 +20,9 @@ typedef struct vlHeaderDef {
   const vlSceneDefs *defs; /**< settings and the camera's description; required */
   const char *scene; /**< the scene's file, of which the last name is written; may be null */
   const char *view;  /**< writes the camera only, its names after "view."; null: all */
-  double time; /**< of the camera, seconds; VL_UNSET (default): the middle of the shutter */
+  double time;      /**< of the camera and of the ground truth, seconds; VL_UNSET (default): the
+                       camera in the middle of its exposure, and ground truth of a rolling shutter
+                       when each row is exposed ("velo.channelsTime") */
   uint32_t samples; /**< per pixel, of the image; 0 (default): not written */
 } vlHeaderDef;
 /** The default def. */

@@ -538,7 +538,8 @@ class Scene(_velo.Scene):
                      film: Optional[Film] = None, forward: Optional[Camera] = None, backward: Optional[Camera] = None,
                      mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Unpack[_keywords.Settings]) -> Image:
         """Ground truth without rendering colours (docs/ground-truth.md). forward, backward: the other cameras of the flow
-        channels. mode: centre, nearest or coverage. ranks: of Cryptomatte. time: seconds."""
+        channels. mode: centre, nearest or coverage. ranks: of Cryptomatte. time: seconds; by default
+        the middle of the exposure, of a rolling shutter that of each row."""
         words: dict[str, Any] = {**keywords}
         channels = _channels(channels)
         if not channels:

@@ -166,9 +166,23 @@ static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo
     set_double(header, "velo.eyeCircle", c->eye_circle);
 }
 
+/* The times of a rolling shutter's rows, in double: that of the row (or column) that is read
+ * first, and of the poses. rows: ground truth is seen when each row is exposed. */
+static void set_rows(Header *header, const vlCamera *c, bool rows) {
+  bool last_row = c->readout_direction == VL_READOUT_UP,
+       last_column = c->readout_direction == VL_READOUT_LEFT;
+  double x = last_column ? c->width - 0.5 : 0.5, y = last_row ? c->height - 0.5 : 0.5;
+  set_text(header, "velo.channelsTime", rows ? "row" : "one");
+  set_double(header, "velo.firstRowTime", vl_camera_time(c, x, y, 0.5));
+  if (!c->moves)
+    return;
+  set_double(header, "velo.poseOpen", c->pose_times[0]);
+  set_double(header, "velo.poseClose", c->pose_times[1]);
+}
+
 /* The motion, if any. The matrices above hold the camera in the middle of the shutter interval,
- * as the ground truth does. */
-static void set_motion(Header *header, const vlCamera *c) {
+ * or at the time of the ground truth. */
+static void set_motion(Header *header, const vlCamera *c, bool rows) {
   static const char *const directions[] = {"down", "up", "right", "left"};
   if (c->moves) {
     set_matrix(header, "velo.worldFromCameraOpen", VL_ATTRIBUTE_M44D, c->world_from_camera);
@@ -179,6 +193,7 @@ static void set_motion(Header *header, const vlCamera *c) {
   if (c->readout > 0) {
     set_double(header, "velo.readout", c->readout);
     set_text(header, "velo.readoutDirection", directions[c->readout_direction]);
+    set_rows(header, c, rows);
   }
   if (c->shutter_points == 0)
     return;
@@ -194,7 +209,7 @@ static void set_motion(Header *header, const vlCamera *c) {
 /* The complete camera: OpenEXR's attributes in single precision, velo's own in double (camera x
  * right, y down, z forward). Lens and sensor are in millimetres. When the scene gives no sensor
  * width, full frame's 36 mm is written, which fixes the scale and nothing else. */
-static void set_camera(Header *header, const vlHeaderDef *def) {
+static void set_camera(Header *header, const vlHeaderDef *def, bool rows) {
   const vlCameraDef *given = &def->defs->camera;
   vlCamera held = *def->camera, *c = &held;
   vl_camera_at(def->camera, def->time, &held);
@@ -223,7 +238,7 @@ static void set_camera(Header *header, const vlHeaderDef *def) {
   if (isfinite(c->focus_distance))
     set_float(header, "focus", c->focus_distance);
   set_v2(header, "velo.shutter", def->camera->shutter_open, def->camera->shutter_close);
-  set_motion(header, def->camera);
+  set_motion(header, def->camera, rows);
   set_float(header, "velo.exposureTime", c->exposure_time);
 }
 
@@ -248,11 +263,12 @@ vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *given) {
     return VL_ERROR_ARGUMENT;
   vlHeaderDef held = *given, *def = &held;
   const vlCamera *c = def->camera;
-  if (isnan(def->time))
+  bool rows = isnan(def->time);
+  if (rows)
     def->time = vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, 0.5);
   Header header = {.image = image, .result = VL_OK, .view = def->view};
   if (def->view) {
-    set_camera(&header, def);
+    set_camera(&header, def, rows);
     return header.result;
   }
   const vlFilmDef *film = &def->defs->film;
@@ -265,7 +281,7 @@ vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *given) {
   set_window(&header, "displayWindow", 0, 0, c->width, c->height);
   set_window(&header, "dataWindow", crop[0], crop[1], crop[2], crop[3]);
   set_window(&header, "originalDataWindow", 0, 0, c->width, c->height);
-  set_camera(&header, def);
+  set_camera(&header, def, rows);
 
   const char *slash = def->scene ? strrchr(def->scene, '/') : NULL;
   if (def->scene)

@@ -143,6 +143,9 @@ static inline double vl_camera_seconds(const vlCameraCompiled *c, int32_t pixel_
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);
+/* The pose at a time: both 3 x 4, row-major. */
+void vl_camera_pose_at(const vlCameraCompiled *c, double seconds, double world_from_camera[12],
+                       double camera_from_world[12]);
 /* Changes the clock: the time of rays becomes (seconds - origin) * scale. */
 void vl_camera_retime(vlCameraCompiled *c, double origin, double scale);
 

@@ -194,6 +194,40 @@ vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *result) {
   return VL_OK;
 }
 
+/* The inverse of an affine map: the rows of the 3 x 3 part's inverse are cross products of its
+ * columns, over the determinant. */
+static void invert(const vlAffine *a, double inverse[12]) {
+  const double *m = a->m;
+  double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+                       m[2] * (m[3] * m[7] - m[4] * m[6]);
+  for (size_t i = 0; i < 3; i++) {
+    size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    double *row = inverse + 4 * i;
+    row[0] = (m[3 + j] * m[6 + k] - m[3 + k] * m[6 + j]) / determinant;
+    row[1] = (m[6 + j] * m[k] - m[6 + k] * m[j]) / determinant;
+    row[2] = (m[j] * m[3 + k] - m[k] * m[3 + j]) / determinant;
+    row[3] = -(row[0] * a->p[0] + row[1] * a->p[1] + row[2] * a->p[2]);
+  }
+}
+
+void vl_camera_pose_at(const vlCameraCompiled *c, double seconds, double world_from_camera[12],
+                       double camera_from_world[12]) {
+  const vlCameraTime *t = &c->when;
+  vlAffine a;
+  memcpy(a.m, c->rotation, sizeof a.m);
+  memcpy(a.p, c->position, sizeof a.p);
+  memcpy(camera_from_world, c->camera_from_world, sizeof c->camera_from_world);
+  if (t->moves) {
+    double f = (seconds - t->pose_open) * t->pose_rate;
+    a = vl_motion_between(&t->motion, fmin(fmax(f, 0.0), 1.0));
+    invert(&a, camera_from_world);
+  }
+  for (size_t i = 0; i < 3; i++) {
+    memcpy(world_from_camera + 4 * i, a.m + 3 * i, 3 * sizeof(double));
+    world_from_camera[4 * i + 3] = a.p[i];
+  }
+}
+
 void vl_camera_retime(vlCameraCompiled *c, double origin, double scale) {
   vlCameraTime *t = &c->when;
   c->shutter_open = (c->shutter_open - origin) * scale;

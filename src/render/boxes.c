@@ -79,26 +79,17 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   if (vl_stop_check(c->stop))
     return;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
-    double o[3], d[3];
-    if (!vl_channel_pixel(c, tile, k, &x, &y) ||
-        !vl_camera_unproject(&c->camera, x + 0.5, y + 0.5, o, d))
+    if (!vl_channel_pixel(c, tile, vl_channel_order(c, k), &x, &y))
       continue;
-    for (int i = 0; i < 3; i++) {
-      b->o[i][n] = o[i];
-      b->d[i][n] = d[i];
-    }
     w->x[n] = x;
     w->y[n] = y;
     w->lane_x[n] = w->lane_y[n] = 0.5f;
     n++;
   }
-  b->n = n;
-  b->time = p->time;
+  n = vl_channel_rays(c, w, n);
   if (n == 0)
     return;
   unsigned state = vl_accel_enter();
-  vlChannelEnds ends = {&c->compiled, w->x, w->y, w->lane_x, w->lane_y};
-  vl_channel_ends(c, w, n, &ends, b->t_min, b->t_max);
   c->ground_truth_kernels->trace(c->world, &c->ground_truth, w->scratch, b);
   for (uint32_t i = 0; i < n; i++) {
     vlGroundTruthLayers layers;

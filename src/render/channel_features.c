@@ -67,6 +67,8 @@ static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *
     b->d[1][i] = r.rays.dy[i];
     b->d[2][i] = r.rays.dz[i];
   }
+  if (rays->moves && rays->camera.when.per_row + rays->camera.when.per_column != 0.0)
+    memcpy(b->time, r.rays.time, n * sizeof(float));
   memcpy(b->t_min, r.rays.t_min, n * sizeof(float));
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
 }
@@ -143,8 +145,9 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
   uint32_t samples = samples_of(vl_channel_spp(p, tile));
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);
-    w->batch->time =
-        vl_world_time(p->world, p->open + (p->close - p->open) * (double)rays.shared);
+    double seconds = p->open + (p->close - p->open) * (double)rays.shared;
+    for (uint32_t i = 0; i < VL_BATCH; i++)
+      w->batch->time[i] = vl_world_time(p->world, seconds);
     for (uint32_t done = 0, n; done < g.count; done += n) {
       n = least(g.count - done, VL_BATCH);
       make_rays(w, &rays, &g, done, n, s);

@@ -84,6 +84,8 @@ typedef struct vlChannelWorker {
   float film_x[VL_TILE_PIXELS],
       film_y[VL_TILE_PIXELS];               /* film point of each pixel of the tile */
   float lane_x[VL_BATCH], lane_y[VL_BATCH]; /* film point of each lane */
+  double depth[VL_CHANNEL_TILE][4]; /* with rows: of each of the tile's rows or columns, depth
+                                       of a world point in its camera */
 } vlChannelWorker;
 enum { VL_CHANNEL_ROWS = 28 };
 
@@ -98,6 +100,9 @@ typedef struct vlChannelPass {
   const vlWorld *world;
   const vlChannelsDef *def;
   vlCamera camera;            /* a pinhole, held at the time of the pass */
+  vlCamera rolling;           /* with rows: the pinhole whose rows have times of their own */
+  bool rows;                  /* each pixel is seen when its row is exposed, or its column */
+  bool columns;               /* the pixels of a column are exposed together */
   double time, other_time[2]; /* seconds: of this pass, and of the other two cameras */
   double open, close;         /* seconds: the exposure, at the middle of the image */
   vlCameraCompiled compiled;
@@ -132,7 +137,7 @@ static inline void vl_channel_corner(const vlChannelPass *p, uint32_t tile, uint
   *x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
   *y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
 }
-/* Coordinates of pixel k of a tile; false: outside the crop window. */
+/* Coordinates of pixel k of a tile, row by row; false: outside the crop window. */
 static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k,
                                     uint32_t *x, uint32_t *y) {
   vl_channel_corner(p, tile, x, y);
@@ -140,6 +145,14 @@ static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint3
   *y += k / VL_CHANNEL_TILE;
   const uint32_t *crop = p->def->crop;
   return *x >= crop[0] && *y >= crop[1] && *x < crop[2] && *y < crop[3];
+}
+/* Pixel k of a tile with the pixels that are exposed together in sequence. */
+static inline uint32_t vl_channel_order(const vlChannelPass *p, uint32_t k) {
+  return p->columns ? k % VL_CHANNEL_TILE * VL_CHANNEL_TILE + k / VL_CHANNEL_TILE : k;
+}
+/* The time (s) at which a pixel is seen. */
+static inline double vl_channel_time(const vlChannelPass *p, int32_t x, int32_t y) {
+  return p->rows ? vl_camera_seconds(&p->compiled, x, y, 0.5f) : p->time;
 }
 /* Samples per pixel of the image in a tile, which lies in one block of the film. */
 uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile);
@@ -166,6 +179,10 @@ void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile)
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
+/* In channel_tile.c: makes the batch's rays through the film points (lane_x, lane_y) of the n
+ * pixels (x, y), at each pixel's time, and removes the lanes without a ray. Pixels that are
+ * exposed together must follow each other. Returns the number of lanes. */
+uint32_t vl_channel_rays(const vlChannelPass *p, vlChannelWorker *w, uint32_t n);
 /* In channel_tile.c: t_min and t_max of rays, from the kernel that makes the image's camera
  * rays. */
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,

@@ -194,8 +194,10 @@ static vlSampleHit hit_of(const vlChannelPass *p, vlChannelWorker *w, uint32_t i
   float t = vl_channel_row(w, DISTANCE)[i];
   if (!(t < INFINITY))
     return hit;
-  const double *m = p->camera.camera_from_world;
-  double q[3];
+  const int32_t *px = (int32_t *)(void *)vl_channel_row(w, VL_FILM_PIXEL_X),
+                *py = (int32_t *)(void *)vl_channel_row(w, VL_FILM_PIXEL_Y);
+  double q[3], m[12], back[12];
+  vl_camera_pose_at(&p->compiled, vl_channel_time(p, px[i], py[i]), back, m);
   for (uint32_t k = 0; k < 3; k++)
     q[k] = (double)vl_channel_row(w, VL_FILM_RAY + k)[i] +
            (double)t * (double)vl_channel_row(w, VL_FILM_RAY + 3 + k)[i];

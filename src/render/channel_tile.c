@@ -46,38 +46,86 @@ void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,
   memcpy(t_max, rays.t_max, n * sizeof(float));
 }
 
-/* Lists the pixels of the tile inside the crop window that have a camera ray. */
-static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  uint32_t count = 0, n = 0, x, y;
+/* The number of a pixel's row or column, of those that are exposed one after the other. */
+static uint32_t line_of(const vlChannelPass *p, uint32_t x, uint32_t y) {
+  return p->columns ? x : y;
+}
+
+/* The camera when it exposes a pixel. */
+static const vlCamera *camera_of(const vlChannelPass *p, vlChannelWorker *w, uint32_t x,
+                                 uint32_t y, vlCamera *held) {
+  if (!p->rows)
+    return &p->camera;
+  *held = p->rolling;
+  vl_camera_at(&p->rolling, vl_channel_time(p, (int32_t)x, (int32_t)y), held);
+  memcpy(w->depth[line_of(p, x, y) % VL_CHANNEL_TILE], held->camera_from_world + 8,
+         sizeof w->depth[0]);
+  return held;
+}
+
+/* The lanes from `first` on that have the same camera end here. */
+static uint32_t end_of_line(const vlChannelPass *p, const vlChannelWorker *w, uint32_t first,
+                            uint32_t n) {
+  if (!p->rows)
+    return n;
+  uint32_t last = first + 1, line = line_of(p, w->x[first], w->y[first]);
+  while (last < n && line_of(p, w->x[last], w->y[last]) == line)
+    last++;
+  return last;
+}
+
+uint32_t vl_channel_rays(const vlChannelPass *p, vlChannelWorker *w, uint32_t n) {
   vlGroundTruthBatch *b = w->batch;
   double film[VL_TILE_PIXELS][2], o[VL_TILE_PIXELS][3], d[VL_TILE_PIXELS][3];
   uint8_t valid[VL_TILE_PIXELS];
-  for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
+  uint32_t kept = 0;
+  vlCamera held;
+  for (uint32_t k = 0; k < n; k++) {
+    film[k][0] = (double)w->x[k] + (double)w->lane_x[k];
+    film[k][1] = (double)w->y[k] + (double)w->lane_y[k];
+  }
+  for (uint32_t first = 0, last; first < n; first = last) {
+    last = end_of_line(p, w, first, n);
+    const vlCamera *camera = camera_of(p, w, w->x[first], w->y[first], &held);
+    vl_camera_unproject_batch(camera, last - first, film[first], o[first], d[first],
+                              valid + first);
+  }
+  for (uint32_t k = 0; k < n; k++) {
+    if (!valid[k])
+      continue;
+    for (int i = 0; i < 3; i++) {
+      b->o[i][kept] = o[k][i];
+      b->d[i][kept] = d[k][i];
+    }
+    w->x[kept] = w->x[k];
+    w->y[kept] = w->y[k];
+    w->lane_x[kept] = w->lane_x[k];
+    w->lane_y[kept] = w->lane_y[k];
+    double seconds = vl_channel_time(p, (int32_t)w->x[k], (int32_t)w->y[k]);
+    b->time[kept++] = vl_world_time(p->world, seconds);
+  }
+  b->n = kept;
+  if (kept == 0)
+    return 0;
+  vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};
+  vl_channel_ends(p, w, kept, &ends, b->t_min, b->t_max);
+  return kept;
+}
+
+/* Lists the pixels of the tile inside the crop window and makes their rays. */
+static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
+  uint32_t count = 0, x, y;
+  for (uint32_t i = 0; i < VL_TILE_PIXELS; i++) {
+    uint32_t k = vl_channel_order(p, i);
     if (!vl_channel_pixel(p, tile, k, &x, &y))
       continue;
-    film[count][0] = (double)x + (double)w->film_x[k];
-    film[count][1] = (double)y + (double)w->film_y[k];
     w->x[count] = x;
     w->y[count] = y;
     w->lane_x[count] = w->film_x[k];
     w->lane_y[count] = w->film_y[k];
     count++;
   }
-  vl_camera_unproject_batch(&p->camera, count, film[0], o[0], d[0], valid);
-  for (uint32_t k = 0; k < count; k++) {
-    if (!valid[k])
-      continue;
-    for (int i = 0; i < 3; i++) {
-      b->o[i][n] = o[k][i];
-      b->d[i][n] = d[k][i];
-    }
-    w->x[n] = w->x[k];
-    w->y[n] = w->y[k];
-    w->lane_x[n] = w->lane_x[k];
-    w->lane_y[n] = w->lane_y[k];
-    n++;
-  }
-  return b->n = n;
+  return vl_channel_rays(p, w, count);
 }
 
 static void put3(float *to, const float rows[3][VL_ROW_SIZE], uint32_t i) {
@@ -86,15 +134,17 @@ static void put3(float *to, const float rows[3][VL_ROW_SIZE], uint32_t i) {
   to[2] = rows[2][i];
 }
 
-static void put_floats(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i,
+static void put_floats(const vlChannelPass *p, const vlChannelWorker *w, uint32_t i,
                        size_t at) {
+  const vlGroundTruthBatch *b = w->batch;
   bool hit = b->object[i] != 0;
   double t = b->distance[i], point[3] = {0, 0, 0};
   for (int k = 0; k < 3 && hit; k++)
     point[k] = b->o[k][i] + t * b->d[k][i];
-  const double *m = p->camera.camera_from_world;
+  const double *m = p->rows ? w->depth[line_of(p, w->x[i], w->y[i]) % VL_CHANNEL_TILE]
+                            : p->camera.camera_from_world + 8;
   double z =
-      hit ? m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11] : (double)INFINITY;
+      hit ? m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3] : (double)INFINITY;
   if (vl_channel_wanted(p, VL_CHANNEL_Z))
     *vl_channel_floats(p, at, VL_INDEX_Z) = (float)z;
   if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE))
@@ -188,12 +238,8 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
     vl_channel_features(p, w, tile);
   uint32_t n = wants_points(p) ? list_pixels(p, w, tile) : 0;
   vlGroundTruthBatch *b = w->batch;
-  if (n) {
-    vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};
-    vl_channel_ends(p, w, n, &ends, b->t_min, b->t_max);
-    b->time = vl_world_time(p->world, p->time);
+  if (n)
     p->ground_truth_kernels->trace(p->world, &p->ground_truth, w->scratch, b);
-  }
   for (int i = 0; i < 2 && n; i++)
     if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
       vl_channel_flow(p, w, i);
@@ -202,7 +248,7 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
     put_film(p, w, tile);
   for (uint32_t i = 0; i < n; i++) {
     size_t at = vl_channel_at(p, w->x[i], w->y[i]);
-    put_floats(p, b, i, at);
+    put_floats(p, w, i, at);
     put_ids(p, b, i, at);
   }
 }

@@ -291,7 +291,8 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
                   vl_film_sequence(def->film).length);
   sampler.own = def->render->own_sampler;
   vl_film_rays_init(&p->image, camera, vl_film_filter(def->film), &sampler, isa);
-  vl_film_rays_init(&p->choice, &p->camera, vl_film_filter(def->film), &sampler, isa);
+  vl_film_rays_init(&p->choice, p->rows ? &p->rolling : &p->camera, vl_film_filter(def->film),
+                    &sampler, isa);
   p->choice.middle = true;
   p->shares = vl_shares_samples(film, def->render);
   p->choice.uniform = p->image.uniform = p->shares;
@@ -318,9 +319,14 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
                 memcmp(film_crop, p->def->crop, sizeof p->def->crop) == 0;
   p->time = p->def->time == p->def->time ? p->def->time : middle_time(camera);
   p->camera = pinhole(camera, p->time);
+  p->rolling = *camera;
+  p->rolling.lens_radius = 0;
+  p->rows = vl_is_unset(p->def->time) && camera->readout > 0;
+  p->columns = p->rows && (camera->readout_direction == VL_READOUT_RIGHT ||
+                           camera->readout_direction == VL_READOUT_LEFT);
   p->open = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 0.0);
   p->close = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 1.0);
-  vl_camera_compile(&p->camera, &p->compiled);
+  vl_camera_compile(p->rows ? &p->rolling : &p->camera, &p->compiled);
   const vlCamera *others[2] = {p->def->forward, p->def->backward};
   for (int i = 0; i < 2; i++) {
     if (!vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))

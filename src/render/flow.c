@@ -28,8 +28,10 @@ typedef struct Target {
 } Target;
 
 /* The target of lane i, moved to the other camera's time. */
-static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i,
+static Target target_of(const vlChannelPass *p, const vlChannelWorker *w, uint32_t i,
                         int which) {
+  const vlGroundTruthBatch *b = w->batch;
+  double seconds = vl_channel_time(p, (int32_t)w->x[i], (int32_t)w->y[i]);
   Target t = {.sky = b->object[i] == 0};
   for (int k = 0; k < 3; k++) {
     t.direction[k] = b->d[k][i];
@@ -39,7 +41,7 @@ static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uin
   }
   if (!t.sky && p->world->moves)
     vl_world_follow(p->world, b->object[i] - 1, b->primitive[i] - 1,
-                    b->instance[i] ? b->instance[i] - 1 : VL_NONE, p->time,
+                    b->instance[i] ? b->instance[i] - 1 : VL_NONE, seconds,
                     p->other_time[which], t.point, t.point);
   return t;
 }
@@ -114,7 +116,7 @@ static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, 
   vlGroundTruthBatch *other = w->other;
   other->n = 0;
   for (uint32_t i = first; i < last; i++) {
-    Target t = target_of(p, w->batch, i, which);
+    Target t = target_of(p, w, i, which);
     if (!find_pixel(camera, &t))
       continue;
     float *flow = vl_channel_floats(p, vl_channel_at(p, w->x[i], w->y[i]),
@@ -152,7 +154,8 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   }
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
-  other->time = vl_world_time(p->world, p->other_time[which]);
+  for (uint32_t i = 0; i < other->n; i++)
+    other->time[i] = vl_world_time(p->world, p->other_time[which]);
   vlGroundTruthDef def = p->ground_truth; /* bump maps and albedo are not needed */
   def.shading = def.albedo = false;
   p->ground_truth_kernels->trace(p->world, &def, w->scratch, other);

@@ -81,7 +81,7 @@ for name, wanted in (("forward.pfm", 3.28 * (1 - share)), ("backward.pfm", -3.28
     assert abs(got - wanted) < 0.05, (name, got, wanted)' "$moment"
 done
 expect_code 2 channels_time_word "$VELO" render a.pbrt -o no.exr --channels Z --channels-time opn
-expect_text says_how 'open, middle, close or seconds'
+expect_text says_how 'row, open, middle, close or seconds'
 expect_code 2 odd_ranks "$VELO" render a.pbrt -o no.exr --channels crypto --crypto-ranks 5
 expect_code 2 unknown_mode "$VELO" render a.pbrt -o no.exr --channels all --channels-mode neares
 expect_text near_mode 'nearest'

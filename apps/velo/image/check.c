@@ -287,6 +287,12 @@ static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlI
   if (status >= 0)
     return status;
   read_header(c);
+  c->rows = header_rows(*image, &c->camera, &c->rolling);
+  if (c->rows == ROWS_ONE)
+    report_note(
+        "%s: its ground truth is of one time, as --channels-time said; the rows of the "
+        "image were exposed at others",
+        c->path);
   c->material_of = calloc(CHECK_OBJECTS, sizeof *c->material_of);
   return load_other(c, context, arguments, other);
 }
@@ -312,7 +318,8 @@ static int run_check(const Command *command, const Arguments *arguments) {
       {"coverage", "coverages add up to alpha"},
       {"flow", "flow leads to project(P) in the other camera"},
       {"hidden", "flow leads outside where it says so"},
-      {"seen", "share of pixels whose flow leads to other depths than it says", 0.01}};
+      {"seen", "share of pixels whose flow leads to other depths than it says", 0.01},
+      {"rows", "the camera sees P there when it exposes the pixel's row"}};
   Check check = {.path = arguments->operands[0]}, *c = &check;
   memcpy(c->rules, rules, sizeof rules);
   vlContext *context = NULL;

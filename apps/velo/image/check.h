@@ -3,6 +3,7 @@
 #ifndef APP_IMAGE_CHECK_H
 #define APP_IMAGE_CHECK_H
 
+#include "image/header.h"
 #include "velo/camera.h"
 #include "velo/image.h"
 
@@ -25,6 +26,7 @@ enum {
   RULE_FLOW,
   RULE_HIDDEN,
   RULE_SEEN,
+  RULE_ROWS,
   RULES
 };
 /* A row of the table of rules ends with its last member that is not zero. */
@@ -49,7 +51,11 @@ typedef struct Check {
   const vlImage *image;
   const char *path;
   const float *pixel; /* the current pixel */
-  vlCamera camera;
+  vlCamera camera;    /* of the current pixel */
+  /* EACH: the camera is that of each row's time; otherwise that of the header. UNSAID:
+   * RULE_ROWS compares with the row's. */
+  HeaderRows rows;
+  vlCamera rolling; /* with rows: the moving camera */
   uint32_t x0, y0, x,
       y; /* corner of the data window; position of the pixel in the whole image */
   /* channel indices; -1: not in the file */

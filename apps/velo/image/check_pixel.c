@@ -32,6 +32,16 @@ static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   check_note(c, RULE_RAY, vector_length(v));
 }
 
+/* How far the point is from where the pixel's row sees it; relative to the image's size. */
+static void check_row(Check *c, const double p[3]) {
+  vlCamera row;
+  double pixel[2], z, error = INFINITY;
+  header_row_camera(&c->rolling, c->x, c->y, &row);
+  if (vl_camera_project(&row, p, pixel, &z))
+    error = hypot(pixel[0] - c->point[0], pixel[1] - c->point[1]);
+  check_note(c, RULE_ROWS, error / fmax(row.width, row.height));
+}
+
 /* Errors are relative to the largest number involved, which bounds the rounding of floats. */
 static void check_point(Check *c, const double origin[3], const double direction[3]) {
   double p[3], ray[3], t = c->distance >= 0 ? c->pixel[c->distance] : 0;
@@ -62,6 +72,8 @@ static void check_point(Check *c, const double origin[3], const double direction
     z = m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11];
     check_note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
   }
+  if (c->rows == ROWS_UNSAID)
+    check_row(c, p);
   double error = seen ? hypot(pixel[0] - c->point[0], pixel[1] - c->point[1]) : INFINITY;
   if (error > c->pixel_error)
     c->pixel_error = error;
@@ -103,6 +115,8 @@ static void check_material_of(Check *c) {
 }
 
 void check_pixel(Check *c) {
+  if (c->rows == ROWS_EACH)
+    header_row_camera(&c->rolling, c->x, c->y, &c->camera);
   c->point[0] = c->x + (c->film >= 0 ? (double)c->pixel[c->film] : 0.5);
   c->point[1] = c->y + (c->film >= 0 ? (double)c->pixel[c->film + 1] : 0.5);
   check_plain(c);

@@ -176,6 +176,56 @@ int header_camera(vlContext *context, const vlImage *image, const char *path, vl
   return -1;
 }
 
+/* Reads the poses at both ends, and their times. */
+static bool read_motion(const vlImage *image, double poses[2][16], double times[2]) {
+  static const char *const names[2] = {"velo.worldFromCameraOpen", "velo.worldFromCameraClose"};
+  vlAttribute a;
+  for (int k = 0; k < 2; k++) {
+    if (vl_image_find_attribute(image, names[k], &a) != VL_OK || a.type != VL_ATTRIBUTE_M44D)
+      return false;
+    for (int i = 0; i < 16; i++)
+      poses[k][i] = a.numbers[i % 4 * 4 + i / 4];
+  }
+  if (vl_image_find_attribute(image, "velo.poseTimes", &a) != VL_OK ||
+      a.type != VL_ATTRIBUTE_V2F)
+    return false;
+  times[0] = a.numbers[0];
+  times[1] = a.numbers[1];
+  number(image, "velo.poseOpen", &times[0]);
+  number(image, "velo.poseClose", &times[1]);
+  return true;
+}
+
+HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *rolling) {
+  static const char *const directions[] = {"down", "up", "right", "left"};
+  double readout = 0.0, poses[2][16], times[2], first;
+  const char *direction, *said = NULL;
+  vlAttribute shutter;
+  if (!number(image, "velo.readout", &readout) || !(readout > 0.0) ||
+      !text(image, "velo.readoutDirection", &direction) || !read_motion(image, poses, times) ||
+      vl_camera_travel(camera, poses[0], poses[1], times, rolling, NULL) != VL_OK)
+    return ROWS_NONE;
+  rolling->readout = readout;
+  for (int i = 0; i < 4; i++)
+    if (strcmp(direction, directions[i]) == 0)
+      rolling->readout_direction = (vlReadout)i;
+  if (vl_image_find_attribute(image, "velo.shutter", &shutter) == VL_OK &&
+      shutter.type == VL_ATTRIBUTE_V2F)
+    rolling->shutter_open = rolling->shutter_close =
+        0.5 * (shutter.numbers[0] + shutter.numbers[1]);
+  if (number(image, "velo.firstRowTime", &first))
+    rolling->shutter_open = rolling->shutter_close = first;
+  if (!text(image, "velo.channelsTime", &said))
+    return ROWS_UNSAID;
+  return strcmp(said, "row") == 0 ? ROWS_EACH : ROWS_ONE;
+}
+
+void header_row_camera(const vlCamera *rolling, uint32_t x, uint32_t y, vlCamera *camera) {
+  double seconds = vl_camera_time(rolling, x + 0.5, y + 0.5, 0.5);
+  if (vl_camera_at(rolling, seconds, camera) != VL_OK)
+    *camera = *rolling;
+}
+
 static void single(const vlImage *image, const char *name, vlAttributeType type, double *values,
                    int count) {
   vlAttribute a;

@@ -52,7 +52,9 @@ typedef struct Source {
   uint32_t width, height, channels;
   int p, n, ng, uv, albedo, ray, distance;
   bool world;
-  double m[16]; /* camera_from_world */
+  const vlCamera *camera;
+  double seconds; /* VL_UNSET: of each row */
+  double m[16];   /* camera_from_world, of the current pixel */
   double shrink, samples;
 } Source;
 
@@ -134,6 +136,23 @@ static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
   out[DZ + 1] = (float)slope(s, x, y, x, y + 1 < s->height ? y + 1 : y ? y - 1 : y, p, n);
 }
 
+/* Fills the image's COUNT floats per pixel. The camera is that of the pixel's time, which is
+ * found anew where it changes: along rows, or along columns of a readout to the side. */
+static void fill_all(Source *s, const uint32_t crop[4], float *out) {
+  double before = VL_UNSET;
+  for (uint32_t y = 0; y < s->height; y++)
+    for (uint32_t x = 0; x < s->width; x++) {
+      double seconds = s->seconds;
+      if (isnan(seconds))
+        seconds = vl_camera_time(s->camera, crop[0] + x + 0.5, crop[1] + y + 0.5, 0.5);
+      vlCamera held;
+      if (seconds != before && vl_camera_at(s->camera, seconds, &held) == VL_OK)
+        memcpy(s->m, held.camera_from_world, sizeof s->m);
+      before = seconds;
+      fill(s, x, y, out + ((size_t)y * s->width + x) * COUNT);
+    }
+}
+
 static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
@@ -176,10 +195,10 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
     result = vl_image_create(context, &def, image);
   }
   if (result == VL_OK) {
-    vlCamera held;
-    vl_camera_at(&job->camera, job_channels_time(job), &held);
     double spp = vl_film_spp(film);
     Source s = {
+        .camera = &job->camera,
+        .seconds = job_channels_time(job),
         .geometry = geometry,
         .rendered = rendered,
         .values = vl_image_const_pixels(geometry),
@@ -199,11 +218,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
             0.125,
             1 / sqrt(spp)), /* pbrt's ray differentials shrink with the number of samples */
         .samples = spp};
-    memcpy(s.m, held.camera_from_world, sizeof s.m);
-    float *out = vl_image_pixels(*image);
-    for (uint32_t y = 0; y < s.height; y++)
-      for (uint32_t x = 0; x < s.width; x++)
-        fill(&s, x, y, out + ((size_t)y * s.width + x) * COUNT);
+    fill_all(&s, job->defs->film.crop, vl_image_pixels(*image));
   }
   vl_image_destroy(geometry);
   vl_image_destroy(rendered);

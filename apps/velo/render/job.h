@@ -139,7 +139,8 @@ typedef struct Job {
   RaceKind race;                       /* before the render */
   bool raced; /* receipts name the tracer and the number of light paths */
   double channels_share, channels_seconds; /* time of the ground truth as a fraction of the
-                                              shutter interval, unless seconds are set */
+                                              shutter interval, unless seconds are set;
+                                              both unset: of each row */
 } Job;
 
 /* Overrides the scene's defs and makes the camera. Returns -1, or the exit code after reporting
@@ -151,7 +152,8 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
  * sequence. */
 bool job_sequence_is_planned(const Job *job, const Arguments *arguments);
 
-/* The time of the ground truth and of the camera in the header, in seconds. */
+/* The time of the ground truth and of the camera in the header, in seconds. VL_UNSET: when each
+ * row is exposed; the header's camera then has the middle of the image's exposure. */
 double job_channels_time(const Job *job);
 
 /* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive

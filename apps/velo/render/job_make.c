@@ -361,13 +361,13 @@ int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const c
   return status < 0 ? fit_camera(job, defs, arguments) : status;
 }
 
-/* Parses "open", "middle", "close" or seconds. */
+/* Parses "row", "open", "middle", "close" or seconds. */
 static int read_channels_time(Job *job, const Arguments *arguments) {
   static const char *const words[] = {"open", "middle", "close"};
   const OptionValue *v = &arguments->values[RENDER_CHANNELS_TIME];
-  job->channels_share = 0.5;
+  job->channels_share = VL_UNSET;
   job->channels_seconds = VL_UNSET;
-  if (!v->given)
+  if (!v->given || strcmp(v->text, "row") == 0)
     return -1;
   for (int i = 0; i < 3; i++)
     if (strcmp(v->text, words[i]) == 0) {
@@ -378,7 +378,7 @@ static int read_channels_time(Job *job, const Arguments *arguments) {
   job->channels_seconds = strtod(v->text, &end);
   if (end != v->text && !*end && fabs(job->channels_seconds) < 1e12)
     return -1;
-  return report_usage("--channels-time \"%s\": must be open, middle, close or seconds",
+  return report_usage("--channels-time \"%s\": must be row, open, middle, close or seconds",
                       v->text);
 }
 
@@ -386,6 +386,8 @@ double job_channels_time(const Job *job) {
   const vlCamera *c = &job->camera;
   if (!isnan(job->channels_seconds))
     return job->channels_seconds;
+  if (isnan(job->channels_share))
+    return VL_UNSET;
   return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, job->channels_share);
 }
 

@@ -234,8 +234,9 @@ const Option render_options[] = {
      "that covers most of the pixel:",
      0, 0, channel_mode_choices},
     {RENDER_CHANNELS_TIME, 0, "channels-time", OPTION_TEXT, "TIME",
-     "time for which ground truth is computed if something moves: open, middle or close of "
-     "the shutter's time, or seconds; default middle"},
+     "time for which ground truth is computed if something moves: row (the middle of each "
+     "row's own exposure; without a rolling shutter that of the image), open, middle or close "
+     "of the shutter's time in the middle of the image, or seconds; default row"},
     {RENDER_CRYPTO_RANKS, 0, "crypto-ranks", OPTION_INTEGER, "N",
      "largest number of objects that a Cryptomatte stores per pixel, an even number; default "
      "6"},

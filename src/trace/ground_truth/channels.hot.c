@@ -17,8 +17,8 @@ static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *bat
                              uint32_t lane, const vlHits *h, uint32_t i, double t) {
   const double o[3] = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]},
                d[3] = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
-  return vl_exact_distance(world, batch->time, o, d, h->shape[i], h->prim[i], h->instance[i],
-                           h->t[i], t);
+  return vl_exact_distance(world, batch->time[lane], o, d, h->shape[i], h->prim[i],
+                           h->instance[i], h->t[i], t);
 }
 
 /* ---- albedo ------------------------------------------------------------------------------ */
@@ -145,7 +145,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def,
   start(def, batch, &s->rays);
   s->rays.time = s->at.paths.time = world->moves ? scratch->time : NULL;
   for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++)
-    scratch->time[i] = batch->time;
+    scratch->time[i] = batch->time[i < batch->n ? i : 0];
   if (batch->n == 0)
     return;
   /* The radiance of the rays is not used. */
@@ -250,12 +250,13 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
                   .dz = d + 2,
                   .t_min = &t_min,
                   .t_max = batch->t_max + lane,
-                  .time = &batch->time};
+                  .time = &batch->time[lane]};
     vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
     if (shape == VL_NONE)
       return;
     vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
-    vlPoint at = vl_point_at_time(world, batch->time, from, along, shape, prim, instance, t);
+    vlPoint at =
+        vl_point_at_time(world, batch->time[lane], from, along, shape, prim, instance, t);
     uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed))
       k++;

@@ -29,7 +29,7 @@ void vl_ground_truth_plan_albedo(const vlWorld *world, vlColorSpace space,
  * hits nothing, its distance is infinite and its other results are zero. Ids count from 1. */
 typedef struct vlGroundTruthBatch {
   uint32_t n;
-  float time; /* the world's time, the same for all rays */
+  float time[VL_ROW_SIZE]; /* the world's time */
   double o[3][VL_ROW_SIZE], d[3][VL_ROW_SIZE];
   float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
   double distance[VL_ROW_SIZE];

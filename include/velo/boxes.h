@@ -40,8 +40,8 @@ typedef struct vlBoxesDef {
   uint32_t crop[4]; /**< crop window, pixels: x0, y0, x1, y1; x1, y1 exclusive; default: the
                        whole image */
   double time; /**< time at which the scene is seen, seconds; unset: the middle of the exposure
-                  (vl_camera_time), of a rolling shutter that of each row for the pixels, and
-                  that of the middle of the image for outlines and boxes in space */
+                  (vl_camera_time), of a rolling shutter that of each row for pixels and
+                  outlines, and that of the middle of the image for poses in space */
   vlStopFn *stop;         /**< returns true to stop with VL_CANCELLED; default null: never */
   void *stop_user;        /**< passed to stop */
   const vlCancel *cancel; /**< stops the call within one tile of 32 x 32 pixels; default null */

@@ -294,12 +294,22 @@ VL_API vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCame
 
 /** The pinhole ray through film point (x, y), in pixels: origin and normalised direction in
  * world space, in double precision. Returns false if the point is outside the camera's domain.
- * This function and the following ones use the pose at pose_times[0]; call vl_camera_at first
- * for another time. */
+ *
+ * A moving camera has the pose of the middle of its exposure (vl_camera_time with u = 0.5),
+ * with a rolling shutter that of the row (or column) of the film point, linear in time between
+ * the rows' centres; beyond the image's edges that at the edge. vl_camera_at holds it at
+ * another time. */
 VL_API bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3],
                                 double direction[3]);
 /** The film point, in pixels, of a world point; *z: its depth along the view axis, scene units
- * (may be null). Returns false if the point is behind the camera or outside its domain. */
+ * (may be null). Returns false if the point is behind the camera or outside its domain.
+ *
+ * For a moving camera with a rolling shutter, the film point and the time of its row are solved
+ * for together, so that vl_camera_unproject's ray at the film point leads to the point. If
+ * several rows of the image see the point, the result is of the one that is read first (rows
+ * less than 1/16 of the readout apart may be taken for each other). If none does, the result is
+ * outside the image: as the row read first sees it beyond its edge, else as the last one does,
+ * else false. */
 VL_API bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2],
                               double *z);
 

@@ -136,7 +136,7 @@ VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
  * time; without it, pixel (x, y) has the time at which half of its light has arrived,
  * vl_camera_time(camera, x + 0.5, y + 0.5, 0.5), so that rows of a rolling shutter follow the
  * image. Flow points to the position of the surface point at the middle of the
- * other camera's exposure.
+ * other camera's exposure; of a rolling shutter, that of the row to which it leads.
  *
  * Cryptomatte's metadata (cryptomatte/.../name, hash, conversion, manifest) are attributes of
  * *floats. Must not be called from inside a parallel loop. Errors: ARGUMENT, MEMORY,

@@ -30,9 +30,12 @@ enum {
 /** The derivatives of vl_camera_project's film point at `count` points (x, y, z): for each
  * point 2 rows (x, y, pixels) of VL_JACOBIAN_COLUMNS numbers in `jacobians`. valid[i] (may be
  * null) is 1; where a point has no projection, or no finite derivative, it is 0 and the numbers
- * are 0. The pose is that at pose_times[0]; the derivatives of the closed form, by the chain
- * rule. Any number of threads may call it. ARGUMENT: a null pointer. UNSUPPORTED: a camera of
- * one's own, an eye of omnidirectional stereo. */
+ * are 0. The derivatives of the closed form, by the chain rule. A moving camera has the pose of
+ * the time that vl_camera_project finds, and all its poses change by the same (t, r); with a
+ * rolling shutter the film point's row changes its time, too (implicit function theorem),
+ * except outside the image, where the time is that of the edge. Any number of threads may call
+ * it. ARGUMENT: a null pointer. UNSUPPORTED: a camera of one's own, an eye of omnidirectional
+ * stereo. */
 VL_API vlResult vl_camera_project_jacobian(const vlCamera *camera, size_t count,
                                            const double *points, double *jacobians,
                                            uint8_t *valid, vlError *error);

@@ -130,7 +130,8 @@ class Camera(_velo.Camera):
         return self._stereo()
 
     def project(self, points: Any, *, jacobian: bool = False) -> Any:
-        """Where points (n x 3 or rows x columns x 3, world space) are seen: a Projection.
+        """Where points (n x 3 or rows x columns x 3, world space) are seen: a Projection. A moving camera
+        sees them in the middle of its exposure, a rolling shutter when it exposes the row of their pixel.
 
         jacobian=True: a pair of it and its Jacobian, of the pixels (2) by JACOBIAN_COLUMNS."""
         if _check.flag(jacobian, "jacobian"):

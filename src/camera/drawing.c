@@ -446,11 +446,14 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "outline: no camera, or a number of the def that is not possible");
   Pen p;
+  vlCamera still;
   memset(&p, 0, sizeof p);
   p.context = context;
+  p.camera = &still;
   p.def = def;
   for (uint32_t i = 0; i < count; i++) {
-    p.camera = &cameras[i];
+    still = cameras[i];
+    still.moves = false; /* drawn when it opens */
     p.index = i;
     p.flat = cameras[i].projection == VL_PROJECTION_PERSPECTIVE ||
              cameras[i].projection == VL_PROJECTION_ORTHOGRAPHIC;

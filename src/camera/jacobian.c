@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "camera/moments.h"
 #include "camera/optics.h"
 #include "camera/points.h"
 #include "velo/jacobian.h"
@@ -321,6 +322,93 @@ static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], doub
   return all_finite(rows, 6 * VL_JACOBIAN_COLUMNS);
 }
 
+/* ---- cameras in motion ------------------------------------------------------------------- */
+
+/* The derivatives of a film point's time by its x and y; 0 beyond the image's edges, where it
+ * is that of the edge. */
+static void time_by_film(const vlCameraCompiled *c, const double film[2], double by[2]) {
+  const vlCameraTime *t = &c->when;
+  bool inside = t->per_column != 0.0 ? film[0] > 0.0 && film[0] < t->columns
+                                     : film[1] > 0.0 && film[1] < t->rows;
+  by[0] = inside ? t->per_column : 0.0;
+  by[1] = inside ? t->per_row : 0.0;
+}
+
+/* v' = a (3 x 3) v + p */
+static void apply(const double m[9], const double p[3], const double v[3], double result[3]) {
+  for (int i = 0; i < 3; i++)
+    result[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2] + p[i];
+}
+
+/* The 3 x 3 part of a 3 x 4 matrix, and its last column. */
+static void split(const double m[12], double part[9], double last[3]) {
+  for (int i = 0; i < 3; i++) {
+    memcpy(part + 3 * (size_t)i, m + 4 * (size_t)i, 3 * sizeof *m);
+    last[i] = m[4 * i + 3];
+  }
+}
+
+/* The film point f = F(camera_from_world(t(f)) point, ...), so that its derivatives are those
+ * of the camera held at its time, times (1 - F' d(camera_from_world point)/dt dt/df)^-1. */
+static bool project_moving(const vlCameraCompiled *c, const double point[3], double *rows) {
+  const double none[3] = {0.0, 0.0, 0.0};
+  vlCameraCompiled held = *c;
+  if (!vl_camera_hold_at_point(&held, point) || !project_one(&held, point, rows))
+    return false;
+  double back[9], last[3], x[3], moved[3], slip[3], by[2], speed[2];
+  vlAffine rate = vl_camera_rate_at(c, held.shutter_open);
+  split(held.camera_from_world, back, last);
+  apply(back, last, point, x);
+  vlPlanePoint film = vl_camera_film_point(&held, x[0], x[1], x[2]);
+  time_by_film(c, (const double[2]){film.x, film.y}, by);
+  apply(rate.m, rate.p, x, moved); /* of the world's point at x */
+  apply(back, none, moved, slip);  /* x moves by less this */
+  for (int i = 0; i < 2; i++) {
+    const double *g = rows + (size_t)i * VL_JACOBIAN_COLUMNS + VL_JACOBIAN_POSE;
+    speed[i] = -(g[0] * slip[0] + g[1] * slip[1] + g[2] * slip[2]);
+  }
+  double inv = 1.0 / (1.0 - by[0] * speed[0] - by[1] * speed[1]);
+  for (int j = 0; j < VL_JACOBIAN_COLUMNS; j++) {
+    double later = (by[0] * rows[j] + by[1] * rows[VL_JACOBIAN_COLUMNS + j]) * inv;
+    rows[j] += speed[0] * later;
+    rows[VL_JACOBIAN_COLUMNS + j] += speed[1] * later;
+  }
+  return all_finite(rows, 2 * VL_JACOBIAN_COLUMNS);
+}
+
+/* The ray of a camera that is held where it is; it moves with the camera's rate by the film
+ * point's time. */
+static bool unproject_moving(const vlCameraCompiled *c, const double pixel[2], double *rows) {
+  vlCameraCompiled held = *c;
+  vl_camera_hold(&held, vl_camera_film_time(c, pixel[0], pixel[1]));
+  RayDerivatives ray;
+  bool good = unproject_one(&held, pixel, rows) &&
+              (c->optics ? optics_ray(c, c->pitch * (pixel[0] - c->cx),
+                                      c->pitch * (pixel[1] - c->cy), &ray)
+                         : central_ray(c, pixel, &ray));
+  if (!good)
+    return false;
+  const double none[3] = {0.0, 0.0, 0.0};
+  double by[2], d[3], moved[6], along = 0.0;
+  vlAffine rate = vl_camera_rate_at(c, held.shutter_open);
+  time_by_film(c, pixel, by);
+  apply(held.rotation, none, ray.d, d);
+  apply(rate.m, rate.p, ray.o, moved);
+  apply(rate.m, none, ray.d, moved + 3);
+  double inv = 1.0 / vl_length3(d[0], d[1], d[2]);
+  for (int i = 0; i < 3; i++) {
+    moved[3 + i] *= inv;
+    along += moved[3 + i] * d[i] * inv;
+  }
+  for (int i = 0; i < 6; i++) {
+    double *row = rows + (size_t)i * VL_JACOBIAN_COLUMNS;
+    double speed = i < 3 ? moved[i] : moved[i] - along * d[i - 3] * inv;
+    row[VL_JACOBIAN_POINT] += speed * by[0];
+    row[VL_JACOBIAN_POINT + 1] += speed * by[1];
+  }
+  return all_finite(rows, 6 * VL_JACOBIAN_COLUMNS);
+}
+
 static vlResult check(const vlCamera *camera, bool missing, vlError *error) {
   vl_error_clear(error);
   if (!camera || missing)
@@ -335,10 +423,13 @@ static vlResult check(const vlCamera *camera, bool missing, vlError *error) {
   return VL_OK;
 }
 
+/* Of a camera at rest, and of one in motion. */
 typedef bool JacobianFn(const vlCameraCompiled *c, const double *in, double *rows);
+static JacobianFn *const project[2] = {project_one, project_moving};
+static JacobianFn *const unproject[2] = {unproject_one, unproject_moving};
 
 static vlResult each(const vlCamera *camera, size_t count, const double *in, size_t inputs,
-                     double *out, size_t outputs, uint8_t *valid, JacobianFn *one,
+                     double *out, size_t outputs, uint8_t *valid, JacobianFn *const one[2],
                      vlError *error) {
   vlResult result = check(camera, count > 0 && (!in || !out), error);
   if (result != VL_OK)
@@ -349,7 +440,7 @@ static vlResult each(const vlCamera *camera, size_t count, const double *in, siz
     const double *from = in + inputs * i;
     double *rows = out + outputs * VL_JACOBIAN_COLUMNS * i;
     memset(rows, 0, outputs * VL_JACOBIAN_COLUMNS * sizeof *rows);
-    bool good = all_finite(from, (int)inputs) && one(&c, from, rows);
+    bool good = all_finite(from, (int)inputs) && one[c.when.moves](&c, from, rows);
     if (!good)
       memset(rows, 0, outputs * VL_JACOBIAN_COLUMNS * sizeof *rows);
     if (valid)
@@ -360,11 +451,11 @@ static vlResult each(const vlCamera *camera, size_t count, const double *in, siz
 
 vlResult vl_camera_project_jacobian(const vlCamera *camera, size_t count, const double *points,
                                     double *jacobians, uint8_t *valid, vlError *error) {
-  return each(camera, count, points, 3, jacobians, 2, valid, project_one, error);
+  return each(camera, count, points, 3, jacobians, 2, valid, project, error);
 }
 
 vlResult vl_camera_unproject_jacobian(const vlCamera *camera, size_t count,
                                       const double *pixels, double *jacobians, uint8_t *valid,
                                       vlError *error) {
-  return each(camera, count, pixels, 2, jacobians, 6, valid, unproject_one, error);
+  return each(camera, count, pixels, 2, jacobians, 6, valid, unproject, error);
 }

@@ -146,6 +146,9 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);
 /* The pose at a time: both 3 x 4, row-major. */
 void vl_camera_pose_at(const vlCameraCompiled *c, double seconds, double world_from_camera[12],
                        double camera_from_world[12]);
+/* The derivative of the world_from_camera of vl_camera_pose_at by the seconds; 0 outside the
+ * camera's motion and at its ends. */
+vlAffine vl_camera_rate_at(const vlCameraCompiled *c, double seconds);
 /* Changes the clock: the time of rays becomes (seconds - origin) * scale. */
 void vl_camera_retime(vlCameraCompiled *c, double origin, double scale);
 

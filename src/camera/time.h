@@ -16,6 +16,7 @@ typedef struct vlCameraTime {
   double per_column,
       per_row; /* seconds by which a pixel's exposure begins after its neighbour's */
   double first_column, first_row; /* the pixel that is read first */
+  double columns, rows;           /* the image's size */
   double pose_open, pose_rate; /* fraction of the motion at time t: (t - pose_open) * pose_rate,
                                   clamped to [0, 1] */
   vlMotion motion;             /* motion of world_from_camera */

@@ -141,6 +141,8 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
   }
   /* times are relative to the pixel that is read first; its exposure begins when the shutter
    * opens */
+  t->columns = camera->width;
+  t->rows = camera->height;
   t->first_column = t->per_column < 0.0 ? camera->width - 1.0 : 0.0;
   t->first_row = t->per_row < 0.0 ? camera->height - 1.0 : 0.0;
   t->moves = camera->moves && vl_motion_make(camera->world_from_camera,
@@ -226,6 +228,20 @@ void vl_camera_pose_at(const vlCameraCompiled *c, double seconds, double world_f
     memcpy(world_from_camera + 4 * i, a.m + 3 * i, 3 * sizeof(double));
     world_from_camera[4 * i + 3] = a.p[i];
   }
+}
+
+vlAffine vl_camera_rate_at(const vlCameraCompiled *c, double seconds) {
+  const vlCameraTime *t = &c->when;
+  double f = (seconds - t->pose_open) * t->pose_rate;
+  vlAffine rate = {0};
+  if (!t->moves || !(f > 0.0 && f < 1.0))
+    return rate;
+  rate = vl_motion_rate(&t->motion, f);
+  for (int i = 0; i < 9; i++)
+    rate.m[i] *= t->pose_rate;
+  for (int i = 0; i < 3; i++)
+    rate.p[i] *= t->pose_rate;
+  return rate;
 }
 
 void vl_camera_retime(vlCameraCompiled *c, double origin, double scale) {

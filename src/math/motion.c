@@ -136,6 +136,56 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
   return true;
 }
 
+/* A rotation, less the identity, from the products of the quaternion's numbers times 2 over its
+ * squared length. Linear in n. */
+static void rotation_of(const double n[4][4], double r[9]) {
+  r[0] = -(n[1][1] + n[2][2]);
+  r[1] = n[0][1] - n[3][2];
+  r[2] = n[0][2] + n[3][1];
+  r[3] = n[0][1] + n[3][2];
+  r[4] = -(n[0][0] + n[2][2]);
+  r[5] = n[1][2] - n[3][0];
+  r[6] = n[0][2] - n[3][1];
+  r[7] = n[1][2] + n[3][0];
+  r[8] = -(n[0][0] + n[1][1]);
+}
+
+vlAffine vl_motion_rate(const vlMotion *a, double f) {
+  double g = 1.0 - f, q[4], dq[4], square = 0.0, along = 0.0;
+  bool turns = a->inv_sine > 0.0;
+  vlSinCosDouble at_g = vl_sincos_double(g * a->angle), at_f = vl_sincos_double(f * a->angle);
+  double w0 = turns ? at_g.sin * a->inv_sine : g, w1 = turns ? at_f.sin * a->inv_sine : f;
+  double d0 = turns ? -a->angle * at_g.cos * a->inv_sine : -1.0;
+  double d1 = turns ? a->angle * at_f.cos * a->inv_sine : 1.0;
+  for (int i = 0; i < 4; i++) {
+    q[i] = w0 * a->q0[i] + w1 * a->q1[i];
+    dq[i] = d0 * a->q0[i] + d1 * a->q1[i];
+    square += q[i] * q[i];
+    along += q[i] * dq[i];
+  }
+  double n[4][4], dn[4][4], r[9], dr[9], scale = 2.0 / square, less = 2.0 * along / square;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      n[i][j] = scale * q[i] * q[j];
+      dn[i][j] = scale * (dq[i] * q[j] + q[i] * dq[j]) - less * n[i][j];
+    }
+  rotation_of(n, r);
+  rotation_of(dn, dr);
+  for (int i = 0; i < 9; i += 4)
+    r[i] += 1.0;
+  vlAffine rate = {0};
+  for (int i = 0; i < 3; i++) {
+    rate.p[i] = a->t1[i] - a->t0[i];
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) {
+        double s = g * a->s0[3 * k + j] + f * a->s1[3 * k + j];
+        double ds = a->s1[3 * k + j] - a->s0[3 * k + j];
+        rate.m[3 * i + j] += dr[3 * i + k] * s + r[3 * i + k] * ds;
+      }
+  }
+  return rate;
+}
+
 bool vl_motion_at(const double open[16], const double close[16], double f, double result[16]) {
   vlMotion motion;
   if (!vl_motion_make(open, close, &motion))

@@ -65,6 +65,9 @@ static inline vlAffine vl_motion_between(const vlMotion *a, double f) {
   return out;
 }
 
+/* The derivative of vl_motion_between by f. */
+vlAffine vl_motion_rate(const vlMotion *a, double f);
+
 /* The interpolated pose as a matrix; f <= 0 and f >= 1 give the matrices themselves. False as
  * above. */
 bool vl_motion_at(const double open[16], const double close[16], double f, double result[16]);

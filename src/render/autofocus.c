@@ -45,6 +45,7 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
   vlIsa isa = vl_context_isa(world->context);
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
+  pinhole.moves = false; /* when it opens, as the world */
   double o[3], d[3];
   if (!vl_camera_unproject(&pinhole, x, y, o, d))
     return vl_fail(error, VL_ERROR_ARGUMENT,

@@ -125,10 +125,11 @@ static void put_box(void *user, uint32_t index, uint32_t worker) {
   put_extent(&count->all, &box->all, box->all_box);
   if (!box->all)
     return;
+  const vlBoxRows rows = {c->world, &c->compiled}, *by_row = c->rows ? &rows : NULL;
   if (k)
-    vl_box_of_instance(c->world, &c->camera, p->time, id, p->corners, box);
+    vl_box_of_instance(c->world, &c->camera, by_row, p->time, id, p->corners, box);
   else
-    vl_box_of_object(c->world, &c->camera, p->time, id, p->grouped[id - 1], box);
+    vl_box_of_object(c->world, &c->camera, by_row, p->time, id, p->grouped[id - 1], box);
 }
 
 /* Finds which objects are in groups, and whether the instances in the image have too many

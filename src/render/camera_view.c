@@ -82,6 +82,7 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
   *radius = 0;
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
+  pinhole.moves = false; /* when it opens, as the world */
   vlGroundTruthScratch *scratch =
       vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
   vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);

@@ -124,7 +124,8 @@ typedef struct vlChannelPass {
   bool shares;           /* pixels of the image share samples */
   vlReconstruction reconstruction;
   vlCryptomatte crypto[3];
-  vlCamera other[2]; /* forward, backward */
+  vlCamera other[2]; /* forward, backward: pinholes, held at other_time; of rolling shutters not
+                        held */
   vlCameraCompiled other_compiled[2];
 } vlChannelPass;
 

@@ -333,6 +333,10 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
       continue;
     p->other_time[i] = middle_time(others[i]);
     p->other[i] = pinhole(others[i], p->other_time[i]);
+    if (others[i]->readout > 0) {
+      p->other[i] = *others[i];
+      p->other[i].lens_radius = 0;
+    }
     vl_camera_compile(&p->other[i], &p->other_compiled[i]);
   }
   p->camera_kernels = vl_camera_kernels(isa);

@@ -9,6 +9,7 @@
  * camera's ray hits nothing. */
 #include <math.h>
 
+#include "camera/moments.h"
 #include "math/double3.h"
 #include "render/channel_pass.h"
 #include "velo/shape.h"
@@ -25,13 +26,11 @@ typedef struct Target {
   double direction[3]; /* of the sky */
   double normal[3];
   double pixel[2]; /* in the other image */
+  double seconds;  /* when the other camera sees it */
 } Target;
 
-/* The target of lane i, moved to the other camera's time. */
-static Target target_of(const vlChannelPass *p, const vlChannelWorker *w, uint32_t i,
-                        int which) {
-  const vlGroundTruthBatch *b = w->batch;
-  double seconds = vl_channel_time(p, (int32_t)w->x[i], (int32_t)w->y[i]);
+/* The target of lane i, when the lane's pixel sees it. */
+static Target target_of(const vlGroundTruthBatch *b, uint32_t i) {
   Target t = {.sky = b->object[i] == 0};
   for (int k = 0; k < 3; k++) {
     t.direction[k] = b->d[k][i];
@@ -39,23 +38,68 @@ static Target target_of(const vlChannelPass *p, const vlChannelWorker *w, uint32
     if (!t.sky)
       t.point[k] = b->o[k][i] + b->distance[i] * b->d[k][i];
   }
-  if (!t.sky && p->world->moves)
-    vl_world_follow(p->world, b->object[i] - 1, b->primitive[i] - 1,
-                    b->instance[i] ? b->instance[i] - 1 : VL_NONE, seconds,
-                    p->other_time[which], t.point, t.point);
   return t;
 }
 
-/* Projects the target with the other camera. The sky is at a large finite distance, so large
- * that the eyes of a stereo camera coincide. An orthographic camera has one direction in all
- * its pixels. */
-static bool find_pixel(const vlCamera *camera, Target *t) {
-  double point[3], z;
+/* A target and the lane that it comes from. */
+typedef struct Chase {
+  const vlChannelPass *p;
+  const vlChannelWorker *w;
+  const Target *target;
+  uint32_t lane;
+  int which;
+} Chase;
+
+/* The place of the target's surface point at a time. */
+static void follow(const Chase *c, double seconds, double point[3]) {
+  const vlGroundTruthBatch *b = c->w->batch;
+  uint32_t i = c->lane;
+  double from = vl_channel_time(c->p, (int32_t)c->w->x[i], (int32_t)c->w->y[i]);
+  for (int k = 0; k < 3; k++)
+    point[k] = c->target->point[k];
+  if (!c->target->sky && c->p->world->moves)
+    vl_world_follow(c->p->world, b->object[i] - 1, b->primitive[i] - 1,
+                    b->instance[i] ? b->instance[i] - 1 : VL_NONE, from, seconds, point, point);
+}
+
+/* The point to project. The sky is at a large finite distance, so large that the eyes of a
+ * stereo camera coincide. */
+static void far_away(const Target *t, const double world_from_camera[12], double point[3]) {
+  const double *m = world_from_camera, eye[3] = {m[3], m[7], m[11]};
+  for (int k = 0; k < 3 && t->sky; k++)
+    point[k] = eye[k] + 1e6 * (1 + vl_norm3(eye)) * t->direction[k];
+}
+
+/* A vlSeenFn: the target in the other camera with a rolling shutter, both at a time. */
+static bool seen_at(void *user, double seconds, double film[2]) {
+  const Chase *c = user;
+  const vlCameraCompiled *camera = &c->p->other_compiled[c->which];
+  double point[3], forth[12], m[12];
+  follow(c, seconds, point);
+  vl_camera_pose_at(camera, seconds, forth, m);
+  far_away(c->target, forth, point);
+  return vl_camera_film_at(camera, seconds, point, film);
+}
+
+/* Finds the target's film point in the other camera, the time at which that camera sees it,
+ * and its place then. An orthographic camera has one direction in all its pixels. */
+static bool find_pixel(const vlChannelPass *p, const vlChannelWorker *w, uint32_t lane,
+                       int which, Target *t) {
+  const vlCamera *camera = &p->other[which];
+  const Target before = *t;
+  Chase chase = {p, w, &before, lane, which};
   if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC)
     return false;
-  const double *m = camera->world_from_camera, eye[3] = {m[3], m[7], m[11]};
-  for (int k = 0; k < 3; k++)
-    point[k] = t->sky ? eye[k] + 1e6 * (1 + vl_norm3(eye)) * t->direction[k] : t->point[k];
+  if (camera->readout > 0) {
+    bool seen =
+        vl_camera_find_time(&p->other_compiled[which], seen_at, &chase, &t->seconds, t->pixel);
+    follow(&chase, t->seconds, t->point);
+    return seen;
+  }
+  t->seconds = p->other_time[which];
+  follow(&chase, t->seconds, t->point);
+  double point[3] = {t->point[0], t->point[1], t->point[2]}, z;
+  far_away(t, camera->world_from_camera, point);
   return vl_camera_project(camera, point, t->pixel, &z);
 }
 
@@ -112,12 +156,11 @@ static vlHidden judge(const vlChannelPass *p, const vlGroundTruthBatch *b, uint3
  * first half of the work, so that rays are traced together. */
 static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, Target *targets,
                          double *ends, uint32_t first, uint32_t last) {
-  const vlCamera *camera = &p->other[which];
   vlGroundTruthBatch *other = w->other;
   other->n = 0;
   for (uint32_t i = first; i < last; i++) {
-    Target t = target_of(p, w, i, which);
-    if (!find_pixel(camera, &t))
+    Target t = target_of(w->batch, i);
+    if (!find_pixel(p, w, i, which, &t))
       continue;
     float *flow = vl_channel_floats(p, vl_channel_at(p, w->x[i], w->y[i]),
                                     VL_INDEX_FORWARD + (uint32_t)which);
@@ -126,7 +169,7 @@ static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, 
     *vl_channel_ids(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which) =
         VL_HIDDEN_OUTSIDE;
     bool far_outside = !(fabs(t.pixel[0]) < 0x1p20 && fabs(t.pixel[1]) < 0x1p20);
-    if (far_outside || !aim(camera, &t, other, &ends[other->n]))
+    if (far_outside || !aim(&p->other[which], &t, other, &ends[other->n]))
       continue;
     w->lanes[other->n] = i;
     targets[other->n++] = t;
@@ -155,7 +198,7 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
   for (uint32_t i = 0; i < other->n; i++)
-    other->time[i] = vl_world_time(p->world, p->other_time[which]);
+    other->time[i] = vl_world_time(p->world, targets[i].seconds);
   vlGroundTruthDef def = p->ground_truth; /* bump maps and albedo are not needed */
   def.shading = def.albedo = false;
   p->ground_truth_kernels->trace(p->world, &def, w->scratch, other);

@@ -22,6 +22,7 @@ static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int
                           int32_t *py, uint32_t *index) {
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
+  pinhole.moves = false; /* when it opens */
   uint32_t n = 0;
   for (uint32_t i = 0; i < SIDE * SIDE; i++) {
     double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "camera/moments.h"
 #include "math/elementary.h"
 #include "render/boxes.h"
 #include "velo/schema.h"
@@ -19,10 +20,58 @@ typedef struct Points {
   const vlCamera *camera;
   const float *transform; /* the instance's transform: 3x4, or null */
   vlIdBox *box;
-  bool space, outline, whole; /* requested boxes; whole: all points so far projected */
+  bool space, outline, whole;      /* requested boxes; whole: all points so far projected */
+  const vlBoxRows *rows;           /* of a rolling shutter; null: all is seen at one time */
+  const vlWorldInstance *instance; /* with rows: as it moves; null: none */
   uint32_t count;
   double own[3 * CHUNK], world[3 * CHUNK];
+  const vlWorldShape *shape[CHUNK]; /* with rows: the mesh of a vertex; null: another point */
+  uint32_t vertex[CHUNK];
 } Points;
+
+static void to_world(const float *transform, const double own[3], double world[3]) {
+  for (int i = 0; i < 3; i++) {
+    const float *m = transform + 4 * i;
+    world[i] =
+        (double)m[0] * own[0] + (double)m[1] * own[1] + (double)m[2] * own[2] + (double)m[3];
+  }
+}
+
+/* A point of the chunk. */
+typedef struct Moving {
+  const Points *points;
+  uint32_t index;
+} Moving;
+
+/* A vlSeenFn: where the camera sees a point, both at a time. */
+static bool seen_at(void *user, double seconds, double film[2]) {
+  const Moving *m = user;
+  const Points *p = m->points;
+  float time = vl_world_time(p->rows->world, seconds), room[3];
+  double own[3], at[3];
+  memcpy(own, p->own + 3 * m->index, sizeof own);
+  if (p->shape[m->index]) {
+    const float *x = vl_vertex_at(p->shape[m->index], p->vertex[m->index], time, room);
+    for (int k = 0; k < 3; k++)
+      own[k] = (double)x[k];
+  }
+  memcpy(at, own, sizeof at);
+  vlWorldInstance held;
+  if (p->instance)
+    to_world(vl_instance_at(p->instance, time, &held)->from_group, own, at);
+  return vl_camera_film_at(p->rows->camera, seconds, at, film);
+}
+
+/* The film points of the chunk, each at the time of the row that sees it. */
+static void project_rows(const Points *p, double *pixels, uint8_t *valid) {
+  for (uint32_t i = 0; i < p->count; i++) {
+    Moving m = {p, i};
+    double seconds;
+    valid[i] = vl_camera_find_time(p->rows->camera, seen_at, &m, &seconds, pixels + 2 * i);
+    if (!valid[i])
+      pixels[2 * i] = pixels[2 * i + 1] = 0.0;
+  }
+}
 
 static void flush(Points *p) {
   double pixels[2 * CHUNK];
@@ -35,7 +84,9 @@ static void flush(Points *p) {
       b->low[k] = fmin(b->low[k], p->own[3 * i + (uint32_t)k]);
       b->high[k] = fmax(b->high[k], p->own[3 * i + (uint32_t)k]);
     }
-  if (p->outline)
+  if (p->outline && p->rows)
+    project_rows(p, pixels, valid);
+  else if (p->outline)
     vl_camera_project_batch(p->camera, p->count, p->world, pixels, NULL, valid);
   for (uint32_t i = 0; i < p->count && p->outline; i++) {
     p->whole = p->whole && valid[i];
@@ -47,26 +98,32 @@ static void flush(Points *p) {
   p->count = 0;
 }
 
-/* Adds a point in the space of the shape's group. */
-static void add(Points *p, double x, double y, double z) {
+/* Adds a point in the space of the shape's group; shape: the mesh of which it is a vertex, or
+ * null. */
+static void add_of(Points *p, double x, double y, double z, const vlWorldShape *shape,
+                   uint32_t vertex) {
   double *own = p->own + 3 * p->count, *world = p->world + 3 * p->count;
   own[0] = x;
   own[1] = y;
   own[2] = z;
-  for (int i = 0; i < 3; i++)
-    world[i] = p->transform
-                   ? (double)p->transform[4 * i] * x + (double)p->transform[4 * i + 1] * y +
-                         (double)p->transform[4 * i + 2] * z + (double)p->transform[4 * i + 3]
-                   : own[i];
+  memcpy(world, own, 3 * sizeof *own);
+  if (p->transform)
+    to_world(p->transform, own, world);
+  p->shape[p->count] = shape;
+  p->vertex[p->count] = vertex;
   if (++p->count == CHUNK)
     flush(p);
+}
+
+static void add(Points *p, double x, double y, double z) {
+  add_of(p, x, y, z, NULL, 0);
 }
 
 static void add_vertices(Points *p, const vlWorldShape *s, float time) {
   float room[3];
   for (uint32_t i = 0; i < s->vertices; i++) {
     const float *x = vl_vertex_at(s, i, time, room);
-    add(p, (double)x[0], (double)x[1], (double)x[2]);
+    add_of(p, (double)x[0], (double)x[1], (double)x[2], s, i);
   }
 }
 
@@ -134,7 +191,8 @@ uint64_t vl_box_points(const vlWorldShape *s) {
   return rings ? (uint64_t)RINGS * AROUND : 8 * (uint64_t)s->faces;
 }
 
-static Points begin(const vlCamera *camera, vlIdBox *box, const float *transform) {
+static Points begin(const vlCamera *camera, const vlBoxRows *rows, vlIdBox *box,
+                    const float *transform) {
   for (int k = 0; k < 3; k++) {
     box->low[k] = INFINITY;
     box->high[k] = -INFINITY;
@@ -147,7 +205,8 @@ static Points begin(const vlCamera *camera, vlIdBox *box, const float *transform
     box->world_from_box[i] = i % 5 == 0;
   for (int i = 0; i < 12 && transform; i++)
     box->world_from_box[i] = (double)transform[i];
-  return (Points){.camera = camera, .transform = transform, .box = box, .whole = true};
+  return (Points){
+      .camera = camera, .rows = rows, .transform = transform, .box = box, .whole = true};
 }
 
 static void end(Points *p) {
@@ -163,9 +222,9 @@ static void end(Points *p) {
   }
 }
 
-void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, uint32_t id,
-                      bool grouped, vlIdBox *box) {
-  Points p = begin(camera, box, NULL);
+void vl_box_of_object(const vlWorld *world, const vlCamera *camera, const vlBoxRows *rows,
+                      float time, uint32_t id, bool grouped, vlIdBox *box) {
+  Points p = begin(camera, rows, box, NULL);
   p.space = true;
   p.outline = !grouped;
   box->grouped = grouped;
@@ -173,12 +232,13 @@ void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, 
   end(&p);
 }
 
-void vl_box_of_instance(const vlWorld *world, const vlCamera *camera, float time, uint32_t id,
-                        bool corners, vlIdBox *box) {
+void vl_box_of_instance(const vlWorld *world, const vlCamera *camera, const vlBoxRows *rows,
+                        float time, uint32_t id, bool corners, vlIdBox *box) {
   vlWorldInstance room;
   const vlWorldInstance *q = vl_instance_at(&world->instances.items[id - 1], time, &room);
   const vlWorldGroup *group = &world->groups.items[q->group];
-  Points p = begin(camera, box, q->from_group);
+  Points p = begin(camera, rows, box, q->from_group);
+  p.instance = &world->instances.items[id - 1];
   p.outline = true;
   for (int c = 0; c < 8 && corners; c++)
     add(&p, (double)(c & 1 ? group->low : group->high)[0],

@@ -119,7 +119,8 @@ static void crops_have_the_same_bytes(void **state) {
 /* Boxes and counts are those of the ids. */
 static void boxes_are_of_the_rows(void **state) {
   (void)state;
-  for (uint32_t seed = 0; seed < 4; seed++) {
+  int outlines = 0;
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
     Stage s = fill(seed);
     GroundTruth t = ground_truth_begin(&s);
     vlChannelsDef def = vl_default_channels_def(W, H);
@@ -127,7 +128,19 @@ static void boxes_are_of_the_rows(void **state) {
     vlBoxesDef boxes = vl_default_boxes_def(W, H);
     vlIdBox objects[3];
     assert_int_equal(vl_world_id_count(t.world, VL_ID_OBJECT), 3);
-    assert_int_equal(vl_world_boxes(t.world, &t.camera, &boxes, objects, NULL, NULL), VL_OK);
+    vlIdBox instance;
+    assert_int_equal(vl_world_boxes(t.world, &t.camera, &boxes, objects, &instance, NULL),
+                     VL_OK);
+    const uint32_t *all = instance.all_box, edges[4] = {0, 0, W, H};
+    outlines += instance.has_outline;
+    for (int k = 0; k < 4 && instance.has_outline;
+         k++) { /* the outline of all points, cut by the image's edges */
+      double at = fmin(fmax(instance.outline[k], 0), k % 2 ? H : W);
+      if (all[k] != edges[k])
+        assert_near("outline", at, all[k], 1.0);
+      else
+        assert_true(fabs(at - edges[k]) < 1.0);
+    }
     for (uint32_t k = 1; k <= 3; k++) {
       uint32_t count = 0, box[4] = {W, H, 0, 0};
       for (uint32_t i = 0; i < W * H; i++) {
@@ -146,6 +159,57 @@ static void boxes_are_of_the_rows(void **state) {
     ground_truth_free(&t);
     stage_close(&s);
   }
+  assert_true(outlines > SEEDS / 2);
+}
+
+/* Flow to a rolling shutter is that to its camera held at the time of the row to which it
+ * leads, and tells as much of what hides the point. */
+static void flow_leads_to_the_row_of_its_time(void **state) {
+  (void)state;
+  uint32_t moved = 0;
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
+    Stage s = fill(seed), later = fill(seed + 5);
+    GroundTruth t = ground_truth_begin(&s), u = ground_truth_begin(&later);
+    t.other = u.camera;
+    vlChannelsDef def = vl_default_channels_def(W, H);
+    def.channels = VL_CHANNEL_FORWARD | VL_CHANNEL_ID_OBJECT;
+    def.forward = &t.other;
+    ground_truth_channels(&t, &def);
+    for (uint32_t k = 0; k < 60; k++) {
+      uint32_t x = (7 * k + 3 * seed) % W, y = (11 * k + seed) % H;
+      double to[2] = {x + 0.5 + number(&t, x, y, "forward.U"),
+                      y + 0.5 + number(&t, x, y, "forward.V")};
+      if (id(&t, x, y, "forward.hidden") > VL_HIDDEN_BEHIND)
+        continue;
+      bool side = to_the_side(&later);
+      double line = side ? to[0] : to[1], row = floor(line);
+      double a = vl_camera_time(&t.other, side ? row + 0.5 : 0.5, side ? 0.5 : row + 0.5, 0.5);
+      double step = t.other.readout / (side ? W : H) *
+                    (later.camera.readout_direction % 2 ? -1 : 1); /* up and left */
+      vlCamera held;
+      assert_int_equal(vl_camera_at(&t.other, a + (line - row - 0.5) * step, &held), VL_OK);
+      const uint32_t crop[4] = {x, y, x + 1, y + 1};
+      memcpy(def.crop, crop, sizeof crop);
+      def.forward = &held;
+      vlImage *floats, *ids;
+      assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, NULL),
+                       VL_OK);
+      assert_near("flow x", number(&t, x, y, "forward.U"), vl_image_get(floats, 0, 0, 0), 2e-4);
+      assert_near("flow y", number(&t, x, y, "forward.V"), vl_image_get(floats, 0, 0, 1), 2e-4);
+      const uint32_t *hidden = vl_image_const_pixels(ids);
+      int at = vl_image_find_channel(ids, "forward.hidden");
+      assert_int_equal(hidden[at], id(&t, x, y, "forward.hidden"));
+      moved += id(&t, x, y, "id.object") > 1;
+      vl_image_destroy(floats);
+      vl_image_destroy(ids);
+    }
+    ground_truth_free(&t);
+    ground_truth_free(&u);
+    stage_close(&s);
+    stage_close(&later);
+  }
+  if (moved <= 40)
+    fail_msg("%u moving points", moved);
 }
 
 /* Without a rolling shutter all rows have the time of the middle. */
@@ -170,8 +234,10 @@ static void others_have_one_time(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_are_held_scenes), cmocka_unit_test(crops_have_the_same_bytes),
-      cmocka_unit_test(boxes_are_of_the_rows), cmocka_unit_test(others_have_one_time)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rows_are_held_scenes),
+                                     cmocka_unit_test(crops_have_the_same_bytes),
+                                     cmocka_unit_test(boxes_are_of_the_rows),
+                                     cmocka_unit_test(flow_leads_to_the_row_of_its_time),
+                                     cmocka_unit_test(others_have_one_time)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

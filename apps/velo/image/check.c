@@ -260,6 +260,9 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments,
                            &c->other_x0, &c->other_y0);
     if (status >= 0)
       return status;
+    vlCamera rolling;
+    if (header_rows(*image, &c->other_camera, &rolling) == ROWS_EACH)
+      c->other_camera = rolling;
     c->other_distance = vl_image_find_channel(*image, "distance.Y");
     c->other = *image;
   }

@@ -1,6 +1,7 @@
 /* render/channels.c: see channels.h. */
 #include "render/channels.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -151,10 +152,29 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   return fail_pass(&error, result, job);
 }
 
+/* The camera whose rows are exposed for an instant each, that of `share` of their exposure. */
+static vlCamera rows_at(const vlCamera *camera, double share) {
+  bool last_row = camera->readout_direction == VL_READOUT_UP,
+       last_column = camera->readout_direction == VL_READOUT_LEFT;
+  vlCamera instant = *camera;
+  instant.shutter_open = instant.shutter_close =
+      vl_camera_time(camera, last_column ? camera->width - 0.5 : 0.5,
+                     last_row ? camera->height - 0.5 : 0.5, share);
+  instant.shutter_points = 0;
+  return instant;
+}
+
 /* Without another camera, flow is within the shutter interval: forward from the channels' time
- * to the end of the interval, and backward to its beginning. */
+ * to the end of the interval, and backward to its beginning; with a rolling shutter, that of
+ * each row. */
 static void shutter_ends(Channels *c, const Job *job) {
   const vlCamera *camera = &job->camera;
+  bool rows = camera->readout > 0 && isnan(job_channels_time(job));
+  for (int i = 0; i < 2 && rows; i++)
+    if (!c->other_paths[i])
+      c->others[i] = rows_at(camera, i ? 0.0 : 1.0);
+  if (rows)
+    return;
   for (int i = 0; i < 2; i++)
     if (!c->other_paths[i])
       vl_camera_at(

@@ -293,7 +293,7 @@ static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlI
   c->rows = header_rows(*image, &c->camera, &c->rolling);
   if (c->rows == ROWS_ONE)
     report_note(
-        "%s: its ground truth is of one time, as --channels-time said; the rows of the "
+        "%s: its ground truth is of one time, as --channels-time asks; the rows of the "
         "image were exposed at others",
         c->path);
   c->material_of = calloc(CHECK_OBJECTS, sizeof *c->material_of);

@@ -52,7 +52,7 @@ typedef struct Check {
   const char *path;
   const float *pixel; /* the current pixel */
   vlCamera camera;    /* of the current pixel */
-  /* EACH: the camera is that of each row's time; otherwise that of the header. UNSAID:
+  /* EACH: the camera is that of each row's time; otherwise that of the header. UNKNOWN:
    * RULE_ROWS compares with the row's. */
   HeaderRows rows;
   vlCamera rolling; /* with rows: the moving camera */

@@ -72,7 +72,7 @@ static void check_point(Check *c, const double origin[3], const double direction
     z = m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11];
     check_note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
   }
-  if (c->rows == ROWS_UNSAID)
+  if (c->rows == ROWS_UNKNOWN)
     check_row(c, p);
   double error = seen ? hypot(pixel[0] - c->point[0], pixel[1] - c->point[1]) : INFINITY;
   if (error > c->pixel_error)

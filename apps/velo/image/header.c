@@ -199,7 +199,7 @@ static bool read_motion(const vlImage *image, double poses[2][16], double times[
 HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *rolling) {
   static const char *const directions[] = {"down", "up", "right", "left"};
   double readout = 0.0, poses[2][16], times[2], first;
-  const char *direction, *said = NULL;
+  const char *direction, *given = NULL;
   vlAttribute shutter;
   if (!number(image, "velo.readout", &readout) || !(readout > 0.0) ||
       !text(image, "velo.readoutDirection", &direction) || !read_motion(image, poses, times) ||
@@ -215,9 +215,9 @@ HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *r
         0.5 * (shutter.numbers[0] + shutter.numbers[1]);
   if (number(image, "velo.firstRowTime", &first))
     rolling->shutter_open = rolling->shutter_close = first;
-  if (!text(image, "velo.channelsTime", &said))
-    return ROWS_UNSAID;
-  return strcmp(said, "row") == 0 ? ROWS_EACH : ROWS_ONE;
+  if (!text(image, "velo.channelsTime", &given))
+    return ROWS_UNKNOWN;
+  return strcmp(given, "row") == 0 ? ROWS_EACH : ROWS_ONE;
 }
 
 void header_row_camera(const vlCamera *rolling, uint32_t x, uint32_t y, vlCamera *camera) {

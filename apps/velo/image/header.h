@@ -6,7 +6,7 @@
 #include "velo/image.h"
 
 /* When the rows of a rolling shutter's image were seen as ground truth. */
-typedef enum HeaderRows { ROWS_NONE, ROWS_EACH, ROWS_ONE, ROWS_UNSAID } HeaderRows;
+typedef enum HeaderRows { ROWS_NONE, ROWS_EACH, ROWS_ONE, ROWS_UNKNOWN } HeaderRows;
 
 /* Makes the camera. x0, y0: position of the image's first pixel in the uncropped image. optics:
  * the camera's lens of many elements, or null; the caller destroys it after the camera. Returns
@@ -15,7 +15,7 @@ int header_camera(vlContext *context, const vlImage *image, const char *path, vl
                   vlOptics **optics, uint32_t *x0, uint32_t *y0);
 
 /* The camera of a rolling shutter whose rows see different things, made from the header's.
- * Returns how the header says that ground truth was seen: ROWS_EACH, ROWS_ONE, or ROWS_UNSAID;
+ * Returns how the header says that ground truth was seen: ROWS_EACH, ROWS_ONE, or ROWS_UNKNOWN;
  * ROWS_NONE: the rows have the same camera, which is at rest or reads all at once. */
 HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *rolling);
 /* The camera at the time of a pixel's row (or column). */

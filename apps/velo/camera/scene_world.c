@@ -26,7 +26,9 @@ int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arg
     status = needs_check_scene(&needs);
   if (status >= 0)
     return status;
-  vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
+  vlBuildDef build = s->job.defs->build;
+  build.previous = s->opening.metered;
+  vlResult result = vl_world_build(s->scene, &build, &s->world, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
   status = needs_check_tracer(&needs, s->world);
@@ -36,6 +38,7 @@ int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arg
 }
 
 void scene_world_close(SceneWorld *s) {
+  scene_opening_close(&s->opening);
   vl_world_destroy(s->world);
   vl_scene_destroy(s->scene);
   context_close(s->context);

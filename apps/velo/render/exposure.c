@@ -66,7 +66,9 @@ float exposure_meter(const vlImage *image) {
 
 /* ---- models ------------------------------------------------------------------------------ */
 
-enum { METER_SIDE = 96, METER_SPP = 8, METER_DEPTH = 6 };
+/* The longer sides of the small renders. Each pixel has as many samples as one of a first
+ * image: both take (96^2 + 60^2) / 256^2 = 20 % of the rays of a first image of 256 pixels. */
+enum { METER_SIDE = 96, UNLIT_SIDE = 60, METER_SPP = 8, METER_DEPTH = 6 };
 #define WHITE 0.62 /* mean of a white model in the studio */
 
 /* Sums of a model's pixels: luminance of radiance and albedo; and the luminance of all pixels
@@ -194,12 +196,12 @@ typedef struct Metered {
   size_t pixels, all;
 } Metered;
 
-/* lamps: the light is not that of the studio alone: a model of glass, too, is metered. */
+/* side: the longer side of the small render, at most METER_SIDE. lamps: the light is not that
+ * of the studio alone: a model of glass, too, is metered. */
 static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld *world,
-                        const vlCamera *camera, const vlSceneDefs *defs, bool lamps,
+                        const vlCamera *camera, const vlSceneDefs *defs, int side, bool lamps,
                         Metered *metered, vlError *error) {
-  double k =
-      METER_SIDE / (double)(camera->width > camera->height ? camera->width : camera->height);
+  double k = side / (double)(camera->width > camera->height ? camera->width : camera->height);
   uint32_t width = (uint32_t)(camera->width * k + 0.5),
            height = (uint32_t)(camera->height * k + 0.5);
   vlCamera camera_small = *camera;
@@ -240,7 +242,8 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
   Metered m;
   vlError error = {0};
   *ev = 0;
-  vlResult result = measure(context, scene, world, camera, defs, leave <= 0, &m, &error);
+  vlResult result =
+      measure(context, scene, world, camera, defs, METER_SIDE, leave <= 0, &m, &error);
   if (result != VL_OK)
     return report_error(&error, result, "metering");
   double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
@@ -259,7 +262,7 @@ int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld 
   Metered m;
   vlError error = {0};
   *unlit = false;
-  vlResult result = measure(context, scene, world, camera, defs, false, &m, &error);
+  vlResult result = measure(context, scene, world, camera, defs, UNLIT_SIDE, false, &m, &error);
   if (result != VL_OK)
     return report_error(&error, result, "metering");
   *unlit = m.pixels > 0 && (m.white < WHITE / 1024 || (m.white < WHITE / 32 && m.unlit > 0.5));

@@ -370,6 +370,7 @@ static int open_scene(Render *render, const char *path, const Arguments *argumen
   if (status < 0 && shared && shared->still) {
     shared->scene = render->scene;
     shared->opening = render->opening;
+    shared->opening.metered = NULL;
     shared->defs = *vl_scene_defs(render->scene);
   }
   return status;
@@ -384,9 +385,10 @@ static int build_world(Render *render, const char *path) {
     return -1;
   }
   vlBuildDef *build = &render->job.defs->build;
-  build->previous = shared ? shared->world : NULL;
+  build->previous = shared && shared->world ? shared->world : render->opening.metered;
   vlResult result = vl_world_build_last(render->scene, build, &render->world, &error);
   build->previous = NULL;
+  scene_opening_close(&render->opening);
   if (result != VL_OK)
     return report_error(&error, result, path);
   if (shared) {
@@ -573,6 +575,7 @@ static void free_render(Render *render) {
   vl_film_destroy(render->film);
   if (!shared)
     vl_world_destroy(render->world);
+  scene_opening_close(&render->opening);
   if (!shared || render->scene != shared->scene)
     vl_scene_destroy(render->scene);
   report_memory_of(NULL, 0);

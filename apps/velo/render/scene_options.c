@@ -247,9 +247,10 @@ static bool may_be_inside(const Arguments *arguments, const SceneOpening *openin
   return inside;
 }
 
-/* Renders a tiny image: whether the model, seen by its own camera, is dark. */
+/* Renders a tiny image: whether the model, seen by its own camera, is dark. Keeps the world
+ * that it builds for this. */
 static int find_unlit(vlContext *context, const char *path, vlScene *scene,
-                      const Arguments *arguments, const SceneOpening *opening, bool *unlit) {
+                      const Arguments *arguments, SceneOpening *opening, bool *unlit) {
   const vlSceneDefs *defs = vl_scene_defs(scene);
   vlCamera camera;
   vlError error = {0};
@@ -259,13 +260,15 @@ static int find_unlit(vlContext *context, const char *path, vlScene *scene,
     return -1; /* a camera that cannot be is reported later */
   vlBuildDef build = defs->build;
   build.cancel = opening->cancel;
-  vlWorld *world = NULL;
-  vlResult result = vl_world_build(scene, &build, &world, &error);
+  vlResult result = vl_world_build(scene, &build, &opening->metered, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
-  int status = exposure_find_unlit(context, scene, world, &camera, defs, unlit);
-  vl_world_destroy(world);
-  return status;
+  return exposure_find_unlit(context, scene, opening->metered, &camera, defs, unlit);
+}
+
+void scene_opening_close(SceneOpening *opening) {
+  vl_world_destroy(opening->metered);
+  opening->metered = NULL;
 }
 
 int scene_open(vlContext *context, const char *path, const Arguments *arguments,

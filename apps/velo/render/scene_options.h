@@ -23,6 +23,8 @@ typedef struct SceneOpening {
                                     VL_ENVIRONMENT_AUTO */
   bool camera_added;             /* the file has no camera: one was made for the scene */
   vlCameraDef camera;            /* before it was turned */
+  vlWorld *metered;              /* the world with which the model was found lit or dark, for
+                                    vlBuildDef.previous; null: it was not looked at */
   double low[3], high[3];        /* the bounds of the file's scene, without an added ground;
         low > high: it is empty */
 } SceneOpening;
@@ -31,6 +33,8 @@ typedef struct SceneOpening {
  * reporting the error. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments,
                vlScene **scene, SceneOpening *opening);
+/* Frees what is left of the opening once the world is built, or after an error. */
+void scene_opening_close(SceneOpening *opening);
 /* Turns the camera as it was opened as --turn asks. *defs: the scene's. */
 void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs);
 /* Sets the directions up and front for an axis (0: x) that points up. */

@@ -65,7 +65,9 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
   status = needs_check_scene(&needs);
   if (status >= 0)
     return status;
-  vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, &error);
+  vlBuildDef build = v->job.defs->build;
+  build.previous = v->opening.metered;
+  vlResult result = vl_world_build(v->scene, &build, &world, &error);
   status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world)
                            : report_error(&error, result, v->path);
   vl_world_destroy(world);
@@ -132,6 +134,7 @@ static void close_all(Verify *v) {
   free(v->block_of);
   free(v->material_of);
   free(v->marks);
+  scene_opening_close(&v->opening);
   vl_scene_destroy(v->scene);
   context_close(v->context);
 }

@@ -117,12 +117,13 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
     status = job_make(&model->job, context, model->scene, path, arguments);
   if (status < 0) {
     vlBuildDef build = model->job.defs->build;
-    build.previous = previous;
+    build.previous = previous ? previous : model->opening.metered;
     build.cancel = cancel;
     vlResult result = vl_world_build_last(model->scene, &build, &model->world, &error);
     if (result != VL_OK)
       status = report_error(&error, result, path);
   }
+  scene_opening_close(&model->opening);
   file_list_add(files, path);
   const vlFileRecord *file;
   for (uint32_t i = 0; (file = vl_context_file(context, i)); i++)

@@ -52,8 +52,10 @@ typedef struct vlWorldShape {
   /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have
    * the two affine maps below. */
   float radius, inner_radius, z_min, z_max, phi_max, height;
-  double *centers; /* many spheres: 3 per prim, in shape space; else null */
-  float *radii;    /* many spheres: 1 per prim; else null */
+  double *centers;     /* many spheres: 3 per prim, in shape space; else null */
+  float *radii;        /* many spheres: 1 per prim; else null */
+  double own_error[3]; /* bound of the rounding errors of their points along each axis, group
+                          space; of many spheres 0: each has its own */
   /* For curves. A segment has 4 control points, 2 widths and, if it is a ribbon, 2 normals, all
    * in shape space. Each segment is split into pieces; a prim is one piece. */
   uint32_t curve; /* vlCurveKind */

@@ -17,11 +17,12 @@ typedef struct Quadric {
   float radius, inner_radius, z_min, z_max, phi_max, height;
   const double *center; /* centre in shape space; null: the origin */
   const double *from_shape, *to_shape;
+  const double *error; /* vlWorldShape.own_error */
 } Quadric;
 
 static Quadric load(const vlWorldShape *s, uint32_t prim) {
-  Quadric q = {s->kind,    s->flip,   s->radius, s->inner_radius, s->z_min,   s->z_max,
-               s->phi_max, s->height, NULL,      s->from_shape,   s->to_shape};
+  Quadric q = {s->kind,    s->flip,   s->radius, s->inner_radius, s->z_min,    s->z_max,
+               s->phi_max, s->height, NULL,      s->from_shape,   s->to_shape, s->own_error};
   if (s->centers) {
     q.center = s->centers + 3 * (size_t)prim;
     q.radius = q.z_max = s->radii[prim];
@@ -196,9 +197,9 @@ static void quadric_normal(const Quadric *s, const double p[3], double n[3]) {
   n[2] = s->kind == VL_SHAPE_DISK ? 1 : s->kind == VL_SHAPE_SPHERE ? p[2] / s->radius : 0;
 }
 
-/* Rounding errors are those of the numbers that a point is computed from, which may be larger
- * than the point. */
-static void quadric_error(const Quadric *s, double error[3]) {
+/* Bounds the rounding errors of a point: they are those of the numbers that it is computed
+ * from, which may be larger than the point. */
+static void bound_error(const Quadric *s, double error[3]) {
   double size =
       fmax(s->radius, s->kind == VL_SHAPE_DISK ? fabsf(s->height)
                                                : fmaxf(fabsf(s->z_min), fabsf(s->z_max)));
@@ -216,7 +217,10 @@ static void describe(const Quadric *s, const double p[3], vlSurfacePoint *point)
   quadric_derivatives(s, p, dpdu, dpdv, point->uv);
   quadric_normal(s, p, n);
   from_own(s, p, point->p);
-  quadric_error(s, point->error);
+  if (s->center)
+    bound_error(s, point->error);
+  else
+    memcpy(point->error, s->error, sizeof point->error);
   vl_map_vector(s->from_shape, dpdu, point->dpdu);
   vl_map_vector(s->from_shape, dpdv, point->dpdv);
   vl_map_normal(s->to_shape, n, point->n);
@@ -330,7 +334,11 @@ static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def, const vlM
                                 const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
   (void)to_group;
   (void)from_group;
-  return def->centers ? copy_spheres(world, def, shape, error) : VL_OK;
+  if (def->centers)
+    return copy_spheres(world, def, shape, error);
+  const Quadric quadric = load(shape, 0);
+  bound_error(&quadric, shape->own_error);
+  return VL_OK;
 }
 
 VL_SHAPE_FUNCTIONS(sphere, quadric)

@@ -1,5 +1,5 @@
 /** @file
- * velo/shape.h: shapes: their kinds, the def with their parameters, groups and instances. */
+ * velo/shape.h: shapes: the def with their parameters, groups and instances. */
 #ifndef VELO_SHAPE_H
 #define VELO_SHAPE_H
 
@@ -9,21 +9,6 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of shape. velo/schema.h describes the kinds and their
- * parameters. Curves are cubic Bezier segments with a width, for hair, fur and grass. */
-#define VL_SHAPE_KINDS(X) \
-  X(TRIANGLES, triangles) \
-  X(BILINEAR, bilinear)   \
-  X(SPHERE, sphere)       \
-  X(DISK, disk)           \
-  X(CYLINDER, cylinder)   \
-  X(CURVES, curves)
-/** The kinds of shapes: VL_SHAPE_TRIANGLES and so on, from VL_SHAPE_KINDS. */
-typedef enum vlShapeKind {
-#define VL_KIND(NAME, name) VL_SHAPE_##NAME,
-  VL_SHAPE_KINDS(VL_KIND)
-#undef VL_KIND
-} vlShapeKind;
 /** The cross-section of curves. */
 typedef enum vlCurveKind {
   VL_CURVE_FLAT,     /**< a strip that faces every ray */
@@ -34,9 +19,9 @@ typedef enum vlCurveKind {
 /** A shape: one or many primitives with a material. */
 struct vlShapeDef {
   uint32_t cookie;
-  vlSource source;  /**< where the file describes it */
-  vlLabel label;    /**< what the file calls it; copied */
-  vlShapeKind kind; /**< which fields below are read */
+  vlSource source; /**< where the file describes it */
+  vlLabel label;   /**< what the file calls it; copied */
+  uint32_t kind;   /**< vlShapeKind (velo/shape_kinds.h): which fields below are read */
   vlGroupId group; /**< index 0: the shape is in the world; else it is part of this group, which
                       instances place */
   double group_from_shape[16]; /**< shape space to group (or world) space */
@@ -101,8 +86,6 @@ struct vlShapeDef {
    * if there are millions of segments; default 3. The image does not depend on it. */
   uint32_t split_depth;
 };
-/** The default def of a kind. */
-VL_API vlShapeDef vl_default_shape_def(vlShapeKind kind);
 /** Adds a shape. Returns index 0 on error, for example when an index is out of range, a
  * position or normal is not finite (the message names the vertex), or a radius is not above 0.
  */

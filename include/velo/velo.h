@@ -43,6 +43,7 @@
 #include "velo/scene_base.h"
 #include "velo/sensor.h"
 #include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/spectrum.h"
 #include "velo/texture.h"
 #include "velo/trace.h"

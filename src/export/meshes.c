@@ -7,7 +7,7 @@
 
 #include "math/elementary.h"
 #include "schema/schema.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 enum { ALONG = 64, ACROSS = 32 };
 

@@ -11,7 +11,7 @@
 #include "import/ply/ply.h"
 #include "import/repair.h"
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/context.h"
 #include "math/double3.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* Also true for normals that are so short that their length is zero. */
 static bool is_broken(const float n[3]) {

@@ -15,7 +15,7 @@ static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlTextureCorner corner = {s, light->prim, {weights[0], weights[1], weights[2]}};
   vlTextureQuery at = {u, v, p, n, &corner};
-  if (s->kind == VL_SHAPE_TRIANGLES) { /* for triangles, the arguments u and v belong to the
+  if (s->triangles) { /* for triangles, the arguments u and v belong to the
                                           emission's image */
     static const float unit[6] = {0, 0, 1, 0, 1, 1};
     const uint32_t *f = s->indices + 3 * (size_t)light->prim;

@@ -6,9 +6,9 @@
 #include "light/kinds.row.h"
 #include "light/light_kind.h"
 #include "math/warp.h"
+#include "shape/surface_point.h"
 #include "texture/lookup.h"
 #include "velo/shape.h"
-#include "world/shape/surface_point.h"
 
 #define DECLARE(kind, row, power, compile, sample, emit, density) \
   vlEmitLight emit;                                               \
@@ -22,7 +22,7 @@ static float choice_of(const vlTwoWay *way, uint32_t light) {
 /* Density of an area light's points, per area. */
 static float point_density(const vlWorld *world, const vlWorldLight *light, vlVec3 p) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  if (s->kind == VL_SHAPE_TRIANGLES)
+  if (s->triangles)
     return light->area > 0.0f ? 1.0f / light->area : 0.0f;
   vlSurfacePoint point;
   point.p[0] = p.x;
@@ -135,8 +135,8 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   const vlEmitted *e = q->emitted;
   float s = q->s, t = q->t;
   const vlWorldShape *shape = &world->shapes.items[light->shape];
-  Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v)
-                                              : on_shape(light, shape, q->u, q->v);
+  Spot at = shape->triangles ? on_triangle(light, shape, q->u, q->v)
+                             : on_shape(light, shape, q->u, q->v);
   if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light)))
     return;
   float sides = 1.0f;

@@ -10,7 +10,7 @@
 
 #include "base/context.h"
 #include "texture/lookup.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static bool texel_emits(const vlMipmap *mip, const vlTextureNode *node, uint32_t x,
                         uint32_t y) {

@@ -7,9 +7,9 @@
 #include "light/kinds.row.h"
 #include "light/light_kind.h"
 #include "math/warp.h"
+#include "shape/surface_point.h"
 #include "texture/lookup.h"
 #include "velo/shape.h"
-#include "world/shape/surface_point.h"
 
 #define DECLARE(kind, row, power, compile, sample, emit, density) vlSampleLight sample;
 VL_LIGHT_FUNCTIONS(DECLARE)
@@ -152,7 +152,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
                           float v) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   bool with_uv = world->emitted.items[light->emitted].image >= 0;
-  if (s->kind == VL_SHAPE_TRIANGLES)
+  if (s->triangles)
     return sample_triangle(light, s, with_uv, from, u, v);
   vlVec3 center;
   float radius;
@@ -191,7 +191,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
 float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from,
                   const vlPoint *at) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  if (s->kind == VL_SHAPE_TRIANGLES) {
+  if (s->triangles) {
     Near near = near_triangle(light, from);
     if (near.near)
       return 1.0f / near.cap.solid_angle;

@@ -4,9 +4,9 @@
  * to the light decides. Camera paths find media by the surfaces that they cross, so both sides
  * must agree. */
 #include "math/warp.h"
+#include "shape/surface_point.h"
 #include "trace/two_way/stages.h"
 #include "velo/shape.h"
-#include "world/shape/surface_point.h"
 
 enum { ASKED = 32, ANSWERS = 8 };
 
@@ -87,7 +87,7 @@ static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
   double pdf;
   vlVec3 p = vl_vec3(0, 0, 0),
          n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-  if (s->kind == VL_SHAPE_TRIANGLES) {
+  if (s->triangles) {
     for (int k = 0; k < 9; k++)
       (&p.x)[k % 3] += light->corners[k] * (1.0f / 3.0f);
   } else {

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "light/light_kind.h"
 #include "math/approx_double.h"
-#include "velo/shape.h"
-#include "world/shape/surface_point.h"
+#include "shape/surface_point.h"
+#include "velo/shape_kinds.h"
 #include "world/world.h"
 
 enum { BUCKETS = 12, MAX_DEPTH = 60 };
@@ -248,7 +248,7 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
     b->two_sided = world->emitted.items[light->emitted].two_sided;
     b->cos_e = 0;
     b->cos_o = -1;
-    if (shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_DISK) {
+    if (shape->triangles || shape->kind == VL_SHAPE_DISK) {
       b->cos_o = 1;
       for (int i = 0; i < 3; i++)
         b->axis[i] = light->direction[i];

@@ -8,11 +8,11 @@
 #include "light/light_kind.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "shape/surface_point.h"
 #include "texture/lookup.h"
 #include "texture/node_kind.h"
 #include "velo/light.h"
-#include "velo/shape.h"
-#include "world/shape/surface_point.h"
+#include "velo/shape_kinds.h"
 
 static float mean_image_luminance(const vlMipmap *mip) {
   uint32_t last = mip->level_count - 1;
@@ -175,7 +175,7 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
                : "an emissive shape that moves does not emit");
     return VL_OK;
   }
-  bool meshed = shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_BILINEAR;
+  bool meshed = shape->triangles || shape->kind == VL_SHAPE_BILINEAR;
   uint32_t faces = meshed ? shape->faces : 1;
   bool has_power = emission->power == emission->power && emission->power > 0;
   uint32_t own_emission = VL_NONE,
@@ -231,10 +231,10 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
         e->image >= 0
             ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own
             : own;
-    if (e->node && shape->kind == VL_SHAPE_TRIANGLES)
+    if (e->node && shape->triangles)
       l = face_luminance(world, shape, i, e) * own;
     light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
-    if (shape->kind == VL_SHAPE_TRIANGLES) {
+    if (shape->triangles) {
       triangle_light(shape, i, light);
       light->plain_triangle = plain && light->one_sided_normals;
     }

@@ -87,7 +87,7 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   vl_texture_float(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
-    if (r->world->shapes.items[r->at->hits.shape[i]].kind == VL_SHAPE_TRIANGLES)
+    if (r->world->shapes.items[r->at->hits.shape[i]].triangles)
       triangle_normal_slopes(&r->s->corners, f, i);
     vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
     vlVec3 du =

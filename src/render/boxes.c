@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/free.h"
 #include "render/channel_pass.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 /* Number of pixels and their bounding box. */
 typedef struct Extent {

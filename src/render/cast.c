@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/free.h"
 #include "trace/cast/cast.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 /* A worker's memory. */
 typedef struct CastWorker {

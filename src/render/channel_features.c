@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "render/channel_pass.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 enum { ALBEDO = 0, NORMAL = 3, DISPARITY = 6, COUNT = VL_FEATURES };
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "render/channel_pass.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,
                      const vlChannelEnds *ends, float *t_min, float *t_max) {

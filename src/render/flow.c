@@ -13,7 +13,7 @@
 #include "math/double3.h"
 #include "render/channel_pass.h"
 #include "velo/shape.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 /* A hit hides the point if it is nearer by more than this tolerance, relative to the size of
  * the numbers. Rays are rounded to float (2^-23), and their hit distance moves by 1 / cosine of
@@ -130,7 +130,7 @@ static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t 
     return true;
   bool same = other->object[i] == b->object[lane] && other->instance[i] == b->instance[lane] &&
               other->primitive[i] == b->primitive[lane];
-  if (same && p->world->shapes.items[b->object[lane] - 1].kind == VL_SHAPE_TRIANGLES)
+  if (same && p->world->shapes.items[b->object[lane] - 1].triangles)
     return false;
   double o[3], cosine = 0;
   for (int k = 0; k < 3; k++) {

@@ -10,8 +10,8 @@
 #include "math/elementary.h"
 #include "render/boxes.h"
 #include "velo/schema.h"
-#include "velo/shape.h"
-#include "world/shape/moving.h"
+#include "velo/shape_kinds.h"
+#include "world/moving.h"
 
 enum { CHUNK = 256, AROUND = 256, RINGS = 64 };
 

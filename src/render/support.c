@@ -3,7 +3,7 @@
 #include "render/support.h"
 
 #include "render/camera_view.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 #define BIT VL_TRACER_BIT
@@ -45,7 +45,7 @@ static bool has_one_sided(Scene *s) {
   return s->world->has_one_sided;
 }
 
-/* A curve turns to face the ray that hits it (world/shape/curve.c). The surface that a light
+/* A curve turns to face the ray that hits it (shape/curves.c). The surface that a light
  * path hits is not the surface that a camera path hits: their points, normals and areas differ,
  * and so do the shadow rays from them. */
 static bool has_curves(Scene *s) {

@@ -11,7 +11,7 @@
 #include "schema/schema.h"
 #include "velo/light.h"
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 /* ---- degenerate -------------------------------------------------------------------------- */

@@ -8,7 +8,7 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "velo/edit.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 enum {
   OUTSIDE = 160, /* rays from the eye */

@@ -17,7 +17,7 @@
 #include "scene/upright.h"
 #include "schema/schema.h"
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 vlCompleteDef vl_default_complete_def(void) {

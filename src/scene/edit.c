@@ -10,7 +10,7 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/medium.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 /* ---- defs -------------------------------------------------------------------------------- */

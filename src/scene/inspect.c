@@ -10,7 +10,7 @@
 #include "schema/schema.h"
 #include "velo/check.h"
 #include "velo/light.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -9,7 +9,7 @@
 #include "math/transform.h"
 #include "schema/schema.h"
 #include "velo/light.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* A histogram of illuminances: bins of a quarter of a stop. */
 enum { STOPS = 64, PER_STOP = 4, BINS = 2 * STOPS * PER_STOP };

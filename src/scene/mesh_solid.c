@@ -10,7 +10,7 @@
 #include "math/double3.h"
 #include "math/transform.h"
 #include "schema/schema.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *b) {
   VL_FREE(scene->context, b->points, b->faces3, b->part, b->parts);

@@ -8,7 +8,7 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/medium.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format,

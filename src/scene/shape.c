@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "schema/schema.h"
 #include "velo/edit.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);

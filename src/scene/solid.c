@@ -6,7 +6,7 @@
 
 #include "math/elementary.h"
 #include "schema/schema.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static void grow(double low[3], double high[3], const double p[3]) {
   for (int k = 0; k < 3; k++) {

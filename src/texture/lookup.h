@@ -29,7 +29,7 @@ static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextu
                                         vlTexturePoint *at) {
   for (int c = 0; c < 4; c++)
     at->color[c] = 1.0f;
-  if (!where || where->shape->kind != VL_SHAPE_TRIANGLES)
+  if (!where || !where->shape->triangles)
     return;
   const vlWorldShape *s = where->shape;
   const uint32_t *f = s->indices + 3 * (size_t)where->prim;

@@ -91,7 +91,7 @@ typedef struct vlTraceBatch {
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
   const int32_t *px, *py;
   const uint32_t *index;
-  const float *time; /* the world's time, 0 to 1 (world/shape/moving.h); null if nothing in the
+  const float *time; /* the world's time, 0 to 1 (world/moving.h); null if nothing in the
                         world moves */
   float
       *radiance[4];  /* output; spectral mode: one value per wavelength; RGB mode: r, g, b, 0 */

@@ -7,7 +7,7 @@
 #include "schema/schema.h"
 #include "velo/channels.h"
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "world/world.h"
 
 static const char *shape_type(vlShapeKind kind) {

@@ -24,6 +24,7 @@
 
 typedef struct vlWorldShape {
   uint32_t kind;        /* vlShapeKind */
+  bool triangles;       /* of this kind: the room trace computes its hits in batches */
   uint32_t traits;      /* bits VL_SHAPE_TRAIT_*, such as VL_SHAPE_TRAIT_MESH */
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* VL_NONE: the shape emits no light; otherwise see vl_shape_light */
@@ -52,8 +53,11 @@ typedef struct vlWorldShape {
   /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have
    * the two affine maps below. */
   float radius, inner_radius, z_min, z_max, phi_max, height;
-  double *centers;     /* many spheres: 3 per prim, in shape space; else null */
-  float *radii;        /* many spheres: 1 per prim; else null */
+  double *centers; /* many spheres: 3 per prim, in shape space; else null */
+  float *radii;    /* many spheres: 1 per prim; else null */
+  /* Of a full sphere under a similarity: its centre and its radius in group space; the radius
+   * of all other shapes is 0. */
+  float whole_center[3], whole_radius;
   double own_error[3]; /* bound of the rounding errors of their points along each axis, group
                           space; of many spheres 0: each has its own */
   /* For curves. A segment has 4 control points, 2 widths and, if it is a ribbon, 2 normals, all

@@ -8,7 +8,7 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 enum { SMALL_WIDTH = 40, SMALL_HEIGHT = 30 };

@@ -16,6 +16,7 @@
 #include "velo/channels.h"
 #include "velo/edit.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIDE = 60, PIXELS = SMALL_WIDTH * SMALL_HEIGHT };

@@ -12,7 +12,7 @@
 #include "velo/distortion.h"
 #include "velo/export.h"
 #include "velo/setting.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 #define CASE(NAME, name) &name##_projection,
 static const ProjectionCase *const projection_cases[] = {VL_PROJECTION_KINDS(CASE)};

@@ -11,7 +11,7 @@
 #include "velo/material.h"
 #include "velo/medium.h"
 #include "velo/setting.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* ---- defs -------------------------------------------------------------------------------- */
 

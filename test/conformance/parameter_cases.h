@@ -1,6 +1,6 @@
 /* conformance/parameter_cases.h: what the laws of parameters must know beyond the rows.
  * Families with a folder have the cases of a kind there: src/texture/NAME.case.c,
- * src/light/NAME.case.c, src/medium/NAME.case.c. */
+ * src/light/NAME.case.c, src/medium/NAME.case.c, src/shape/NAME.case.c. */
 #ifndef TEST_CONFORMANCE_PARAMETER_CASES_H
 #define TEST_CONFORMANCE_PARAMETER_CASES_H
 
@@ -9,7 +9,9 @@
 #include "light/light.case.h"
 #include "medium/medium.case.h"
 #include "schema/parameter.case.h"
+#include "shape/shape.case.h"
 #include "texture/texture.case.h"
+#include "velo/shape_kinds.h"
 
 #define TEXTURE_CASE(NAME, name) &name##_texture,
 static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE)};
@@ -17,8 +19,8 @@ static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
 #define MEDIUM_CASE(NAME, name) &name##_medium,
 static const MediumCase *const medium_cases[] = {VL_MEDIUM_KINDS(MEDIUM_CASE)};
-
-#define SQUARE "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .2]"
+#define SHAPE_CASE(NAME, name) &name##_shape,
+static const ShapeCase *const shape_cases[] = {VL_SHAPE_KINDS(SHAPE_CASE)};
 
 static const ParameterCase parameter_cases[] = {
     /* materials */
@@ -147,63 +149,6 @@ static const ParameterCase parameter_cases[] = {
               "[.1 .5 .9 .3 1 .6 .8 .2]"},
     /* shapes */
     {.family = "shapes", .parameter = "alpha", .value = "\"float alpha\" .4"},
-    {.family = "shapes",
-     .kind = "trianglemesh",
-     .base = SQUARE ";\"integer indices\" [0 1 2 1 3 2]"},
-    {.family = "shapes", .kind = "bilinearmesh", .base = SQUARE},
-    {.family = "shapes",
-     .kind = "trianglemesh",
-     .parameter = "displacement",
-     .directive = "plymesh",
-     .base = "\"string filename\" \"a.ply\";\"float edgelength\" .3",
-     .value = "\"texture displacement\" \"bumps\""},
-    {.family = "shapes",
-     .kind = "trianglemesh",
-     .parameter = "edgelength",
-     .directive = "plymesh",
-     .base = "\"string filename\" \"a.ply\";\"texture displacement\" \"bumps\"",
-     .value = "\"float edgelength\" .3"},
-    {.family = "shapes",
-     .parameter = "P",
-     .value = "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 .7 .6 .3]"},
-    {.family = "shapes",
-     .kind = "trianglemesh",
-     .parameter = "indices",
-     .value = "\"integer indices\" [0 1 2 0 1 3]"},
-    {.family = "shapes",
-     .kind = "bilinearmesh",
-     .parameter = "indices",
-     .value = "\"integer indices\" [0 2 1 3 0 1 3 2]"},
-    {.family = "shapes",
-     .parameter = "N",
-     .value = "\"normal N\" [.6 0 1 0 .6 1 -.6 0 1 0 0 1]"},
-    {.family = "shapes", .parameter = "S", .value = "\"vector3 S\" [1 1 0 1 1 0 1 1 0 1 1 0]"},
-    {.family = "shapes", .parameter = "uv", .value = "\"point2 uv\" [0 0 .3 0 0 .7 .4 .9]"},
-    {.family = "shapes",
-     .kind = "curve",
-     .base = "\"point3 P\" [-1 0 0 -.3 1 .2 .3 -1 -.2 1 0 0];\"float width\" .6"},
-    {.family = "shapes",
-     .kind = "curve",
-     .parameter = "P",
-     .value = "\"point3 P\" [-1 0 0 -.3 -1 .2 .3 1 -.2 1 0 0]"},
-    {.family = "shapes",
-     .kind = "curve",
-     .parameter = "splitdepth",
-     .no_effect = "only the speed depends on it"},
-    {.family = "shapes",
-     .kind = "curve",
-     .parameter = "degree",
-     .base =
-         "\"string basis\" \"bspline\";\"point3 P\" [-1 0 0 -.3 1 .2 .3 -1 -.2 1 0 0];\"float "
-         "width\" .6"},
-    {.family = "shapes",
-     .kind = "curve",
-     .parameter = "N",
-     .base =
-         "\"string type\" \"ribbon\";\"normal N\" [0 0 1 0 0 1];\"point3 P\" [-1 0 0 -.3 1 .2 "
-         ".3 -1 -.2 1 0 0];"
-         "\"float width\" .6",
-     .value = "\"normal N\" [0 .6 1 .6 0 1]"},
 };
 
 #endif

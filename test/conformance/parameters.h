@@ -31,6 +31,8 @@ static const ParameterCase *cases_of_kind(const char *family, uint32_t kind) {
     return light_cases[kind]->parameters;
   if (strcmp(family, "media") == 0)
     return medium_cases[kind]->parameters;
+  if (strcmp(family, "shapes") == 0)
+    return shape_cases[kind]->parameters;
   return NULL;
 }
 

@@ -1,6 +1,6 @@
 /* test/import/test_builder.c: statements for transforms, shapes, objects. */
 #include "import/load.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 #define W "WorldBegin\n"
 

@@ -5,7 +5,7 @@
 
 #include "import/load.h"
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static char folder[64];
 

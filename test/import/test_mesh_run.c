@@ -2,7 +2,7 @@
  * separate Shapes; failing allocations leak nothing. */
 #include "import/load_failing.h"
 
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "world/world.h"
 
 enum { BEFORE = 4096, QUADS = 60 };

@@ -5,7 +5,7 @@
 
 #include "import/load.h"
 #include "import/ply/ply.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static vlContext *context;
 

@@ -2,7 +2,7 @@
  * which they are made. These are the media of the state at each Shape, not those of the state
  * when the run of shapes ends. */
 #include "import/load.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 enum { BEFORE = 4096 };
 

@@ -4,8 +4,9 @@
 #include "import/load_failing.h"
 
 #include "scene/solid.h"
+#include "shape/surface_point.h"
 #include "velo/light.h"
-#include "world/shape/surface_point.h"
+#include "velo/shape_kinds.h"
 
 enum { BEFORE = 4096, SPHERES = 60 };
 

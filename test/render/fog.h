@@ -5,6 +5,7 @@
 
 #include "shots.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 
 static UNUSED vlMediumId add_medium(Stage *s, const vlMediumDef *def) {
   vlMediumId id = vl_scene_add_medium(s->scene, def);

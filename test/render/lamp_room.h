@@ -5,6 +5,7 @@
 
 #include "render/agreement.h"
 #include "shots.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 /* A tube that is closed below. */

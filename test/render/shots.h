@@ -18,7 +18,7 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 #define UNUSED __attribute__((unused))
 

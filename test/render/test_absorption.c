@@ -8,6 +8,7 @@
 #include "fog.h"
 #include "velo/load.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 static const double attenuation[3] = {0.8, 0.95, 1.0}; /* over a unit of depth */

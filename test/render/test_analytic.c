@@ -13,7 +13,7 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 typedef struct Bench {
   vlContext *context;

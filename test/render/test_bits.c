@@ -2,6 +2,7 @@
  * coverage and quadrics inside rotated instances (Embree's own arithmetic differs there),
  * mixes, interfaces, dispersion, bump maps, a lens. */
 #include "render/shots.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 static void fill(Stage *s) {

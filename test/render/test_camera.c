@@ -2,6 +2,7 @@
  * projection, exposure time, crop; also depths and tracers of a render. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 /* ---- lens -------------------------------------------------------------------------------- */

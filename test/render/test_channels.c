@@ -3,6 +3,7 @@
  * instruction set or crop. */
 #include "render/ground_truths.h"
 #include "velo/channels.h"
+#include "velo/shape_kinds.h"
 
 /* Builds the world of the stage and computes all channels. */
 static GroundTruth ground_truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {

@@ -4,6 +4,7 @@
 #include "render/agreement.h"
 #include "render/choose.h"
 #include "velo/choose.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIZE = 48 };

@@ -2,6 +2,7 @@
  * (docs/decisions/0024-denormal-numbers.md), in whatever floating-point state the caller's
  * threads are. */
 #include "render/shots.h"
+#include "velo/shape_kinds.h"
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif

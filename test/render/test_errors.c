@@ -4,6 +4,7 @@
 #include "render/shots.h"
 #include "velo/filter_kinds.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 
 enum { WIDTH = 32, HEIGHT = 24, SEEDS = 20, VALUES = WIDTH * HEIGHT * 3 };
 

@@ -1,6 +1,7 @@
 /* Optical flow between two cameras against known geometry; boxes against counted pixels. */
 #include "render/ground_truths.h"
 #include "velo/boxes.h"
+#include "velo/shape_kinds.h"
 
 static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_t channels) {
   GroundTruth t = ground_truth_begin(s);

@@ -3,6 +3,7 @@
  * detail keeps its contrast. */
 #include "render/shots.h"
 #include "velo/channels.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

@@ -2,6 +2,7 @@
  * scales, images on lights and in the sky, and the three light samplers. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

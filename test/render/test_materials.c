@@ -1,6 +1,7 @@
 /* Materials in images: mixes, bump and normal maps, interfaces, dispersive glass. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 enum { SIZE = 32 };

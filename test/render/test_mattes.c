@@ -5,6 +5,7 @@
 #include "velo/boxes.h"
 #include "velo/filter_kinds.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 
 static const uint32_t MATTES =
     VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;

@@ -3,6 +3,7 @@
  * instances, the slope of an edge with a rolling shutter. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

@@ -2,6 +2,7 @@
  * to the point's new position; the channels of a pixel agree with each other. */
 #include "render/shots.h"
 #include "velo/channels.h"
+#include "velo/shape_kinds.h"
 
 enum {
   W = 48,

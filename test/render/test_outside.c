@@ -3,6 +3,7 @@
 #include "render/shots.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
+#include "velo/shape_kinds.h"
 
 static void image_circle(void **state) {
   (void)state;

@@ -8,6 +8,7 @@
 #include "render/own_view.h"
 #include "velo/filter_kinds.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 /* Equidistant, 20 pixels per radian; it has no rays beyond 0.7 radians. */

@@ -6,6 +6,7 @@
 #include "loaded.h"
 #include "render/shots.h"
 #include "velo/paths.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIDE = 24, COUNT = 8 };

@@ -2,6 +2,7 @@
 #include <time.h>
 
 #include "render/shots.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

@@ -1,6 +1,7 @@
 /* Equivalent descriptions give the same image: instances and transformed geometry, patches and
  * triangles, spheres and their meshes, holes by alpha and holes by geometry. */
 #include "render/shots.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 static void stage_light(Stage *s) {

@@ -3,6 +3,7 @@
  * those of the same light; any number of threads and any crop give the same bytes. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 
 enum { SIZE = 8, BUCKETS = 12 };
 

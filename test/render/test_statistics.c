@@ -4,6 +4,7 @@
  * samples, too. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 
 enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SEEDS = 12, BLOCK = 8 };
 

@@ -5,6 +5,7 @@
 #include "shots.h"
 #include "velo/medium.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

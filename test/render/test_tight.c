@@ -3,6 +3,7 @@
  * self-intersection brightens or darkens it. */
 #include "render/shots.h"
 #include "velo/sampler.h"
+#include "velo/shape_kinds.h"
 
 typedef struct Room {
   double size;    /* radius */

@@ -8,6 +8,7 @@
 #include "fog.h"
 #include "velo/load.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "velo/tracer.h"
 

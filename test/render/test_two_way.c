@@ -3,6 +3,7 @@
  * allocations. */
 #include "render/agreement.h"
 #include "velo/filter_kinds.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIZE = 24, FINE = 96 };

@@ -6,6 +6,7 @@
 #include "render/fog.h"
 #include "render/lamp_room.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIZE = 20, FURNACE = 24 };

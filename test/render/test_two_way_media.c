@@ -3,6 +3,7 @@
  * the same bits for any threads. */
 #include "render/agreement.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIZE = 18, FINE = 72 }; /* of three bands each */

@@ -4,6 +4,7 @@
 
 #include "failing_allocator.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 /* A ball of fog over a floor under a lamp, a few pixels wide. */

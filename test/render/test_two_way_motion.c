@@ -3,6 +3,7 @@
  * stands in a shade, with less noise; the same bits for any threads. */
 #include "render/lamp_room.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/tracer.h"
 
 enum { SIZE = 18, FINE = 54 };

@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 #include "scene/studio.h"
 #include "velo/light.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 typedef struct Model {
   vlContext *context;

@@ -17,7 +17,7 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 static vlContext *context;

@@ -14,7 +14,7 @@
 #include "schema/schema.h"
 #include "velo/light.h"
 #include "velo/medium.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static vlContext *context;
 

@@ -15,7 +15,7 @@
 
 #include "trace/stages.h"
 #include "trace/surface/offset.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 enum { HAIRS = 12, RAYS = 20000 };
 

@@ -15,7 +15,7 @@
 
 #include "light/light_kind.h"
 #include "trace/two_way/stages.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 enum { TRIES = 100 * 1000, ROWS = 8, COLUMNS = 8, TESTS = 40 };
 

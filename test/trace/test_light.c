@@ -15,7 +15,7 @@
 
 #include "light/light_kind.h"
 #include "trace/stages.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 enum { TRIES = 200 * 1000 };
 

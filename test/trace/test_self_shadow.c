@@ -14,10 +14,11 @@
 
 #include "statistics.h"
 
+#include "shape/surface_point.h"
 #include "trace/two_way/stages.h"
 #include "velo/light.h"
-#include "world/shape/moving.h"
-#include "world/shape/surface_point.h"
+#include "velo/shape_kinds.h"
+#include "world/moving.h"
 
 enum { RAYS = 4000, LIGHTS = 4 * VL_BATCH };
 

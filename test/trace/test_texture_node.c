@@ -17,6 +17,7 @@
 #include "texture/run.hot.h"
 #include "velo/light.h"
 #include "velo/material.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 enum { KINDS = VL_TEXTURE_VERTEX_COLOR + 1 };

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "world/world.h"
 

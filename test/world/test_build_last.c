@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "velo/check.h"
 #include "velo/render.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "world/world.h"
 
 enum { N = 60, VERTICES = (N + 1) * (N + 1), FACES = 2 * N * N };

@@ -4,6 +4,7 @@
 
 #include "render/shots.h"
 #include "velo/medium.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 typedef struct Purse {

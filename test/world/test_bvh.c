@@ -15,11 +15,12 @@
 
 #include "bvh_worlds.h"
 #include "math/double3.h"
+#include "shape/surface_point.h"
+#include "velo/shape_kinds.h"
 #include "world/accel/bvh.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"
-#include "world/shape/moving.h"
-#include "world/shape/surface_point.h"
+#include "world/moving.h"
 #include "world/world.h"
 
 enum { BATCH = 1024 };

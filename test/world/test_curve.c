@@ -10,7 +10,8 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "world/shape/surface_point.h"
+#include "shape/surface_point.h"
+#include "velo/shape_kinds.h"
 
 enum { SEGMENTS = 5, STEPS = 4000 };
 

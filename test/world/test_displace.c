@@ -9,7 +9,7 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "world/world.h"
 

@@ -8,6 +8,7 @@
 #include "material/measured_tables.h"
 #include "render/shots.h"
 #include "trace/bsdf_batch.h"
+#include "velo/shape_kinds.h"
 #include "world/world.h"
 
 static const char path[] = VELO_BINARY_DIR "/damaged.bsdf";

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "velo/material.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "world/accel/occluders.h"
 #include "world/world.h"
 

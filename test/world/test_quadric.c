@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "world/shape/surface_point.h"
+#include "shape/surface_point.h"
+#include "velo/shape_kinds.h"
 #include "world/world.h"
 
 typedef struct Part {

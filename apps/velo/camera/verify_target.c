@@ -7,7 +7,7 @@
 #include "camera/verify.h"
 #include "cli/vector.h"
 #include "velo/light.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* A marker fills the middle 6 x 6 of a white square's 10 x 10 cells: a black frame around 4 x 4
  * bits. */

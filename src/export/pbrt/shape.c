@@ -5,7 +5,7 @@
 #include "export/pbrt/pbrt.h"
 #include "scene/solid.h"
 #include "velo/light.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 enum { INLINE_FACES = 64 };

@@ -5,7 +5,7 @@
 
 #include "base/free.h"
 #include "import/gltf/gltf.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null
  * when the primitive lacks the attribute. */

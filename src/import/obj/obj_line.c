@@ -4,7 +4,7 @@
 
 #include "base/text.h"
 #include "import/obj/obj.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* Radius of balls and tubes over the diagonal of the vertices' box: about a pixel, as in glTF
  * without a camera. */

@@ -7,7 +7,7 @@
 #include "math/approx_double.h"
 #include "math/double3.h"
 #include "math/hash.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* Whether the load must stop after so many corners or triangles; looks at it now and then. */
 static bool stopped(vlObj *obj, size_t done) {

@@ -4,7 +4,7 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 static bool same_text(const char *a, const char *b) {
   return a == b || vl_text_is(a ? a : "", b ? b : "");

@@ -76,7 +76,7 @@ void vl_import_free_meshes(vlImport *import) {
     free_rows(import, &import->mesh_runs[i]);
 }
 
-/* Transforms points as the world's builder does (world/shape/shapes.c). False when a result
+/* Transforms points as the world's builder does (world/shapes.c). False when a result
  * exceeds the range of floats. */
 static bool move_points(const vlMat4 *m, const float *from, size_t count, float *to) {
   for (size_t i = 0; i < count; i++) {

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "import/pbrt/builder.h"
 #include "import/ply/ply.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 typedef struct Job {
   vlPlyMesh mesh;

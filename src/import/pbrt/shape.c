@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/loop.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* Takes the array from the parameter, shrunk to its size. */
 static bool take_floats(vlImport *import, vlParam *p, const float **result) {

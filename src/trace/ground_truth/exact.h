@@ -3,10 +3,9 @@
 #ifndef TRACE_GROUND_TRUTH_EXACT_H
 #define TRACE_GROUND_TRUTH_EXACT_H
 
+#include "shape/surface_point.h"
 #include "trace/stages.h"
-#include "velo/shape.h"
-#include "world/shape/moving.h"
-#include "world/shape/surface_point.h"
+#include "world/moving.h"
 
 typedef struct Exact {
   double x, y, z;
@@ -86,9 +85,8 @@ static inline double vl_exact_distance(const vlWorld *world, float time, const d
       instance == VL_NONE ? NULL
                           : vl_instance_at(&world->instances.items[instance], time, &room);
   Exact from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
-  return s->kind == VL_SHAPE_TRIANGLES
-             ? exact_triangle_distance(s, q, time, prim, from, along, otherwise)
-             : exact_curved_distance(s, q, prim, from, along, hit_t);
+  return s->triangles ? exact_triangle_distance(s, q, time, prim, from, along, otherwise)
+                      : exact_curved_distance(s, q, prim, from, along, hit_t);
 }
 
 #endif

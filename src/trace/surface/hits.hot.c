@@ -38,7 +38,7 @@ void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHi
 static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const vlHits *h,
                                   uint32_t i) {
   vlTextureCorner corner = {&world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
-  if (corner.shape->kind != VL_SHAPE_TRIANGLES)
+  if (!corner.shape->triangles)
     return corner;
   float time = vl_path_time(p, i);
   vlRays rays = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i,

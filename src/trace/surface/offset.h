@@ -6,7 +6,7 @@
 #define TRACE_SURFACE_OFFSET_H
 
 #include "math/vec.h"
-#include "world/shape/kinds.h"
+#include "shape/shape_kind.h"
 
 /* gamma_n = n eps / (1 - n eps), the bound of n roundings (pbrt book 6.8.1). */
 #define VL_GAMMA(n) ((n)*0x1p-24f / (1.0f - (n)*0x1p-24f))

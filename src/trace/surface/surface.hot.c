@@ -1,11 +1,11 @@
 /* trace/surface/surface.hot.c: computes surface points from ids. It does not use Embree's t, u,
  * v, which differ between instruction sets. For triangles, it gathers the corners and then runs
- * one vector loop. Other shapes are computed one by one by world/shape/surface_point.c. */
+ * one vector loop. Other shapes are computed one by one by shape/surface_point.c. */
 #include "math/transform.h"
+#include "shape/surface_point.h"
 #include "trace/stages.h"
 #include "velo/shape.h"
-#include "world/shape/moving.h"
-#include "world/shape/surface_point.h"
+#include "world/moving.h"
 
 static inline vlVec3 move_corner(const float m[12], const float *x) {
   return vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3],
@@ -68,7 +68,7 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
  * first the indices, then the vertices. */
 enum { AHEAD = 8, LARGE_MESH = 4096 };
 static inline bool in_large_mesh(const vlWorldShape *s) {
-  return s->kind == VL_SHAPE_TRIANGLES && s->faces >= LARGE_MESH;
+  return s->triangles && s->faces >= LARGE_MESH;
 }
 static inline __attribute__((always_inline)) void prefetch_indices(const vlWorld *world,
                                                                    const vlHits *hits,
@@ -395,12 +395,12 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
     if (i + AHEAD < n)
       prefetch_vertices(world, hits, i + AHEAD); /* must prefetch */
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    if (s->kind == VL_SHAPE_TRIANGLES)
+    if (s->triangles)
       gather_triangle(world, hits, i, c);
-    if (world->moves && s->kind == VL_SHAPE_TRIANGLES &&
+    if (world->moves && s->triangles &&
         triangle_moves(world, hits->shape[i], hits->instance[i]))
       gather_moving(world, hits, vl_path_time(paths, i), i, c);
-    others = others || s->kind != VL_SHAPE_TRIANGLES || s->tangents;
+    others = others || !s->triangles || s->tangents;
   }
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
@@ -443,7 +443,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]),
            d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
-    if (s->kind != VL_SHAPE_TRIANGLES) {
+    if (!s->triangles) {
       float t = hits->t[i];
       vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i],
                                      hits->prim[i], hits->instance[i], &t);
@@ -461,7 +461,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
    * length. */
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    if (s->kind == VL_SHAPE_TRIANGLES && s->tangents)
+    if (s->triangles && s->tangents)
       apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
   }
 }
@@ -524,7 +524,7 @@ static vlPoint point_of(const vlSurfacePoint *q, float t) {
 
 vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape,
                          uint32_t prim, uint32_t instance, float t_hit) {
-  if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES) {
+  if (world->shapes.items[shape].triangles) {
     OneTriangle c = one_triangle(world, time, shape, prim, instance);
     Triangle t = triangle_point(o, d, c.p[0], c.p[1], c.p[2], c.n[0], c.n[1], c.n[2], c.uv,
                                 c.error, c.flip);
@@ -542,7 +542,7 @@ static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays,
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = lanes[k];
     float time = rays->time ? rays->time[i] : 0.0f;
-    if (world->shapes.items[x->shape[i]].kind != VL_SHAPE_TRIANGLES)
+    if (!world->shapes.items[x->shape[i]].triangles)
       continue;
     triangles++;
     OneTriangle c = one_triangle(world, time, x->shape[i], x->prim[i], x->instance[i]);
@@ -586,7 +586,7 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays,
   }
   for (uint32_t k = 0; triangles < count && k < count; k++) {
     uint32_t i = lanes[k];
-    if (world->shapes.items[x->shape[i]].kind == VL_SHAPE_TRIANGLES)
+    if (world->shapes.items[x->shape[i]].triangles)
       continue;
     vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]),
            d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);

@@ -17,7 +17,7 @@ typedef struct vlOccluders vlOccluders;
 typedef struct vlRays {
   const float *ox, *oy, *oz, *dx, *dy, *dz;
   const float *t_min, *t_max; /* interval of hits along the ray; null: 0 and infinity */
-  const float *time;          /* in the world's time, 0 to 1 (world/shape/moving.h); null: 0 */
+  const float *time;          /* in the world's time, 0 to 1 (world/moving.h); null: 0 */
 } vlRays;
 
 /* For benchmarks: receives every batch of rays before it is traced. kind: 0 for

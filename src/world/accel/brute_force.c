@@ -27,7 +27,7 @@ static bool is_eligible(const vlWorld *world) {
     const vlWorldShape *s = &world->shapes.items[group->shapes[k]];
     if (s->alpha >= 0)
       return false;
-    *(s->kind == VL_SHAPE_TRIANGLES ? &triangles : &others) += s->faces;
+    *(s->triangles ? &triangles : &others) += s->faces;
     if (triangles > 2 * VL_BRUTE_FACES || others > VL_BRUTE_OTHERS)
       return false;
   }
@@ -208,13 +208,12 @@ static bool add_shapes(vlBruteForce *b, const vlWorld *world) {
   const vlWorldGroup *group = &world->groups.items[0];
   for (uint32_t k = 0; k < group->count; k++) {
     uint32_t shape = group->shapes[k];
-    if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES &&
-        !add_triangles(b, world, shape))
+    if (world->shapes.items[shape].triangles && !add_triangles(b, world, shape))
       return false;
   }
   for (uint32_t k = 0; k < group->count; k++) {
     const vlWorldShape *s = &world->shapes.items[group->shapes[k]];
-    if (s->kind != VL_SHAPE_TRIANGLES)
+    if (!s->triangles)
       add_others(b, group->shapes[k], s);
   }
   return b->faces + VL_BRUTE_OTHER_COST * b->others <= VL_BRUTE_FACES;

@@ -4,7 +4,7 @@
 #include "world/accel/brute_force.h"
 
 #include "math/vec.h"
-#include "world/shape/surface_point.h"
+#include "shape/surface_point.h"
 
 enum { BLOCK = 128, FEW_RAYS = 4, NO_HIT = -1 };
 

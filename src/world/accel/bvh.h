@@ -10,7 +10,7 @@
 
 #include "base/isa.h"
 #include "world/accel/accel.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 enum {
   VL_BVH_WIDTH = 8, /* children of a node */

@@ -151,11 +151,11 @@ static Box item_box(const Builder *b, vlBvhItem item, uint32_t step) {
                       q->keys ? q->path + 12 * (size_t)step : q->from_group);
   const vlWorldShape *s = shape_of(b, &item);
   Box box = empty_box();
-  for (size_t k = 0; k < 3 && s->kind == VL_SHAPE_TRIANGLES; k++) {
+  for (size_t k = 0; k < 3 && s->triangles; k++) {
     size_t vertex = (size_t)step * s->vertices + s->indices[3 * (size_t)item.primitive + k];
     extend_point(&box, s->positions + 3 * vertex);
   }
-  if (s->kind != VL_SHAPE_TRIANGLES)
+  if (!s->triangles)
     vl_world_prim_bounds(s, item.primitive, box.low, box.high);
   return box;
 }
@@ -203,7 +203,7 @@ static void list_primitives(Builder *b) {
                  : !bundle || !bundle->members ? s->faces
                  : g == bundle->geometry       ? bundle->count
                                                : 0;
-    bool triangles = s && s->kind == VL_SHAPE_TRIANGLES;
+    bool triangles = s && s->triangles;
     bool asks = triangles && (s->alpha >= 0 || s->one_sided || s->pass_shadow);
     vlBvhKind kind = !triangles     ? VL_BVH_OTHER
                      : s->steps > 1 ? VL_BVH_FOUR_MOVING

@@ -20,14 +20,14 @@
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/machine.h"
+#include "shape/surface_point.h"
 #include "velo/shape.h"
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"
 #include "world/accel/occluders.h"
 #include "world/accel/share.h"
-#include "world/shape/moving.h"
-#include "world/shape/surface_point.h"
+#include "world/moving.h"
 #include "world/world.h"
 
 #if VELO_EMBREE_MAJOR >= 4
@@ -265,7 +265,7 @@ static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
 static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g,
                              uint32_t count, vlError *error) {
   const vlWorldShape *s = g->shape;
-  bool triangles = s->kind == VL_SHAPE_TRIANGLES;
+  bool triangles = s->triangles;
   RTCGeometry geometry =
       rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
   if (!geometry)

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "math/hash.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *r, uint32_t i, uint32_t instance) {
   vlLocalRay q = {instance,

@@ -4,8 +4,8 @@
 #ifndef WORLD_ACCEL_LOCAL_RAY_H
 #define WORLD_ACCEL_LOCAL_RAY_H
 
+#include "shape/surface_point.h"
 #include "world/accel/accel.h"
-#include "world/shape/surface_point.h"
 #include "world/world.h"
 
 typedef struct vlLocalRay {

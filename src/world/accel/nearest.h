@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 #include "world/accel/bundle.h"
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 /* Embree computes t as T * rcp(D), where velo divides. The reciprocal (an estimate and one
  * Newton step) differs between processor makers by a few units in the last place, 2^-23 each.

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "world/shape/share.h"
+#include "world/share.h"
 
 /* Below this number of faces outside of groups, the accelerator is built anew whenever an
  * instance moves. */

@@ -1,10 +1,10 @@
-/* world/shape/surface_point.h: surface points of shapes of any kind (kinds.h): intersection,
+/* shape/surface_point.h: surface points of shapes of any kind (kinds.h): intersection,
  * evaluation and sampling. */
-#ifndef WORLD_SHAPE_SURFACE_POINT_H
-#define WORLD_SHAPE_SURFACE_POINT_H
+#ifndef SHAPE_SURFACE_POINT_H
+#define SHAPE_SURFACE_POINT_H
 
+#include "shape/shape_kind.h"
 #include "velo/shape.h"
-#include "world/shape/kinds.h"
 
 /* Transforms a world-space ray to the space of an instance's group; t is unchanged. */
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
@@ -65,14 +65,9 @@ static inline double vl_similarity_error(const double m[12], double scale) {
 /* Centre and radius of a full sphere under a similarity, in group space; false for any other
  * shape. */
 static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
-  const double *m = s->from_shape;
-  double scale;
-  if (s->kind != VL_SHAPE_SPHERE || s->centers || s->z_min > -s->radius ||
-      s->z_max < s->radius || s->phi_max < 6.2831f || !vl_is_similarity(m, &scale))
-    return false;
-  *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
-  *radius = s->radius * (float)scale;
-  return true;
+  *center = vl_vec3(s->whole_center[0], s->whole_center[1], s->whole_center[2]);
+  *radius = s->whole_radius;
+  return s->whole_radius > 0.0f;
 }
 
 /* Samples a point uniformly over the parameters, with its density per unit area in group

@@ -1,12 +1,12 @@
-/* world/shape/moving.h: positions of moving objects at a time. A motion is compiled into keys
+/* world/moving.h: positions of moving objects at a time. A motion is compiled into keys
  * at equal steps of the world's time, dense enough that linear interpolation between them
  * follows the exact motion (moving.c gives the tolerance). Embree and the functions here
  * interpolate the same keys linearly, so that velo computes the primitive that Embree hit at
  * the same place, up to rounding.
  *
  * `time` is the world's time everywhere: 0 at world->time_open, 1 at world->time_close. */
-#ifndef WORLD_SHAPE_MOVING_H
-#define WORLD_SHAPE_MOVING_H
+#ifndef WORLD_MOVING_H
+#define WORLD_MOVING_H
 
 #include "world/world.h"
 

@@ -1,14 +1,12 @@
-/* world/shape/mesh.c: vertices and faces of meshes, transformed to group space; the shape
- * functions of triangles. (The room trace intersects triangles in batches.) */
-#include "world/shape/mesh.h"
+/* shape/mesh.c: vertices and faces of meshes, transformed to group space. */
+#include "shape/mesh.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/error.h"
-#include "velo/shape.h"
-#include "world/shape/moving.h"
-#include "world/shape/tables.h"
+#include "velo/shape_kinds.h"
+#include "world/moving.h"
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
   return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line,
@@ -158,54 +156,3 @@ void vl_mesh_bounds(const vlWorldShape *shape, uint32_t corners, uint32_t prim, 
 }
 
 /* ---- triangles --------------------------------------------------------------------------- */
-
-static vlResult triangles_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
-                                  const vlMat4 *from_group, vlWorldShape *shape,
-                                  vlError *error) {
-  return vl_mesh_compile(world, def, to_group, from_group, shape, error);
-}
-
-static void triangles_bounds(const vlWorldShape *shape, uint32_t prim, double low[3],
-                             double high[3]) {
-  vl_mesh_bounds(shape, 3, prim, low, high);
-}
-
-static bool triangles_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3],
-                                const double d[3], double t_min, double t_max,
-                                vlShapeHit *hit) {
-  (void)shape;
-  (void)prim;
-  (void)o;
-  (void)d;
-  (void)t_min;
-  (void)t_max;
-  (void)hit;
-  return false;
-}
-
-static void triangles_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit,
-                            vlSurfacePoint *point) {
-  (void)shape;
-  (void)prim;
-  (void)hit;
-  (void)point;
-}
-
-static void triangles_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
-                             vlSurfacePoint *point, double *pdf) {
-  (void)shape;
-  (void)prim;
-  (void)u;
-  (void)v;
-  (void)point;
-  (void)pdf;
-}
-
-static double triangles_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  (void)shape;
-  (void)prim;
-  (void)at;
-  return 0;
-}
-
-VL_SHAPE_FUNCTIONS(triangles, triangles)

@@ -1,12 +1,12 @@
-/* world/shape/share.c: see share.h. Shapes of one scene are recognised by their index, if
+/* world/share.c: see share.h. Shapes of one scene are recognised by their index, if
  * they were not set since. Others, and displaced meshes, are compiled and then
  * compared number by number. */
-#include "world/shape/share.h"
+#include "world/share.h"
 
 #include <string.h>
 
 #include "scene/scene.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
 /* ---- comparison -------------------------------------------------------------------------- */
 

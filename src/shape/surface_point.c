@@ -1,13 +1,14 @@
-/* world/shape/surface_point.c: calls the function of a shape's kind (kinds.h); bounds and area
+/* shape/surface_point.c: calls the function of a shape's kind (kinds.h); bounds and area
  * of primitives. */
-#include "world/shape/surface_point.h"
+#include "shape/surface_point.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "shape/kinds.row.h"
+#include "shape/shape_kind.h"
 #include "velo/schema.h"
-#include "velo/shape.h"
-#include "world/shape/tables.h"
+#include "velo/shape_kinds.h"
 
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
   const float *m = instance->to_group;
@@ -32,26 +33,28 @@ void vl_instance_error(const float m[12], const float w[12], float error[4]) {
     error[i % 4] = fmaxf(error[i % 4], gamma4 * spread * fabsf(m[i]));
 }
 
-#define FUNCTIONS(K, k) [VL_SHAPE_##K] = &vl_shape_functions_##k,
-static const vlShapeFunctions *const functions[] = {VL_SHAPE_KINDS(FUNCTIONS)};
-#undef FUNCTIONS
+#define DECLARE(kind, row, box, functions) extern const vlShapeFunctions functions;
+VL_SHAPE_FUNCTIONS(DECLARE)
+
+#define FUNCTIONS(kind, row, box, functions) [kind] = &functions,
+static const vlShapeFunctions *const functions_of[] = {VL_SHAPE_FUNCTIONS(FUNCTIONS)};
 
 vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
                           const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
-  return functions[def->kind]->compile(world, def, to_group, from_group, shape, error);
+  return functions_of[def->kind]->compile(world, def, to_group, from_group, shape, error);
 }
 
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3],
                         const double d[3], double t_min, double t_max, vlShapeHit *hit) {
   hit->a = hit->b = 0;
-  return functions[shape->kind]->intersect(shape, prim, o, d, t_min, t_max, hit);
+  return functions_of[shape->kind]->intersect(shape, prim, o, d, t_min, t_max, hit);
 }
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit,
                     vlSurfacePoint *point) {
   point->off = 0;
   memset(point->error, 0, sizeof point->error);
-  functions[shape->kind]->point(shape, prim, hit, point);
+  functions_of[shape->kind]->point(shape, prim, hit, point);
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
@@ -59,17 +62,17 @@ void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
   *pdf = 0;
   point->off = 0;
   memset(point->error, 0, sizeof point->error);
-  functions[shape->kind]->sample(shape, prim, u, v, point, pdf);
+  functions_of[shape->kind]->sample(shape, prim, u, v, point, pdf);
 }
 
 double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point) {
-  return functions[shape->kind]->pdf(shape, prim, point->p);
+  return functions_of[shape->kind]->pdf(shape, prim, point->p);
 }
 
 /* ---- bounds and area, also of triangles -------------------------------------------------- */
 
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
-  if (shape->kind == VL_SHAPE_TRIANGLES) {
+  if (shape->triangles) {
     const uint32_t *f = shape->indices + 3 * (size_t)prim;
     double a[3], b[3], n[3];
     for (int i = 0; i < 3; i++) {
@@ -100,7 +103,7 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3],
                           float high[3]) {
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
-  functions[shape->kind]->bounds(shape, prim, lo, hi);
+  functions_of[shape->kind]->bounds(shape, prim, lo, hi);
   for (int i = 0; i < 3; i++) { /* the box grows by one float step because of rounding */
     low[i] = nextafterf((float)lo[i], -INFINITY);
     high[i] = nextafterf((float)hi[i], INFINITY);

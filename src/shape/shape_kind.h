@@ -1,10 +1,10 @@
-/* world/shape/kinds.h: the functions of each kind of shape: sphere, disk, cylinder (quadric.c),
- * triangle mesh (mesh.c), bilinear patches (patch.c), curves (curve.c). They intersect rays,
- * compute the surface at a hit, and sample points by area. They compute one point at a time in
- * double precision, since such shapes are few. (The room trace handles triangles, in batches.)
- * Conventions (parametrisation, normals): pbrt book 6.2-6.4 and 6.6. */
-#ifndef WORLD_SHAPE_KINDS_H
-#define WORLD_SHAPE_KINDS_H
+/* shape/shape_kind.h: the functions of each kind of shape: sphere, disk, cylinder (quadric.c),
+ * triangle mesh (triangles.c), bilinear patches (bilinear.c), curves (curves.c). They intersect
+ * rays, compute the surface at a hit, and sample points by area. They compute one point at a
+ * time in double precision, since such shapes are few. (The room trace handles triangles, in
+ * batches.) Conventions (parametrisation, normals): pbrt book 6.2-6.4 and 6.6. */
+#ifndef SHAPE_SHAPE_KIND_H
+#define SHAPE_SHAPE_KIND_H
 
 #include "math/double3.h"
 #include "math/transform.h"
@@ -66,13 +66,5 @@ typedef struct vlShapeFunctions {
   /* The density per area with which `sample` gives the point `at`. */
   double (*pdf)(const vlWorldShape *shape, uint32_t prim, const double at[3]);
 } vlShapeFunctions;
-
-/* Defines the table of a kind from functions that are called PREFIX_compile and so on. A
- * missing function is a compile error. */
-#define VL_SHAPE_FUNCTIONS(kind, prefix)                     \
-  const vlShapeFunctions vl_shape_functions_##kind = {       \
-      prefix##_compile, prefix##_bounds, prefix##_intersect, \
-      prefix##_point,   prefix##_sample, prefix##_pdf,       \
-  };
 
 #endif

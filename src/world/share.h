@@ -1,7 +1,7 @@
-/* world/shape/share.h: finds the shapes of the previous world whose geometry a shape has, too
+/* world/share.h: finds the shapes of the previous world whose geometry a shape has, too
  * (vlBuildDef.previous). */
-#ifndef WORLD_SHAPE_SHARE_H
-#define WORLD_SHAPE_SHARE_H
+#ifndef WORLD_SHARE_H
+#define WORLD_SHARE_H
 
 #include "world/world.h"
 

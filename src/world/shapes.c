@@ -1,4 +1,4 @@
-/* world/shape/shapes.c: compiles the shapes of a scene: members that all kinds have, groups and
+/* world/shapes.c: compiles the shapes of a scene: members that all kinds have, groups and
  * instances, bounds. */
 #include <math.h>
 #include <string.h>
@@ -7,11 +7,12 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "shape/displace.h"
+#include "shape/surface_point.h"
 #include "velo/schema.h"
-#include "world/shape/displace.h"
-#include "world/shape/moving.h"
-#include "world/shape/share.h"
-#include "world/shape/surface_point.h"
+#include "velo/shape_kinds.h"
+#include "world/moving.h"
+#include "world/share.h"
 #include "world/world.h"
 
 static void store_affine_f(const vlMat4 *m, float r[12]) {
@@ -134,6 +135,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   bool mirrored = vl_mat4_determinant3(m) < 0;
   memset(s, 0, sizeof *s);
   s->kind = def->kind;
+  s->triangles = def->kind == VL_SHAPE_TRIANGLES;
   s->traits = vl_kind_row(&vl_shape_family, (int)def->kind)->traits;
   s->material = def->material.index; /* 0 is the default material */
   s->first_light = VL_NONE;

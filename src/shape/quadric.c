@@ -1,13 +1,13 @@
-/* world/shape/quadric.c: sphere, disk and cylinder: intersection, surface at a point, sampling
+/* shape/quadric.c: sphere, disk and cylinder: intersection, surface at a point, sampling
  * by area. Everything is in shape space unless stated otherwise. */
 #include <math.h>
 #include <string.h>
 
 #include "base/error.h"
 #include "math/approx.h"
-#include "velo/shape.h"
-#include "world/shape/kinds.h"
-#include "world/shape/tables.h"
+#include "shape/shape_kind.h"
+#include "shape/surface_point.h"
+#include "velo/shape_kinds.h"
 
 /* One primitive of a shape in its own space. This is shape space; if the shape is many spheres,
  * it is shape space translated so that this sphere is at the origin. */
@@ -318,6 +318,18 @@ static double quadric_pdf(const vlWorldShape *shape, uint32_t prim, const double
   return 1 / (shape_area(s) * area_stretch(s, n));
 }
 
+/* Finds whether the shape is a full sphere under a similarity. */
+static void find_whole_sphere(vlWorldShape *s) {
+  const double *m = s->from_shape;
+  double scale;
+  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius ||
+      s->phi_max < 6.2831f || !vl_is_similarity(m, &scale))
+    return;
+  for (int i = 0; i < 3; i++)
+    s->whole_center[i] = (float)m[4 * i + 3];
+  s->whole_radius = s->radius * (float)scale;
+}
+
 /* Copies the centres and radii of a shape of many spheres. */
 static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape *s,
                              vlError *error) {
@@ -338,9 +350,15 @@ static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def, const vlM
     return copy_spheres(world, def, shape, error);
   const Quadric quadric = load(shape, 0);
   bound_error(&quadric, shape->own_error);
+  find_whole_sphere(shape);
   return VL_OK;
 }
 
-VL_SHAPE_FUNCTIONS(sphere, quadric)
-VL_SHAPE_FUNCTIONS(disk, quadric)
-VL_SHAPE_FUNCTIONS(cylinder, quadric)
+const vlShapeFunctions vl_quadric_functions = {
+    .compile = quadric_compile,
+    .bounds = quadric_bounds,
+    .intersect = quadric_intersect,
+    .point = quadric_point,
+    .sample = quadric_sample,
+    .pdf = quadric_pdf,
+};

@@ -1,4 +1,4 @@
-/* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments. A ray is
+/* shape/curves.c: curves with a width: pieces of cubic Bezier segments. A ray is
  * intersected at the point where it comes nearest to the axis.
  *
  * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from a
@@ -22,9 +22,8 @@
 
 #include "base/error.h"
 #include "math/approx.h"
+#include "shape/shape_kind.h"
 #include "velo/shape.h"
-#include "world/shape/kinds.h"
-#include "world/shape/tables.h"
 
 /* Bezier control points in ray coordinates: x and y are perpendicular to the ray, z is along
  * the ray. */
@@ -412,4 +411,11 @@ static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat
   return copy_curves(world, def, shape) ? VL_OK : vl_fail_memory(error);
 }
 
-VL_SHAPE_FUNCTIONS(curves, curve)
+const vlShapeFunctions vl_curves_functions = {
+    .compile = curve_compile,
+    .bounds = curve_bounds,
+    .intersect = curve_intersect,
+    .point = curve_point,
+    .sample = curve_sample,
+    .pdf = curve_pdf,
+};

@@ -1,9 +1,9 @@
-/* world/shape/displace.c: subdivides meshes until every edge is short enough, and displaces the
+/* shape/displace.c: subdivides meshes until every edge is short enough, and displaces the
  * vertices along their normals by a texture, as pbrt-v4 displaces PLY meshes. Every edge that
  * is too long is split at its middle, where both adjacent triangles use the same vertex, so
  * that no cracks appear. The longest edge of a triangle is split first. After the displacement,
  * the normals of the displaced surface are computed. */
-#include "world/shape/displace.h"
+#include "shape/displace.h"
 
 #include <math.h>
 #include <string.h>

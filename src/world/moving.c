@@ -1,6 +1,6 @@
-/* world/shape/moving.c: compiles motions of the scene into keys at equal time steps, and
+/* world/moving.c: compiles motions of the scene into keys at equal time steps, and
  * evaluates positions between them. See moving.h. */
-#include "world/shape/moving.h"
+#include "world/moving.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,8 +9,8 @@
 #include "math/double3.h"
 #include "math/motion.h"
 #include "scene/scene.h"
+#include "shape/surface_point.h"
 #include "velo/shape.h"
-#include "world/shape/surface_point.h"
 
 /* ---- when -------------------------------------------------------------------------------- */
 

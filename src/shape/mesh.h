@@ -1,8 +1,8 @@
-/* world/shape/mesh.h: what triangle meshes and meshes of bilinear patches share. */
-#ifndef WORLD_SHAPE_MESH_H
-#define WORLD_SHAPE_MESH_H
+/* shape/mesh.h: what triangle meshes and meshes of bilinear patches share. */
+#ifndef SHAPE_MESH_H
+#define SHAPE_MESH_H
 
-#include "world/shape/kinds.h"
+#include "shape/shape_kind.h"
 
 /* Copies the faces, and the vertices transformed to group space. The vertices of a moving mesh
  * are copied for every time step. */

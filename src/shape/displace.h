@@ -1,6 +1,6 @@
-/* world/shape/displace.h: displaced meshes, for shapes.c. */
-#ifndef WORLD_SHAPE_DISPLACE_H
-#define WORLD_SHAPE_DISPLACE_H
+/* shape/displace.h: displaced meshes, for shapes.c. */
+#ifndef SHAPE_DISPLACE_H
+#define SHAPE_DISPLACE_H
 
 #include "math/transform.h"
 #include "scene/scene.h"

@@ -1,10 +1,9 @@
-/* world/shape/patch.c: the bilinear patch: intersection, surface at given parameters, uniform
+/* shape/bilinear.c: the bilinear patch: intersection, surface at given parameters, uniform
  * sampling of the parameters. */
 #include <math.h>
 
+#include "shape/mesh.h"
 #include "velo/shape.h"
-#include "world/shape/mesh.h"
-#include "world/shape/tables.h"
 
 typedef struct Patch {
   double p00[3], p10[3], p01[3], p11[3];
@@ -265,4 +264,11 @@ static void patch_point(const vlWorldShape *shape, uint32_t prim, const vlShapeH
   surface_at(shape, prim, hit->a, hit->b, point);
 }
 
-VL_SHAPE_FUNCTIONS(bilinear, patch)
+const vlShapeFunctions vl_bilinear_functions = {
+    .compile = patch_compile,
+    .bounds = patch_bounds,
+    .intersect = patch_intersect,
+    .point = patch_point,
+    .sample = patch_sample,
+    .pdf = patch_pdf,
+};

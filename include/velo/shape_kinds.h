@@ -1,0 +1,33 @@
+/** @file
+ * velo/shape_kinds.h: shapes: their kinds. */
+#ifndef VELO_SHAPE_KINDS_H
+#define VELO_SHAPE_KINDS_H
+
+#include "velo/shape.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** X(NAME, name) for each kind of shape. velo/schema.h describes the kinds and their
+ * parameters. Curves are cubic Bezier segments with a width, for hair, fur and grass. */
+#define VL_SHAPE_KINDS(X) \
+  X(TRIANGLES, triangles) \
+  X(BILINEAR, bilinear)   \
+  X(SPHERE, sphere)       \
+  X(DISK, disk)           \
+  X(CYLINDER, cylinder)   \
+  X(CURVES, curves)
+/** The kinds of shapes: VL_SHAPE_TRIANGLES and so on, from VL_SHAPE_KINDS. */
+typedef enum vlShapeKind {
+#define VL_KIND(NAME, name) VL_SHAPE_##NAME,
+  VL_SHAPE_KINDS(VL_KIND)
+#undef VL_KIND
+} vlShapeKind;
+/** The default def of a kind. */
+VL_API vlShapeDef vl_default_shape_def(vlShapeKind kind);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,31 @@
+/* shape/bilinear.case.c: what tests know of meshes of bilinear patches. */
+#include "shape/shape.case.h"
+
+#define SQUARE "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .2]"
+#define LIFTED "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 .7 .6 .3]"
+#define TURNED "\"normal N\" [.6 0 1 0 .6 1 -.6 0 1 0 0 1]"
+#define UVS "\"point2 uv\" [0 0 .3 0 0 .7 .4 .9]"
+
+const ShapeCase bilinear_shape = {
+    .variants =
+        {
+            {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 -.5 .5 0 .5 .5 0]",
+             .area = 1,
+             .known = {{{-.3, .1, 1}, {0, 0, -1}, 1, .2, .6},
+                       {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+             .known_count = 2},
+            /* z = x y over the square: the area is the integral of sqrt(1 + x^2 + y^2) */
+            {.parameters = "\"point3 P\" [-.5 -.5 .25 .5 -.5 -.25 -.5 .5 -.25 .5 .5 .25]",
+             .area = 1.0790366,
+             .known = {{{.25, .5, 1}, {0, 0, -1}, .875, .75, 1}},
+             .known_count = 1},
+        },
+    .parameters =
+        {
+            {.base = SQUARE},
+            {.parameter = "P", .value = LIFTED},
+            {.parameter = "indices", .value = "\"integer indices\" [0 2 1 3 0 1 3 2]"},
+            {.parameter = "N", .value = TURNED},
+            {.parameter = "uv", .value = UVS},
+        },
+};

@@ -1,0 +1,44 @@
+/* shape/curves.case.c: what tests know of curves. */
+#include "shape/shape.case.h"
+
+/* A straight curve. Flat ones turn to the ray and are seen as wide as they are: 2 w l times the
+ * mean sine of the angle between axis and ray, pi / 4. The width of ribbons is also multiplied
+ * by the cosine between their normal and the ray, and so is their normal: the mean product is
+ * 4 / (3 pi). */
+#define STRAIGHT "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width\" .1 "
+#define BENT "\"point3 P\" [-1 0 0 -.3 1 .2 .3 -1 -.2 1 0 0]"
+
+const ShapeCase curves_shape = {
+    .variants =
+        {
+            {.parameters = STRAIGHT "\"string type\" \"flat\"",
+             .area = 0.12 * HALF_TURN / 2,
+             .reach = 0.61,
+             .faces_rays = true,
+             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN},
+                       {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+             .known_count = 2},
+            {.parameters = STRAIGHT "\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 1]",
+             .area = 0.12 * 8 / (3 * HALF_TURN),
+             .reach = 0.61,
+             .faces_rays = true, /* its points lie across the ray, as in pbrt */
+             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN}},
+             .known_count = 1},
+            {.parameters = STRAIGHT "\"string type\" \"cylinder\"",
+             .area = 0.12 * HALF_TURN / 2,
+             .reach = 0.61,
+             .faces_rays = true},
+        },
+    .parameters =
+        {
+            {.base = BENT ";\"float width\" .6"},
+            {.parameter = "P", .value = "\"point3 P\" [-1 0 0 -.3 -1 .2 .3 1 -.2 1 0 0]"},
+            {.parameter = "splitdepth", .no_effect = "only the speed depends on it"},
+            {.parameter = "degree",
+             .base = "\"string basis\" \"bspline\";" BENT ";\"float width\" .6"},
+            {.parameter = "N",
+             .base = "\"string type\" \"ribbon\";\"normal N\" [0 0 1 0 0 1];" BENT
+                     ";\"float width\" .6",
+             .value = "\"normal N\" [0 .6 1 .6 0 1]"},
+        },
+};

@@ -461,14 +461,41 @@ def yaml_recipes_and_shards():
 
 
 @case
+def a_sensor_is_exposed_to_each_frame():
+    simple = recipe(frames=2, resolution=(32, 24), spp=1, render={"max_depth": 1},
+                    sensor=dataset.Sensor("generic_rggb", numbers={"pattern": "GRBG", "bits": 12, "black_level": 64},
+                                          exposure={"radiance": 0.02, "f_number": 4}, buckets=8))
+    folders = work("sensor"), work("sensor_alone")
+    dataset.generate(simple, folders[0], writers=["raw"])
+    dataset.generate(simple, folders[1], writers=["raw"], frames=[1])
+    names = [os.path.join(folder, "raw", "000001_camera.png") for folder in folders]
+    first, alone = (open(name, "rb").read() for name in names)
+    assert first == alone
+    numbers = read_png(names[0])
+    assert numbers.dtype == numpy.dtype(">u2") and numbers.shape == (24, 32)
+    assert 70 < numbers.mean() < 4095 and numbers.max() <= 4095
+    about = json.load(open(names[0][:-4] + ".json"))
+    assert about["numbers"]["pattern"] == "GR/BG" and about["numbers"]["bits"] == 12 and about["exposure"]["f_number"] == 4
+    other = read_png(os.path.join(folders[0], "raw", "000000_camera.png"))
+    assert (other != numbers).any()
+    with raises(velo.UsageError, "the writer raw needs recipe.sensor"):
+        dataset.generate(recipe(), work("none"), writers=["raw"])
+    for settings, text in (({"name": "generic_rgb"}, "generic_rggb"), ({"numbers": {"full_well": 0}}, "full_well"), ({"exposure": {"iso": -1}}, "iso"),
+                           ({"exposure": {"seed": 1}}, "recipe.sensor.exposure.seed"), ({"buckets": 1}, "recipe.sensor.buckets")):
+        with raises(velo.UsageError, text):
+            dataset.Stage(recipe(sensor=dataset.Sensor(**settings)))
+
+
+@case
 def writers_know_the_names_of_their_files():
     recipe = dataset.Recipe(seed=3, frames=3, resolution=(32, 24), spp=1, models=[
         dataset.Model(name=name, positions=MESHES[name][0], indices=MESHES[name][1], scale=SCALES[name], count=(0, 2)) for name in MESHES],
         cameras=[dataset.Around(distance=(1, 2), name="a"), dataset.Around(distance=(1, 2), name="b")])
     folder = work("names")
+    recipe.sensor = dataset.Sensor(buckets=4, exposure={"radiance": 0.01})
     dataset.generate(recipe, folder, writers=sorted(dataset.generate.__globals__["WRITERS"]))
     stage = dataset.Stage(recipe)
-    for writer in dataset.make_writers(stage, folder, ["bop", "coco", "exr", "nerfstudio"]):
+    for writer in dataset.make_writers(stage, folder, ["bop", "coco", "exr", "nerfstudio", "raw"]):
         known = set(writer.tables(2))
         for frame in range(3):
             for scene, view in enumerate("ab"):

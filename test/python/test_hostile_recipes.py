@@ -40,7 +40,8 @@ FULL = {"seed": 1, "frames": 2, "resolution": [8, 6], "spp": 1, "scene": "", "re
         "environment": {"kind": "white", "files": [], "strength": 1.0, "rotation": 30},
         "ground": {"size": 5, "height": 0, "up": [0, 1, 0], "materials": {"color": [[0, 0, 0], [1, 1, 1]], "roughness": [0, 1], "metallic": 0,
                                                                           "textures": []}},
-        "distractors": {"count": [0, 1], "size": [0.1, 0.2], "materials": {"roughness": 0.3}}}
+        "distractors": {"count": [0, 1], "size": [0.1, 0.2], "materials": {"roughness": 0.3}},
+        "sensor": {"name": "generic_mono", "numbers": {"read_noise": 3.0}, "exposure": {"f_number": 2.8}, "buckets": 3}}
 OTHER = [{"kind": "in_volume", "low": [0, 0, 0], "high": [1, 1, 1], "gap": 0.1, "tries": 3}, {"kind": "poses", "frames": [[["a", EYE]]]}]
 
 ODD = {"nan": NAN, "inf": INF, "-inf": -INF, "-1": -1, "0": 0, "2**32 + 8": 2**32 + 8, "2**64": 2**64, "10**400": 10**400, "1e300": 1e300,

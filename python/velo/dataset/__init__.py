@@ -16,10 +16,10 @@ from velo.dataset.flow import write_flow
 from velo.dataset.generate import generate, make_writers
 from velo.dataset.random import Random
 from velo.dataset.recipe import (Around, Distractors, Environment, Fixed, Ground, InVolume, Lights, Materials, Model,
-                                 OnSurface, Poses, Recipe, Rig, Trajectory, read_recipe, recipe_from)
+                                 OnSurface, Poses, Recipe, Rig, Sensor, Trajectory, read_recipe, recipe_from)
 from velo.dataset.cameras import View
 from velo.dataset.stage import Frame, Instance, Plan, Stage
 
 __all__ = ["Around", "Distractors", "Environment", "Fixed", "Frame", "Ground", "InVolume", "Instance", "Lights",
-           "Materials", "Model", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Stage", "Trajectory", "View",
+           "Materials", "Model", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Sensor", "Stage", "Trajectory", "View",
            "generate", "make_writers", "read_recipe", "recipe_from", "write_flow"]

@@ -256,6 +256,15 @@ def _recipe(value: Any, where: str) -> None:
             raise wrong_value(f"{where}.channels[{i}]", f"one of {', '.join(known)}", name)
 
 
+def _sensor(value: Any, where: str) -> None:
+    for name in value.numbers:
+        if name in ("sensor", "context", "self"):
+            raise UsageError(f"{where}.numbers.{name}: give {where}.name")
+    for name in value.exposure:
+        if name in ("seed", "frame", "image", "self"):
+            raise UsageError(f"{where}.exposure.{name}: each image has its own")
+
+
 def _part(value: Any, where: str) -> dict[str, Any]:
     found = names(anything)(value, where)
     for name in found:
@@ -300,6 +309,7 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Materials: {"color": bounds(vector(3, 0, 1)), "roughness": range_(0, 1), "metallic": range_(0, 1), "textures": items(text, 0, 100000)},
     kinds.Ground: {"size": number(1e-12, 1e12), "height": number(), "up": direction, "materials": lambda v, w: member(kinds.Materials)(v, w)},
     kinds.Distractors: {"count": count(10000), "size": range_(1e-12, 1e12), "materials": lambda v, w: member(kinds.Materials)(v, w)},
+    kinds.Sensor: {"name": text, "numbers": _KEYWORDS, "exposure": _KEYWORDS, "buckets": whole(2, 1000)},
     kinds.Recipe: {
         "seed": whole(0, 2**53), "frames": whole(1, MAX_FRAMES), "spp": setting("render", "spp"), "scene": text,
         "resolution": lambda v, w: tuple(_check.setting(side, f"{w}[{i}]", "program", ("width", "height")[i]) for i, side in
@@ -309,12 +319,13 @@ _RULES: dict[type, dict[str, Check]] = {
         "cameras": lambda v, w: items(member(*_MOVED, kinds.Rig), 1, 1000)(v, w),
         "lights": lambda v, w: optional(member(kinds.Lights))(v, w), "environment": lambda v, w: optional(member(kinds.Environment))(v, w),
         "ground": lambda v, w: optional(member(kinds.Ground))(v, w), "distractors": lambda v, w: optional(member(kinds.Distractors))(v, w),
+        "sensor": lambda v, w: optional(member(kinds.Sensor))(v, w),
         "render": _KEYWORDS, "channels": items(text, 0, 100), "depth_scale": number(1e-6, 1e6),
         "occluded": flag, "folder": text, "path": text},
 }
 _MORE: dict[type, Callable[[Any, str], None]] = {
     kinds.Model: _model, kinds.Fixed: _fixed, kinds.Around: _around, kinds.Trajectory: _trajectory, kinds.InVolume: _volume,
-    kinds.Lights: _volume, kinds.Recipe: _recipe}
+    kinds.Lights: _volume, kinds.Sensor: _sensor, kinds.Recipe: _recipe}
 
 
 def checked(recipe: Any) -> Any:

@@ -14,15 +14,17 @@ from velo.dataset.cameras import View
 from velo.dataset.coco import CocoWriter
 from velo.dataset.exr import ExrWriter
 from velo.dataset.nerfstudio import NerfstudioWriter
+from velo.dataset.raw import RawWriter
 from velo.dataset.recipe import Recipe
 from velo.dataset.stage import Frame, Stage
 from velo.dataset.writer import Writer
 
-WRITERS: dict[str, Any] = {"bop": BopWriter, "coco": CocoWriter, "nerfstudio": NerfstudioWriter, "exr": ExrWriter}
+WRITERS: dict[str, Any] = {"bop": BopWriter, "coco": CocoWriter, "nerfstudio": NerfstudioWriter, "exr": ExrWriter,
+                           "raw": RawWriter}
 
 
 def make_writers(stage: Stage, folder: str, names: Iterable[str]) -> list[Writer]:
-    """The writers of these names: bop, coco, nerfstudio, exr."""
+    """The writers of these names: bop, coco, nerfstudio, exr, raw."""
     writers = []
     wanted = _check.names(names, "writers")
     if not wanted:

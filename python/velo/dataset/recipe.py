@@ -140,6 +140,16 @@ class Distractors:
 
 
 @dataclass
+class Sensor:
+    """A sensor that is exposed to each image, for the writer `raw` (docs/sensor.md). The images then have a box filter and samples of
+    their own."""
+    name: str = "generic_rggb"  #: a preset, or a sensor file (.yaml)
+    numbers: dict[str, Any] = field(default_factory=dict)  #: in place of its own: further keywords of velo.Sensor
+    exposure: dict[str, Any] = field(default_factory=dict)  #: keywords of velo.Sensor.expose: exposure_time, f_number, iso, ...
+    buckets: int = 32  #: of the images' spectrum
+
+
+@dataclass
 class Recipe:
     """All of a dataset."""
     seed: int = 0
@@ -154,6 +164,7 @@ class Recipe:
     environment: Optional[Environment] = None  #: default: studio where there is no other light
     ground: Optional[Ground] = None
     distractors: Optional[Distractors] = None
+    sensor: Optional[Sensor] = None
     render: dict[str, Any] = field(default_factory=dict)  #: further keywords of Scene.render: max_depth, exposure, ...
     channels: Sequence[str] = ()  #: further channels of the EXR writer
     depth_scale: float = 0.1  #: millimetres of a step of the BOP writer's 16-bit depth
@@ -165,7 +176,7 @@ class Recipe:
 _PLACINGS = {"poses": Poses, "on_surface": OnSurface, "in_volume": InVolume}
 _CAMERAS = {"fixed": Fixed, "around": Around, "trajectory": Trajectory, "rig": Rig}
 _MEMBERS = {"lights": Lights, "environment": Environment, "materials": Materials, "ground": Ground,
-            "distractors": Distractors}
+            "distractors": Distractors, "sensor": Sensor}
 _MOST_VALUES = 10000000  # of a recipe's file
 _MOST_LETTERS = 1 << 28
 

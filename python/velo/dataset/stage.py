@@ -60,6 +60,7 @@ class Frame:
     camera: Any  #: velo.Camera
     image: Any  #: velo.Image: R G B A, Z, N, id.instance, ...
     instances: list[Instance]
+    exposure: Optional[velo.Exposure] = None  #: of the recipe's sensor
 
 
 class _Loaded(NamedTuple):
@@ -111,6 +112,7 @@ class Stage:
         with at_place("recipe.render"):
             settings = {name: value for name, value in recipe.render.items() if name not in ("denoise", "tracer") or value != "auto"}
             velo.Scene(context=context).settings(**{name: value for name, value in settings.items() if name != "denoise"})
+        self.sensor = self._make_sensor()  #: velo.Sensor, or None
         self._cameras = Cameras(recipe)
         self._cameras.views(0)
         self._solo = []
@@ -124,6 +126,19 @@ class Stage:
         #: bounding boxes in metres, in the models' own spaces
         self.boxes = [([value * model.scale for value in solo.low], [value * model.scale for value in solo.high])
                       for model, solo in zip(recipe.models, self._solo)]
+
+    def _make_sensor(self) -> Optional[velo.Sensor]:
+        rule = self.recipe.sensor
+        if not rule:
+            return None
+        with at_place("recipe.sensor"):
+            is_file = rule.name.endswith((".yaml", ".yml"))
+            sensor = velo.Sensor(os.path.join(self.recipe.folder, rule.name) if is_file else rule.name, context=self.context,
+                                 **rule.numbers)
+            # One pixel: whether the exposure's numbers are right.
+            sensor.expose(velo.Image(numpy.zeros((1, 1, 2), "float32"), ["S0.500nm", "S0.600nm"], encoding="linear",
+                                     context=self.context), **rule.exposure)
+        return sensor
 
     @property
     def most_objects(self) -> int:
@@ -298,7 +313,13 @@ class Stage:
         recipe = self.recipe
         channels = ["Z", "N", "id.instance"]
         channels += [name for name in recipe.channels if name not in channels]
-        image = scene.render(camera=view.camera, spp=recipe.spp, seed=plan.seed, channels=channels, **recipe.render)
+        settings: dict[str, Any] = dict(recipe.render)
+        if recipe.sensor:
+            settings = {"filter": "box", "buckets": recipe.sensor.buckets, **settings}
+        image = scene.render(camera=view.camera, spp=recipe.spp, seed=plan.seed, channels=channels, **settings)
+        exposure = None
+        if self.sensor and recipe.sensor:
+            exposure = self.sensor.expose(scene.film.spectrum(), seed=plan.seed, frame=plan.views.index(view), **recipe.sensor.exposure)
         total = len(scene.world(**self._build).ids("instance"))
         ids, first = image["id.instance"], total - len(plan.objects) + 1
         instances = []
@@ -308,7 +329,7 @@ class Stage:
             rigid = [[value / scale if j < 3 else value for j, value in enumerate(row)] for row in item.pose[:3]]
             instances.append(Instance(item.model, self.names[item.model], rigid + [[0.0, 0.0, 0.0, 1.0]], scale, mask,
                                       mask | self._silhouette(item, view) if recipe.occluded else mask))
-        return Frame(plan.frame, view.name, view.camera, image, instances)
+        return Frame(plan.frame, view.name, view.camera, image, instances, exposure)
 
     def _silhouette(self, item: Placed, view: View) -> Any:
         """The pixels whose centres would show the object if it were alone: its own scene, seen from where the camera is

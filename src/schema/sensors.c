@@ -6,11 +6,12 @@
 #define SENSOR(TYPE, path, line, ...) \
   VL_PARAMETER(TYPE, vlSensorDef, NULL, path, line, __VA_ARGS__)
 #define ABOVE(least, most) VL_RANGE(least, most), .flags = VL_PARAMETER_ABOVE_LOW
-/* A part of a sensor file that a function reads; docs/sensor.md describes it. */
-#define RULE(name, kind, line)                                                            \
-  {                                                                                       \
-    .type = VL_PARAMETER_BLOCK, .member = name, .flags = VL_PARAMETER_RULE, .text = kind, \
-    .description = line                                                                   \
+/* A part of a sensor file that a function reads into several members; docs/sensor.md describes
+ * it. */
+#define RULE(name, kind, line)                                                             \
+  {                                                                                        \
+    .type = VL_PARAMETER_BLOCK, .member = name,                                            \
+    .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .text = kind, .description = line \
   }
 static const vlParameter sensor_parameters[] = {
     SENSOR(DOUBLE, pixel, "distance of pixels", VL_RANGE(0.01, 1000), VL_DEFAULT(5),

@@ -168,7 +168,7 @@ static const Option options[] = {
 const Command sensor_verify_command = {
     .name = "sensor verify",
     .usage = "NAME|FILE [options]",
-    .summary = "measure a sensor's parameters by EMVA 1288 and compare them with its own",
+    .summary = "measure a sensor by EMVA 1288 and compare it with itself",
     .text =
         "Exposes the sensor to flat fields, dark frames and a slanted edge, which are "
         "computed, not\nrendered, and measures gain, noise, dark current, saturation, "

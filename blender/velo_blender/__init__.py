@@ -1,0 +1,26 @@
+"""velo in Blender: a render engine. Needs the Python module velo."""
+
+bl_info = {
+    "name": "velo",
+    "author": "velo contributors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Properties > Render > Render Engine",
+    "description": "Photorealistic renderer with verified camera models",
+    "category": "Render",
+}
+
+
+def _modules():
+    from . import engine, panels, settings
+    return settings, engine, panels
+
+
+def register():
+    for module in _modules():
+        module.register()
+
+
+def unregister():
+    for module in reversed(_modules()):
+        module.unregister()

@@ -1,0 +1,192 @@
+"""closures.py: each shader node as one of velo's materials; CLOSURES maps the node's kind in Blender to a function (inputs, node,
+groups) -> Closure.
+
+Cycles' glossy shaders without multiple scattering are velo's principled dielectric of infinite index (docs/principled.md): F0 is the
+specular colour, F90 the specular factor, and light between microfacets is lost in both."""
+import math
+
+from . import bumps, principled
+
+
+class Closure:
+    """material: a handle or None (reflects nothing). emission: list of (colour or texture, strength). coverage: share of the surface
+    that is there, a number or a texture; None: 1. is_clear: nothing is there."""
+
+    def __init__(self, material=None, emission=(), coverage=None, is_clear=False):
+        self.material, self.emission, self.coverage, self.is_clear = material, list(emission), coverage, is_clear
+
+
+def is_color(value):
+    return isinstance(value, tuple)
+
+
+# ---- coverage ------------------------------------------------------------------------------------------------------------
+
+def product(inputs, a, b):
+    if isinstance(a, float) and isinstance(b, float):
+        return a * b
+    texture, factor = (a, b) if not isinstance(a, float) else (b, a)
+    return inputs.scene.add_texture("scale", spectrum=False, float_a=texture, amount=factor)
+
+
+def one_minus(inputs, value):
+    if isinstance(value, float):
+        return 1.0 - value
+    return inputs.scene.add_texture("mix", spectrum=False, float_a=1.0, float_b=0.0, amount=value)
+
+
+def mixed_coverage(inputs, factor, first, second):
+    a = 1.0 if first is None else first
+    b = 1.0 if second is None else second
+    if all(isinstance(value, float) for value in (factor, a, b)):
+        return a + factor * (b - a)
+    return inputs.scene.add_texture("mix", spectrum=False, float_a=a, float_b=b, amount=factor)
+
+
+def emission_handle(closure, inputs):
+    """velo's emission for a closure; None: it emits nothing."""
+    parts = [(color, strength) for color, strength in closure.emission if strength != 0 and color != (0.0, 0.0, 0.0)]
+    if not parts:
+        return None
+    if all(is_color(color) for color, _ in parts):
+        total = tuple(sum(color[i] * strength for color, strength in parts) for i in range(3))
+        high = max(total)
+        if high <= 0:
+            return None
+        return inputs.scene.add_emission(radiance=tuple(max(0.0, x) / high for x in total), scale=high, two_sided=True)
+    if len(parts) > 1:
+        inputs.notes.add(inputs.owner, "Emission", "of several textured emissions the first one is rendered")
+    color, strength = next(part for part in parts if not is_color(part[0]))
+    return inputs.scene.add_emission(texture=color, scale=strength, two_sided=True)
+
+
+# ---- shaders -------------------------------------------------------------------------------------------------------------
+
+def diffuse(inputs, color, words):
+    """A diffuse material. words: of its normal map and bump."""
+    if "normal" in words:
+        return inputs.scene.add_material("principled", reflectance=color, metallic=0.0, roughness=1.0, specular=0.0, name=inputs.owner,
+                                         **words)
+    return inputs.scene.add_material("diffuse", reflectance=color, name=inputs.owner, **words)
+
+
+def _diffuse(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    if inputs.constant(node.inputs["Roughness"], groups) != 0.0:
+        inputs.notes.add(inputs.owner, node.name, "a rough diffuse reflection (Oren and Nayar) is a smooth one (Lambert)")
+    return Closure(diffuse(inputs, color, bumps.words(inputs, node, groups)))
+
+
+def glossy(inputs, color, roughness, multiple, words):
+    """A mirror or a rough one of this colour in all directions."""
+    if multiple:
+        return inputs.scene.add_material("principled", reflectance=color, metallic=1.0, roughness=roughness, name=inputs.owner, **words)
+    specular = 1.0
+    if is_color(color):
+        specular = min(1.0, max(color))
+        color = tuple(min(1.0, x / specular) for x in color) if specular > 0 else (0.0,) * 3
+    return inputs.scene.add_material("principled", reflectance=(0, 0, 0), metallic=0.0, eta=0.0, specular=specular, specular_color=color,
+                                     roughness=roughness, name=inputs.owner, **words)
+
+
+def _glossy(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    distribution = node.distribution
+    roughness = 0.0 if distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
+    if distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+        inputs.notes.add(inputs.owner, node.name, "the distribution %s is GGX" % distribution)
+    words = bumps.words(inputs, node, groups)
+    if node.inputs.get("Anisotropy") is not None:
+        words.update(principled.anisotropy(inputs, node.inputs["Anisotropy"], node.inputs["Rotation"], roughness, groups, node))
+        roughness = words.pop("roughness", roughness)
+    return Closure(glossy(inputs, color, roughness, distribution == "MULTI_GGX", words))
+
+
+def glass(inputs, color, roughness, eta, words):
+    """A solid of glass. color: factor on reflection and refraction, as in Cycles."""
+    if color == (1.0, 1.0, 1.0) and isinstance(roughness, float) and "normal" not in words:
+        alpha = roughness * roughness
+        return inputs.scene.add_material("dielectric", eta=eta, u_roughness=alpha, v_roughness=alpha, remap_roughness=False,
+                                         name=inputs.owner, **words)
+    return inputs.scene.add_material("principled", reflectance=color, specular_color=color, metallic=0.0, roughness=roughness, eta=eta,
+                                     transmission=1.0, thin_walled=False, name=inputs.owner, **words)
+
+
+def index_of(inputs, node, groups):
+    value = inputs.constant(node.inputs["IOR"], groups)
+    if not isinstance(value, float):
+        inputs.notes.add(inputs.owner, node.name, "an index of refraction that varies is 1.45")
+        value = 1.45
+    return min(max(value, 1.0001), 5.0)
+
+
+def _glass(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
+    if node.distribution == "BECKMANN":
+        inputs.notes.add(inputs.owner, node.name, "the distribution BECKMANN is GGX")
+    return Closure(glass(inputs, color, roughness, index_of(inputs, node, groups), bumps.words(inputs, node, groups)))
+
+
+def _refraction(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
+    handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=roughness,
+                                       eta=index_of(inputs, node, groups), transmission=1.0, thin_walled=False, name=inputs.owner,
+                                       **bumps.words(inputs, node, groups))
+    return Closure(handle)
+
+
+def _translucent(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    handle = inputs.scene.add_material("diffuse_transmission", reflectance=(0, 0, 0), transmittance=color, scale=1.0, name=inputs.owner,
+                                       **bumps.without_map(inputs, node, groups))
+    return Closure(handle)
+
+
+def _transparent(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    if is_color(color) and min(color) > 0.999:
+        return Closure(is_clear=True, coverage=0.0)
+    if color == (0.0, 0.0, 0.0):
+        return Closure()
+    handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=0.0, eta=1.5,
+                                       transmission=1.0, thin_walled=True, name=inputs.owner)
+    return Closure(handle)
+
+
+def _emission(inputs, node, groups):
+    strength = inputs.constant(node.inputs["Strength"], groups)
+    if not isinstance(strength, float):
+        inputs.notes.add(inputs.owner, node.name, "a strength that varies is 1")
+        strength = 1.0
+    return Closure(emission=[(inputs.color(node.inputs["Color"], groups), max(0.0, strength))])
+
+
+def _subsurface(inputs, node, groups):
+    inputs.notes.add(inputs.owner, node.name, "subsurface scattering is diffuse")
+    return Closure(diffuse(inputs, inputs.color(node.inputs["Color"], groups), bumps.words(inputs, node, groups)))
+
+
+def _velvet(inputs, node, groups):
+    color = inputs.color(node.inputs["Color"], groups)
+    roughness = (node.inputs.get("Sigma") or node.inputs.get("Roughness"))
+    handle = inputs.scene.add_material("principled", reflectance=(0, 0, 0), specular=0.0, metallic=0.0, sheen_color=color,
+                                       sheen_roughness=inputs.number(roughness, groups), name=inputs.owner)
+    inputs.notes.add(inputs.owner, node.name, "velvet is velo's sheen, whose formula is another")
+    return Closure(handle)
+
+
+def _background(inputs, node, groups):
+    return _emission(inputs, node, groups)
+
+
+def _principled(inputs, node, groups):
+    material, emission, coverage = principled.convert(inputs, node, groups, glossy, glass)
+    return Closure(material, emission, coverage, is_clear=isinstance(coverage, float) and math.isclose(coverage, 0.0, abs_tol=1e-9))
+
+
+CLOSURES = {"BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_ANISOTROPIC": _glossy, "BSDF_GLASS": _glass,
+            "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent, "EMISSION": _emission,
+            "BACKGROUND": _background, "SUBSURFACE_SCATTERING": _subsurface, "BSDF_VELVET": _velvet, "BSDF_SHEEN": _velvet,
+            "BSDF_PRINCIPLED": _principled}

@@ -1,0 +1,152 @@
+"""color_nodes.py: nodes of colours: mix, ramp, curves, invert, gamma, brightness, hue and saturation."""
+import numpy
+
+from .math_nodes import column
+
+LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
+
+
+def _unsupported(node, text):
+    from .evaluate import Unsupported
+    return Unsupported(node, text)
+
+
+def rgb(e, node, output, groups):
+    return numpy.array([[float(x) for x in node.outputs[0].default_value][:3]])
+
+
+def _soft_light(a, b):
+    screen = 1 - (1 - a) * (1 - b)
+    return (1 - a) * a * b + a * screen
+
+
+def _overlay(a, b):
+    return numpy.where(a < 0.5, 2 * a * b, 1 - 2 * (1 - a) * (1 - b))
+
+
+def _dodge(a, b):
+    return numpy.where(a == 0, 0.0, numpy.where(b >= 1, 1.0, numpy.minimum(a / numpy.maximum(1 - b, 1e-30), 1)))
+
+
+def _burn(a, b):
+    return numpy.where(b <= 0, 0.0, numpy.clip(1 - (1 - a) / numpy.maximum(b, 1e-30), 0, 1))
+
+
+#: The blended colour, which the factor mixes with the first one.
+BLEND = {
+    "MIX": lambda a, b: b, "ADD": lambda a, b: a + b, "MULTIPLY": lambda a, b: a * b, "SUBTRACT": lambda a, b: a - b,
+    "SCREEN": lambda a, b: 1 - (1 - a) * (1 - b), "OVERLAY": _overlay, "DIFFERENCE": lambda a, b: numpy.abs(a - b),
+    "DIVIDE": lambda a, b: numpy.where(b == 0, a, a / numpy.where(b == 0, 1, b)), "SOFT_LIGHT": _soft_light,
+    "LINEAR_LIGHT": lambda a, b: a + 2 * b - 1, "EXCLUSION": lambda a, b: numpy.maximum(a + b - 2 * a * b, 0),
+    "DODGE": _dodge, "BURN": _burn,
+}
+
+
+def _blend(node, kind, factor, a, b, clamp_result):
+    factor = column(factor)
+    if kind == "DARKEN":
+        result = a + factor * (numpy.minimum(a, b) - a)
+    elif kind == "LIGHTEN":
+        result = numpy.maximum(a, b * factor)
+    elif kind in BLEND:
+        result = a + factor * (BLEND[kind](a, b) - a)
+    else:
+        raise _unsupported(node, "mixing by %s" % kind)
+    return numpy.clip(result, 0, 1) if clamp_result else result
+
+
+def mix_rgb(e, node, output, groups):
+    factor, a, b = (e.input(socket, groups) for socket in list(node.inputs)[:3])
+    return _blend(node, node.blend_type, numpy.clip(factor, 0, 1), a, b, node.use_clamp)
+
+
+def _by_identifier(e, node, identifier, groups):
+    return e.input(next(socket for socket in node.inputs if socket.identifier == identifier), groups)
+
+
+def mix(e, node, output, groups):
+    kind = {"FLOAT": "Float", "VECTOR": "Vector", "RGBA": "Color"}.get(node.data_type)
+    if kind is None:
+        raise _unsupported(node, "a mix of %s" % node.data_type)
+    several = kind == "Vector" and node.factor_mode == "NON_UNIFORM"
+    factor = _by_identifier(e, node, "Factor_Vector" if several else "Factor_Float", groups)
+    if node.clamp_factor:
+        factor = numpy.clip(factor, 0, 1)
+    a, b = (_by_identifier(e, node, "%s_%s" % (side, kind), groups) for side in "AB")
+    if kind == "Color":
+        return _blend(node, node.blend_type, factor, a, b, node.clamp_result)
+    return a + (column(factor) if kind == "Vector" else factor) * (b - a)
+
+
+def ramp(e, node, output, groups):
+    factor = numpy.clip(e.input(node.inputs[0], groups), 0, 1)
+    # As Cycles: a table of 256 entries, linear between them unless the ramp is constant.
+    table = numpy.array([list(node.color_ramp.evaluate(i / 255)) for i in range(256)])
+    place = factor * 255
+    low = numpy.minimum(place.astype(int), 255)
+    if node.color_ramp.interpolation == "CONSTANT":
+        colors = table[low]
+    else:
+        t = column(place - low)
+        colors = table[low] * (1 - t) + table[numpy.minimum(low + 1, 255)] * t
+    return colors[:, 3] if output.name == "Alpha" else colors[:, :3]
+
+
+def curves(e, node, output, groups):
+    factor, color = e.named(node, "Fac", groups), e.named(node, "Color", groups)
+    node.mapping.initialize()
+    channels = list(node.mapping.curves)
+    places = numpy.linspace(0, 1, 256)
+    combined = numpy.array([node.mapping.evaluate(channels[3], float(x)) for x in places])
+    result = numpy.empty_like(color)
+    for i in range(3):
+        table = numpy.array([node.mapping.evaluate(channels[i], float(x)) for x in combined])
+        result[:, i] = numpy.interp(color[:, i], places, table)
+    return color + column(factor) * (result - color)
+
+
+def invert(e, node, output, groups):
+    factor, color = e.named(node, "Fac", groups), e.named(node, "Color", groups)
+    return color + column(factor) * (1 - 2 * color)
+
+
+def gamma(e, node, output, groups):
+    color, power = e.named(node, "Color", groups), e.named(node, "Gamma", groups)
+    return numpy.where(color > 0, numpy.power(numpy.maximum(color, 1e-30), column(power)), color)
+
+
+def bright_contrast(e, node, output, groups):
+    color, bright, contrast = (e.named(node, name, groups) for name in ("Color", "Bright", "Contrast"))
+    return numpy.maximum((1 + column(contrast)) * color + column(bright - 0.5 * contrast), 0)
+
+
+def to_hsv(color):
+    """n x 3: hue, saturation, value, 0 to 1."""
+    high, low = color.max(axis=1), color.min(axis=1)
+    size = high - low
+    safe = numpy.where(size == 0, 1, size)
+    r, g, b = ((high - color[:, i]) / safe for i in range(3))
+    hue = numpy.where(color[:, 0] == high, b - g, numpy.where(color[:, 1] == high, 2 + r - b, 4 + g - r)) / 6
+    return numpy.stack((numpy.where(size == 0, 0, hue % 1), numpy.where(high == 0, 0, size / numpy.where(high == 0, 1, high)), high), axis=1)
+
+
+def from_hsv(hsv):
+    h, s, v = hsv.T
+    sector = numpy.stack([numpy.clip(numpy.abs((h * 6 - c) % 6 - 3) - 1, 0, 1) for c in (0, 2, 4)], axis=1)
+    return column(v) * ((sector - 1) * column(s) + 1)
+
+
+def hue_saturation(e, node, output, groups):
+    hue, saturation, value, factor, color = (e.named(node, name, groups) for name in ("Hue", "Saturation", "Value", "Fac", "Color"))
+    hsv = to_hsv(color)
+    hsv = numpy.stack(numpy.broadcast_arrays((hsv[:, 0] + hue + 0.5) % 1, numpy.clip(hsv[:, 1] * saturation, 0, 1), hsv[:, 2] * value),
+                      axis=1)
+    return numpy.maximum(color + column(factor) * (from_hsv(hsv) - color), 0)
+
+
+def to_gray(e, node, output, groups):
+    return e.input(node.inputs[0], groups) @ LUMINANCE
+
+
+NODES = {"RGB": rgb, "MIX_RGB": mix_rgb, "MIX": mix, "VALTORGB": ramp, "CURVE_RGB": curves, "INVERT": invert, "GAMMA": gamma,
+         "BRIGHTCONTRAST": bright_contrast, "HUE_SAT": hue_saturation, "RGBTOBW": to_gray}

@@ -1,0 +1,85 @@
+"""engine.py: the render engine: final renders."""
+import time
+
+import bpy
+import velo
+
+from . import camera, export, passes, report, settings
+
+REFRESH = 1.0  # seconds between images of a render that goes on
+
+
+class VeloRenderEngine(bpy.types.RenderEngine):
+    """velo in Blender."""
+    bl_idname = "VELO"
+    bl_label = "velo"
+    bl_use_preview = False
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        """Blender calls it to know the passes of a view layer."""
+        passes.register(self, scene, renderlayer)
+
+    def render(self, depsgraph):
+        """Blender calls it for each view layer of a final render."""
+        try:
+            self._render(depsgraph)
+        except export.Cancelled:
+            pass
+        except (report.Refused, velo.Error, MemoryError) as error:
+            self._refuse(str(error) or "there is not enough memory")
+
+    def _refuse(self, text):
+        line = " ".join(("velo: " + text).split())
+        print(line)
+        self.report({"ERROR"}, line)
+
+    def _render(self, depsgraph):
+        scene = depsgraph.scene
+        size = camera.image_size(scene)
+        crop = camera.crop_window(scene, size)
+        self.update_stats("", "velo: reading the scene")
+        made = export.Export(depsgraph, size, cancelled=self.test_break)
+        report.remember(scene.name, made.notes)
+        for text in made.notes.texts():
+            print("velo: " + text)
+        if made.notes.lines:
+            self.report({"WARNING"}, "velo: %d things of the scene are rendered otherwise or not (panel velo)" % len(made.notes.lines))
+        self.update_stats("", "velo: building")
+        made.scene.world(progress=lambda step: not self.test_break(), **_build_words(scene))
+        width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
+        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        try:
+            self._trace(scene, made, crop, result)
+        finally:
+            self.end_result(result, cancel=False)
+
+    def _trace(self, scene, made, crop, result):
+        layer = result.layers[0]
+        shown = [time.monotonic()]
+
+        def progress(state):
+            self.update_progress(min(max(state.fraction, 0.0), 1.0))
+            self.update_stats("", "velo: sample %d of %d" % (state.spp, state.spp_total))
+            if state.pass_done and time.monotonic() - shown[0] > REFRESH and not bpy.app.background:
+                passes.fill(layer, made.scene.film.image(), scene.render.film_transparent)
+                self.update_result(result)
+                shown[0] = time.monotonic()
+            return not self.test_break()
+
+        image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop,
+                                  **settings.tracing(scene, scene.velo.samples))
+        passes.fill(layer, image, scene.render.film_transparent, made)
+
+
+def _build_words(scene):
+    return {"color": "spectral" if scene.velo.spectral else "rgb"}
+
+
+def register():
+    bpy.utils.register_class(VeloRenderEngine)
+
+
+def unregister():
+    bpy.utils.unregister_class(VeloRenderEngine)

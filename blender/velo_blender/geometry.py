@@ -1,0 +1,85 @@
+"""geometry.py: evaluated meshes as arrays, by buffers."""
+import numpy
+
+from . import versions
+
+
+def _read(collection, name, width, dtype):
+    """A property of all elements: n x width, or n."""
+    values = numpy.empty(len(collection) * width, dtype=dtype)
+    collection.foreach_get(name, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+class MeshArrays:
+    """The arrays of a mesh, float32 and int32. Vertices are the mesh's vertices or, where uvs, colours or normals differ between the
+    corners of one vertex, its corners.
+
+    positions, normals: n x 3, in the object's space; normals may be None (flat). triangles: m x 3. slots: m, the material's slot.
+    uvs: {name: n x 2}. smooth: m, whether a triangle is shaded smoothly."""
+
+    def __init__(self, mesh):
+        mesh.calc_loop_triangles()
+        points = _read(mesh.vertices, "co", 3, numpy.float32)
+        corners = _read(mesh.loops, "vertex_index", 1, numpy.int32)
+        self.slots = _read(mesh.loop_triangles, "material_index", 1, numpy.int32)
+        smooth = _read(mesh.polygons, "use_smooth", 1, bool)
+        self.by_corner = bool(len(mesh.uv_layers) or len(mesh.color_attributes) or versions.splits_normals(mesh) or
+                              (smooth.any() and not smooth.all()))
+        of_triangles = "loops" if self.by_corner else "vertices"
+        self.triangles = _read(mesh.loop_triangles, of_triangles, 3, numpy.int32)
+        self.corners = corners
+        self.positions = points[corners] if self.by_corner else points
+        self.normals = self._normals(mesh, smooth, points) if smooth.any() else None
+        self.uv_names = [layer.name for layer in mesh.uv_layers]
+        self.render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+        self.uvs = {layer.name: _read(layer.data, "uv", 2, numpy.float32) for layer in mesh.uv_layers}
+        self._mesh = mesh
+
+    def _normals(self, mesh, smooth, points):
+        if not self.by_corner:
+            return _read(mesh.vertices, "normal", 3, numpy.float32)
+        versions.prepare_normals(mesh)
+        collection, name = versions.corner_normals(mesh)
+        return _read(collection, name, 3, numpy.float32)
+
+    def colors(self, name):
+        """The colours of an attribute, n x 4, linear; an empty name is the one that is rendered; None: there is none."""
+        attributes = self._mesh.color_attributes
+        if len(attributes) == 0:
+            return None
+        index = attributes.render_color_index
+        attribute = attributes.get(name) if name else attributes[index if 0 <= index < len(attributes) else 0]
+        if attribute is None:
+            return None
+        colors = _read(attribute.data, "color", 4, numpy.float32)
+        return colors[self.corners] if attribute.domain == "POINT" else colors
+
+    def part(self, slot):
+        """The triangles of a slot and the vertices that they use: (triangles, used); used: None for all vertices."""
+        mine = self.slots == slot
+        if mine.all():
+            return self.triangles, None
+        used, triangles = numpy.unique(self.triangles[mine], return_inverse=True)
+        return triangles.reshape(-1, 3).astype(numpy.int32), used
+
+    def is_finite(self):
+        return bool(numpy.isfinite(self.positions).all())
+
+
+def read(mesh):
+    """The arrays of an evaluated mesh; None: it has no faces."""
+    if mesh is None or len(mesh.polygons) == 0:
+        return None
+    return MeshArrays(mesh)
+
+
+def clean_normals(normals):
+    """Normals of length 1; those that are 0 or no numbers point up."""
+    lengths = numpy.linalg.norm(normals, axis=1)
+    good = numpy.isfinite(lengths) & (lengths > 1e-12)
+    if good.all():
+        return normals
+    normals = normals.copy()
+    normals[~good] = (0, 0, 1)
+    return normals

@@ -1,0 +1,162 @@
+"""lights.py: Blender's lights as velo's, with the units of Cycles.
+
+Point and spot of P watts: intensity P / (4 pi) in all directions, along a spot's axis. Sun: irradiance. Area: radiance P / (4 A) on one side.
+Cycles hides lights from the camera unless their visibility says otherwise; velo's surfaces of lights are seen by all rays or, with
+alpha 0, by none. So a light whose surface the camera might see, though it is hidden from it, has alpha 0: it lights, and mirrors do
+not show it."""
+import math
+
+import numpy
+import velo
+
+from . import evaluate, links, versions, world
+
+SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
+
+
+def _color_and_strength(light, inputs):
+    """The colour and a factor on the power, with the light's nodes where they are numbers."""
+    color, strength = numpy.array(light.color, dtype=float), 1.0
+    if not light.use_nodes or light.node_tree is None:
+        return color, strength
+    output = links.output_node(light.node_tree, "OUTPUT_LIGHT")
+    source = links.follow(output.inputs["Surface"])[0] if output is not None else None
+    if source is None or source.node.type != "EMISSION":
+        inputs.add(light.name, source.node.name if source else "", "the light's nodes are not an emission and are ignored")
+        return color, strength
+    tint = evaluate.constant(source.node.inputs["Color"], source.groups)
+    factor = evaluate.constant(source.node.inputs["Strength"], source.groups)
+    if tint is None or not isinstance(factor, float):
+        inputs.add(light.name, source.node.name, "nodes of a light that vary are ignored")
+        return color, strength
+    return color * numpy.array(tint), factor
+
+
+def _finite_pose(matrix):
+    pose = numpy.array(matrix, dtype=float)
+    return pose if numpy.isfinite(pose).all() else None
+
+
+def add(scene, item, matrix, camera_sees, notes):
+    """Adds a light object. camera_sees(points n x 3): whether the camera might see one of these points or what lies between."""
+    light = item.data
+    pose = _finite_pose(matrix)
+    if pose is None:
+        notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
+        return
+    color, strength = _color_and_strength(light, notes)
+    color = color * (strength * light.energy)
+    if not numpy.isfinite(color).all() or color.max() <= 0:
+        if light.energy != 0:
+            notes.add(item.name, "", "its colour or power is 0, negative or no number; it is left out")
+        return
+    power = float(color.max())
+    words = {"color": tuple(float(max(0.0, x)) / power for x in color)}
+    {"POINT": _point, "SUN": _sun, "SPOT": _spot, "AREA": _area}[light.type](scene, item, light, pose, words, power, camera_sees, notes)
+
+
+def _lamp_surface(scene, words, radiance, item, hidden, **shape):
+    """A shape that emits. hidden: no ray sees it."""
+    emission = scene.add_emission(radiance=words["color"], scale=radiance, two_sided=False)
+    material = scene.add_material("diffuse", reflectance=(0, 0, 0), name=item.name)
+    extra = {"alpha": 0.0} if hidden else {}
+    scene.add_shape(emission=emission, material=material, name=item.name, **extra, **shape)
+
+
+def _hidden(item, points, camera_sees):
+    return not item.visible_camera and camera_sees(points)
+
+
+def _point(scene, item, light, pose, words, power, camera_sees, notes):
+    place, radius = pose[:3, 3], light.shadow_soft_size
+    if radius <= 1e-6:
+        scene.add_light("point", position=tuple(place), scale=power / (4 * math.pi), **words)
+        return
+    corners = place + radius * numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    matrix = numpy.eye(4)
+    matrix[:3, 3] = place
+    _lamp_surface(scene, words, power / (4 * math.pi**2 * radius**2), item, _hidden(item, corners, camera_sees), kind="sphere",
+                  radius=radius, z_min=-radius, z_max=radius, pose=matrix)
+
+
+def _sun(scene, item, light, pose, words, power, camera_sees, notes):
+    axis = pose[:3, 2]
+    length = numpy.linalg.norm(axis)
+    if length < 1e-12:
+        notes.add(item.name, "", "its direction is not defined; it is left out")
+        return
+    axis = axis / length
+    if light.angle > math.radians(1.0):
+        notes.add(item.name, "Angle", "the sun's disk of %.1f degrees is a point; its shadows are sharp" % math.degrees(light.angle))
+    scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
+
+
+def _spot(scene, item, light, pose, words, power, camera_sees, notes):
+    axis = pose[:3, 2]
+    length = numpy.linalg.norm(axis)
+    if length < 1e-12:
+        notes.add(item.name, "", "its direction is not defined; it is left out")
+        return
+    half = min(0.5 * light.spot_size, 0.5 * math.pi)
+    if light.shadow_soft_size > 0.01:
+        notes.add(item.name, "Radius", "a spot's radius is 0; its shadows are sharp")
+    frame = _frame_along(-axis / length, pose[:3, 3])
+    color = numpy.array(words["color"]) * power / (4 * math.pi)
+    if half <= math.radians(60):
+        side = SPOT_SIDE
+        place = math.tan(half) * (2 * (numpy.arange(side) + 0.5) / side - 1)
+        cosines = 1 / numpy.sqrt(1 + place[:, None]**2 + place[None, :]**2)
+        scene.add_light("projection", pose=frame, fov=2 * half, image=_intensity(cosines, half, light.spot_blend, color), scale=1.0)
+        return
+    side = 2 * SPOT_SIDE
+    cosines = world.square_directions(side)[:, 2].reshape(side, side)
+    # A goniometric light's axis is y.
+    turned = frame @ numpy.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+    scene.add_light("goniometric", pose=turned, image=_intensity(cosines, half, light.spot_blend, color), scale=1.0)
+
+
+def _frame_along(axis, place):
+    """A pose at a place whose z is an axis."""
+    other = numpy.array((0.0, 0, 1)) if abs(axis[2]) < 0.9 else numpy.array((1.0, 0, 0))
+    x = numpy.cross(other, axis)
+    x = x / numpy.linalg.norm(x)
+    frame = numpy.eye(4)
+    frame[:3, 0], frame[:3, 1], frame[:3, 2], frame[:3, 3] = x, numpy.cross(axis, x), axis, place
+    return frame
+
+
+def _intensity(cosines, half, blend, color):
+    """The image of a spot's intensity for the cosines of angles from its axis: a smooth step at the edge and, in this version of
+    Cycles, the cosine itself."""
+    edge = math.cos(half)
+    width = max((1 - edge) * blend, 1e-6)
+    t = numpy.clip((cosines - edge) / width, 0, 1)
+    factor = t * t * (3 - 2 * t)
+    if versions.spot_has_cosine():
+        factor = factor * numpy.maximum(cosines, 0)
+    return velo.Image(numpy.ascontiguousarray(factor[..., None] * color, dtype=numpy.float32), encoding="linear")
+
+
+def _area(scene, item, light, pose, words, power, camera_sees, notes):
+    width = light.size
+    height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    scales = numpy.linalg.norm(pose[:3, :2], axis=0)
+    if not width * height * scales[0] * scales[1] > 1e-12:
+        notes.add(item.name, "", "its area is 0; it is left out")
+        return
+    if light.spread < math.pi - 1e-3:
+        notes.add(item.name, "Spread", "an area light's spread is 180 degrees")
+    corners = 0.5 * numpy.array([[-width, -height, 0, 2], [width, -height, 0, 2], [width, height, 0, 2], [-width, height, 0, 2]]) @ pose.T
+    hidden = _hidden(item, corners[:, :3], camera_sees)
+    round_shape = light.shape in ("DISK", "ELLIPSE")
+    area = width * height * scales[0] * scales[1] * (math.pi / 4 if round_shape else 1)
+    radiance = power / (4 * area)
+    # The light leaves along -z.
+    turned = pose @ numpy.diag((1.0, -1.0, -1.0, 1.0))
+    if round_shape:
+        stretched = turned @ numpy.diag((0.5 * width, 0.5 * height, 1.0, 1.0))
+        _lamp_surface(scene, words, radiance, item, hidden, kind="disk", radius=1.0, pose=stretched)
+        return
+    quad = 0.5 * numpy.array([[-width, -height, 0], [width, -height, 0], [width, height, 0], [-width, height, 0]])
+    _lamp_surface(scene, words, radiance, item, hidden, kind="triangles", positions=quad.astype(numpy.float32),
+                  indices=numpy.array([[0, 1, 2], [0, 2, 3]], dtype=numpy.int32), pose=turned)

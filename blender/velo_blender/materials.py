@@ -1,0 +1,128 @@
+"""materials.py: Blender's materials as velo's: the tree of closures becomes a material, a coverage and an emission."""
+import math
+
+from . import closures, links
+from .closures import Closure
+from .evaluate import Unsupported
+
+
+class Surface:
+    """What a shape needs: material (handle), alpha (number, texture or None), emission (handle or None), color_attribute (name of
+    its vertex colours, or None)."""
+
+    def __init__(self, material, alpha, emission, color_attribute):
+        self.material, self.alpha, self.emission, self.color_attribute = material, alpha, emission, color_attribute
+
+
+def convert(material, inputs):
+    """The surface of a Blender material (None: Cycles' default, a diffuse 0.8). inputs: textures.Inputs."""
+    if material is None:
+        return _finish(Closure(material=closures.diffuse(inputs, (0.8, 0.8, 0.8), {})), inputs)
+    if not material.use_nodes or material.node_tree is None:
+        return _finish(_without_nodes(material, inputs), inputs)
+    output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    if output is None:
+        inputs.notes.add(inputs.owner, "", "it has no output node and is black")
+        return _finish(Closure(), inputs)
+    try:
+        closure = _closure(output.inputs["Surface"], (), inputs, 0)
+    except links.Cyclic as error:
+        inputs.notes.add(inputs.owner, "", "%s; it is black" % error)
+        closure = Closure()
+    if output.inputs["Volume"].is_linked:
+        inputs.notes.add(inputs.owner, "Volume", "volumes of surfaces are not rendered")
+    if output.inputs["Displacement"].is_linked and material.cycles.displacement_method != "BUMP":
+        inputs.notes.add(inputs.owner, "Displacement", "displacement is not rendered")
+    return _finish(closure, inputs)
+
+
+def _without_nodes(material, inputs):
+    color = tuple(material.diffuse_color)[:3]
+    return Closure(material=closures.diffuse(inputs, color, {}))
+
+
+def _finish(closure, inputs):
+    handle = closure.material
+    if handle is None:
+        handle = inputs.scene.add_material("diffuse", reflectance=(0, 0, 0), name=inputs.owner)
+    emission = closures.emission_handle(closure, inputs)
+    return Surface(handle, closure.coverage, emission, inputs.color_attribute)
+
+
+def _closure(socket, groups, inputs, depth):
+    """The closure that feeds a shader socket; nothing: black."""
+    if depth > 50:
+        raise links.Cyclic("its nodes feed themselves")
+    source, _ = links.follow(socket, groups)
+    if source is None:
+        return Closure()
+    node = source.node
+    if node.type == "MIX_SHADER":
+        factor = inputs.number(node.inputs[0], source.groups)
+        if factor == 0.0 or factor == 1.0:
+            return _closure(node.inputs[1 + int(factor)], source.groups, inputs, depth + 1)
+        first, second = (_closure(node.inputs[i], source.groups, inputs, depth + 1) for i in (1, 2))
+        return _mix(factor, first, second, node, inputs)
+    if node.type == "ADD_SHADER":
+        first, second = (_closure(node.inputs[i], source.groups, inputs, depth + 1) for i in (0, 1))
+        return _add(first, second, node, inputs)
+    function = closures.CLOSURES.get(node.type)
+    if function is None:
+        inputs.notes.add(inputs.owner, node.name, "velo has no such shader (%s); it is black" % node.bl_label)
+        return Closure()
+    try:
+        return function(inputs, node, source.groups)
+    except Unsupported as error:
+        inputs.notes.add(inputs.owner, error.node.name, "%s; the shader is black" % error.text)
+        return Closure()
+
+
+def _mix(factor, first, second, node, inputs):
+    """(1 - factor) first + factor second."""
+    if first.is_clear and second.is_clear:
+        return first
+    if first.is_clear:
+        return _thinned(second, factor, node, inputs)
+    if second.is_clear:
+        return _thinned(first, closures.one_minus(inputs, factor), node, inputs)
+    number = factor if isinstance(factor, float) else 0.5
+    emission = [(color, strength * (1 - number)) for color, strength in first.emission]
+    emission += [(color, strength * number) for color, strength in second.emission]
+    if emission and not isinstance(factor, float):
+        inputs.notes.add(inputs.owner, node.name, "emission that is mixed by a texture has half of its strength")
+    material = _mixed_material(factor, first.material, second.material, inputs)
+    coverage = first.coverage
+    if first.coverage is not None or second.coverage is not None:
+        coverage = closures.mixed_coverage(inputs, factor, first.coverage, second.coverage)
+        if first.coverage is not second.coverage:
+            inputs.notes.add(inputs.owner, node.name, "two transparent shaders are mixed with a mean transparency")
+    return Closure(material, emission, coverage)
+
+
+def _mixed_material(factor, first, second, inputs):
+    if first is None and second is None:
+        return None
+    black = None
+    if first is None or second is None:
+        black = inputs.scene.add_material("diffuse", reflectance=(0, 0, 0))
+    return inputs.scene.add_material("mix", materials=[first or black, second or black], amount=factor, name=inputs.owner)
+
+
+def _thinned(closure, share, node, inputs):
+    coverage = share if closure.coverage is None else closures.product(inputs, share, closure.coverage)
+    return Closure(closure.material, closure.emission, coverage)
+
+
+def _add(first, second, node, inputs):
+    if first.is_clear or second.is_clear:
+        inputs.notes.add(inputs.owner, node.name, "a sum with a transparent shader is only the other one")
+        return second if first.is_clear else first
+    emission = first.emission + second.emission
+    if first.material is None or second.material is None:
+        return Closure(first.material or second.material, emission, first.coverage or second.coverage)
+    inputs.notes.add(inputs.owner, node.name, "velo cannot add two reflections; their mean is rendered")
+    return Closure(_mixed_material(0.5, first.material, second.material, inputs), emission, first.coverage or second.coverage)
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and math.isfinite(value)

@@ -1,0 +1,142 @@
+"""node_values.py: the value of each kind of node; NODES maps the kind's name in Blender to a function (evaluator, node, output
+socket, groups) -> array. Formulas are those of Cycles 3.4 (kernel/svm)."""
+import math
+
+import numpy
+
+from . import color_nodes, images, math_nodes, noise
+
+
+def _unsupported(node, text):
+    from .evaluate import Unsupported
+    return Unsupported(node, text)
+
+
+def vector_of(e, node, groups, default):
+    """The vector at which a texture is looked up: its input, or Cycles' default."""
+    socket = node.inputs.get("Vector")
+    if socket is not None and socket.is_linked:
+        return e.input(socket, groups)
+    if default == "uv":
+        return three(e.field("uv:", node))
+    return e.field(default, node)
+
+
+def three(uv):
+    return numpy.concatenate([uv, numpy.zeros((len(uv), 1))], axis=1) if uv.shape[1] == 2 else uv
+
+
+# ---- coordinates and attributes ----------------------------------------------------------------------------------------
+
+def tex_coord(e, node, output, groups):
+    if output.name == "UV":
+        return three(e.field("uv:", node))
+    if output.name == "Object" and node.object is not None:
+        raise _unsupported(node, "coordinates of another object")
+    return e.field(output.name.lower(), node)
+
+
+def uv_map(e, node, output, groups):
+    return three(e.field("uv:" + node.uv_map, node))
+
+
+def geometry(e, node, output, groups):
+    return e.field(output.name.lower(), node)
+
+
+def attribute(e, node, output, groups):
+    return three(e.field("uv:" + node.attribute_name, node))
+
+
+def mapping(e, node, output, groups):
+    vector = e.named(node, "Vector", groups)
+    place, turn, scale = (e.named(node, name, groups) for name in ("Location", "Rotation", "Scale"))
+    if any(len(part) != 1 for part in (turn,)):
+        raise _unsupported(node, "a rotation that varies")
+    matrix = rotation_matrix(turn[0])
+    if node.vector_type == "TEXTURE":
+        return ((vector - place) @ matrix) / numpy.where(scale == 0, numpy.inf, scale)
+    if node.vector_type == "NORMAL":
+        result = (vector / numpy.where(scale == 0, numpy.inf, scale)) @ matrix.T
+        return result / numpy.maximum(numpy.linalg.norm(result, axis=1, keepdims=True), 1e-30)
+    result = (vector * scale) @ matrix.T
+    return result + place if node.vector_type == "POINT" else result
+
+
+def rotation_matrix(euler):
+    """Rotation about x, then y, then z, radians."""
+    (cx, cy, cz), (sx, sy, sz) = numpy.cos(euler), numpy.sin(euler)
+    return numpy.array([[cy * cz, sy * sx * cz - cx * sz, sy * cx * cz + sx * sz],
+                        [cy * sz, sy * sx * sz + cx * cz, sy * cx * sz - sx * cz], [-sy, cy * sx, cy * cx]])
+
+
+# ---- textures ------------------------------------------------------------------------------------------------------------
+
+def image(e, node, output, groups):
+    if node.projection == "BOX":
+        raise _unsupported(node, "box projection")
+    texels = e.textures(node)
+    vector = vector_of(e, node, groups, "uv")
+    if node.projection in ("SPHERE", "TUBE"):
+        vector = _round(vector * 2 - 1, node.projection)
+    values = texels.at(vector[:, 0], vector[:, 1])
+    return values[:, 3] if output.name == "Alpha" else values[:, :3]
+
+
+def _round(p, kind):
+    """Cycles' map_to_sphere and map_to_tube."""
+    length = numpy.linalg.norm(p if kind == "SPHERE" else p[:, :2], axis=1)
+    u = numpy.where((p[:, 0] == 0) & (p[:, 1] == 0), 0, 0.5 * (1 - numpy.arctan2(p[:, 0], p[:, 1]) / math.pi))
+    safe = numpy.maximum(length, 1e-30)
+    v = 1 - numpy.arccos(numpy.clip(p[:, 2] / safe, -1, 1)) / math.pi if kind == "SPHERE" else (p[:, 2] + 1) / 2
+    return numpy.stack((u, v, numpy.zeros_like(u)), axis=1)
+
+
+def environment(e, node, output, groups):
+    texels = e.textures(node)
+    d = vector_of(e, node, groups, "position" if "direction" not in e.fields else "direction")
+    d = d / numpy.maximum(numpy.linalg.norm(d, axis=1, keepdims=True), 1e-30)
+    if node.projection == "MIRROR_BALL":
+        depth = numpy.sqrt(numpy.maximum(2 * (1 - d[:, 1]), 1e-30))
+        u, v = 0.5 * (d[:, 0] / depth + 1), 0.5 * (d[:, 2] / depth + 1)
+    else:
+        u = -numpy.arctan2(d[:, 1], d[:, 0]) / (2 * math.pi) + 0.5
+        v = numpy.arctan2(d[:, 2], numpy.hypot(d[:, 0], d[:, 1])) / math.pi + 0.5
+    return texels.at(u, v)[:, :3]
+
+
+def checker(e, node, output, groups):
+    p = vector_of(e, node, groups, "generated") * math_nodes.column(e.named(node, "Scale", groups))
+    cells = numpy.abs(numpy.floor((p + 0.000001) * 0.999999)).astype(numpy.int64) % 2
+    first = (cells[:, 0] == cells[:, 1]) == (cells[:, 2] == 1)
+    if output.name == "Fac":
+        return first.astype(float)
+    return numpy.where(first[:, None], e.named(node, "Color1", groups), e.named(node, "Color2", groups))
+
+
+def noise_texture(e, node, output, groups):
+    if node.noise_dimensions != "3D" or getattr(node, "noise_type", "FBM") != "FBM":
+        raise _unsupported(node, "noise of %s dimensions" % node.noise_dimensions)
+    p = vector_of(e, node, groups, "generated") * math_nodes.column(e.named(node, "Scale", groups))
+    numbers = [e.named(node, name, groups) for name in ("Detail", "Roughness", "Distortion")]
+    if any(len(part) != 1 for part in numbers):
+        raise _unsupported(node, "detail, roughness or distortion that varies")
+    factor, color = noise.noise(p, *(float(part[0]) for part in numbers))
+    return factor if output.name == "Fac" else color
+
+
+def gradient(e, node, output, groups):
+    p = vector_of(e, node, groups, "generated")
+    x, y = p[:, 0], p[:, 1]
+    kind = node.gradient_type
+    radius = numpy.maximum(0.999999 - numpy.linalg.norm(p, axis=1), 0)
+    values = {"LINEAR": lambda: x, "QUADRATIC": lambda: numpy.maximum(x, 0)**2, "DIAGONAL": lambda: (x + y) / 2,
+              "EASING": lambda: math_nodes.smooth(numpy.clip(x, 0, 1)), "RADIAL": lambda: numpy.arctan2(y, x) / (2 * math.pi) + 0.5,
+              "QUADRATIC_SPHERE": lambda: radius**2, "SPHERICAL": lambda: radius}[kind]()
+    values = numpy.clip(values, 0, 1)
+    return values if output.name == "Fac" else numpy.repeat(values[:, None], 3, axis=1)
+
+
+NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
+         "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment, "TEX_CHECKER": checker, "TEX_NOISE": noise_texture,
+         "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES}

@@ -1,0 +1,155 @@
+"""principled.py: Blender's Principled shader, both generations of its sockets, as velo's principled material."""
+import math
+
+from . import bumps, versions
+
+
+def _get(inputs, node, name, groups, default):
+    socket = versions.principled_socket(node, name)
+    if socket is None:
+        return default
+    return inputs.color(socket, groups) if isinstance(default, tuple) else inputs.number(socket, groups)
+
+
+def eta_of_reflectance(f0):
+    """The index of refraction whose reflectance at normal incidence is f0."""
+    root = math.sqrt(min(max(f0, 0.0), 0.99))
+    return (1 + root) / (1 - root)
+
+
+def anisotropy(inputs, strength_socket, rotation_socket, roughness, groups, node):
+    """Keywords for Cycles' anisotropy; numbers only. Cycles: alpha / aspect along the tangent, alpha * aspect across it, aspect =
+    sqrt(1 - 0.9 |strength|). velo: alpha along the tangent is mix(alpha, 1, strength^2)."""
+    strength, turn = inputs.constant(strength_socket, groups), inputs.constant(rotation_socket, groups)
+    if strength == 0.0:
+        return {}
+    if not all(isinstance(value, float) for value in (strength, turn, roughness)):
+        inputs.notes.add(inputs.owner, node.name, "anisotropy by textures is left out")
+        return {}
+    alpha = roughness * roughness
+    aspect = math.sqrt(1 - 0.9 * min(abs(strength), 1.0))
+    across, along = alpha * aspect, min(alpha / aspect, 1.0)
+    if across >= 1:
+        return {}
+    share = math.sqrt(max(0.0, (along - across) / (1 - across)))
+    rotation = 2 * math.pi * turn + (0.5 * math.pi if strength < 0 else 0.0)
+    return {"roughness": math.sqrt(across), "anisotropy": share, "anisotropy_rotation": rotation}
+
+
+def convert(inputs, node, groups, glossy, glass):
+    """(material, emission, coverage) of a Principled node. glossy, glass: closures' functions for pure metal and pure glass."""
+    generation = versions.principled_generation(node)
+    get = lambda name, default: _get(inputs, node, name, groups, default)
+    base, metallic, roughness = get("base_color", (0.8,) * 3), get("metallic", 0.0), get("roughness", 0.5)
+    transmission = get("transmission", 0.0)
+    words = bumps.words(inputs, node, groups)
+    coat = get("coat", 0.0)
+    plain = coat == 0.0 and get("sheen", 0.0) == 0.0
+    words.update(anisotropy(inputs, versions.principled_socket(node, "anisotropic"),
+                            versions.principled_socket(node, "anisotropic_rotation"), roughness, groups, node))
+    roughness = words.pop("roughness", roughness)
+    _note_subsurface(inputs, node, get, generation)
+    multiple = generation == 2 or node.distribution == "MULTI_GGX"
+    if metallic == 1.0 and plain and not multiple:
+        material = _lossy_metal(inputs, base, roughness, words)
+    elif transmission == 1.0 and metallic == 0.0 and plain:
+        material = glass(inputs, base, roughness, _index(inputs, node, groups), words)
+    else:
+        words.update(_dielectric(inputs, node, groups, get, generation, transmission, base))
+        if not plain:
+            words.update(_layers(get, generation, coat, base))
+        material = inputs.scene.add_material("principled", reflectance=base, metallic=metallic, roughness=roughness,
+                                             transmission=transmission, thin_walled=False, name=inputs.owner, **words)
+    return material, _emission(inputs, node, groups, get), _coverage(get)
+
+
+def _lossy_metal(inputs, base, roughness, words):
+    """A metal that loses the light between its microfacets, as Blender's Principled before 4.0."""
+    return inputs.scene.add_material("principled", reflectance=(0, 0, 0), metallic=0.0, eta=0.0, specular=1.0, specular_color=base,
+                                     roughness=roughness, name=inputs.owner, **words)
+
+
+def _index(inputs, node, groups):
+    value = inputs.constant(versions.principled_socket(node, "ior"), groups)
+    if not isinstance(value, float):
+        inputs.notes.add(inputs.owner, node.name, "an index of refraction that varies is 1.45")
+        return 1.45
+    return min(max(value, 1.0001), 5.0)
+
+
+def _dielectric(inputs, node, groups, get, generation, transmission, base):
+    """eta, specular and specular_color."""
+    specular, tint = get("specular", 0.5), versions.principled_socket(node, "specular_tint")
+    index = _index(inputs, node, groups)
+    if transmission != 0.0:
+        if generation == 1 and specular != 0.5 and transmission != 1.0:
+            inputs.notes.add(inputs.owner, node.name, "where it transmits light, its reflection has the index, not Specular")
+        return {"eta": index}
+    if generation == 2:
+        f0 = ((index - 1) / (index + 1))**2
+        color = inputs.color(tint, groups)
+        level = 2 * specular if isinstance(specular, float) else 1.0
+        return {"eta": eta_of_reflectance(f0 * level), "specular_color": color}
+    words = {}
+    if isinstance(specular, float):
+        words["eta"] = eta_of_reflectance(0.08 * specular)
+        words["specular"] = 0.0 if specular <= 0 else 1.0
+    else:
+        words.update(eta=eta_of_reflectance(0.08), specular=specular)
+    amount = inputs.constant(tint, groups)
+    if isinstance(amount, float) and amount > 0 and isinstance(base, tuple):
+        words["specular_color"] = tinted(base, amount)
+    return words
+
+
+def tinted(base, amount):
+    """White mixed with the hue of a colour."""
+    light = 0.2126 * base[0] + 0.7152 * base[1] + 0.0722 * base[2]
+    hue = tuple(x / light for x in base) if light > 0 else (1.0,) * 3
+    return tuple(min(1.0, 1 + amount * (x - 1)) for x in hue)
+
+
+def _layers(get, generation, coat, base):
+    """Clear coat and sheen. Before 4.0 the coat had a quarter of its factor (Burley 2012)."""
+    words = {}
+    if coat != 0.0:
+        quarter = 0.25 if generation == 1 else 1.0
+        words["clearcoat"] = min(1.0, quarter * coat) if isinstance(coat, float) else coat
+        words["clearcoat_roughness"] = get("coat_roughness", 0.03)
+    sheen = get("sheen", 0.0)
+    if isinstance(sheen, float) and sheen != 0.0:
+        if generation == 2:
+            tint, rough = get("sheen_tint", (1.0,) * 3), get("sheen_roughness", 0.5)
+            words["sheen_color"] = tuple(min(1.0, sheen * x) for x in tint) if isinstance(tint, tuple) else tint
+            words["sheen_roughness"] = rough
+        else:
+            amount = get("sheen_tint", 0.5)
+            hue = tinted(base, amount) if isinstance(base, tuple) and isinstance(amount, float) else (1.0,) * 3
+            words["sheen_color"] = tuple(min(1.0, max(0.0, sheen * x)) for x in hue)
+            words["sheen_roughness"] = 0.5
+    return words
+
+
+def _note_subsurface(inputs, node, get, generation):
+    if get("subsurface", 0.0) != 0.0:
+        inputs.notes.add(inputs.owner, node.name, "subsurface scattering is diffuse")
+    if generation == 2 and get("film_thickness", 0.0) != 0.0:
+        inputs.notes.add(inputs.owner, node.name, "the thin film is left out")
+
+
+def _emission(inputs, node, groups, get):
+    strength = inputs.constant(versions.principled_socket(node, "emission_strength"), groups)
+    if not isinstance(strength, float):
+        inputs.notes.add(inputs.owner, node.name, "an emission strength that varies is 1")
+        strength = 1.0
+    if strength <= 0:
+        return []
+    color = get("emission", (0.0,) * 3)
+    return [] if color == (0.0, 0.0, 0.0) else [(color, strength)]
+
+
+def _coverage(get):
+    alpha = get("alpha", 1.0)
+    if isinstance(alpha, float):
+        return None if alpha >= 1 else max(0.0, alpha)
+    return alpha

@@ -1,0 +1,33 @@
+"""report.py: what velo could not take over from a scene, one line for each thing, for the panel and for Blender's report."""
+
+
+class Notes:
+    """Lines (owner, thing, text), each once, in the order in which they came.
+
+    owner: name of the material, object or image; thing: its node or setting, may be empty; text: what happens instead."""
+
+    def __init__(self):
+        self.lines = []
+        self._known = set()
+
+    def add(self, owner, thing, text):
+        line = (str(owner), str(thing), str(text))
+        if line not in self._known:
+            self._known.add(line)
+            self.lines.append(line)
+
+    def texts(self):
+        """The lines as text: `owner, thing: text`."""
+        return ["%s%s: %s" % (owner, ", " + thing if thing else "", text) for owner, thing, text in self.lines]
+
+
+class Refused(Exception):
+    """A scene or a setting that cannot be rendered; its text is one line."""
+
+
+#: The notes of the last export, by the name of its scene; the panel reads them.
+last = {}
+
+
+def remember(scene_name, notes):
+    last[scene_name] = notes.texts()

@@ -1,0 +1,49 @@
+"""settings.py: the settings of a render by velo, as properties of the scene: scene.velo."""
+import bpy
+
+
+class VeloSettings(bpy.types.PropertyGroup):
+    """The settings of a final render and of the viewport."""
+    samples: bpy.props.IntProperty(name="Samples", default=128, min=1, max=65536, description="Samples per pixel")
+    preview_samples: bpy.props.IntProperty(name="Viewport samples", default=32, min=1, max=65536,
+                                           description="Samples per pixel of the viewport")
+    noise: bpy.props.FloatProperty(name="Noise", default=0.0, min=0.0, max=1.0, precision=4,
+                                   description="The render ends where the image's error is below this; 0: after all samples")
+    denoise: bpy.props.BoolProperty(name="Denoise", default=False, description="Denoise the colours by velo's denoiser")
+    bounces_of_cycles: bpy.props.BoolProperty(name="Bounces of Cycles", default=True,
+                                              description="Take the largest number of bounces from the settings of Cycles")
+    bounces: bpy.props.IntProperty(name="Bounces", default=12, min=0, max=1024, description="Largest number of bounces")
+    seed: bpy.props.IntProperty(name="Seed", default=0, min=0, description="Another seed gives other noise")
+    spectral: bpy.props.BoolProperty(name="Spectral", default=False,
+                                     description="Compute with wavelengths; off: with red, green and blue, as Cycles does")
+    bake_size: bpy.props.IntProperty(name="Baked size", default=1024, min=16, max=8192,
+                                     description="Pixels along a side of baked textures that have no image")
+
+
+def bounces(scene):
+    """The largest number of bounces: 0 is direct light alone, as in Cycles."""
+    cycles = getattr(scene, "cycles", None)
+    if scene.velo.bounces_of_cycles and cycles is not None:
+        return int(cycles.max_bounces)
+    return int(scene.velo.bounces)
+
+
+def tracing(scene, samples):
+    """Keywords of velo's render: samples, bounces, seed, colours."""
+    words = {"spp": samples, "max_depth": bounces(scene) + 1, "seed": scene.velo.seed,
+             "color": "spectral" if scene.velo.spectral else "rgb"}
+    if scene.render.film_transparent:
+        words["transparent"] = True
+    if scene.velo.noise > 0:
+        words["noise"] = scene.velo.noise
+    return words
+
+
+def register():
+    bpy.utils.register_class(VeloSettings)
+    bpy.types.Scene.velo = bpy.props.PointerProperty(type=VeloSettings)
+
+
+def unregister():
+    del bpy.types.Scene.velo
+    bpy.utils.unregister_class(VeloSettings)

@@ -1,0 +1,229 @@
+"""textures.py: what feeds a material's sockets, as velo's inputs: numbers, colours, image textures, vertex colours; what velo has no
+texture for is baked to an image over the uv map that it depends on."""
+import numpy
+import velo
+
+from . import evaluate, images, links, node_values
+
+WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
+
+
+def affine_of_mapping(node, evaluator, groups):
+    """(s, t) from (u, v) by a mapping node, 2 x 3; None: it is none in the plane."""
+    corners = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+
+    class Ready:
+        """An evaluator whose vector is given."""
+
+        def named(self, inner, name, inner_groups):
+            return corners if name == "Vector" else evaluator.named(inner, name, inner_groups)
+
+    try:
+        origin, along, up = node_values.mapping(Ready(), node, None, groups)
+    except evaluate.Unsupported:
+        return None
+    return numpy.stack((along - origin, up - origin, origin), axis=1)[:2]
+
+
+class Inputs:
+    """velo's inputs for one material on meshes with the same uv maps.
+
+    scene: velo.Scene. owner: the material's name. uv_names: the mesh's maps, set 0 is render_uv. bounds: {name: (low, high)} of the
+    mesh's uvs. cache: {key: handle}, shared by all materials. bake_size: pixels of baked images."""
+
+    def __init__(self, scene, notes, owner, maps, cache, bake_size):
+        self.scene, self.notes, self.owner, self.maps, self.cache, self.bake_size = scene, notes, owner, maps, cache, bake_size
+        self.color_attribute = None  # the name of the vertex colours that are used; None: none
+
+    # ---- numbers and colours
+
+    def constant(self, socket, groups=()):
+        return evaluate.constant(socket, groups)
+
+    def color(self, socket, groups=()):
+        """A colour: three numbers or a colour texture."""
+        value = evaluate.constant(socket, groups)
+        if value is None:
+            return self._texture(socket, groups, True)
+        value = (value,) * 3 if isinstance(value, float) else value
+        return tuple(max(0.0, x) for x in value)
+
+    def number(self, socket, groups=()):
+        """A number or a float texture."""
+        value = evaluate.constant(socket, groups)
+        if value is None:
+            return self._texture(socket, groups, False)
+        return value if isinstance(value, float) else float(sum(value) / 3)
+
+    def _texture(self, socket, groups, spectrum):
+        source, _ = links.follow(socket, groups)
+        try:
+            handle = self._direct(source, spectrum)
+            return self.baked(socket, groups, spectrum) if handle is None else handle
+        except evaluate.Unsupported as error:
+            self.notes.add(self.owner, error.node.name, "%s; %s has its own value" % (error.text, socket.name))
+        default = evaluate.default_of(socket)
+        return tuple(float(x) for x in evaluate.as_vector(default)[0]) if spectrum else float(evaluate.as_value(default)[0])
+
+    # ---- textures that velo has
+
+    def _direct(self, source, spectrum):
+        """velo's own texture for a node, None: there is none."""
+        node = source.node
+        if node.type in ("VERTEX_COLOR", "ATTRIBUTE"):
+            return self._vertex_color(source, spectrum)
+        if node.type != "TEX_IMAGE" or node.projection != "FLAT":
+            return None
+        place = self._place(node, source.groups)
+        if place is None:
+            return None
+        channel = 3 if source.socket.name == "Alpha" else -1
+        return self.image(node, place, spectrum, channel)
+
+    def _vertex_color(self, source, spectrum):
+        node = source.node
+        name = node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
+        if node.type == "ATTRIBUTE" and (node.attribute_type != "GEOMETRY" or name in self.maps.names):
+            return None
+        if self.color_attribute not in (None, name):
+            raise evaluate.Unsupported(node, "a second colour attribute in one material")
+        self.color_attribute = name
+        channel = 3 if source.socket.name == "Alpha" else -1
+        words = {} if spectrum else {"channel": channel}
+        return self.scene.add_texture("vertex_color", spectrum=spectrum, **words)
+
+    def _place(self, node, groups):
+        """(uv set, 2 x 3 from uv) of an image node; None: it is not placed by one uv map and a plane mapping."""
+        matrix = numpy.array([[1.0, 0, 0], [0, 1, 0]])
+        source, _ = links.follow(node.inputs["Vector"], groups)
+        evaluator = evaluate.Evaluator({}, evaluate._no_textures)
+        if source is not None and source.node.type == "MAPPING":
+            mapping = source
+            inner = affine_of_mapping(mapping.node, evaluator, mapping.groups)
+            source, socket = links.follow(mapping.node.inputs["Vector"], mapping.groups)
+            if inner is None or source is None:
+                return None
+            matrix = inner
+        number = 0 if source is None else self._uv_set(source)
+        return None if number is None else (number, matrix)
+
+    def _uv_set(self, source):
+        node = source.node
+        if node.type == "TEX_COORD" and source.socket.name == "UV":
+            return self.maps.number("")
+        if node.type == "UVMAP":
+            return self.maps.number(node.uv_map)
+        if node.type == "ATTRIBUTE" and node.attribute_name in self.maps.names:
+            return self.maps.number(node.attribute_name)
+        return None
+
+    def image(self, node, place, spectrum, channel):
+        """velo's texture of an image node."""
+        why = images.problem(node.image)
+        if why is not None:
+            raise evaluate.Unsupported(node, why)
+        if node.interpolation in ("Cubic", "Smart"):
+            self.notes.add(self.owner, node.name, "cubic interpolation is linear")
+        array = self.texels(node)
+        number, matrix = place
+        key = ("image", node.image.name_full, spectrum, channel, number, tuple(matrix.ravel()), node.extension, node.interpolation,
+               is_multiplied(node))
+        if key not in self.cache:
+            words = {} if spectrum else {"channel": channel}
+            self.cache[key] = self._add(array, spectrum, number, matrix, wrap=WRAPS[node.extension],
+                                        filter="point" if node.interpolation == "Closest" else "bilinear", **words)
+        return self.cache[key]
+
+    def texels(self, node):
+        """The pixels of an image node as Cycles sees them, height x width x 4, linear; kept."""
+        key = ("pixels", node.image.name_full, is_multiplied(node))
+        if key not in self.cache:
+            array = images.pixels(node.image, self.notes)
+            if is_multiplied(node):
+                array[..., :3] *= array[..., 3:]
+            self.cache[key] = array
+        return self.cache[key]
+
+    def _add(self, array, spectrum, number, matrix, **words):
+        image = velo.Image(numpy.ascontiguousarray(array[..., :3] if spectrum else array), encoding="linear")
+        return self.scene.add_texture("image", spectrum=spectrum, image=image, uv_set=number,
+                                      st_from_uv=[float(x) for x in numpy.ravel(matrix)], **words)
+
+    # ---- baking
+
+    def baked(self, socket, groups, spectrum):
+        """An image texture of what feeds a socket, over the box of the mesh's uvs."""
+        number, (low, high) = self._only_map(socket, groups)
+        size = high - low
+        side = self.bake_size
+        v, u = numpy.meshgrid(high[1] - (numpy.arange(side) + 0.5) / side * size[1], low[0] + (numpy.arange(side) + 0.5) / side * size[0],
+                              indexing="ij")
+        values = self._values(socket, groups, numpy.stack((u.ravel(), v.ravel()), axis=1))
+        array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
+        array = numpy.broadcast_to(array, (side * side, array.shape[1])).reshape(side, side, -1).astype(numpy.float32)
+        matrix = numpy.array([[1 / size[0], 0, -low[0] / size[0]], [0, 1 / size[1], -low[1] / size[1]]])
+        words = {} if spectrum else {"channel": 0}
+        return self._add(numpy.maximum(array, 0) if spectrum else array, spectrum, number, matrix, wrap="clamp", filter="bilinear", **words)
+
+    def _only_map(self, socket, groups):
+        """The uv map that a socket depends on and the box of its uvs: each map is tried, with points in the middle."""
+        last = None
+        for number, name in enumerate(self.maps.names[:4]):
+            try:
+                self._values(socket, groups, numpy.full((2, 2), 0.5), only=name)
+                return number, self.maps.bounds[name]
+            except evaluate.Unsupported as error:
+                last = error
+        if last is None:
+            source, _ = links.follow(socket, groups)
+            raise evaluate.Unsupported(source.node, "it varies, and the mesh has no uv map to bake it over")
+        raise last
+
+    def _values(self, socket, groups, uv, only=None):
+        fields = {}
+        for name in [only] if only is not None else self.maps.names[:4]:
+            fields["uv:" + name] = uv
+            if name == self.maps.names[0]:
+                fields["uv:"] = uv
+        return evaluate.Evaluator(fields, self._look_up).input(socket, groups)
+
+    def _look_up(self, node):
+        why = images.problem(node.image)
+        if why is not None:
+            raise evaluate.Unsupported(node, why)
+        return images.Texels(self.texels(node), getattr(node, "extension", "REPEAT"), node.interpolation == "Closest")
+
+
+def is_multiplied(node):
+    """Whether colours are multiplied by alpha: Cycles divides by it only where the output Alpha is used."""
+    image = node.image
+    if image.alpha_mode in ("CHANNEL_PACKED", "NONE") or image.channels < 4 or image.colorspace_settings.name in ("Non-Color", "Raw"):
+        return False
+    alpha = node.outputs.get("Alpha")
+    return alpha is not None and not alpha.is_linked
+
+
+class Maps:
+    """The uv maps of a mesh: names with the rendered one first, the box of each map's uvs."""
+
+    def __init__(self, mesh):
+        first = [mesh.render_uv] if mesh.render_uv is not None else []
+        self.names = first + [name for name in mesh.uv_names if name != mesh.render_uv]
+        self.bounds = {name: _box(mesh.uvs[name]) for name in self.names}
+
+    def number(self, name):
+        """The set of a map; an empty name is the rendered map. Missing maps are 0 everywhere, as in Cycles: set 0."""
+        return self.names.index(name) if name in self.names[:4] else 0
+
+    def key(self):
+        return tuple((name, tuple(self.bounds[name][0]), tuple(self.bounds[name][1])) for name in self.names)
+
+
+def _box(uvs):
+    """The box of uvs, at least the unit square where they are inside it, else in whole numbers; at most 64 wide."""
+    finite = uvs[numpy.isfinite(uvs).all(axis=1)]
+    if len(finite) == 0:
+        return numpy.zeros(2), numpy.ones(2)
+    low = numpy.clip(numpy.floor(finite.min(axis=0) + 1e-4), -32, 31).astype(float)
+    high = numpy.clip(numpy.ceil(finite.max(axis=0) - 1e-4), low + 1, low + 64).astype(float)
+    return low, high

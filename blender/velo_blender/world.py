@@ -1,0 +1,119 @@
+"""world.py: Blender's world as velo's infinite light: one colour, or an image of what its nodes give in all directions."""
+import math
+
+import numpy
+import velo
+
+from . import evaluate, images, links
+
+MAX_SIDE = 2048  # of the octahedral image, pixels
+PLAIN_SIDE = 512  # where no image asks for more
+
+
+def square_directions(side):
+    """The unit directions of the pixels of an equal-area octahedral square (Clarberg 2008; pbrt book 3.8.3), side * side x 3, rows
+    from the top."""
+    place = 2 * (numpy.arange(side) + 0.5) / side - 1
+    v, u = numpy.meshgrid(place, place, indexing="ij")
+    up, vp = numpy.abs(u), numpy.abs(v)
+    distance = 1 - (up + vp)
+    r = 1 - numpy.abs(distance)
+    safe = numpy.where(r == 0, 1, r)
+    phi = numpy.where(r == 0, 1, (vp - up) / safe + 1) * math.pi / 4
+    z = numpy.copysign(1 - r * r, distance)
+    around = r * numpy.sqrt(numpy.maximum(0, 2 - r * r))
+    x, y = numpy.copysign(numpy.cos(phi), u) * around, numpy.copysign(numpy.sin(phi), v) * around
+    return numpy.stack((x.ravel(), y.ravel(), z.ravel()), axis=1)
+
+
+def _image_size(tree, seen=()):
+    """The height of the largest image in a tree of nodes; 0: there is none."""
+    best = 0
+    for node in tree.nodes:
+        if node.type in ("TEX_ENVIRONMENT", "TEX_IMAGE") and node.image is not None:
+            best = max(best, node.image.size[1])
+        if node.type == "GROUP" and node.node_tree is not None and node.node_tree not in seen:
+            best = max(best, _image_size(node.node_tree, seen + (node.node_tree,)))
+    return best
+
+
+class _Look:
+    """The image of a node, kept while the world is made."""
+
+    def __init__(self, notes):
+        self.notes = notes
+        self.known = {}
+
+    def __call__(self, node):
+        why = images.problem(node.image)
+        if why is not None:
+            raise evaluate.Unsupported(node, why)
+        name = node.image.name_full
+        if name not in self.known:
+            self.known[name] = images.pixels(node.image, self.notes)
+        return images.Texels(self.known[name], getattr(node, "extension", "REPEAT"), node.interpolation == "Closest")
+
+
+def _radiance(socket, groups, evaluator, notes, owner, depth=0):
+    """The radiance of a shader socket in the evaluator's directions, n x 3."""
+    source = links.follow(socket, groups)[0] if depth < 50 else None
+    if source is None:
+        return numpy.zeros((1, 3))
+    node, inner = source.node, source.groups
+    if node.type in ("BACKGROUND", "EMISSION"):
+        color, strength = (evaluator.input(node.inputs[name], inner) for name in ("Color", "Strength"))
+        return numpy.maximum(color, 0) * numpy.maximum(strength, 0)[:, None]
+    if node.type == "MIX_SHADER":
+        factor = evaluator.input(node.inputs[0], inner)[:, None]
+        first, second = (_radiance(node.inputs[i], inner, evaluator, notes, owner, depth + 1) for i in (1, 2))
+        return first + numpy.clip(factor, 0, 1) * (second - first)
+    if node.type == "ADD_SHADER":
+        return sum(_radiance(node.inputs[i], inner, evaluator, notes, owner, depth + 1) for i in (0, 1))
+    notes.add(owner, node.name, "velo has no such world shader; it is black")
+    return numpy.zeros((1, 3))
+
+
+def add(scene, world, notes):
+    """Adds the light of a world; nothing where it is black."""
+    if world is None:
+        return
+    if not world.use_nodes or world.node_tree is None:
+        _add_color(scene, numpy.array(world.color, dtype=float))
+        return
+    output = links.output_node(world.node_tree, "OUTPUT_WORLD")
+    if output is None:
+        return
+    if output.inputs["Volume"].is_linked:
+        notes.add(world.name, "Volume", "the world's volume is not rendered")
+    surface, look = output.inputs["Surface"], _Look(notes)
+    try:
+        try:
+            values = _radiance(surface, (), evaluate.Evaluator({}, look), notes, world.name)
+        except evaluate.Unsupported:
+            values = None
+        if values is not None and len(values) == 1:
+            _add_color(scene, values[0])
+            return
+        _add_image(scene, world, surface, look, notes)
+    except links.Cyclic as error:
+        notes.add(world.name, "", "%s; it is black" % error)
+    except evaluate.Unsupported as error:
+        notes.add(world.name, error.node.name, "%s; the world is black" % error.text)
+
+
+def _add_color(scene, color):
+    high = float(color.max())
+    if numpy.isfinite(color).all() and high > 0:
+        scene.add_light("infinite", color=tuple(float(x) / high for x in color), scale=high)
+
+
+def _add_image(scene, world, surface, look, notes):
+    height = _image_size(world.node_tree)
+    side = PLAIN_SIDE if height == 0 else min(MAX_SIDE, max(64, int(1.5 * height)))
+    directions = square_directions(side)
+    fields = {"direction": directions, "generated": directions, "position": directions, "normal": -directions, "object": directions}
+    values = _radiance(surface, (), evaluate.Evaluator(fields, look), notes, world.name)
+    array = numpy.broadcast_to(values, (side * side, 3)).reshape(side, side, 3).astype(numpy.float32)
+    high = float(array.max())
+    if high > 0 and math.isfinite(high):
+        scene.add_light("infinite", image=velo.Image(numpy.ascontiguousarray(array), encoding="linear"), scale=1.0)

@@ -1,0 +1,140 @@
+"""Cases of test_render.py: light, materials and passes agree with Cycles; bad input is reported."""
+import bpy
+import numpy
+
+from inside import (add_object, agrees, ball, case, channel, colors, lamp, material, new_scene, notes, plane, refused, render)
+
+GRAY = (0.8, 0.6, 0.4)
+
+
+def room(**words):
+    """A floor and a ball, both diffuse."""
+    scene = new_scene(**words)
+    plane(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    ball(material("ShaderNodeBsdfDiffuse", Color=(0.2, 0.5, 0.8))[0])
+    return scene
+
+
+@case
+def lights_have_the_units_of_cycles():
+    for kind, words in (("POINT", {"energy": 500, "color": (1, 0.5, 0.2)}), ("SUN", {"energy": 3}),
+                        ("SPOT", {"energy": 800, "spot_size": 0.9, "spot_blend": 0.4, "shadow_soft_size": 0}),
+                        ("SPOT", {"energy": 800, "spot_size": 2.6, "spot_blend": 0.1, "shadow_soft_size": 0}),
+                        ("AREA", {"energy": 300, "size": 1.5}), ("AREA", {"energy": 300, "shape": "ELLIPSE", "size": 1.5, "size_y": 0.5})):
+        scene = room()
+        lamp(scene, kind, **words)
+        agrees(scene, 0.01)
+
+
+@case
+def a_world_of_one_color():
+    agrees(room(world=(0.5, 0.6, 0.8)), 0.01)
+
+
+@case
+def metal_and_glass():
+    for kind, words in (("ShaderNodeBsdfGlossy", {"Color": (0.9, 0.6, 0.3), "Roughness": 0.3}),
+                        ("ShaderNodeBsdfGlass", {"Color": (1, 1, 1), "Roughness": 0.1, "distribution": "GGX"}),
+                        ("ShaderNodeBsdfPrincipled", {"Base_Color": GRAY, "Metallic": 1.0, "Roughness": 0.4})):
+        scene = room(world=(0.3, 0.3, 0.3))
+        ball(material(kind, **words)[0], (-1.5, -1, 1))
+        lamp(scene, "AREA", 300, size=1.5)
+        agrees(scene)
+
+
+@case
+def principled_without_layers():
+    for rough in (0.1, 0.9):
+        scene = new_scene(world=(1, 1, 1))
+        ball(material("ShaderNodeBsdfPrincipled", Base_Color=GRAY, Roughness=rough)[0], (0, 0, 0.5), 1.7)
+        agrees(scene, 0.03)
+
+
+@case
+def surfaces_that_emit():
+    scene = new_scene()
+    plane(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    ball(material("ShaderNodeEmission", Color=(1, 0.5, 0.2), Strength=3.0)[0])
+    agrees(scene, 0.01)
+
+
+@case
+def depth_and_normals_are_those_of_cycles():
+    scene = room(world=(1, 1, 1), samples=1)
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_normal = True
+    cycles, mine = render(scene, "CYCLES"), render(scene)
+    depth, other = channel(mine, "Depth.Z"), channel(cycles, "Depth.Z")
+    inner = abs(other - numpy.roll(other, 1, axis=0)) < 0.3
+    assert numpy.median(abs(depth - other)[inner]) < 0.05
+    assert numpy.median(abs(channel(mine, "Normal.Z") - channel(cycles, "Normal.Z"))) < 0.02
+
+
+@case
+def alpha_is_there_where_the_film_is_transparent():
+    scene = new_scene(world=(1, 1, 1))
+    ball(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    assert (channel(render(scene), "Combined.A") == 1).all()
+    scene.render.film_transparent = True
+    alpha = channel(render(scene), "Combined.A")
+    other = channel(render(scene, "CYCLES"), "Combined.A")
+    assert abs(alpha.mean() - other.mean()) < 0.005, (alpha.mean(), other.mean())
+
+
+@case
+def no_camera_is_one_line():
+    scene = room()
+    scene.camera = None
+    refused(scene, "camera")
+
+
+@case
+def empty_scenes_are_black():
+    assert colors(render(new_scene())).max() == 0
+
+
+@case
+def bad_objects_are_left_out():
+    scene = room(world=(0.5, 0.5, 0.5))
+    wrong = ball(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    wrong.location.x = float("nan")
+    flat = ball(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    flat.scale = (0, 0, 0)
+    empty = bpy.data.meshes.new("nothing")
+    add_object(scene, "nothing", empty)
+    lamp(scene, "AREA", 100, size=0.0)
+    image = colors(render(scene))
+    assert numpy.isfinite(image).all() and image.mean() > 0.1
+    lines = "\n".join(notes(scene))
+    assert "no number" in lines and "area is 0" in lines, lines
+
+
+@case
+def missing_images_are_listed_and_cycles_of_nodes_end():
+    scene = room(world=(0.5, 0.5, 0.5))
+    made, node = material("ShaderNodeBsdfDiffuse")
+    picture = made.node_tree.nodes.new("ShaderNodeTexImage")
+    picture.image = bpy.data.images.new("lost", 4, 4)
+    picture.image.source = "FILE"
+    picture.image.filepath = "/nowhere/lost.png"
+    made.node_tree.links.new(picture.outputs[0], node.inputs[0])
+    ball(made, (1, -1, 1))
+    other, node = material("ShaderNodeBsdfDiffuse")
+    one, two = (other.node_tree.nodes.new("ShaderNodeMixShader") for _ in range(2))
+    other.node_tree.links.new(one.outputs[0], two.inputs[1])
+    other.node_tree.links.new(two.outputs[0], one.inputs[1])
+    output = next(n for n in other.node_tree.nodes if n.type == "OUTPUT_MATERIAL")
+    other.node_tree.links.new(one.outputs[0], output.inputs[0])
+    ball(other, (-1, -1, 1))
+    assert numpy.isfinite(colors(render(scene))).all()
+    lines = "\n".join(notes(scene))
+    assert "lost.png is missing" in lines, lines
+
+
+@case
+def an_unknown_node_is_listed_by_its_name():
+    scene = room(world=(0.5, 0.5, 0.5))
+    made, _ = material("ShaderNodeBsdfToon")
+    ball(made, (1, -1, 1))
+    render(scene)
+    assert any("Toon" in line for line in notes(scene)), notes(scene)

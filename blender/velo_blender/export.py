@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 import numpy
 import velo
 
-from . import camera, geometry, lights, materials, textures, world
+from . import atlas, camera, geometry, lights, materials, textures, world
 from .report import Notes, Refused
 
 MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -138,28 +138,37 @@ class Export:
         parts = []
         for slot in numpy.unique(arrays.slots):
             material = slots[slot] if 0 <= slot < len(slots) else slots[-1]
-            surface = self._surface(material, maps)
+            corners = atlas.Corners(arrays, slot, item, maps.names[:4], arrays.texture_space)
+            surface = self._surface(material, maps, corners)
             parts.append(Part(self._arrays_of(arrays, slot, maps, surface), surface, material))
         return parts
 
-    def _surface(self, material, maps):
+    def _surface(self, material, maps, corners):
         key = (None if material is None else material.name_full, maps.key())
         if key not in self._surfaces:
             owner = "default" if material is None else material.name
-            inputs = textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size)
-            self._surfaces[key] = materials.convert(material, inputs)
+            inputs = textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners)
+            surface = materials.convert(material, inputs)
+            if surface.atlas is not None:
+                return surface  # of this mesh alone
+            self._surfaces[key] = surface
         return self._surfaces[key]
 
     def _arrays_of(self, arrays, slot, maps, surface):
         """Keywords of velo's triangles for one slot."""
         triangles, used = arrays.part(slot)
+        if surface.atlas is not None:  # each triangle has corners of its own
+            used = arrays.triangles[arrays.slots == slot].ravel()
+            triangles = numpy.arange(len(used), dtype=numpy.int32).reshape(-1, 3)
         pick = (lambda array: array) if used is None else (lambda array: array[used])
         words = {"positions": pick(arrays.positions), "indices": triangles}
         if arrays.normals is not None:
             words["normals"] = geometry.clean_normals(pick(arrays.normals))
         uvs = [numpy.nan_to_num(pick(arrays.uvs[name])) for name in maps.names[:4]]
-        if uvs:
-            words["uvs"] = uvs[0] if len(uvs) == 1 else uvs
+        if surface.atlas is not None:
+            uvs = uvs[:3] + [surface.atlas.uvs.reshape(-1, 2)]
+        for number, values in enumerate(uvs):
+            words["uvs_%d" % number if number else "uvs"] = values
         if surface.color_attribute is not None:
             colors = arrays.colors(surface.color_attribute)
             if colors is not None:

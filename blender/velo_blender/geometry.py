@@ -34,6 +34,9 @@ class MeshArrays:
         self.uv_names = [layer.name for layer in mesh.uv_layers]
         self.render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
         self.uvs = {layer.name: _read(layer.data, "uv", 2, numpy.float32) for layer in mesh.uv_layers}
+        self.color_names = [attribute.name for attribute in mesh.color_attributes]
+        low, size = numpy.array(mesh.texspace_location), numpy.array(mesh.texspace_size)
+        self.texture_space = low - size, 2 * size  # corner and size of the box of generated coordinates
         self._mesh = mesh
 
     def _normals(self, mesh, smooth, points):

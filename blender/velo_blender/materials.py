@@ -8,10 +8,11 @@ from .evaluate import Unsupported
 
 class Surface:
     """What a shape needs: material (handle), alpha (number, texture or None), emission (handle or None), color_attribute (name of
-    its vertex colours, or None)."""
+    its vertex colours, or None), atlas (atlas.Atlas of what is baked by triangles, or None)."""
 
-    def __init__(self, material, alpha, emission, color_attribute):
-        self.material, self.alpha, self.emission, self.color_attribute = material, alpha, emission, color_attribute
+    def __init__(self, material, alpha, emission, inputs):
+        self.material, self.alpha, self.emission = material, alpha, emission
+        self.color_attribute, self.atlas = inputs.color_attribute, inputs.atlas
 
 
 def convert(material, inputs):
@@ -46,7 +47,7 @@ def _finish(closure, inputs):
     if handle is None:
         handle = inputs.scene.add_material("diffuse", reflectance=(0, 0, 0), name=inputs.owner)
     emission = closures.emission_handle(closure, inputs)
-    return Surface(handle, closure.coverage, emission, inputs.color_attribute)
+    return Surface(handle, closure.coverage, emission, inputs)
 
 
 def _closure(socket, groups, inputs, depth):

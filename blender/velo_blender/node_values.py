@@ -41,10 +41,22 @@ def uv_map(e, node, output, groups):
 
 
 def geometry(e, node, output, groups):
-    return e.field(output.name.lower(), node)
+    return e.field("world " + output.name.lower(), node)
+
+
+def object_info(e, node, output, groups):
+    return e.field("object info " + output.name.lower(), node)
+
+
+def vertex_color(e, node, output, groups):
+    values = e.field("color:" + node.layer_name, node)
+    return values[:, 3] if output.name == "Alpha" else values[:, :3]
 
 
 def attribute(e, node, output, groups):
+    if "color:" + node.attribute_name in e.fields:
+        values = e.field("color:" + node.attribute_name, node)
+        return values[:, 3] if output.name == "Alpha" else values[:, :3]
     return three(e.field("uv:" + node.attribute_name, node))
 
 
@@ -94,7 +106,7 @@ def _round(p, kind):
 
 def environment(e, node, output, groups):
     texels = e.textures(node)
-    d = vector_of(e, node, groups, "position" if "direction" not in e.fields else "direction")
+    d = vector_of(e, node, groups, "world position" if "direction" not in e.fields else "direction")
     d = d / numpy.maximum(numpy.linalg.norm(d, axis=1, keepdims=True), 1e-30)
     if node.projection == "MIRROR_BALL":
         depth = numpy.sqrt(numpy.maximum(2 * (1 - d[:, 1]), 1e-30))
@@ -138,5 +150,6 @@ def gradient(e, node, output, groups):
 
 
 NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
+         "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color,
          "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment, "TEX_CHECKER": checker, "TEX_NOISE": noise_texture,
          "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES}

@@ -181,13 +181,14 @@ def convert(camera, size, words):
     if kind is None:
         raise Refused("camera %s: velo has no panorama %s" % (camera.name, settings.panorama_type))
     model = kind(settings, sensor_size(camera, size))
+    shift_u, shift_v = camera.shift_x, camera.shift_y  # shares of the width and of the height
 
     def rays(film):
-        return _to_velo(*model.directions(film.x / film.width, 1 - film.y / film.height))
+        return _to_velo(*model.directions(film.x / film.width + shift_u, 1 - film.y / film.height + shift_v))
 
     def pixels(points, width, height):
         u, v = model.points(*_from_velo(points))
-        return numpy.stack((u * width, (1 - v) * height), axis=1)
+        return numpy.stack(((u - shift_u) * width, (1 - v + shift_v) * height), axis=1)
 
     own = velo.OwnCamera(rays, name=model.name, pixels=pixels)
     return velo.Camera(*size, own=own, near_plane=float(camera.clip_start), far_plane=float(camera.clip_end), **words)

@@ -3,7 +3,7 @@ texture for is baked to an image over the uv map that it depends on."""
 import numpy
 import velo
 
-from . import evaluate, images, links, node_values
+from . import atlas, evaluate, images, links, node_values
 
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
 
@@ -31,7 +31,9 @@ class Inputs:
     scene: velo.Scene. owner: the material's name. uv_names: the mesh's maps, set 0 is render_uv. bounds: {name: (low, high)} of the
     mesh's uvs. cache: {key: handle}, shared by all materials. bake_size: pixels of baked images."""
 
-    def __init__(self, scene, notes, owner, maps, cache, bake_size):
+    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None):
+        self.corners = corners  # atlas.Corners of the mesh; None: nothing can be baked by its triangles
+        self.atlas = None  # the layout of what is baked by triangles; None: nothing is
         self.scene, self.notes, self.owner, self.maps, self.cache, self.bake_size = scene, notes, owner, maps, cache, bake_size
         self.color_attribute = None  # the name of the vertex colours that are used; None: none
 
@@ -152,8 +154,13 @@ class Inputs:
     # ---- baking
 
     def baked(self, socket, groups, spectrum):
-        """An image texture of what feeds a socket, over the box of the mesh's uvs."""
-        number, (low, high) = self._only_map(socket, groups)
+        """An image texture of what feeds a socket, over the box of the mesh's uvs or, where it depends on more, by triangles."""
+        try:
+            number, (low, high) = self._only_map(socket, groups)
+        except evaluate.Unsupported:
+            if self.corners is None:
+                raise
+            return self._baked_by_triangles(socket, groups, spectrum)
         size = high - low
         side = self.bake_size
         v, u = numpy.meshgrid(high[1] - (numpy.arange(side) + 0.5) / side * size[1], low[0] + (numpy.arange(side) + 0.5) / side * size[0],
@@ -164,6 +171,23 @@ class Inputs:
         matrix = numpy.array([[1 / size[0], 0, -low[0] / size[0]], [0, 1 / size[1], -low[1] / size[1]]])
         words = {} if spectrum else {"channel": 0}
         return self._add(numpy.maximum(array, 0) if spectrum else array, spectrum, number, matrix, wrap="clamp", filter="bilinear", **words)
+
+    def _baked_by_triangles(self, socket, groups, spectrum):
+        layout = self.atlas or atlas.Atlas(len(self.corners.triangles), self.bake_size)
+        if not layout.fits:
+            source, _ = links.follow(socket, groups)
+            raise evaluate.Unsupported(source.node, "the mesh has too many triangles to bake it")
+        fields = {name: layout.points(values) for name, values in self.corners.fields().items()}
+        fields.update(self.corners.constants())
+        values = evaluate.Evaluator(fields, self._look_up).input(socket, groups)
+        array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
+        count = len(layout.corner) * layout.block**2
+        image = layout.image(numpy.broadcast_to(array, (count, array.shape[1])).astype(numpy.float32))
+        self.atlas = layout
+        number = min(len(self.maps.names), 3)
+        words = {} if spectrum else {"channel": 0}
+        plain = numpy.array([[1.0, 0, 0], [0, 1, 0]])
+        return self._add(numpy.maximum(image, 0) if spectrum else image, spectrum, number, plain, wrap="clamp", filter="bilinear", **words)
 
     def _only_map(self, socket, groups):
         """The uv map that a socket depends on and the box of its uvs: each map is tried, with points in the middle."""

@@ -111,7 +111,8 @@ def _add_image(scene, world, surface, look, notes):
     height = _image_size(world.node_tree)
     side = PLAIN_SIDE if height == 0 else min(MAX_SIDE, max(64, int(1.5 * height)))
     directions = square_directions(side)
-    fields = {"direction": directions, "generated": directions, "position": directions, "normal": -directions, "object": directions}
+    fields = {"direction": directions, "generated": directions, "object": directions, "normal": directions,
+              "world position": directions, "world normal": directions, "world incoming": -directions}
     values = _radiance(surface, (), evaluate.Evaluator(fields, look), notes, world.name)
     array = numpy.broadcast_to(values, (side * side, 3)).reshape(side, side, 3).astype(numpy.float32)
     high = float(array.max())

@@ -26,7 +26,7 @@ typedef union Def {
   vlShapeDef shape;
 } Def;
 
-enum { MAX_ARRAYS = 24, SHAPE_ARRAYS = 11 };
+enum { MAX_ARRAYS = 24, SHAPE_ARRAYS = 14 };
 
 /* An array of a shape that is given by a keyword. */
 typedef struct ShapeArray {

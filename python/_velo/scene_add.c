@@ -242,7 +242,7 @@ static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value
   return 0;
 }
 
-enum { POSITIONS, NORMALS, RADII = 9, WIDTHS };
+enum { POSITIONS, NORMALS, RADII = 12, WIDTHS };
 const ShapeArray shape_arrays[SHAPE_ARRAYS] = {
     {"positions", 'f', offsetof(vlShapeDef, positions), 3},
     {"normals", 'f', offsetof(vlShapeDef, normals), 3},
@@ -252,6 +252,9 @@ const ShapeArray shape_arrays[SHAPE_ARRAYS] = {
     {"colors", 'f', offsetof(vlShapeDef, colors), 4},
     {"positions_close", 'f', offsetof(vlShapeDef, positions_close), 3},
     {"normals_close", 'f', offsetof(vlShapeDef, normals_close), 3},
+    {"uvs_1", 'f', offsetof(vlShapeDef, more_uvs[0]), 2},
+    {"uvs_2", 'f', offsetof(vlShapeDef, more_uvs[1]), 2},
+    {"uvs_3", 'f', offsetof(vlShapeDef, more_uvs[2]), 2},
     {"centers", 'd', offsetof(vlShapeDef, centers), 3},
     {"radii", 'f', offsetof(vlShapeDef, radii), 1},
     {"widths", 'f', offsetof(vlShapeDef, widths), 2}};
@@ -355,7 +358,7 @@ static bool check_lengths(const Adding *a, const vlShapeDef *d) {
     return false;
   }
   const bool more = d->more_uvs[0] || d->more_uvs[1] || d->more_uvs[2];
-  if (!more || d->vertices == a->old->vertices)
+  if (!more || !a->old || d->vertices == a->old->vertices)
     return true;
   raise_usage("positions: a mesh with several sets of uvs keeps its number of %u vertices",
               (unsigned)a->old->vertices);
@@ -466,7 +469,7 @@ static bool append_extra(PyObject *names, Family family, const vlKindRow *row) {
       "group",     "inside",  "outside",   "times",    "indices",
       "positions", "normals", "uvs",       "tangents", "colors",
       "radii",     "centers", "widths",    "backdrop", "reverse_orientation",
-      NULL};
+      "uvs_1",     "uvs_2",   "uvs_3",     NULL};
   const char *const *const lists[] = {
       [TEXTURES] = texture, [MATERIALS] = material, [MEDIA] = medium,
       [LIGHTS] = light,     [SHAPES] = shape,       [INSTANCES] = NULL};

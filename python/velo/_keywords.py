@@ -369,6 +369,9 @@ class Meshes(AllShapes, total=False):
     tangents: Any
     times: Any
     uvs: Any
+    uvs_1: Any
+    uvs_2: Any
+    uvs_3: Any
 
 
 class Shapes(Meshes, total=False):

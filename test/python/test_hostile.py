@@ -195,7 +195,7 @@ CALLS = [
     Call("Scene.add_light", quad_scene, keywords="lights", kind=("point", TEXT)),
     Call("Scene.add_shape", quad_scene, keywords="shapes", kind=("sphere", TEXT)),
     Call("Scene.add_mesh", quad_scene, keywords={
-        "normals": VECTOR, "uvs": VECTOR, "tangents": VECTOR, "colors": VECTOR, "tangent_signs": VECTOR, "positions_close": VECTOR,
+        "normals": VECTOR, "uvs": VECTOR, "uvs_1": VECTOR, "tangents": VECTOR, "colors": VECTOR, "tangent_signs": VECTOR, "positions_close": VECTOR,
         "normals_close": VECTOR, "transform": VECTOR, "material": ANY, "emission": ANY, "group": ANY, "inside": ANY, "outside": ANY,
         "name": TEXT, "times": VECTOR, "reverse_orientation": FLAG, "backdrop": FLAG}, positions=(QUAD, VECTOR), indices=(FACES, VECTOR)),
     Call("Scene.add_sphere", quad_scene, center=((0, 0, 0), VECTOR), radius=(0.5, NUMBER)),

@@ -20,6 +20,24 @@ def shown(color=True, **keywords):
     return float(numpy.asarray(scene.ground_truth(["albedo"], color="rgb")["albedo"])[1, 1, 0])
 
 
+@case
+def a_mesh_has_several_sets_of_uvs():
+    halves = numpy.zeros((1, 2, 3), dtype="float32")
+    halves[0, 1] = 0.5
+    for number, expected in ((0, 0.0), (1, 0.5), (2, 0.0), (3, 0.5)):
+        scene = velo.Scene()
+        texture = scene.add_texture("image", image=halves, filter="point", uv_set=number)
+        sets = [numpy.full((3, 2), place, dtype="float32") for place in (0.25, 0.75, 0.25, 0.75)]
+        scene.add_mesh([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], [[0, 1, 2]], uvs=sets[0], uvs_1=sets[1], uvs_2=sets[2], uvs_3=sets[3],
+                       material=scene.add_material("diffuse", reflectance=texture))
+        scene.add_light("infinite")
+        scene.camera = velo.Camera(4, 4, eye=(0, 0, 1), lookat=(0, 0, 0), fov=0.5)
+        seen = scene.ground_truth(["albedo"], color="rgb")["albedo"]
+        assert near(float(numpy.asarray(seen)[1, 1, 0]), expected), number
+    with raises(velo.UsageError, "uvs_1: 3 elements"):
+        velo.Scene().add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], uvs_1=[[0, 0]])
+
+
 def full(value, kind):
     return numpy.full((2, 2, 3), value, dtype=kind)
 

@@ -1,0 +1,92 @@
+"""Cases of test_camera.py: points are where world_to_camera_view has them, panoramas see what Cycles sees."""
+import random
+
+import bpy
+import mathutils
+import numpy
+from bpy_extras.object_utils import world_to_camera_view
+
+from inside import ball, case, channel, material, new_scene, refused, render
+
+
+def camera_of(scene):
+    """velo's camera."""
+    from velo_blender import camera
+    bpy.context.view_layer.update()
+    graph = bpy.context.evaluated_depsgraph_get()
+    return camera.convert(scene, scene.camera.evaluated_get(graph), graph, camera.image_size(scene))
+
+
+@case
+def points_are_where_blender_sees_them():
+    rng, worst = random.Random(1), 0.0
+    for _ in range(40):
+        scene = new_scene(size=(rng.randint(30, 900), rng.randint(30, 900)))
+        scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = rng.choice((1, 1.3)), rng.choice((1, 1.7))
+        item, lens = scene.camera, scene.camera.data
+        lens.type, lens.sensor_fit = rng.choice(("PERSP", "ORTHO")), rng.choice(("AUTO", "HORIZONTAL", "VERTICAL"))
+        lens.lens, lens.sensor_width, lens.sensor_height = rng.uniform(10, 120), rng.uniform(10, 50), rng.uniform(10, 50)
+        lens.shift_x, lens.shift_y, lens.ortho_scale = rng.uniform(-0.4, 0.4), rng.uniform(-0.4, 0.4), rng.uniform(1, 10)
+        item.location, item.rotation_euler = ([rng.uniform(-3, 3) for _ in range(3)] for _ in range(2))
+        item.scale = [rng.uniform(0.5, 2)] * 3
+        camera = camera_of(scene)
+        for _ in range(10):
+            point = item.matrix_world.normalized() @ mathutils.Vector((rng.uniform(-2, 2), rng.uniform(-2, 2), -rng.uniform(1, 20)))
+            seen = world_to_camera_view(scene, item, point)
+            expected = numpy.array((seen.x * camera.width, (1 - seen.y) * camera.height))
+            got = camera.project([list(point)])
+            assert got.valid[0]
+            worst = max(worst, float(abs(got.pixels[0] - expected).max()))
+    assert worst < 0.01, worst
+
+
+@case
+def panoramas_see_what_cycles_sees():
+    for words in ({"panorama_type": "EQUIRECTANGULAR"}, {"panorama_type": "EQUIRECTANGULAR", "latitude_min": -0.5, "longitude_max": 1.0},
+                  {"panorama_type": "FISHEYE_EQUIDISTANT", "fisheye_fov": 3.0, "shift_x": 0.1, "shift_y": 0.05},
+                  {"panorama_type": "FISHEYE_EQUISOLID", "fisheye_fov": 2.5, "fisheye_lens": 10.0},
+                  {"panorama_type": "FISHEYE_LENS_POLYNOMIAL", "fisheye_fov": 2.5}, {"panorama_type": "MIRRORBALL"}):
+        scene = new_scene(world=(1, 1, 1), size=(64, 40), samples=1)
+        ball(material("ShaderNodeBsdfDiffuse")[0], (0, 0, 0), 100.0)
+        scene.camera.location, scene.camera.rotation_euler = (0.1, 0.2, 0.3), (1.2, 0.3, 0.5)
+        lens = scene.camera.data
+        lens.type, lens.clip_start = "PANO", 0.01
+        for name, value in words.items():
+            setattr(lens.cycles if hasattr(lens.cycles, name) else lens, name, value)
+        scene.view_layers[0].use_pass_position = True
+        scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+        image = render(scene, "CYCLES")
+        points = numpy.stack([channel(image, "Position." + axis) for axis in "XYZ"], axis=2)
+        seen = numpy.linalg.norm(points, axis=2) > 50
+        y, x = numpy.mgrid[0:40, 0:64] + 0.5
+        got = camera_of(scene).project(points[seen])
+        error = numpy.linalg.norm(got.pixels - numpy.stack((x, y), axis=2)[seen], axis=1)[got.valid]
+        assert got.valid.mean() > 0.99 and numpy.percentile(error, 99) < 0.01, (words, got.valid.mean(), error.max())
+
+
+@case
+def regions_are_parts_of_the_image():
+    from inside import colors
+    scene = new_scene(world=(1, 1, 1), samples=4)
+    ball(material("ShaderNodeBsdfDiffuse", Color=(0.8, 0.6, 0.4))[0])
+    whole = colors(render(scene))
+    scene.render.use_border, scene.render.use_crop_to_border = True, True
+    scene.render.border_min_x, scene.render.border_max_x = 0.25, 0.75
+    scene.render.border_min_y, scene.render.border_max_y = 0.5, 1.0
+    part = colors(render(scene))
+    assert part.shape == (24, 24, 3) and (part == whole[:24, 12:36]).all()
+
+
+@case
+def a_region_without_pixels_is_one_line():
+    scene = new_scene()
+    scene.render.use_border = True
+    scene.render.border_min_x = scene.render.border_max_x = 0.5
+    refused(scene, "too small")
+
+
+@case
+def a_camera_at_no_place_is_one_line():
+    scene = new_scene()
+    scene.camera.location.x = float("nan")
+    refused(scene, "NaN")

@@ -1,6 +1,8 @@
 """camera.py: Blender's cameras as velo's: perspective, orthographic, panoramas; shift, sensor fit, clipping, depth of field.
 
 Blender's camera looks along -z with y up; velo's x points right, y down, z forward."""
+import math
+
 import numpy
 import velo
 
@@ -47,7 +49,8 @@ def _lens(camera):
     words = {"lens_radius": 0.5 * focal / dof.aperture_fstop}
     if dof.aperture_blades >= 3:
         words["blades"] = int(dof.aperture_blades)
-        words["rotation"] = float(dof.aperture_rotation)
+        # The middle of Blender's first side is at the right and turns upwards; velo's first corner is at the top and turns the other way.
+        words["rotation"] = 0.5 * math.pi - math.pi / dof.aperture_blades - dof.aperture_rotation
     if dof.aperture_ratio != 1:
         words["ratio"] = float(dof.aperture_ratio)
     return words
@@ -83,6 +86,14 @@ def convert(scene, item, depsgraph, size):
     if lens:
         words.update(lens, focus_distance=focus_distance(camera, matrix))
     return velo.Camera(*size, **words)
+
+
+def moving(still, matrices):
+    """A camera that moves from the first pose to the last one; the same where they are equal."""
+    first, last = pose(matrices[0]), pose(matrices[-1])
+    if numpy.allclose(first, last, rtol=0, atol=1e-7):
+        return still
+    return still.replace(world_from_camera=first, world_from_camera_close=last)
 
 
 def pinhole_matrix(projection, size):

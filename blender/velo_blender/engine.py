@@ -4,7 +4,7 @@ import time
 import bpy
 import velo
 
-from . import camera, export, passes, report, settings
+from . import camera, export, motion, passes, report, settings
 
 REFRESH = 1.0  # seconds between images of a render that goes on
 
@@ -40,7 +40,8 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         size = camera.image_size(scene)
         crop = camera.crop_window(scene, size)
         self.update_stats("", "velo: reading the scene")
-        made = export.Export(depsgraph, size, cancelled=self.test_break)
+        moves = motion.Motion(self, depsgraph) if scene.render.use_motion_blur else None
+        made = export.Export(depsgraph, size, self.test_break, moves)
         report.remember(scene.name, made.notes)
         for text in made.notes.texts():
             print("velo: " + text)

@@ -4,16 +4,10 @@ from typing import Any, NamedTuple
 import numpy
 import velo
 
-from . import atlas, camera, geometry, lights, materials, textures, world
+from . import atlas, camera, geometry, lights, materials, motion, textures, world
 from .report import Notes, Refused
 
 MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
-
-
-class Placed(NamedTuple):
-    """An instance or a shape of the world, in the order of velo's ids."""
-    name: str
-    pass_index: int
 
 
 class Part(NamedTuple):
@@ -31,21 +25,24 @@ class Prepared(NamedTuple):
 
 
 class Export:
-    """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size, materials: {velo's name of a
-    material: Blender's}, objects: names by velo's object ids, instances: list of Placed by velo's instance ids."""
+    """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: the pass
+    index of what has velo's id 1, 2, ...; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at rest."""
 
-    def __init__(self, depsgraph, size, camera_object=None, cancelled=None):
+    def __init__(self, depsgraph, size, cancelled=None, moves=None):
         self.depsgraph, self.size = depsgraph, size
         self.notes = Notes()
         self.scene = velo.Scene()
-        self.instances, self.shapes = [], []
+        self.instances, self.shapes, self.material_indices = [], [], {}
+        self._moves = moves
         self._meshes, self._surfaces, self._cache = {}, {}, {}
         self._cancelled = cancelled or (lambda: False)
         self._settings = depsgraph.scene.velo
-        item = camera_object or depsgraph.scene.camera
+        item = depsgraph.scene.camera
         if item is None:
             raise Refused("the scene has no camera")
         self.camera = camera.convert(depsgraph.scene, item.evaluated_get(depsgraph), depsgraph, size)
+        if moves is not None and len(moves.camera) > 1:
+            self.camera = camera.moving(self.camera, moves.camera)
         self.scene.camera = self.camera
         world.add(self.scene, depsgraph.scene.world, self.notes)
         self._read_objects()
@@ -64,8 +61,9 @@ class Export:
                 self.notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
             elif item.type == "LIGHT":
                 lights.add(self.scene, item, instance.matrix_world, self._camera_sees, self.notes)
+                self.shapes += [0] * (len(self.scene.handles("shapes")) - len(self.shapes))
             elif item.type in MESHES:
-                self._place(item, matrix)
+                self._place(item, matrix, self._moves.of(instance) if self._moves is not None else None)
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
 
@@ -80,7 +78,7 @@ class Export:
         margin = 0.1 * numpy.array(self.size)
         return bool((high > -margin).all() and (low < numpy.array(self.size) + margin).all())
 
-    def _place(self, item, matrix):
+    def _place(self, item, matrix, poses):
         if abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
             self.notes.add(item.name, "", "it is scaled to nothing and left out")
             return
@@ -88,19 +86,33 @@ class Export:
         if prepared is None:
             return
         if prepared.group is not None:
-            self.scene.add_instance(prepared.group, matrix)
-            self.instances.append(Placed(item.name, item.pass_index))
+            if poses is None:
+                self.scene.add_instance(prepared.group, matrix)
+            else:
+                self.scene.add_instance(prepared.group, poses, times=motion.TIMES)
+            self.instances.append(item.pass_index)
         for part in prepared.emissive:
-            self._add_shape(part, pose=matrix, name=item.name)
+            if poses is not None:
+                self.notes.add(item.name, "", "surfaces that emit are at rest")
+            self._add_shape(part, item, pose=matrix, name=item.name)
 
-    def _add_shape(self, part, **words):
+    def indices(self, name, image):
+        """The pass IndexOB or IndexMA, height x width, from the channels of ids."""
+        if name == "IndexMA":
+            known = {entry["id"]: self.material_indices.get(entry.get("name"), 0) for entry in self.scene.world().ids("material")}
+            return _look_up(known, numpy.asarray(image["id.material"]))
+        by_instance = _look_up(dict(enumerate(self.instances, 1)), numpy.asarray(image["id.instance"]))
+        by_shape = _look_up(dict(enumerate(self.shapes, 1)), numpy.asarray(image["id.object"]))
+        return numpy.where(numpy.asarray(image["id.instance"]) > 0, by_instance, by_shape)
+
+    def _add_shape(self, part, item, **words):
         surface = part.surface
         if surface.alpha is not None:
             words["alpha"] = surface.alpha
         if surface.emission is not None:
             words["emission"] = surface.emission
         self.scene.add_shape("triangles", material=surface.material, **part.words, **words)
-        self.shapes.append(words.get("name", ""))
+        self.shapes.append(item.pass_index)
 
     # ---- meshes
 
@@ -128,7 +140,7 @@ class Export:
         plain = [part for part in parts if part.surface.emission is None]
         group = self.scene.add_group(item.name) if plain else None
         for part in plain:
-            self._add_shape(part, group=group, name=item.name)
+            self._add_shape(part, item, group=group, name=item.name)
         return Prepared(group, parts, [part for part in parts if part.surface.emission is not None])
 
     def _parts(self, item, arrays, slots):
@@ -149,6 +161,7 @@ class Export:
             owner = "default" if material is None else material.name
             inputs = textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners)
             surface = materials.convert(material, inputs)
+            self.material_indices[owner] = 0 if material is None else material.pass_index
             if surface.atlas is not None:
                 return surface  # of this mesh alone
             self._surfaces[key] = surface
@@ -174,6 +187,14 @@ class Export:
             if colors is not None:
                 words["colors"] = numpy.clip(numpy.nan_to_num(pick(colors)), 0, None)
         return words
+
+
+def _look_up(known, ids):
+    """The values of ids; 0 where there is none."""
+    table = numpy.zeros(int(max([0, *known])) + 1)
+    for number, value in known.items():
+        table[number] = value
+    return numpy.where(ids < len(table), table[numpy.minimum(ids, len(table) - 1).astype(int)], 0)
 
 
 class Cancelled(Exception):

@@ -1,10 +1,10 @@
-"""engine.py: the render engine: final renders."""
+"""engine.py: the render engine: final renders and rendered views."""
 import time
 
 import bpy
 import velo
 
-from . import camera, export, motion, passes, report, settings
+from . import camera, draw_view, export, motion, passes, report, settings, viewport
 
 REFRESH = 1.0  # seconds between images of a render that goes on
 
@@ -30,6 +30,31 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         except (report.Refused, velo.Error, MemoryError) as error:
             self._refuse(str(error) or "there is not enough memory")
 
+    def view_update(self, context, depsgraph):
+        """Blender calls it when something of the scene has changed, for a view with rendered shading."""
+        if getattr(self, "viewed", None) is None:
+            self.viewed = viewport.ViewRender(_redraw_views)
+        self.viewed.update(depsgraph, context.region, context.region_data)
+        self.tag_redraw()
+
+    def view_draw(self, context, depsgraph):
+        """Blender calls it to draw a view."""
+        if getattr(self, "viewed", None) is None:
+            self.view_update(context, depsgraph)
+        viewed = self.viewed
+        viewed.look(context.region, context.region_data)
+        if viewed.error is not None:
+            self.update_stats("velo", viewed.error)
+        elif viewed.image is not None:
+            self.update_stats("velo", "%d samples" % viewed.samples)
+        if viewed.image is not None:
+            draw_view.draw(self, context, depsgraph.scene, viewed.image)
+
+    def __del__(self):
+        viewed = getattr(self, "viewed", None)
+        if viewed is not None:
+            viewed.stop()
+
     def _refuse(self, text):
         line = " ".join(("velo: " + text).split())
         print(line)
@@ -48,7 +73,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         if made.notes.lines:
             self.report({"WARNING"}, "velo: %d things of the scene are rendered otherwise or not (panel velo)" % len(made.notes.lines))
         self.update_stats("", "velo: building")
-        made.scene.world(progress=lambda step: not self.test_break(), **_build_words(scene))
+        made.scene.world(progress=lambda step: not self.test_break(), **settings.world_words(scene))
         width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
         try:
@@ -74,8 +99,11 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         passes.fill(layer, image, scene.render.film_transparent, made)
 
 
-def _build_words(scene):
-    return {"color": "spectral" if scene.velo.spectral else "rgb"}
+def _redraw_views():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
 
 
 def register():

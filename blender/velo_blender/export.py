@@ -1,6 +1,7 @@
 """export.py: the evaluated depsgraph as a velo scene."""
 from typing import Any, NamedTuple
 
+import bpy
 import numpy
 import velo
 
@@ -26,21 +27,20 @@ class Prepared(NamedTuple):
 
 class Export:
     """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: the pass
-    index of what has velo's id 1, 2, ...; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at rest."""
+    index of what has velo's id 1, 2, ...; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at rest.
+    view: the camera, in place of the scene's."""
 
-    def __init__(self, depsgraph, size, cancelled=None, moves=None):
+    def __init__(self, depsgraph, size, cancelled=None, moves=None, view=None):
         self.depsgraph, self.size = depsgraph, size
         self.notes = Notes()
         self.scene = velo.Scene()
         self.instances, self.shapes, self.material_indices = [], [], {}
         self._moves = moves
+        self._handles = {}  # {motion.key_of(instance): handle}
         self._meshes, self._surfaces, self._cache = {}, {}, {}
         self._cancelled = cancelled or (lambda: False)
         self._settings = depsgraph.scene.velo
-        item = depsgraph.scene.camera
-        if item is None:
-            raise Refused("the scene has no camera")
-        self.camera = camera.convert(depsgraph.scene, item.evaluated_get(depsgraph), depsgraph, size)
+        self.camera = view if view is not None else _camera_of(depsgraph, size)
         if moves is not None and len(moves.camera) > 1:
             self.camera = camera.moving(self.camera, moves.camera)
         self.scene.camera = self.camera
@@ -63,9 +63,34 @@ class Export:
                 lights.add(self.scene, item, instance.matrix_world, self._camera_sees, self.notes)
                 self.shapes += [0] * (len(self.scene.handles("shapes")) - len(self.shapes))
             elif item.type in MESHES:
-                self._place(item, matrix, self._moves.of(instance) if self._moves is not None else None)
+                handle = self._place(item, matrix, self._moves.of(instance) if self._moves is not None else None)
+                if handle is not None:
+                    self._handles[motion.key_of(instance)] = handle
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
+
+    def move(self, depsgraph):
+        """Moves the instances whose place alone has changed. False: something else has changed, too; nothing is moved then."""
+        moved = set()
+        for update in depsgraph.updates:
+            item = update.id
+            if isinstance(item, bpy.types.Scene) and not update.is_updated_geometry and not update.is_updated_shading:
+                continue
+            if not isinstance(item, bpy.types.Object) or item.type != "MESH" or update.is_updated_geometry or update.is_updated_shading:
+                return False
+            moved.add(item.name_full)
+        changes = []
+        for instance in depsgraph.object_instances:
+            if instance.object.name_full not in moved:
+                continue
+            handle = self._handles.get(motion.key_of(instance))
+            matrix = numpy.array(instance.matrix_world, dtype=float)
+            if handle is None or not numpy.isfinite(matrix).all() or abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
+                return False
+            changes.append((handle, matrix))
+        for handle, matrix in changes:
+            self.scene.set(handle, transform=matrix)
+        return True
 
     def _camera_sees(self, points):
         """Whether some point of a box may be in the image: the box of its film points, a tenth wider."""
@@ -79,15 +104,17 @@ class Export:
         return bool((high > -margin).all() and (low < numpy.array(self.size) + margin).all())
 
     def _place(self, item, matrix, poses):
+        """Adds an object; returns the handle of its instance if that is all that it is and it is at rest."""
         if abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
             self.notes.add(item.name, "", "it is scaled to nothing and left out")
-            return
+            return None
         prepared = self._prepared(item)
         if prepared is None:
-            return
+            return None
+        handle = None
         if prepared.group is not None:
             if poses is None:
-                self.scene.add_instance(prepared.group, matrix)
+                handle = self.scene.add_instance(prepared.group, matrix)
             else:
                 self.scene.add_instance(prepared.group, poses, times=motion.TIMES)
             self.instances.append(item.pass_index)
@@ -95,6 +122,7 @@ class Export:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             self._add_shape(part, item, pose=matrix, name=item.name)
+        return None if prepared.emissive else handle
 
     def indices(self, name, image):
         """The pass IndexOB or IndexMA, height x width, from the channels of ids."""
@@ -187,6 +215,13 @@ class Export:
             if colors is not None:
                 words["colors"] = numpy.clip(numpy.nan_to_num(pick(colors)), 0, None)
         return words
+
+
+def _camera_of(depsgraph, size):
+    item = depsgraph.scene.camera
+    if item is None:
+        raise Refused("the scene has no camera")
+    return camera.convert(depsgraph.scene, item.evaluated_get(depsgraph), depsgraph, size)
 
 
 def _look_up(known, ids):

@@ -30,13 +30,17 @@ def bounces(scene):
 
 def tracing(scene, samples):
     """Keywords of velo's render: samples, bounces, seed, colours."""
-    words = {"spp": samples, "max_depth": bounces(scene) + 1, "seed": scene.velo.seed,
-             "color": "spectral" if scene.velo.spectral else "rgb"}
+    words = {"spp": samples, "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **world_words(scene)}
     if scene.render.film_transparent:
         words["transparent"] = True
     if scene.velo.noise > 0:
         words["noise"] = scene.velo.noise
     return words
+
+
+def world_words(scene):
+    """Keywords of velo's world."""
+    return {"color": "spectral" if scene.velo.spectral else "rgb"}
 
 
 def register():

@@ -155,3 +155,56 @@ def passes_of_indices_and_places():
         difference = abs(channel(image, name) - channel(other, name))[inner]
         assert numpy.median(difference) < 0.02, (name, numpy.median(difference))
     assert set(numpy.unique(channel(image, "IndexOB.X"))) == {0.0, 7.0}
+
+
+def moved(item, first, last):
+    """Moves an object from frame 4 to frame 6."""
+    for frame, place in ((4, first), (6, last)):
+        item.location = place
+        item.keyframe_insert("location", frame=frame)
+    for curve in item.animation_data.action.fcurves:
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+@case
+def blurs_of_motion_are_those_of_cycles():
+    for moves in ("object", "camera"):
+        scene = new_scene(world=(1, 1, 1))
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.8
+        item = ball(material("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2))[0])
+        if moves == "object":
+            moved(item, (-1.5, 0, 1), (1.5, 0, 1.4))
+        else:
+            moved(scene.camera, (-1, -6, 3), (1, -6, 3))
+        scene.frame_set(5)
+        other, mine = colors(render(scene, "CYCLES")), colors(render(scene))
+        assert abs(other - mine).mean() < 0.006, (moves, abs(other - mine).mean())
+
+
+@case
+def apertures_have_the_shape_of_cycles():
+    for blades, rotation, ratio in ((6, 0.0, 1.0), (5, 0.3, 1.8)):
+        scene = new_scene(samples=100)
+        ball(material("ShaderNodeEmission", Strength=50.0)[0], (0, 6, 1), 0.25)
+        scene.camera.rotation_euler.x = 1.396
+        dof = scene.camera.data.dof
+        dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 4.0, 0.012
+        dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio = blades, rotation, ratio
+        other, mine = (colors(render(scene, engine))[..., 0].ravel() for engine in ("CYCLES", "VELO"))
+        assert numpy.corrcoef(other, mine)[0, 1] > 0.9, (blades, numpy.corrcoef(other, mine)[0, 1])
+
+
+@case
+def passes_of_indices_and_places():
+    scene = new_scene(world=(1, 1, 1), samples=1)
+    item = ball(material("ShaderNodeBsdfDiffuse")[0])
+    item.pass_index, item.data.materials[0].pass_index = 7, 3
+    layer = scene.view_layers[0]
+    layer.use_pass_object_index = layer.use_pass_material_index = layer.use_pass_uv = layer.use_pass_position = True
+    image, other = render(scene), render(scene, "CYCLES")
+    for name in ("IndexOB.X", "IndexMA.X", "UV.U", "UV.V", "Position.X", "Position.Z"):
+        inner = channel(other, "IndexOB.X") == 7
+        difference = abs(channel(image, name) - channel(other, name))[inner]
+        assert numpy.median(difference) < 0.02, (name, numpy.median(difference))
+    assert set(numpy.unique(channel(image, "IndexOB.X"))) == {0.0, 7.0}

@@ -3,6 +3,8 @@ import math
 
 from . import bumps, versions
 
+SHEEN_BEFORE_4 = 0.15  # of Burley's sheen, as a part of velo's: the same light from a ball in a white room, measured
+
 
 def _get(inputs, node, name, groups, default):
     socket = versions.principled_socket(node, name)
@@ -56,11 +58,26 @@ def convert(inputs, node, groups, glossy, glass):
         material = glass(inputs, base, roughness, _index(inputs, node, groups), words)
     else:
         words.update(_dielectric(inputs, node, groups, get, generation, transmission, base))
+        if generation == 1 and metallic == 0.0 and transmission == 0.0:
+            base = _brightened(inputs, base, get("specular", 0.5), roughness)
         if not plain:
             words.update(_layers(get, generation, coat, base))
         material = inputs.scene.add_material("principled", reflectance=base, metallic=metallic, roughness=roughness,
                                              transmission=transmission, thin_walled=False, name=inputs.owner, **words)
     return material, _emission(inputs, node, groups, get), _coverage(get)
+
+
+def _brightened(inputs, base, specular, roughness):
+    """The base colour times what velo's reflection takes from the diffuse light, and what Burley's diffuse lobe adds to it: Blender's
+    Principled before 4.0 adds its lobes without reduction. A fit to balls in a white room, roughness 0.1 to 1: see docs/blender.md."""
+    specular = specular if isinstance(specular, float) else 0.5
+    rough = min(max(roughness, 0.0), 1.0) if isinstance(roughness, float) else 0.5
+    f0 = min(max(0.08 * specular, 0.0), 0.99)
+    taken = (f0 + (1 - f0) / 21) * (1.1 - 0.9 * rough) if specular > 0 else 0.0
+    factor = (0.955 + 0.11 * rough) / (1 - taken)
+    if isinstance(base, tuple):
+        return tuple(min(1.0, x * factor) for x in base)
+    return inputs.scene.add_texture("scale", spectrum=True, spectrum_a=base, amount=factor)
 
 
 def _lossy_metal(inputs, base, roughness, words):
@@ -125,7 +142,7 @@ def _layers(get, generation, coat, base):
         else:
             amount = get("sheen_tint", 0.5)
             hue = tinted(base, amount) if isinstance(base, tuple) and isinstance(amount, float) else (1.0,) * 3
-            words["sheen_color"] = tuple(min(1.0, max(0.0, sheen * x)) for x in hue)
+            words["sheen_color"] = tuple(min(1.0, max(0.0, SHEEN_BEFORE_4 * sheen * x)) for x in hue)
             words["sheen_roughness"] = 0.5
     return words
 

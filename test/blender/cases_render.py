@@ -44,10 +44,18 @@ def metal_and_glass():
 
 @case
 def principled_without_layers():
-    for rough in (0.1, 0.9):
+    for rough, specular in ((0.1, 0.5), (0.5, 0.0), (0.5, 1.0), (0.9, 0.5)):
         scene = new_scene(world=(1, 1, 1))
-        ball(material("ShaderNodeBsdfPrincipled", Base_Color=GRAY, Roughness=rough)[0], (0, 0, 0.5), 1.7)
-        agrees(scene, 0.03)
+        ball(material("ShaderNodeBsdfPrincipled", Base_Color=GRAY, Roughness=rough, Specular=specular)[0], (0, 0, 0.5), 1.7)
+        agrees(scene, 0.006)
+
+
+@case
+def principled_with_layers():
+    for layers in ({"Clearcoat": 1.0}, {"Sheen": 1.0}, {"Transmission": 0.6}, {"Metallic": 0.5}):
+        scene = new_scene(world=(1, 1, 1))
+        ball(material("ShaderNodeBsdfPrincipled", Base_Color=GRAY, Roughness=0.4, **layers)[0], (0, 0, 0.5), 1.7)
+        agrees(scene, 0.02)
 
 
 @case

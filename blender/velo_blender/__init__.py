@@ -12,8 +12,8 @@ bl_info = {
 
 
 def _modules():
-    from . import engine, panels, settings
-    return settings, engine, panels
+    from . import camera_files, engine, panels, settings
+    return settings, camera_files, engine, panels
 
 
 def register():

@@ -5,7 +5,7 @@ import bpy
 import numpy
 import velo
 
-from . import atlas, camera, geometry, lights, materials, motion, textures, world
+from . import atlas, camera, camera_files, geometry, lights, materials, motion, textures, world
 from .report import Notes, Refused
 
 MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -221,7 +221,8 @@ def _camera_of(depsgraph, size):
     item = depsgraph.scene.camera
     if item is None:
         raise Refused("the scene has no camera")
-    return camera.convert(depsgraph.scene, item.evaluated_get(depsgraph), depsgraph, size)
+    item = item.evaluated_get(depsgraph)
+    return camera_files.convert(item, size) or camera.convert(depsgraph.scene, item, depsgraph, size)
 
 
 def _look_up(known, ids):

@@ -56,6 +56,7 @@ class Export:
             item = instance.object
             if not instance.show_self or item.type in ("CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"):
                 continue
+            self._note_unseen(item)
             matrix = numpy.array(instance.matrix_world, dtype=float)
             if not numpy.isfinite(matrix).all():
                 self.notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
@@ -68,6 +69,17 @@ class Export:
                     self._handles[motion.key_of(instance)] = handle
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
+
+    def _note_unseen(self, item):
+        """What an object has that velo does not render."""
+        if item.type not in MESHES:
+            return
+        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in item.particle_systems):
+            self.notes.add(item.name, "Particles", "hair is not rendered")
+        if not (item.visible_camera and item.visible_shadow and item.visible_diffuse and item.visible_glossy and item.visible_transmission):
+            self.notes.add(item.name, "Ray visibility", "all rays see it")
+        if item.is_holdout or item.is_shadow_catcher:
+            self.notes.add(item.name, "Holdout, shadow catcher", "it is an object like others")
 
     def move(self, depsgraph):
         """Moves the instances whose place alone has changed. False: something else has changed, too; nothing is moved then."""

@@ -11,6 +11,8 @@ import velo
 
 from . import evaluate, links, versions, world
 
+SHARP_SUN = 0.8  # degrees; suns of a wider disk are SUN_POINTS lights
+SUN_POINTS = 64
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
 
 
@@ -86,9 +88,21 @@ def _sun(scene, item, light, pose, words, power, camera_sees, notes):
         notes.add(item.name, "", "its direction is not defined; it is left out")
         return
     axis = axis / length
-    if light.angle > math.radians(1.0):
-        notes.add(item.name, "Angle", "the sun's disk of %.1f degrees is a point; its shadows are sharp" % math.degrees(light.angle))
-    scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
+    if light.angle <= math.radians(SHARP_SUN):
+        scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
+        return
+    for direction in disk_directions(axis, math.sin(0.5 * min(light.angle, math.pi))):
+        scene.add_light("distant", position=tuple(direction), to=(0.0, 0.0, 0.0), scale=power / SUN_POINTS, **words)
+    notes.add(item.name, "Angle", "the sun's disk is %d points" % SUN_POINTS)
+
+
+def disk_directions(axis, radius):
+    """Unit directions, SUN_POINTS x 3, spread evenly over a disk about an axis: Vogel's spiral."""
+    number = numpy.arange(SUN_POINTS) + 0.5
+    distance, turn = radius * numpy.sqrt(number / SUN_POINTS), number * math.pi * (3 - math.sqrt(5))
+    frame = _frame_along(axis, numpy.zeros(3))
+    local = numpy.stack((distance * numpy.cos(turn), distance * numpy.sin(turn), numpy.sqrt(1 - distance**2)), axis=1)
+    return local @ frame[:3, :3].T
 
 
 def _spot(scene, item, light, pose, words, power, camera_sees, notes):

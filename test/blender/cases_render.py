@@ -27,6 +27,15 @@ def lights_have_the_units_of_cycles():
 
 
 @case
+def a_wide_sun_has_soft_shadows():
+    scene = room()
+    lamp(scene, "SUN", 3, angle=0.4)
+    agrees(scene, 0.01)
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(other - mine).mean() < 0.02 * other.mean(), abs(other - mine).mean() / other.mean()
+
+
+@case
 def a_world_of_one_color():
     agrees(room(world=(0.5, 0.6, 0.8)), 0.01)
 

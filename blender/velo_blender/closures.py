@@ -181,6 +181,26 @@ def _background(inputs, node, groups):
     return _emission(inputs, node, groups)
 
 
+def _hair(inputs, node, groups):
+    """The hair of Chiang and others 2016, which velo has, too. Cycles' pigments absorb (0.506, 0.841, 1.653) and (0.343, 0.733, 1.924)."""
+    number = lambda name: inputs.number(node.inputs[name], groups)
+    words = {"eta": index_of(inputs, node, groups), "beta_m": number("Roughness"), "beta_n": number("Radial Roughness"),
+             "alpha": math.degrees(inputs.constant(node.inputs["Offset"], groups) or 0.0)}
+    if node.parametrization == "COLOR":
+        words.update(color="reflectance", reflectance=inputs.color(node.inputs["Color"], groups))
+    elif node.parametrization == "ABSORPTION":
+        words.update(color="sigma_a", sigma_a=inputs.color(node.inputs["Absorption Coefficient"], groups))
+    else:
+        melanin, red = (inputs.constant(node.inputs[name], groups) for name in ("Melanin", "Melanin Redness"))
+        if not (isinstance(melanin, float) and isinstance(red, float)):
+            inputs.notes.add(inputs.owner, node.name, "melanin that varies is 0.8, without redness")
+            melanin, red = 0.8, 0.0
+        amount = -math.log(max(1 - melanin, 1e-4))
+        words.update(color="sigma_a", sigma_a=tuple(amount * ((1 - red) * dark + red * light) for dark, light in
+                                                    zip((0.506, 0.841, 1.653), (0.343, 0.733, 1.924))))
+    return Closure(inputs.scene.add_material("hair", name=inputs.owner, **words))
+
+
 def _principled(inputs, node, groups):
     material, emission, coverage = principled.convert(inputs, node, groups, glossy, glass)
     return Closure(material, emission, coverage, is_clear=isinstance(coverage, float) and math.isclose(coverage, 0.0, abs_tol=1e-9))
@@ -189,4 +209,4 @@ def _principled(inputs, node, groups):
 CLOSURES = {"BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_ANISOTROPIC": _glossy, "BSDF_GLASS": _glass,
             "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent, "EMISSION": _emission,
             "BACKGROUND": _background, "SUBSURFACE_SCATTERING": _subsurface, "BSDF_VELVET": _velvet, "BSDF_SHEEN": _velvet,
-            "BSDF_PRINCIPLED": _principled}
+            "BSDF_HAIR_PRINCIPLED": _hair, "BSDF_PRINCIPLED": _principled}

@@ -5,7 +5,7 @@ import bpy
 import numpy
 import velo
 
-from . import atlas, camera, camera_files, geometry, lights, materials, motion, textures, world
+from . import atlas, camera, camera_files, geometry, hair, lights, materials, motion, textures, world
 from .report import Notes, Refused
 
 MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -67,6 +67,11 @@ class Export:
                 handle = self._place(item, matrix, self._moves.of(instance) if self._moves is not None else None)
                 if handle is not None:
                     self._handles[motion.key_of(instance)] = handle
+                for system in item.particle_systems:
+                    if system.settings.type == "HAIR" and system.settings.render_type == "PATH" and not instance.is_instance:
+                        self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, numpy.eye(4))
+            elif item.type == "CURVES":
+                self._add_hair(item, hair.of_curves(item.data), 0, matrix)
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
 
@@ -74,8 +79,6 @@ class Export:
         """What an object has that velo does not render."""
         if item.type not in MESHES:
             return
-        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in item.particle_systems):
-            self.notes.add(item.name, "Particles", "hair is not rendered")
         if not (item.visible_camera and item.visible_shadow and item.visible_diffuse and item.visible_glossy and item.visible_transmission):
             self.notes.add(item.name, "Ray visibility", "all rays see it")
         if item.is_holdout or item.is_shadow_catcher:
@@ -135,6 +138,21 @@ class Export:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             self._add_shape(part, item, pose=matrix, name=item.name)
         return None if prepared.emissive else handle
+
+    def _add_hair(self, item, strands, slot, matrix):
+        if strands is None:
+            return
+        positions, widths = hair.segments(*strands)
+        if len(widths) == 0:
+            return
+        slots = [known.material for known in item.material_slots] or [None]
+        surface = self._surface(slots[min(max(slot, 0), len(slots) - 1)], textures.Maps(None), None)
+        if surface.emission is not None:
+            self.notes.add(item.name, "", "hair does not emit")
+        words = {} if surface.alpha is None else {"alpha": surface.alpha}
+        self.scene.add_shape("curves", positions=positions, widths=widths, curve="cylinder", material=surface.material, pose=matrix,
+                             name=item.name, **words)
+        self.shapes.append(item.pass_index)
 
     def indices(self, name, image):
         """The pass IndexOB or IndexMA, height x width, from the channels of ids."""

@@ -228,9 +228,12 @@ def is_multiplied(node):
 
 
 class Maps:
-    """The uv maps of a mesh: names with the rendered one first, the box of each map's uvs."""
+    """The uv maps of a mesh: names with the rendered one first, the box of each map's uvs. None: of what has none."""
 
     def __init__(self, mesh):
+        if mesh is None:
+            self.names, self.bounds = [], {}
+            return
         first = [mesh.render_uv] if mesh.render_uv is not None else []
         self.names = first + [name for name in mesh.uv_names if name != mesh.render_uv]
         self.bounds = {name: _box(mesh.uvs[name]) for name in self.names}

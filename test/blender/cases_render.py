@@ -36,6 +36,20 @@ def a_wide_sun_has_soft_shadows():
 
 
 @case
+def hair_of_particles():
+    for kind, words in (("ShaderNodeBsdfDiffuse", {"Color": (0.7, 0.4, 0.2)}), ("ShaderNodeBsdfHairPrincipled", {"parametrization": "MELANIN"})):
+        scene = new_scene(world=(1, 1, 1))
+        item = ball(material(kind, **words)[0], (0, 0, 0.7), 0.8)
+        with bpy.context.temp_override(object=item):
+            bpy.ops.object.particle_system_add()
+        options = item.particle_systems[0].settings
+        options.type, options.count, options.hair_length, options.root_radius, options.radius_scale = "HAIR", 300, 0.6, 2.0, 0.02
+        agrees(scene, 0.01)
+        image = colors(render(scene))
+        assert image[14:22, :, 0].min() < 0.9 and not notes(scene), notes(scene)
+
+
+@case
 def a_world_of_one_color():
     agrees(room(world=(0.5, 0.6, 0.8)), 0.01)
 

@@ -12,8 +12,12 @@ bl_info = {
 
 
 def _modules():
-    from . import camera_files, engine, panels, settings
-    return settings, camera_files, engine, panels
+    try:
+        import velo  # noqa: F401: the message is clearer than that of the first module which needs it
+    except ImportError as error:
+        raise ImportError("velo in Blender needs the Python module velo: install python3-velo or set PYTHONPATH (%s)" % error) from None
+    from . import camera_files, datasets, engine, panels, settings
+    return settings, camera_files, datasets, engine, panels
 
 
 def register():

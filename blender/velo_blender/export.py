@@ -35,6 +35,7 @@ class Export:
         self.notes = Notes()
         self.scene = velo.Scene()
         self.instances, self.shapes, self.material_indices = [], [], {}
+        self.placed = []  # (class, world from object) of velo's instances
         self._moves = moves
         self._handles = {}  # {motion.key_of(instance): handle}
         self._meshes, self._surfaces, self._cache = {}, {}, {}
@@ -133,6 +134,7 @@ class Export:
             else:
                 self.scene.add_instance(prepared.group, poses, times=motion.TIMES)
             self.instances.append(item.pass_index)
+            self.placed.append((str(item.get("class", "")), matrix))
         for part in prepared.emissive:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")

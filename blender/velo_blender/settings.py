@@ -18,6 +18,10 @@ class VeloSettings(bpy.types.PropertyGroup):
                                      description="Compute with wavelengths; off: with red, green and blue, as Cycles does")
     bake_size: bpy.props.IntProperty(name="Baked size", default=1024, min=16, max=8192,
                                      description="Pixels along a side of baked textures that have no image")
+    dataset_folder: bpy.props.StringProperty(name="Folder", default="//dataset", subtype="DIR_PATH", description="Where the data set is written")
+    dataset_formats: bpy.props.EnumProperty(name="Formats", options={"ENUM_FLAG"}, default={"coco"}, items=[
+        ("coco", "COCO", "Instances, boxes, masks"), ("nerfstudio", "nerfstudio", "transforms.json, images, depths"),
+        ("exr", "OpenEXR", "Linear colours, depth, normals, ids")])
 
 
 def bounces(scene):

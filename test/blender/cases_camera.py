@@ -183,3 +183,31 @@ def passes_of_indices_and_places():
         difference = abs(channel(image, name) - channel(other, name))[inner]
         assert numpy.median(difference) < 0.02, (name, numpy.median(difference))
     assert set(numpy.unique(channel(image, "IndexOB.X"))) == {0.0, 7.0}
+
+
+@case
+def data_sets_have_the_masks_of_classes():
+    import json
+
+    import velo
+    from velo_blender import datasets, report
+    scene = new_scene(world=(1, 1, 1), samples=2)
+    scene.frame_start, scene.frame_end = 1, 2
+    made = material("ShaderNodeBsdfDiffuse")[0]
+    for name, place in (("cup", (-1, 0, 1)), ("cup", (1, 0, 1)), ("dish", (0, 0, 2.5))):
+        ball(made, place, 0.5)["class"] = name
+    ball(made, (0, 3, 1), 0.5)
+    folder = os.path.join(FOLDER, "dataset")
+    datasets.write(folder, ["coco", "nerfstudio", "exr"])
+    tables = [os.path.join(root, name) for root, _, names in os.walk(os.path.join(folder, "coco")) for name in names if name.endswith(".json")]
+    found = [table for table in (json.load(open(path)) for path in tables) if isinstance(table, dict) and "annotations" in table][0]
+    assert [entry["name"] for entry in found["categories"]] == ["cup", "dish"]
+    assert len(found["images"]) == 2 and len(found["annotations"]) == 6
+    with open(os.path.join(folder, "nerfstudio/transforms.json")) as file:
+        assert len(json.load(file)["frames"]) == 2
+    for formats in (["nothing"], []):
+        try:
+            datasets.write(folder, formats)
+        except report.Refused:
+            continue
+        raise AssertionError("a format that is not there was accepted")

@@ -1,5 +1,6 @@
 """engine.py: the render engine: final renders and rendered views."""
 import time
+import traceback
 
 import bpy
 import velo
@@ -29,6 +30,9 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             pass
         except (report.Refused, velo.Error, MemoryError) as error:
             self._refuse(str(error) or "there is not enough memory")
+        except Exception as error:  # pylint: disable=broad-except; Blender shows one line, the terminal the rest
+            traceback.print_exc()
+            self._refuse("a fault of the add-on: %s: %s" % (type(error).__name__, error))
 
     def view_update(self, context, depsgraph):
         """Blender calls it when something of the scene has changed, for a view with rendered shading."""
@@ -51,7 +55,10 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             draw_view.draw(self, context, depsgraph.scene, viewed.image)
 
     def __del__(self):
-        viewed = getattr(self, "viewed", None)
+        try:
+            viewed = getattr(self, "viewed", None)
+        except ReferenceError:  # Blender has freed its part of the engine, and with it what was kept here
+            return
         if viewed is not None:
             viewed.stop()
 

@@ -169,3 +169,42 @@ def an_unknown_node_is_listed_by_its_name():
     ball(made, (1, -1, 1))
     render(scene)
     assert any("Toon" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def degenerate_cameras_are_one_line():
+    for change, text in ((lambda item: setattr(item.data, "ortho_scale", 0.0), "degenerate"),
+                         (lambda item: setattr(item, "scale", (0, 0, 0)), "singular"),
+                         (lambda item: setattr(item.data, "clip_start", 2000.0), "near plane")):
+        scene = room()
+        scene.camera.data.type = "ORTHO" if text == "degenerate" else "PERSP"
+        change(scene.camera)
+        refused(scene, text)
+
+
+@case
+def odd_things_are_rendered():
+    scene = room(world=(1, 1, 1), samples=4)
+    bpy.ops.object.text_add(location=(0, -1, 1))
+    bpy.ops.object.metaball_add(location=(-1, 0, 1))
+    many = ball(material("ShaderNodeBsdfDiffuse")[0])
+    many.scale = (-1, 1, 1)
+    for face in many.data.polygons:
+        face.material_index = face.index % 5
+    many.data.use_auto_smooth = True
+    many.data.normals_split_custom_set([(0, 0, 0)] * len(many.data.loops))
+    bare = plane(None, 1.0, (0, 0, 2))
+    bare.data.materials.append(None)
+    bare.data.uv_layers[0].data[0].uv = (float("nan"), 1e30)
+    for kind, name, value in (("ShaderNodeEmission", "Strength", -5.0), ("ShaderNodeBsdfPrincipled", "IOR", 0.0)):
+        made, node = material(kind)
+        node.inputs[name].default_value = value
+        ball(made, (2, 0, 1), 0.3)
+    unfinished = bpy.data.materials.new("unfinished")
+    unfinished.use_nodes = True
+    unfinished.node_tree.nodes.clear()
+    ball(unfinished, (2, 1, 1), 0.3)
+    lamp(scene, "POINT", 1e30)
+    lamp(scene, "SUN", -3.0)
+    assert numpy.isfinite(colors(render(scene))).all()
+    assert any("unfinished" in line for line in notes(scene)), notes(scene)

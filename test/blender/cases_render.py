@@ -36,6 +36,33 @@ def a_wide_sun_has_soft_shadows():
 
 
 @case
+def bounces_are_counted_as_in_cycles():
+    for bounces in (0, 1):
+        scene = new_scene(bounces=bounces)
+        bpy.ops.mesh.primitive_cube_add(size=8, location=(0, -3, 3))
+        bpy.context.object.data.materials.append(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+        lamp(scene, "AREA", 300, size=1.5)
+        agrees(scene, 0.01)
+
+
+@case
+def shaders_that_transmit_and_mix():
+    for kind, words in (("ShaderNodeBsdfTranslucent", {"Color": GRAY}), ("ShaderNodeBsdfRefraction", {"IOR": 1.3, "distribution": "SHARP"}),
+                        ("ShaderNodeBsdfTransparent", None), ("ShaderNodeBsdfGlossy", None)):
+        scene = new_scene(world=(0.5, 0.5, 0.5))
+        plane(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+        made, node = material(kind, **(words or {}))
+        if words is None:  # mixed with a diffuse one
+            tree = made.node_tree
+            mix, other = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+            tree.links.new(node.outputs[0], mix.inputs[1])
+            tree.links.new(other.outputs[0], mix.inputs[2])
+            tree.links.new(mix.outputs[0], next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL").inputs[0])
+        ball(made)
+        agrees(scene, 0.01)
+
+
+@case
 def hair_of_particles():
     for kind, words in (("ShaderNodeBsdfDiffuse", {"Color": (0.7, 0.4, 0.2)}), ("ShaderNodeBsdfHairPrincipled", {"parametrization": "MELANIN"})):
         scene = new_scene(world=(1, 1, 1))

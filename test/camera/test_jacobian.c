@@ -1,71 +1,15 @@
 /* test/camera/test_jacobian.c: derivatives of projection and unprojection against central
  * differences of eighth order of the public functions, for random cameras of every projection
  * and distortion. */
-#include "camera/cameras.h"
 #include "camera/context.h"
+#include "camera/random_cameras.h"
 
 #include "distortion/compile.h"
-#include "distortion/distortion.case.h"
-#include "projection/projection.case.h"
 #include "velo/jacobian.h"
 
 vlDistortionCompile vl_distortion_compile_opencv;
 
 enum { CAMERAS = 200, COLUMNS = VL_JACOBIAN_COLUMNS };
-
-#define PROJECTION(NAME, name) &name##_projection,
-static const ProjectionCase *const projections[] = {VL_PROJECTION_KINDS(PROJECTION)};
-#define DISTORTION(NAME, name) &name##_distortion,
-static const DistortionCase *const distortions[] = {VL_DISTORTION_KINDS(DISTORTION)};
-
-static bool has_distortion(vlProjection kind) {
-  return kind == VL_PROJECTION_PERSPECTIVE || kind == VL_PROJECTION_EQUIDISTANT;
-}
-
-/* A random camera; false: the kind has no Jacobian. */
-static bool random_camera(vlProjection kind, vlDistortion bent, uint64_t *state,
-                          vlCamera *camera) {
-  const ProjectionCase *c = projections[kind];
-  if (c->optics)
-    return false;
-  vlCameraDef d = vl_default_camera_def(640, 480);
-  d.projection = kind;
-  memcpy(d.shape, c->shape, sizeof d.shape);
-  for (int i = 0; i < 2; i++)
-    if (kind != VL_PROJECTION_CUBE)
-      d.shape[i] *= next_between(state, 0.95, 1.0);
-  d.fx = kind == VL_PROJECTION_CUBE ? VL_UNSET : next_between(state, 200, 300);
-  d.fy = kind == VL_PROJECTION_CUBE ? VL_UNSET : next_between(state, 200, 300);
-  if (kind == VL_PROJECTION_CUBE) {
-    d.width = 600;
-    d.height = 100;
-  } else {
-    d.cx = next_between(state, 300, 340);
-    d.cy = next_between(state, 220, 260);
-    d.skew = next_between(state, -2, 2);
-  }
-  for (int i = 0; i < 3; i++) {
-    d.eye[i] = next_between(state, -2, 2);
-    d.lookat[i] = d.eye[i] + next_between(state, 0.2, 2);
-  }
-  d.roll = next_between(state, -3, 3);
-  d.distortion = bent;
-  if (bent != VL_DISTORTION_NONE) {
-    const DistortionVariant *v = &distortions[bent]->variants[0];
-    d.distortion_count = v->count;
-    for (uint32_t i = 0; i < v->count; i++)
-      d.distortion_coefficients[i] = 0.2 * v->k[i] * next_unit(state);
-    if (bent == VL_DISTORTION_OPENCV) {
-      d.distortion_count = 14;
-      d.distortion_coefficients[12] = next_between(state, -0.1, 0.1);
-      d.distortion_coefficients[13] = next_between(state, -0.1, 0.1);
-    }
-  }
-  vlError error;
-  if (vl_camera_make(&d, camera, NULL, &error) != VL_OK)
-    fail_msg("%s", error.message);
-  return true;
-}
 
 static void set_tilt(vlCamera *camera, double tau_x, double tau_y) {
   double k[14] = {0};
@@ -226,7 +170,7 @@ static void check_model(vlProjection kind, vlDistortion bent) {
   int seen[2] = {0, 0};
   for (int i = 0; i < CAMERAS; i++) {
     Place place;
-    if (!random_camera(kind, bent, &state, &place.camera))
+    if (!random_camera(kind, bent, 0.2, &state, &place.camera))
       return;
     const double *tilt = place.camera.distortion.tilt;
     place.tau[0] = bent == VL_DISTORTION_OPENCV ? atan2(-tilt[7], tilt[8]) : 0.0;

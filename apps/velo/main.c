@@ -26,7 +26,8 @@ static const Command *const commands[] = {
     &camera_info_command,      &camera_convert_command, &camera_verify_command,
     &camera_vanishing_command, &camera_paths_command,   &camera_draw_command,
     &film_info_command,        &film_merge_command,     &film_develop_command,
-    &sensor_expose_command,    &sensor_verify_command};
+    &raw_develop_command,      &raw_info_command,       &sensor_expose_command,
+    &sensor_verify_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
@@ -84,13 +85,13 @@ static bool is_second_word(const char *word, char *list, size_t size) {
 /* The command for a file without one (velo model.glb); null: the word is no file's name. */
 static const char *command_for_file(const char *word) {
   static const char *const kinds[][2] = {
-      {".pbrt", "render"},      {".pbrt.gz", "render"},  {".gltf", "render"},
-      {".glb", "render"},       {".obj", "render"},      {".ply", "render"},
-      {".stl", "render"},       {".off", "render"},      {".film", "film info"},
-      {".exr", "image info"},   {".png", "image info"},  {".jpg", "image info"},
-      {".hdr", "image info"},   {".pfm", "image info"},  {".obj.gz", "render"},
-      {".ply.gz", "render"},    {".stl.gz", "render"},   {".off.gz", "render"},
-      {".yaml", "camera info"}, {".json", "camera info"}};
+      {".pbrt", "render"},      {".pbrt.gz", "render"},   {".gltf", "render"},
+      {".glb", "render"},       {".obj", "render"},       {".ply", "render"},
+      {".stl", "render"},       {".off", "render"},       {".film", "film info"},
+      {".exr", "image info"},   {".png", "image info"},   {".jpg", "image info"},
+      {".hdr", "image info"},   {".pfm", "image info"},   {".obj.gz", "render"},
+      {".ply.gz", "render"},    {".stl.gz", "render"},    {".off.gz", "render"},
+      {".yaml", "camera info"}, {".json", "camera info"}, {".dng", "raw info"}};
   const size_t length = strlen(word);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     const size_t n = strlen(kinds[i][0]);
@@ -158,7 +159,7 @@ static const Command help_command = {
         "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options "
         "in sections\n"
         "(of render the most used ones, --all prints all), and examples. For image, scene, "
-        "camera or film, prints this for each command of that group.",
+        "camera, film or raw, prints this for each command of that group.",
     .examples =
         "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man "
         "render | man -l -",

@@ -35,6 +35,7 @@
 #include "velo/paths.h"
 #include "velo/pending.h"
 #include "velo/projection.h"
+#include "velo/raw.h"
 #include "velo/rays.h"
 #include "velo/receipt.h"
 #include "velo/render.h"

@@ -165,7 +165,7 @@ PyMODINIT_FUNC PyInit__velo(void) {
   }
   PyMethodDef *tables[] = {camera_functions,    film_functions,  image_functions,
                            render_functions,    world_functions, own_functions,
-                           own_trace_functions, sensor_functions};
+                           own_trace_functions, raw_functions,   sensor_functions};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
     if (PyModule_AddFunctions(module, tables[i]) < 0)
       return NULL;

@@ -280,7 +280,9 @@ bool own_check(const Own *own);
 bool handle_is_valid(const Handle *handle);
 PyObject *image_object(Context *context,
                        vlImage *image); /* takes the image, also when it fails */
-bool scene_open(const Scene *self);     /* false: an exception is set */
+/* (image of the numbers, dict of the values) of a raw image, which is taken. */
+PyObject *raw_parts(Context *context, vlRaw *raw);
+bool scene_open(const Scene *self); /* false: an exception is set */
 /* Begins a call that adds to the scene; null with an exception. scene_settle ends it: if it is
  * not done, the scene is as it was. */
 vlSceneCheckpoint *scene_attempt(const Scene *self);
@@ -309,6 +311,7 @@ PyObject *world_trace(World *self, PyObject *arguments);
 PyObject *world_occluded(World *self, PyObject *arguments);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
 extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[],
-    world_functions[], own_functions[], own_trace_functions[], sensor_functions[];
+    world_functions[], own_functions[], own_trace_functions[], raw_functions[],
+    sensor_functions[];
 
 #endif

@@ -21,6 +21,7 @@ from velo.film import Film, merge_films, read_film
 from velo.image import Image, read_image
 from velo.own import (FilmPoints, OwnCamera, OwnSampler, OwnTracer, Paths, Samples, Trace, TraceBounce, TraceHits, TraceLights,
                       TraceRays)
+from velo.raw import Raw, read_raw
 from velo.rays import RayHits
 from velo.scene import Handle, Mesh, Model, Scene, World, load, settings_names
 from velo.sensor import Exposure, Sensor, sensor_presets
@@ -49,8 +50,9 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 __all__ = [
     "Camera", "CancelledError", "Context", "Error", "Exposure", "Film", "FilmPoints", "ForkError", "Handle", "Image", "Mesh",
     "MissingFileError", "Model", "OutOfMemoryError", "OutputError", "OwnCamera", "OwnSampler", "OwnTracer", "Paths",
-    "Progress", "Projection", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Sensor", "Settings", "Spectrum", "Step", "Trace",
-    "TraceBounce", "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody",
-    "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera", "read_film", "read_image",
-    "read_trajectory", "rgb", "sampled", "sensor_names", "sensor_presets", "set_threads", "settings_names", "spectrum_names",
+    "Progress", "Projection", "Raw", "RayHits", "Rays", "Samples", "Scene", "SceneError", "Sensor", "Settings", "Spectrum", "Step",
+    "Trace", "TraceBounce", "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World",
+    "blackbody", "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera", "read_film", "read_image",
+    "read_raw", "read_trajectory", "rgb", "sampled", "sensor_names", "sensor_presets", "set_threads", "settings_names",
+    "spectrum_names",
 ]

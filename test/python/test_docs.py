@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python examples of README.md, docs/python.md, docs/own-code.md, docs/rays.md and docs/datasets.md, and the notebooks of examples/, run as written: the
+"""The Python examples of README.md, docs/python.md, docs/own-code.md, docs/raw.md, docs/rays.md and docs/datasets.md, and the notebooks of examples/, run as written: the
 blocks of a page one after the other in a folder of their own. Renders get at most 2 samples per pixel."""
 import contextlib
 import glob
@@ -68,6 +68,13 @@ def docs_python():
     parts = blocks(os.path.join(cases.SOURCE, "docs/python.md"))
     assert len(parts) >= 9
     run("python", parts, False)
+
+
+@case
+def docs_raw():
+    parts = blocks(os.path.join(cases.SOURCE, "docs/raw.md"))
+    assert len(parts) >= 1
+    run("raw", parts, False)
 
 
 @case

@@ -42,7 +42,7 @@ ANYTHING = {**{"no count " + name: value for name, value in NO_COUNT.items()}, *
 QUAD = numpy.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=numpy.float32)
 FACES = numpy.array([[0, 1, 2], [0, 2, 3]], dtype=numpy.uint32)
 K = numpy.array([[8, 0, 4], [0, 8, 4], [0, 0, 1.0]])
-OBJ, EXR, FILM, CAMERA = work("a.obj"), work("a.exr"), work("a.film"), work("camera.json")
+OBJ, EXR, FILM, CAMERA, DNG = work("a.obj"), work("a.exr"), work("a.film"), work("camera.json"), work("a.dng")
 
 
 def quad_scene():
@@ -66,6 +66,10 @@ SPECTRAL = velo.Image(numpy.ones((4, 4, 2), dtype=numpy.float32), ["S0.450nm", "
 IMAGE.write(EXR)
 FIRST.film.write(FILM)
 FIRST.camera.write(CAMERA)
+RAW = velo.Raw(numpy.zeros((4, 6), dtype=numpy.uint16))
+BELLS = [numpy.exp(-((numpy.arange(471) - middle) / 40.0) ** 2) for middle in (240, 180, 90)]
+RAW.match_color(BELLS)
+RAW.write(DNG)
 
 COUNT, NUMBER, FLAG, TEXT, PATH, VECTOR, OBJECT, ANY = "count", "number", "flag", "text", "path", "vector", "object", "any"
 REFUSED = {COUNT: NO_COUNT, NUMBER: NO_NUMBER, FLAG: NO_FLAG, TEXT: NO_TEXT, PATH: NO_PATH,
@@ -177,6 +181,14 @@ CALLS = [
     Call("Image.difference", lambda: IMAGE, reference=(IMAGE, OBJECT)),
     Call("Image.denoise", lambda: FIRST.render(spp=2, errors=True, channels=["error"]), denoiser=("velo", OBJECT)),
     Call("Image.close", lambda: velo.Image(QUAD)),
+    Call("Raw", numbers=(numpy.ones((2, 2), dtype=numpy.uint16), ANY), pattern=("RG/GB", TEXT), bits=(12, COUNT), black=(0, ANY),
+         white=(4095, COUNT), camera=("a", TEXT), exposure_time=(0.1, NUMBER), f_number=(4, NUMBER), focal_length=(0.05, NUMBER),
+         iso=(100, COUNT), gain=(1, NUMBER), read_noise=(1, NUMBER), baseline_exposure=(0, NUMBER), neutral=(None, OBJECT),
+         matrices=(None, OBJECT), context=(None, OBJECT)),
+    Call("Raw.write", lambda: RAW, path=(work("w.dng"), PATH)),
+    Call("Raw.develop", lambda: RAW, stop_at=("tone", OBJECT), exposure=(0.0, NUMBER)),
+    Call("Raw.match_color", lambda: RAW, sensitivities=(BELLS, OBJECT), light=(None, OBJECT)),
+    Call("read_raw", path=(DNG, PATH), context=(None, OBJECT)),
     Call("read_image", path=(EXR, PATH), channels=(["R"], ANY), context=(None, OBJECT)),
     Call("World.ids", lambda: FIRST.world(), kind=("object", TEXT)),
     Call("World.trace", lambda: FIRST.world(), origins=([[0, 0, 3.0]], ANY), directions=([[0, 0, -1.0]], ANY), t_max=(None, ANY), times=(None, ANY),

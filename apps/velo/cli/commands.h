@@ -15,5 +15,6 @@ extern const Command camera_verify_command, camera_vanishing_command, camera_pat
 extern const Command view_command;
 extern const Command film_info_command, film_merge_command, film_develop_command;
 extern const Command sensor_expose_command, sensor_verify_command;
+extern const Command raw_develop_command, raw_info_command;
 
 #endif

@@ -1,0 +1,195 @@
+/* raw/info.c: `velo raw info`: what a raw file says of its numbers. Also functions shared by
+ * the raw commands. */
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/report.h"
+#include "cli/text.h"
+#include "raw/raw.h"
+
+int raw_load(const char *path, vlContext **context, vlRaw **raw) {
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  int status = context_open(&def, context);
+  if (status >= 0)
+    return status;
+  vlError error = {0};
+  vlResult result = vl_raw_read(*context, path, raw, &error);
+  return result == VL_OK ? -1 : report_error(&error, result, path);
+}
+
+enum { INFO_JSON };
+
+/* The least and greatest of the numbers, and how many reach the white level. */
+typedef struct Range {
+  uint32_t least, greatest;
+  uint64_t saturated;
+} Range;
+
+static Range range_of(const vlRaw *raw) {
+  const vlRawDef *def = vl_raw_def(raw);
+  const uint16_t *numbers = vl_raw_const_numbers(raw);
+  Range range = {.least = UINT16_MAX};
+  for (size_t i = 0; i < (size_t)def->width * def->height; i++) {
+    range.least = numbers[i] < range.least ? numbers[i] : range.least;
+    range.greatest = numbers[i] > range.greatest ? numbers[i] : range.greatest;
+    range.saturated += numbers[i] >= def->white;
+  }
+  return range;
+}
+
+static bool is_known(const float *values, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++)
+    if (values[i] != 0.0f)
+      return true;
+  return false;
+}
+
+/* A line of numbers, if they are known. Each has the 7 digits of a float. */
+static void print_numbers(const char *name, const char *unit, const float *values,
+                          uint32_t count) {
+  if (!is_known(values, count))
+    return;
+  printf("%-18s", name);
+  for (uint32_t i = 0; i < count; i++)
+    printf(" %.7g", (double)values[i]);
+  printf("%s%s\n", *unit ? " " : "", unit);
+}
+
+static void print_levels(const vlRawDef *def) {
+  uint32_t cells = def->pattern_rows * def->pattern_columns;
+  bool is_one = true;
+  for (uint32_t i = 1; i < cells; i++)
+    is_one = is_one && def->black[i] == def->black[0];
+  printf("%-18s", "black level");
+  for (uint32_t i = 0; i < (is_one ? 1 : cells); i++)
+    printf(" %u", def->black[i]);
+  printf("\n%-18s %u\n", "white level", def->white);
+}
+
+static void print_text(const char *path, const vlRaw *raw) {
+  const vlRawDef *def = vl_raw_def(raw);
+  const Range range = range_of(raw);
+  uint8_t colors[VL_RAW_MAX_COLORS];
+  uint32_t count = vl_raw_colors(def, colors);
+  float iso = (float)def->iso;
+  char pattern[80];
+  vl_raw_pattern_text(def, pattern);
+  printf("%-18s %s\n%-18s %u x %u\n%-18s %u\n%-18s %s\n", "file", path, "size", def->width,
+         def->height, "bits", def->bits, "pattern", pattern);
+  print_levels(def);
+  printf("%-18s %u to %u, %llu at the white level\n", "numbers", range.least, range.greatest,
+         (unsigned long long)range.saturated);
+  if (def->camera[0])
+    printf("%-18s %s\n", "camera", def->camera);
+  print_numbers("exposure time", "s", &def->exposure_time, 1);
+  print_numbers("f-number", "", &def->f_number, 1);
+  print_numbers("focal length", "m", &def->focal_length, 1);
+  print_numbers("ISO", "", &iso, 1);
+  print_numbers("gain", "numbers per electron", &def->gain, 1);
+  print_numbers("read noise", "electrons", &def->read_noise, 1);
+  print_numbers("baseline exposure", "EV", &def->baseline_exposure, 1);
+  print_numbers("neutral", "", def->neutral, count);
+  print_numbers("matrix A", "", def->matrices[0], 3 * count);
+  print_numbers("matrix D65", "", def->matrices[1], 3 * count);
+}
+
+/* The decimal of the least digits that reads back as the same float. */
+static double shown(float value) {
+  double back = (double)value;
+  for (int digits = 6; digits <= 9; digits++) {
+    char text[40];
+    snprintf(text, sizeof text, "%.*g", digits, (double)value);
+    if (sscanf(text, "%lf", &back) == 1 && (float)back == value)
+      break;
+  }
+  return back;
+}
+
+static void put_numbers(Json *json, const char *key, const float *values, uint32_t count) {
+  if (!is_known(values, count))
+    return;
+  json_begin(json, key, '[');
+  for (uint32_t i = 0; i < count; i++)
+    json_number(json, NULL, shown(values[i]));
+  json_end(json, ']');
+}
+
+static void put_number(Json *json, const char *key, float value) {
+  if (value != 0.0f)
+    json_number(json, key, shown(value));
+}
+
+static void print_json(const char *path, const vlRaw *raw) {
+  const vlRawDef *def = vl_raw_def(raw);
+  const Range range = range_of(raw);
+  uint8_t colors[VL_RAW_MAX_COLORS];
+  uint32_t count = vl_raw_colors(def, colors);
+  char pattern[80];
+  Json json = {.out = stdout};
+  vl_raw_pattern_text(def, pattern);
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", path);
+  json_integer(&json, "width", def->width);
+  json_integer(&json, "height", def->height);
+  json_integer(&json, "bits", def->bits);
+  json_text(&json, "pattern", pattern);
+  json_begin(&json, "black", '[');
+  for (uint32_t i = 0; i < def->pattern_rows * def->pattern_columns; i++)
+    json_integer(&json, NULL, def->black[i]);
+  json_end(&json, ']');
+  json_integer(&json, "white", def->white);
+  json_integer(&json, "least", range.least);
+  json_integer(&json, "greatest", range.greatest);
+  json_integer(&json, "saturated", (int64_t)range.saturated);
+  json_text(&json, "camera", def->camera);
+  put_number(&json, "exposure_time", def->exposure_time);
+  put_number(&json, "f_number", def->f_number);
+  put_number(&json, "focal_length", def->focal_length);
+  put_number(&json, "iso", (float)def->iso);
+  put_number(&json, "gain", def->gain);
+  put_number(&json, "read_noise", def->read_noise);
+  put_number(&json, "baseline_exposure", def->baseline_exposure);
+  put_numbers(&json, "neutral", def->neutral, count);
+  put_numbers(&json, "matrix_a", def->matrices[0], 3 * count);
+  put_numbers(&json, "matrix_d65", def->matrices[1], 3 * count);
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+static int run_info(const Command *command, const Arguments *arguments) {
+  (void)command;
+  vlContext *context = NULL;
+  vlRaw *raw = NULL;
+  const char *path = arguments->operands[0];
+  int status = raw_load(path, &context, &raw);
+  if (status < 0) {
+    if (arguments->values[INFO_JSON].given)
+      print_json(path, raw);
+    else
+      print_text(path, raw);
+    status = report_stdout(STATUS_OK);
+  }
+  vl_raw_destroy(raw);
+  context_close(context);
+  return status;
+}
+
+static const Option info_options[] = {
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"}, {0}};
+
+const Command raw_info_command = {
+    .name = "raw info",
+    .usage = "FILE [options]",
+    .summary = "print what a raw file says of its numbers",
+    .text =
+        "Prints the size, the pattern of filters, the levels and the metadata of a DNG file "
+        "that velo wrote.\n"
+        "What is not known is left out. Matrices: for each colour the factors of X, Y and Z.",
+    .examples = "velo raw info room.dng\nvelo raw info --json room.dng",
+    .options = info_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_info,
+};

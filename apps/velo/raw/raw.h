@@ -1,0 +1,11 @@
+/* raw/raw.h: declarations shared by the raw commands. */
+#ifndef APP_RAW_RAW_H
+#define APP_RAW_RAW_H
+
+#include "velo/raw.h"
+
+/* Makes a context and reads a raw image. Returns -1, or the exit code after reporting the
+ * error. */
+int raw_load(const char *path, vlContext **context, vlRaw **raw);
+
+#endif

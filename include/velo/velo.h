@@ -43,6 +43,7 @@
 #include "velo/scene.h"
 #include "velo/scene_base.h"
 #include "velo/sensor.h"
+#include "velo/sensor_raw.h"
 #include "velo/shape.h"
 #include "velo/shape_kinds.h"
 #include "velo/spectrum.h"

@@ -280,6 +280,8 @@ bool own_check(const Own *own);
 bool handle_is_valid(const Handle *handle);
 PyObject *image_object(Context *context,
                        vlImage *image); /* takes the image, also when it fails */
+/* The dict of a def. */
+PyObject *raw_values(const vlRawDef *def);
 /* (image of the numbers, dict of the values) of a raw image, which is taken. */
 PyObject *raw_parts(Context *context, vlRaw *raw);
 bool scene_open(const Scene *self); /* false: an exception is set */

@@ -175,8 +175,7 @@ static PyObject *black_of(const vlRawDef *def) {
   return list;
 }
 
-/* The dict of a def. */
-static PyObject *values_of(const vlRawDef *def) {
+PyObject *raw_values(const vlRawDef *def) {
   uint8_t colors[COLORS];
   uint32_t count = vl_raw_colors(def, colors);
   char pattern[80];
@@ -198,7 +197,7 @@ PyObject *raw_parts(Context *context, vlRaw *raw) {
   vlImage *image = NULL;
   image_def.type = VL_PIXEL_U16;
   vlResult result = vl_image_create(context->context, &image_def, &image);
-  PyObject *values = result == VL_OK ? values_of(def) : raise_result(result, NULL);
+  PyObject *values = result == VL_OK ? raw_values(def) : raise_result(result, NULL);
   if (image)
     memcpy(vl_image_pixels(image), vl_raw_const_numbers(raw),
            sizeof(uint16_t) * def->width * def->height);
@@ -228,7 +227,7 @@ static PyObject *raw_check(PyObject *module, PyObject *arguments) {
   vlRaw *raw = make_raw(numbers, values);
   if (!raw)
     return NULL;
-  PyObject *result = values_of(vl_raw_def(raw));
+  PyObject *result = raw_values(vl_raw_def(raw));
   vl_raw_destroy(raw);
   return result;
 }
@@ -337,7 +336,7 @@ static PyObject *raw_match_color(PyObject *module, PyObject *arguments) {
     return NULL;
   vlResult result =
       vl_raw_match_color(&def, curves, light == Py_None ? NULL : spectrum, &error);
-  return result == VL_OK ? values_of(&def) : raise_result(result, &error);
+  return result == VL_OK ? raw_values(&def) : raise_result(result, &error);
 }
 
 PyMethodDef raw_functions[] = {

@@ -2,7 +2,7 @@
  * named at each call, by a preset or a file, with keywords that replace its numbers. */
 #include <string.h>
 
-#include <velo/sensor.h>
+#include <velo/sensor_raw.h>
 
 #include "module.h"
 
@@ -172,9 +172,44 @@ static PyObject *sensor_expose(PyObject *module, PyObject *arguments) {
   return result;
 }
 
+/* sensor_raw(context, name, is_file, keywords, exposure, numbers, light or None): what velo.Raw
+ * has beside the numbers of a frame. */
+static PyObject *sensor_raw(PyObject *module, PyObject *arguments) {
+  (void)module;
+  Context *context;
+  PyObject *name, *keywords, *settings, *image, *light, *result = NULL;
+  float white[VL_SPECTRUM_VALUES];
+  int is_file;
+  if (!PyArg_ParseTuple(arguments, "O!OpO!O!O!O:sensor_raw", base_types[TYPE_CONTEXT], &context,
+                        &name, &is_file, &PyDict_Type, &keywords, &PyDict_Type, &settings,
+                        base_types[TYPE_IMAGE], &image, &light) ||
+      (light != Py_None && !floats_copy(light, "light", VL_SPECTRUM_VALUES, white)))
+    return NULL;
+  const vlImage *numbers = ((Image *)image)->image;
+  vlExposureDef exposure = vl_default_exposure_def();
+  PyObject *keep = PyList_New(0);
+  const Target target = {(char *)&exposure, keep, NULL, false};
+  bool fine = keep && numbers &&
+              set_parameters(&target, VL_SETTING_EXPOSURE, "number of an exposure", settings);
+  vlSensor *sensor = fine ? make_sensor(context, name, is_file, keywords, keep) : NULL;
+  vlRaw *raw = NULL;
+  vlError error = {0};
+  if (sensor) {
+    vlResult done =
+        vl_sensor_raw(sensor, &exposure, light == Py_None ? NULL : white,
+                      vl_image_width(numbers), vl_image_height(numbers), &raw, &error);
+    result = done == VL_OK ? raw_values(vl_raw_def(raw)) : raise_result(done, &error);
+  }
+  vl_raw_destroy(raw);
+  vl_sensor_destroy(sensor);
+  Py_XDECREF(keep);
+  return result;
+}
+
 PyMethodDef sensor_functions[] = {
     {"sensor_numbers", sensor_numbers, METH_VARARGS, "The numbers of a sensor."},
     {"sensor_presets", sensor_presets, METH_NOARGS, "The names of presets."},
     {"sensor_expose", sensor_expose, METH_VARARGS, "Exposes a sensor to an image."},
+    {"sensor_raw", sensor_raw, METH_VARARGS, "The values of a frame's raw image."},
     {NULL, NULL, 0, NULL},
 };

@@ -82,8 +82,13 @@ class Raw:
         return f"<velo.Raw {width} x {height}, {self.bits} bits, {self.pattern}>"
 
 
+def raw_of(image: Image, values: dict[str, Any]) -> Raw:
+    """The raw image of an image of numbers, which it keeps, and values of the extension's."""
+    raw = Raw.__new__(Raw)
+    raw._take(image, values)
+    return raw
+
+
 def read_raw(path: Path, *, context: Any = None) -> Raw:
     """Reads a DNG file that velo wrote."""
-    raw = Raw.__new__(Raw)
-    raw._take(*_velo.raw_read(context_or_default(context), path))
-    return raw
+    return raw_of(*_velo.raw_read(context_or_default(context), path))

@@ -9,6 +9,7 @@ from velo import _check, _velo
 from velo._context import context_or_default
 from velo._errors import UsageError
 from velo.image import Image, Path
+from velo.raw import Raw, raw_of
 
 
 class Exposure:
@@ -60,6 +61,13 @@ class Sensor:
             if any(name.startswith("S0.") for name in part._names):
                 return Exposure(*_velo.sensor_expose(self._context, self._name, self._file, self._given, part, exposure))
         raise UsageError("the image has no spectrum: render it with buckets=N")
+
+    def raw(self, image: Image, *, light: Any = None, **exposure: Any) -> Raw:
+        """Exposes the sensor as expose() does, and makes a raw image with the sensor's levels, noise and colour.
+
+        light: the white of the scene's light, 471 values, for each nm from 360 to 830; default D65."""
+        numbers = self.expose(image, **exposure).numbers
+        return raw_of(numbers, _velo.sensor_raw(self._context, self._name, self._file, self._given, exposure, numbers, light))
 
     def __repr__(self) -> str:
         return f"<velo.Sensor {self._name}: {self._numbers['pattern']}, {self._numbers['bits']} bits>"

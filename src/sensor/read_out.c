@@ -74,9 +74,7 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
 
 static void set_up(ReadOut *r, const vlExposureDef *exposure) {
   const vlSensorDef *def = &r->sensor->def;
-  double warmer = exposure->temperature - def->dark_temperature;
-  r->dark = def->dark_current * vl_exposure_seconds(exposure) *
-            vl_precise_exp2(warmer / def->doubling);
+  r->dark = vl_exposure_dark(def, exposure);
   r->per_electron = vl_exposure_gain(def, exposure) / def->gain;
   r->largest = ldexp(1.0, (int)def->bits) - 1.0;
   for (int i = 0; i <= VL_STAGE_COLUMN; i++) {

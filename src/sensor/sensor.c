@@ -332,3 +332,9 @@ double vl_exposure_gain(const vlSensorDef *def, const vlExposureDef *exposure) {
   double iso = exposure->iso > 0.0 ? exposure->iso / def->base_iso : 1.0;
   return iso * exposure->gain;
 }
+
+double vl_exposure_dark(const vlSensorDef *def, const vlExposureDef *exposure) {
+  double warmer = exposure->temperature - def->dark_temperature;
+  return def->dark_current * vl_exposure_seconds(exposure) *
+         vl_precise_exp2(warmer / def->doubling);
+}

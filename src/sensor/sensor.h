@@ -24,6 +24,9 @@ double vl_exposure_seconds(const vlExposureDef *exposure);
 /* The amplifier's factor: of the ISO speed and the further gain. */
 double vl_exposure_gain(const vlSensorDef *def, const vlExposureDef *exposure);
 
+/* The mean of the dark electrons of a pixel. */
+double vl_exposure_dark(const vlSensorDef *def, const vlExposureDef *exposure);
+
 /* The buckets of an image's spectrum: `count` channels from `first` on, ascending by
  * wavelength. */
 typedef struct vlSensorSpectrum {

@@ -69,7 +69,7 @@ check help "$VELO" help
 "$VELO" help >pages.txt
 wide=$(awk 'length($0) > 80' pages.txt)
 for command in render 'scene info' 'scene check' 'scene convert' 'scene upgrade' 'scene kinds' 'image info' 'image diff' 'image convert' 'image check' 'image denoise' 'camera project' \
-  'camera unproject' 'camera info' 'camera convert' 'camera verify' 'camera vanishing' 'film info' 'film merge' 'film develop' 'sensor expose' 'sensor verify' help; do
+  'camera unproject' 'camera info' 'camera convert' 'camera verify' 'camera vanishing' 'film info' 'film merge' 'film develop' 'raw info' 'raw develop' 'sensor expose' 'sensor verify' help; do
   run "$VELO" help $command --all
   wide="$wide$(printf '%s\n' "$out" | awk 'length($0) > 80')"
   [ "$code" = 0 ] && [ "$(printf '%s\n' "$out" | sed '1,/^examples:/d' | grep -c '^  velo ')" -ge 2 ] && pass "help_$command" || { fail "help_$command"; show help; }

@@ -253,6 +253,7 @@ CALLS = [
     Call("OwnTracer", radiance=(len, OBJECT), name=("own", TEXT)),
     Call("Sensor", keywords=keywords("sensor"), sensor=("ideal", TEXT), context=(None, OBJECT)),
     Call("Sensor.expose", lambda: velo.Sensor("generic_mono"), keywords=keywords("exposure"), image=(SPECTRAL, OBJECT)),
+    Call("Sensor.raw", lambda: velo.Sensor("generic_rggb"), keywords=keywords("exposure"), image=(SPECTRAL, OBJECT), light=(None, OBJECT)),
     Call("sensor_presets"),
     Call("channel_names"), Call("sensor_names"), Call("settings_names"), Call("spectrum_names"),
 ]

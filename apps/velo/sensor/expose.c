@@ -13,6 +13,7 @@
 #include "render/output_names.h"
 #include "render/pattern.h"
 #include "sensor/sensor.h"
+#include "velo/sensor_raw.h"
 
 enum {
   EXPOSE_OUTPUT,
@@ -27,6 +28,7 @@ enum {
   EXPOSE_SEED,
   EXPOSE_FRAME,
   EXPOSE_BRACKET,
+  EXPOSE_WHITE,
   EXPOSE_THREADS
 };
 static const ExposureOption exposure_rows[] = {{EXPOSE_TIME, "exposure_time"},
@@ -49,12 +51,17 @@ typedef struct Expose {
   vlExposureDef exposure;
   double bracket[MAX_FRAMES]; /* stops */
   uint32_t frames;
-  const char *path; /* of the image */
+  float light[VL_SPECTRUM_VALUES]; /* the white of raw files */
+  const char *path;                /* of the image */
   const char *const *paths;
   int count;
 } Expose;
 
 /* ---- what is asked ---------------------------------------------------------------------- */
+
+static bool holds_metadata(const char *path) {
+  return text_ends_with(path, ".dng");
+}
 
 static bool holds_electrons(const char *path) {
   return text_ends_with(path, ".exr");
@@ -84,10 +91,10 @@ static int check_outputs(const Expose *e) {
     return report_usage("sensor expose: give the name of the raw image with -o");
   for (int i = 0; i < e->count; i++) {
     const char *path = e->paths[i];
-    if (!holds_electrons(path) && !text_ends_with(path, ".png"))
+    if (!holds_electrons(path) && !holds_metadata(path) && !text_ends_with(path, ".png"))
       return report_usage(
-          "output \"%s\": the suffix must be .png (numbers, 16 bits) or .exr "
-          "(electrons)",
+          "output \"%s\": the suffix must be .dng (a raw file), .png (numbers, 16 bits) or "
+          ".exr (electrons)",
           path);
     int status = pattern_check(path);
     if (status >= 0)
@@ -142,6 +149,28 @@ static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
   return result;
 }
 
+static vlResult write_raw(const Expose *e, const char *path, const vlExposureDef *exposure,
+                          vlError *error) {
+  vlRaw *raw = NULL;
+  uint32_t width = vl_image_width(e->numbers), height = vl_image_height(e->numbers);
+  vlResult result = vl_sensor_raw(e->sensor, exposure, e->light, width, height, &raw, error);
+  if (result != VL_OK)
+    return result;
+  memcpy(vl_raw_numbers(raw), vl_image_const_pixels(e->numbers),
+         sizeof(uint16_t) * width * height);
+  result = vl_raw_write(raw, path, error);
+  vl_raw_destroy(raw);
+  return result;
+}
+
+/* Reads the spectrum of --white: that of D65 if there is none. */
+static int read_white(Expose *e, const OptionValue *value) {
+  vlSpectrum spectrum = vl_spectrum_named(value->given ? value->text : "stdillum-D65");
+  vlError error = {0};
+  vlResult result = vl_spectrum_tabulate(&spectrum, VL_PARAMETER_ILLUMINANT, e->light, &error);
+  return result == VL_OK ? -1 : report_usage("--white: %s", error.message);
+}
+
 static int write_frame(Expose *e, uint32_t frame, const vlExposureDef *exposure) {
   char path[4096];
   vlResult result = describe(e, exposure);
@@ -151,7 +180,8 @@ static int write_frame(Expose *e, uint32_t frame, const vlExposureDef *exposure)
     vlError error = {0};
     path_of(e->paths[i], frame, path);
     const vlImage *image = holds_electrons(path) ? e->electrons : e->numbers;
-    result = vl_image_write(image, path, NULL, &error);
+    result = holds_metadata(path) ? write_raw(e, path, exposure, &error)
+                                  : vl_image_write(image, path, NULL, &error);
     if (result != VL_OK)
       return report_error(&error, result, path);
   }
@@ -240,6 +270,8 @@ static int run(const Command *command, const Arguments *arguments) {
   if (status < 0)
     status = parse_bracket(&e, &v[EXPOSE_BRACKET]);
   if (status < 0)
+    status = read_white(&e, &v[EXPOSE_WHITE]);
+  if (status < 0)
     status = check_outputs(&e);
   if (status >= 0)
     return status;
@@ -270,8 +302,8 @@ static int run(const Command *command, const Arguments *arguments) {
 
 static const Option options[] = {
     {EXPOSE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "file to write; may be given several times: .png has the numbers (16 bits), .exr the "
-     "electrons"},
+     "file to write; may be given several times: .dng is a raw file with all metadata, .png "
+     "has the numbers (16 bits), .exr the electrons"},
     {EXPOSE_SENSOR, 0, "sensor", OPTION_TEXT, "NAME|FILE",
      "a sensor file (.yaml), or ideal, ideal_rggb, generic_mono, generic_rggb, generic_quad, "
      "or generic_rggb with the sensitivities of a measured camera (canon_eos_5d, ...). "
@@ -293,6 +325,9 @@ static const Option options[] = {
      "number of the first frame: other noise with the same seed"},
     {EXPOSE_BRACKET, 0, "bracket", OPTION_TEXT, "EV,EV,...",
      "a frame for each number: the exposure time times 2^EV. The names need %d: raw_%d.png"},
+    {EXPOSE_WHITE, 0, "white", OPTION_TEXT, "SPECTRUM",
+     "what raw files (.dng) call the white of the scene's light: stdillum-A, stdillum-D50, "
+     "...; default: stdillum-D65"},
     {EXPOSE_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "number of worker threads; default: all processors. The result is the same"},
     {0}};
@@ -306,7 +341,7 @@ const Command sensor_expose_command = {
         "computes what a\nsensor makes of it: photons, electrons and whole numbers, with "
         "noise. docs/sensor.md has the\nmodel and the form of sensor files.",
     .examples =
-        "velo sensor expose room.exr --sensor generic_rggb --iso 400 -o raw.png\n"
+        "velo sensor expose room.exr --sensor generic_rggb --iso 400 -o raw.dng\n"
         "velo sensor expose room.exr --sensor my.yaml --bracket -4,-2,0 -o raw_%d.png",
     .options = options,
     .min_operands = 1,

@@ -1,0 +1,79 @@
+/* api/sensor_raw.c: the raw image of an exposure (velo/sensor_raw.h). */
+#include "velo/sensor_raw.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "sensor/sensor.h"
+
+/* A value that is not known if it is beyond what a raw image holds. */
+static float known(double value) {
+  return value >= 1e-6 && value <= 1e6 ? (float)value : 0.0f;
+}
+
+/* The levels and the noise of numbers. */
+static void set_levels(const vlSensorDef *sensor, const vlExposureDef *exposure,
+                       vlRawDef *def) {
+  double per_electron = vl_exposure_gain(sensor, exposure) / sensor->gain;
+  double dark = vl_exposure_dark(sensor, exposure);
+  double largest = ldexp(1.0, (int)sensor->bits) - 1.0;
+  double black = fmin(sensor->black_level + per_electron * dark, largest);
+  double full = fmin(sensor->black_level + per_electron * sensor->full_well, largest);
+  double adc = sensor->adc_noise / per_electron;
+  double variance = sensor->read_noise * sensor->read_noise + adc * adc + dark +
+                    sensor->row_noise * sensor->row_noise +
+                    sensor->column_noise * sensor->column_noise;
+  def->bits = sensor->bits;
+  def->white = (uint16_t)floor(full + 0.5);
+  for (uint32_t i = 0; i < def->pattern_rows * def->pattern_columns; i++)
+    def->black[i] = (uint16_t)floor(black + 0.5);
+  def->gain = known(per_electron);
+  def->read_noise = known(sqrt(variance));
+}
+
+static void set_exposure(const vlSensorDef *sensor, const vlExposureDef *exposure,
+                         vlRawDef *def) {
+  double iso = sensor->base_iso * vl_exposure_gain(sensor, exposure) + 0.5;
+  def->exposure_time = known(vl_exposure_seconds(exposure));
+  def->f_number = known(exposure->f_number);
+  def->focal_length = known(exposure->focal_length / 1000.0);
+  def->iso = iso >= 1.0 && iso < 65536.0 ? (uint32_t)iso : 0;
+}
+
+/* The sensitivities of the raw image's colours: efficiencies times the wavelength. */
+static void set_color(const vlSensorDef *sensor, const float *light, vlRawDef *def) {
+  float sensitivities[VL_RAW_MAX_COLORS * VL_SPECTRUM_VALUES];
+  uint8_t colors[VL_RAW_MAX_COLORS];
+  uint32_t count = vl_raw_colors(def, colors);
+  static const char letters[] = "RGBCMYW"; /* of vlRawColor's codes */
+  for (uint32_t k = 0; k < count; k++) {
+    const vlSensorFilter *filter =
+        &sensor->filters[vl_sensor_filter_index(sensor, letters[colors[k]])];
+    for (int i = 0; i < VL_SPECTRUM_VALUES; i++)
+      sensitivities[k * VL_SPECTRUM_VALUES + i] =
+          filter->efficiency[i] * (float)(VL_SPECTRUM_FIRST_NM + i);
+  }
+  vl_raw_match_color(def, sensitivities, light, NULL); /* else it has no colour */
+}
+
+vlResult vl_sensor_raw(const vlSensor *sensor, const vlExposureDef *exposure,
+                       const float *light, uint32_t width, uint32_t height, vlRaw **raw,
+                       vlError *error) {
+  const vlExposureDef usual = vl_default_exposure_def();
+  char pattern[2 * VL_SENSOR_CELLS + 1];
+  vl_error_clear(error);
+  if (!sensor || !raw)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: sensor or result is null");
+  *raw = NULL;
+  exposure = exposure ? exposure : &usual;
+  vlResult result = vl_exposure_check(exposure, error);
+  vlRawDef def = vl_default_raw_def(width, height);
+  if (result == VL_OK)
+    result = vl_raw_set_pattern(&def, vl_sensor_pattern(&sensor->def, pattern), error);
+  if (result != VL_OK)
+    return result;
+  set_levels(&sensor->def, exposure, &def);
+  set_exposure(&sensor->def, exposure, &def);
+  set_color(&sensor->def, light, &def);
+  return vl_raw_create(sensor->context, &def, raw, error);
+}

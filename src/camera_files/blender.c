@@ -11,8 +11,8 @@
 static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  double lens = 50.0, sensor_width = 36.0, sensor_height = 24.0, shift_x = 0.0, shift_y = 0.0,
-         ortho = 6.0;
+  double percentage = 100.0, lens = 50.0, sensor_width = 36.0, sensor_height = 24.0,
+         shift_x = 0.0, shift_y = 0.0, ortho = 6.0;
   double aspect_x = 1.0, aspect_y = 1.0, m[16];
   const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
   bool flat = vl_text_is(type, "ORTHO");
@@ -31,6 +31,7 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
     result = VL_READ_FIELDS(
         file, tree, VL_FIELD_OPTIONAL("sensor_width", &sensor_width),
         VL_FIELD_OPTIONAL("sensor_height", &sensor_height),
+        VL_FIELD_OPTIONAL("resolution_percentage", &percentage),
         VL_FIELD_OPTIONAL("shift_x", &shift_x), VL_FIELD_OPTIONAL("shift_y", &shift_y),
         VL_FIELD_OPTIONAL("pixel_aspect_x", &aspect_x),
         VL_FIELD_OPTIONAL("pixel_aspect_y", &aspect_y),
@@ -42,6 +43,11 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
         aspect_x > 0.0 && aspect_y > 0.0))
     return vl_camera_wrong(file,
                            "blender: lens, sensor, scale and pixel aspect must be above zero");
+  if (percentage != 100.0)
+    return vl_camera_wrong_in(
+        file, tree, "resolution_percentage",
+        "blender: \"resolution_percentage\" must be 100; give the image's "
+        "own resolution_x, resolution_y");
   double ratio = aspect_y / aspect_x, w = d->width, h = d->height;
   bool vertical = vl_text_is(fit, "VERTICAL");
   bool across = fit && !vl_text_is(fit, "AUTO") ? !vertical : w >= ratio * h;
@@ -99,5 +105,6 @@ const vlCameraFormat vl_format_blender = {
         "name type lens lens_unit sensor_fit sensor_width sensor_height shift_x shift_y ortho_scale "
         "clip_start clip_end matrix_world resolution_x resolution_y resolution_percentage "
         "pixel_aspect_x pixel_aspect_y",
+    .geometry = "use_border use_crop_to_border",
     .read = read_blender,
     .write = write_blender};

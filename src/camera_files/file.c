@@ -110,6 +110,8 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
       frames = record->frames;
     if (source->tree && i == 0 && result == VL_OK)
       result = vl_camera_check_unread(file, format, source->tree, record);
+    if (source->text && format->separator && i == 0 && result == VL_OK)
+      result = vl_camera_check_lines(file, format, source->text, source->size, record);
     if (sink && result == VL_OK)
       result = sink->add(sink->data, file, record, i);
   }

@@ -289,6 +289,7 @@ typedef struct vlCameraFormat {
   const char *geometry;            /* names, as in `known`, that change the camera though the
                                       general ones (unread.c) do not say so: errors; may be null */
   bool (*knows)(const char *name); /* further names; may be null */
+  char separator; /* of texts whose lines are NAME, this character, a value; 0: of no others */
   /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
    * the lens, and $lens, its word. holds: of vl_camera_fit. lenses, most: of
    * vl_camera_fit_lens. */

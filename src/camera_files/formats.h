@@ -16,6 +16,9 @@ const char *vl_camera_other_tool(const char *text, size_t size);
  * (null, false, 0, "none") are errors; the record counts the others. */
 vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *format,
                                 const json_t *tree, vlCameraRecord *record);
+/* The same for a text with a separator in its dialect's row: for its lines. */
+vlResult vl_camera_check_lines(const vlCameraFile *file, const vlCameraFormat *format,
+                               const char *text, size_t size, vlCameraRecord *record);
 /* The same as vl_camera_dialect_of_tree for files that are neither JSON nor YAML. The text ends
  * with a zero byte. */
 vlCameraDialect vl_camera_dialect_of_text(const char *text, size_t size);

@@ -99,6 +99,8 @@ static bool is_middlebury(const char *text, size_t size) {
 
 const vlCameraFormat vl_format_middlebury = {
     .name = "middlebury",
+    .known = "cam0 cam1 doffs baseline width height ndisp isint vmin vmax dyavg dymax",
+    .separator = '=',
     .is_text = is_middlebury,
     .read_text = read_middlebury,
     .lenses = 1 << VL_LENS_PINHOLE,

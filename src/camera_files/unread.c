@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "camera_files/formats.h"
+#include "camera_files/lines.h"
 
 enum { MAX_DEPTH = 32 };
 
@@ -14,9 +15,9 @@ static const char *const parts[] = {
     "binning", "crop",   "flip", "mirror", "rolling",   "skew",  "shear",  "distort",
     "fisheye", "ftheta", "warp", "shift",  "principal", "ortho", "resize", "downsampl"};
 /* Whole names that do. */
-static const char *const whole[] = {"roi", "xi"};
+static const char *const whole[] = {"roi", "xi", "cx", "cy"};
 /* Coefficients of lens models: a letter and a digit. */
-static const char coefficients[] = "kpsb";
+static const char coefficients[] = "kpsbdt";
 
 static bool is_among(const char *word, const char *const *words, size_t count) {
   for (size_t i = 0; i < count; i++)
@@ -129,11 +130,12 @@ static vlResult take_unknown(const vlCameraFile *file, const vlCameraFormat *for
   }
   char message[300];
   snprintf(message, sizeof message,
-           "%s: \"%s\" is not understood, and by its name it changes the image; take it out if "
-           "it does not",
-           file->dialect, vl_short_text(name).text);
-  return vl_camera_has(object, "<") ? vl_camera_wrong_element(file, object, "%s", message)
-                                    : vl_camera_wrong_in(file, object, key, "%s", message);
+           "\"%s\" is not understood, and by its name it changes the image; take it out if it "
+           "does not",
+           vl_short_text(name).text);
+  return vl_camera_has(object, "<")
+             ? vl_camera_wrong_element(file, object, "%s", message)
+             : vl_camera_wrong_in(file, object, key, "%s: %s", file->dialect, message);
 }
 
 typedef struct {
@@ -181,4 +183,32 @@ vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *
                                 const json_t *tree, vlCameraRecord *record) {
   const Place top = {0, knowledge(format->known, "/") != UNKNOWN};
   return format->known || format->knows ? check(file, format, tree, top, record) : VL_OK;
+}
+
+/* A line is looked at like an element of XML. */
+static vlResult check_line(const vlCameraFile *file, const vlCameraFormat *format,
+                           const vlCameraLines *line, vlCameraRecord *record) {
+  const char *sign = strchr(line->text, format->separator);
+  if (!sign || sign == line->text)
+    return VL_OK;
+  size_t length = (size_t)(sign - line->text);
+  while (length > 0 && strchr(" \t", line->text[length - 1]))
+    length--;
+  sign += 1 + strspn(sign + 1, " \t");
+  json_t *element = json_pack("{s:s%,s:i,s:i,s:s}", "<", line->text, length, "#",
+                              (int)line->number, "|", 1, "$", sign);
+  if (!element) /* no text in UTF-8 */
+    return VL_OK;
+  vlResult result = check(file, format, element, (Place){0, false}, record);
+  json_decref(element);
+  return result;
+}
+
+vlResult vl_camera_check_lines(const vlCameraFile *file, const vlCameraFormat *format,
+                               const char *text, size_t size, vlCameraRecord *record) {
+  vlCameraLines line = {.at = text, .end = text + size};
+  vlResult result = VL_OK;
+  while (result == VL_OK && vl_camera_next_line(&line))
+    result = check_line(file, format, &line, record);
+  return result;
 }

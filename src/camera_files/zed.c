@@ -38,6 +38,16 @@ static bool is_section(const char *line, char name[64]) {
   return true;
 }
 
+/* The lenses of newer files are in a section of their own. */
+static bool has_section(const char *text, size_t size, const char *section) {
+  vlCameraLines lines = {.at = text, .end = text + size};
+  char name[64];
+  while (vl_camera_next_line(&lines))
+    if (is_section(lines.text, name) && vl_text_is(name, section))
+      return true;
+  return false;
+}
+
 /* Reads key=value in a section. *found is false if it is not there. */
 static vlResult find_value(const vlCameraFile *file, const char *text, size_t size,
                            const char *section, const char *key, double *value, bool *found) {
@@ -106,6 +116,9 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   }
   if (mode < 0)
     return vl_camera_no_frame(file, "camera", record->frames);
+  if (has_section(text, size, right ? "RIGHT_DISTO" : "LEFT_DISTO"))
+    return vl_camera_wrong(file, "zed: the lens of [%s] is not taken",
+                           right ? "RIGHT_DISTO" : "LEFT_DISTO");
   for (int i = 0; i < 9; i++) {
     bool there;
     vlResult result = find_value(file, text, size, section, keys[i], &v[i], &there);
@@ -138,6 +151,10 @@ static bool is_zed(const char *text, size_t size) {
 
 const vlCameraFormat vl_format_zed = {
     .name = "zed",
+    .known =
+        "fx fy cx cy k1 k2 k3 p1 p2 Baseline TY TZ RX_* RY_* RZ_* CV_* CX_* R_* T_* Sensor_ID* "
+        "ConvergenceType* StereoLeft* StereoRight*",
+    .separator = '=',
     .is_text = is_zed,
     .read_text = read_zed,
     .not_written = "it is the factory calibration of a stereo pair"};

@@ -36,7 +36,9 @@ static const struct {
                {VL_CAMERA_DIALECT_REALSENSE, "realsense.json"},
                {VL_CAMERA_DIALECT_PANOPTIC, "panoptic.json"},
                {VL_CAMERA_DIALECT_NERFIES, "nerfies.json"},
-               {VL_CAMERA_DIALECT_THREEJS, "threejs.json"}};
+               {VL_CAMERA_DIALECT_THREEJS, "threejs.json"},
+               {VL_CAMERA_DIALECT_MIDDLEBURY, "calib.txt"},
+               {VL_CAMERA_DIALECT_KITTI, "calib_cam_to_cam.txt"}};
 enum { CHECKED = sizeof checked / sizeof *checked };
 
 static vlCameraRecord some_camera(void) {
@@ -74,7 +76,7 @@ static void insert(char *to, size_t size, const char *text, const char *name, in
   else if (text[0] == '<')
     snprintf(to, size, "%.*s<%s>%d</%s>%s", (int)(end - text), text, name, value, name, end);
   else
-    snprintf(to, size, "%s%s: %d\n", text, name, value);
+    snprintf(to, size, "%s%s%s%d\n", text, name, strncmp(text, "cam0=", 5) ? ": " : "=", value);
 }
 
 /* The files of some dialects have no size. */
@@ -153,6 +155,44 @@ static void names_of_one_dialect(void **state) {
   assert_non_null(strstr(error.message, "\"cam_model\""));
 }
 
+/* Files as tools write them, with what velo does not take of them. */
+static void what_changes_the_image_is_refused(void **state) {
+  (void)state;
+  static const char lists[] =
+      "[{\"id\":0,\"img_name\":\"a\",\"width\":64,\"height\":48,\"position\":[0,0,0],\"rotation\":"
+      "[[1,0,0],[0,1,0],[0,0,1]],\"fx\":50,\"fy\":50,\"cx\":30,\"cy\":24}]";
+  static const char blender[] =
+      "{\"lens\":50,\"resolution_x\":64,\"resolution_y\":48,%s,"
+      "\"matrix_world\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}";
+  static const char three[] =
+      "{\"metadata\":{},\"object\":{\"type\":\"PerspectiveCamera\",\"fov\":50,\"aspect\":1,%s,"
+      "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}}";
+  static const char zed[] = "[LEFT_CAM_HD]\nfx=700\nfy=700\ncx=640\ncy=360\n%s\n";
+  const struct {
+    const char *name, *text, *more, *message;
+  } files[] = {
+      {"cameras.json", lists, "", "\"cx\" is not"},
+      {"tum.json", "{\"fx\":50,\"fy\":50,\"cx\":30,\"cy\":20%s}", ",\"d1\":0.1",
+       "\"d1\" is not"},
+      {"blender.json", blender, "\"resolution_percentage\":50", "must be 100"},
+      {"blender.json", blender, "\"use_border\":true", "\"use_border\" is not"},
+      {"three.json", three, "\"filmOffset\":5", "\"filmOffset\" other than 0"},
+      {"three.json", three, "\"view\":{\"enabled\":true,\"offsetX\":10}", "\"view\", a part"},
+      {"SN1.conf", zed, "k4=0.2", "\"k4\" is not"},
+      {"SN1.conf", zed, "[LEFT_DISTO]\nk1=0.2", "[LEFT_DISTO] is not taken"}};
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    const vlCameraFileDef def = sized();
+    char text[600];
+    vlCameraRecord record;
+    vlError error;
+    snprintf(text, sizeof text, files[i].text, files[i].more);
+    const char *path = put(files[i].name, text);
+    assert_int_equal(vl_camera_read(context, path, &def, &record, &error), VL_ERROR_SCENE);
+    if (!strstr(error.message, files[i].message))
+      fail_msg("%s: %s", files[i].name, error.message);
+  }
+}
+
 /* A trajectory has the note in its first camera. */
 static void trajectories_have_the_note(void **state) {
   (void)state;
@@ -214,6 +254,7 @@ int main(void) {
       cmocka_unit_test(a_new_field_is_named),
       cmocka_unit_test(a_field_that_changes_the_image_is_refused),
       cmocka_unit_test(names_of_one_dialect),
+      cmocka_unit_test(what_changes_the_image_is_refused),
       cmocka_unit_test(trajectories_have_the_note),
       cmocka_unit_test(names_are_counted),
       cmocka_unit_test(rows_at_different_times_are_refused),

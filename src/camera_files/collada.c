@@ -165,6 +165,27 @@ static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool fl
   return VL_OK;
 }
 
+/* Blender's shift of the lens, in an extra below the camera. */
+enum { MAX_EXTRA = 8 };
+static vlResult refuse_shift(const vlCameraFile *file, const json_t *element, int depth) {
+  const json_t *child;
+  size_t i;
+  vlResult result = VL_OK;
+  json_array_foreach(json_object_get(element, "/"), i, child) {
+    const char *tag = vl_camera_text(child, "<");
+    double shift = 0.0;
+    if (vl_text_is(tag, "shiftx") || vl_text_is(tag, "shifty"))
+      result = vl_camera_element_numbers(file, child, &shift, 1);
+    else if (depth > 0)
+      result = refuse_shift(file, child, depth - 1);
+    if (result == VL_OK && shift != 0.0)
+      result = vl_camera_wrong_element(file, child, "a lens shift, <%s>, is not taken", tag);
+    if (result != VL_OK)
+      return result;
+  }
+  return VL_OK;
+}
+
 static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node,
@@ -190,6 +211,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   if (!camera)
     return vl_camera_wrong_element(file, s.camera,
                                    "the node names a camera that does not exist");
+  result = refuse_shift(file, camera, MAX_EXTRA);
   const json_t *common = vl_camera_child(vl_camera_child(camera, "optics"), "technique_common");
   const json_t *lens = vl_camera_child(common, "perspective");
   bool flat = !lens;

@@ -3,6 +3,7 @@
  * image's geometry are errors. */
 #include <ctype.h>
 #include <stdio.h>
+#include <strings.h>
 
 #include "base/text.h"
 #include "camera_files/formats.h"
@@ -11,9 +12,14 @@
 enum { MAX_DEPTH = 32 };
 
 /* Parts of names that speak of another image than that of the camera as read. */
-static const char *const parts[] = {
-    "binning", "crop",   "flip", "mirror", "rolling",   "skew",  "shear",  "distort",
-    "fisheye", "ftheta", "warp", "shift",  "principal", "ortho", "resize", "downsampl"};
+static const char *const parts[] = {"binning",   "crop",  "flip",      "mirror",  "rolling",
+                                    "skew",      "shear", "distort",   "fisheye", "ftheta",
+                                    "warp",      "shift", "principal", "ortho",   "resize",
+                                    "downsampl", "rotate"};
+/* Values that name a lens which is none of perspective. */
+static const char *const lenses[] = {"fisheye",  "ftheta",       "f-theta", "equirectangular",
+                                     "ortho",    "orthographic", "omni",    "panoramic",
+                                     "spherical"};
 /* Whole names that do. */
 static const char *const whole[] = {"roi", "xi", "cx", "cy"};
 /* Coefficients of lens models: a letter and a digit. */
@@ -88,6 +94,19 @@ static void count_field(const vlCameraFile *file, const json_t *object, const ch
   record->unread++;
 }
 
+/* Whether a text of the value is the name of a lens. */
+static bool names_lens(const json_t *value, int depth) {
+  const char *key;
+  json_t *child;
+  bool found = false;
+  if (json_is_object(value) && depth > 0)
+    json_object_foreach((json_t *)value, key, child) found =
+        found || names_lens(child, depth - 1);
+  for (size_t i = 0; json_is_string(value) && i < VL_LENGTH(lenses); i++)
+    found = found || strcasecmp(json_string_value(value), lenses[i]) == 0;
+  return found;
+}
+
 typedef enum { UNKNOWN, KNOWN, OF_NAMES, CLOSED } Knowledge;
 
 /* What a list of words, with blanks between, says of a name (vlCameraFormat.known). */
@@ -123,8 +142,8 @@ static Knowledge knowledge_of(const vlCameraFormat *format, const char *name) {
 static vlResult take_unknown(const vlCameraFile *file, const vlCameraFormat *format,
                              const json_t *object, const char *key, const char *name,
                              const json_t *value, vlCameraRecord *record) {
-  if (is_off(value, 4) ||
-      !(names_geometry(name) || knowledge(format->geometry, name) != UNKNOWN)) {
+  if (is_off(value, 4) || !(names_geometry(name) || names_lens(value, 2) ||
+                            knowledge(format->geometry, name) != UNKNOWN)) {
     count_field(file, object, key, name, record);
     return VL_OK;
   }

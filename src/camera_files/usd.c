@@ -214,6 +214,10 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   if (result != VL_OK)
     return result;
   const char *projection = vl_camera_text(prim, "projection");
+  const char *lens = vl_camera_text(prim, "cameraProjectionType"); /* of Omniverse */
+  if (lens && !vl_text_is(lens, "pinhole"))
+    return vl_camera_wrong(file, "usd: \"cameraProjectionType\" \"%s\" is not taken",
+                           vl_short_text(lens).text);
   bool flat = vl_text_is(projection, "orthographic");
   if (projection && !flat && !vl_text_is(projection, "perspective"))
     return vl_camera_wrong(

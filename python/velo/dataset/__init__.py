@@ -12,7 +12,8 @@
 
 Each frame depends on the recipe and its own number only: frame 4711 made alone has the same bits. docs/datasets.md is the
 guide."""
-from velo.dataset.flow import write_flow
+from velo.dataset.flow import Flow, read_flow, write_flow
+from velo.dataset.keypoints import Keypoints, project_keypoints
 from velo.dataset.generate import generate, make_writers
 from velo.dataset.random import Random
 from velo.dataset.recipe import (Around, Distractors, Environment, Fixed, Ground, InVolume, Lights, Materials, Model,
@@ -20,6 +21,6 @@ from velo.dataset.recipe import (Around, Distractors, Environment, Fixed, Ground
 from velo.dataset.cameras import View
 from velo.dataset.stage import Frame, Instance, Plan, Stage
 
-__all__ = ["Around", "Distractors", "Environment", "Fixed", "Frame", "Ground", "InVolume", "Instance", "Lights",
+__all__ = ["Around", "Distractors", "Environment", "Fixed", "Flow", "Frame", "Ground", "InVolume", "Instance", "Keypoints", "Lights",
            "Materials", "Model", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Sensor", "Stage", "Trajectory", "View",
-           "generate", "make_writers", "read_recipe", "recipe_from", "write_flow"]
+           "generate", "make_writers", "project_keypoints", "read_flow", "read_recipe", "recipe_from", "write_flow"]

@@ -293,7 +293,8 @@ _FOV = optional(number(1e-3, 360))  # degrees
 # The rule of each member. A test compares the names with those of the classes.
 _RULES: dict[type, dict[str, Check]] = {
     kinds.Model: {"path": text, "name": text, "count": count(10000), "scale": number(1e-12, 1e12), "positions": anything, "indices": anything,
-                  "material": _KEYWORDS, "keypoints": names(vector(3)), "skeleton": items(_pair, 0, 10000)},
+                  "material": _KEYWORDS, "keypoints": names(vector(3)), "skeleton": items(_pair, 0, 10000),
+                  "keypoint_depth": optional(number(0, 1e12))},
     kinds.Poses: {"frames": items(items(_posed, 0, 10000), 1, MAX_FRAMES)},
     kinds.OnSurface: {"center": vector(3), "size": vector(2, 0, 1e12), "up": direction, "gap": number(0, 1e12), "tumble": flag,
                       "tries": whole(1, 100000)},

@@ -1,7 +1,8 @@
 """Writes COCO's annotations of instances and keypoints (https://cocodataset.org/#format-data).
 
 Masks are polygons along the pixels' edges, or run lengths (columns first) where a mask has holes or `rle` is set. Keypoints
-are in pixels whose first has its centre at (0.5, 0.5); v is 2: visible, 1: hidden, 0: outside the image. Masks of whole objects
+are in pixels whose first has its centre at (0.5, 0.5); v is 2: visible, 1: hidden, 0: outside the image. keypoints_3d, velo's
+own, has them as x, y, z, v in the camera's axes (x right, y down, z forward), metres. Masks of whole objects
 (amodal) have KINS's names a_segm, a_bbox and a_area (Qi et al., "Amodal instance segmentation with KINS dataset", CVPR 2019)."""
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from typing import Any, Iterator
 
 import numpy
 
-from velo.dataset.geometry import transform
+from velo.dataset.keypoints import Keypoints
 from velo.dataset.png import png
 from velo.dataset.stage import Frame, Instance, Stage
 from velo.dataset.writer import Writer, box_of, display
@@ -100,10 +101,8 @@ class CocoWriter(Writer):
             whole = int(item.whole.sum())
             result.update(a_area=whole, a_bbox=box_of(item.whole, (0, 0, 0, 0)), a_segm=self._segmentation(item.whole),
                           visible_fraction=result["area"] / whole)
-        points = list(self.stage.recipe.models[item.model].keypoints.values())
-        if points:
-            keypoints, count = self._keypoints(frame, item, points)
-            result.update(keypoints=keypoints, num_keypoints=count)
+        if item.keypoints is not None:
+            result.update(self._keypoints(item.keypoints))
         return result
 
     def _segmentation(self, mask: Any) -> Any:
@@ -112,22 +111,14 @@ class CocoWriter(Writer):
         return run_lengths(mask) if holes else polygons
 
     @staticmethod
-    def _keypoints(frame: Frame, item: Instance, points: Any) -> tuple[list[float], int]:
-        world = [transform(item.world_from_model, [value * item.scale for value in point]) for point in points]
-        seen = frame.camera.project(world)
-        depth = frame.image["Z"]
-        height, width = depth.shape
-        result: list[float] = []
-        count = 0
-        for (x, y), z, valid in zip(seen.pixels.tolist(), seen.z.tolist(), seen.valid.tolist()):
-            if not valid or not (0 <= x < width and 0 <= y < height):
-                result += [0, 0, 0]
-                continue
-            # Visible: the surface there is the object's, and not in front by more than 1 % of the distance.
-            here = item.mask[int(y), int(x)] and depth[int(y), int(x)] > 0.99 * z
-            result += [x, y, 2 if here else 1]
-            count += 1
-        return result, count
+    def _keypoints(found: Keypoints) -> dict[str, Any]:
+        """x, y, v of each; x, y, z, v of each, camera space. All are 0 outside of the image."""
+        flat: list[float] = []
+        solid: list[float] = []
+        for pixel, point, flag in zip(found.pixels.tolist(), found.points.tolist(), found.visibility.tolist()):
+            flat += [*pixel, flag] if flag else [0, 0, 0]
+            solid += [*point, flag] if flag else [0, 0, 0, 0]
+        return {"keypoints": flat, "num_keypoints": int((found.visibility > 0).sum()), "keypoints_3d": solid}
 
     def finish(self) -> None:
         categories = []

@@ -38,4 +38,8 @@ class ExrWriter(Writer):
             "instances": [{"class": item.name, "id_instance": int(ids[item.mask][0]) if item.mask.any() else 0,
                            "world_from_model": item.world_from_model, "scale": item.scale,
                            "box": box_of(item.mask, (0, 0, 0, 0)), "pixels": int(item.mask.sum()),
-                           "pixels_whole": int(item.whole.sum())} for item in frame.instances]})
+                           "pixels_whole": int(item.whole.sum()), "visible_fraction": item.visible_fraction,
+                           "hidden_by": {str(number): pixels for number, pixels in item.hidden_by.items()},
+                           **({} if item.keypoints is None else {
+                               "keypoints": item.keypoints.pixels.tolist(), "keypoints_3d": item.keypoints.points.tolist(),
+                               "visibility": item.keypoints.visibility.tolist()})} for item in frame.instances]})

@@ -27,6 +27,7 @@ class Model:
     material: dict[str, Any] = field(default_factory=dict)  #: of positions: {"kind": "principled", "reflectance": ...}
     keypoints: dict[str, Vector] = field(default_factory=dict)  #: names and points in the file's space, for COCO
     skeleton: Sequence[Sequence[int]] = ()  #: COCO: pairs of numbers of keypoints, from 1
+    keypoint_depth: Optional[float] = None  #: metres below a surface at which a keypoint still counts as seen; default 1 % of the bounding box's diagonal
 
 
 @dataclass

@@ -14,7 +14,8 @@ from velo import _check
 from velo._errors import UsageError, at_place, unknown
 from velo.dataset.cameras import Cameras, View
 from velo.dataset.check import MAX_FRAMES, checked
-from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse
+from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse, transform
+from velo.dataset.keypoints import Keypoints, project_keypoints
 from velo.dataset.placing import Thing, place_things
 from velo.dataset.random import Random
 from velo.dataset.recipe import Materials, Model, Poses, Recipe
@@ -49,7 +50,15 @@ class Instance:
     world_from_model: Matrix  #: rigid: of the scaled model
     scale: float  #: from the file's unit to metres
     mask: Any  #: height x width, bool: the pixels whose centres show it
-    whole: Any  #: the same with everything else taken away
+    whole: Any  #: the same with everything else taken away; with Recipe.occluded False the mask
+    keypoints: Optional[Keypoints] = None  #: those of the model, in its order
+    hidden_by: dict[int, int] = field(default_factory=dict)  #: pixels of `whole` by what covers them: the number of another object of the frame, from 0; -1: the rest of the scene
+
+    @property
+    def visible_fraction(self) -> float:
+        """The share of `whole` that is seen, 0 to 1; 0 where there is none."""
+        whole = int(self.whole.sum())
+        return int(self.mask.sum()) / whole if whole else 0.0
 
 
 @dataclass
@@ -97,6 +106,15 @@ def _random_material(bounds: Materials, random: Random) -> dict[str, Any]:
     if bounds.textures:
         material["texture"] = random.choice(list(bounds.textures))
     return material
+
+
+def _covers(ids: Any, hidden: Any, first: int, count: int) -> dict[int, int]:
+    """Instance.hidden_by of these pixels; the objects have the ids from `first` on."""
+    found: dict[int, int] = {}
+    for number, pixels in zip(*(part.tolist() for part in numpy.unique(ids[hidden], return_counts=True))):
+        cover = number - first if first <= number < first + count else -1
+        found[cover] = found.get(cover, 0) + pixels
+    return found
 
 
 class Stage:
@@ -327,9 +345,21 @@ class Stage:
             mask = ids == first + k
             scale = recipe.models[item.model].scale
             rigid = [[value / scale if j < 3 else value for j, value in enumerate(row)] for row in item.pose[:3]]
-            instances.append(Instance(item.model, self.names[item.model], rigid + [[0.0, 0.0, 0.0, 1.0]], scale, mask,
-                                      mask | self._silhouette(item, view) if recipe.occluded else mask))
+            whole = mask | self._silhouette(item, view) if recipe.occluded else mask
+            instances.append(Instance(item.model, self.names[item.model], rigid + [[0.0, 0.0, 0.0, 1.0]], scale, mask, whole,
+                                      self._keypoints(scene, item, view), _covers(ids, whole & ~mask, first, len(plan.objects))))
         return Frame(plan.frame, view.name, view.camera, image, instances, exposure)
+
+    def _keypoints(self, scene: Any, item: Placed, view: View) -> Optional[Keypoints]:
+        model = self.recipe.models[item.model]
+        if not model.keypoints:
+            return None
+        points = [transform(item.pose, point) for point in model.keypoints.values()]
+        depth = model.keypoint_depth
+        if depth is None:
+            low, high = self.boxes[item.model]
+            depth = 0.01 * math.sqrt(sum((b - a) * (b - a) for a, b in zip(low, high)))
+        return project_keypoints(scene.world(**self._build), view.camera, points, depth=depth)
 
     def _silhouette(self, item: Placed, view: View) -> Any:
         """The pixels whose centres would show the object if it were alone: its own scene, seen from where the camera is

@@ -119,9 +119,14 @@ def refuse_moving(format: str, camera: Any) -> None:
 
 def depth_steps(format: str, frame: Frame, step: float, remedy: str) -> Any:
     """The depth along the view axis in whole steps of so many millimetres, uint16; 0: nothing is seen. A depth beyond 65535
-    steps is a velo.UnsupportedError, which names the remedy."""
+    steps, or of less than half a step, is a velo.UnsupportedError, which names the remedy."""
     steps = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * 1000 / step)
     known = numpy.isfinite(steps) & (steps > 0)
+    lost = (steps == 0) & (numpy.asarray(frame.image["Z"]) > 0)
+    if lost.any():
+        nearest = float(numpy.asarray(frame.image["Z"])[lost].min())
+        raise UnsupportedError(f"{format}: frame {frame.frame} has a depth of {nearest:.6g} m, which in steps of {step:g} mm is 0, "
+                               f"unknown; a smaller step or the writer exr can hold it")
     farthest = steps[known].max() if known.any() else 0
     if farthest > 65535:
         raise UnsupportedError(f"{format}: frame {frame.frame} has a depth of {farthest * step / 1000:.6g} m; 16 bits hold up to "

@@ -17,10 +17,10 @@ from velo.dataset.keypoints import Keypoints, project_keypoints
 from velo.dataset.generate import generate, make_writers
 from velo.dataset.random import Random
 from velo.dataset.recipe import (Around, Distractors, Environment, Fixed, Ground, InVolume, Lights, Materials, Model,
-                                 OnSurface, Poses, Recipe, Rig, Sensor, Trajectory, read_recipe, recipe_from)
+                                 OnScene, OnSurface, Poses, Recipe, Rig, Sensor, Trajectory, read_recipe, recipe_from)
 from velo.dataset.cameras import View
 from velo.dataset.stage import Frame, Instance, Plan, Stage
 
 __all__ = ["Around", "Distractors", "Environment", "Fixed", "Flow", "Frame", "Ground", "InVolume", "Instance", "Keypoints", "Lights",
-           "Materials", "Model", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Sensor", "Stage", "Trajectory", "View",
+           "Materials", "Model", "OnScene", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Sensor", "Stage", "Trajectory", "View",
            "generate", "make_writers", "project_keypoints", "read_flow", "read_recipe", "recipe_from", "write_flow"]

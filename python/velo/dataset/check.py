@@ -298,6 +298,8 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Poses: {"frames": items(items(_posed, 0, 10000), 1, MAX_FRAMES)},
     kinds.OnSurface: {"center": vector(3), "size": vector(2, 0, 1e12), "up": direction, "gap": number(0, 1e12), "tumble": flag,
                       "tries": whole(1, 100000)},
+    kinds.OnScene: {"low": vector(3), "high": vector(3), "up": direction, "slope": number(0, 89), "gap": number(0, 1e12), "tumble": flag,
+                    "tries": whole(1, 100000)},
     kinds.InVolume: {"low": vector(3), "high": vector(3), "gap": number(0, 1e12), "tries": whole(1, 100000)},
     kinds.Fixed: {"keywords": _KEYWORDS, "file": text, "fov": _FOV, "name": file_name},
     kinds.Around: {"target": vector(3), "distance": range_(1e-12, 1e12), "elevation": bounds(number(-90, 90)), "up": direction,
@@ -316,7 +318,7 @@ _RULES: dict[type, dict[str, Check]] = {
         "resolution": lambda v, w: tuple(_check.setting(side, f"{w}[{i}]", "program", ("width", "height")[i]) for i, side in
                                          enumerate(_check.tuple_of(v, 2, w, "width and height"))),
         "models": lambda v, w: items(member(kinds.Model), 1, 10000)(v, w),
-        "placing": lambda v, w: member(kinds.OnSurface, kinds.InVolume, kinds.Poses)(v, w),
+        "placing": lambda v, w: member(kinds.OnSurface, kinds.OnScene, kinds.InVolume, kinds.Poses)(v, w),
         "cameras": lambda v, w: items(member(*_MOVED, kinds.Rig), 1, 1000)(v, w),
         "lights": lambda v, w: optional(member(kinds.Lights))(v, w), "environment": lambda v, w: optional(member(kinds.Environment))(v, w),
         "ground": lambda v, w: optional(member(kinds.Ground))(v, w), "distractors": lambda v, w: optional(member(kinds.Distractors))(v, w),
@@ -325,7 +327,7 @@ _RULES: dict[type, dict[str, Check]] = {
         "occluded": flag, "folder": text, "path": text},
 }
 _MORE: dict[type, Callable[[Any, str], None]] = {
-    kinds.Model: _model, kinds.Fixed: _fixed, kinds.Around: _around, kinds.Trajectory: _trajectory, kinds.InVolume: _volume,
+    kinds.Model: _model, kinds.Fixed: _fixed, kinds.Around: _around, kinds.Trajectory: _trajectory, kinds.InVolume: _volume, kinds.OnScene: _volume,
     kinds.Lights: _volume, kinds.Sensor: _sensor, kinds.Recipe: _recipe}
 
 

@@ -4,7 +4,28 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from typing import Any
+from typing import Any, Sequence
+
+from velo._errors import UsageError
+
+#: Of images that velo reads.
+_IMAGES = (".bmp", ".exr", ".gif", ".hdr", ".jpeg", ".jpg", ".pfm", ".png", ".pnm", ".ppm", ".qoi", ".tga", ".webp")
+
+
+def images_of(names: Sequence[str], folder: str) -> list[str]:
+    """The names of image files, relative to a folder: a name that is a folder's stands for the images in it, in the order of
+    their names. UsageError: it has none."""
+    found: list[str] = []
+    for name in names:
+        path = os.path.join(folder, name)
+        if not os.path.isdir(path):
+            found.append(name)
+            continue
+        inside = sorted(item for item in os.listdir(path) if item.lower().endswith(_IMAGES) and os.path.isfile(os.path.join(path, item)))
+        if not inside:
+            raise UsageError(f"the folder {path} has no images")
+        found += [os.path.join(name, item) for item in inside]
+    return found
 
 
 def write_bytes(path: str, data: bytes, context: Any = None) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 import math
 from typing import Sequence
 
+from velo.dataset.random import Random
+
 Matrix = list[list[float]]  # 4 x 4, by rows
 Vector3 = Sequence[float]
 
@@ -56,6 +58,16 @@ def basis(up: Vector3) -> tuple[list[float], list[float], list[float]]:
     helper = [1.0, 0.0, 0.0] if abs(z[0]) < 0.9 else [0.0, 1.0, 0.0]
     x = unit(cross(helper, z))
     return x, cross(z, x), z
+
+
+def rotation_about(up: Vector3, random: Random) -> list[list[float]]:
+    """A rotation that maps y to `up` and turns about it."""
+    x, y, z = basis(up)
+    cosine, sine = random.on_circle()
+    first = [x[i] * cosine + y[i] * sine for i in range(3)]
+    third = [x[i] * -sine + y[i] * cosine for i in range(3)]
+    # Columns: the images of x, y, z. cross(first, third) = up; y maps to up, so z maps to -third.
+    return [[first[i], z[i], -third[i]] for i in range(3)]
 
 
 def look_at(eye: Vector3, target: Vector3, up: Vector3) -> Matrix:

@@ -48,6 +48,20 @@ class OnSurface:
 
 
 @dataclass
+class OnScene:
+    """On the surfaces that a box holds of the recipe's scene and ground, found by rays straight down: a thing stands on the highest
+    point below it. Its bounding box meets neither those of others nor, by 147 rays through it, the scene: what is thinner than a
+    seventh of it may be missed."""
+    low: Vector = (-1, -1, -1)  #: corner of the box, in which the surfaces are
+    high: Vector = (1, 1, 1)
+    up: Vector = (0, 1, 0)
+    slope: float = 10.0  #: degrees: the steepest surface
+    gap: float = 0.005  #: least distance between bounding boxes
+    tumble: bool = False  #: any rotation, instead of one about `up`
+    tries: int = 100
+
+
+@dataclass
 class InVolume:
     """Anywhere in a box, in any rotation, without collisions of bounding boxes."""
     low: Vector = (-0.5, 0, -0.5)
@@ -109,7 +123,7 @@ class Lights:
 class Environment:
     """Light from all directions: studio, window, evening, sky, white, or one of these images. Rotation is at random unless given."""
     kind: str = "studio"
-    files: Sequence[str] = ()
+    files: Sequence[str] = ()  #: images, or folders that stand for all images in them
     strength: Range = 1.0
     rotation: Optional[float] = None  #: degrees
 
@@ -120,7 +134,7 @@ class Materials:
     color: Sequence[Vector] = ((0.05, 0.05, 0.05), (0.9, 0.9, 0.9))
     roughness: Range = (0.1, 1.0)
     metallic: Range = (0.0, 1.0)
-    textures: Sequence[str] = ()  #: images; one of them replaces the colour
+    textures: Sequence[str] = ()  #: images, or folders of images; one of them replaces the colour
 
 
 @dataclass
@@ -174,7 +188,7 @@ class Recipe:
     path: str = ""  #: the recipe's file, if it came from one
 
 
-_PLACINGS = {"poses": Poses, "on_surface": OnSurface, "in_volume": InVolume}
+_PLACINGS = {"poses": Poses, "on_surface": OnSurface, "on_scene": OnScene, "in_volume": InVolume}
 _CAMERAS = {"fixed": Fixed, "around": Around, "trajectory": Trajectory, "rig": Rig}
 _MEMBERS = {"lights": Lights, "environment": Environment, "materials": Materials, "ground": Ground,
             "distractors": Distractors, "sensor": Sensor}

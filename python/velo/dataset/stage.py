@@ -14,11 +14,12 @@ from velo import _check
 from velo._errors import UsageError, at_place, unknown
 from velo.dataset.cameras import Cameras, View
 from velo.dataset.check import MAX_FRAMES, checked
+from velo.dataset.files import images_of
 from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse, transform
 from velo.dataset.keypoints import Keypoints, project_keypoints
 from velo.dataset.placing import Thing, place_things
 from velo.dataset.random import Random
-from velo.dataset.recipe import Materials, Model, Poses, Recipe
+from velo.dataset.recipe import Materials, Model, OnScene, Poses, Recipe
 
 _log = logging.getLogger("velo.dataset")
 
@@ -131,6 +132,7 @@ class Stage:
             settings = {name: value for name, value in recipe.render.items() if name not in ("denoise", "tracer") or value != "auto"}
             velo.Scene(context=context).settings(**{name: value for name, value in settings.items() if name != "denoise"})
         self.sensor = self._make_sensor()  #: velo.Sensor, or None
+        self._find_files()
         self._cameras = Cameras(recipe)
         self._cameras.views(0)
         self._solo = []
@@ -144,6 +146,31 @@ class Stage:
         #: bounding boxes in metres, in the models' own spaces
         self.boxes = [([value * model.scale for value in solo.low], [value * model.scale for value in solo.high])
                       for model, solo in zip(recipe.models, self._solo)]
+
+        self._ground = self._surfaces() if isinstance(recipe.placing, OnScene) else None
+
+    def _find_files(self) -> None:
+        """Replaces folders of images by the images in them."""
+        recipe = self.recipe
+        if recipe.environment:
+            with at_place("recipe.environment.files"):
+                recipe.environment.files = images_of(recipe.environment.files, recipe.folder)
+        for place_of, rule in (("ground", recipe.ground), ("distractors", recipe.distractors)):
+            if rule:
+                with at_place(f"recipe.{place_of}.materials.textures"):
+                    rule.materials.textures = images_of(rule.materials.textures, recipe.folder)
+
+    def _surfaces(self) -> Any:
+        """The world on whose surfaces things stand."""
+        recipe = self.recipe
+        if not recipe.scene and not recipe.ground:
+            raise UsageError("recipe.placing: there is nothing to stand on: the kind on_scene needs a scene or a ground")
+        scene = velo.Scene(context=self.context)
+        if recipe.scene:
+            scene.load(os.path.join(recipe.folder, recipe.scene))
+        if recipe.ground:
+            self._add_ground(scene, {})
+        return scene.world()
 
     def _make_sensor(self) -> Optional[velo.Sensor]:
         rule = self.recipe.sensor
@@ -200,7 +227,7 @@ class Stage:
             distractors: list[dict[str, Any]] = []
         else:
             objects, distractors = [], []
-            for thing, pose in place_things(recipe.placing, things, frame, random("placing")):
+            for thing, pose in place_things(recipe.placing, things, frame, random("placing"), self._ground):
                 if pose is None:
                     _log.warning("frame %d: no room for %s", frame, thing.name)
                 elif thing.number >= 0:

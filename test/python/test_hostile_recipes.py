@@ -27,13 +27,13 @@ with open("poses.tum", "w") as file:
 EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 FULL = {"seed": 1, "frames": 2, "resolution": [8, 6], "spp": 1, "scene": "", "render": {"max_depth": 2}, "channels": ["P"],
         "depth_scale": 0.1, "occluded": True, "folder": "", "path": "",
-        "models": [{"path": "a.obj", "name": "a", "count": [0, 1], "scale": 1.0, "keypoints": {"top": [0, 1, 0]}, "skeleton": [[1, 1]]},
+        "models": [{"path": "a.obj", "name": "a", "count": [0, 1], "scale": 1.0, "keypoints": {"top": [0, 1, 0]}, "skeleton": [[1, 1]], "keypoint_depth": 0.01},
                    {"name": "b", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "indices": [[0, 1, 2]],
                     "material": {"kind": "diffuse", "reflectance": 0.5}}],
         "placing": {"kind": "on_surface", "center": [0, 0, 0], "size": [1, 1], "up": [0, 1, 0], "gap": 0.01, "tumble": False, "tries": 5},
         "cameras": [{"kind": "around", "target": [0, 0, 0], "distance": [4, 5], "elevation": [10, 20], "up": [0, 1, 0], "jitter": 0.1,
                      "fov": 40, "keywords": {"distortion": "none"}, "name": "one"},
-                    {"kind": "fixed", "keywords": {"fov": 1.0}, "name": "two"}, {"kind": "fixed", "file": "", "name": "five"},
+                    {"kind": "fixed", "fov": 50, "keywords": {"roll": 0.1}, "name": "two"}, {"kind": "fixed", "file": "", "name": "five"},
                     {"kind": "trajectory", "file": "poses.tum", "keywords": {"fov": 1.0}, "name": "three"},
                     {"kind": "rig", "base": {"kind": "around"}, "parts": [{"pose": EYE, "name": "four"}]}],
         "lights": {"count": [0, 1], "low": [0, 2, 0], "high": [1, 3, 1], "power": [1, 2], "kelvin": [3000, 4000]},
@@ -42,7 +42,8 @@ FULL = {"seed": 1, "frames": 2, "resolution": [8, 6], "spp": 1, "scene": "", "re
                                                                           "textures": []}},
         "distractors": {"count": [0, 1], "size": [0.1, 0.2], "materials": {"roughness": 0.3}},
         "sensor": {"name": "generic_mono", "numbers": {"read_noise": 3.0}, "exposure": {"f_number": 2.8}, "buckets": 3}}
-OTHER = [{"kind": "in_volume", "low": [0, 0, 0], "high": [1, 1, 1], "gap": 0.1, "tries": 3}, {"kind": "poses", "frames": [[["a", EYE]]]}]
+OTHER = [{"kind": "on_scene", "low": [-1, -1, -1], "high": [1, 1, 1], "up": [0, 1, 0], "slope": 10, "gap": 0.1, "tumble": False, "tries": 3},
+         {"kind": "in_volume", "low": [0, 0, 0], "high": [1, 1, 1], "gap": 0.1, "tries": 3}, {"kind": "poses", "frames": [[["a", EYE]]]}]
 
 ODD = {"nan": NAN, "inf": INF, "-inf": -INF, "-1": -1, "0": 0, "2**32 + 8": 2**32 + 8, "2**64": 2**64, "10**400": 10**400, "1e300": 1e300,
        "1.5": 1.5, "true": True, "null": None, "empty text": "", "text": "8x8", "1e3": "1e3", "zero": "a\0b", "surrogate": "\ud800", "long": "x" * 100000,
@@ -84,7 +85,7 @@ def make(data):
 @limited
 def every_value_of_every_member():
     problems, tried = [], 0
-    for base in [FULL] + [dict(FULL, placing=placing, ground=None) for placing in OTHER]:
+    for base in [FULL] + [dict(FULL, placing=placing, ground={} if placing["kind"] == "on_scene" else None) for placing in OTHER]:
         result = attempt(lambda: make(base))
         assert result is None, result
         for path in places(base):

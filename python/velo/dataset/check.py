@@ -298,7 +298,7 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Poses: {"frames": items(items(_posed, 0, 10000), 1, MAX_FRAMES)},
     kinds.OnSurface: {"center": vector(3), "size": vector(2, 0, 1e12), "up": direction, "gap": number(0, 1e12), "tumble": flag,
                       "tries": whole(1, 100000)},
-    kinds.OnScene: {"low": vector(3), "high": vector(3), "up": direction, "slope": number(0, 89), "gap": number(0, 1e12), "tumble": flag,
+    kinds.OnScene: {"low": vector(3, -1e12, 1e12), "high": vector(3, -1e12, 1e12), "up": direction, "slope": number(0, 89), "gap": number(0, 1e12), "tumble": flag,
                     "tries": whole(1, 100000)},
     kinds.InVolume: {"low": vector(3), "high": vector(3), "gap": number(0, 1e12), "tries": whole(1, 100000)},
     kinds.Fixed: {"keywords": _KEYWORDS, "file": text, "fov": _FOV, "name": file_name},

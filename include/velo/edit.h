@@ -109,7 +109,8 @@ VL_API vlResult vl_scene_remove(vlScene *scene, vlSceneFamily family, uint32_t i
                                 vlError *error);
 /** Whether the scene has this object: it was added and not removed. */
 VL_API bool vl_scene_has(const vlScene *scene, vlSceneFamily family, uint32_t index);
-/** The highest index that an object of this family has or had; 0: there was none. */
+/** No object of this family has a higher index; 0: there is none. Removed ones may have it and
+ * lower ones. */
 VL_API uint32_t vl_scene_highest(const vlScene *scene, vlSceneFamily family);
 /** The lowest index of a removed object whose place a new one can take by vl_scene_set_*; 0:
  * there is none. def: of the new object, of the family's type, or null; what it refers to in

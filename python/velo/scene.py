@@ -7,7 +7,7 @@ from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Unio
 
 from velo import _arrays, _check, _keywords, _solids, _velo, rays
 from velo._context import context_or_default
-from velo._errors import Progress, Step, UsageError, shown, unknown, wrong_value
+from velo._errors import Progress, SceneError, Step, UsageError, shown, unknown, wrong_value
 from velo._texels import texels
 from velo.camera import Camera
 from velo.film import Film
@@ -73,6 +73,10 @@ class World(_velo.World):
 _velo.set_type("World", World)
 
 
+# Families of what a model's file brings besides its group, each before what it uses.
+_BROUGHT = ("materials", "emission", "media", "textures")
+
+
 class Model(NamedTuple):
     """A file that was loaded as a group."""
     group: Handle  #: for add_instance
@@ -81,6 +85,7 @@ class Model(NamedTuple):
     high: tuple[float, float, float]
     shapes: int  #: number of shapes
     first_object: int  #: id.object of the first shape; the others follow
+    handles: tuple[Handle, ...] = ()  #: all that the file brought: the group, its materials, textures, ...; each before what it uses
 
 
 class Mesh(NamedTuple):
@@ -280,8 +285,13 @@ class Scene(_velo.Scene):
         self._changed = True
         if name is None and isinstance(path, (str, os.PathLike)):
             name = os.path.basename(os.fspath(path)).split(".")[0]
+        before = {family: self._handles(family)[-1:] for family in _BROUGHT}
         group, info = self._load_group(path, name, words, progress)
-        return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
+        brought = [group]
+        for family in _BROUGHT:
+            highest = before[family][0].index if before[family] else 0
+            brought += [handle for handle in reversed(self._handles(family)) if handle.index > highest]
+        return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"], tuple(brought))
 
     def add_instance(self, group: Handle, transform: Any = None, times: Optional[Sequence[float]] = None, *, pose: Any = None) -> Handle:
         """Places a group: pose (or transform) is 4 x 4, world from group. With times (seconds, ascending) it moves: a matrix for
@@ -332,12 +342,20 @@ class Scene(_velo.Scene):
         1."""
         self.show(handle, False)
 
-    def remove(self, handle: Handle) -> None:
-        """Removes an object of any family for good; its handle is of no further use. What another object still uses is a
-        SceneError that names the user; the shapes of a group are removed with it. The next object of the family that is added takes
+    def remove(self, handle: Union[Handle, Model]) -> None:
+        """Removes an object of any family, or a Model with all that its file brought and nothing else uses, for good; its handle is of no further use. What another object still uses is a
+        SceneError that names the user (of a Model: it stays, and so do the bytes of a .glb file with images, until the scene is closed); the shapes of a group are removed with it. The next object of the family that is added takes
         its place, and the id.object of a shape."""
         self._changed = True
-        self._remove(handle)
+        if not isinstance(handle, Model):
+            self._remove(handle)
+            return
+        self._remove(handle.group)
+        for part in handle.handles[1:]:
+            try:
+                self._remove(part)
+            except SceneError:  # another object uses it
+                pass
 
     def get(self, handle: Handle, name: Optional[str] = None) -> Any:
         """What an object is, as the keywords that make it: a dict, or the value of one name. Spectra are velo.Spectrum, textures and

@@ -313,15 +313,13 @@ static void free_added(vlScene *scene, const vlShapeDef *def) {
 }
 
 /* Ends the change of a shape, old as it was before. */
-static void mark_change(vlScene *scene, vlSceneMark *mark, const vlShapeDef *old) {
-  if (mark->generation == 0)
-    free_added(scene, old);
+static void end_change(vlScene *scene, const vlShapeDef *old) {
+  free_added(scene, old);
   if (old->group.index)
     scene->groups.items[old->group.index - 1].shape_count--;
 }
 
-/* Takes an id out of the list of removed shapes. */
-static void occupy(vlScene *scene, uint32_t id) {
+void vl_scene_forget_removed_shape(vlScene *scene, uint32_t id) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->removed_shapes.count; i++)
     if (scene->removed_shapes.items[i] != id)
@@ -341,9 +339,9 @@ vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
   result = set_shape(scene, id, def, error);
   if (result != VL_OK)
     return result;
-  mark_change(scene, mark, &old);
+  end_change(scene, &old);
   if (mark->removed)
-    occupy(scene, id.index);
+    vl_scene_forget_removed_shape(scene, id.index);
   note_change(scene, mark);
   return VL_OK;
 }
@@ -358,7 +356,7 @@ vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error) {
     return vl_fail_memory(error);
   *slot = id.index;
   vlShapeDef *def = &scene->shapes.items[id.index - 1];
-  mark_change(scene, mark, def);
+  end_change(scene, def);
   mark->generation = vl_context_number(scene->context);
   vl_scene_free_edits(scene, &scene->shapes, id.index, scene->edits.count);
   *def = vl_default_shape_def(VL_SHAPE_TRIANGLES);

@@ -345,12 +345,51 @@ static vlResult check_removal(const vlScene *scene, vlSceneFamily family, uint32
                  things[family], users.first, others, users.count > 1 ? "" : "s");
 }
 
+/* The number of objects in the array of a family whose end may be cut off. */
+static size_t *count_of(vlScene *scene, vlSceneFamily family) {
+  switch (family) {
+    case VL_SCENE_TEXTURES:
+      return &scene->textures.count;
+    case VL_SCENE_MATERIALS:
+      return &scene->materials.count;
+    case VL_SCENE_MEDIA:
+      return &scene->media.count;
+    case VL_SCENE_EMISSIONS:
+      return &scene->emissions.count;
+    case VL_SCENE_LIGHTS:
+      return &scene->lights.count;
+    case VL_SCENE_SHAPES:
+      return &scene->shapes.count;
+    case VL_SCENE_GROUPS: /* removed instances still name their groups */
+    case VL_SCENE_INSTANCES:
+      break;
+  }
+  return NULL;
+}
+
+/* Cuts removed objects off the end of their array, so that loads, which add at the end, do not
+ * make it grow. The mark stays, with a serial for the next object of this id. */
+static void trim(vlScene *scene, vlSceneFamily family) {
+  const vlSceneMarks *marks = marks_of(scene, family);
+  size_t *count = count_of(scene, family);
+  while (count && *count > 0 && *count <= marks->count && marks->items[*count - 1].removed) {
+    const uint64_t number = vl_context_number(scene->context);
+    if (family == VL_SCENE_SHAPES)
+      vl_scene_forget_removed_shape(scene, (uint32_t)*count);
+    marks->items[*count - 1] = (vlSceneMark){.generation = number, .serial = number};
+    (*count)--;
+  }
+}
+
 vlResult vl_scene_remove(vlScene *scene, vlSceneFamily family, uint32_t index, vlError *error) {
   vlResult result = check_removal(scene, family, index, error);
   if (result != VL_OK)
     return result;
-  if (family == VL_SCENE_SHAPES)
-    return vl_scene_remove_shape(scene, (vlShapeId){index}, error);
+  if (family == VL_SCENE_SHAPES) {
+    result = vl_scene_remove_shape(scene, (vlShapeId){index}, error);
+    trim(scene, VL_SCENE_SHAPES);
+    return result;
+  }
   if (family == VL_SCENE_INSTANCES)
     return vl_scene_remove_instance(scene, (vlInstanceId){index}, error);
   vlSceneMark *mark = vl_scene_mark_of(scene, marks_of(scene, family), index);
@@ -372,6 +411,9 @@ vlResult vl_scene_remove(vlScene *scene, vlSceneFamily family, uint32_t index, v
     remove_light(scene, index);
   mark->generation = vl_context_number(scene->context);
   mark->removed = mark->hidden = true;
+  trim(scene, family);
+  if (family == VL_SCENE_GROUPS)
+    trim(scene, VL_SCENE_SHAPES);
   return VL_OK;
 }
 

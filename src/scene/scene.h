@@ -151,6 +151,8 @@ void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t 
 vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id);
 /* Frees those of the scene's blocks that are in a list. */
 void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count);
+/* Takes an id out of the list of removed shapes. */
+void vl_scene_forget_removed_shape(vlScene *scene, uint32_t id);
 /* Whether a texture or a light has this image. */
 bool vl_scene_image_is_used(const vlScene *scene, const vlImage *image);
 

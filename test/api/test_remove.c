@@ -156,6 +156,8 @@ static void places_are_given_again(void **state) {
   (void)state;
   Fixture f = begin();
   add_things(&f);
+  Fixture later = f; /* the same once more, so that the places are not the last ones */
+  add_things(&later);
   const uint64_t held = vl_context_memory(f.context, NULL);
   remove_all(&f);
   vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_CONSTANT, false);
@@ -174,11 +176,30 @@ static void places_are_given_again(void **state) {
   end(&f);
 }
 
+static void the_last_places_are_cut_off(void **state) {
+  (void)state;
+  Fixture f = begin();
+  add_things(&f);
+  Fixture later = f;
+  add_things(&later);
+  remove_all(&f);
+  assert_int_equal(vl_scene_highest(f.scene, VL_SCENE_LIGHTS), 2);
+  remove_all(&later);
+  for (int family = VL_SCENE_TEXTURES; family <= VL_SCENE_SHAPES; family++)
+    assert_int_equal(vl_scene_highest(f.scene, (vlSceneFamily)family), 0);
+  assert_int_equal(vl_scene_removed_shape(f.scene).index, 0);
+  add_looks(&f); /* as a file that is loaded adds them */
+  assert_int_equal(f.light.index, 1);
+  assert_int_not_equal(vl_scene_serial(f.scene, VL_SCENE_LIGHTS, 1), 0);
+  end(&f);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(users_are_named),
       cmocka_unit_test(ids_of_removed_objects_are_refused),
       cmocka_unit_test(places_are_given_again),
+      cmocka_unit_test(the_last_places_are_cut_off),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

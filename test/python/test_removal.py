@@ -147,6 +147,61 @@ def groups_take_their_shapes_with_them():
     assert scene.world().ids("instance")[0]["name"] == "other"
 
 
+def write_model(path):
+    """A box with a texture, as a file."""
+    scene = velo.Scene()
+    bricks = scene.add_texture("image", image=TEXELS)
+    paint = scene.add_material("principled", reflectance=bricks, roughness=0.3, metallic=0.0, name="paint")
+    scene.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], uvs=[[0, 0], [1, 0], [0, 1]], material=paint)
+    scene.save(path)
+
+
+@case
+def models_are_removed_with_what_their_files_brought():
+    path = cases.work("model.glb")
+    write_model(path)
+    context = velo.Context(threads=1)
+    scene = velo.Scene(context=context)
+    grey = scene.add_material("diffuse", name="grey")
+    scene.add_light("infinite", color=1)
+    scene.camera = velo.Camera(16, 12, eye=(0, 0, 3), lookat=(0, 0, 0))
+    info, whole = scene.info, bits(scene)
+    model = scene.load_group(path)
+    assert {handle.family for handle in model.handles} == {"groups", "materials", "textures"} and grey not in model.handles
+    place = scene.add_instance(model.group, pose=numpy.eye(4))
+    shown = bits(scene)
+    with raises(velo.SceneError, "instance number 1 uses it"):
+        scene.remove(model)
+    assert bits(scene) == shown != whole
+    scene.remove(place)
+    scene.remove(model)
+    assert scene.info == info and bits(scene) == whole
+    with raises(velo.UsageError, "the group was removed"):
+        scene.remove(model)
+    rounds = 40 if SANITIZED else 400
+    for number in range(rounds):
+        model = scene.load_group(path)
+        place = scene.add_instance(model.group, pose=numpy.eye(4))
+        if number in (rounds // 4, rounds - 1):
+            assert bits(scene) == shown
+        scene.remove(place)
+        scene.remove(model)
+        if number == rounds // 4:
+            scene.world()
+            before = context.memory
+    scene.world()
+    print("  %d models, %+d bytes held" % (rounds, context.memory - before))
+    # The bytes of the file, in which its images are, stay with the scene.
+    assert scene.info == info and context.memory < before + rounds * (os.path.getsize(path) + 512), (context.memory, before)
+    assert max(handle.index for handle in scene.load_group(path).handles if handle.family != "groups") == 2  # the arrays do not grow
+    scene = velo.Scene(context=context)
+    kept = scene.load_group(path)
+    ball = scene.add_sphere((0, 0, 0), 1, material=next(handle for handle in kept.handles if handle.family == "materials"))
+    scene.remove(kept)
+    assert scene.get(ball, "material").name == "paint"  # what the ball uses stays, with its texture
+    assert scene.info["textures"] == 1
+
+
 @case
 def a_thousand_removals_take_no_memory():
     scene, rounds = begin(), 60 if SANITIZED else 1000

@@ -68,8 +68,11 @@ static void put_number_rule(const vlParameter *row, double factor, char *rule, s
   else
     snprintf(rule, size, "a finite %s", thing);
   size_t used = strlen(rule);
-  if (factor != 1 && row->unit)
-    used += (size_t)snprintf(rule + used, size - used, " %s", row->unit);
+  const bool in_radians =
+      factor == 1 && row->factor != 0 && row->unit && strcmp(row->unit, "degrees") == 0;
+  const char *unit = in_radians ? "radians" : factor != 1 ? row->unit : NULL;
+  if (unit)
+    used += (size_t)snprintf(rule + used, size - used, " %s", unit);
   if (row->flags & VL_PARAMETER_INFINITE)
     snprintf(rule + used, size - used, ", or infinity");
 }

@@ -231,7 +231,11 @@ def the_command_line_has_degrees():
     run = subprocess.run([VELO, "render", PINHOLE, "--environment-rotation", "2e6", "-o", work("a.exr")], stderr=subprocess.PIPE, text=True)
     assert run.returncode == 2 and "degrees" in run.stderr, run.stderr
     with raises(velo.UsageError, "radians (3437.75 degrees)"):
-        velo.Camera(8, 6, fov=60)  # degrees where radians belong: the message has both
+        velo.Camera(8, 6, fov=60)  # degrees where radians belong
+    for call in (lambda: velo.Scene().add_light("spot", cone_angle=40), lambda: velo.Camera(8, 6, tilt_x=45), lambda: velo.load(PINHOLE, elevation=90),
+                 lambda: velo.Camera(8, 6, projection="equidistant", max_angle=90)):
+        with raises(velo.UsageError, " radians; it is "):
+            call()
 
 
 @case

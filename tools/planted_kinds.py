@@ -420,7 +420,7 @@ MISTAKES = [
      "cosine = (1.0f + g * g - square * square) / (2.0f * g);",
      "cosine = -(1.0f + g * g - square * square) / (2.0f * g);"),
     ("Panini's lines compressed by another distance", "projections:panini",
-     r"projections panini:", "src/projection/panini.h",
+     r"projections [pP]anini", "src/projection/panini.h",
      "s = (d + 1.0) / vl_not_tiny(over) * scale;",
      "s = (d + 0.9) / vl_not_tiny(over) * scale;"),
     ("the highest coefficient's power", "distortions",

@@ -27,7 +27,10 @@ const ShapeCase curves_shape = {
             {.parameters = STRAIGHT "\"string type\" \"cylinder\"",
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,
-             .faces_rays = true},
+             .faces_rays = true,
+             /* the normal turns by 90 degrees from the middle to an edge */
+             .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, NAN, .70710678}},
+             .known_count = 1},
         },
     .parameters =
         {

@@ -16,6 +16,7 @@ typedef struct ShapeKnown {
   double origin[3], direction[3]; /* a ray */
   double t;                       /* infinity: it hits nothing */
   double u, v;                    /* texture coordinates there; NaN: not known */
+  double cosine; /* of the angle between the normal and the way back; 0: not known */
 } ShapeKnown;
 
 typedef struct ShapeVariant {

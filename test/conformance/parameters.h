@@ -10,8 +10,10 @@
 #include "conformance.h"
 #include "parameter_cases.h"
 #include "velo/check.h"
+#include "velo/edit.h"
 #include "velo/export.h"
 #include "velo/filter_kinds.h"
+#include "velo/material.h"
 #include "velo/sampler.h"
 #include "velo/tracer.h"
 
@@ -287,7 +289,42 @@ static int quarters_blurred;
 /* What a scene's text, or the glTF file that is written of it (suffix not null), looks like
  * with many samples. Null: glTF loses a part of it, or failed. */
 enum { GLTF_SPP = 192 };
-static vlImage *image_by_gltf(const char *text, bool written, int *losses, vlError *error) {
+
+/* The number that a scene's last material or light of a kind has as a parameter. NaN: there is
+ * no such kind, or the parameter is not a number. */
+static double number_in(const vlScene *scene, const char *family, const char *kind,
+                        const char *name) {
+  const vlKindFamily *all = vl_kind_family_find(family);
+  const int k = vl_kind_find(all, kind);
+  const vlParameter *p = NULL;
+  for (size_t i = 0; k >= 0 && i < all->rows[k]->parameter_count; i++)
+    if (same_name(all->rows[k]->parameters[i].name, name))
+      p = &all->rows[k]->parameters[i];
+  const char *def = NULL;
+  if (p && strcmp(family, "materials") == 0) {
+    const vlMaterialDef *m;
+    for (uint32_t i = 1; (m = vl_scene_material(scene, (vlMaterialId){i})); i++)
+      def = (int)m->kind == k ? (const char *)m : def;
+  }
+  if (p && strcmp(family, "lights") == 0) {
+    const vlLightDef *l;
+    for (uint32_t i = 1; (l = vl_scene_light(scene, (vlLightId){i})); i++)
+      def = (int)l->kind == k ? (const char *)l : def;
+  }
+  if (!def)
+    return NAN;
+  if (p->type == VL_PARAMETER_FLOAT)
+    return (double)*(const float *)(def + p->offset);
+  if (p->type != VL_PARAMETER_FLOAT_INPUT)
+    return NAN;
+  const vlFloatInput *input = (const vlFloatInput *)(def + p->offset);
+  return input->texture.index ? NAN : (double)input->value;
+}
+
+/* number: of the parameter `name` of the kind, in the scene that is rendered. */
+static vlImage *image_by_gltf(const char *text, bool written, const char *family,
+                              const char *kind, const char *name, double *number, int *losses,
+                              vlError *error) {
   char path[100];
   vlScene *scene = load_text(context, text, error);
   if (!scene)
@@ -307,6 +344,7 @@ static vlImage *image_by_gltf(const char *text, bool written, int *losses, vlErr
       return NULL;
     }
   }
+  *number = number_in(scene, family, kind, name);
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->camera.width = defs->camera.height = WIDTH;
   defs->film = vl_default_film_def(WIDTH, WIDTH);
@@ -319,24 +357,31 @@ static vlImage *image_by_gltf(const char *text, bool written, int *losses, vlErr
 }
 
 /* A scene that glTF holds is the same scene when it is read again: the writer says what it
- * loses, or the image has the same light in each of its quarters, but for colours in bytes and
- * skies as cube maps. */
+ * loses, or the parameter's number is the same, and the image has the same light in each of its
+ * quarters, but for colours in bytes and skies as cube maps. */
 static void check_gltf(const char *family, const char *kind, const char *name,
                        const char *text) {
   static char mesh_text[2 * TEXT];
   vlError error = {0};
   int losses = 0;
   with_meshes(text, mesh_text);
-  vlImage *again = image_by_gltf(mesh_text, true, &losses, &error);
+  double read_again = 0;
+  double number = 0;
+  vlImage *again =
+      image_by_gltf(mesh_text, true, family, kind, name, &read_again, &losses, &error);
   if (losses)
     return;
-  vlImage *plain = again ? image_by_gltf(mesh_text, false, &losses, &error) : NULL;
+  vlImage *plain =
+      again ? image_by_gltf(mesh_text, false, family, kind, name, &number, &losses, &error)
+            : NULL;
   if (!plain) {
     broken(family, kind, "\"%s\": as gltf: %s", name, error.message);
     vl_image_destroy(again);
     return;
   }
   held_by_gltf++;
+  if (fabs(read_again - number) > 1e-3 * fabs(number))
+    broken(family, kind, "\"%s\": as gltf: %g, not %g", name, read_again, number);
   for (int part = 0; part < 4; part++)
     for (int c = 0; c < 3; c++) {
       Mean off = {0};

@@ -149,6 +149,12 @@ static void compare_known(ShapeLaws *s, vlTrace *trace) {
       broken("shapes", s->kind,
              "%s: ray %u hits at %.5f, uv %.4f %.4f; known are %.5f, %.4f %.4f",
              s->variant->parameters, i, t, u, v, k->t, k->u, k->v);
+    double cosine = 0;
+    for (int c = 0; c < 3; c++)
+      cosine -= (double)s->hits->normal[c][i] * (double)s->rays->direction[c][i];
+    if (k->cosine > 0 && !(fabs(cosine - k->cosine) < 1e-3))
+      broken("shapes", s->kind, "%s: ray %u: the normal's cosine is %.4f; known is %.4f",
+             s->variant->parameters, i, cosine, k->cosine);
   }
 }
 

@@ -17,17 +17,21 @@
 extern const char velo_commit[];
 
 /* Commands of two words ("image diff") come last. */
-static const Command *const commands[] = {
-    &render_command,           &view_command,           &scene_info_command,
-    &scene_check_command,      &scene_convert_command,  &scene_upgrade_command,
-    &scene_kinds_command,      &scene_verify_command,   &image_info_command,
-    &image_diff_command,       &image_convert_command,  &image_check_command,
-    &image_denoise_command,    &camera_project_command, &camera_unproject_command,
-    &camera_info_command,      &camera_convert_command, &camera_verify_command,
-    &camera_vanishing_command, &camera_paths_command,   &camera_draw_command,
-    &film_info_command,        &film_merge_command,     &film_develop_command,
-    &raw_develop_command,      &raw_info_command,       &sensor_expose_command,
-    &sensor_verify_command};
+static const Command *const commands[] = {&render_command,         &view_command,
+                                          &trace_command,          &scene_info_command,
+                                          &scene_check_command,    &scene_convert_command,
+                                          &scene_upgrade_command,  &scene_kinds_command,
+                                          &scene_verify_command,   &image_info_command,
+                                          &image_diff_command,     &image_convert_command,
+                                          &image_check_command,    &image_denoise_command,
+                                          &camera_project_command, &camera_unproject_command,
+                                          &camera_info_command,    &camera_convert_command,
+                                          &camera_verify_command,  &camera_vanishing_command,
+                                          &camera_paths_command,   &camera_draw_command,
+                                          &film_info_command,      &film_merge_command,
+                                          &film_develop_command,   &raw_develop_command,
+                                          &raw_info_command,       &sensor_expose_command,
+                                          &sensor_verify_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {

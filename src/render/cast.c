@@ -37,66 +37,89 @@ vlCastDef vl_default_cast_def(void) {
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
-/* Number `k` of ray i. */
-static inline double number_at(const vlRayArray *a, uint64_t i, int k) {
-  const char *from = (const char *)a->data + (int64_t)i * a->step;
-  if (a->doubles) {
-    double x;
-    memcpy(&x, from + k * (int)sizeof x, sizeof x);
-    return x;
+/* Number k of the rays [first, first + n); `other` where the array is not given. */
+static void read_column(const vlRayArray *a, uint64_t first, uint32_t n, int k, double other,
+                        double *to) {
+  const char *from = (const char *)a->data + (int64_t)first * a->step;
+  for (uint32_t i = 0; i < n && !a->data; i++)
+    to[i] = other;
+  for (uint32_t i = 0; i < n && a->data && a->doubles; i++)
+    memcpy(&to[i], from + (int64_t)i * a->step + k * (int)sizeof(double), sizeof(double));
+  for (uint32_t i = 0; i < n && a->data && !a->doubles; i++) {
+    float x;
+    memcpy(&x, from + (int64_t)i * a->step + k * (int)sizeof x, sizeof x);
+    to[i] = (double)x;
   }
-  float x;
-  memcpy(&x, from + k * (int)sizeof x, sizeof x);
-  return (double)x;
 }
 
+/* What becomes of a ray. */
 typedef enum Fate { TRACED, EMPTY, NOT_FINITE, ZERO_DIRECTION, TOO_FAR } Fate;
 
-static const double FAR = 1.8e18, LONGEST = 1e300;
+static inline double largest(const double rows[3][VL_ROW_SIZE], uint32_t i) {
+  double x = fabs(rows[0][i]), y = fabs(rows[1][i]), z = fabs(rows[2][i]);
+  x = x > y ? x : y;
+  return x > z ? x : z;
+}
 
-/* Reads ray i into element k of the batch, and says what becomes of it. */
-static Fate read_ray(const Cast *c, uint64_t i, vlCastBatch *b, uint32_t k) {
-  const vlCastRays *r = c->rays;
-  double sum = 0, reach = 0, length = 0;
-  for (int j = 0; j < 3; j++) {
-    double o = number_at(&r->origins, i, j), d = number_at(&r->directions, i, j);
-    b->o[j][k] = o;
-    b->d[j][k] = d;
-    sum += o - o + (d - d); /* NaN unless all are finite */
-    reach = fmax(reach, fabs(o));
-    length = fmax(length, fabs(d));
-  }
-  double start = r->t_min.data ? number_at(&r->t_min, i, 0) : 0;
-  double end = r->t_max.data ? number_at(&r->t_max, i, 0) : (double)INFINITY;
-  double time = r->times.data ? number_at(&r->times, i, 0) : 0;
-  sum += start - start + (time - time);
-  if (sum != 0 || end != end || length > LONGEST)
+/* The sum of differences that are 0 for finite numbers, else NaN. */
+static inline double unsound(const double rows[3][VL_ROW_SIZE], uint32_t i) {
+  return (rows[0][i] - rows[0][i]) + (rows[1][i] - rows[1][i]) + (rows[2][i] - rows[2][i]);
+}
+
+static Fate fate_of(const vlCastBatch *b, const double *time, uint32_t i) {
+  double sum =
+      unsound(b->o, i) + unsound(b->d, i) + (b->start[i] - b->start[i]) + (time[i] - time[i]);
+  double length = largest(b->d, i);
+  if (sum != 0 || b->end[i] != b->end[i] || length > VL_CAST_LONGEST)
     return NOT_FINITE;
   if (length == 0)
     return ZERO_DIRECTION;
-  if (reach >= FAR)
+  if (largest(b->o, i) >= VL_CAST_FAR)
     return TOO_FAR;
-  start = start > 0 ? start : 0;
-  if (end <= start)
-    return EMPTY;
-  b->start[k] = start;
-  b->end[k] = end;
-  b->time[k] = vl_world_time(c->world, time);
-  return TRACED;
+  return b->end[i] > b->start[i] ? TRACED : EMPTY;
 }
 
-/* Reads the rays [first, first + count) that are traced; lane[k]: the number of ray k in the
- * call. */
+static void move_ray(vlCastBatch *b, double *time, uint32_t from, uint32_t to) {
+  for (int j = 0; j < 3; j++) {
+    b->o[j][to] = b->o[j][from];
+    b->d[j][to] = b->d[j][from];
+  }
+  b->start[to] = b->start[from];
+  b->end[to] = b->end[from];
+  time[to] = time[from];
+}
+
+/* Reads the rays [first, first + count) and keeps those that are traced; lane[k]: the number of
+ * ray k in the call. */
 static void read_rays(Cast *c, uint64_t first, uint32_t count, vlCastBatch *b,
                       uint64_t lane[VL_BATCH]) {
+  const vlCastRays *r = c->rays;
+  double time[VL_BATCH];
   uint64_t fates[TOO_FAR + 1] = {0};
   uint32_t n = 0;
-  for (uint32_t i = 0; i < count; i++) {
-    Fate fate = read_ray(c, first + i, b, n);
-    fates[fate]++;
-    lane[n] = first + i;
-    n += fate == TRACED;
+  for (int j = 0; j < 3; j++) {
+    read_column(&r->origins, first, count, j, 0, b->o[j]);
+    read_column(&r->directions, first, count, j, 0, b->d[j]);
   }
+  read_column(&r->t_min, first, count, 0, 0, b->start);
+  read_column(&r->t_max, first, count, 0, (double)INFINITY, b->end);
+  read_column(&r->times, first, count, 0, 0, time);
+  b->n = count;
+  bool plain = c->kernels->check(b) && !r->times.data;
+  for (uint32_t i = 0; plain && i < count; i++)
+    lane[i] = first + i;
+  for (uint32_t i = 0; !plain && i < count; i++) {
+    Fate fate = fate_of(b, time, i);
+    fates[fate]++;
+    if (fate != TRACED)
+      continue;
+    if (i != n)
+      move_ray(b, time, i, n);
+    lane[n++] = first + i;
+  }
+  n = plain ? count : n;
+  for (uint32_t k = 0; k < n; k++)
+    b->time[k] = c->world->moves ? vl_world_time(c->world, time[k]) : 0.0f;
   b->n = n;
   if (n == count)
     return;
@@ -131,42 +154,53 @@ static void clear_rows(const vlCastHits *h, uint64_t first, uint64_t count) {
     h->distance[i] = (double)INFINITY;
 }
 
-static void put_ids(const Cast *c, const vlCastBatch *b, uint32_t k, uint64_t row) {
+/* The hits of a batch: ray[k] of the batch goes to row[k]. */
+typedef struct Rows {
+  uint32_t count;
+  uint16_t ray[VL_BATCH + 1];
+  uint64_t row[VL_BATCH + 1];
+} Rows;
+
+static void put_ids(const Cast *c, const vlCastBatch *b, const Rows *r) {
   const vlCastHits *h = c->hits;
-  if (h->valid)
-    h->valid[row] = 1;
-  if (h->object)
-    h->object[row] = b->shape[k] + 1;
-  if (h->instance)
-    h->instance[row] = b->instance[k] == VL_NONE ? 0 : b->instance[k] + 1;
-  if (h->primitive)
-    h->primitive[row] = b->prim[k] + 1;
-  if (h->material)
-    h->material[row] = c->world->shapes.items[b->shape[k]].material + 1;
+  const vlWorldShape *shapes = c->world->shapes.items;
+  for (uint32_t i = 0; h->valid && i < r->count; i++)
+    h->valid[r->row[i]] = 1;
+  for (uint32_t i = 0; h->object && i < r->count; i++)
+    h->object[r->row[i]] = b->shape[r->ray[i]] + 1;
+  for (uint32_t i = 0; h->instance && i < r->count; i++)
+    h->instance[r->row[i]] = b->instance[r->ray[i]] + 1; /* VL_NONE + 1 is 0 */
+  for (uint32_t i = 0; h->primitive && i < r->count; i++)
+    h->primitive[r->row[i]] = b->prim[r->ray[i]] + 1;
+  for (uint32_t i = 0; h->material && i < r->count; i++)
+    h->material[r->row[i]] = shapes[b->shape[r->ray[i]]].material + 1;
 }
 
-static void put3(float *rows, uint64_t row, const float from[3][VL_ROW_SIZE], uint32_t k) {
-  if (!rows)
-    return;
-  for (int j = 0; j < 3; j++)
-    rows[3 * row + (uint64_t)j] = from[j][k];
+/* Rows of `columns` floats; to: null: they are not wanted. */
+static void put_floats(const float (*from)[VL_ROW_SIZE], int columns, const Rows *r,
+                       float *to) {
+  for (uint32_t i = 0; to && i < r->count; i++)
+    for (int j = 0; j < columns; j++)
+      to[(uint64_t)columns * r->row[i] + (uint64_t)j] = from[j][r->ray[i]];
 }
 
-static void put_hit(const Cast *c, const vlCastBatch *b, uint32_t k, uint64_t row) {
+static void put_hits(const Cast *c, const vlCastBatch *b, const Rows *r) {
   const vlCastHits *h = c->hits;
-  put_ids(c, b, k, row);
-  if (h->t)
-    h->t[row] = b->distance[k] / b->length[k];
-  if (h->distance)
-    h->distance[row] = b->distance[k];
-  for (uint64_t j = 0; h->position && j < 3; j++)
-    h->position[3 * row + j] = b->o[j][k] + b->distance[k] * b->d[j][k];
-  put3(h->normal, row, b->normal, k);
-  put3(h->shading_normal, row, b->shading, k);
-  for (uint64_t j = 0; h->uv && j < 2; j++)
-    h->uv[2 * row + j] = b->uv[j][k];
-  for (uint64_t j = 0; h->velocity && j < 3; j++)
-    h->velocity[3 * row + j] = b->velocity[j][k];
+  put_ids(c, b, r);
+  for (uint32_t i = 0; h->t && i < r->count; i++)
+    h->t[r->row[i]] = b->distance[r->ray[i]] / b->length[r->ray[i]];
+  for (uint32_t i = 0; h->distance && i < r->count; i++)
+    h->distance[r->row[i]] = b->distance[r->ray[i]];
+  for (uint32_t i = 0; h->position && i < r->count; i++)
+    for (uint64_t j = 0; j < 3; j++)
+      h->position[3 * r->row[i] + j] =
+          b->o[j][r->ray[i]] + b->distance[r->ray[i]] * b->d[j][r->ray[i]];
+  put_floats(b->normal, 3, r, h->normal);
+  put_floats(b->shading, 3, r, h->shading_normal);
+  put_floats(b->uv, 2, r, h->uv);
+  for (uint32_t i = 0; h->velocity && i < r->count; i++)
+    for (uint64_t j = 0; j < 3; j++)
+      h->velocity[3 * r->row[i] + j] = b->velocity[j][r->ray[i]];
 }
 
 /* ---- a batch ----------------------------------------------------------------------------- */
@@ -176,16 +210,17 @@ static void find_hits(Cast *c, CastWorker *w, uint64_t lane[VL_BATCH]) {
   uint32_t hits = c->def->hits, from[VL_ROW_SIZE];
   for (uint32_t step = 0; step < hits && b->n; step++) {
     uint32_t last = step + 1 == hits ? 0 : VL_CAST_ON;
-    uint64_t met = 0;
+    Rows rows;
+    rows.count = 0;
     c->kernels->next(c->world, w->scratch, c->wanted | last, b);
     for (uint32_t k = 0; k < b->n; k++) {
-      if (b->shape[k] == VL_NONE)
-        continue;
-      put_hit(c, b, k, lane[k] * hits + step);
-      met++;
+      rows.ray[rows.count] = (uint16_t)k;
+      rows.row[rows.count] = lane[k] * hits + step;
+      rows.count += b->shape[k] != VL_NONE;
     }
+    put_hits(c, b, &rows);
     if (step == 0)
-      atomic_fetch_add(&c->met, met);
+      atomic_fetch_add(&c->met, rows.count);
     if (!last)
       return;
     c->kernels->keep(w->scratch, b, from);

@@ -38,7 +38,15 @@ typedef struct vlCastBatch {
 
 /* The scratch is that of tracers (vl_trace_scratch_begin); for VL_CAST_SHADING it must have
  * been zeroed. Of it a cast uses rays, hits, at, corners, textures and occluders. */
+/* Rays that are not traced: origins that are farther away than this along an axis, directions
+ * with a larger component. */
+#define VL_CAST_FAR 1.8e18
+#define VL_CAST_LONGEST 1e300
+
 typedef struct vlCastKernels {
+  /* Raises starts below 0 to 0. Whether all rays can be traced: their numbers (but for times)
+   * are finite, directions not 0, ends beyond starts. */
+  bool (*check)(vlCastBatch *batch);
   /* Fills what the members of the batch say. Rays are finite, their directions are not 0. */
   void (*prepare)(const vlWorld *world, vlTraceScratch *s, vlCastBatch *batch);
   /* Finds each ray's nearest hit between t_min and t_max. wanted: bits. */

@@ -16,6 +16,26 @@ static inline double largest(double a, double b, double c) {
   return a > c ? a : c;
 }
 
+static bool check(vlCastBatch *b) {
+  uint32_t wrong = 0;
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < b->n; i++)
+    b->start[i] = b->start[i] < 0.0 ? 0.0 : b->start[i];
+  for (uint32_t i = 0; i < b->n; i++) {
+    double length = largest(b->d[0][i], b->d[1][i], b->d[2][i]);
+    double reach = largest(b->o[0][i], b->o[1][i], b->o[2][i]);
+    double sum = (b->d[0][i] - b->d[0][i]) + (b->d[1][i] - b->d[1][i]) +
+                 (b->d[2][i] - b->d[2][i]) + (b->o[0][i] - b->o[0][i]) +
+                 (b->o[1][i] - b->o[1][i]) + (b->o[2][i] - b->o[2][i]);
+    uint32_t fine = (sum == 0.0) & (length > 0.0) & (length <= VL_CAST_LONGEST) &
+                    (reach < VL_CAST_FAR) & (b->end[i] > b->start[i]) &
+                    (b->start[i] < (double)VL_INFINITY);
+    wrong |= !fine;
+  }
+  return !wrong;
+}
+
 /* Makes directions unit, and distances of t. The largest component is taken out first, since
  * squares may leave the range of double. */
 static void normalize(vlCastBatch *b) {
@@ -24,11 +44,12 @@ static void normalize(vlCastBatch *b) {
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
     double most = largest(b->d[0][i], b->d[1][i], b->d[2][i]);
-    double x = b->d[0][i] / most, y = b->d[1][i] / most, z = b->d[2][i] / most;
-    double l = __builtin_sqrt(x * x + y * y + z * z);
-    b->d[0][i] = x / l;
-    b->d[1][i] = y / l;
-    b->d[2][i] = z / l;
+    double scale = 1.0 / most;
+    double x = b->d[0][i] * scale, y = b->d[1][i] * scale, z = b->d[2][i] * scale;
+    double l = __builtin_sqrt(x * x + y * y + z * z), unit = 1.0 / l;
+    b->d[0][i] = x * unit;
+    b->d[1][i] = y * unit;
+    b->d[2][i] = z * unit;
     b->length[i] = most * l;
     b->start[i] = b->start[i] * b->length[i];
     b->end[i] = b->end[i] * b->length[i];
@@ -56,17 +77,18 @@ static void round_rays(vlCastBatch *b, vlPaths *p) {
 }
 
 /* Whether most neighbours start close to each other, as the world is large, in directions
- * within 8 degrees. */
+ * within 8 degrees. Every fourth pair is looked at. */
 static bool are_coherent(const vlWorld *world, uint32_t n, const vlPaths *p) {
   const float close = 0.02f * world->radius, least_cosine = 0.99f;
-  uint32_t similar = 0;
-  for (uint32_t i = 1; i < n; i++) {
+  uint32_t similar = 0, pairs = 0;
+  for (uint32_t i = 1; i < n; i += 4) {
     vlVec3 a = vl_lane3(p->dx, p->dy, p->dz, i), b = vl_lane3(p->dx, p->dy, p->dz, i - 1);
     vlVec3 step =
         vl_sub(vl_lane3(p->ox, p->oy, p->oz, i), vl_lane3(p->ox, p->oy, p->oz, i - 1));
     similar += vl_dot(a, b) > least_cosine && vl_length2(step) <= close * close;
+    pairs++;
   }
-  return 8 * (uint64_t)similar >= 7 * (uint64_t)n;
+  return 8 * similar >= 7 * pairs && pairs;
 }
 
 static void prepare(const vlWorld *world, vlTraceScratch *s, vlCastBatch *b) {
@@ -187,14 +209,73 @@ static void put_surface(uint32_t n, const vlVertices *at, uint32_t wanted, vlCas
 
 /* ---- distances --------------------------------------------------------------------------- */
 
-static void measure(const vlWorld *world, const vlHits *h, vlCastBatch *b) {
-  for (uint32_t i = 0; i < b->n; i++) {
+/* Large meshes are not in the cache: what later lanes read is prefetched, first the indices,
+ * then the corners. */
+enum { AHEAD = 8, LARGE_MESH = 4096 };
+static inline __attribute__((always_inline)) const vlWorldShape *large_mesh(
+    const vlWorld *world, const vlHits *h, uint32_t i) {
+  const vlWorldShape *s = h->shape[i] == VL_NONE ? NULL : &world->shapes.items[h->shape[i]];
+  return s && s->kind == VL_SHAPE_TRIANGLES && s->faces >= LARGE_MESH ? s : NULL;
+}
+static inline __attribute__((always_inline)) void prefetch(const vlWorld *world,
+                                                           const vlHits *h, uint32_t n,
+                                                           uint32_t i) {
+  const vlWorldShape *later = i + 2 * AHEAD < n ? large_mesh(world, h, i + 2 * AHEAD) : NULL;
+  if (later)
+    __builtin_prefetch(later->indices + 3 * (size_t)h->prim[i + 2 * AHEAD]);
+  const vlWorldShape *soon = i + AHEAD < n ? large_mesh(world, h, i + AHEAD) : NULL;
+  const uint32_t *f = soon ? soon->indices + 3 * (size_t)h->prim[i + AHEAD] : NULL;
+  for (int k = 0; k < 3 && f; k++)
+    __builtin_prefetch(soon->positions + 3 * (size_t)f[k]);
+}
+
+/* Whether a hit is on a triangle at rest outside of instances, as most are. */
+static inline __attribute__((always_inline)) bool is_plain(const vlWorld *world,
+                                                           const vlHits *h, uint32_t i) {
+  const vlWorldShape *s = &world->shapes.items[h->shape[i]];
+  return h->instance[i] == VL_NONE && s->kind == VL_SHAPE_TRIANGLES && s->steps <= 1;
+}
+
+/* Gathers the corners of plain hits. False: there are others, too. */
+static bool gather_corners(const vlWorld *world, const vlHits *h, uint32_t n, vlCorners *c) {
+  bool all = true;
+  for (uint32_t i = 0; i < n; i++) {
+    prefetch(world, h, n, i);
     if (h->shape[i] == VL_NONE)
+      continue;
+    if (!is_plain(world, h, i)) {
+      all = false;
+      continue;
+    }
+    const vlWorldShape *s = &world->shapes.items[h->shape[i]];
+    const uint32_t *f = s->indices + 3 * (size_t)h->prim[i];
+    for (int k = 0; k < 3; k++)
+      for (int j = 0; j < 3; j++)
+        c->p[3 * k + j][i] = s->positions[3 * (size_t)f[k] + (size_t)j];
+  }
+  return all;
+}
+
+/* Distances in double. Rows of rays without a hit get numbers that nobody reads. */
+static void measure(const vlWorld *world, const vlHits *h, vlCorners *c, vlCastBatch *b) {
+  const double none = (double)__builtin_nanf("");
+  bool all = gather_corners(world, h, b->n, c);
+  uint32_t padded = VL_PAD(b->n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    Exact x = {c->p[0][i], c->p[1][i], c->p[2][i]}, y = {c->p[3][i], c->p[4][i], c->p[5][i]},
+          z = {c->p[6][i], c->p[7][i], c->p[8][i]};
+    Exact o = {b->o[0][i], b->o[1][i], b->o[2][i]}, d = {b->d[0][i], b->d[1][i], b->d[2][i]};
+    b->distance[i] = exact_plane_distance(x, y, z, o, d, none);
+  }
+  for (uint32_t i = 0; i < b->n && !all; i++) {
+    if (h->shape[i] == VL_NONE || is_plain(world, h, i))
       continue;
     const double o[3] = {b->o[0][i], b->o[1][i], b->o[2][i]},
                  d[3] = {b->d[0][i], b->d[1][i], b->d[2][i]};
     b->distance[i] = vl_exact_distance(world, b->time[i], o, d, h->shape[i], h->prim[i],
-                                       h->instance[i], h->t[i], (double)h->t[i]);
+                                       h->instance[i], h->t[i], none);
   }
 }
 
@@ -228,7 +309,7 @@ static void next(const vlWorld *world, vlTraceScratch *s, uint32_t wanted, vlCas
   for (uint32_t i = 0; world->has_interfaces && i < b->n; i++)
     pass_interfaces(world, p, b, h, i);
   if ((wanted & (VL_CAST_DISTANCE | VL_CAST_VELOCITY)) || b->finite_ends)
-    measure(world, h, b);
+    measure(world, h, &s->corners, b);
   if (b->finite_ends)
     drop_beyond(b, h);
   if (wanted & VL_CAST_VELOCITY)
@@ -253,7 +334,10 @@ static void occluded(const vlWorld *world, vlTraceScratch *s, vlCastBatch *b) {
   vlRays rays = rays_of(world, &s->rays, b);
   for (uint32_t i = 0; i < b->n; i++)
     b->t_max[i] = (float)b->end[i];
-  vl_accel_occluded(world, b->n, &rays, &s->occluders, b->occluded);
+  if (b->coherent)
+    vl_accel_occluded_coherent(world, b->n, &rays, b->occluded);
+  else
+    vl_accel_occluded(world, b->n, &rays, &s->occluders, b->occluded);
 }
 
 static void keep(vlTraceScratch *s, vlCastBatch *b, uint32_t from[VL_ROW_SIZE]) {
@@ -278,4 +362,4 @@ static void keep(vlTraceScratch *s, vlCastBatch *b, uint32_t from[VL_ROW_SIZE]) 
   b->n = count;
 }
 
-const vlCastKernels vl_cast_kernel_table = {prepare, next, occluded, keep};
+const vlCastKernels vl_cast_kernel_table = {check, prepare, next, occluded, keep};

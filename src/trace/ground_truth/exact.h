@@ -34,26 +34,34 @@ static inline Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q
   return (Exact){r[0], r[1], r[2]};
 }
 
-/* Distance to the triangle's plane, clamped to the range of the distances of its corners. At
- * grazing angles the float ray that found the triangle and the exact ray may differ so much
- * that the exact ray meets the plane far outside the triangle. */
-static inline double exact_triangle_distance(const vlWorldShape *s, const vlWorldInstance *q,
-                                             float time, uint32_t prim, Exact o, Exact d,
-                                             double otherwise) {
-  const uint32_t *f = s->indices + 3 * (size_t)prim;
-  Exact a = exact_sub(exact_corner(s, q, time, f[0]), o),
-        b = exact_sub(exact_corner(s, q, time, f[1]), o),
-        c = exact_sub(exact_corner(s, q, time, f[2]), o);
+/* Distance to the plane of the triangle with these corners, clamped to the range of the
+ * distances of its corners. At grazing angles the float ray that found the triangle and the
+ * exact ray may differ so much that the exact ray meets the plane far outside the triangle.
+ * otherwise: the distance where the ray does not meet the plane; NaN: the mean of the
+ * corners'. */
+static inline __attribute__((always_inline)) double exact_plane_distance(Exact x, Exact y,
+                                                                         Exact z, Exact o,
+                                                                         Exact d,
+                                                                         double otherwise) {
+  Exact a = exact_sub(x, o), b = exact_sub(y, o), c = exact_sub(z, o);
   Exact n = exact_cross(exact_sub(b, a), exact_sub(c, a));
   double along = exact_dot(d, n), t = exact_dot(a, n) / along;
-  if (!(along != 0.0) || !(t - t == 0.0))
-    return otherwise;
   double ta = exact_dot(a, d), tb = exact_dot(b, d), tc = exact_dot(c, d);
   double low = ta < tb ? ta : tb, high = ta < tb ? tb : ta;
   low = low < tc ? low : tc;
   high = high > tc ? high : tc;
-  t = t < low ? low : t;
-  return t > high ? high : t;
+  double inside = t < low ? low : t;
+  inside = inside > high ? high : inside;
+  double without = otherwise == otherwise ? otherwise : (ta + tb + tc) / 3.0;
+  return along != 0.0 && t - t == 0.0 ? inside : without;
+}
+
+static inline double exact_triangle_distance(const vlWorldShape *s, const vlWorldInstance *q,
+                                             float time, uint32_t prim, Exact o, Exact d,
+                                             double otherwise) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  return exact_plane_distance(exact_corner(s, q, time, f[0]), exact_corner(s, q, time, f[1]),
+                              exact_corner(s, q, time, f[2]), o, d, otherwise);
 }
 
 /* Distance at which the exact ray meets a curved shape, near the distance t that the float ray
@@ -74,8 +82,7 @@ static inline double exact_curved_distance(const vlWorldShape *s, const vlWorldI
 }
 
 /* o, d: the exact ray, world space; d has unit length. time: the world's. hit_t: vlHits.t, for
- * shapes other than triangles. otherwise: the distance of triangles that the exact ray does not
- * meet. */
+ * shapes other than triangles. otherwise: as of exact_plane_distance. */
 static inline double vl_exact_distance(const vlWorld *world, float time, const double o[3],
                                        const double d[3], uint32_t shape, uint32_t prim,
                                        uint32_t instance, float hit_t, double otherwise) {

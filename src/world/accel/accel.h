@@ -76,6 +76,9 @@ void vl_accel_closest(const struct vlWorld *world, uint32_t n, const vlRays *ray
  * be null. */
 void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays,
                        vlOccluders *occluders, uint8_t *occluded);
+/* The same for rays whose neighbours have similar directions: they are traced in packets. */
+void vl_accel_occluded_coherent(const struct vlWorld *world, uint32_t n, const vlRays *rays,
+                                uint8_t *occluded);
 /* Each thread calls this before it traces. It sets the floating-point state
  * (vl_machine_set_floats) and returns the previous one. The caller restores that with
  * vl_accel_leave. */

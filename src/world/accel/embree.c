@@ -585,7 +585,7 @@ void vl_embree_destroy(vlAccel *a) {
 /* Macros that hide the difference between the queries of Embree 3 and 4. */
 /* Camera rays in a packet: as many as fit into the vectors of the widest set without fused
  * multiply-add. */
-enum { PACKET = 8 };
+enum { PACKET = 16 };
 
 #if VELO_EMBREE_MAJOR >= 4
 #define BEGIN_QUERY(query, r, coherent)                                         \
@@ -600,10 +600,13 @@ enum { PACKET = 8 };
   struct RTCOccludedArguments any_arguments;                                    \
   rtcInitOccludedArguments(&any_arguments);                                     \
   any_arguments.context = &query.context;                                       \
+  any_arguments.flags = closest_arguments.flags;                                \
   (void)closest_arguments, (void)any_arguments
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
-#define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), (ray), &closest_arguments)
+#define INTERSECT16(valid, scene, ray) \
+  rtcIntersect16((valid), (scene), (ray), &closest_arguments)
+#define OCCLUDED16(valid, scene, ray) rtcOccluded16((valid), (scene), (ray), &any_arguments)
 #else
 #define BEGIN_QUERY(query, r, coherent)                   \
   Query query;                                            \
@@ -613,11 +616,12 @@ enum { PACKET = 8 };
       (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
-#define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), &query.context, (ray))
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &query.context, (ray))
+#define OCCLUDED16(valid, scene, ray) rtcOccluded16((valid), (scene), &query.context, (ray))
 #endif
 
-static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst,
-                      uint32_t *shape, uint32_t *prim_out, uint32_t *instance) {
+static inline void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst,
+                             uint32_t *shape, uint32_t *prim_out, uint32_t *instance) {
   if (geom == RTC_INVALID_GEOMETRY_ID) {
     *shape = *prim_out = *instance = VL_NONE;
     return;
@@ -632,7 +636,7 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
  * miss everything. Only cameras, and media around them, can be that far away, because the
  * extent of the world is limited (shapes.c); directions that are NaN come from cameras whose
  * numbers are too large for a double. */
-static bool is_sound(const vlRays *r, uint32_t i) {
+static inline bool is_sound(const vlRays *r, uint32_t i) {
   const float far = 1.8e18f;
   bool near = fabsf(r->ox[i]) < far && fabsf(r->oy[i]) < far && fabsf(r->oz[i]) < far;
   bool turned = fabsf(r->dx[i]) < far && fabsf(r->dy[i]) < far && fabsf(r->dz[i]) < far;
@@ -643,34 +647,31 @@ static bool is_sound(const vlRays *r, uint32_t i) {
 
 /* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays that Embree
  * does not accept, are not valid. */
-static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r,
-                        uint32_t first, uint32_t n) {
-  uint32_t at[PACKET];
-  for (uint32_t k = 0; k < PACKET; k++)
-    at[k] = first + k < n ? first + k : n - 1;
+static void fill_packet(struct RTCRay16 *q, int valid[PACKET], const vlRays *r, uint32_t first,
+                        uint32_t n) {
+  const float *const from[6] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
+  float *const to[6] = {q->org_x, q->org_y, q->org_z, q->dir_x, q->dir_y, q->dir_z};
+  uint32_t count = n - first < PACKET ? n - first : PACKET, last = first + count - 1;
+  for (int j = 0; j < 6; j++) {
+    memcpy(to[j], from[j] + first, count * sizeof(float));
+    for (uint32_t k = count; k < PACKET; k++)
+      to[j][k] = from[j][last];
+  }
   for (uint32_t k = 0; k < PACKET; k++) {
-    uint32_t i = at[k];
-    valid[k] = first + k < n ? -1 : 0;
-    q->ray.org_x[k] = r->ox[i];
-    q->ray.org_y[k] = r->oy[i];
-    q->ray.org_z[k] = r->oz[i];
-    q->ray.dir_x[k] = r->dx[i];
-    q->ray.dir_y[k] = r->dy[i];
-    q->ray.dir_z[k] = r->dz[i];
-    q->ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
-    q->ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
-    q->ray.time[k] = r->time ? r->time[i] : 0;
-    q->ray.mask[k] = (unsigned)-1;
-    q->ray.id[k] = i;
-    q->ray.flags[k] = 0;
-    q->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    q->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    uint32_t i = k < count ? first + k : last;
+    valid[k] = k < count ? -1 : 0;
+    q->tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
+    q->tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
+    q->time[k] = r->time ? r->time[i] : 0;
+    q->mask[k] = (unsigned)-1;
+    q->id[k] = i;
+    q->flags[k] = 0;
     if (!is_sound(r, i)) {
       /* Embree may check lanes that are not valid; this one hits nothing */
       valid[k] = 0;
-      q->ray.org_x[k] = q->ray.org_y[k] = q->ray.org_z[k] = 0.0f;
-      q->ray.dir_x[k] = q->ray.dir_y[k] = q->ray.dir_z[k] = 1.0f;
-      q->ray.tnear[k] = q->ray.tfar[k] = INFINITY;
+      q->org_x[k] = q->org_y[k] = q->org_z[k] = 0.0f;
+      q->dir_x[k] = q->dir_y[k] = q->dir_z[k] = 1.0f;
+      q->tnear[k] = q->tfar[k] = INFINITY;
     }
   }
 }
@@ -685,10 +686,12 @@ static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, u
     query.q.first = first;
     for (uint32_t k = 0; k < PACKET; k++)
       nearest[k].t = INFINITY;
-    struct RTCRayHit8 q;
-    int valid[PACKET] __attribute__((aligned(32)));
-    fill_packet(&q, valid, r, first, n);
-    INTERSECT8(valid, world->accel.scene, &q);
+    struct RTCRayHit16 q;
+    int valid[PACKET] __attribute__((aligned(64)));
+    fill_packet(&q.ray, valid, r, first, n);
+    for (uint32_t k = 0; k < PACKET; k++)
+      q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    INTERSECT16(valid, world->accel.scene, &q);
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
       t[first + k] = query.q.nearest ? nearest[k].t : q.ray.tfar[k];
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
@@ -736,6 +739,19 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
     t[i] = query.q.nearest ? nearest.t : q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i],
               &instance[i]);
+  }
+}
+
+void vl_embree_occluded_packets(const vlWorld *world, uint32_t n, const vlRays *r,
+                                uint8_t *occluded) {
+  BEGIN_QUERY(query, r, true);
+  for (uint32_t first = 0; first < n; first += PACKET) {
+    struct RTCRay16 q;
+    int valid[PACKET] __attribute__((aligned(64)));
+    fill_packet(&q, valid, r, first, n);
+    OCCLUDED16(valid, world->accel.scene, &q);
+    for (uint32_t k = 0; k < PACKET && first + k < n; k++)
+      occluded[first + k] = q.tfar[k] < 0;
   }
 }
 

@@ -25,6 +25,8 @@ void vl_embree_closest(const struct vlWorld *world, uint32_t n, const vlRays *ra
                        float *t);
 /* Rays whose occluded[i] is already 1 are left out. occluders: learns which triangles block
  * rays; null: nothing does. */
+void vl_embree_occluded_packets(const vlWorld *world, uint32_t n, const vlRays *rays,
+                                uint8_t *occluded);
 void vl_embree_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays,
                         vlOccluders *occluders, uint8_t *occluded);
 

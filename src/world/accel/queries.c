@@ -127,6 +127,14 @@ void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays,
     a->bvh_kernels->occluded(world, n, rays, learning, occluded);
 }
 
+void vl_accel_occluded_coherent(const vlWorld *world, uint32_t n, const vlRays *rays,
+                                uint8_t *occluded) {
+  if (HAS_EMBREE && world->accel.kind == VL_ACCELERATOR_EMBREE && !world->accel.brute_force)
+    vl_embree_occluded_packets(world, n, rays, occluded);
+  else
+    vl_accel_occluded(world, n, rays, NULL, occluded);
+}
+
 unsigned vl_accel_enter(void) {
   return vl_machine_set_floats();
 }

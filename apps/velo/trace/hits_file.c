@@ -1,0 +1,89 @@
+/* trace/hits_file.c: see hits_file.h. */
+#include "trace/hits_file.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* ---- .csv -------------------------------------------------------------------------------- */
+
+static void put_row(const vlCastHits *h, uint64_t k, FILE *out) {
+  const double *p = h->position + 3 * k, *v = h->velocity + 3 * k;
+  const float *n = h->normal + 3 * k, *s = h->shading_normal + 3 * k, *uv = h->uv + 2 * k;
+  fprintf(out, "%d,%.17g,%.17g,%.17g,%.17g,%.17g", h->valid[k], h->t[k], h->distance[k], p[0],
+          p[1], p[2]);
+  fprintf(out, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (double)n[0], (double)n[1],
+          (double)n[2], (double)s[0], (double)s[1], (double)s[2], (double)uv[0], (double)uv[1]);
+  fprintf(out, ",%.17g,%.17g,%.17g", v[0], v[1], v[2]);
+  fprintf(out, ",%u,%u,%u,%u\n", h->object[k], h->instance[k], h->primitive[k], h->material[k]);
+}
+
+void hits_write_csv(const HitsFile *h, FILE *out) {
+  if (h->occluded) {
+    fprintf(out, "ray,occluded\n");
+    for (uint64_t i = 0; i < h->count && !ferror(out); i++)
+      fprintf(out, "%" PRIu64 ",%d\n", i, h->occluded[i]);
+    return;
+  }
+  fprintf(out,
+          "ray,hit,valid,t,distance,x,y,z,normal_x,normal_y,normal_z,shading_x,shading_y,"
+          "shading_z,u,v,velocity_x,velocity_y,velocity_z,object,instance,primitive,"
+          "material\n");
+  for (uint64_t i = 0; i < h->count && !ferror(out); i++)
+    for (uint32_t k = 0; k < h->hits; k++) {
+      uint64_t row = i * h->hits + k;
+      if (k && !h->rows.valid[row])
+        break;
+      fprintf(out, "%" PRIu64 ",%u,", i, k);
+      put_row(&h->rows, row, out);
+    }
+}
+
+/* ---- .npy -------------------------------------------------------------------------------- */
+
+/* Writes the start of the format, whose header is filled with blanks to a multiple of 64. */
+static void put_start(FILE *out, const char *type, const char *shape) {
+  char header[1024];
+  int length = snprintf(header, sizeof header,
+                        "{'descr': %s, 'fortran_order': False, 'shape': (%s), }", type, shape);
+  unsigned total = (10u + (unsigned)length + 1 + 63) / 64 * 64, size = total - 10;
+  fwrite("\x93NUMPY\1\0", 1, 8, out);
+  fputc((int)(size & 255), out);
+  fputc((int)(size >> 8), out);
+  fprintf(out, "%-*s\n", (int)size - 1, header);
+}
+
+static void put_record(const vlCastHits *h, uint64_t k, FILE *out) {
+  fwrite(h->valid + k, 1, 1, out);
+  fwrite(h->t + k, sizeof(double), 1, out);
+  fwrite(h->distance + k, sizeof(double), 1, out);
+  fwrite(h->position + 3 * k, sizeof(double), 3, out);
+  fwrite(h->normal + 3 * k, sizeof(float), 3, out);
+  fwrite(h->shading_normal + 3 * k, sizeof(float), 3, out);
+  fwrite(h->uv + 2 * k, sizeof(float), 2, out);
+  fwrite(h->velocity + 3 * k, sizeof(double), 3, out);
+  fwrite(h->object + k, sizeof(uint32_t), 1, out);
+  fwrite(h->instance + k, sizeof(uint32_t), 1, out);
+  fwrite(h->primitive + k, sizeof(uint32_t), 1, out);
+  fwrite(h->material + k, sizeof(uint32_t), 1, out);
+}
+
+void hits_write_npy(const HitsFile *h, FILE *out) {
+  char shape[64];
+  if (h->hits > 1 && !h->occluded)
+    snprintf(shape, sizeof shape, "%" PRIu64 ", %u", h->count, h->hits);
+  else
+    snprintf(shape, sizeof shape, "%" PRIu64 ",", h->count);
+  if (h->occluded) {
+    put_start(out, "'|b1'", shape);
+    fwrite(h->occluded, 1, h->count, out);
+    return;
+  }
+  put_start(out,
+            "[('valid', '|b1'), ('t', '<f8'), ('distance', '<f8'), ('position', '<f8', (3,)), "
+            "('normal', '<f4', (3,)), ('shading_normal', '<f4', (3,)), ('uv', '<f4', (2,)), "
+            "('velocity', '<f8', (3,)), ('object_id', '<u4'), ('instance_id', '<u4'), "
+            "('primitive_id', '<u4'), ('material_id', '<u4')]",
+            shape);
+  for (uint64_t k = 0; k < h->count * h->hits && !ferror(out); k++)
+    put_record(&h->rows, k, out);
+}
